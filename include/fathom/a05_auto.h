@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_A05_AUTO_H
+#define FATHOM_A05_AUTO_H
+
+#include "fathom/dyp_auto.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A05 with UART automatic output (A05 1). 9600 8N1.
+ * Nobody asks it: it sends FF, four distances, SUM over and over, of processed or of real-time values. Which of
+ * them is decided by its RX pin in the first second after power-on, high or open for processed, low for
+ * real-time; the datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no frame period. The
+ * first Modbus command ends automatic output; power alone brings it back.
+ *
+ * Four samples a frame, one a fitted probe, with one sequence number and one time. FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the module
+ * reports it). The errors of fathom_poll:
+ *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
+ *                         noise; stream.counters tell these apart. Said once every stale_us.
+ *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
+ *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ */
+
+/* Read by init only. Members that are 0 mean their defaults. */
+typedef struct {
+    fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
+    uint32_t stale_us;   /* 0: 2 s */
+    uint16_t gap_us;     /* a silence of so much starts a frame (stream.h); behind an operating system
+                                   25000; 0: 5000 */
+    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
+    uint8_t probes; /* bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it
+                       gives no sample */
+} fathom_a05_auto_config_t;
+
+typedef struct {
+    fathom_dyp_auto_t base;
+    uint16_t values[4];
+    uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A05_LENGTH)];
+} fathom_a05_auto_t;
+
+/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm, or a probe over 4. */
+fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config);
+
+/* Stops listening; the memory is the caller's again. */
+void fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
+
+/* For fathom_poll. */
+fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

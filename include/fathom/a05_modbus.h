@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_A05_MODBUS_H
+#define FATHOM_A05_MODBUS_H
+
+#include "fathom/dyp_frame.h"
+#include "fathom/dyp_modbus.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A05 asked by Modbus RTU (A05 3): the RS485 variant, and the UART variant, whose automatic output ends with
+ * the first request until it is powered off. 9600 8N1. Each read starts a measurement of the probes it names,
+ * one after the other, about 100 ms each.
+ *
+ * A sample a wanted probe and answer, with one sequence number and one time: FATHOM_TARGET or FATHOM_NO_TARGET
+ * (with the interference mark where the module reports it). The errors of fathom_poll, each of one attempt:
+ *   FATHOM_ERR_NO_ANSWER  nothing from the unit in timeout_us, retries included. The datasheet documents no
+ *                         exceptions: a wrong register may be silence too
+ *   FATHOM_ERR_CHECKSUM   its answer was damaged
+ *   FATHOM_ERR_EXCEPTION  it refused; base.unit.request.message.exception has the number
+ *   FATHOM_ERR_MALFORMED  it answered something else, or this probe's distance is outside the window
+ *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ */
+
+/* From one request to the next, at least, for each probe that it reads. */
+#define FATHOM_A05_PROBE_US 100000ul
+
+/* The first probe's register; the same four distances stand in two places (A05 3(3), remark 2). */
+enum { FATHOM_A05_REGISTERS = 0x0106, FATHOM_A05_REGISTERS_ALIAS = 0x0010 };
+
+/* Read by init only; modbus and clock outlive the sensor. Members that are 0 mean their defaults. */
+typedef struct {
+    const fathom_modbus_t *modbus;
+    const fathom_clock_t *clock;
+    uint32_t period_us;         /* from one request to the next; 0 and anything less: 100 ms a probe */
+    uint32_t timeout_us;        /* 0: 200 ms, and 100 ms a probe */
+    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
+    uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
+    uint8_t address;            /* 1..254; 0: 1, the factory's */
+    uint8_t retries;            /* after a failed attempt; 0: none */
+    uint8_t probes; /* bit probe - 1: wanted; 0: all four. One read covers the first to the last of
+                                   them, and those between are measured too */
+} fathom_a05_modbus_config_t;
+
+typedef struct {
+    fathom_dyp_modbus_t base;
+    uint16_t values[FATHOM_DYP_PROBES];
+} fathom_a05_modbus_t;
+
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, address 255, other registers, a probe over 4,
+ * min_mm over max_mm. */
+fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config);
+
+/* Cancels what is under way; the memory is the caller's again. */
+void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor);
+
+/* For fathom_poll. */
+fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

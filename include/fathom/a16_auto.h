@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_A16_AUTO_H
+#define FATHOM_A16_AUTO_H
+
+#include "fathom/dyp_auto.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A16 with automatic output: UART automatic (A16 2) and RS232 (A16 5) before its first Modbus command. 9600 8N1.
+ * Nobody asks it: it sends FF H L SUM over and over, of the processed or of the real-time value. Which of them
+ * is decided by its RX pin, high or open for processed, low for real-time; the datasheet gives settling times
+ * of 2.5 to 7.5 s and of 500 ms for them, and no frame period.
+ *
+ * One sample a frame. FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the module
+ * reports it). The errors of fathom_poll:
+ *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
+ *                         noise; stream.counters tell these apart. Said once every stale_us.
+ *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
+ *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ */
+
+/* Read by init only. Members that are 0 mean their defaults. */
+typedef struct {
+    fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
+    uint32_t stale_us;   /* 0: 2 s */
+    uint16_t gap_us;     /* a silence of so much starts a frame (stream.h); behind an operating system
+                                   25000; 0: 5000 */
+    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
+} fathom_a16_auto_config_t;
+
+typedef struct {
+    fathom_dyp_auto_t base;
+    uint16_t values[1];
+    uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
+} fathom_a16_auto_t;
+
+/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm. */
+fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
+
+/* Stops listening; the memory is the caller's again. */
+void fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
+
+/* For fathom_poll. */
+fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_FATHOM_H
+#define FATHOM_FATHOM_H
+
+/* Everything that an application needs. Including it costs nothing: what is not called is not linked. */
+#include "fathom/a05_auto.h"
+#include "fathom/a05_modbus.h"
+#include "fathom/a16_auto.h"
+#include "fathom/a16_modbus.h"
+#include "fathom/hps167s.h"
+#include "fathom/modbus_client.h"
+#include "fathom/sensor.h"
+#include "fathom/version.h"
+#include "fathom/wait.h"
+
+#endif

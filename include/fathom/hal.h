@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_HAL_H
+#define FATHOM_HAL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * What Fathom needs from a machine: one small struct of functions a peripheral. A port fills them in once
+ * and they may be const. Rules for all of them:
+ *  - every function returns at once; none waits, none calls back into Fathom;
+ *  - the core calls them from one context (one task or the main loop). Interrupts belong to the port,
+ *    which hands over what they gathered when it is asked;
+ *  - `ctx` is the port's and is passed back untouched.
+ */
+
+/* Where a line stands. Fathom's sensors all use 8 data bits. */
+typedef enum { FATHOM_PARITY_NONE = 0, FATHOM_PARITY_EVEN = 1, FATHOM_PARITY_ODD = 2 } fathom_parity_t;
+
+typedef struct {
+    uint32_t baud;     /* bits per second */
+    uint8_t parity;    /* fathom_parity_t */
+    uint8_t stop_bits; /* 1 or 2 */
+} fathom_line_settings_t;
+
+/* What a port may know about the bytes that one read returned. All optional: no flag, no claim. */
+enum {
+    FATHOM_RX_TIMED = 1,   /* last_us is set */
+    FATHOM_RX_SILENCE = 2, /* the line was idle before the first byte (idle-line interrupt, DMA time-out) */
+    FATHOM_RX_PARITY = 4,  /* wrong parity in these bytes */
+    FATHOM_RX_FRAMING = 8, /* no stop bit where one was due in these bytes: a break, noise, another rate */
+    FATHOM_RX_OVERRUN = 16 /* bytes were lost just before these */
+};
+
+typedef struct {
+    uint32_t last_us; /* clock at the end of the last byte, with FATHOM_RX_TIMED */
+    uint8_t flags;    /* FATHOM_RX_... */
+} fathom_rx_t;
+
+/*
+ * A serial line.
+ *
+ * read   Copies up to `capacity` received bytes and returns how many; 0 when none is waiting; < 0 when the
+ *        port is broken (unplugged, closed). `rx` comes zeroed. One call never spans a silence or an error
+ *        that the port knows of: what lies beyond it is for the next call.
+ * write  Takes all `length` bytes (1..255) and returns `length`, or takes none and returns 0 because it is
+ *        busy; < 0 when the port is broken. Bytes that were taken leave the pin without a gap: an HPS-167S
+ *        drops a frame with a silence of 1.5 characters in it (HPS-167S 2.2.3). The port may not keep the
+ *        pointer. On RS-485 the port drives the transceiver.
+ * sent   True when the last stop bit of all that was written has left the pin. May turn true late (a USB
+ *        adapter cannot know better): bytes that were read before it counts still count as an answer.
+ */
+typedef struct {
+    int (*read)(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
+    int (*write)(void *ctx, const uint8_t *bytes, size_t length);
+    bool (*sent)(void *ctx);
+    void *ctx;
+} fathom_uart_t;
+
+/*
+ * A clock. now_us is monotonic, counts microseconds and wraps from 4294967295 to 0 (every 71.6 minutes).
+ * It need not start at 0. Coarser steps are allowed; every deadline is then that much later.
+ */
+typedef struct {
+    uint32_t (*now_us)(void *ctx);
+    void *ctx;
+} fathom_clock_t;
+
+/* "Nothing will happen without new bytes": what the due_us functions return instead of a time. */
+#define FATHOM_NO_DEADLINE UINT32_MAX
+
+/* The only way in which Fathom compares times: right across the wrap, for spans up to 71.6 minutes. So
+ * whatever is polled must be polled at least that often. */
+static inline uint32_t fathom_elapsed_us(uint32_t now_us, uint32_t since_us)
+{
+    return (uint32_t)(now_us - since_us);
+}
+
+/* Moves a count-down on by `by_us`; it stops at 0. True when it stands at 0. */
+static inline bool fathom_run_down(uint32_t *left_us, uint32_t by_us)
+{
+    *left_us = *left_us > by_us ? (uint32_t)(*left_us - by_us) : 0;
+    return *left_us == 0;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_LINE_H
+#define FATHOM_LINE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/hal.h"
+#include "fathom/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * The one owner of a UART. Whoever wants to ask something on the wire hands it an exchange; whoever only
+ * listens registers a listener; nobody else reads the port. Silence before a request, time-outs, damaged,
+ * late and foreign answers, retries, broadcasts and counters are kept here, once, for every protocol.
+ *
+ * It never waits, never allocates and keeps no state but in the structs below, which the caller owns. One
+ * context only: no function of a line may be called from an interrupt, or from two tasks at once.
+ *
+ * What it does with what comes in:
+ *  - An answer is complete by its length, at once; noise before it is dropped byte by byte.
+ *  - A damaged answer ends the attempt at the first gap after it.
+ *  - A unit that did not answer in time owes an answer. Until that came (it is counted as late and never
+ *    taken for another's), or until twice the time-out has passed since the request, that unit is asked
+ *    nothing; other units are asked meanwhile. A late answer does serve a retry of the same exchange.
+ *  - An exchange that has failed with retries left goes on waiting in the queue; other units come first.
+ *
+ * What cannot be told apart on a wire, and so is taken for the answer: one that comes later than twice the
+ * time-out; an unasked frame of the very shape that is being waited for. Choose time-outs accordingly.
+ */
+
+/* Zero-valued members of fathom_line_config_t mean these. */
+#define FATHOM_LINE_DEFAULT_SILENCE_US 4011 /* 3.5 characters of 11 bits at 9600 baud */
+#define FATHOM_LINE_DEFAULT_GAP_US     5000
+
+/* How long a port may refuse a request, or take to send it, before it counts as broken. */
+#define FATHOM_LINE_SEND_US 1000000u
+
+/*
+ * The silence that ends a frame, t3.5 (MODBUS over Serial Line V1.02, 2.5.1.1; HPS-167S 2.2.3): 3.5
+ * characters up to 19200 baud, 1750 us above. `bits` of a character, start, parity and stop bits included:
+ * 10 for 8N1, 11 for 8E1, 8O1 and 8N2. Constant when its arguments are.
+ */
+#define FATHOM_T3_5_US(baud, bits)                                                                           \
+    ((uint16_t)((baud) > 19200 ? 1750 : ((bits)*3500000ul + (baud)-1ul) / (baud)))
+
+typedef struct fathom_exchange fathom_exchange_t;
+
+/* What a protocol says of the bytes at the front of the line. */
+typedef struct {
+    uint8_t length; /* 0: none of its frames begins here. More than there are: so many are needed to tell.
+                       Else the length of the whole frame that stands here. */
+    uint8_t unit;   /* with length > 0: whose frame it is, or would be */
+    int8_t status;  /* of a whole frame. FATHOM_READY or FATHOM_ERR_EXCEPTION: it answers the exchange.
+                       FATHOM_ERR_MALFORMED: right checksum, from the unit that was asked, but no answer.
+                       FATHOM_PENDING: right checksum, not for this exchange.
+                       FATHOM_ERR_CHECKSUM: wrong checksum. */
+} fathom_match_t;
+
+/*
+ * One request and the answer to it, in the caller's memory. Set the first five members and submit it; then
+ * leave it alone until its status is no longer FATHOM_PENDING. It may be submitted again at once.
+ */
+struct fathom_exchange {
+    /* Writes the request to `frame` (the line's, frame_size bytes) and returns its length, 1..255. */
+    uint8_t (*encode)(const fathom_exchange_t *exchange, uint8_t *frame);
+    /*
+     * Looks at `have` (>= 1) received bytes and says in *match what they are. On an answer it writes the
+     * results, and only then. NULL when
+     * no answer is expected (a broadcast): the exchange is READY timeout_us after it was sent.
+     * It is also called with `exchange` NULL, by which the line asks for the frame alone; it must be a
+     * plain function that needs nothing else.
+     */
+    void (*receive)(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match);
+    uint32_t timeout_us; /* from the end of the request to the first byte of the answer; of a broadcast:
+                            the time that devices need before the next request */
+    uint8_t unit;        /* who is asked; units that are equal modulo 16 may delay, never confuse, each
+                            other after a time-out */
+    uint8_t retries;     /* further attempts after a failed one; 0..254 */
+
+    uint8_t attempts; /* the line's: how often it was sent */
+    int8_t status;    /* the line's: FATHOM_PENDING while it is queued, then how it ended:
+                         FATHOM_READY, or
+                         FATHOM_ERR_NO_ANSWER   nothing that could be the answer came in time
+                         FATHOM_ERR_CHECKSUM    an answer from the unit was damaged or broke off
+                         FATHOM_ERR_MALFORMED   the unit sent something else with a right checksum
+                         FATHOM_ERR_EXCEPTION   the unit refused; the number is in the request
+                         FATHOM_ERR_CANCELLED   by fathom_line_cancel
+                         FATHOM_ERR_PORT        the HAL reported an error or did not send */
+    union {
+        fathom_exchange_t *next; /* the line's, while it is queued */
+        uint32_t heard_us;       /* when it has ended with an answer: the clock when the last byte came */
+    } link;
+};
+
+/* Whoever takes the bytes that belong to no exchange. A node in the caller's memory. */
+typedef struct fathom_listener fathom_listener_t;
+struct fathom_listener {
+    /*
+     * `count` (>= 1) bytes in the order in which they came. after_gap: the line was seen to be silent for at
+     * least gap_us before the first of them. time_us: the clock when the last of them came, as well as the
+     * port or the polling can tell.
+     */
+    void (*receive)(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
+                    uint32_t time_us);
+    uint16_t gap_us; /* the silence it wants to know of: fathom_line_due_us() makes room to see it */
+};
+
+/* Counters; each stops at 65535, and the user may set it to 0. An attempt counts at -status; a retry is an attempt
+ * of its own. */
+enum {
+    FATHOM_LINE_ANSWERS = 0,
+    FATHOM_LINE_DROPPED_BYTES = 1, /* belonged to no frame, and no listener was there */
+    FATHOM_LINE_PORT_ERRORS = 2,
+    FATHOM_LINE_NO_ANSWERS = 3,
+    FATHOM_LINE_CHECKSUM_ERRORS = 4,
+    FATHOM_LINE_EXCEPTIONS = 5,
+    FATHOM_LINE_MALFORMED = 6,
+    FATHOM_LINE_LATE_ANSWERS = 7, /* from a unit that owed one */
+    FATHOM_LINE_STRAYS = 8,       /* whole frames that nobody had asked for: another master's traffic */
+    FATHOM_LINE_BAD_BYTES = 9,    /* that the port marked: parity, framing; and overruns */
+    FATHOM_LINE_COUNTERS = 10
+};
+
+/* Const and the caller's; read at every call, so it outlives the line. */
+typedef struct {
+    const fathom_uart_t *uart;
+    const fathom_clock_t *clock;
+    uint8_t *frame;      /* where requests are built and answers gathered; the line's alone */
+    uint8_t frame_size;  /* 8..255 bytes: the longest frame on this line. 13 for A16, A05 and HPS-167S
+                            distances; 27 for HPS-167S details; more lets longer foreign frames pass whole */
+    uint16_t silence_us; /* kept before a request: FATHOM_T3_5_US(baud, bits); 0: 4011 */
+    uint16_t gap_us;     /* a frame is over when nothing came for so long. At least 1.5 characters; more
+                            than a slow sender or a slow port pauses: 25000 behind an operating system, whose
+                            USB adapters hold bytes back for 16 ms. 0: 5000 */
+} fathom_line_config_t;
+
+typedef struct {
+    uint8_t state;
+    uint8_t have;       /* bytes in the frame */
+    uint8_t need;       /* below so many there is nothing new to say */
+    bool after_gap;     /* the listener's gap was seen before the first byte in the frame */
+    uint16_t owing;     /* bit unit % 16: may still answer */
+    uint16_t silent_us; /* known silence since the last byte either way; stops at 65535 */
+    const fathom_line_config_t *config;
+    fathom_exchange_t *head; /* the queue; the one on the wire is first */
+    fathom_listener_t *listener;
+    /* the protocol last spoken */
+    void (*receive)(fathom_exchange_t *, const uint8_t *, uint8_t, fathom_match_t *);
+    uint32_t polled_us; /* the clock at the last poll */
+    uint32_t left_us;   /* of the present time-out */
+    uint32_t owed_us;   /* until `owing` is forgotten */
+    uint16_t counters[FATHOM_LINE_COUNTERS];
+} fathom_line_t;
+
+/*
+ * Makes a line ready. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer of the config is NULL or the frame is
+ * under 8 bytes. The first request waits for one silence.
+ */
+fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config);
+
+/*
+ * Puts an exchange at the end of the queue. FATHOM_PENDING: it is queued, and exchange->status tells the
+ * rest. FATHOM_ERR_BUSY: it is queued already; nothing changed.
+ */
+fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_exchange_t *exchange);
+
+/*
+ * Takes an exchange out of the queue: it ends with FATHOM_ERR_CANCELLED, and its memory is the caller's
+ * again. In flight too: the unit then owes an answer, which no later exchange takes for its own. Does
+ * nothing to one that is not queued.
+ */
+void fathom_line_cancel(fathom_line_t *line, fathom_exchange_t *exchange);
+
+/* Registers who takes the bytes that belong to no exchange, instead of the one before; NULL for nobody. */
+void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
+
+/*
+ * Does all that can be done without waiting: reads what has come (at most 16 reads of the port), ends and
+ * begins exchanges. Call it often; at the latest every 71 minutes. Several users of one line may each call it.
+ * FATHOM_PENDING, or FATHOM_ERR_PORT: the port is broken; every queued exchange has ended with that. Go on
+ * polling and it works again when the port does.
+ */
+fathom_status_t fathom_line_poll(fathom_line_t *line);
+
+/*
+ * How long from now until poll has something to do if no byte comes, in microseconds; FATHOM_NO_DEADLINE
+ * when only a byte or a submit can bring that. While the port is sending it is 1000: not every port can
+ * report the end of sending by an event.
+ */
+uint32_t fathom_line_due_us(const fathom_line_t *line);
+
+/* The clock when the last byte came, as well as it is known; exact to the port's time stamps or to the
+ * polling, for 65 ms after it. */
+uint32_t fathom_line_heard_us(const fathom_line_t *line);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

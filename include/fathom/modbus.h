@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_MODBUS_H
+#define FATHOM_MODBUS_H
+
+#include "fathom/line.h"
+#include "fathom/modbus_rtu.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * The seam between the Modbus sensors and whatever carries Modbus: modbus_client.h on a line, or a port over
+ * another stack. A driver knows only this.
+ */
+
+/*
+ * A request in the caller's memory. Fill in the message (modbus_rtu.h), exchange.timeout_us and
+ * exchange.retries, submit it, and leave it alone until exchange.status is no longer FATHOM_PENDING; what it
+ * may then be stands at fathom_exchange_t, as does the time of the answer, exchange.link.heard_us. The rest of
+ * the exchange is the carrier's.
+ */
+typedef struct {
+    fathom_exchange_t exchange; /* first, so that one pointer is both */
+    fathom_modbus_message_t message;
+} fathom_modbus_request_t;
+
+/*
+ * submit    FATHOM_PENDING: under way, exchange.status tells the rest. Else nothing happened:
+ *           FATHOM_ERR_ARGUMENT   a count out of range, or a read from the broadcast unit 0
+ *           FATHOM_ERR_CAPACITY   the carrier's frame buffer is too small for the request or its answer
+ *           FATHOM_ERR_BUSY       this request is under way already
+ * cancel    Ends a request with FATHOM_ERR_CANCELLED; its memory is the caller's again.
+ * poll      Does all that can be done without waiting. FATHOM_PENDING, or FATHOM_ERR_PORT: the carrier's port is
+ *           broken, and what was under way has ended with that.
+ * due_us    How long until poll has something to do if no byte comes; FATHOM_NO_DEADLINE.
+ */
+typedef struct {
+    fathom_status_t (*submit)(void *ctx, fathom_modbus_request_t *request);
+    void (*cancel)(void *ctx, fathom_modbus_request_t *request);
+    fathom_status_t (*poll)(void *ctx);
+    uint32_t (*due_us)(void *ctx);
+    void *ctx;
+} fathom_modbus_t;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_MODBUS_UNIT_H
+#define FATHOM_MODBUS_UNIT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/modbus.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * One Modbus unit as a driver deals with it: one request at a time, no faster than the device can, and each
+ * outcome handed over once. The Modbus drivers are built on it; their users need not know it.
+ *
+ * There are two kinds of question. The repeated one (a measurement) comes again and again, and nobody minds
+ * if an outcome is replaced by a newer one. A command is asked once, and its outcome waits for whoever asked.
+ */
+typedef struct {
+    uint32_t timeout_us; /* first byte of the answer */
+    uint32_t pace_us;    /* from this request to the next one to the unit, at least; retries come when the
+                            line sends them, and the next one that much after the last of them */
+    uint16_t *values;    /* count registers, the driver's; written on FATHOM_READY only */
+    uint16_t first;      /* address of the first register; tells the questions of a driver apart; not 0 */
+    uint8_t count;       /* 1..125 */
+    uint8_t retries;
+    bool is_command;
+} fathom_modbus_question_t;
+
+typedef struct {
+    fathom_modbus_request_t request;
+    const fathom_modbus_t *modbus;
+    const fathom_clock_t *clock;
+    uint32_t polled_us;
+    uint32_t pace_us;  /* of the present question */
+    uint32_t pause_us; /* until the unit may be asked again */
+    uint32_t heard_us; /* the clock when the last answer came */
+    uint16_t answers;  /* counters; each stops at 65535. The other outcomes: */
+    uint16_t failures;
+    uint8_t address; /* 1..254 */
+    uint8_t state;
+    uint8_t attempts; /* of the present question that were seen to leave */
+    bool is_command;  /* the present question */
+    uint16_t waiting; /* the first register of a command that waits for its turn; 0: none */
+} fathom_modbus_unit_t;
+
+/* modbus and clock outlive the unit. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer is NULL or the address
+ * is 0 or 255, which ask everybody. */
+fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *modbus,
+                                        const fathom_clock_t *clock, uint8_t address);
+
+/*
+ * Asks the question, or goes on with it: call it with the same question until it is not FATHOM_PENDING.
+ * FATHOM_READY or the error with which the request ended (fathom_exchange_t), each outcome once.
+ * FATHOM_ERR_BUSY: another command is not finished, or nobody has taken its outcome.
+ * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: as fathom_modbus_t.poll,
+ * and nothing was asked.
+ */
+fathom_status_t fathom_modbus_unit_read(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question);
+
+/* Forgets what was asked and any outcome; a request under way is cancelled. */
+void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);
+
+/* How long until something can happen without a new byte, given that the unit is asked again and again. */
+uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

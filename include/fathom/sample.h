@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_SAMPLE_H
+#define FATHOM_SAMPLE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What the device said. An error of the line is no sample: it is a fathom_status_t. */
+typedef enum {
+    FATHOM_TARGET = 1,    /* something is distance_mm away */
+    FATHOM_NO_TARGET = 2, /* the device works and sees nothing in range */
+    FATHOM_FAULT = 3      /* the device says that it is broken (HPS-167S command #5, abnormal packet) */
+} fathom_sample_kind_t;
+
+typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model_t;
+
+/*
+ * One reading, the same for every sensor and every mode. The last four members are the HPS-167S's and 0
+ * for the others.
+ */
+typedef struct {
+    uint32_t time_us;     /* the HAL's clock when the last byte of the answer came; wraps */
+    uint32_t magnitude;   /* strength of the reflected light * 10000: 7231744 is 723.1744 (HPS-167S #5) */
+    uint16_t sequence;    /* of the answer; wraps; the probes of one A05 answer share it */
+    uint16_t raw;         /* the 16 bits that the device sent, whatever they mean */
+    uint16_t distance_mm; /* 0 unless kind is FATHOM_TARGET */
+    uint16_t precision;   /* the device's accuracy figure: the smaller the better, no unit (HPS-167S #5) */
+    uint8_t kind;         /* fathom_sample_kind_t */
+    uint8_t model;        /* fathom_model_t */
+    uint8_t unit;         /* Modbus address; 0 from a sensor that sends by itself */
+    uint8_t probe;        /* 1..4; 1 where there is one */
+    uint8_t ambient;      /* infrared light of the surroundings, relative (HPS-167S #5) */
+    bool interference;    /* with FATHOM_NO_TARGET: another unit of the same frequency disturbs */
+} fathom_sample_t;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

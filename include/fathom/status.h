@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_STATUS_H
+#define FATHOM_STATUS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * What every call that can be unfinished or fail returns. An error is below zero, so `status < 0` asks
+ * for one. None of these is ever a reading: "nothing in range" and "the sensor says that it is broken"
+ * are samples (sample.h), because the device did answer.
+ *
+ * The numbers are part of the interface: they fit an int8_t and new ones are only added.
+ */
+typedef enum {
+    FATHOM_READY = 1,   /* finished; the outputs are new */
+    FATHOM_PENDING = 0, /* not finished: nothing was written, call again */
+
+    FATHOM_ERR_ARGUMENT = -1,  /* the caller's values are outside what the function's comment allows */
+    FATHOM_ERR_PORT = -2,      /* the HAL said that the port is broken, tore a write, or cannot send */
+    FATHOM_ERR_NO_ANSWER = -3, /* asked, and nothing that could be an answer came in time */
+    FATHOM_ERR_CHECKSUM = -4,  /* an answer began and its CRC was wrong, or it broke off */
+    FATHOM_ERR_EXCEPTION = -5, /* the device answered with a Modbus exception; its number is beside it */
+    FATHOM_ERR_MALFORMED = -6, /* an answer with a right checksum that does not fit the question, or a
+                                  value that this device cannot mean */
+    FATHOM_ERR_STALE = -7,     /* a sensor that sends by itself has sent nothing good for too long */
+    FATHOM_ERR_CANCELLED = -8, /* ended by cancel */
+    FATHOM_ERR_BUSY = -9,      /* this object is already at work; try again when it has finished */
+    FATHOM_ERR_CAPACITY = -10  /* the memory that the caller gave is too small for this request */
+} fathom_status_t;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

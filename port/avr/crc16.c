@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/crc16.h"
+
+#include <util/crc16.h>
+
+/* avr-libc's _crc16_update is the same polynomial in 29 instructions without a table: no flash for one, and
+ * no RAM, where avr-gcc would put a const table. */
+uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
+{
+    uint16_t crc = 0xFFFF;
+    for (; length != 0; length--) crc = _crc16_update(crc, *bytes++);
+    return crc;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/a05_modbus.h"
+
+#define ANSWER_TIMEOUT_US 200000ul /* beside the probes' own time */
+
+enum { ALL_PROBES = 0x0F };
+
+fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
+{
+    fathom_dyp_modbus_t *const base = &sensor->base;
+    fathom_modbus_question_t *const question = &base->question;
+    const uint16_t registers = config->registers != 0 ? config->registers : FATHOM_A05_REGISTERS;
+    const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
+    if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+    if (registers != FATHOM_A05_REGISTERS && registers != FATHOM_A05_REGISTERS_ALIAS)
+        return FATHOM_ERR_ARGUMENT;
+
+    uint8_t first = 0;
+    while ((probes >> first & 1) == 0) first++;
+    uint8_t count = 1;
+    uint32_t measuring_us = FATHOM_A05_PROBE_US;
+    for (; probes >> (first + count) != 0; count++) measuring_us += FATHOM_A05_PROBE_US;
+
+    question->timeout_us = config->timeout_us != 0 ? config->timeout_us : ANSWER_TIMEOUT_US + measuring_us;
+    question->pace_us = config->period_us > measuring_us ? config->period_us : measuring_us;
+    question->first = (uint16_t)(registers + first);
+    question->count = count;
+    question->retries = config->retries;
+    base->answer.values = sensor->values;
+    base->answer.window.min_mm = config->window.min_mm;
+    base->answer.window.max_mm = config->window.max_mm;
+    base->answer.model = FATHOM_A05;
+    base->answer.first = (uint8_t)(first + 1);
+    base->probes = probes;
+    return fathom_dyp_modbus_init(base, config->modbus, config->clock,
+                                  config->address != 0 ? config->address : 1, FATHOM_A05_MAX_MM);
+}
+
+void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}

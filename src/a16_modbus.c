@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/a16_modbus.h"
+
+/* What sister models need and some margin. */
+#define PROCESSED_TIMEOUT_US 1000000ul
+#define REAL_TIME_TIMEOUT_US 300000ul
+
+fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config)
+{
+    fathom_dyp_modbus_t *const base = &sensor->base;
+    fathom_modbus_question_t *const question = &base->question;
+    if (config->value > FATHOM_A16_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    const bool is_real_time = config->value == FATHOM_A16_REAL_TIME;
+    question->timeout_us = config->timeout_us;
+    if (question->timeout_us == 0)
+        question->timeout_us = is_real_time ? REAL_TIME_TIMEOUT_US : PROCESSED_TIMEOUT_US;
+    question->pace_us =
+        config->period_us > FATHOM_A16_MIN_PERIOD_US ? config->period_us : FATHOM_A16_MIN_PERIOD_US;
+    question->first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
+    question->count = 1;
+    question->retries = config->retries;
+    base->answer.values = sensor->values;
+    base->answer.window.min_mm = config->window.min_mm;
+    base->answer.window.max_mm = config->window.max_mm;
+    base->answer.model = FATHOM_A16;
+    base->answer.first = 1;
+    base->probes = 1;
+    return fathom_dyp_modbus_init(base, config->modbus, config->clock,
+                                  config->address != 0 ? config->address : 1, FATHOM_A16_MAX_MM);
+}
+
+void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}

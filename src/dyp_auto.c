@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/dyp_auto.h"
+
+#include "fathom/dyp_frame.h"
+
+static uint32_t now_us(const fathom_dyp_auto_t *sensor)
+{
+    const fathom_clock_t *const clock = sensor->line->config->clock;
+    return clock->now_us(clock->ctx);
+}
+
+fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm)
+{
+    fathom_status_t status = fathom_dyp_answer_init(&sensor->answer, default_max_mm);
+    if (sensor->line == NULL || status < 0) return FATHOM_ERR_ARGUMENT;
+    status = fathom_stream_init(&sensor->stream, &sensor->stream_config, now_us(sensor));
+    fathom_line_listen(sensor->line, &sensor->stream.listener);
+    return status;
+}
+
+void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor)
+{
+    if (sensor->line->listener == &sensor->stream.listener) fathom_line_listen(sensor->line, NULL);
+}
+
+static bool all_plausible(const fathom_dyp_auto_t *sensor)
+{
+    const uint16_t *value = sensor->answer.values;
+    for (uint8_t left = sensor->probes; left != 0; left >>= 1, value++)
+        if ((left & 1) != 0 && !fathom_dyp_plausible(&sensor->answer.window, *value)) return false;
+    return true;
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_dyp_auto_t *const sensor = ctx;
+    fathom_dyp_answer_t *const answer = &sensor->answer;
+    const fathom_status_t port = fathom_line_poll(sensor->line);
+    const fathom_status_t next = fathom_dyp_next(answer, sample);
+    if (next != FATHOM_PENDING) return next;
+    if (port < 0) return port;
+
+    const uint8_t *frame;
+    const fathom_status_t status = fathom_stream_poll(&sensor->stream, now_us(sensor), &frame);
+    if (status != FATHOM_READY) return status;
+    fathom_dyp_frame_decode(frame, answer->values, (uint8_t)(sensor->stream_config.length / 2 - 1));
+    if (!all_plausible(sensor)) {
+        if (answer->implausible != UINT16_MAX) answer->implausible++;
+        return FATHOM_ERR_MALFORMED;
+    }
+    fathom_dyp_answer(answer, sensor->probes, sensor->stream.time_us);
+    return fathom_dyp_next(answer, sample);
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_dyp_auto_t *const sensor = ctx;
+    const uint32_t line_us = fathom_line_due_us(sensor->line);
+    const uint32_t stream_us = fathom_stream_due_us(&sensor->stream, now_us(sensor));
+    if (sensor->answer.left != 0) return 0;
+    return line_us < stream_us ? line_us : stream_us;
+}
+
+fathom_sensor_t fathom_dyp_auto_sensor(fathom_dyp_auto_t *sensor)
+{
+    fathom_sensor_t handle;
+    handle.poll = poll;
+    handle.due_us = due_us;
+    handle.ctx = sensor;
+    return handle;
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/modbus_unit.h"
+
+enum { IDLE = 0, ASKED = 1, ANSWERED = 2 };
+
+static uint16_t one_more(uint16_t n) { return n != UINT16_MAX ? (uint16_t)(n + 1) : n; }
+
+static uint32_t now_us(const fathom_modbus_unit_t *unit) { return unit->clock->now_us(unit->clock->ctx); }
+
+/* Lets time pass and the carrier work; returns how that is. */
+static fathom_status_t advance(fathom_modbus_unit_t *unit)
+{
+    const fathom_exchange_t *const exchange = &unit->request.exchange;
+    const fathom_status_t carrier = unit->modbus->poll(unit->modbus->ctx);
+    const uint32_t now = now_us(unit);
+    const uint32_t passed_us = fathom_elapsed_us(now, unit->polled_us);
+    unit->polled_us = now;
+    /* The pace counts from the last request on the wire, not from its place in a queue. */
+    if (unit->state == ASKED && exchange->attempts != unit->attempts) {
+        unit->attempts = exchange->attempts;
+        unit->pause_us = unit->pace_us;
+    } else if (unit->state != ASKED || unit->attempts != 0) {
+        fathom_run_down(&unit->pause_us, passed_us);
+    }
+    if (unit->state != ASKED || exchange->status == FATHOM_PENDING) return carrier;
+    unit->state = ANSWERED;
+    unit->heard_us = exchange->link.heard_us;
+    if (exchange->status == FATHOM_READY)
+        unit->answers = one_more(unit->answers);
+    else
+        unit->failures = one_more(unit->failures);
+    return carrier;
+}
+
+static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
+{
+    fathom_modbus_request_t *const request = &unit->request;
+    if (unit->pause_us != 0) return FATHOM_PENDING;
+    request->exchange.timeout_us = question->timeout_us;
+    request->exchange.retries = question->retries;
+    fathom_modbus_read_holding_registers(&request->message, unit->address, question->first, question->count,
+                                         question->values);
+    unit->waiting = 0;
+    const fathom_status_t status = unit->modbus->submit(unit->modbus->ctx, request);
+    if (status == FATHOM_PENDING) {
+        unit->state = ASKED;
+        unit->attempts = 0;
+        unit->is_command = question->is_command;
+        unit->pace_us = question->pace_us;
+        unit->pause_us = question->pace_us;
+    }
+    return status;
+}
+
+fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *modbus,
+                                        const fathom_clock_t *clock, uint8_t address)
+{
+    if (modbus == NULL || clock == NULL || address == 0 || address == 255) return FATHOM_ERR_ARGUMENT;
+    unit->modbus = modbus;
+    unit->clock = clock;
+    unit->polled_us = now_us(unit);
+    unit->pause_us = 0;
+    unit->heard_us = unit->polled_us;
+    unit->answers = 0;
+    unit->failures = 0;
+    unit->address = address;
+    unit->state = IDLE;
+    unit->attempts = 0;
+    unit->is_command = false;
+    unit->waiting = 0;
+    unit->pace_us = 0;
+    unit->request.message.exception = 0;
+    return FATHOM_READY;
+}
+
+/* Is it another question's turn first? A command waits for nothing but another command and for what is on its
+ * way; the repeated question lets commands pass. */
+static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
+{
+    const bool is_waiting = unit->waiting != 0 && unit->waiting != question->first;
+    const bool is_untaken = unit->state != IDLE && unit->is_command;
+    if (!question->is_command) return is_waiting || is_untaken ? FATHOM_PENDING : FATHOM_READY;
+    if (is_waiting || is_untaken) return FATHOM_ERR_BUSY;
+    unit->waiting = question->first;
+    return unit->state == ASKED ? FATHOM_PENDING : FATHOM_READY;
+}
+
+fathom_status_t fathom_modbus_unit_read(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
+{
+    const uint8_t *const head = unit->request.message.head;
+    const fathom_status_t carrier = advance(unit);
+    if (unit->state != IDLE && head[2] * 256u + head[3] == question->first) {
+        if (unit->state == ASKED) return FATHOM_PENDING;
+        unit->state = IDLE;
+        return (fathom_status_t)unit->request.exchange.status;
+    }
+    if (carrier < 0) return carrier; /* nothing could be asked; not to say so would let a caller wait */
+    const fathom_status_t status = turn(unit, question);
+    if (status != FATHOM_READY) return status;
+    unit->state = IDLE; /* an outcome of the repeated question that nobody took gives way */
+    return ask(unit, question);
+}
+
+void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit)
+{
+    if (unit->state == ASKED) unit->modbus->cancel(unit->modbus->ctx, &unit->request);
+    unit->state = IDLE;
+    unit->waiting = 0;
+}
+
+uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
+{
+    if (unit->state == ASKED) { /* another unit's poll may have ended it already */
+        const bool has_ended = unit->request.exchange.status != FATHOM_PENDING;
+        return has_ended ? 0 : unit->modbus->due_us(unit->modbus->ctx);
+    }
+    const uint32_t passed_us = fathom_elapsed_us(now_us(unit), unit->polled_us);
+    return unit->state == IDLE && unit->pause_us > passed_us ? unit->pause_us - passed_us : 0;
+}
