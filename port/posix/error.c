@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+#undef _GNU_SOURCE        /* with it, strerror_r is another function */
+#define _DEFAULT_SOURCE 1 /* getgrgid_r, strerror_r */
+#include <errno.h>
+#include <grp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "internal/posix_port.h"
+
+fathom_posix_status_t fathom_posix_error(const fathom_posix_uart_t *port) { return port->error; }
+
+const char *fathom_posix_error_text(const fathom_posix_uart_t *port) { return port->text; }
+
+fathom_posix_status_t fathom_posix_fail(fathom_posix_uart_t *port, fathom_posix_status_t error,
+                                        const char *format, ...)
+{
+    va_list arguments;
+    /* The path is far shorter than the text. */
+    const int head =
+        snprintf(port->text, sizeof port->text, "%s: ", port->path[0] != 0 ? port->path : "serial port");
+    va_start(arguments, format);
+    /* clang-tidy 14 forgets the line above when it is given several files. */
+    /* NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
+    (void)vsnprintf(port->text + head, sizeof port->text - (size_t)head, format, arguments);
+    va_end(arguments);
+    port->error = error;
+    return error;
+}
+
+/* strerror is not safe with threads. */
+static const char *words(int code, char *text, size_t capacity)
+{
+    if (strerror_r(code, text, capacity) != 0) (void)snprintf(text, capacity, "error %d", code);
+    return text;
+}
+
+fathom_posix_status_t fathom_posix_fail_lost(fathom_posix_uart_t *port, int code)
+{
+    char text[80];
+    port->is_lost = true;
+    return fathom_posix_fail(port, FATHOM_POSIX_ERR_LOST,
+                             "the device was unplugged or its far end closed (%s)",
+                             code != 0 ? words(code, text, sizeof text) : "hang-up");
+}
+
+fathom_posix_status_t fathom_posix_fail_system(fathom_posix_uart_t *port, const char *what, int code)
+{
+    char text[80];
+    const bool is_gone = code == EIO || code == ENXIO || code == ENODEV;
+    if (is_gone && port->is_open) return fathom_posix_fail_lost(port, code);
+    if (is_gone)
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_FOUND,
+                                 "%s: %s: there is no UART behind this name, or it was unplugged", what,
+                                 words(code, text, sizeof text));
+    return fathom_posix_fail(port, FATHOM_POSIX_ERR_SYSTEM, "%s: %s", what, words(code, text, sizeof text));
+}
+
+fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port)
+{
+    if (!port->is_open) return fathom_posix_fail(port, FATHOM_POSIX_ERR_CLOSED, "the port is not open");
+    return port->is_lost ? FATHOM_POSIX_ERR_LOST : FATHOM_POSIX_OK;
+}
+
+static fathom_posix_status_t fail_permission(fathom_posix_uart_t *port, const char *path)
+{
+    static const char denied[] = "permission denied";
+    struct stat status;
+    if (stat(path, &status) != 0)
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_PERMISSION,
+                                 "%s: a folder on its way is closed to you", denied);
+
+    char memory[1024]; /* the group's name and members; a longer entry is shown as its number */
+    char number[16];
+    struct group entry;
+    struct group *group = NULL;
+    const int found = getgrgid_r(status.st_gid, &entry, memory, sizeof memory, &group);
+    (void)snprintf(number, sizeof number, "%lu", (unsigned long)status.st_gid);
+    const char *const name = found == 0 && group != NULL ? entry.gr_name : number;
+
+    /* Nobody should join root, and joining does not help where the group may not read and write either. */
+    const unsigned mode = (unsigned)status.st_mode & 07777u;
+    if (status.st_gid == 0 || (mode & (S_IRGRP | S_IWGRP)) != (S_IRGRP | S_IWGRP))
+        return fathom_posix_fail(
+            port, FATHOM_POSIX_ERR_PERMISSION,
+            "%s: it belongs to the group %s with mode %04o, so joining a group does not help; "
+            "a udev rule (GROUP=\"dialout\", MODE=\"0660\") or root can",
+            denied, name, mode);
+    return fathom_posix_fail(port, FATHOM_POSIX_ERR_PERMISSION,
+                             "%s: it belongs to the group %s; join it with: sudo usermod -aG %s $USER "
+                             "and log in again",
+                             denied, name, name);
+}
+
+fathom_posix_status_t fathom_posix_fail_open(fathom_posix_uart_t *port, const char *path, int code)
+{
+    switch (code) {
+    case ENOENT:
+    case ENOTDIR:
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_FOUND,
+                                 "no such device; is it plugged in? /dev/serial/by-id lists what is");
+    case ENXIO:
+    case ENODEV:
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_FOUND, "there is no device behind this name");
+    case EACCES:
+    case EPERM:
+        return fail_permission(port, path);
+    case EBUSY:
+    case EWOULDBLOCK:
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_IN_USE,
+                                 "in use by another program; `fuser -v %s` tells which", port->path);
+    case ENOTTY:
+    case EISDIR:
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_A_TTY, "not a serial port");
+    default:
+        return fathom_posix_fail_system(port, "opening it", code);
+    }
+}

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* flock, major, the tty ioctls */
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "internal/posix_port.h"
+
+/* Linux, Documentation/admin-guide/devices.txt: Unix98 pseudo terminal slaves. */
+enum { PTY_MAJOR_FIRST = 136, PTY_MAJOR_LAST = 143 };
+
+static uint64_t duration_us(const fathom_line_settings_t *line, size_t length)
+{
+    const unsigned bits = 1u + 8u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
+    return ((uint64_t)length * bits * 1000000u + line->baud - 1) / line->baud;
+}
+
+/* Hands bytes to the kernel. Returns how many it took; -1 when the port is lost. */
+static int hand_over(fathom_posix_uart_t *port, const uint8_t *bytes, size_t length)
+{
+    ssize_t n;
+    do n = write(port->fd, bytes, length);
+    while (n < 0 && errno == EINTR);
+    if (n < 0 && errno == EAGAIN) return 0;
+    if (n < 0) {
+        (void)fathom_posix_fail_lost(port, errno);
+        return -1;
+    }
+    const uint64_t now_us = fathom_posix_now_us();
+    if (port->leaving_until_us < now_us) port->leaving_until_us = now_us;
+    port->leaving_until_us += duration_us(&port->line, (size_t)n);
+    return (int)n;
+}
+
+void fathom_posix_push(fathom_posix_uart_t *port)
+{
+    if (port->pending_at == port->pending_end || port->is_lost) return;
+    const int n = hand_over(port, port->pending + port->pending_at, port->pending_end - port->pending_at);
+    if (n > 0) port->pending_at += (size_t)n;
+}
+
+static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    fathom_posix_uart_t *const port = ctx;
+    (void)rx;
+    if (!port->is_open || port->is_lost) return -1;
+    fathom_posix_push(port);
+    if (port->is_lost) return -1;
+    if (capacity == 0) return 0; /* read(2) of 0 bytes would look like a hang-up */
+    if (capacity > INT16_MAX) capacity = INT16_MAX;
+
+    ssize_t n;
+    do n = read(port->fd, bytes, capacity);
+    while (n < 0 && errno == EINTR);
+    if (n > 0) return (int)n;
+    if (n < 0 && errno == EAGAIN) return 0;
+    (void)fathom_posix_fail_lost(port, n < 0 ? errno : 0);
+    return -1;
+}
+
+static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    fathom_posix_uart_t *const port = ctx;
+    if (!port->is_open || port->is_lost || length > FATHOM_POSIX_WRITE_MAX) return -1;
+    fathom_posix_push(port);
+    if (port->is_lost) return -1;
+    if (port->pending_at != port->pending_end || length == 0) return 0;
+
+    const int n = hand_over(port, bytes, length);
+    if (n <= 0) return n;
+    port->pending_at = 0;
+    port->pending_end = length - (size_t)n;
+    memcpy(port->pending, bytes + n, port->pending_end);
+    return (int)length;
+}
+
+bool fathom_posix_sent(fathom_posix_uart_t *port)
+{
+    if (!port->is_open || port->is_lost) return true;
+    fathom_posix_push(port);
+    if (port->is_lost) return true;
+    if (port->pending_at != port->pending_end || fathom_posix_now_us() < port->leaving_until_us) return false;
+
+    int queued = 0;
+    if (ioctl(port->fd, TIOCOUTQ, &queued) != 0) {
+        (void)fathom_posix_fail_lost(port, errno);
+        return true;
+    }
+    if (queued != 0) return false;
+    if (port->has_no_lsr) return true;
+    int status = 0;
+    if (ioctl(port->fd, TIOCSERGETLSR, &status) == 0) return (status & TIOCSER_TEMT) != 0;
+    port->has_no_lsr = true; /* if it is because the device has gone, read will find that out */
+    return true;
+}
+
+static bool uart_sent(void *ctx) { return fathom_posix_sent(ctx); }
+
+fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port)
+{
+    const fathom_uart_t uart = {uart_read, uart_write, uart_sent, port};
+    return uart;
+}
+
+/* Everything that comes after open(2). */
+static fathom_posix_status_t take(fathom_posix_uart_t *port, const char *path,
+                                  const fathom_line_settings_t *settings)
+{
+    struct stat status;
+    struct termios tty;
+    if (fstat(port->fd, &status) != 0) return fathom_posix_fail_open(port, path, errno);
+    if (tcgetattr(port->fd, &tty) != 0) {
+        return errno == ENOTTY || errno == EINVAL
+                   ? fathom_posix_fail_open(port, path, ENOTTY)
+                   : fathom_posix_fail_system(port, "reading its settings", errno);
+    }
+    const unsigned device = major(status.st_rdev);
+    port->is_pty = S_ISCHR(status.st_mode) && device >= PTY_MAJOR_FIRST && device <= PTY_MAJOR_LAST;
+
+    if (flock(port->fd, LOCK_EX | LOCK_NB) != 0) return fathom_posix_fail_open(port, path, errno);
+    /* Its flag is the tty's and ends with the last close, which a pseudo terminal's master puts off. */
+    if (!port->is_pty && ioctl(port->fd, TIOCEXCL) != 0)
+        return fathom_posix_fail_system(port, "taking it for this program alone", errno);
+
+    const fathom_posix_status_t result = fathom_posix_apply(port, settings);
+    if (result != FATHOM_POSIX_OK) return result;
+    if (tcflush(port->fd, TCIFLUSH) != 0) return fathom_posix_fail_system(port, "flushing it", errno);
+    return FATHOM_POSIX_OK;
+}
+
+fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *path,
+                                        const fathom_line_settings_t *settings)
+{
+    if (port == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
+    memset(port, 0, sizeof *port);
+    port->fd = -1;
+    if (path == NULL || settings == NULL)
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "no path or no settings were given");
+    strncpy(port->path, path, sizeof port->path - 1);
+
+    /* Without O_NONBLOCK a tty that waits for a carrier would not open. */
+    do port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    while (port->fd < 0 && errno == EINTR);
+    if (port->fd < 0) return fathom_posix_fail_open(port, path, errno);
+
+    const fathom_posix_status_t result = take(port, path, settings);
+    if (result != FATHOM_POSIX_OK) {
+        (void)close(port->fd);
+        port->fd = -1;
+        return result;
+    }
+    port->is_open = true;
+    return FATHOM_POSIX_OK;
+}
+
+void fathom_posix_close(fathom_posix_uart_t *port)
+{
+    if (port == NULL || !port->is_open) return;
+    /* For when this is not the last close: a child or another program has the tty open too. */
+    if (!port->is_pty) (void)ioctl(port->fd, TIOCNXCL);
+    (void)close(port->fd); /* EINTR: Linux has closed it all the same */
+    port->fd = -1;
+    port->is_open = false;
+}
+
+fathom_posix_status_t fathom_posix_line_errors(fathom_posix_uart_t *port, fathom_posix_line_errors_t *errors)
+{
+    if (port == NULL || errors == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
+    const fathom_posix_status_t status = fathom_posix_usable(port);
+    if (status != FATHOM_POSIX_OK) return status;
+    struct serial_icounter_struct counts;
+    memset(&counts, 0, sizeof counts);
+    if (ioctl(port->fd, TIOCGICOUNT, &counts) != 0) {
+        if (errno != ENOTTY && errno != EINVAL) return fathom_posix_fail_lost(port, errno);
+        return fathom_posix_fail(port, FATHOM_POSIX_ERR_UNSUPPORTED, "this port does not count line errors");
+    }
+    errors->parity = (uint32_t)counts.parity;
+    errors->framing = (uint32_t)counts.frame;
+    errors->overrun = (uint32_t)counts.overrun + (uint32_t)counts.buf_overrun;
+    errors->breaks = (uint32_t)counts.brk;
+    return FATHOM_POSIX_OK;
+}

@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_POSIX_DRIVER_H
+#define FATHOM_TESTS_POSIX_DRIVER_H
+
+#include <stdbool.h>
+#include <termios.h>
+
+/*
+ * What a driver can do that a pseudo terminal does not: refuse settings without a word, report a transmitter
+ * that is not empty, take a part of a write, fail. It stands between the port and a pseudo terminal: link
+ * with -Wl,--wrap= each of open fstat tcgetattr tcsetattr ioctl read write.
+ */
+/* Of the port that was opened last; 0 and false: what the pseudo terminal does. */
+typedef struct {
+    int open_error;
+    bool is_8250;      /* its device number; ioctls below are then its own */
+    speed_t most;      /* rates above it become 9600 */
+    bool drops_parity; /* PARENB */
+    bool drops_stop;   /* CSTOPB */
+    bool keeps_echo;   /* ECHO stays */
+    int get_error;
+    int get_error_after; /* so many calls */
+    int set_error;       /* the settings are taken all the same */
+    int set_interrupts;  /* so many calls give EINTR first */
+    int queued;          /* TIOCOUTQ */
+    int queue_error;
+    int lsr; /* TIOCSERGETLSR */
+    int lsr_error;
+    int count_error;
+    int exclusive; /* TIOCEXCL minus TIOCNXCL */
+    int exclusive_calls;
+    int exclusive_error;
+    int read_error;
+    int read_interrupts;
+    int write_most; /* bytes that one write takes; 0: all */
+    int write_error;
+    int write_interrupts;
+    int write_refusals; /* so many calls give EAGAIN first */
+    int sets;           /* calls of tcsetattr */
+    int writes;         /* calls of write */
+} posix_driver_t;
+
+extern posix_driver_t driver;
+
+/* Nothing special any more; call it before each test. */
+void posix_driver_reset(void);
+
+#endif

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_POSIX_RIG_H
+#define FATHOM_TESTS_POSIX_RIG_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom_posix.h"
+#include "posix_pty.h"
+
+/* A port on a pseudo terminal, with cmocka's fixtures: *state is a port_rig_t. */
+typedef struct {
+    posix_pty_t pty;
+    fathom_posix_uart_t port;
+    fathom_uart_t uart;
+} port_rig_t;
+
+static const fathom_line_settings_t port_rig_fast = {230400, FATHOM_PARITY_NONE, 1};
+
+static inline void port_rig_open(port_rig_t *rig)
+{
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &port_rig_fast), FATHOM_POSIX_OK);
+}
+
+/* The port is closed. */
+static inline int port_rig_set_up(void **state)
+{
+    static port_rig_t rig;
+    *state = &rig;
+    memset(&rig, 0, sizeof rig);
+    posix_pty_open(&rig.pty);
+    rig.uart = fathom_posix_uart(&rig.port);
+    return 0;
+}
+
+/* The port is open with port_rig_fast. */
+static inline int port_rig_set_up_open(void **state)
+{
+    (void)port_rig_set_up(state);
+    port_rig_t *const rig = *state;
+    memset(&rig->port, 0xA5, sizeof rig->port); /* any content will do */
+    port_rig_open(rig);
+    return 0;
+}
+
+static inline int port_rig_tear_down(void **state)
+{
+    port_rig_t *const rig = *state;
+    fathom_posix_close(&rig->port);
+    posix_pty_close(&rig->pty);
+    return 0;
+}
+
+static inline int port_rig_read(const port_rig_t *rig, void *bytes, size_t capacity)
+{
+    fathom_rx_t rx = {0, 0};
+    const int n = rig->uart.read(rig->uart.ctx, bytes, capacity, &rx);
+    assert_int_equal(rx.flags, 0);
+    return n;
+}
+
+static inline int port_rig_write(const port_rig_t *rig, const void *bytes, size_t length)
+{
+    return rig->uart.write(rig->uart.ctx, bytes, length);
+}
+
+static inline bool port_rig_sent(const port_rig_t *rig) { return rig->uart.sent(rig->uart.ctx); }
+
+/* Fails the test unless the port's error text contains `text`. */
+static inline void port_rig_says(const port_rig_t *rig, const char *text)
+{
+    if (strstr(fathom_posix_error_text(&rig->port), text) == NULL)
+        fail_msg("\"%s\" does not say \"%s\"", fathom_posix_error_text(&rig->port), text);
+}
+
+#endif

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* mkstemp, chown */
+#include <grp.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "fathom_posix.h"
+#include "posix_pty.h"
+
+/* What fathom_posix_open says when it fails. */
+
+static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
+
+static int set_up(void **state)
+{
+    static posix_pty_t pty;
+    *state = &pty;
+    posix_pty_open(&pty);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    posix_pty_close(*state);
+    return 0;
+}
+
+static void check_failure(const char *path, fathom_posix_status_t error, const char *text)
+{
+    fathom_posix_uart_t port;
+    const unsigned before = posix_count_fds();
+    memset(&port, 0xA5, sizeof port);
+    assert_int_equal(fathom_posix_open(&port, path, &usual), error);
+    assert_int_equal(fathom_posix_error(&port), error);
+    assert_int_equal(posix_count_fds(), before);
+    assert_int_equal(fathom_posix_fd(&port), -1);
+    assert_int_equal(strncmp(fathom_posix_error_text(&port), path, 63 < strlen(path) ? 63 : strlen(path)), 0);
+    if (strstr(fathom_posix_error_text(&port), text) == NULL)
+        fail_msg("\"%s\" does not say \"%s\"", fathom_posix_error_text(&port), text);
+    fathom_posix_close(&port);
+    assert_int_equal(posix_count_fds(), before);
+}
+
+static void a_missing_path_is_told_as_such(void **state)
+{
+    (void)state;
+    check_failure("/dev/ttyNONE7", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
+    check_failure("/dev/null/ttyUSB0", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
+    check_failure("", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
+    check_failure("/dev/a-path-that-is-longer-than-what-the-port-keeps-of-it-for-its-messages/ttyUSB0",
+                  FATHOM_POSIX_ERR_NOT_FOUND, ": no such device");
+}
+
+static void what_is_not_a_tty_is_told_as_such(void **state)
+{
+    (void)state;
+    char file[] = "/tmp/fathom-test-XXXXXX";
+    const int fd = mkstemp(file);
+    assert_true(fd >= 0);
+    assert_int_equal(close(fd), 0);
+    check_failure(file, FATHOM_POSIX_ERR_NOT_A_TTY, "not a serial port");
+    assert_int_equal(unlink(file), 0);
+    check_failure("/dev/null", FATHOM_POSIX_ERR_NOT_A_TTY, "not a serial port");
+    check_failure("/tmp", FATHOM_POSIX_ERR_NOT_A_TTY, "not a serial port");
+}
+
+typedef struct {
+    const char *path;
+    const char *texts[3];
+} denied_t;
+
+static int open_is_denied(void *arg)
+{
+    const denied_t *const denied = arg;
+    fathom_posix_uart_t port;
+    if (fathom_posix_open(&port, denied->path, &usual) != FATHOM_POSIX_ERR_PERMISSION) return 1;
+    for (int i = 0; i != 3; i++) {
+        if (strstr(fathom_posix_error_text(&port), denied->texts[i]) == NULL) {
+            (void)fprintf(stderr, "\"%s\" does not say \"%s\"\n", fathom_posix_error_text(&port),
+                          denied->texts[i]);
+            return 2;
+        }
+    }
+    return 0;
+}
+
+/* Not root's group, which a pseudo terminal of root may have. */
+static void give_to_tty(const posix_pty_t *pty)
+{
+    if (geteuid() == 0) assert_int_equal(chown(pty->path, 65534, getgrnam("tty")->gr_gid), 0);
+}
+
+/* A real EACCES: the owner may do nothing, which stops him even where his group may, and the port is opened
+ * by a child that is not root. */
+static void a_denied_permission_names_the_group_and_how_to_join_it(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    struct stat status;
+    char belongs[64];
+    char command[64];
+    give_to_tty(pty);
+    assert_int_equal(chmod(pty->path, 0060), 0);
+    assert_int_equal(stat(pty->path, &status), 0);
+    assert_true(status.st_gid != 0);
+    const struct group *const group = getgrgid(status.st_gid);
+    assert_non_null(group);
+    (void)snprintf(belongs, sizeof belongs, "permission denied: it belongs to the group %s;", group->gr_name);
+    (void)snprintf(command, sizeof command, "sudo usermod -aG %s $USER", group->gr_name);
+    denied_t denied = {pty->path, {belongs, command, "log in again"}};
+    assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
+}
+
+static void a_denied_permission_shows_a_group_without_a_name_as_its_number(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    const gid_t unnamed = 54321;
+    if (geteuid() != 0) skip(); /* nobody else can give a file to such a group */
+    assert_null(getgrgid(unnamed));
+    assert_int_equal(chown(pty->path, 0, unnamed), 0);
+    assert_int_equal(chmod(pty->path, 0660), 0);
+    denied_t denied = {pty->path, {"the group 54321;", "usermod -aG 54321 ", pty->path}};
+    assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
+}
+
+static void a_denied_permission_names_no_group_that_would_not_help(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    denied_t denied = {pty->path, {"permission denied", "mode 0020", "udev"}}; /* may write, may not read */
+    give_to_tty(pty);
+    assert_int_equal(chmod(pty->path, 0020), 0);
+    assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
+    if (geteuid() != 0) return;
+    denied.texts[1] = "the group root with mode 0660";
+    assert_int_equal(chown(pty->path, 0, 0), 0);
+    assert_int_equal(chmod(pty->path, 0660), 0);
+    assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
+}
+
+static void a_closed_folder_on_the_way_is_told_as_such(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/fathom-test-XXXXXX";
+    char path[64];
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(chmod(folder, 0), 0);
+    (void)snprintf(path, sizeof path, "%s/tty", folder);
+    denied_t denied = {path, {"permission denied", "a folder on its way", path}};
+    assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_missing_path_is_told_as_such),
+        cmocka_unit_test(what_is_not_a_tty_is_told_as_such),
+        TEST(a_denied_permission_names_the_group_and_how_to_join_it),
+        TEST(a_denied_permission_shows_a_group_without_a_name_as_its_number),
+        TEST(a_denied_permission_names_no_group_that_would_not_help),
+        cmocka_unit_test(a_closed_folder_on_the_way_is_told_as_such),
+    };
+    posix_start_watchdog();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

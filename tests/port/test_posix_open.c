@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* CRTSCTS, rates above 38400 */
+#include <fcntl.h>
+#include <poll.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "fathom_posix.h"
+#include "posix_pty.h"
+
+/* Opening and settings, over real pseudo terminals. */
+
+static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
+
+static int set_up(void **state)
+{
+    static posix_pty_t pty;
+    *state = &pty;
+    posix_pty_open(&pty);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    posix_pty_close(*state);
+    return 0;
+}
+
+static void check_seen(const posix_pty_t *pty, speed_t speed, uint8_t parity, uint8_t stop_bits)
+{
+    struct termios seen;
+    assert_int_equal(tcgetattr(pty->master, &seen), 0); /* a pseudo terminal's ends share them */
+    assert_int_equal(cfgetospeed(&seen), speed);
+    assert_int_equal(cfgetispeed(&seen), speed);
+    assert_int_equal((seen.c_cflag & PARODD) != 0, parity == FATHOM_PARITY_ODD);
+    assert_int_equal((seen.c_cflag & CSTOPB) != 0, stop_bits == 2);
+    assert_int_equal(seen.c_cflag & CSIZE, CS8);
+    assert_int_equal(seen.c_cflag & CRTSCTS, 0);
+    assert_int_equal(seen.c_cflag & (CLOCAL | CREAD), CLOCAL | CREAD);
+    assert_int_equal(seen.c_iflag, 0);
+    assert_int_equal(seen.c_oflag, 0);
+    assert_int_equal(seen.c_lflag, 0);
+}
+
+static const struct {
+    uint32_t baud;
+    speed_t speed;
+} rates[] = {{1200, B1200},     {2400, B2400},     {4800, B4800},     {9600, B9600},     {19200, B19200},
+             {38400, B38400},   {57600, B57600},   {115200, B115200}, {230400, B230400}, {460800, B460800},
+             {500000, B500000}, {576000, B576000}, {921600, B921600}};
+enum { RATES = sizeof rates / sizeof rates[0] };
+
+static void every_rate_is_what_the_other_end_sees(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    fathom_posix_uart_t port;
+    for (size_t i = 0; i != RATES; i++) { /* opened with it */
+        const fathom_line_settings_t settings = {rates[i].baud, FATHOM_PARITY_NONE, 1};
+        assert_int_equal(fathom_posix_open(&port, pty->path, &settings), FATHOM_POSIX_OK);
+        check_seen(pty, rates[i].speed, FATHOM_PARITY_NONE, 1);
+        fathom_posix_close(&port);
+    }
+    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
+    for (size_t i = 0; i != RATES; i++) { /* changed to it */
+        const fathom_line_settings_t settings = {rates[i].baud, FATHOM_PARITY_NONE, 1};
+        assert_int_equal(fathom_posix_set_line(&port, &settings), FATHOM_POSIX_OK);
+        check_seen(pty, rates[i].speed, FATHOM_PARITY_NONE, 1);
+    }
+    fathom_posix_close(&port);
+}
+
+static void every_parity_and_stop_bit_is_accepted_in_every_order(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    fathom_posix_uart_t port;
+    for (unsigned pair = 0; pair != 36; pair++) {
+        const unsigned both[2] = {pair / 6, pair % 6};
+        for (unsigned i = 0; i != 2; i++) {
+            const fathom_line_settings_t settings = {19200, (uint8_t)(both[i] % 3),
+                                                     (uint8_t)(1 + both[i] / 3)};
+            const fathom_posix_status_t status = i == 0 ? fathom_posix_open(&port, pty->path, &settings)
+                                                        : fathom_posix_set_line(&port, &settings);
+            assert_string_equal(fathom_posix_error_text(&port), "");
+            assert_int_equal(status, FATHOM_POSIX_OK);
+            check_seen(pty, B19200, settings.parity, settings.stop_bits);
+        }
+        fathom_posix_close(&port);
+    }
+}
+
+static void what_came_before_it_was_opened_is_thrown_away(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    const int slave = open(pty->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    struct termios raw;
+    assert_true(slave >= 0);
+    assert_int_equal(tcgetattr(slave, &raw), 0);
+    cfmakeraw(&raw);
+    assert_int_equal(tcsetattr(slave, TCSANOW, &raw), 0);
+    posix_pty_send(pty, (const uint8_t *)"old", 3);
+    assert_true(posix_wait_for(slave, POLLIN));
+
+    fathom_posix_uart_t port;
+    fathom_rx_t rx = {0, 0};
+    uint8_t bytes[4];
+    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
+    const fathom_uart_t uart = fathom_posix_uart(&port);
+    assert_int_equal(uart.read(uart.ctx, bytes, sizeof bytes, &rx), 0);
+    fathom_posix_close(&port);
+    assert_int_equal(close(slave), 0);
+}
+
+static void the_descriptor_does_not_block_and_is_not_inherited(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    fathom_posix_uart_t port;
+    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
+    assert_true((fcntl(fathom_posix_fd(&port), F_GETFL) & O_NONBLOCK) != 0);
+    assert_true((fcntl(fathom_posix_fd(&port), F_GETFD) & FD_CLOEXEC) != 0);
+    fathom_posix_close(&port);
+}
+
+/* 0: opened, and this session has no controlling terminal. */
+static int open_in_a_new_session(void *path)
+{
+    fathom_posix_uart_t port;
+    if (setsid() < 0) return 1;
+    if (fathom_posix_open(&port, path, &usual) != FATHOM_POSIX_OK) return 2;
+    return open("/dev/tty", O_RDWR | O_CLOEXEC) < 0 ? 0 : 3;
+}
+
+static void it_does_not_become_the_controlling_terminal(void **state)
+{
+    posix_pty_t *const pty = *state;
+    assert_int_equal(chmod(pty->path, 0666), 0);
+    assert_int_equal(posix_run_unprivileged(open_in_a_new_session, pty->path), 0);
+}
+
+/* The exit status of a child that opens it: the error, positive. */
+static int open_it(void *path)
+{
+    fathom_posix_uart_t port;
+    return -(int)fathom_posix_open(&port, path, &usual);
+}
+
+static void a_second_open_is_refused_even_to_root_and_allowed_after_close(void **state)
+{
+    posix_pty_t *const pty = *state;
+    fathom_posix_uart_t first;
+    fathom_posix_uart_t second;
+    assert_int_equal(chmod(pty->path, 0666), 0);
+    assert_int_equal(fathom_posix_open(&first, pty->path, &usual), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_posix_open(&second, pty->path, &usual), FATHOM_POSIX_ERR_IN_USE);
+    assert_int_equal(fathom_posix_error(&second), FATHOM_POSIX_ERR_IN_USE);
+    assert_non_null(strstr(fathom_posix_error_text(&second), pty->path));
+    assert_non_null(strstr(fathom_posix_error_text(&second), "in use by another program"));
+    assert_int_equal(posix_run_unprivileged(open_it, pty->path), -FATHOM_POSIX_ERR_IN_USE);
+    check_seen(pty, B9600, FATHOM_PARITY_NONE, 1); /* the first one's settings stand */
+    fathom_posix_close(&second);
+    assert_int_equal(fathom_posix_open(&second, pty->path, &usual), FATHOM_POSIX_ERR_IN_USE);
+    fathom_posix_close(&first);
+    assert_int_equal(fathom_posix_open(&second, pty->path, &usual), FATHOM_POSIX_OK);
+    fathom_posix_close(&second);
+    assert_int_equal(posix_run_unprivileged(open_it, pty->path), 0);
+}
+
+static void a_program_that_was_killed_does_not_keep_the_port(void **state)
+{
+    posix_pty_t *const pty = *state;
+    int pipe_ends[2];
+    char byte = 0;
+    assert_int_equal(chmod(pty->path, 0666), 0);
+    assert_int_equal(pipe(pipe_ends), 0);
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        fathom_posix_uart_t port;
+        (void)alarm(60);
+        byte = fathom_posix_open(&port, pty->path, &usual) == FATHOM_POSIX_OK ? 'y' : 'n';
+        if (write(pipe_ends[1], &byte, 1) != 1) _exit(1);
+        for (;;) (void)pause();
+    }
+    assert_int_equal(read(pipe_ends[0], &byte, 1), 1);
+    assert_int_equal(byte, 'y');
+    assert_int_equal(posix_run_unprivileged(open_it, pty->path), -FATHOM_POSIX_ERR_IN_USE);
+    assert_int_equal(kill(child, SIGKILL), 0);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    assert_int_equal(posix_run_unprivileged(open_it, pty->path), 0);
+    (void)close(pipe_ends[0]);
+    (void)close(pipe_ends[1]);
+}
+
+static void arguments_outside_the_contract_are_refused(void **state)
+{
+    const posix_pty_t *const pty = *state;
+    const unsigned before = posix_count_fds();
+    const struct {
+        fathom_line_settings_t settings;
+        const char *text;
+    } wrong[] = {{{0, 0, 1}, "0 baud is not a standard rate"},
+                 {{12345, 0, 1}, "12345 baud is not a standard rate"},
+                 {{9600, 3, 1}, "parity 3"},
+                 {{9600, 0, 0}, "0 stop bits"},
+                 {{9600, 0, 3}, "3 stop bits"}};
+    fathom_posix_uart_t port;
+    assert_int_equal(fathom_posix_open(NULL, pty->path, &usual), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_open(&port, NULL, &usual), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_string_equal(fathom_posix_error_text(&port), "serial port: no path or no settings were given");
+    assert_int_equal(fathom_posix_open(&port, pty->path, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++) {
+        assert_int_equal(fathom_posix_open(&port, pty->path, &wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
+        assert_non_null(strstr(fathom_posix_error_text(&port), wrong[i].text));
+        assert_int_equal(posix_count_fds(), before);
+    }
+    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
+    for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++)
+        assert_int_equal(fathom_posix_set_line(&port, &wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_set_line(&port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_line_errors(&port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    check_seen(pty, B9600, FATHOM_PARITY_NONE, 1);
+    fathom_posix_close(&port);
+    fathom_posix_close(NULL);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(every_rate_is_what_the_other_end_sees),
+        TEST(every_parity_and_stop_bit_is_accepted_in_every_order),
+        TEST(what_came_before_it_was_opened_is_thrown_away),
+        TEST(the_descriptor_does_not_block_and_is_not_inherited),
+        TEST(it_does_not_become_the_controlling_terminal),
+        TEST(a_second_open_is_refused_even_to_root_and_allowed_after_close),
+        TEST(a_program_that_was_killed_does_not_keep_the_port),
+        TEST(arguments_outside_the_contract_are_refused),
+    };
+    posix_start_watchdog();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* rates above 38400 */
+#include <errno.h>
+#include <termios.h>
+
+#include "posix_driver.h"
+#include "posix_rig.h"
+
+/* Settings and devices that are refused. The driver is posix_driver.h's. */
+
+static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
+
+static void open_fails(port_rig_t *rig, const fathom_line_settings_t *settings, fathom_posix_status_t error)
+{
+    const unsigned before = posix_count_fds();
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, settings), error);
+    assert_int_equal(fathom_posix_error(&rig->port), error);
+    assert_int_equal(posix_count_fds(), before);
+    assert_int_equal(fathom_posix_fd(&rig->port), -1);
+}
+
+static speed_t speed_seen(const port_rig_t *rig)
+{
+    struct termios seen;
+    assert_int_equal(tcgetattr(rig->pty.master, &seen), 0);
+    return cfgetospeed(&seen);
+}
+
+static void a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates(void **state)
+{
+    port_rig_t *const rig = *state;
+    driver.most = B115200;
+    open_fails(rig, &port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says(rig, "asked for raw 230400 8N1, the driver set 9600 8N1");
+    assert_int_equal(driver.sets, 2); /* and what was before was put back */
+    const fathom_line_settings_t slower = {115200, FATHOM_PARITY_NONE, 1};
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &slower), FATHOM_POSIX_OK);
+}
+
+static void a_refused_change_puts_the_line_back_and_the_port_goes_on(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_line_settings_t slower = {57600, FATHOM_PARITY_NONE, 1};
+    uint8_t byte = 0;
+    driver.most = B115200;
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &slower), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says(rig, "asked for raw 230400 8N1, the driver set 9600 8N1");
+    assert_int_equal(speed_seen(rig), B57600);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 0);
+    assert_int_equal(port_rig_write(rig, &byte, 1), 1);
+}
+
+static void a_dropped_parity_is_refused_where_there_is_a_wire(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_line_settings_t odd = {19200, FATHOM_PARITY_ODD, 1};
+    const fathom_line_settings_t even = {19200, FATHOM_PARITY_EVEN, 1};
+    driver.is_8250 = true;
+    driver.drops_parity = true;
+    open_fails(rig, &odd, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says(rig, "asked for raw 19200 8O1, the driver set 19200 8N1");
+    open_fails(rig, &even, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says(rig, "asked for raw 19200 8E1, the driver set 19200 8N1");
+    driver.drops_parity = false;
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &odd), FATHOM_POSIX_OK);
+}
+
+static void dropped_stop_bits_are_refused(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_line_settings_t two = {19200, FATHOM_PARITY_NONE, 2};
+    driver.drops_stop = true;
+    open_fails(rig, &two, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says(rig, "asked for raw 19200 8N2, the driver set 19200 8N1");
+}
+
+static void a_tty_that_does_not_become_raw_is_refused(void **state)
+{
+    port_rig_t *const rig = *state;
+    driver.keeps_echo = true;
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says(rig, "not raw");
+}
+
+static void an_einval_counts_only_when_the_settings_did_not_hold(void **state)
+{
+    port_rig_t *const rig = *state;
+    driver.set_error = EINVAL;
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &port_rig_fast), FATHOM_POSIX_OK);
+    fathom_posix_close(&rig->port);
+    driver.most = B115200;
+    open_fails(rig, &port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
+}
+
+static void an_interrupted_change_is_repeated(void **state)
+{
+    port_rig_t *const rig = *state;
+    driver.set_interrupts = 3;
+    port_rig_open(rig);
+    assert_int_equal(speed_seen(rig), B230400);
+    assert_int_equal(driver.sets, 4);
+}
+
+static void errors_while_opening_are_told_with_the_systems_words(void **state)
+{
+    port_rig_t *const rig = *state;
+    driver.set_error = ENOMEM;
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_SYSTEM);
+    port_rig_says(rig, "changing its settings: Cannot allocate memory");
+    driver.set_error = 0;
+    driver.get_error = EIO; /* a ttyS without a UART */
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+    port_rig_says(rig, "no UART behind this name");
+    for (driver.get_error_after = 1; driver.get_error_after <= 2;) { /* unplugged a moment later */
+        const int after = driver.get_error_after;
+        open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+        driver.get_error_after = after + 1;
+    }
+    driver.get_error = 0;
+    driver.is_8250 = true;
+    driver.exclusive_error = EIO;
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+    driver.open_error = EBUSY; /* TIOCEXCL of another program */
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_IN_USE);
+    driver.open_error = ENXIO;
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+    driver.open_error = EMFILE;
+    open_fails(rig, &usual, FATHOM_POSIX_ERR_SYSTEM);
+    port_rig_says(rig, "opening it: Too many open files");
+}
+
+static void a_real_tty_is_taken_exclusively_and_given_back(void **state)
+{
+    port_rig_t *const rig = *state;
+    port_rig_open(rig);
+    fathom_posix_close(&rig->port);
+    assert_int_equal(driver.exclusive_calls, 0); /* a pseudo terminal is not */
+    driver.is_8250 = true;
+    port_rig_open(rig);
+    assert_int_equal(driver.exclusive, 1);
+    fathom_posix_close(&rig->port);
+    assert_int_equal(driver.exclusive, 0);
+    assert_int_equal(driver.exclusive_calls, 2);
+}
+
+static void a_device_that_goes_while_its_line_is_changed_is_lost(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    port_rig_open(rig);
+    driver.get_error = EIO;
+    assert_int_equal(fathom_posix_set_line(&rig->port, &usual), FATHOM_POSIX_ERR_LOST);
+    driver.get_error = 0;
+    assert_true(port_rig_read(rig, &byte, 1) < 0);
+}
+
+static int set_up(void **state)
+{
+    posix_driver_reset();
+    return port_rig_set_up(state);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, port_rig_tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates),
+        TEST(a_refused_change_puts_the_line_back_and_the_port_goes_on),
+        TEST(a_dropped_parity_is_refused_where_there_is_a_wire),
+        TEST(dropped_stop_bits_are_refused),
+        TEST(a_tty_that_does_not_become_raw_is_refused),
+        TEST(an_einval_counts_only_when_the_settings_did_not_hold),
+        TEST(an_interrupted_change_is_repeated),
+        TEST(errors_while_opening_are_told_with_the_systems_words),
+        TEST(a_real_tty_is_taken_exclusively_and_given_back),
+        TEST(a_device_that_goes_while_its_line_is_changed_is_lost),
+    };
+    posix_start_watchdog();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* rates above 38400 */
+#include <poll.h>
+#include <termios.h>
+
+#include "posix_rig.h"
+
+/* The bytes of the port, over real pseudo terminals. */
+
+/* Each value once, going up, and each value twice, going down. */
+enum { ALL = 768 };
+
+static void fill_all(uint8_t *bytes)
+{
+    for (unsigned i = 0; i != 256; i++) bytes[i] = (uint8_t)i;
+    for (unsigned i = 0; i != 512; i++) bytes[256 + i] = (uint8_t)(255 - i / 2);
+}
+
+static void every_byte_value_arrives_as_it_was_sent(void **state)
+{
+    const port_rig_t *const rig = *state;
+    uint8_t all[ALL];
+    uint8_t got[ALL + 1];
+    size_t have = 0;
+    fill_all(all);
+    posix_pty_send(&rig->pty, all, sizeof all);
+    while (have < sizeof all) {
+        assert_true(posix_wait_for(fathom_posix_fd(&rig->port), POLLIN));
+        const int n = port_rig_read(rig, got + have, sizeof got - have);
+        assert_true(n > 0);
+        have += (size_t)n;
+    }
+    assert_int_equal(have, sizeof all);
+    assert_memory_equal(got, all, sizeof all);
+    assert_int_equal(port_rig_read(rig, got, sizeof got), 0);
+    assert_int_equal(posix_pty_receive(&rig->pty, got, sizeof got), 0); /* no echo */
+}
+
+static void every_byte_value_leaves_as_it_was_written(void **state)
+{
+    const port_rig_t *const rig = *state;
+    uint8_t all[ALL];
+    uint8_t got[ALL + 1];
+    size_t have = 0;
+    fill_all(all);
+    for (size_t at = 0; at != sizeof all; at += 256)
+        assert_int_equal(port_rig_write(rig, all + at, 256), 256);
+    while (have < sizeof all) {
+        assert_true(posix_wait_for(rig->pty.master, POLLIN));
+        have += posix_pty_receive(&rig->pty, got + have, sizeof got - have);
+    }
+    assert_int_equal(have, sizeof all);
+    assert_memory_equal(got, all, sizeof all);
+}
+
+static void reading_an_empty_port_returns_zero_every_time(void **state)
+{
+    const port_rig_t *const rig = *state;
+    uint8_t byte;
+    for (int i = 0; i != 3; i++) assert_int_equal(port_rig_read(rig, &byte, 1), 0);
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_OK);
+    assert_string_equal(fathom_posix_error_text(&rig->port), "");
+}
+
+static void a_small_buffer_gets_the_bytes_in_portions(void **state)
+{
+    const port_rig_t *const rig = *state;
+    uint8_t got[4] = {0};
+    posix_pty_send(&rig->pty, (const uint8_t *)"abc", 3);
+    assert_true(posix_wait_for(fathom_posix_fd(&rig->port), POLLIN));
+    assert_int_equal(port_rig_read(rig, got, 0), 0); /* no room is no hang-up */
+    assert_int_equal(port_rig_read(rig, got, 2), 2);
+    assert_int_equal(port_rig_read(rig, got + 2, 2), 1);
+    assert_memory_equal(got, "abc", 3);
+}
+
+static void after_a_hang_up_every_read_and_write_fails(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    assert_int_equal(port_rig_read(rig, &byte, 1), 0);
+    posix_pty_close(&rig->pty);
+    for (int i = 0; i != 3; i++) assert_true(port_rig_read(rig, &byte, 1) < 0);
+    for (int i = 0; i != 3; i++) assert_true(port_rig_write(rig, &byte, 1) < 0);
+    assert_true(port_rig_sent(rig));
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
+    assert_non_null(strstr(fathom_posix_error_text(&rig->port), "unplugged"));
+    assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_ERR_LOST);
+}
+
+static void a_write_finds_the_hang_up_too(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    posix_pty_close(&rig->pty);
+    assert_true(port_rig_write(rig, &byte, 1) < 0);
+    assert_true(port_rig_read(rig, &byte, 1) < 0);
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
+}
+
+static void a_lost_port_works_again_once_it_is_reopened(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    posix_pty_close(&rig->pty);
+    assert_true(port_rig_read(rig, &byte, 1) < 0);
+    fathom_posix_close(&rig->port);
+    posix_pty_open(&rig->pty);
+    port_rig_open(rig);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 0); /* through the fathom_uart_t from before */
+    assert_int_equal(port_rig_write(rig, &byte, 1), 1);
+}
+
+static uint8_t pattern(size_t at) { return (uint8_t)(at * 7 + at / 256); }
+
+/* Writes requests of 251 bytes until the port is busy. Returns the bytes that it took. */
+static size_t fill(const port_rig_t *rig)
+{
+    uint8_t request[251];
+    size_t total = 0;
+    for (;;) {
+        for (size_t i = 0; i != sizeof request; i++) request[i] = pattern(total + i);
+        const int n = port_rig_write(rig, request, sizeof request);
+        if (n == 0) return total;
+        assert_int_equal(n, sizeof request);
+        total += sizeof request;
+        assert_true(total < 10000000);
+    }
+}
+
+static void a_full_port_takes_nothing_and_what_it_took_leaves_whole_and_in_order(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t got[777];
+    const size_t total = fill(rig);
+    assert_true(total > 251);
+    /* The set-up is what is meant: the kernel took a part of the last request, the port keeps the rest. */
+    assert_int_equal(fathom_posix_poll_events(&rig->port), POLLIN | POLLOUT);
+    assert_int_equal(port_rig_write(rig, got, 1), 0);
+    assert_false(port_rig_sent(rig));
+
+    size_t have = 0;
+    while (have < total) {
+        assert_true(posix_wait_for(rig->pty.master, POLLIN));
+        const size_t n = posix_pty_receive(&rig->pty, got, sizeof got);
+        for (size_t i = 0; i != n; i++) assert_int_equal(got[i], pattern(have + i));
+        have += n;
+        (void)port_rig_read(rig, got, sizeof got); /* which moves the rest along */
+    }
+    assert_int_equal(have, total);
+    assert_int_equal(fathom_posix_poll_events(&rig->port), POLLIN);
+    assert_int_equal(posix_pty_receive(&rig->pty, got, sizeof got), 0);
+    assert_int_equal(port_rig_write(rig, got, 1), 1);
+}
+
+static void a_write_of_no_length_or_too_long_leaves_the_port_as_it_was(void **state)
+{
+    const port_rig_t *const rig = *state;
+    uint8_t bytes[FATHOM_POSIX_WRITE_MAX + 1] = {0};
+    assert_int_equal(port_rig_write(rig, bytes, 0), 0);
+    assert_true(port_rig_write(rig, bytes, sizeof bytes) < 0);
+    assert_int_equal(port_rig_write(rig, bytes, FATHOM_POSIX_WRITE_MAX), FATHOM_POSIX_WRITE_MAX);
+    assert_int_equal(port_rig_read(rig, bytes, 1), 0);
+}
+
+static void sent_takes_as_long_as_the_bytes_take_on_a_wire(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_line_settings_t slow = {9600, FATHOM_PARITY_EVEN, 2};
+    const uint8_t bytes[100] = {0};
+    const uint64_t needed_us = 100u * 12u * 1000000u / 9600u; /* start, 8, parity, 2 stop bits */
+    assert_true(port_rig_sent(rig));
+    assert_int_equal(fathom_posix_set_line(&rig->port, &slow), FATHOM_POSIX_OK);
+    assert_true(port_rig_sent(rig));
+    const uint64_t start_us = fathom_posix_now_us();
+    assert_int_equal(port_rig_write(rig, bytes, 60), 60);
+    assert_int_equal(port_rig_write(rig, bytes, 40), 40); /* follows the first */
+    assert_false(port_rig_sent(rig));
+    while (!port_rig_sent(rig)) {
+        assert_true(fathom_posix_now_us() - start_us < (uint64_t)POSIX_LIMIT_MS * 1000u);
+        fathom_posix_wait(&rig->port, 1000);
+    }
+    assert_true(fathom_posix_now_us() - start_us >= needed_us);
+}
+
+static void the_line_is_not_changed_under_bytes_that_leave(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_line_settings_t slow = {9600, FATHOM_PARITY_NONE, 1};
+    const uint8_t bytes[200] = {0};
+    struct termios seen;
+    assert_int_equal(fathom_posix_set_line(&rig->port, &slow), FATHOM_POSIX_OK);
+    assert_int_equal(port_rig_write(rig, bytes, sizeof bytes), sizeof bytes);
+    assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_ERR_BUSY);
+    assert_int_equal(tcgetattr(rig->pty.master, &seen), 0);
+    assert_int_equal(cfgetospeed(&seen), B9600);
+    while (!port_rig_sent(rig)) fathom_posix_wait(&rig->port, 1000);
+    assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_OK);
+    assert_int_equal(tcgetattr(rig->pty.master, &seen), 0);
+    assert_int_equal(cfgetospeed(&seen), B230400);
+}
+
+static void a_change_of_the_line_keeps_what_was_received(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_line_settings_t slow = {9600, FATHOM_PARITY_NONE, 1};
+    uint8_t byte = 0;
+    posix_pty_send(&rig->pty, (const uint8_t *)"x", 1);
+    assert_true(posix_wait_for(fathom_posix_fd(&rig->port), POLLIN));
+    assert_int_equal(fathom_posix_set_line(&rig->port, &slow), FATHOM_POSIX_OK);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
+    assert_int_equal(byte, 'x');
+}
+
+static void a_closed_port_fails_and_can_be_closed_again(void **state)
+{
+    port_rig_t *const rig = *state;
+    fathom_posix_line_errors_t errors;
+    uint8_t byte = 0;
+    fathom_posix_close(&rig->port);
+    fathom_posix_close(&rig->port);
+    assert_int_equal(fathom_posix_fd(&rig->port), -1);
+    assert_true(port_rig_read(rig, &byte, 1) < 0);
+    assert_true(port_rig_write(rig, &byte, 1) < 0);
+    assert_true(port_rig_sent(rig));
+    assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_ERR_CLOSED);
+    assert_int_equal(fathom_posix_line_errors(&rig->port, &errors), FATHOM_POSIX_ERR_CLOSED);
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_CLOSED);
+}
+
+static void a_port_of_zeros_is_a_closed_one_and_not_standard_input(void **state)
+{
+    (void)state;
+    static fathom_posix_uart_t zeros;
+    const fathom_uart_t uart = fathom_posix_uart(&zeros);
+    const unsigned before = posix_count_fds();
+    uint8_t byte = 0;
+    assert_true(uart.write(uart.ctx, &byte, 1) < 0);
+    assert_int_equal(fathom_posix_set_line(&zeros, &port_rig_fast), FATHOM_POSIX_ERR_CLOSED);
+    fathom_posix_close(&zeros);
+    assert_int_equal(posix_count_fds(), before);
+}
+
+static void a_pseudo_terminal_counts_no_line_errors(void **state)
+{
+    port_rig_t *const rig = *state;
+    fathom_posix_line_errors_t errors = {1, 2, 3, 4};
+    uint8_t byte = 0;
+    assert_int_equal(fathom_posix_line_errors(&rig->port, &errors), FATHOM_POSIX_ERR_UNSUPPORTED);
+    assert_int_equal(errors.parity, 1);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 0); /* the port is none the worse */
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, port_rig_set_up_open, port_rig_tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(every_byte_value_arrives_as_it_was_sent),
+        TEST(every_byte_value_leaves_as_it_was_written),
+        TEST(reading_an_empty_port_returns_zero_every_time),
+        TEST(a_small_buffer_gets_the_bytes_in_portions),
+        TEST(after_a_hang_up_every_read_and_write_fails),
+        TEST(a_write_finds_the_hang_up_too),
+        TEST(a_lost_port_works_again_once_it_is_reopened),
+        TEST(a_full_port_takes_nothing_and_what_it_took_leaves_whole_and_in_order),
+        TEST(a_write_of_no_length_or_too_long_leaves_the_port_as_it_was),
+        TEST(sent_takes_as_long_as_the_bytes_take_on_a_wire),
+        TEST(the_line_is_not_changed_under_bytes_that_leave),
+        TEST(a_change_of_the_line_keeps_what_was_received),
+        TEST(a_closed_port_fails_and_can_be_closed_again),
+        cmocka_unit_test(a_port_of_zeros_is_a_closed_one_and_not_standard_input),
+        TEST(a_pseudo_terminal_counts_no_line_errors),
+    };
+    posix_start_watchdog();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* struct sigaction, timers */
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "posix_rig.h"
+
+/*
+ * fathom_posix_wait over real pseudo terminals, and the clock. What wakes the wait happens in another thread
+ * after 30 ms, so that the wait has normally begun; if the machine was slower, the wait returns at once, and
+ * every assertion holds all the same.
+ */
+
+enum { LONG_US = POSIX_LIMIT_MS * 1000, EVENT_US = 30000 };
+
+static uint64_t cpu_us(void)
+{
+    struct rusage used;
+    assert_int_equal(getrusage(RUSAGE_SELF, &used), 0);
+    return (uint64_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) * 1000000u +
+           (uint64_t)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+static uint64_t timed_wait_us(port_rig_t *rig, uint32_t max_us)
+{
+    const uint64_t start_us = fathom_posix_now_us();
+    fathom_posix_wait(&rig->port, max_us);
+    return fathom_posix_now_us() - start_us;
+}
+
+/* Runs `event` in another thread, soon; the wait is in between. */
+static uint64_t wait_for_event_us(port_rig_t *rig, void *(*event)(void *), uint32_t max_us)
+{
+    pthread_t thread;
+    assert_int_equal(pthread_create(&thread, NULL, event, rig), 0);
+    const uint64_t took_us = timed_wait_us(rig, max_us);
+    assert_int_equal(pthread_join(thread, NULL), 0);
+    return took_us;
+}
+
+static void pass_a_while(void)
+{
+    const struct timespec time = {0, EVENT_US * 1000L};
+    (void)nanosleep(&time, NULL);
+}
+
+static void *send_a_byte(void *arg)
+{
+    const port_rig_t *const rig = arg;
+    pass_a_while();
+    return write(rig->pty.master, "x", 1) == 1 ? NULL : arg;
+}
+
+static void *hang_up(void *arg)
+{
+    port_rig_t *const rig = arg;
+    pass_a_while();
+    (void)close(rig->pty.master);
+    rig->pty.master = -1;
+    return NULL;
+}
+
+static void bytes_that_are_there_end_the_wait_at_once(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    posix_pty_send(&rig->pty, (const uint8_t *)"x", 1);
+    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
+}
+
+static void bytes_that_come_end_the_wait(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    assert_true(wait_for_event_us(rig, send_a_byte, LONG_US) < LONG_US);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
+    assert_true(wait_for_event_us(rig, send_a_byte, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
+    assert_int_equal(byte, 'x');
+}
+
+static void the_time_ends_the_wait_and_not_earlier(void **state)
+{
+    port_rig_t *const rig = *state;
+    static const uint32_t times_us[] = {0, 1, 999, 1750, 20000, 100000};
+    for (size_t i = 0; i != sizeof times_us / sizeof times_us[0]; i++) {
+        const uint64_t took_us = timed_wait_us(rig, times_us[i]);
+        assert_true(took_us >= times_us[i]);
+        assert_true(took_us < LONG_US);
+    }
+}
+
+static void short_waits_are_not_rounded_up_to_milliseconds(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint64_t least_us = LONG_US;
+    for (int i = 0; i != 50; i++) { /* the best of many: a busy machine makes single ones late */
+        const uint64_t took_us = timed_wait_us(rig, 200);
+        if (took_us < least_us) least_us = took_us;
+    }
+    assert_in_range(least_us, 200, 900);
+}
+
+static void an_idle_wait_uses_no_cpu(void **state)
+{
+    port_rig_t *const rig = *state;
+    const uint64_t before_us = cpu_us();
+    const uint64_t took_us = timed_wait_us(rig, 300000);
+    assert_true(took_us >= 300000);
+    assert_true(cpu_us() - before_us < 30000);
+}
+
+static void a_hang_up_ends_the_wait_and_no_later_wait_sleeps(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t byte = 0;
+    assert_true(wait_for_event_us(rig, hang_up, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US); /* not read yet */
+    assert_true(port_rig_read(rig, &byte, 1) < 0);
+    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US); /* known to be lost */
+    fathom_posix_close(&rig->port);
+    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US); /* closed */
+}
+
+static volatile sig_atomic_t signals;
+
+static void on_signal(int number)
+{
+    (void)number;
+    signals++;
+}
+
+static void a_signal_ends_the_wait_and_does_no_harm_to_the_port(void **state)
+{
+    port_rig_t *const rig = *state;
+    struct sigaction action;
+    struct sigevent event;
+    /* Again and again, so that one comes while the wait sleeps. */
+    const struct itimerspec soon = {{0, EVENT_US * 1000L}, {0, EVENT_US * 1000L}};
+    const struct itimerspec never = {{0, 0}, {0, 0}};
+    timer_t timer;
+    uint8_t byte = 0;
+    memset(&action, 0, sizeof action);
+    memset(&event, 0, sizeof event);
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART; /* even so */
+    assert_int_equal(sigaction(SIGUSR1, &action, NULL), 0);
+    event.sigev_notify = SIGEV_SIGNAL;
+    event.sigev_signo = SIGUSR1;
+    assert_int_equal(timer_create(CLOCK_MONOTONIC, &event, &timer), 0);
+    assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
+    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_true(signals > 0);
+    assert_int_equal(timer_settime(timer, 0, &never, NULL), 0);
+    assert_int_equal(timer_delete(timer), 0);
+    assert_int_equal(port_rig_read(rig, &byte, 1), 0);
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_OK);
+}
+
+static void the_wait_alone_moves_the_rest_of_a_request_along(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t bytes[251] = {0};
+    size_t total = 0;
+    int n = 0;
+    while ((n = port_rig_write(rig, bytes, sizeof bytes)) > 0) total += (size_t)n;
+    assert_int_equal(n, 0);
+    assert_int_equal(fathom_posix_poll_events(&rig->port), POLLIN | POLLOUT);
+    assert_true(timed_wait_us(rig, 1000) >= 1000); /* full: nothing to wake for */
+
+    const uint64_t start_us = fathom_posix_now_us();
+    size_t have = 0;
+    while (fathom_posix_poll_events(&rig->port) != POLLIN) {
+        assert_true(fathom_posix_now_us() - start_us < LONG_US);
+        have += posix_pty_receive(&rig->pty, bytes, sizeof bytes);
+        fathom_posix_wait(&rig->port, 10000);
+    }
+    while (have < total) {
+        assert_true(posix_wait_for(rig->pty.master, POLLIN));
+        have += posix_pty_receive(&rig->pty, bytes, sizeof bytes);
+    }
+    assert_int_equal(have, total);
+}
+
+static void a_poll_of_ones_own_sees_what_the_wait_sees(void **state)
+{
+    port_rig_t *const rig = *state;
+    struct pollfd entry = {fathom_posix_fd(&rig->port), fathom_posix_poll_events(&rig->port), 0};
+    assert_int_equal(entry.events, POLLIN);
+    assert_int_equal(poll(&entry, 1, 0), 0);
+    posix_pty_send(&rig->pty, (const uint8_t *)"x", 1);
+    assert_int_equal(poll(&entry, 1, POSIX_LIMIT_MS), 1);
+    assert_int_equal(entry.revents, POLLIN);
+}
+
+static void the_clock_never_runs_back_and_counts_microseconds(void **state)
+{
+    (void)state;
+    const fathom_clock_t clock = fathom_posix_clock();
+    uint64_t last_us = fathom_posix_now_us();
+    for (int i = 0; i != 100000; i++) {
+        const uint64_t now_us = fathom_posix_now_us();
+        assert_true(now_us >= last_us);
+        last_us = now_us;
+    }
+    const uint32_t start_us = clock.now_us(clock.ctx);
+    const uint64_t long_start_us = fathom_posix_now_us();
+    struct timespec before;
+    struct timespec after;
+    assert_int_equal(clock_gettime(CLOCK_BOOTTIME, &before), 0); /* another clock, at the same pace */
+    pass_a_while();
+    assert_int_equal(clock_gettime(CLOCK_BOOTTIME, &after), 0);
+    const uint64_t long_end_us = fathom_posix_now_us();
+    const uint32_t end_us = clock.now_us(clock.ctx);
+    const int64_t real_us =
+        (int64_t)(after.tv_sec - before.tv_sec) * 1000000 + (after.tv_nsec - before.tv_nsec) / 1000;
+    assert_true(real_us >= EVENT_US);
+    assert_true(long_end_us - long_start_us + 1 >= (uint64_t)real_us); /* each rounds down: 1 us */
+    assert_true(long_end_us - long_start_us < LONG_US);
+    assert_true(fathom_elapsed_us(end_us, start_us) >= long_end_us - long_start_us);
+    assert_true(fathom_elapsed_us(end_us, start_us) < LONG_US);
+}
+
+static void the_short_clock_is_the_low_half_of_the_long_one(void **state)
+{
+    (void)state;
+    const fathom_clock_t clock = fathom_posix_clock();
+    const uint64_t before_us = fathom_posix_now_us();
+    const uint32_t between_us = clock.now_us(clock.ctx);
+    const uint64_t after_us = fathom_posix_now_us();
+    assert_true(fathom_elapsed_us(between_us, (uint32_t)before_us) <= after_us - before_us);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, port_rig_set_up_open, port_rig_tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(bytes_that_are_there_end_the_wait_at_once),
+        TEST(bytes_that_come_end_the_wait),
+        TEST(the_time_ends_the_wait_and_not_earlier),
+        TEST(short_waits_are_not_rounded_up_to_milliseconds),
+        TEST(an_idle_wait_uses_no_cpu),
+        TEST(a_hang_up_ends_the_wait_and_no_later_wait_sleeps),
+        TEST(a_signal_ends_the_wait_and_does_no_harm_to_the_port),
+        TEST(the_wait_alone_moves_the_rest_of_a_request_along),
+        TEST(a_poll_of_ones_own_sees_what_the_wait_sees),
+        cmocka_unit_test(the_clock_never_runs_back_and_counts_microseconds),
+        cmocka_unit_test(the_short_clock_is_the_low_half_of_the_long_one),
+    };
+    posix_start_watchdog();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
