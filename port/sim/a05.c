@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+#include "a05.h"
+
+#include <string.h>
+
+#include "fathom/dyp_frame.h"
+
+enum { PROBES = FATHOM_DYP_PROBES, FIRST_PROBE = 0x0106, FIRST_ALIAS = 0x0010, ADDRESS = 0x0200 };
+
+/* The device is the first member. */
+static fathom_sim_a05_t *a05_of(fathom_sim_device_t *device) { return (fathom_sim_a05_t *)(void *)device; }
+
+static uint16_t get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
+
+/* 1..4, or 0 when the register is no probe. */
+static uint8_t probe_at(uint16_t address)
+{
+    if (address >= FIRST_PROBE && address < FIRST_PROBE + PROBES) return (uint8_t)(address - FIRST_PROBE + 1);
+    if (address >= FIRST_ALIAS && address < FIRST_ALIAS + PROBES) return (uint8_t)(address - FIRST_ALIAS + 1);
+    return 0;
+}
+
+static uint32_t refuse(fathom_sim_a05_t *a05, fathom_modbus_message_t *message, uint8_t exception)
+{
+    message->exception = exception;
+    return a05->exceptions ? fathom_sim_device_delay_us(&a05->device, a05->settings_us) : FATHOM_NO_DEADLINE;
+}
+
+static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
+{
+    fathom_sim_a05_t *const a05 = a05_of(device);
+    const uint16_t address = get16(message->head + 2);
+    const uint16_t value = get16(message->head + 4);
+    const uint8_t probe = probe_at(address);
+    uint32_t most_us = a05->settings_us;
+    switch (message->head[1]) {
+    case FATHOM_MODBUS_READ_HOLDING_REGISTERS:
+        if (probe == 0 && address != ADDRESS) return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS);
+        /* "but only up to 0x0109" (A05 3(3) remark 1) */
+        if (value == 0 || value > (uint16_t)(probe == 0 ? 1 : PROBES + 1 - probe))
+            return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
+        if (probe != 0) most_us = (uint32_t)(a05->probe_us * value);
+        break;
+    case FATHOM_MODBUS_WRITE_SINGLE_REGISTER:
+        if (address != ADDRESS) return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS);
+        if (value > 0xFE) return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
+        device->unit = (uint8_t)value;
+        device->counters.writes++;
+        break;
+    default: /* A05 3(1): 03 and 06 only */
+        return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_FUNCTION);
+    }
+    return fathom_sim_device_delay_us(device, most_us);
+}
+
+static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
+{
+    uint8_t probe = probe_at(get16(message->head + 2));
+    if (probe == 0) {
+        message->values[0] = device->unit;
+        return;
+    }
+    for (uint8_t i = 0; i < message->head[5]; i++, probe++)
+        message->values[i] = fathom_sim_device_ultrasonic(device, probe, now_us);
+}
+
+static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
+{
+    uint16_t values[PROBES];
+    for (uint8_t i = 0; i < PROBES; i++)
+        values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(i + 1), now_us);
+    return fathom_dyp_frame_encode(bytes, values, PROBES);
+}
+
+static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
+
+void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config)
+{
+    static const fathom_sim_model_t model = {request, fill, automatic, 0xFF, false, true};
+    fathom_sim_device_t *const device = &a05->device;
+    memset(a05, 0, sizeof *a05);
+    device->model = &model;
+    device->faults = config->faults;
+    device->scene = config->scene;
+    device->settings.baud = 9600; /* 8N1 (A05 1(1), 2(1)) */
+    device->settings.stop_bits = 1;
+    device->start_us = config->start_us;
+    device->random = config->seed;
+    device->unit = config->unit != 0 ? config->unit : 1;
+    device->listens = true;
+    device->answers_broadcast = config->answers_broadcast;
+    if (config->mode != FATHOM_SIM_A05_MODBUS) device->period_us = or_else(config->period_us, 300000);
+    device->linger_us = or_else(config->linger_us, 150000);
+    a05->probe_us = or_else(config->probe_us, 100000);
+    a05->settings_us = or_else(config->settings_us, 20000);
+    a05->exceptions = config->exceptions;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_SIM_A05_H
+#define FATHOM_SIM_A05_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "device.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A05, four ultrasonic probes, 9600 8N1.
+ *
+ * Automatic: FF 1H 1L 2H 2L 3H 3L 4H 4L SUM every 300 ms (A05 1; the datasheet prints no period). The first
+ * Modbus command to its address or to 0xFF ends that until power-off (A05 1(1)).
+ * Modbus (A05 3): function 03 of
+ *   0x0106..0x0109 probes 1..4 and the same at 0x0010..0x0013, 1..4 in a read but not past the last; about
+ *   100 ms a probe (all are measured at the moment of the answer)
+ *   0x0200 address, by itself
+ * and function 06 of 0x0200, 0x00..0xFE: echoed from the old address, obeyed at once. Everything else is
+ * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered.
+ * Not yet: the 55 AA protocol (A05 2), relay output.
+ */
+typedef enum {
+    FATHOM_SIM_A05_AUTO = 1,  /* UART: automatic, then Modbus (A05 1) */
+    FATHOM_SIM_A05_MODBUS = 2 /* RS-485 (A05 3) */
+} fathom_sim_a05_mode_t;
+
+/* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
+typedef struct {
+    uint8_t unit;                      /* Modbus address; default 1 */
+    uint8_t mode;                      /* fathom_sim_a05_mode_t; must be given */
+    bool exceptions;                   /* answers 01, 02 or 03 where the default is silence */
+    bool answers_broadcast;            /* answers 0xFF, from its own address */
+    uint32_t seed;                     /* of the spread of the answer times; any */
+    fathom_sim_scene_t scene;          /* probes 1..4; no target when empty */
+    const fathom_sim_faults_t *faults; /* NULL: none */
+    uint32_t period_us;                /* of automatic frames, from start to start; default 300 ms */
+    uint32_t start_us;                 /* from power-on, silent and deaf; default none */
+    uint32_t linger_us;                /* automatic frames still come for so long after the first command;
+                                          default 150 ms; 1: none that has not begun */
+    uint32_t probe_us;                 /* longest time a probe of a read takes; default 100 ms (A05 3(3)) */
+    uint32_t settings_us;              /* register 0x0200; 20 ms */
+} fathom_sim_a05_config_t;
+
+typedef struct {
+    fathom_sim_device_t device; /* for fathom_sim_attach; device.counters */
+    uint32_t probe_us;
+    uint32_t settings_us;
+    bool exceptions;
+} fathom_sim_a05_t;
+
+void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+#include "a16.h"
+
+#include <string.h>
+
+#include "fathom/dyp_frame.h"
+
+enum {
+    PROCESSED = 0x0100,
+    REALTIME = 0x0101,
+    ADDRESS = 0x0200,
+    POLARITY = 0x0205,
+    THRESHOLD = 0x0206,
+    DATA_TYPE = 0x0207
+};
+
+/* The device is the first member. */
+static fathom_sim_a16_t *a16_of(fathom_sim_device_t *device) { return (fathom_sim_a16_t *)(void *)device; }
+
+static uint16_t get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
+
+/* How long the register takes; 0: there is none. */
+static uint32_t read_us(const fathom_sim_a16_t *a16, uint16_t address)
+{
+    switch (address) {
+    case PROCESSED:
+        return a16->processed_us;
+    case REALTIME:
+        return a16->realtime_us;
+    case ADDRESS:
+    case POLARITY:
+    case THRESHOLD:
+    case DATA_TYPE:
+        return a16->settings_us;
+    default:
+        return 0;
+    }
+}
+
+static uint32_t refuse(fathom_sim_a16_t *a16, fathom_modbus_message_t *message, uint8_t exception)
+{
+    message->exception = exception;
+    return a16->exceptions ? fathom_sim_device_delay_us(&a16->device, a16->settings_us) : FATHOM_NO_DEADLINE;
+}
+
+static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
+{
+    fathom_sim_a16_t *const a16 = a16_of(device);
+    const uint16_t address = get16(message->head + 2);
+    const uint16_t value = get16(message->head + 4);
+    uint32_t most_us = a16->settings_us;
+    switch (message->head[1]) {
+    case FATHOM_MODBUS_READ_HOLDING_REGISTERS:
+        most_us = read_us(a16, address);
+        if (most_us == 0) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS);
+        if (value != 1) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
+        break;
+    case FATHOM_MODBUS_WRITE_SINGLE_REGISTER:
+        if (address != ADDRESS) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS);
+        if (value > 0xFE) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
+        device->unit = (uint8_t)value;
+        device->counters.writes++;
+        break;
+    default: /* A16 6(1): 03 and 06 only */
+        return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_FUNCTION);
+    }
+    return fathom_sim_device_delay_us(device, most_us);
+}
+
+static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
+{
+    const fathom_sim_a16_t *const a16 = a16_of(device);
+    switch (get16(message->head + 2)) {
+    case ADDRESS:
+        message->values[0] = device->unit;
+        break;
+    case POLARITY:
+        message->values[0] = a16->polarity;
+        break;
+    case THRESHOLD:
+        message->values[0] = a16->threshold_mm;
+        break;
+    case DATA_TYPE:
+        message->values[0] = a16->data_type;
+        break;
+    default:
+        message->values[0] = fathom_sim_device_ultrasonic(device, 1, now_us);
+        break;
+    }
+}
+
+static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
+{
+    const uint16_t value = fathom_sim_device_ultrasonic(device, 1, now_us);
+    return fathom_dyp_frame_encode(bytes, &value, 1);
+}
+
+static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
+
+void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *config)
+{
+    static const fathom_sim_model_t model = {request, fill, automatic, 0xFF, false, true};
+    fathom_sim_device_t *const device = &a16->device;
+    memset(a16, 0, sizeof *a16);
+    device->model = &model;
+    device->faults = config->faults;
+    device->scene = config->scene;
+    device->settings.baud = 9600; /* 8N1 (A16 2(2), 5(2)) */
+    device->settings.stop_bits = 1;
+    device->start_us = config->start_us;
+    device->random = config->seed;
+    device->unit = config->unit != 0 ? config->unit : 1;
+    device->listens = config->mode != FATHOM_SIM_A16_UART;
+    device->answers_broadcast = config->answers_broadcast;
+    if (config->mode != FATHOM_SIM_A16_MODBUS) device->period_us = or_else(config->period_us, 100000);
+    device->linger_us = or_else(config->linger_us, 150000);
+    a16->realtime_us = or_else(config->realtime_us, 120000);
+    a16->processed_us = or_else(config->processed_us, 520000);
+    a16->settings_us = or_else(config->settings_us, 20000);
+    a16->threshold_mm = config->threshold_mm != 0 ? config->threshold_mm : 1000;
+    a16->polarity = 1;
+    a16->exceptions = config->exceptions;
+}

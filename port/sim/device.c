@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include "device.h"
+
+enum {
+    START = FATHOM_SIM_ALARM_START,
+    SILENCE = FATHOM_SIM_ALARM_SILENCE,
+    ANSWER = FATHOM_SIM_ALARM_ANSWER,
+    AUTOMATIC = FATHOM_SIM_ALARM_AUTOMATIC
+};
+
+void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uint32_t at_us)
+{
+    device->alarms[alarm].at_us = at_us;
+    device->alarms[alarm].set = true;
+}
+
+/* ---- what the sensors need ---- */
+
+uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_us)
+{
+    /* The generator of Numerical Recipes; its high bits are the good ones. */
+    device->random = (uint32_t)(device->random * UINT32_C(1664525) + UINT32_C(1013904223));
+    return most_us - (device->random >> 8) % (most_us / 8 + 1);
+}
+
+int32_t fathom_sim_device_measure(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
+{
+    device->counters.measurements++;
+    if (device->scene.distance == NULL) return FATHOM_SIM_NO_TARGET;
+    return device->scene.distance(device->scene.ctx, probe, now_us);
+}
+
+uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
+{
+    const int32_t value = fathom_sim_device_measure(device, probe, now_us);
+    if (value == FATHOM_SIM_INTERFERENCE) return 0xFFFE;
+    return value < 0 ? 0xFFFD : (uint16_t)value;
+}
+
+/* ---- power ---- */
+
+void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
+{
+    for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) device->alarms[i].set = false;
+    device->sender.length = device->sender.sent = 0;
+    device->sender.on_wire = false;
+    device->carriers = device->length = 0;
+    device->torn = device->busy = device->leaving = false;
+    if (device->start_us != 0) fathom_sim_device_set_alarm(device, START, now_us + device->start_us);
+    if (device->period_us != 0) {
+        const uint32_t first_us = now_us + device->period_us;
+        fathom_sim_device_set_alarm(device, AUTOMATIC,
+                                    device->model->deaf_at_start ? first_us + device->start_us : first_us);
+    }
+}
+
+/* ---- hearing ---- */
+
+static bool deaf(const fathom_sim_device_t *device, bool full_duplex)
+{
+    const bool sending = device->sender.on_wire && !full_duplex;
+    const bool starting = device->model->deaf_at_start && device->alarms[START].set;
+    return !device->listens || device->busy || sending || starting;
+}
+
+void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
+{
+    /* The line may carry several bytes at once: they garble each other, which the line says at their end. */
+    device->carriers++;
+    if (device->model->strict_gap && device->alarms[SILENCE].set &&
+        fathom_elapsed_us(now_us, device->heard_us) > fathom_sim_gap_us(&device->settings))
+        device->torn = true;
+}
+
+void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
+                                uint8_t byte, bool good, bool full_duplex, uint32_t now_us)
+{
+    device->carriers--;
+    if (deaf(device, full_duplex)) {
+        device->counters.unheard++;
+        /* what was heard of a frame before is no frame any more */
+        if (device->alarms[SILENCE].set) device->torn = true;
+        return;
+    }
+    if (!fathom_sim_same_settings(&device->settings, settings)) {
+        device->counters.wrong_settings++;
+        good = false;
+    }
+    if (good && device->length < FATHOM_SIM_MAX_FRAME)
+        device->frame[device->length++] = byte;
+    else
+        device->torn = true;
+    device->heard_us = now_us;
+    fathom_sim_device_set_alarm(device, SILENCE, now_us + fathom_sim_silence_us(&device->settings));
+}
+
+static void frame_ended(fathom_sim_device_t *device, uint32_t now_us)
+{
+    fathom_sim_frame_t frame = {device->frame, device->length, false, now_us, 0};
+    const bool torn = device->torn;
+    device->length = 0;
+    device->torn = false;
+    if (torn) {
+        device->counters.torn++;
+        return;
+    }
+    if (device->faults != NULL && device->faults->incoming != NULL)
+        device->faults->incoming(device->faults->ctx, &frame);
+    if (frame.length != 0) fathom_sim_device_serve(device, frame.bytes, frame.length, now_us);
+}
+
+/* ---- sending ---- */
+
+/* False: a hook kept the frame back. */
+static bool send(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
+                 fathom_sim_frame_t *frame)
+{
+    if (device->faults != NULL && device->faults->outgoing != NULL)
+        device->faults->outgoing(device->faults->ctx, frame);
+    if (frame->length == 0) return false;
+    fathom_sim_sender_put(&device->sender, settings, frame->bytes, frame->length,
+                          frame->now_us + frame->delay_us);
+    return true;
+}
+
+static void answer(fathom_sim_device_t *device, uint32_t now_us)
+{
+    uint8_t bytes[FATHOM_SIM_MAX_FRAME];
+    fathom_sim_frame_t frame = {bytes, 0, false, now_us, 0};
+    fathom_modbus_message_t *const message = &device->message;
+    if (message->exception != 0)
+        device->counters.exceptions++;
+    else if (message->head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS && device->model->fill != NULL)
+        device->model->fill(device, message, now_us);
+    frame.length = fathom_modbus_rtu_encode_response(message, bytes);
+    device->counters.answered++;
+    device->busy = send(device, &device->reply_settings, &frame);
+}
+
+static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t now_us)
+{
+    uint8_t bytes[FATHOM_SIM_MAX_FRAME];
+    fathom_sim_frame_t frame = {bytes, 0, true, now_us, 0};
+    if (device->leaving && fathom_sim_until_us(device->leave_us, now_us) == 0) return;
+    frame.length = device->model->automatic(device, bytes, now_us);
+    device->counters.automatic++;
+    /* from start to start, also where an answer was in the way, and never two for one delay */
+    do was_due_us += device->period_us;
+    while (fathom_sim_until_us(was_due_us, now_us) == 0);
+    fathom_sim_device_set_alarm(device, AUTOMATIC, was_due_us);
+    send(device, &device->settings, &frame);
+}
+
+void fathom_sim_device_sent(fathom_sim_device_t *device) { device->busy = device->alarms[ANSWER].set; }
+
+/* ---- time ---- */
+
+/* A frame does not end while a byte is arriving, and nothing leaves before the last frame has. */
+static bool held(const fathom_sim_device_t *device, uint8_t alarm)
+{
+    if (alarm == SILENCE) return device->carriers != 0;
+    return (alarm == ANSWER || alarm == AUTOMATIC) && !fathom_sim_sender_idle(&device->sender);
+}
+
+uint32_t fathom_sim_device_due_us(const fathom_sim_device_t *device, uint32_t now_us)
+{
+    uint32_t due_us = FATHOM_NO_DEADLINE;
+    for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) {
+        if (!device->alarms[i].set || held(device, i)) continue;
+        const uint32_t until_us = fathom_sim_until_us(device->alarms[i].at_us, now_us);
+        if (until_us < due_us) due_us = until_us;
+    }
+    return due_us;
+}
+
+void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us)
+{
+    for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) {
+        fathom_sim_alarm_t *const alarm = &device->alarms[i];
+        if (!alarm->set || held(device, i) || fathom_sim_until_us(alarm->at_us, now_us) != 0) continue;
+        alarm->set = false;
+        if (i == SILENCE) frame_ended(device, now_us);
+        if (i == ANSWER) answer(device, now_us);
+        if (i == AUTOMATIC) automatic(device, alarm->at_us, now_us);
+        return;
+    }
+}

@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+#include "device.h"
+
+#include "fathom/crc16.h"
+
+enum { UNIT = 0, FUNCTION = 1, MIN_LENGTH = 4 };
+
+/* "any Modbus command switches the module" (A16 5(0), A05 1(1)) */
+static void leave_automatic(fathom_sim_device_t *device, uint32_t now_us)
+{
+    if (device->leaving || !device->alarms[FATHOM_SIM_ALARM_AUTOMATIC].set) return;
+    device->leaving = true;
+    device->leave_us = now_us + device->linger_us;
+}
+
+/* Is it one of the shapes that a request can have? An answer of another device to its own host may have the
+ * same address and function. */
+static bool fits(const uint8_t *frame, uint8_t length)
+{
+    if (frame[FUNCTION] >= FATHOM_MODBUS_EXCEPTION) return false;
+    if (frame[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS &&
+        frame[FUNCTION] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER &&
+        frame[FUNCTION] != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS)
+        return true; /* to be refused, whatever its length */
+    return fathom_modbus_rtu_request_length(frame, length) == length;
+}
+
+void fathom_sim_device_serve(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length,
+                             uint32_t now_us)
+{
+    fathom_modbus_message_t *const message = &device->message;
+    if (length < MIN_LENGTH || fathom_crc16(frame, length) != 0) {
+        device->counters.crc_errors++;
+        return;
+    }
+    const bool to_all = frame[UNIT] == device->model->broadcast;
+    if (!to_all && frame[UNIT] != device->unit) {
+        device->counters.others++;
+        return;
+    }
+    device->counters.requests++;
+    leave_automatic(device, now_us);
+
+    uint32_t delay_us = FATHOM_NO_DEADLINE;
+    if (fits(frame, length)) {
+        message->values = device->values;
+        (void)fathom_modbus_rtu_parse_request(message, frame, FATHOM_SIM_REGISTERS);
+        const uint8_t unit = device->unit;
+        device->reply_settings = device->settings;
+        delay_us = device->model->request(device, message);
+        if (to_all && device->answers_broadcast) message->head[UNIT] = unit;
+    }
+    if (delay_us == FATHOM_NO_DEADLINE) device->counters.unserved++;
+    if (delay_us == FATHOM_NO_DEADLINE || (to_all && !device->answers_broadcast)) return;
+
+    /* A time that is over by now, t3.5 after the request, means at once. */
+    device->busy = true;
+    fathom_sim_device_set_alarm(device, FATHOM_SIM_ALARM_ANSWER, device->heard_us + delay_us);
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+#include "uart.h"
+
+/* The lines must see the time at least every 30 minutes (sim.h). */
+static const uint32_t most_unseen_us = UINT32_C(600000000);
+static const uint32_t bounded_idle_us = UINT32_C(1000000);
+
+/* ---- the clock ---- */
+
+void fathom_sim_clock_init(fathom_sim_clock_t *clock, uint32_t start_us, uint32_t step_us)
+{
+    clock->now_us = start_us;
+    clock->step_us = step_us;
+    clock->unseen_us = 0;
+    clock->lines = NULL;
+}
+
+static void show(fathom_sim_clock_t *clock)
+{
+    for (fathom_sim_line_t *line = clock->lines; line != NULL; line = line->next)
+        fathom_sim_run(line, clock->now_us);
+    clock->unseen_us = 0;
+}
+
+/* by_us: at most most_unseen_us */
+static void move(fathom_sim_clock_t *clock, uint32_t by_us)
+{
+    clock->now_us += by_us;
+    clock->unseen_us += by_us;
+    if (clock->unseen_us >= most_unseen_us) show(clock);
+}
+
+void fathom_sim_clock_advance(fathom_sim_clock_t *clock, uint32_t by_us)
+{
+    for (; by_us > most_unseen_us; by_us -= most_unseen_us) move(clock, most_unseen_us);
+    move(clock, by_us);
+    show(clock);
+}
+
+void fathom_sim_clock_idle(void *ctx, uint32_t max_us)
+{
+    fathom_sim_clock_t *const clock = (fathom_sim_clock_t *)ctx;
+    uint32_t by_us = max_us;
+    for (fathom_sim_line_t *line = clock->lines; line != NULL; line = line->next) {
+        const uint32_t due_us = fathom_sim_due_us(line, clock->now_us);
+        if (due_us < by_us) by_us = due_us;
+    }
+    if (by_us == FATHOM_NO_DEADLINE) by_us = bounded_idle_us;
+    fathom_sim_clock_advance(clock, by_us);
+}
+
+static uint32_t now_us(void *ctx)
+{
+    fathom_sim_clock_t *const clock = (fathom_sim_clock_t *)ctx;
+    if (clock->step_us > most_unseen_us)
+        fathom_sim_clock_advance(clock, clock->step_us);
+    else
+        move(clock, clock->step_us);
+    return clock->now_us;
+}
+
+fathom_clock_t fathom_sim_clock(fathom_sim_clock_t *clock)
+{
+    const fathom_clock_t hal = {now_us, clock};
+    return hal;
+}
+
+/* ---- the UART ---- */
+
+static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    /* more than the line can hold is never there, so the result fits an int */
+    if (capacity > FATHOM_SIM_QUEUE) capacity = FATHOM_SIM_QUEUE;
+    return (int)fathom_sim_transmit_timed(uart->line, uart->clock->now_us, bytes, capacity, uart->knows, rx);
+}
+
+static int write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    if (length > FATHOM_SIM_QUEUE || !fathom_sim_sent(uart->line, uart->clock->now_us)) return 0;
+    return (int)fathom_sim_receive(uart->line, bytes, length, uart->clock->now_us);
+}
+
+static bool sent(void *ctx)
+{
+    const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    return fathom_sim_sent(uart->line, uart->clock->now_us);
+}
+
+void fathom_sim_uart_init(fathom_sim_uart_t *uart, fathom_sim_line_t *line, fathom_sim_clock_t *clock)
+{
+    uart->line = line;
+    uart->clock = clock;
+    uart->knows =
+        FATHOM_RX_TIMED | FATHOM_RX_SILENCE | FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN;
+    for (const fathom_sim_line_t *at = clock->lines; at != NULL; at = at->next)
+        if (at == line) return;
+    line->next = clock->lines;
+    clock->lines = line;
+}
+
+fathom_uart_t fathom_sim_uart(fathom_sim_uart_t *uart)
+{
+    const fathom_uart_t hal = {read, write, sent, uart};
+    return hal;
+}
