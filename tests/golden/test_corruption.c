@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/crc16.h"
+#include "fathom/dyp_frame.h"
+#include "fathom/modbus_rtu.h"
+#include "vectors.h"
+
+/* What a wrong byte on the wire does to the frames of vectors.c. */
+
+typedef uint8_t length_of_t(const uint8_t *, uint8_t);
+
+/* What a receiver does with bytes that have ended: it asks for the length, and checks the CRC of a whole frame. */
+static unsigned is_accepted(length_of_t *length_of, const uint8_t *bytes, uint8_t have)
+{
+    const uint8_t length = length_of(bytes, have);
+    return length != 0 && length <= have && fathom_crc16(bytes, length) == 0;
+}
+
+/* How many of the receivers for whom the frame is meant take it. */
+static unsigned accepted(const vector_t *row, const uint8_t *bytes, uint8_t have)
+{
+    unsigned n = 0;
+    if ((row->direction & VECTOR_REQUEST) != 0)
+        n += is_accepted(fathom_modbus_rtu_request_length, bytes, have);
+    if ((row->direction & VECTOR_ANSWER) != 0)
+        n += is_accepted(fathom_modbus_rtu_response_length, bytes, have);
+    return n;
+}
+
+enum { ALL_BYTES = 267 }; /* in the Modbus frames of the table */
+
+static void every_modbus_frame_without_an_error_is_taken(void **state)
+{
+    unsigned bytes = 0;
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        assert_int_equal(accepted(row, row->bytes, row->length), row->direction == VECTOR_BOTH ? 2 : 1);
+        bytes += row->length;
+    }
+    assert_int_equal(bytes, ALL_BYTES);
+}
+
+static void every_single_bit_error_in_a_modbus_frame_is_refused(void **state)
+{
+    unsigned tried = 0;
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        uint8_t bytes[VECTOR_BYTES];
+        memcpy(bytes, row->bytes, sizeof bytes);
+        for (unsigned bit = 0; bit != row->length * 8u; bit++, tried++) {
+            bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+            assert_int_equal(accepted(row, bytes, row->length), 0);
+            bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        }
+    }
+    assert_int_equal(tried, 8 * ALL_BYTES);
+}
+
+static void every_single_byte_error_in_a_modbus_frame_is_refused(void **state)
+{
+    unsigned tried = 0;
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        uint8_t bytes[VECTOR_BYTES];
+        memcpy(bytes, row->bytes, sizeof bytes);
+        for (unsigned at = 0; at != row->length; at++) {
+            for (unsigned change = 1; change != 256; change++, tried++) {
+                bytes[at] = (uint8_t)(row->bytes[at] ^ change);
+                assert_int_equal(accepted(row, bytes, row->length), 0);
+            }
+            bytes[at] = row->bytes[at];
+        }
+    }
+    assert_int_equal(tried, 255 * ALL_BYTES);
+}
+
+/* Whoever looks for requests on the line sees answers too, and one of their damaged beginnings in 65536 has a
+ * right CRC by chance. In this table it is this one. */
+static void one_damaged_answer_looks_like_a_request_by_chance(void **state)
+{
+    static const uint8_t chance[] = {0x01, 0x03, 0x16, 0xB0, 0x00, 0xFF, 0x00, 0x25};
+    unsigned found = 0;
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        uint8_t bytes[VECTOR_BYTES];
+        memcpy(bytes, row->bytes, sizeof bytes);
+        for (unsigned at = 0; at != row->length; at++) {
+            for (unsigned change = 1; change != 256; change++) {
+                bytes[at] = (uint8_t)(row->bytes[at] ^ change);
+                assert_int_equal(is_accepted(fathom_modbus_rtu_response_length, bytes, row->length), 0);
+                if (is_accepted(fathom_modbus_rtu_request_length, bytes, row->length) == 0) continue;
+                assert_memory_equal(bytes, chance, sizeof chance);
+                found++;
+            }
+            bytes[at] = row->bytes[at];
+        }
+    }
+    assert_int_equal(found, 1);
+}
+
+/* A CRC of 16 bits sees every burst of up to 16 bits, so any two bytes side by side as well. */
+static void every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        uint8_t bytes[VECTOR_BYTES];
+        for (unsigned at = 0; at + 1u != row->length; at++) {
+            memcpy(bytes, row->bytes, sizeof bytes);
+            for (unsigned change = 1; change != 65536; change += 257) {
+                bytes[at] = (uint8_t)(row->bytes[at] ^ change >> 8);
+                bytes[at + 1] = (uint8_t)(row->bytes[at + 1] ^ (change & 0xFF));
+                assert_int_not_equal(fathom_crc16(bytes, row->length), 0);
+            }
+        }
+    }
+}
+
+static void a_modbus_frame_that_breaks_off_is_refused_wherever_it_does(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        for (uint8_t have = 1; have != row->length; have++)
+            assert_int_equal(accepted(row, row->bytes, have), 0);
+    }
+}
+
+/* The buffer is just as large as what was received, so that the address sanitizer sees a look beyond it, and what
+ * lies behind is different each time, so that its influence is seen without one. */
+static uint8_t length_of_prefix(length_of_t *length_of, const uint8_t *bytes, uint8_t have)
+{
+    uint8_t *const alone = malloc(have);
+    uint8_t behind[VECTOR_BYTES + 1];
+    assert_non_null(alone);
+    memcpy(alone, bytes, have);
+    const uint8_t length = length_of(alone, have);
+    free(alone);
+    for (unsigned filling = 0; filling != 256; filling++) {
+        memset(behind, (int)filling, sizeof behind);
+        memcpy(behind, bytes, have);
+        assert_int_equal(length_of(behind, have), length);
+    }
+    return length;
+}
+
+static void the_length_of_an_answer_is_known_from_its_third_byte(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        if ((row->direction & VECTOR_ANSWER) == 0) continue;
+        for (uint8_t have = 1; have <= row->length; have++)
+            assert_int_equal(length_of_prefix(fathom_modbus_rtu_response_length, row->bytes, have),
+                             have < 3 ? 3 : row->length);
+    }
+}
+
+static void the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count(void **state)
+{
+    /* HPS-167S table 37 without its CRC, which it does not print: 36 ms, 2 registers, 4 bytes. */
+    static const uint8_t write_many[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24};
+    (void)state;
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
+        const vector_t *const row = &modbus_vectors[i].frame;
+        if ((row->direction & VECTOR_REQUEST) == 0) continue;
+        for (uint8_t have = 1; have <= row->length; have++)
+            assert_int_equal(length_of_prefix(fathom_modbus_rtu_request_length, row->bytes, have),
+                             have < 2 ? 2 : row->length);
+    }
+    for (uint8_t have = 1; have <= sizeof write_many; have++)
+        assert_int_equal(length_of_prefix(fathom_modbus_rtu_request_length, write_many, have), have < 2 ? 2
+                                                                                               : have < 7
+                                                                                                   ? 7
+                                                                                                   : 13);
+}
+
+static void every_single_byte_error_in_a_frame_of_its_own_accord_is_refused(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != AUTO_ROWS; i++) {
+        const vector_t *const row = &auto_vectors[i].frame;
+        uint8_t bytes[VECTOR_BYTES];
+        memcpy(bytes, row->bytes, sizeof bytes);
+        for (unsigned at = 0; at != row->length; at++) {
+            for (unsigned change = 1; change != 256; change++) {
+                bytes[at] = (uint8_t)(row->bytes[at] ^ change);
+                assert_false(fathom_dyp_frame_valid(bytes, row->length));
+            }
+            bytes[at] = row->bytes[at];
+        }
+    }
+}
+
+/* 8 bits of sum do not see the order of bytes, nor two errors that cancel out. Not refused, and known: */
+static void what_an_8_bit_sum_cannot_see_is_this_list(void **state)
+{
+    static const uint8_t unseen[3][4] = {
+        {0xFF, 0xA1, 0x07, 0xA7}, /* the bytes of A16 2(4) changed places: 41223 mm */
+        {0xFF, 0x08, 0xA0, 0xA7}, /* one more and one less: 2208 mm */
+        {0xFF, 0x87, 0x21, 0xA7}, /* bit 7 of both: 34593 mm */
+    };
+    (void)state;
+    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_frame_valid(unseen[i], 4));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_modbus_frame_without_an_error_is_taken),
+        cmocka_unit_test(every_single_bit_error_in_a_modbus_frame_is_refused),
+        cmocka_unit_test(every_single_byte_error_in_a_modbus_frame_is_refused),
+        cmocka_unit_test(one_damaged_answer_looks_like_a_request_by_chance),
+        cmocka_unit_test(every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused),
+        cmocka_unit_test(a_modbus_frame_that_breaks_off_is_refused_wherever_it_does),
+        cmocka_unit_test(the_length_of_an_answer_is_known_from_its_third_byte),
+        cmocka_unit_test(the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count),
+        cmocka_unit_test(every_single_byte_error_in_a_frame_of_its_own_accord_is_refused),
+        cmocka_unit_test(what_an_8_bit_sum_cannot_see_is_this_list),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

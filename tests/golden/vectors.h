@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_VECTORS_H
+#define FATHOM_TESTS_VECTORS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/*
+ * Every frame that the datasheets print, as it must be on the wire. Where they misprint one, it stands here
+ * corrected and the note says so. The bytes and what they mean are copied from the datasheets, nothing here was
+ * computed by Fathom. Sections: A16 6(4) ex 1 is section 6, subsection (4), example 1.
+ */
+enum { VECTOR_REQUEST = 1, VECTOR_ANSWER = 2, VECTOR_BOTH = VECTOR_REQUEST | VECTOR_ANSWER };
+
+enum { VECTOR_BYTES = 27, VECTOR_VALUES = 11 };
+
+/* How many rows there are: nobody can lose one unseen. */
+enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8, PRINTED_TABLE_ENTRIES = 197 };
+
+typedef struct {
+    const char *sensor;
+    const char *source;
+    const char *name;
+    const char *note;
+    uint8_t direction;
+    uint8_t length;
+    uint8_t bytes[VECTOR_BYTES];
+} vector_t;
+
+/* FF .. SUM frames that a sensor sends by itself. */
+typedef struct {
+    vector_t frame;
+    uint8_t probes;
+    uint16_t values[4];
+} auto_vector_t;
+
+/* A Modbus frame and its meaning; with an answer stands the request that it answers. */
+typedef struct {
+    uint8_t unit;
+    uint8_t function;
+    uint16_t address;
+    uint16_t operand; /* the count of registers, or the value of a write to one */
+    uint8_t exception;
+    uint16_t values[VECTOR_VALUES]; /* registers of a read's answer */
+} modbus_meaning_t;
+
+typedef struct {
+    vector_t frame;
+    modbus_meaning_t meaning;
+} modbus_vector_t;
+
+typedef struct {
+    const char *source;
+    uint8_t length;
+    uint8_t bytes[VECTOR_VALUES];
+    uint16_t value;
+    uint8_t wire[2];
+} crc_vector_t;
+
+extern const auto_vector_t auto_vectors[AUTO_ROWS];
+extern const modbus_vector_t modbus_vectors[MODBUS_ROWS];
+extern const crc_vector_t crc_vectors[CRC_ROWS];
+
+/* 55 AA frames of the A05 (A05 2(3)), for which there is no codec yet. */
+extern const vector_t dyp_vectors[DYP_ROWS];
+
+/* auchCRCHi just as the appendix of the HPS-167S prints it. */
+extern const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES];
+
+#endif

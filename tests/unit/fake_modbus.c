@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+#include "fake_modbus.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void assert_unchanged(const fake_modbus_t *fake)
+{
+    const fathom_modbus_request_t *const is = fake->request;
+    const fathom_modbus_request_t *const was = &fake->snapshot;
+    assert_non_null(is);
+    assert_memory_equal(is->message.head, was->message.head, sizeof was->message.head);
+    assert_ptr_equal(is->message.values, was->message.values);
+    assert_int_equal(is->exchange.timeout_us, was->exchange.timeout_us);
+    assert_int_equal(is->exchange.retries, was->exchange.retries);
+}
+
+static fathom_status_t fake_submit(void *ctx, fathom_modbus_request_t *request)
+{
+    fake_modbus_t *const fake = ctx;
+    if (fake->refuses < 0) return fake->refuses;
+    assert_null(fake->request);
+    assert_true(fake->submits < FAKE_MODBUS_LOG);
+    memcpy(fake->log[fake->submits++], request->message.head, sizeof *fake->log);
+    fake->request = request;
+    request->exchange.attempts = 0;
+    request->exchange.status = FATHOM_PENDING;
+    fake->snapshot = *request;
+    return FATHOM_PENDING;
+}
+
+static void end(fake_modbus_t *fake, fathom_status_t status)
+{
+    fake->request->exchange.link.heard_us = fake->heard_us;
+    fake->request->exchange.status = (int8_t)status;
+    fake->request = NULL;
+    fake->ends = FATHOM_PENDING;
+    fake->is_sent = false;
+}
+
+static void fake_cancel(void *ctx, fathom_modbus_request_t *request)
+{
+    fake_modbus_t *const fake = ctx;
+    fake->cancels++;
+    assert_ptr_equal(fake->request, request);
+    assert_unchanged(fake);
+    end(fake, FATHOM_ERR_CANCELLED);
+}
+
+static fathom_status_t fake_poll(void *ctx)
+{
+    fake_modbus_t *const fake = ctx;
+    fake->polls++;
+    if (fake->request == NULL) return fake->carrier;
+    assert_unchanged(fake);
+    fathom_modbus_request_t *const request = fake->request;
+    if (fake->is_sent) request->exchange.attempts++;
+    fake->is_sent = false;
+    if (fake->ends == FATHOM_PENDING) return fake->carrier;
+    if (fake->ends == FATHOM_READY) {
+        assert_int_equal(request->message.head[5], fake->answer_count);
+        memcpy(request->message.values, fake->answer, fake->answer_count * sizeof *fake->answer);
+    }
+    if (fake->ends == FATHOM_ERR_EXCEPTION) request->message.exception = fake->exception;
+    end(fake, fake->ends);
+    return fake->carrier;
+}
+
+static uint32_t fake_due_us(void *ctx) { return ((const fake_modbus_t *)ctx)->due_us; }
+
+static uint32_t fake_now_us(void *ctx) { return ((const fake_modbus_t *)ctx)->now_us; }
+
+void fake_modbus_init(fake_modbus_t *fake)
+{
+    memset(fake, 0, sizeof *fake);
+    fake->now_us = 5000;
+    fake->due_us = FATHOM_NO_DEADLINE;
+    fake->modbus = (fathom_modbus_t){fake_submit, fake_cancel, fake_poll, fake_due_us, fake};
+    fake->clock = (fathom_clock_t){fake_now_us, fake};
+}
+
+void fake_modbus_send(fake_modbus_t *fake)
+{
+    assert_non_null(fake->request);
+    fake->is_sent = true;
+}
+
+void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t count)
+{
+    fake->answer = values;
+    fake->answer_count = count;
+    fake_modbus_fail(fake, FATHOM_READY);
+}
+
+void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception)
+{
+    fake->exception = exception;
+    fake_modbus_fail(fake, FATHOM_ERR_EXCEPTION);
+}
+
+void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status)
+{
+    assert_non_null(fake->request);
+    if (fake->request->exchange.attempts == 0) fake_modbus_send(fake);
+    fake->ends = status;
+}
+
+void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8_t unit, uint16_t first,
+                              uint16_t count)
+{
+    const uint8_t head[] = {unit,
+                            0x03,
+                            (uint8_t)(first >> 8),
+                            (uint8_t)(first & 0xFF),
+                            (uint8_t)(count >> 8),
+                            (uint8_t)(count & 0xFF)};
+    assert_int_equal(fake->submits, submits);
+    assert_true(submits != 0);
+    assert_memory_equal(fake->log[submits - 1], head, sizeof head);
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_FAKE_MODBUS_H
+#define FATHOM_TESTS_FAKE_MODBUS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "fathom/modbus.h"
+
+/*
+ * A carrier of Modbus and a clock that do what the test says: the seam of modbus.h without a wire. Time stands
+ * still until the test moves it, and what was submitted waits until the test sends and ends it. It fails the
+ * test when a driver breaks the seam's rules: a second submit, or a request that changed under way.
+ */
+enum { FAKE_MODBUS_LOG = 64 };
+
+typedef struct {
+    fathom_modbus_t modbus;
+    fathom_clock_t clock;
+    uint32_t now_us;
+    uint32_t due_us;
+    uint32_t heard_us;       /* when the answer to a request came */
+    fathom_status_t carrier; /* what poll returns */
+    fathom_status_t refuses; /* < 0: what submit returns, and nothing happens */
+
+    fathom_modbus_request_t *request; /* under way */
+    fathom_modbus_request_t snapshot; /* of it, as it was submitted */
+    bool is_sent;                     /* the next poll puts it on the wire */
+    fathom_status_t ends;             /* with which the next poll ends it; FATHOM_PENDING: it does not */
+    uint8_t exception;
+    const uint16_t *answer;
+    uint8_t answer_count;
+
+    uint8_t log[FAKE_MODBUS_LOG][6]; /* heads of all that was submitted: unit, function, first, count */
+    unsigned submits;
+    unsigned cancels;
+    unsigned polls;
+} fake_modbus_t;
+
+void fake_modbus_init(fake_modbus_t *fake);
+
+/* The next poll puts the request on the wire; each time it is a further attempt. */
+void fake_modbus_send(fake_modbus_t *fake);
+
+/* The next poll ends the request: with an answer of `count` registers, which must be as many as were asked, with
+ * an exception, or with another error. A request that was not sent goes out in the same poll. */
+void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t count);
+void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception);
+void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status);
+
+/* The last request was a read of `count` registers from `first` of `unit`, asked `submits`-th. */
+void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8_t unit, uint16_t first,
+                              uint16_t count);
+
+#endif

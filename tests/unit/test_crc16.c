@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* Both sources at once, each under a name of its own; the library's is linked beside them. */
+uint16_t crc16_256(const uint8_t *bytes, uint8_t length);
+uint16_t crc16_16(const uint8_t *bytes, uint8_t length);
+
+#include "fathom/crc16.h"
+
+#define fathom_crc16 crc16_256
+#define table        table_256
+#include "../../src/crc16.c"
+#undef fathom_crc16
+#undef table
+
+#define fathom_crc16 crc16_16
+#define table        table_16
+#include "../../src/crc16_small.c"
+#undef fathom_crc16
+#undef table
+
+typedef uint16_t crc16_t(const uint8_t *, uint8_t);
+
+/* So that a function can be a test's state. */
+typedef struct {
+    crc16_t *of;
+} source_t;
+
+static source_t table_of_256 = {crc16_256};
+static source_t table_of_16 = {crc16_16};
+static source_t linked = {fathom_crc16};
+
+/* The definition (MODBUS over Serial Line V1.02, 6.2.2): for each of 8 bits, low bit first, shift right, and XOR
+ * with A001 if a 1 fell out. */
+static uint16_t one_byte_more(uint16_t state, uint8_t byte)
+{
+    state ^= byte;
+    for (int bit = 0; bit != 8; bit++)
+        state = (uint16_t)((state & 1) != 0 ? state >> 1 ^ 0xA001 : state >> 1);
+    return state;
+}
+
+static uint16_t by_definition(const uint8_t *bytes, unsigned length)
+{
+    uint16_t state = 0xFFFF;
+    for (unsigned i = 0; i != length; i++) state = one_byte_more(state, bytes[i]);
+    return state;
+}
+
+/* Bytes without a pattern, always the same: x = 5 x + 17 modulo 251. */
+static void fill(uint8_t *bytes, unsigned length)
+{
+    unsigned x = 3;
+    for (unsigned i = 0; i != length; i++) {
+        x = (5 * x + 17) % 251;
+        bytes[i] = (uint8_t)(x ^ i);
+    }
+}
+
+static void the_definition_gives_the_published_examples(void **state)
+{
+    /* MODBUS over Serial Line V1.02, 6.2.2: 02 07 gives 1241. The catalogues' check value: 4B37. */
+    static const uint8_t message[] = {0x02, 0x07};
+    static const uint8_t check[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+    (void)state;
+    assert_int_equal(by_definition(message, 2), 0x1241);
+    assert_int_equal(by_definition(check, 9), 0x4B37);
+}
+
+static void messages_of_two_bytes_reach_every_state(void **state)
+{
+    static uint8_t reached[65536];
+    unsigned states = 0;
+    (void)state;
+    memset(reached, 0, sizeof reached);
+    for (unsigned message = 0; message != 65536; message++) {
+        const uint8_t bytes[] = {(uint8_t)(message >> 8), (uint8_t)message};
+        const uint16_t at = by_definition(bytes, 2);
+        states += reached[at] == 0;
+        reached[at] = 1;
+    }
+    assert_int_equal(states, 65536);
+}
+
+/* Two bytes reach every state, so a third makes every pair of a state and a byte: 2^24. */
+static void every_byte_in_every_state_does_what_the_definition_says(void **state)
+{
+    crc16_t *const crc16 = ((const source_t *)*state)->of;
+    unsigned wrong = 0;
+    for (unsigned message = 0; message != 65536; message++) {
+        uint8_t bytes[] = {(uint8_t)(message >> 8), (uint8_t)message, 0};
+        const uint16_t at = by_definition(bytes, 2);
+        wrong += crc16(bytes, 1) != by_definition(bytes, 1);
+        wrong += crc16(bytes, 2) != at;
+        for (unsigned byte = 0; byte != 256; byte++) {
+            bytes[2] = (uint8_t)byte;
+            wrong += crc16(bytes, 3) != one_byte_more(at, bytes[2]);
+        }
+    }
+    assert_int_equal(wrong, 0);
+}
+
+static void every_length_to_255_does_what_the_definition_says(void **state)
+{
+    crc16_t *const crc16 = ((const source_t *)*state)->of;
+    uint8_t bytes[255];
+    fill(bytes, sizeof bytes);
+    for (unsigned length = 0; length <= 255; length++)
+        assert_int_equal(crc16(bytes, (uint8_t)length), by_definition(bytes, length));
+}
+
+static void no_byte_at_all_gives_FFFF(void **state)
+{
+    crc16_t *const crc16 = ((const source_t *)*state)->of;
+    const uint8_t byte = 0;
+    assert_int_equal(crc16(NULL, 0), 0xFFFF);
+    assert_int_equal(crc16(&byte, 0), 0xFFFF);
+}
+
+static void over_a_frame_and_its_crc_low_byte_first_it_is_0(void **state)
+{
+    crc16_t *const crc16 = ((const source_t *)*state)->of;
+    uint8_t frame[255];
+    for (unsigned length = 0; length <= 253; length++) {
+        fill(frame, length);
+        const uint16_t crc = by_definition(frame, length);
+        frame[length] = (uint8_t)(crc & 0xFF);
+        frame[length + 1] = (uint8_t)(crc >> 8);
+        assert_int_equal(crc16(frame, (uint8_t)(length + 2)), 0);
+        if (frame[length] == frame[length + 1]) continue;
+        frame[length] = (uint8_t)(crc >> 8);
+        frame[length + 1] = (uint8_t)(crc & 0xFF);
+        assert_int_not_equal(crc16(frame, (uint8_t)(length + 2)), 0);
+    }
+}
+
+static void the_published_examples_come_out(void **state)
+{
+    /* A16 6(4) ex 1: 01 03 01 00 00 01 is followed by 85 F6. HPS-167S appendix: AA BB CC gives 4523. */
+    static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
+    static const uint8_t data4[] = {0xAA, 0xBB, 0xCC};
+    crc16_t *const crc16 = ((const source_t *)*state)->of;
+    assert_int_equal(crc16(request, 6), 0xF685);
+    assert_int_equal(crc16(request, 8), 0);
+    assert_int_equal(crc16(data4, 3), 0x4523);
+}
+
+#define FOR(source, test)                                                                                    \
+    {                                                                                                        \
+        .name = #test "_with_" #source, .test_func = test, .initial_state = &source                          \
+    }
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_definition_gives_the_published_examples),
+        cmocka_unit_test(messages_of_two_bytes_reach_every_state),
+        FOR(table_of_256, every_byte_in_every_state_does_what_the_definition_says),
+        FOR(table_of_256, every_length_to_255_does_what_the_definition_says),
+        FOR(table_of_256, no_byte_at_all_gives_FFFF),
+        FOR(table_of_256, over_a_frame_and_its_crc_low_byte_first_it_is_0),
+        FOR(table_of_256, the_published_examples_come_out),
+        FOR(table_of_16, every_byte_in_every_state_does_what_the_definition_says),
+        FOR(table_of_16, every_length_to_255_does_what_the_definition_says),
+        FOR(table_of_16, no_byte_at_all_gives_FFFF),
+        FOR(table_of_16, over_a_frame_and_its_crc_low_byte_first_it_is_0),
+        FOR(table_of_16, the_published_examples_come_out),
+        FOR(linked, every_length_to_255_does_what_the_definition_says),
+        FOR(linked, the_published_examples_come_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/dyp.h"
+
+enum { GUARD = 0xA5 };
+
+static uint16_t values[4];
+static fathom_dyp_answer_t answer;
+static fathom_sample_t sample;
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(values, 0, sizeof values);
+    memset(&answer, 0, sizeof answer);
+    memset(&sample, GUARD, sizeof sample);
+    answer.values = values;
+    answer.model = FATHOM_A05;
+    answer.unit = 7;
+    answer.first = 1;
+    assert_int_equal(fathom_dyp_answer_init(&answer, FATHOM_A05_MAX_MM), FATHOM_READY);
+    return 0;
+}
+
+static void assert_sample_untouched(void)
+{
+    uint8_t untouched[sizeof sample];
+    memset(untouched, GUARD, sizeof untouched);
+    assert_memory_equal(&sample, untouched, sizeof untouched);
+}
+
+/* The rule, stated apart: FFFD and 0 are no object, FFFE is no object and interference, the window is a target,
+ * everything else cannot be. */
+typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE } meaning_t;
+
+static meaning_t meaning_of(unsigned value, unsigned min_mm, unsigned max_mm)
+{
+    switch (value) {
+    case 0:
+        return NOTHING;
+    case 65533:
+        return NOTHING;
+    case 65534:
+        return INTERFERENCE;
+    default:
+        return min_mm <= value && value <= max_mm ? TARGET : CANNOT_BE;
+    }
+}
+
+static void assert_next_means(unsigned value, meaning_t meaning)
+{
+    memset(&sample, GUARD, sizeof sample);
+    values[0] = (uint16_t)value;
+    answer.implausible = 0;
+    fathom_dyp_answer(&answer, 1, 123456);
+    const fathom_status_t status = fathom_dyp_next(&answer, &sample);
+    if (meaning == CANNOT_BE) {
+        assert_int_equal(status, FATHOM_ERR_MALFORMED);
+        assert_int_equal(answer.implausible, 1);
+        assert_sample_untouched();
+    } else {
+        assert_int_equal(status, FATHOM_READY);
+        assert_int_equal(answer.implausible, 0);
+        assert_int_equal(sample.raw, value);
+        assert_int_equal(sample.kind, meaning == TARGET ? FATHOM_TARGET : FATHOM_NO_TARGET);
+        assert_int_equal(sample.distance_mm, meaning == TARGET ? value : 0);
+        assert_int_equal(sample.interference, meaning == INTERFERENCE);
+    }
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_PENDING);
+}
+
+typedef struct {
+    uint16_t min_mm;
+    uint16_t max_mm;
+    uint16_t default_max_mm;
+    unsigned rule_min_mm;
+    unsigned rule_max_mm;
+    unsigned targets;
+} window_case_t;
+
+/* Targets: max - min + 1, less those of 0, FFFD and FFFE that lie inside. */
+static const window_case_t windows[] = {
+    {0, 0, 16350, 1, 16350, 16350}, /* an A16 by default: 94 ms of A16 1(3) */
+    {0, 0, 6000, 1, 6000, 6000},    /* an A05 by default */
+    {500, 15000, 16350, 500, 15000, 14501},
+    {250, 0, 6000, 250, 6000, 5751},
+    {0, 4500, 6000, 1, 4500, 4500},
+    {1000, 1000, 6000, 1000, 1000, 1},
+    {1, 65535, 6000, 1, 65535, 65533},
+    {65535, 65535, 6000, 65535, 65535, 1},
+};
+
+static void every_value_means_what_the_rule_says(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != sizeof windows / sizeof *windows; i++) {
+        const window_case_t *const w = &windows[i];
+        unsigned targets = 0;
+        answer.window.min_mm = w->min_mm;
+        answer.window.max_mm = w->max_mm;
+        assert_int_equal(fathom_dyp_answer_init(&answer, w->default_max_mm), FATHOM_READY);
+        for (unsigned value = 0; value != 65536; value++) {
+            const meaning_t meaning = meaning_of(value, w->rule_min_mm, w->rule_max_mm);
+            assert_true(fathom_dyp_plausible(&answer.window, (uint16_t)value) == (meaning != CANNOT_BE));
+            assert_next_means(value, meaning);
+            targets += meaning == TARGET;
+        }
+        assert_int_equal(targets, w->targets);
+    }
+}
+
+static void the_default_windows_are_16350_and_6000_mm(void **state)
+{
+    (void)state;
+    assert_int_equal(FATHOM_A16_MAX_MM, 16350);
+    assert_int_equal(FATHOM_A05_MAX_MM, 6000);
+    assert_int_equal(answer.window.min_mm, 1);
+    assert_int_equal(answer.window.max_mm, 6000);
+}
+
+static void a_window_upside_down_is_refused(void **state)
+{
+    static const uint16_t refused[][2] = {{1000, 999}, {65535, 1}, {6001, 0}};
+    (void)state;
+    for (unsigned i = 0; i != 3; i++) {
+        answer.window.min_mm = refused[i][0];
+        answer.window.max_mm = refused[i][1];
+        assert_int_equal(fathom_dyp_answer_init(&answer, 6000), FATHOM_ERR_ARGUMENT);
+    }
+}
+
+static void nothing_is_there_before_an_answer(void **state)
+{
+    (void)state;
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_PENDING);
+    assert_sample_untouched();
+}
+
+static void an_answer_gives_one_sample_a_probe_in_their_order(void **state)
+{
+    static const uint8_t order[] = {1, 2, 4};
+    (void)state;
+    values[0] = 1000;
+    values[1] = 0xFFFD;
+    values[2] = 1953;
+    values[3] = 0xFFFE;
+    fathom_dyp_answer(&answer, 0x0B, 777);
+    for (unsigned i = 0; i != 3; i++) {
+        memset(&sample, GUARD, sizeof sample);
+        assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_READY);
+        assert_int_equal(sample.probe, order[i]);
+        assert_int_equal(sample.raw, values[order[i] - 1]);
+        assert_int_equal(sample.time_us, 777);
+        assert_int_equal(sample.sequence, 1);
+        assert_int_equal(sample.model, FATHOM_A05);
+        assert_int_equal(sample.unit, 7);
+        assert_int_equal(sample.magnitude, 0);
+        assert_int_equal(sample.precision, 0);
+        assert_int_equal(sample.ambient, 0);
+    }
+    memset(&sample, GUARD, sizeof sample);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_PENDING);
+    assert_sample_untouched();
+}
+
+static void the_values_begin_with_the_first_probe_that_was_read(void **state)
+{
+    (void)state;
+    answer.first = 3;
+    values[0] = 333;
+    values[1] = 444;
+    fathom_dyp_answer(&answer, 0x0C, 0);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_READY);
+    assert_int_equal(sample.probe, 3);
+    assert_int_equal(sample.distance_mm, 333);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_READY);
+    assert_int_equal(sample.probe, 4);
+    assert_int_equal(sample.distance_mm, 444);
+}
+
+static void after_a_value_that_cannot_be_the_next_probe_follows(void **state)
+{
+    (void)state;
+    values[0] = 6001;
+    values[1] = 2000;
+    fathom_dyp_answer(&answer, 0x03, 0);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_ERR_MALFORMED);
+    assert_sample_untouched();
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_READY);
+    assert_int_equal(sample.probe, 2);
+    assert_int_equal(sample.distance_mm, 2000);
+    assert_int_equal(answer.implausible, 1);
+}
+
+static void a_new_answer_replaces_what_was_left_of_the_old_one(void **state)
+{
+    (void)state;
+    values[0] = 1000;
+    values[1] = 2000;
+    fathom_dyp_answer(&answer, 0x03, 1);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_READY);
+    fathom_dyp_answer(&answer, 0x01, 2);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_READY);
+    assert_int_equal(sample.probe, 1);
+    assert_int_equal(sample.sequence, 2);
+    assert_int_equal(sample.time_us, 2);
+    assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_PENDING);
+}
+
+static void the_sequence_wraps_and_the_counter_stops(void **state)
+{
+    (void)state;
+    answer.sequence = 65535;
+    answer.implausible = 65534;
+    for (unsigned i = 0; i != 3; i++) {
+        values[0] = 65535;
+        fathom_dyp_answer(&answer, 1, 0);
+        assert_int_equal(answer.sequence, i);
+        assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_ERR_MALFORMED);
+        assert_int_equal(answer.implausible, 65535);
+    }
+}
+
+#define FRESH(test) cmocka_unit_test_setup(test, set_up)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FRESH(every_value_means_what_the_rule_says),
+        FRESH(the_default_windows_are_16350_and_6000_mm),
+        FRESH(a_window_upside_down_is_refused),
+        FRESH(nothing_is_there_before_an_answer),
+        FRESH(an_answer_gives_one_sample_a_probe_in_their_order),
+        FRESH(the_values_begin_with_the_first_probe_that_was_read),
+        FRESH(after_a_value_that_cannot_be_the_next_probe_follows),
+        FRESH(a_new_answer_replaces_what_was_left_of_the_old_one),
+        FRESH(the_sequence_wraps_and_the_counter_stops),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/dyp_frame.h"
+
+enum { GUARD = 0xA5, GUARD16 = 0xA5A5 };
+
+/* A16 2(4): 1953 mm. A05 1(3): 1000, 2000, 1953, 3562 mm. */
+static const uint8_t a16_frame[] = {0xFF, 0x07, 0xA1, 0xA7};
+static const uint8_t a05_frame[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
+static const uint16_t a05_values[] = {1000, 2000, 1953, 3562};
+
+static void the_examples_of_the_datasheets_go_both_ways(void **state)
+{
+    uint8_t frame[11];
+    uint16_t values[5];
+    (void)state;
+    memset(frame, GUARD, sizeof frame);
+    memset(values, GUARD, sizeof values);
+    assert_true(fathom_dyp_frame_valid(a05_frame, 10));
+    fathom_dyp_frame_decode(a05_frame, values, 4);
+    assert_memory_equal(values, a05_values, sizeof a05_values);
+    assert_int_equal(values[4], GUARD16);
+    assert_int_equal(fathom_dyp_frame_encode(frame, a05_values, 4), 10);
+    assert_memory_equal(frame, a05_frame, 10);
+    assert_int_equal(frame[10], GUARD);
+
+    memset(frame, GUARD, sizeof frame);
+    memset(values, GUARD, sizeof values);
+    assert_true(fathom_dyp_frame_valid(a16_frame, 4));
+    fathom_dyp_frame_decode(a16_frame, values, 1);
+    assert_int_equal(values[0], 1953);
+    assert_int_equal(values[1], GUARD16);
+    assert_int_equal(fathom_dyp_frame_encode(frame, values, 1), 4);
+    assert_memory_equal(frame, a16_frame, 4);
+    assert_int_equal(frame[4], GUARD);
+}
+
+/* A16 2(4): SUM = (FF + H + L) & FF, mm = H * 256 + L. */
+static void every_value_of_an_A16_goes_both_ways(void **state)
+{
+    (void)state;
+    for (unsigned mm = 0; mm != 65536; mm++) {
+        const uint8_t expected[] = {0xFF, (uint8_t)(mm / 256), (uint8_t)(mm % 256),
+                                    (uint8_t)((255 + mm / 256 + mm % 256) % 256)};
+        const uint16_t value = (uint16_t)mm;
+        uint16_t decoded = (uint16_t)~mm;
+        uint8_t frame[4];
+        assert_int_equal(fathom_dyp_frame_encode(frame, &value, 1), 4);
+        assert_memory_equal(frame, expected, 4);
+        assert_true(fathom_dyp_frame_valid(expected, 4));
+        fathom_dyp_frame_decode(expected, &decoded, 1);
+        assert_int_equal(decoded, mm);
+    }
+}
+
+static void every_value_of_every_probe_of_an_A05_goes_both_ways(void **state)
+{
+    (void)state;
+    for (unsigned probe = 0; probe != 4; probe++) {
+        for (unsigned mm = 0; mm < 65536; mm += 7) {
+            uint16_t values[4] = {0, 0, 0, 0};
+            uint16_t decoded[4] = {1, 1, 1, 1};
+            uint8_t expected[10] = {0xFF};
+            uint8_t frame[10];
+            values[probe] = (uint16_t)mm;
+            expected[1 + 2 * probe] = (uint8_t)(mm / 256);
+            expected[2 + 2 * probe] = (uint8_t)(mm % 256);
+            expected[9] = (uint8_t)((255 + mm / 256 + mm % 256) % 256);
+            assert_int_equal(fathom_dyp_frame_encode(frame, values, 4), 10);
+            assert_memory_equal(frame, expected, 10);
+            assert_true(fathom_dyp_frame_valid(expected, 10));
+            fathom_dyp_frame_decode(expected, decoded, 4);
+            assert_memory_equal(decoded, values, sizeof values);
+        }
+    }
+}
+
+static void every_other_start_and_every_other_sum_is_refused(void **state)
+{
+    (void)state;
+    for (unsigned byte = 0; byte != 256; byte++) {
+        /* The sum is made right for the wrong start, so that the start alone is at fault. */
+        const uint8_t start[] = {(uint8_t)byte, 0x07, 0xA1, (uint8_t)(byte + 0x07 + 0xA1)};
+        const uint8_t sum[] = {0xFF, 0x07, 0xA1, (uint8_t)byte};
+        uint8_t sum_of_ten[10];
+        memcpy(sum_of_ten, a05_frame, 10);
+        sum_of_ten[9] = (uint8_t)byte;
+        assert_true(fathom_dyp_frame_valid(start, 4) == (byte == 0xFF));
+        assert_true(fathom_dyp_frame_valid(sum, 4) == (byte == 0xA7));
+        assert_true(fathom_dyp_frame_valid(sum_of_ten, 10) == (byte == 0x60));
+    }
+}
+
+/* Why stream.h has further rules. Each of these is a valid frame that no sensor sent. */
+static void a_good_sum_does_not_prove_where_a_frame_begins(void **state)
+{
+    /* 511 mm held still is FF 01 FF FF, FF + 01 + FF = 1FF; a byte early it is FF FF 01 FF, 65281 mm. */
+    static const uint8_t shifted_by_one[] = {0xFF, 0xFF, 0x01, 0xFF};
+    /* FF 03 E8 07 D0 07 FF 05 3B 07, 1000 2000 2047 1339 mm: FF + 03 + E8 + 07 + D0 + 07 + FF + 05 + 3B = 407.
+     * Six bytes on, FF + 05 + 3B + 07 + FF + 03 + E8 + 07 + D0 = 407 too. */
+    static const uint8_t right[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
+    static const uint8_t shifted_by_six[] = {0xFF, 0x05, 0x3B, 0x07, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07};
+    static const uint16_t permuted[] = {1339, 2047, 1000, 2000};
+    uint16_t values[4];
+    (void)state;
+    assert_true(fathom_dyp_frame_valid(shifted_by_one, 4));
+    fathom_dyp_frame_decode(shifted_by_one, values, 1);
+    assert_int_equal(values[0], 65281);
+    assert_true(fathom_dyp_frame_valid(right, 10));
+    assert_true(fathom_dyp_frame_valid(shifted_by_six, 10));
+    fathom_dyp_frame_decode(shifted_by_six, values, 4);
+    assert_memory_equal(values, permuted, sizeof permuted);
+}
+
+/* "No object" is FF FF FD FB: FF + FF + FD = 2FB. No rule such as "the second byte is not FF" may be made. */
+static void FF_may_follow_the_start(void **state)
+{
+    static const uint8_t frame[] = {0xFF, 0xFF, 0xFD, 0xFB};
+    uint16_t value = 0;
+    (void)state;
+    assert_true(fathom_dyp_frame_valid(frame, 4));
+    fathom_dyp_frame_decode(frame, &value, 1);
+    assert_int_equal(value, 0xFFFD);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_examples_of_the_datasheets_go_both_ways),
+        cmocka_unit_test(every_value_of_an_A16_goes_both_ways),
+        cmocka_unit_test(every_value_of_every_probe_of_an_A05_goes_both_ways),
+        cmocka_unit_test(every_other_start_and_every_other_sum_is_refused),
+        cmocka_unit_test(a_good_sum_does_not_prove_where_a_frame_begins),
+        cmocka_unit_test(FF_may_follow_the_start),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

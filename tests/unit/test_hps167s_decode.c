@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/hps167s.h"
+
+enum { GUARD = 0xA5 };
+
+static fathom_sample_t sample;
+
+/* Command #5: 08 23, DC B2, 07, 01, 00 00. */
+static const uint16_t measured[4] = {0x0823, 0xDCB2, 0x0701, 0x0000};
+
+static void assert_guard(const void *object, size_t size)
+{
+    for (size_t i = 0; i != size; i++) assert_int_equal(((const uint8_t *)object)[i], GUARD);
+}
+
+/* The rule, stated apart: 1..30000 a distance, 65530..65534 nothing in range, 65535 a fault, else it cannot be. */
+static int kind_of(unsigned raw)
+{
+    if (raw == 65535) return FATHOM_FAULT;
+    if (raw / 10 == 6553) return FATHOM_NO_TARGET; /* 65530..65534, 65535 is gone */
+    if (raw == 0) return 0;
+    return raw <= 30000 ? FATHOM_TARGET : 0;
+}
+
+static void every_distance_is_what_the_rule_says(void **state)
+{
+    unsigned counted[4] = {0, 0, 0, 0};
+    (void)state;
+    for (unsigned raw = 0; raw != 65536; raw++) {
+        const uint16_t registers[4] = {(uint16_t)raw, 0xDCB2, 0x0742, 0x1234};
+        const int kind = kind_of(raw);
+        memset(&sample, GUARD, sizeof sample);
+        counted[kind]++;
+        assert_int_equal(fathom_hps167s_decode(registers, &sample),
+                         kind == 0 ? FATHOM_ERR_MALFORMED : FATHOM_READY);
+        if (kind == 0) {
+            assert_guard(&sample, sizeof sample);
+            continue;
+        }
+        assert_int_equal(sample.kind, kind);
+        assert_int_equal(sample.raw, raw);
+        assert_int_equal(sample.distance_mm, kind == FATHOM_TARGET ? raw : 0);
+        assert_int_equal(sample.ambient, 0x42);
+        assert_int_equal(sample.precision, 0x1234);
+        assert_false(sample.interference);
+        if (kind != FATHOM_FAULT) assert_int_equal(sample.magnitude, 7231744);
+    }
+    assert_int_equal(counted[FATHOM_TARGET], 30000);
+    assert_int_equal(counted[FATHOM_NO_TARGET], 5);
+    assert_int_equal(counted[FATHOM_FAULT], 1);
+}
+
+static void decode_leaves_the_members_that_are_not_the_devices(void **state)
+{
+    (void)state;
+    memset(&sample, GUARD, sizeof sample);
+    assert_int_equal(fathom_hps167s_decode(measured, &sample), FATHOM_READY);
+    assert_int_equal(sample.time_us, 0xA5A5A5A5);
+    assert_int_equal(sample.sequence, 0xA5A5);
+    assert_int_equal(sample.model, GUARD);
+    assert_int_equal(sample.unit, GUARD);
+    assert_int_equal(sample.probe, GUARD);
+}
+
+static void the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond(void **state)
+{
+    (void)state;
+    for (unsigned exponent = 0; exponent != 256; exponent++) {
+        const uint16_t registers[4] = {2083, 0xFFFF, (uint16_t)(exponent * 256), 0};
+        const uint16_t over_range[4] = {65530, 0, (uint16_t)(exponent * 256), 0};
+        const fathom_status_t expected = exponent <= 16 ? FATHOM_READY : FATHOM_ERR_MALFORMED;
+        uint32_t magnitude = 65535;
+        for (unsigned i = 0; i != exponent && i != 16; i++) magnitude *= 2;
+        memset(&sample, GUARD, sizeof sample);
+        assert_int_equal(fathom_hps167s_decode(registers, &sample), expected);
+        if (exponent <= 16)
+            assert_true(sample.magnitude == magnitude);
+        else
+            assert_guard(&sample, sizeof sample);
+        assert_int_equal(fathom_hps167s_decode(over_range, &sample), expected);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_distance_is_what_the_rule_says),
+        cmocka_unit_test(decode_leaves_the_members_that_are_not_the_devices),
+        cmocka_unit_test(the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,198 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* ---- what the port knows about bytes ---- */
+
+static void a_silence_that_the_port_saw_ends_a_frame(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    receive(answer_1_754, 4);
+    fake_receive_rx(&bench.fake, 0, answer_1_754, sizeof answer_1_754, (fathom_rx_t){0, FATHOM_RX_SILENCE});
+    fathom_line_poll(&bench.line);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(bench.value, 754);
+    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 4);
+}
+
+static void bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer(void **state)
+{
+    static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING};
+    for (size_t i = 0; i != sizeof flags; i++) {
+        set_up(state);
+        ask_1_and_send(0);
+        receive(answer_1_754, 4);
+        fake_receive_rx(&bench.fake, 0, answer_1_754 + 4, 3, (fathom_rx_t){0, flags[i]});
+        run(GAP_US + 300);
+        assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
+        assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 3);
+    }
+}
+
+static void an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    receive(answer_1_754, 4);
+    fake_receive_rx(&bench.fake, 0, answer_1_754, sizeof answer_1_754, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    run(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+static void with_time_stamps_the_next_request_need_not_wait_for_the_loop(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    ask(&bench.other, 2, &bench.other_value, 0);
+    const fathom_rx_t rx = {bench.fake.now_us + 1000, FATHOM_RX_TIMED};
+    fake_receive_rx(&bench.fake, 1000, answer_1_754, sizeof answer_1_754, rx);
+    run_in_steps(20000, 20000); /* one late poll: the answer was in 19 ms ago, and the line silent since */
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(bench.fake.written, 2);
+    assert_int_equal(fathom_line_heard_us(&bench.line), rx.last_us);
+}
+
+/* ---- the listener ---- */
+
+typedef struct {
+    fathom_listener_t listener;
+    uint8_t bytes[256];
+    size_t length;
+    unsigned calls;
+    unsigned gaps;
+    size_t gap_at; /* of the last one */
+    uint32_t time_us;
+} ear_t;
+
+static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
+                 uint32_t time_us)
+{
+    ear_t *const ear = (ear_t *)listener;
+    assert_true(count >= 1);
+    if (after_gap) ear->gaps++, ear->gap_at = ear->length;
+    memcpy(ear->bytes + ear->length, bytes, count);
+    ear->length += count;
+    ear->calls++;
+    ear->time_us = time_us;
+}
+
+static ear_t ear_of(uint16_t gap_us)
+{
+    ear_t ear;
+    memset(&ear, 0, sizeof ear);
+    ear.listener.receive = hear;
+    ear.listener.gap_us = gap_us;
+    return ear;
+}
+
+static const uint8_t auto_frame[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 2(4): 1953 mm */
+
+static void a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    run(2000);
+    receive(auto_frame, 2); /* only 2 ms of silence have been seen */
+    run(1000);
+    assert_int_equal(ear.gaps, 0);
+    receive(auto_frame + 2, 2);
+    run(6000);
+    receive(auto_frame, 4);
+    run(100);
+    assert_int_equal(ear.length, 8);
+    assert_int_equal(ear.gaps, 1);
+    assert_int_equal(ear.gap_at, 4);
+    assert_int_equal(ear.time_us, bench.fake.now_us);
+    assert_memory_equal(ear.bytes, auto_frame, 4);
+    assert_memory_equal(ear.bytes + 4, auto_frame, 4);
+    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
+}
+
+static void a_pause_between_polls_is_no_gap(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    fathom_line_poll(&bench.line);
+    receive(auto_frame, 2);
+    run_in_steps(20000, 20000);
+    receive(auto_frame + 2, 2); /* may have followed at once; nobody looked */
+    run_in_steps(20000, 20000);
+    assert_int_equal(ear.length, 4);
+    assert_int_equal(ear.gaps, 0);
+}
+
+static void a_silence_that_the_port_saw_is_a_gap(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_SILENCE});
+    run(100);
+    assert_int_equal(ear.gaps, 1);
+}
+
+static void unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    ask_1_and_send(0);
+    receive(auto_frame, sizeof auto_frame);
+    run(200);
+    receive(answer_1_754, sizeof answer_1_754);
+    run(GAP_US + 200);
+    receive(auto_frame, sizeof auto_frame);
+    run(200);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(ear.length, 8);
+    assert_memory_equal(ear.bytes, auto_frame, 4);
+    assert_memory_equal(ear.bytes + 4, auto_frame, 4);
+}
+
+static void whole_foreign_frames_go_to_the_listener(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    ask_1_and_send(0);
+    receive_answer(2, 222);
+    run(200);
+    assert_int_equal(ear.length, 7);
+    assert_int_equal(ear.calls, 1);
+    fathom_line_listen(&bench.line, NULL);
+    receive_answer(2, 222);
+    run(200);
+    assert_int_equal(ear.length, 7);
+    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 7);
+}
+
+static void due_makes_room_for_the_listener_to_see_its_gap(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    receive(auto_frame, 4);
+    fathom_line_poll(&bench.line);
+    assert_int_equal(fathom_line_due_us(&bench.line), 5000);
+    run_in_steps(5000, 5000);
+    assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_silence_that_the_port_saw_ends_a_frame),
+        TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer),
+        TEST(an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it),
+        TEST(with_time_stamps_the_next_request_need_not_wait_for_the_loop),
+        TEST(a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen),
+        TEST(a_pause_between_polls_is_no_gap),
+        TEST(a_silence_that_the_port_saw_is_a_gap),
+        TEST(unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not),
+        TEST(whole_foreign_frames_go_to_the_listener),
+        TEST(due_makes_room_for_the_listener_to_see_its_gap),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/modbus_rtu.h"
+
+/* CRCs that no datasheet prints were worked out apart, bit by bit, and stand here as bytes. Every prefix and
+ * every damaged byte of the datasheets' frames: tests/golden/test_corruption.c. */
+
+enum { READ = 0x03, WRITE = 0x06, WRITE_MANY = 0x10, GUARD = 0xA5, ROOM = 300, VALUES = 130 };
+enum { GUARD16 = 0xA5A5 };
+
+static fathom_modbus_message_t message;
+static uint8_t frame[ROOM];
+static uint16_t values[VALUES];
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(&message, GUARD, sizeof message);
+    memset(frame, GUARD, sizeof frame);
+    memset(values, GUARD, sizeof values);
+    return 0;
+}
+
+static void assert_frame(uint8_t length, const uint8_t *expected, uint8_t expected_length)
+{
+    assert_int_equal(length, expected_length);
+    assert_memory_equal(frame, expected, expected_length);
+}
+
+static void assert_untouched_from(const uint8_t *bytes, size_t from, size_t size)
+{
+    for (size_t i = from; i != size; i++) assert_int_equal(bytes[i], GUARD);
+}
+
+static void ask(uint8_t function, uint8_t count)
+{
+    if (function == READ)
+        fathom_modbus_read_holding_registers(&message, 1, 0x0020, count, values);
+    else
+        fathom_modbus_write_multiple_registers(&message, 1, 0x0020, count, values);
+}
+
+/* ---- the client's side ---- */
+
+/* 8 bytes, and where it is longer: a read's answer is 5 + 2 n (6.3), a write's request 9 + 2 n (6.12). */
+static void the_room_of_every_count(void **state)
+{
+    (void)state;
+    for (unsigned n = 0; n != 256; n++) {
+        ask(READ, (uint8_t)n);
+        assert_int_equal(fathom_modbus_rtu_room(&message), n == 0 || n > 125 ? 0 : n == 1 ? 8 : 5 + 2 * n);
+        ask(WRITE_MANY, (uint8_t)n);
+        assert_int_equal(fathom_modbus_rtu_room(&message), n == 0 || n > 123 ? 0 : 9 + 2 * n);
+        fathom_modbus_write_single_register(&message, 1, 0x0020, (uint16_t)n);
+        assert_int_equal(fathom_modbus_rtu_room(&message), 8);
+    }
+}
+
+static void a_read_of_every_count_is_8_bytes(void **state)
+{
+    (void)state;
+    for (unsigned n = 1; n <= 125; n++) {
+        const uint8_t head[] = {0x01, 0x03, 0x00, 0x20, 0x00, (uint8_t)n};
+        ask(READ, (uint8_t)n);
+        assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 8);
+        assert_memory_equal(frame, head, sizeof head);
+        assert_untouched_from(frame, 8, ROOM);
+    }
+}
+
+/* modbus_rtu.h: "what is outside is refused when it is submitted or encoded (..., length 0)". */
+static void a_count_out_of_range_has_no_room(void **state)
+{
+    static const struct {
+        uint8_t function;
+        uint8_t count;
+    } refused[] = {{READ, 0}, {READ, 126}, {READ, 255}, {WRITE_MANY, 0}, {WRITE_MANY, 124}};
+    (void)state;
+    for (unsigned i = 0; i != sizeof refused / sizeof *refused; i++) {
+        ask(refused[i].function, refused[i].count);
+        assert_int_equal(fathom_modbus_rtu_room(&message), 0);
+    }
+}
+
+static void a_write_of_one_carries_0000_8000_and_FFFF(void **state)
+{
+    static const uint8_t expected[][8] = {
+        {0x01, 0x06, 0x00, 0x14, 0x00, 0x00, 0xC9, 0xCE},
+        {0x01, 0x06, 0x00, 0x14, 0x80, 0x00, 0xA8, 0x0E},
+        {0x01, 0x06, 0x00, 0x14, 0xFF, 0xFF, 0xC8, 0x7E},
+    };
+    static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
+    (void)state;
+    for (unsigned i = 0; i != 3; i++) {
+        fathom_modbus_write_single_register(&message, 1, 0x0014, written[i]);
+        assert_frame(fathom_modbus_rtu_encode_request(&message, frame), expected[i], 8);
+        assert_int_equal(fathom_modbus_rtu_parse_response(&message, expected[i]), FATHOM_READY);
+    }
+}
+
+static const uint8_t three_values[] = {0x01, 0x03, 0x06, 0x00, 0x00, 0x80, 0x00, 0xFF, 0xFF, 0x09, 0x05};
+static const uint8_t write_three[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 0x00,
+                                      0x00, 0x80, 0x00, 0xFF, 0xFF, 0xCF, 0x9A};
+
+static void an_answer_brings_0000_8000_and_FFFF(void **state)
+{
+    (void)state;
+    ask(READ, 3);
+    assert_int_equal(fathom_modbus_rtu_parse_response(&message, three_values), FATHOM_READY);
+    assert_int_equal(values[0], 0x0000);
+    assert_int_equal(values[1], 0x8000);
+    assert_int_equal(values[2], 0xFFFF);
+    assert_int_equal(values[3], GUARD16);
+    assert_int_equal(message.exception, 0);
+    assert_frame(fathom_modbus_rtu_encode_response(&message, frame), three_values, sizeof three_values);
+}
+
+static void a_write_of_many_carries_0000_8000_and_FFFF(void **state)
+{
+    static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
+    static const uint8_t answer[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x00, 0x00};
+    (void)state;
+    fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 3, written);
+    assert_frame(fathom_modbus_rtu_encode_request(&message, frame), write_three, sizeof write_three);
+    assert_int_equal(fathom_modbus_rtu_parse_response(&message, answer), FATHOM_READY);
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, write_three, 2), FATHOM_ERR_EXCEPTION);
+    message.values = values;
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, write_three, 3), FATHOM_READY);
+    assert_memory_equal(values, written, sizeof written);
+    assert_int_equal(values[3], GUARD16);
+}
+
+/* Value i is 256 i + 255 - i, so that every byte of the frames is known. */
+static void assert_pattern(const uint8_t *bytes, unsigned count)
+{
+    for (unsigned i = 0; i != count; i++) {
+        assert_int_equal(bytes[2 * i], i);
+        assert_int_equal(bytes[2 * i + 1], 255 - i);
+    }
+}
+
+static void set_pattern(unsigned count)
+{
+    for (unsigned i = 0; i != count; i++) values[i] = (uint16_t)(256 * i + 255 - i);
+}
+
+static void the_largest_answer_is_255_bytes_and_fits(void **state)
+{
+    static const uint8_t head[] = {0x01, 0x03, 250};
+    (void)state;
+    ask(READ, 125);
+    set_pattern(125);
+    assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 255);
+    assert_memory_equal(frame, head, sizeof head);
+    assert_pattern(frame + 3, 125);
+    assert_int_equal(frame[253], 0xEB);
+    assert_int_equal(frame[254], 0x7C);
+    assert_untouched_from(frame, 255, ROOM);
+
+    memset(values, GUARD, sizeof values);
+    assert_int_equal(fathom_modbus_rtu_response_length(frame, 255), 255);
+    assert_int_equal(fathom_modbus_rtu_parse_response(&message, frame), FATHOM_READY);
+    for (unsigned i = 0; i != 125; i++) assert_int_equal(values[i], 256 * i + 255 - i);
+    for (unsigned i = 125; i != VALUES; i++) assert_int_equal(values[i], GUARD16);
+}
+
+static void the_largest_request_is_255_bytes_and_fits(void **state)
+{
+    static const uint8_t head[] = {0x01, 0x10, 0x00, 0x20, 0x00, 123, 246};
+    (void)state;
+    ask(WRITE_MANY, 123);
+    set_pattern(123);
+    assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 255);
+    assert_memory_equal(frame, head, sizeof head);
+    assert_pattern(frame + 7, 123);
+    assert_int_equal(frame[253], 0x25);
+    assert_int_equal(frame[254], 0x87);
+    assert_untouched_from(frame, 255, ROOM);
+
+    memset(values, GUARD, sizeof values);
+    assert_int_equal(fathom_modbus_rtu_request_length(frame, 255), 255);
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, frame, 123), FATHOM_READY);
+    for (unsigned i = 0; i != 123; i++) assert_int_equal(values[i], 256 * i + 255 - i);
+    for (unsigned i = 123; i != VALUES; i++) assert_int_equal(values[i], GUARD16);
+}
+
+/* Every first three bytes. A byte count of 0 is a whole frame that answers nothing. */
+static void the_length_of_an_answer_for_every_function_and_third_byte(void **state)
+{
+    (void)state;
+    for (unsigned function = 0; function != 256; function++) {
+        for (unsigned third = 0; third != 256; third++) {
+            const uint8_t bytes[] = {0x20, (uint8_t)function, (uint8_t)third};
+            unsigned expected = 0;
+            if (function == 0x03 && third % 2 == 0 && third >= 2 && third <= 250) expected = third + 5;
+            if (function == 0x06 || function == 0x10) expected = 8;
+            if (function == 0x83 || function == 0x86 || function == 0x90) expected = 5;
+            assert_int_equal(fathom_modbus_rtu_response_length(bytes, 3), expected);
+        }
+    }
+}
+
+static void no_answer_begins_with_the_broadcast_unit(void **state)
+{
+    static const uint8_t bytes[] = {0x00, 0x03, 0x02, 0x00, 0x00, 0x00, 0x00};
+    (void)state;
+    for (uint8_t have = 1; have <= sizeof bytes; have++)
+        assert_int_equal(fathom_modbus_rtu_response_length(bytes, have), 0);
+}
+
+static void an_exception_of_any_code_is_kept_as_a_number(void **state)
+{
+    static const uint8_t functions[] = {READ, WRITE, WRITE_MANY};
+    (void)state;
+    for (unsigned i = 0; i != 3; i++) {
+        for (unsigned code = 0; code != 256; code++) {
+            const uint8_t answer[] = {0x01, (uint8_t)(functions[i] | 0x80), (uint8_t)code, 0x00, 0x00};
+            ask(READ, 3);
+            message.head[1] = functions[i];
+            assert_int_equal(fathom_modbus_rtu_parse_response(&message, answer), FATHOM_ERR_EXCEPTION);
+            assert_int_equal(message.exception, code);
+            assert_int_equal(values[0], GUARD16);
+        }
+    }
+}
+
+/* Answers with a right CRC that answer something else. */
+typedef struct {
+    uint8_t function;
+    fathom_status_t status;
+    uint8_t bytes[15];
+} other_t;
+
+/* Asked: unit 1 to read 3 from 0020, to write 0003 to 0020, to write 3 from 0020. */
+static const other_t others[] = {
+    {READ, FATHOM_PENDING, {0x02, 0x03, 0x06, 0, 1, 0, 2, 0, 3}},
+    {READ, FATHOM_PENDING, {0x81, 0x03, 0x06, 0, 1, 0, 2, 0, 3}},
+    {READ, FATHOM_PENDING, {0x02, 0x83, 0x02}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x06, 0x00, 0x20, 0x00, 0x03}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x20, 0x00, 0x03}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x86, 0x02}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x90, 0x02}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x03, 0x00}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x03, 0x04, 0, 1, 0, 2}},
+    {READ, FATHOM_ERR_MALFORMED, {0x01, 0x03, 0x08, 0, 1, 0, 2, 0, 3, 0, 4}},
+    {WRITE, FATHOM_PENDING, {0x02, 0x06, 0x00, 0x20, 0x00, 0x03}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x20, 0x00, 0x03}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x03, 0x02, 0x20, 0x00, 0x03}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x83, 0x02}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x06, 0x01, 0x20, 0x00, 0x03}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x06, 0x00, 0x21, 0x00, 0x03}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x06, 0x00, 0x20, 0x01, 0x03}},
+    {WRITE, FATHOM_ERR_MALFORMED, {0x01, 0x06, 0x00, 0x20, 0x00, 0x04}},
+    {WRITE_MANY, FATHOM_PENDING, {0x02, 0x10, 0x00, 0x20, 0x00, 0x03}},
+    {WRITE_MANY, FATHOM_PENDING, {0x02, 0x90, 0x03}},
+    {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x06, 0x00, 0x20, 0x00, 0x03}},
+    {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x80, 0x20, 0x00, 0x03}},
+    {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x10, 0x00, 0x03}},
+    {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x20, 0x00, 0x02}},
+    {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x20, 0x80, 0x03}},
+};
+
+static void an_answer_to_something_else_writes_nothing(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != sizeof others / sizeof *others; i++) {
+        set_up(NULL);
+        ask(others[i].function, 3);
+        if (others[i].function == WRITE) fathom_modbus_write_single_register(&message, 1, 0x0020, 3);
+        fathom_modbus_message_t before;
+        memcpy(&before, &message, sizeof before);
+        assert_int_equal(fathom_modbus_rtu_parse_response(&message, others[i].bytes), others[i].status);
+        assert_memory_equal(&message, &before, sizeof before);
+        for (unsigned n = 0; n != VALUES; n++) assert_int_equal(values[n], GUARD16);
+    }
+}
+
+/* ---- the server's side ---- */
+
+static void the_length_of_a_request_for_every_function_and_byte_count(void **state)
+{
+    (void)state;
+    for (unsigned function = 0; function != 256; function++) {
+        for (unsigned size = 0; size != 256; size++) {
+            const uint8_t bytes[] = {0x01, (uint8_t)function, 0, 0, 0, 0, (uint8_t)size};
+            unsigned expected = function < 0x80 ? 8 : 0;
+            if (function == 0x10) expected = size <= 246 ? size + 9 : 0;
+            assert_int_equal(fathom_modbus_rtu_request_length(bytes, 7), expected);
+        }
+    }
+}
+
+typedef struct {
+    uint8_t capacity;
+    uint8_t exception;
+    uint8_t request[15];
+    uint8_t length; /* of the answer */
+    uint8_t answer[5];
+} refused_t;
+
+static const refused_t refusals[] = {
+    /* another function */
+    {125, 1, {0x01, 0x01, 0x00, 0x20, 0x00, 0x03}, 5, {0x01, 0x81, 0x01, 0x81, 0x90}},
+    {125, 1, {0x01, 0x02, 0x00, 0x20, 0x00, 0x03}, 5, {0x01, 0x82, 0x01, 0x81, 0x60}},
+    {125, 1, {0x01, 0x7F, 0x00, 0x20, 0x00, 0x03}, 5, {0x01, 0xFF, 0x01, 0xA0, 0x30}},
+    /* a count of 0, of 126, of 256 + 1, beyond the capacity, without any */
+    {125, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 0}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {255, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 126}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {255, 3, {0x01, 0x03, 0x00, 0x20, 0x01, 1}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {4, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 5}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {0, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 1}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 0, 0}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {255, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 124, 248}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {255, 3, {0x01, 0x10, 0x00, 0x20, 0x01, 2, 4}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {2, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 6}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    /* a byte count that is not twice the count */
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 5}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 4}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 8}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+};
+
+static void a_request_that_cannot_be_served_is_refused_by_its_number(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != sizeof refusals / sizeof *refusals; i++) {
+        const refused_t *const refused = &refusals[i];
+        message.values = values;
+        assert_int_equal(fathom_modbus_rtu_parse_request(&message, refused->request, refused->capacity),
+                         FATHOM_ERR_EXCEPTION);
+        assert_int_equal(message.exception, refused->exception);
+        for (unsigned n = 0; n != VALUES; n++) assert_int_equal(values[n], GUARD16);
+        assert_frame(fathom_modbus_rtu_encode_response(&message, frame), refused->answer, refused->length);
+    }
+}
+
+static void a_request_as_long_as_the_capacity_is_served(void **state)
+{
+    static const uint8_t read_five[] = {0x01, 0x03, 0x00, 0x20, 0x00, 5};
+    static const uint8_t write_one[] = {0x01, 0x06, 0x00, 0x20, 0xFF, 0xFF};
+    (void)state;
+    message.values = values;
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, read_five, 5), FATHOM_READY);
+    assert_int_equal(message.exception, 0);
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, write_one, 0), FATHOM_READY);
+    assert_int_equal(message.exception, 0);
+    assert_int_equal(values[0], GUARD16);
+}
+
+/* modbus_rtu.h: the frame holds 8 bytes at least, for a refused read of 0 registers too. */
+static void the_refusal_of_a_read_of_0_registers_fits_in_8_bytes(void **state)
+{
+    static const uint8_t request[] = {0x01, 0x03, 0x00, 0x20, 0x00, 0};
+    (void)state;
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, request, 4), FATHOM_ERR_EXCEPTION);
+    assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 5);
+    assert_untouched_from(frame, 8, ROOM);
+}
+
+#define FRESH(test) cmocka_unit_test_setup(test, set_up)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FRESH(the_room_of_every_count),
+        FRESH(a_read_of_every_count_is_8_bytes),
+        FRESH(a_count_out_of_range_has_no_room),
+        FRESH(a_write_of_one_carries_0000_8000_and_FFFF),
+        FRESH(an_answer_brings_0000_8000_and_FFFF),
+        FRESH(a_write_of_many_carries_0000_8000_and_FFFF),
+        FRESH(the_largest_answer_is_255_bytes_and_fits),
+        FRESH(the_largest_request_is_255_bytes_and_fits),
+        FRESH(the_length_of_an_answer_for_every_function_and_third_byte),
+        FRESH(no_answer_begins_with_the_broadcast_unit),
+        FRESH(an_exception_of_any_code_is_kept_as_a_number),
+        FRESH(an_answer_to_something_else_writes_nothing),
+        FRESH(the_length_of_a_request_for_every_function_and_byte_count),
+        FRESH(a_request_that_cannot_be_served_is_refused_by_its_number),
+        FRESH(a_request_as_long_as_the_capacity_is_served),
+        FRESH(the_refusal_of_a_read_of_0_registers_fits_in_8_bytes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

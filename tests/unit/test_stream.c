@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/stream.h"
+
+static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};                                  /* A16 2(4) */
+static const uint8_t four[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60}; /* A05 1(3) */
+static const uint8_t mm_511[] = {0xFF, 0x01, 0xFF, 0xFF}; /* FF + 01 + FF = 1FF; as FF FF 01 FF 65281 mm */
+static const uint8_t permutable[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0,
+                                     0x07, 0xFF, 0x05, 0x3B, 0x07}; /* 407 hex */
+
+static fathom_stream_t stream;
+static fathom_stream_config_t config;
+static uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_MAX_LENGTH)];
+static const uint8_t *frame;
+
+static void begin(uint8_t length, uint32_t now_us)
+{
+    config = (fathom_stream_config_t){.storage = storage, .length = length};
+    memset(&stream, 0xA5, sizeof stream);
+    memset(storage, 0xFF, sizeof storage);
+    frame = NULL;
+    assert_int_equal(fathom_stream_init(&stream, &config, now_us), FATHOM_READY);
+}
+
+static fathom_status_t poll(uint32_t now_us) { return fathom_stream_poll(&stream, now_us, &frame); }
+
+static void feed(const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t time_us)
+{
+    fathom_stream_feed(&stream, bytes, count, after_gap, time_us);
+}
+
+static void a_config_without_storage_or_with_another_length_is_refused(void **state)
+{
+    (void)state;
+    config = (fathom_stream_config_t){.storage = NULL, .length = 4};
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_ERR_ARGUMENT);
+    config = (fathom_stream_config_t){.storage = storage, .length = 5};
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_ERR_ARGUMENT);
+    config.length = 10;
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    assert_int_equal(stream.listener.gap_us, 5000);
+    config.gap_us = 25000;
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    assert_int_equal(stream.listener.gap_us, 25000);
+}
+
+static void the_first_frame_after_a_gap_is_believed_at_once(void **state)
+{
+    (void)state;
+    begin(4, 1000);
+    feed(mm_1953, 4, true, 1500);
+    assert_int_equal(poll(1600), FATHOM_READY);
+    assert_memory_equal(frame, mm_1953, 4);
+    assert_int_equal(stream.time_us, 1500);
+    assert_int_equal(poll(1700), FATHOM_PENDING); /* each frame once */
+
+    begin(10, 1000);
+    feed(four, 10, true, 1500);
+    assert_int_equal(poll(1600), FATHOM_READY);
+    assert_memory_equal(frame, four, 10);
+}
+
+static void a_frame_may_come_in_any_two_pieces(void **state)
+{
+    (void)state;
+    for (uint8_t cut = 1; cut != 10; cut++) {
+        begin(10, 0);
+        feed(four, cut, true, 10);
+        assert_int_equal(poll(15), FATHOM_PENDING);
+        feed(four + cut, (uint8_t)(10 - cut), false, 20);
+        assert_int_equal(poll(20), FATHOM_READY);
+        assert_memory_equal(frame, four, 10);
+        assert_int_equal(stream.time_us, 20);
+    }
+}
+
+static void without_a_gap_the_second_of_two_frames_in_step_is_believed(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, false, 10);
+    assert_int_equal(poll(10), FATHOM_PENDING);
+    assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 1);
+    feed(mm_1953, 4, false, 20);
+    assert_int_equal(poll(20), FATHOM_READY);
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
+}
+
+static void frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, true, 10);
+    assert_int_equal(poll(10), FATHOM_READY);
+    feed(mm_1953, 4, false, 20);
+    assert_int_equal(poll(20), FATHOM_READY);
+    feed(mm_1953, 1, false, 25); /* the rest of this frame is lost */
+    feed(mm_1953, 4, false, 30);
+    assert_int_equal(poll(30), FATHOM_PENDING); /* in step with nothing */
+    feed(mm_1953, 4, false, 40);
+    assert_int_equal(poll(40), FATHOM_READY);
+}
+
+static void a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    for (int i = 0; i != 100; i++) feed(mm_511, 4, false, 10);
+    assert_int_equal(poll(20), FATHOM_PENDING);
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+    /* 100 right windows and 99 across two frames; only the very first has no other before it. */
+    assert_int_equal(stream.counters[FATHOM_STREAM_AMBIGUOUS], 198);
+
+    begin(10, 0);
+    for (int i = 0; i != 100; i++) feed(permutable, 10, false, 10);
+    assert_int_equal(poll(20), FATHOM_PENDING);
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+}
+
+static void the_same_value_is_shown_rightly_where_gaps_are_seen(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_511 + 2, 2, false, 5); /* the end of a frame that had begun before */
+    for (int i = 0; i != 100; i++) {
+        feed(mm_511, 4, true, 10);
+        assert_int_equal(poll(10), FATHOM_READY);
+        assert_memory_equal(frame, mm_511, 4);
+    }
+    begin(10, 0);
+    for (int i = 0; i != 100; i++) {
+        feed(permutable, 10, true, 10);
+        assert_int_equal(poll(10), FATHOM_READY);
+        assert_memory_equal(frame, permutable, 10);
+    }
+}
+
+static void a_frame_that_broke_off_before_a_gap_leaves_no_trace(void **state)
+{
+    (void)state;
+    for (uint8_t length = 1; length != 4; length++) {
+        begin(4, 0);
+        feed(mm_511, length, true, 10);
+        feed(mm_1953, 4, true, 20);
+        assert_int_equal(poll(20), FATHOM_READY);
+        assert_memory_equal(frame, mm_1953, 4);
+        assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
+    }
+}
+
+static void a_wrong_sum_is_dropped(void **state)
+{
+    (void)state;
+    uint8_t damaged[4];
+    memcpy(damaged, mm_1953, 4);
+    damaged[2] ^= 1;
+    begin(4, 0);
+    feed(damaged, 4, true, 10);
+    assert_int_equal(poll(10), FATHOM_PENDING);
+    assert_int_equal(stream.counters[FATHOM_STREAM_BYTES], 4);
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+}
+
+static void the_newest_frame_wins_and_the_older_is_counted(void **state)
+{
+    static const uint8_t mm_1000[] = {0xFF, 0x03, 0xE8, 0xEA}; /* FF + 03 + E8 = 1EA */
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, true, 10);
+    feed(mm_1000, 4, true, 20);
+    assert_int_equal(poll(30), FATHOM_READY);
+    assert_memory_equal(frame, mm_1000, 4);
+    assert_int_equal(stream.time_us, 20);
+    assert_int_equal(stream.counters[FATHOM_STREAM_MISSED], 1);
+    assert_int_equal(poll(40), FATHOM_PENDING);
+}
+
+static void a_silent_stream_is_stale_once_every_deadline(void **state)
+{
+    (void)state;
+    begin(4, 1000);
+    config.stale_us = 500000;
+    fathom_stream_init(&stream, &config, 1000);
+    assert_int_equal(poll(500999), FATHOM_PENDING);
+    assert_int_equal(poll(501000), FATHOM_ERR_STALE);
+    assert_int_equal(poll(501001), FATHOM_PENDING);
+    assert_int_equal(poll(1000999), FATHOM_PENDING);
+    assert_int_equal(poll(1001000), FATHOM_ERR_STALE);
+    assert_int_equal(stream.counters[FATHOM_STREAM_STALES], 2);
+}
+
+static void the_deadline_is_two_seconds_unless_told_otherwise(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    assert_int_equal(poll(1999999), FATHOM_PENDING);
+    assert_int_equal(poll(2000000), FATHOM_ERR_STALE);
+}
+
+static void only_a_good_frame_moves_the_deadline(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    for (uint32_t now_us = 0; now_us != 1900000; now_us += 100000) {
+        feed(mm_1953, 3, true, now_us);
+        assert_int_equal(poll(now_us), FATHOM_PENDING);
+    }
+    assert_int_equal(poll(2000000), FATHOM_ERR_STALE);
+    feed(mm_1953, 4, true, 3000000);
+    assert_int_equal(poll(3000000), FATHOM_READY);
+    assert_int_equal(poll(4999999), FATHOM_PENDING);
+    assert_int_equal(poll(5000000), FATHOM_ERR_STALE);
+}
+
+static void a_frame_in_hand_comes_before_the_deadline(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, true, 10);
+    assert_int_equal(poll(60000000), FATHOM_READY);
+}
+
+static void the_deadline_holds_across_the_wrap_of_the_clock(void **state)
+{
+    (void)state;
+    const uint32_t start_us = UINT32_MAX - 1000000;
+    begin(4, start_us);
+    assert_int_equal(poll(start_us + 1999999), FATHOM_PENDING);
+    assert_int_equal(poll(start_us + 2000000), FATHOM_ERR_STALE);
+}
+
+static void due_is_the_deadline_or_at_once(void **state)
+{
+    (void)state;
+    begin(4, 1000);
+    assert_int_equal(fathom_stream_due_us(&stream, 1000), 2000000);
+    assert_int_equal(fathom_stream_due_us(&stream, 501000), 1500000);
+    assert_int_equal(fathom_stream_due_us(&stream, 3001000), 0);
+    feed(mm_1953, 4, true, 1000);
+    assert_int_equal(fathom_stream_due_us(&stream, 1000), 0);
+}
+
+static void counters_stop_at_their_end(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    stream.counters[FATHOM_STREAM_BYTES] = 65533;
+    stream.counters[FATHOM_STREAM_FRAMES] = 65535;
+    feed(mm_1953, 4, true, 10);
+    assert_int_equal(stream.counters[FATHOM_STREAM_BYTES], 65535);
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 65535);
+    assert_int_equal(poll(10), FATHOM_READY);
+}
+
+/* 300 bytes without an FF: the counters of bytes stop at 255 and do not come round to a wrong 4. */
+static void a_long_run_of_noise_does_not_come_round_to_a_frame(void **state)
+{
+    static const uint8_t noise[250];
+    (void)state;
+    begin(4, 0);
+    feed(noise, 250, true, 10);
+    for (int i = 0; i != 10; i++) feed(noise, 1, false, 10);
+    for (uint8_t more = 0; more != 12; more++) {
+        feed(noise, 1, false, 10);
+        feed(mm_1953, 4, false, 20);
+        assert_int_equal(poll(20), FATHOM_PENDING);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_config_without_storage_or_with_another_length_is_refused),
+        cmocka_unit_test(the_first_frame_after_a_gap_is_believed_at_once),
+        cmocka_unit_test(a_frame_may_come_in_any_two_pieces),
+        cmocka_unit_test(without_a_gap_the_second_of_two_frames_in_step_is_believed),
+        cmocka_unit_test(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step),
+        cmocka_unit_test(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap),
+        cmocka_unit_test(the_same_value_is_shown_rightly_where_gaps_are_seen),
+        cmocka_unit_test(a_frame_that_broke_off_before_a_gap_leaves_no_trace),
+        cmocka_unit_test(a_wrong_sum_is_dropped),
+        cmocka_unit_test(the_newest_frame_wins_and_the_older_is_counted),
+        cmocka_unit_test(a_silent_stream_is_stale_once_every_deadline),
+        cmocka_unit_test(the_deadline_is_two_seconds_unless_told_otherwise),
+        cmocka_unit_test(only_a_good_frame_moves_the_deadline),
+        cmocka_unit_test(a_frame_in_hand_comes_before_the_deadline),
+        cmocka_unit_test(the_deadline_holds_across_the_wrap_of_the_clock),
+        cmocka_unit_test(due_is_the_deadline_or_at_once),
+        cmocka_unit_test(counters_stop_at_their_end),
+        cmocka_unit_test(a_long_run_of_noise_does_not_come_round_to_a_frame),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
