@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef ADVICE_H
+#define ADVICE_H
+
+#include <stdio.h>
+
+#include "sensors.h"
+#include "tally.h"
+
+/* A failed attempt. */
+typedef struct {
+    fathom_status_t status;
+    const sensor_t *sensor;
+    const sensor_mode_t *mode;
+    const reader_t *reader;
+    const channel_t *channel;
+    const counts_t *counts; /* of this attempt */
+    uint8_t address;
+} failure_t;
+
+/* What happened and what to try, without a line feed: the cause as far as the counters tell it. */
+void advice_print(FILE *to, const failure_t *failure);
+
+#endif

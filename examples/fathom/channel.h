@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef CHANNEL_H
+#define CHANNEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/line.h"
+#include "fathom/modbus_client.h"
+#include "fathom_posix.h"
+
+/* A serial port with a line and a Modbus client on it: what every command that talks to sensors needs. */
+typedef struct {
+    fathom_posix_uart_t port;
+    fathom_uart_t uart;
+    fathom_clock_t clock;
+    fathom_line_config_t config;
+    fathom_line_t line;
+    fathom_modbus_t modbus;
+    uint8_t frame[255];
+} channel_t;
+
+/*
+ * The silence that ends a frame. A USB adapter holds bytes back for up to 16 ms, and the system may be late too: 25
+ * ms, which is less than the pause between two frames of a sensor that sends by itself. Where a sensor is asked
+ * nothing hangs on it but how soon a damaged answer is given up; there the far end may also be a program,
+ * which a busy system interrupts in mid-frame.
+ */
+enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
+
+/* False, after saying why on stderr. The channel may not be moved. */
+bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings);
+void channel_close(channel_t *channel);
+
+/* "9600 8N1", in a buffer of the caller's. */
+enum { SETTINGS_TEXT = 24 };
+const char *settings_text(const fathom_line_settings_t *settings, char text[SETTINGS_TEXT]);
+
+#endif

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef COMMAND_H
+#define COMMAND_H
+
+#include <stdio.h>
+
+/* A command of the tool: a row in main.c's table. */
+typedef struct {
+    const char *name;
+    const char *summary;               /* a line of `fathom --help` */
+    void (*help)(FILE *to);            /* `fathom NAME --help` */
+    int (*run)(int argc, char **argv); /* argv[0] is the command's name; returns the exit status */
+} command_t;
+
+extern const command_t read_command;
+extern const command_t sim_command;
+
+/* Exit statuses of every command. */
+enum {
+    STATUS_OK = 0,
+    STATUS_FAILED = 1, /* the line, the port or the output failed */
+    STATUS_USAGE = 2
+};
+
+/* Says on stderr, in one line, what is wrong with the command line and where help is. command: "" before one
+ * is known. Returns STATUS_USAGE. */
+int usage_error(const char *command, const char *format, ...);
+
+#endif

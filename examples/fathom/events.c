@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): ppoll */
+#include "events.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "fathom/hal.h"
+
+/* A byte in this pipe ends every sleep, also one that begins just after the signal. */
+static int wake[2];
+static volatile sig_atomic_t ended;
+static bool output_gone;
+
+static void on_signal(int number)
+{
+    const int saved = errno;
+    (void)number;
+    ended = 1;
+    /* A full pipe wakes as well. */
+    if (write(wake[1], "", 1) < 0) errno = saved;
+    errno = saved;
+}
+
+static void handle(int number)
+{
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    /* No SA_RESTART: a write to an output that nobody reads must end too. */
+    (void)sigemptyset(&action.sa_mask);
+    (void)sigaction(number, &action, NULL);
+}
+
+bool events_begin(void)
+{
+    struct sigaction old;
+    if (pipe(wake) != 0) {
+        (void)fprintf(stderr, "fathom: %s\n", strerror(errno));
+        return false;
+    }
+    for (int i = 0; i != 2; i++) {
+        (void)fcntl(wake[i], F_SETFL, O_NONBLOCK);
+        (void)fcntl(wake[i], F_SETFD, FD_CLOEXEC);
+    }
+    handle(SIGINT);
+    handle(SIGTERM);
+    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN) handle(SIGHUP);
+    (void)signal(SIGPIPE, SIG_IGN);
+    return true;
+}
+
+bool events_ended(void) { return ended != 0; }
+
+bool events_output_gone(void) { return output_gone; }
+
+void events_wait(int fd, short events, uint32_t max_us, bool watch_output)
+{
+    /* In whole milliseconds a t3.5 of 1.75 ms would become 1 or 2. */
+    const struct timespec limit = {(time_t)(max_us / 1000000u), (long)(max_us % 1000000u) * 1000};
+    struct pollfd entries[] = {{fd, events, 0}, {wake[0], POLLIN, 0}, {STDOUT_FILENO, 0, 0}};
+    if (ppoll(entries, watch_output ? 3 : 2, max_us == FATHOM_NO_DEADLINE ? NULL : &limit, NULL) <= 0) return;
+    if ((entries[2].revents & (POLLERR | POLLHUP)) != 0) output_gone = true;
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef EVENTS_H
+#define EVENTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/*
+ * What a command waits for: its port, the time, and the wish to end it. SIGINT, SIGTERM and SIGHUP (unless
+ * nohup has it ignored) only leave a mark, which cannot be missed between looking and sleeping; a broken
+ * output is told by write errors, not by SIGPIPE.
+ */
+
+/* False, after saying why, when the system has no descriptor left. */
+bool events_begin(void);
+
+/* Has a signal asked to end? */
+bool events_ended(void);
+
+/* Has nobody been reading the standard output any more, as far as events_wait has seen? */
+bool events_output_gone(void);
+
+/*
+ * Sleeps until one of `events` (poll(2)) happens on fd, max_us microseconds (FATHOM_NO_DEADLINE: no limit) have
+ * passed, or the command is to end. watch_output: also until the reader of the standard output goes away.
+ */
+void events_wait(int fd, short events, uint32_t max_us, bool watch_output);
+
+#endif

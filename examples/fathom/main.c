@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open, fcntl */
+#include <fcntl.h>
+#include <stdarg.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "command.h"
+#include "fathom/version.h"
+
+static const command_t *const commands[] = {&read_command, &sim_command};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+int usage_error(const char *command, const char *format, ...)
+{
+    const char *const gap = command[0] != '\0' ? " " : "";
+    va_list arguments;
+    (void)fprintf(stderr, "fathom%s%s: ", gap, command);
+    va_start(arguments, format);
+    (void)vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    (void)fprintf(stderr, "; try: fathom%s%s --help\n", gap, command);
+    return STATUS_USAGE;
+}
+
+static void print_help(void)
+{
+    (void)printf("fathom reads the range sensors A16, A05 and HPS-167S on a serial port.\n\n"
+                 "usage: fathom COMMAND [ARGUMENTS]\n\n");
+    for (size_t i = 0; i != COMMANDS; i++)
+        (void)printf("  %-6s %s\n", commands[i]->name, commands[i]->summary);
+    (void)printf("\nfathom COMMAND --help   explains a command, with examples\n"
+                 "fathom --version        prints the version\n\n"
+                 "Without a sensor at hand, in two terminals:\n\n"
+                 "  fathom sim  a16 --link ./tank\n"
+                 "  fathom read a16 --port ./tank\n\n"
+                 "Exit status: 0 when nothing failed, 1 when the line, the port or the output did, 2 for "
+                 "wrong usage.\n");
+}
+
+/*
+ * A descriptor that is closed at the start would be given to the next file that is opened, and readings would
+ * go to the sensor.
+ */
+static int check_descriptors(void)
+{
+    for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++) {
+        if (fcntl(fd, F_GETFD) != -1) continue;
+        if (fd == STDOUT_FILENO) {
+            (void)fprintf(stderr, "fathom: the standard output is closed, there is nowhere to write to\n");
+            return STATUS_FAILED;
+        }
+        if (open("/dev/null", O_RDWR) != fd) return STATUS_FAILED;
+    }
+    return STATUS_OK;
+}
+
+int main(int argc, char **argv)
+{
+    if (check_descriptors() != STATUS_OK) return STATUS_FAILED;
+    if (argc < 2) return usage_error("", "a command is missing: read or sim");
+    const char *const name = argv[1];
+    for (size_t i = 0; i != COMMANDS; i++)
+        if (strcmp(name, commands[i]->name) == 0) return commands[i]->run(argc - 1, argv + 1);
+    if (strcmp(name, "--version") == 0) {
+        (void)printf("fathom %s\n", FATHOM_VERSION_STRING);
+    } else if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        print_help();
+    } else {
+        return usage_error("", "there is no command '%s'", name);
+    }
+    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include <getopt.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/*
+ * Reads a command line. What was given to row i of the table (long options, ended by a row of zeros) stands in
+ * values[i] ("" for an option without a value), else NULL; of a repeated option the last one counts. Returns
+ * the index of the first argument that is no option, all of which stand last in argv then; or -1 after
+ * saying what is wrong.
+ */
+int options_parse(const char *command, int argc, char **argv, const struct option *table,
+                  const char **values);
+
+/* All of `text` is a decimal number from min to max. No sign, no space, nothing after it. */
+bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);
+
+/* A number option; text NULL: it was not given, *number stays. False after saying what is wrong. */
+bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
+                   uint32_t *number);
+
+#endif

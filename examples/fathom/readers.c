@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include "readers.h"
+
+#include <string.h>
+
+static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
+{
+    reader->sensor = sensor;
+    reader->stream = &base->stream;
+    reader->values = base->answer.values;
+    reader->value_count = (uint8_t)(base->stream_config.length / 2 - 1);
+    reader->left = &base->answer.left;
+    return true;
+}
+
+static bool begin_modbus(reader_t *reader, const fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
+{
+    reader->sensor = sensor;
+    reader->request = &base->unit.request;
+    reader->values = base->answer.values;
+    reader->value_count = base->question.count;
+    reader->left = &base->answer.left;
+    return true;
+}
+
+bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
+    const fathom_a16_auto_config_t config = {
+        .line = &channel->line, .stale_us = settings->timeout_us, .gap_us = CHANNEL_STREAM_GAP_US};
+    memset(reader, 0, sizeof *reader);
+    return fathom_a16_auto_init(driver, &config) == FATHOM_READY &&
+           begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
+}
+
+bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
+    const fathom_a05_auto_config_t config = {
+        .line = &channel->line, .stale_us = settings->timeout_us, .gap_us = CHANNEL_STREAM_GAP_US};
+    memset(reader, 0, sizeof *reader);
+    return fathom_a05_auto_init(driver, &config) == FATHOM_READY &&
+           begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
+}
+
+bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
+    const fathom_a16_modbus_config_t config = {
+        .modbus = &channel->modbus,
+        .clock = &channel->clock,
+        .period_us = settings->period_us,
+        .timeout_us = settings->timeout_us,
+        .address = settings->address,
+        .retries = settings->retries,
+    };
+    memset(reader, 0, sizeof *reader);
+    return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
+           begin_modbus(reader, &driver->base, fathom_a16_modbus_sensor(driver));
+}
+
+bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
+    const fathom_a05_modbus_config_t config = {
+        .modbus = &channel->modbus,
+        .clock = &channel->clock,
+        .period_us = settings->period_us,
+        .timeout_us = settings->timeout_us,
+        .address = settings->address,
+        .retries = settings->retries,
+    };
+    memset(reader, 0, sizeof *reader);
+    return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
+           begin_modbus(reader, &driver->base, fathom_a05_modbus_sensor(driver));
+}
+
+bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_hps167s_t *const driver = &reader->driver.hps167s;
+    const fathom_hps167s_config_t config = {
+        .modbus = &channel->modbus,
+        .clock = &channel->clock,
+        .period_us = settings->period_us,
+        .timeout_us = settings->timeout_us,
+        .address = settings->address,
+        .retries = settings->retries,
+    };
+    memset(reader, 0, sizeof *reader);
+    if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
+    reader->sensor = fathom_hps167s_sensor(driver);
+    reader->request = &driver->unit.request;
+    reader->values = driver->values;
+    reader->value_count = driver->question.count;
+    return true;
+}
+
+bool reader_has_more(const reader_t *reader) { return reader->left != NULL && *reader->left != 0; }

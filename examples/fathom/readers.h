@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef READERS_H
+#define READERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "channel.h"
+#include "fathom/a05_auto.h"
+#include "fathom/a05_modbus.h"
+#include "fathom/a16_auto.h"
+#include "fathom/a16_modbus.h"
+#include "fathom/hps167s.h"
+
+/* What the user may set; 0: the driver's default. */
+typedef struct {
+    uint32_t timeout_us; /* of an answer; of a sensor that sends by itself: until it is stale */
+    uint32_t period_us;  /* between two requests */
+    uint8_t address;
+    uint8_t retries;
+} reader_settings_t;
+
+/* Any driver, with what the library's common interface does not show: the causes of an error. */
+typedef struct {
+    fathom_sensor_t sensor;
+    const uint16_t *values;                 /* the 16-bit values of the last answer, ... */
+    uint8_t value_count;                    /* ... and how many there are */
+    const uint8_t *left;                    /* probes of the last answer that poll has not handed over yet, a
+                                               bit each; NULL: an answer is one sample */
+    const fathom_modbus_request_t *request; /* NULL: it sends by itself */
+    fathom_stream_t *stream;                /* NULL: it is asked */
+    union {
+        fathom_a16_auto_t a16_auto;
+        fathom_a16_modbus_t a16_modbus;
+        fathom_a05_auto_t a05_auto;
+        fathom_a05_modbus_t a05_modbus;
+        fathom_hps167s_t hps167s;
+    } driver;
+} reader_t;
+
+/* Begins to read through an open channel. False: settings that the driver does not take. */
+typedef bool (*reader_init_t)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+/* Has the last answer more samples? Then poll again before anything else. */
+bool reader_has_more(const reader_t *reader);
+
+#endif
