@@ -1,0 +1,27 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""clang-format would change nothing in any C file."""
+import os
+import re
+
+from common import files, main, run
+
+FOLDERS = ('include', 'src', 'port', 'examples', 'tests')
+
+
+def check(root, only):
+    paths = [path for path in files(root, *FOLDERS) if not only or path in only]
+    _, said = run(['clang-format-14', '--dry-run', '--Werror', *paths], root)
+    problems = re.findall(r'^\S+: error: .*$', said, re.M)
+    if said and not problems:
+        problems = [f'clang-format: {said}']
+    return [problem.replace(root + os.sep, '') for problem in problems]
+
+
+FAULTS = [
+    ('src/line.c', None, 'int  fathom_x;\n', 'should be clang-formatted'),
+    ('include/fathom/line.h', '#include <stdint.h>', '#include   <stdint.h>', 'should be clang-formatted'),
+]
+
+if __name__ == '__main__':
+    main(check, FAULTS)

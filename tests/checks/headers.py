@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Each public header, and each header of a port, compiles alone and twice as C99 and as C++11; what they
+declare has C linkage there, but for a port's internal/ headers."""
+import os
+import re
+import tempfile
+
+from common import CXX_WARNINGS, WARNINGS, code_of, files, main, read, run
+
+COMPILERS = [
+    (['gcc', '-std=c99', *WARNINGS], '.c'),
+    (['clang-14', '-std=c99', *WARNINGS], '.c'),
+    (['g++', '-std=c++11', *CXX_WARNINGS], '.cpp'),
+    (['clang++-14', '-std=c++11', *CXX_WARNINGS], '.cpp'),
+]
+
+
+def check(root, only):
+    problems = []
+    with tempfile.TemporaryDirectory() as work:
+        for path in files(root, 'include', 'port', ends='.h'):
+            if only and path not in only:
+                continue
+            folder = os.path.join(root, 'port', path.split(os.sep)[1]) if path.startswith('port') else ''
+            include = ['-I' + os.path.join(root, 'include')] + (['-I' + folder] if folder else [])
+            name = os.path.relpath(os.path.join(root, path), folder or os.path.join(root, 'include'))
+            for compiler, ending in COMPILERS:
+                source = os.path.join(work, 'alone' + ending)
+                with open(source, 'w', encoding='utf-8') as file:
+                    file.write(f'#include "{name}"\n#include "{name}"\nextern int used;\nint used;\n')
+                good, said = run([*compiler, *include, '-fsyntax-only', source], work)
+                if not good:
+                    problems.append(f'{path}: not alone with {compiler[0]} {compiler[1]}:\n{said}')
+            text = read(root, path)
+            if '/internal/' in path:
+                continue
+            if re.search(r'^[\w][^#{}=]*\);', code_of(text), re.M) and 'extern "C" {' not in text:
+                problems.append(f'{path}: declares functions without extern "C"')
+    return problems
+
+
+FAULTS = [
+    ('include/fathom/stream.h', '#include "fathom/line.h"\n', '', 'not alone with gcc'),
+    ('include/fathom/stream.h', None, 'int new;\n', 'not alone with g++'),
+    ('include/fathom/stream.h', None, 'static inline int *f(void *p) { return p; }\n', 'not alone with clang++'),
+    ('include/fathom/stream.h', None, 'static inline int f() { return 1; }\n', 'not alone with clang-14'),
+    ('include/fathom/stream.h', None, 'enum { AGAIN };\n', 'not alone with gcc'),
+    ('include/fathom/stream.h', 'extern "C" {', '', 'without extern "C"'),
+]
+
+if __name__ == '__main__':
+    main(check, FAULTS)

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""clang-tidy (.clang-tidy says which checks) and cppcheck find nothing in the library, the ports and the
+examples."""
+import os
+import re
+from concurrent.futures import ThreadPoolExecutor
+
+from common import WARNINGS, files, main, run
+
+INCLUDE = ['-Iinclude', '-Iport', '-Iport/sim', '-Iport/posix']
+# They need another compiler's headers.
+FOREIGN = re.compile(r'^port/(?!sim/|posix/)')
+
+
+def tidy(root, path):
+    good, said = run(['clang-tidy-14', '--quiet', path, '--', '-std=c99', *WARNINGS, *INCLUDE], root)
+    found = sorted(set(re.findall(r'^(\S+ (?:error|warning): .*)$', said, re.M)))
+    return found or ([] if good else [f'{path}: clang-tidy failed: {said}'])
+
+
+def check(root, only):
+    paths = [path for path in files(root, 'src', 'port', 'examples', ends='.c')
+             if not FOREIGN.match(path) and (not only or path in only)]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(lambda path: tidy(root, path), paths))
+    problems = sorted({problem.replace(root + os.sep, '') for result in results for problem in result})
+    good, said = run(['cppcheck', '--quiet', '--std=c99', '--enable=warning,style,performance,portability',
+                      '--inline-suppr', '--error-exitcode=1', '--suppress=missingIncludeSystem', *INCLUDE,
+                      *(only or files(root, 'src', 'port', 'examples', ends='.c'))], root)
+    return problems if good else [*problems, f'cppcheck: {said}']
+
+
+LINE = 'src/line.c'
+FAULTS = [
+    (LINE, None, 'int fathom_x(const int *p);\nint fathom_x(const int *p) { return p == NULL ? *p : 1; }\n',
+     'Dereference of null pointer'),
+    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int x; if (n > 1) x = 2; return x; }\n', 'clang-analyzer'),
+    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n = 1) return 2; return 3; }\n', 'clang-diagnostic-parentheses'),
+    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n == 1) return 2; else return 3; }\n',
+     'readability-else-after-return'),
+    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { switch (n) { case 1: return 2; case 2: return 2; } return 3; }\n',
+     'bugprone-branch-clone'),
+    (LINE, None, 'int fathomX(int n);\nint fathomX(int n) { return n; }\n', 'readability-identifier-naming'),
+    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int a[2] = {0, 1}; return n > 0 ? a[2] : 0; }\n',
+     'cppcheck'),
+]
+
+if __name__ == '__main__':
+    main(check, FAULTS)

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What the compilers make of src/, on this machine, a Cortex-M0+ and an ATmega328P: no warnings, no mutable
+data, no call but of the library itself and of named helpers of the compiler, no recursion. The portable part
+of port/sim builds there too."""
+import os
+import re
+import tempfile
+
+from common import WARNINGS, files, main, run
+
+# Helpers of the compiler's own library that integer code may need. None of them is libc's or does floats.
+ARM_HELPERS = {'__aeabi_uidiv', '__aeabi_uidivmod', '__aeabi_idiv', '__aeabi_idivmod',
+               '__gnu_thumb1_case_uqi', '__gnu_thumb1_case_sqi', '__gnu_thumb1_case_uhi',
+               '__gnu_thumb1_case_shi', '__gnu_thumb1_case_si'}
+AVR_HELPERS = {'__prologue_saves__', '__epilogue_restores__', '__tablejump2__', '__udivmodqi4',
+               '__udivmodhi4', '__divmodhi4', '__udivmodsi4', '__divmodsi4', '__mulsi3', '__mulhi3',
+               '__umulhisi3', '__mulhisi3', '__muluhisi3', '__mulshisi3'}
+# On a desk gcc may turn a loop into one of these; where they cost, on the two below, it must not.
+HOST_HELPERS = {'memcpy', 'memset', 'memmove', 'memcmp'}
+
+SECTIONS = ['-ffunction-sections', '-fdata-sections']
+TARGETS = [
+    # name, compiler, prefix of its tools, helpers
+    ('host', ['gcc', '-O2'], '', HOST_HELPERS),
+    ('Cortex-M0+', ['arm-none-eabi-gcc', '-mcpu=cortex-m0plus', '-mthumb', '-Os', *SECTIONS],
+     'arm-none-eabi-', ARM_HELPERS),
+    ('ATmega328P', ['avr-gcc', '-mmcu=atmega328p', '-Os', *SECTIONS], 'avr-', AVR_HELPERS),
+]
+# The CRC tables are const. An AVR keeps const data in RAM, which is why it has a CRC of its own.
+AVR_CONST = {'src/crc16.c', 'src/crc16_small.c'}
+AVR_ONLY = ['port/avr/crc16.c']
+
+
+def sections(prefix, obj, root):
+    """{kind: bytes} of what would need RAM at run time, or flash for constants."""
+    _, said = run([prefix + 'size', '-A', obj], root)
+    total = {'.data': 0, '.bss': 0, '.rodata': 0}
+    for name, size in re.findall(r'^(\.\S+)\s+(\d+)', said, re.M):
+        for kind in total:
+            if name == kind or name.startswith(kind + '.'):
+                if not name.startswith('.data.rel.ro'):  # const, with addresses that a loader fills in
+                    total[kind] += int(size)
+    return total
+
+
+def check_object(path, target, prefix, helpers, obj, root):
+    size = sections(prefix, obj, root)
+    kinds = ['.data', '.bss']
+    if target == 'ATmega328P' and path not in AVR_CONST:
+        kinds.append('.rodata')
+    for kind in kinds:
+        if size[kind]:
+            yield f'{path}: {size[kind]} bytes of {kind} on {target}'
+    _, said = run([prefix + 'nm', obj], root)
+    for name in re.findall(r'^\s+U (\S+)$', said, re.M):
+        if target == 'ATmega328P' and path in AVR_CONST and name == '__do_copy_data':
+            continue
+        if not name.startswith('fathom_') and name not in helpers and name != '_GLOBAL_OFFSET_TABLE_':
+            yield f'{path}: calls {name} on {target}'
+    for name in re.findall(r'^[0-9a-f]+ [A-Z] (\S+)$', said, re.M):
+        if not name.startswith('fathom_') and not name.startswith('__'):
+            yield f'{path}: {name} is visible to the linker without fathom_ on {target}'
+
+
+def recursion(graphs):
+    """Cycles in the direct calls of all sources together, as they were written (-O0)."""
+    calls, where = {}, {}
+    for path, text in graphs:
+        def whole(title, path=path):
+            return path + ':' + title.rsplit(':', 1)[1] if ':' in title else title
+        for caller, callee in re.findall(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"', text):
+            where[whole(caller)] = path
+            if callee != '__indirect_call':
+                calls.setdefault(whole(caller), set()).add(whole(callee))
+    done, problems = set(), []
+
+    def visit(node, trail):
+        if node in trail:
+            loop = (*trail[trail.index(node):], node)
+            problems.append(f'{where[node]}: recursion: {" > ".join(loop)}')
+        elif node not in done:
+            for callee in sorted(calls.get(node, ())):
+                visit(callee, (*trail, node))
+            done.add(node)
+
+    for node in sorted(calls):
+        visit(node, ())
+    return problems
+
+
+def check(root, only):
+    problems, graphs = [], []
+    core = files(root, 'src', ends='.c')
+    sim = [path for path in files(root, 'port/sim', ends='.c') if os.path.basename(path) != 'pty.c']
+    with tempfile.TemporaryDirectory() as work:
+        obj = os.path.join(work, 'object.o')
+        for target, compiler, prefix, helpers in TARGETS:
+            extra = AVR_ONLY if target == 'ATmega328P' else []
+            for path in core + sim + extra:
+                if only and path not in only:
+                    continue
+                good, said = run([*compiler, '-std=c99', *WARNINGS, '-Iinclude', '-Iport/sim', '-c', path, '-o', obj],
+                                 root)
+                if not good:
+                    problems.append(f'{path}: does not compile for {target}:\n{said}')
+                elif path not in sim:
+                    problems += check_object(path, target, prefix, helpers, obj, root)
+        for path in core:
+            good, _ = run(['gcc', '-O0', '-fcallgraph-info', '-std=c99', '-Iinclude', '-c', path, '-o', obj], root)
+            if good:
+                with open(obj[:-1] + 'ci', encoding='utf-8') as file:
+                    graphs.append((path, file.read()))
+    return problems + recursion(graphs)
+
+
+LINE = 'src/line.c'
+FAULTS = [
+    (LINE, None, 'int fathom_x = 1;\n', 'bytes of .data on host'),
+    (LINE, None, 'int fathom_x(void);\nint fathom_x(void) { static int n; return ++n; }\n', 'bytes of .bss on Cortex-M0+'),
+    (LINE, None, 'int fathom_x(void);\nint fathom_x(void) { static int n; return ++n; }\n', 'bytes of .bss on ATmega328P'),
+    (LINE, None, 'extern const int fathom_x[];\nconst int fathom_x[] = {1, 2};\n', 'bytes of .rodata on ATmega328P'),
+    (LINE, None, '#include <string.h>\nvoid fathom_x(char *p, unsigned n);\n'
+     'void fathom_x(char *p, unsigned n) { memset(p, 0, n); }\n', 'calls memset on Cortex-M0+'),
+    (LINE, None, '#include <stdlib.h>\nvoid *fathom_x(void);\nvoid *fathom_x(void) { return malloc(3); }\n',
+     'calls malloc on host'),
+    (LINE, None, 'int fathom_x(int x);\nint fathom_x(int x) { return (int)((float)x / 3); }\n', 'calls __aeabi_fdiv on Cortex-M0+'),
+    (LINE, None, 'int32_t fathom_x(int16_t x);\nint32_t fathom_x(int16_t x) { return x << 20; }\n',
+     'does not compile for ATmega328P'),
+    (LINE, None, 'uint8_t fathom_x(int x);\nuint8_t fathom_x(int x) { return x; }\n',
+     'does not compile for Cortex-M0+'),
+    (LINE, None, 'int visible(void);\nint visible(void) { return 1; }\n', 'without fathom_'),
+    (LINE, None, 'unsigned fathom_y(unsigned n);\nunsigned fathom_x(unsigned n);\n'
+     'unsigned fathom_x(unsigned n) { return n == 0 ? 0 : 3 * fathom_y(n - 1); }\n'
+     'unsigned fathom_y(unsigned n) { return n == 0 ? 0 : 5 + fathom_x(n / 2); }\n', 'recursion'),
+]
+
+if __name__ == '__main__':
+    main(check, FAULTS)

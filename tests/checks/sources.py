@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What the text of src/ and include/ may not contain: no heap, no stdio, no floating point, no #if but
+include guards and __cplusplus, no compiler extensions. What only the compiler sees is in objects.py."""
+import os
+import re
+
+from common import code_of, files, main, read
+
+BANNED = [
+    (r'\b(malloc|calloc|realloc|free|aligned_alloc|strdup)\s*\(', 'heap'),
+    (r'\b(alloca|setjmp|longjmp|abort|exit|assert)\b', 'banned function'),
+    (r'\b(\w*printf|\w*scanf|puts|putchar|fputs|fwrite|fopen|FILE)\b', 'stdio'),
+    (r'\b(float|double|_Complex)\b', 'floating point'),
+    (r'(?<![\w.])(\d+\.\d*|\.\d+)([eE][+-]?\d+)?[fFlL]?(?!\w)', 'floating point'),
+    (r'(?<![\w.])\d+[eE][+-]?\d+(?!\w)', 'floating point'),
+    (r'\bgoto\b', 'goto'),
+    (r'\b(_Thread_local|_Atomic|_Generic|__attribute__|__asm__|asm|__builtin_\w+|typeof)\b', 'not C99'),
+    (r'^\s*#\s*pragma\b', 'pragma'),
+    (r'\b_Pragma\b', 'pragma'),
+]
+DIRECTIVE = re.compile(r'^\s*#\s*(if|ifdef|ifndef|elif|else|error|undef)\b\s*(.*?)\s*$')
+
+
+def directives(path, lines):
+    guard = None
+    if path.endswith('.h'):
+        guard = 'FATHOM_' + os.path.basename(path)[:-2].upper() + '_H'
+        first = [line.split() for line in lines if line.strip()][:2]
+        if first != [['#ifndef', guard], ['#define', guard]]:
+            yield f'{path}:1: no include guard {guard}'
+    for number, line in enumerate(lines, 1):
+        found = DIRECTIVE.match(line)
+        if found is None:
+            continue
+        if (found[1], found[2]) not in (('ifndef', guard), ('ifdef', '__cplusplus')):
+            yield f'{path}:{number}: platform #if: {line.strip()}'
+
+
+def check(root, only):
+    problems = []
+    for path in files(root, 'src', 'include'):
+        if only and path not in only:
+            continue
+        text = read(root, path)
+        if not text.startswith('/* SPDX-License-Identifier: MIT */\n'):
+            problems.append(f'{path}:1: the SPDX line is missing')
+        lines = code_of(text).split('\n')
+        for number, line in enumerate(lines, 1):
+            for pattern, what in BANNED:
+                if re.search(pattern, line):
+                    problems.append(f'{path}:{number}: {what}: {line.strip()}')
+        problems += directives(path, lines)
+    return problems
+
+
+LINE_C, LINE_H = 'src/line.c', 'include/fathom/line.h'
+FAULTS = [
+    (LINE_C, None, 'void *f(void) { return malloc(3); }\n', 'heap'),
+    (LINE_C, None, 'void f(void) { printf("x"); }\n', 'stdio'),
+    (LINE_H, None, 'static inline int f(char *s) { return sprintf (s, "x"); }\n', 'stdio'),
+    (LINE_C, None, 'float f;\n', 'floating point'),
+    (LINE_C, None, 'int f(int x) { return x * 1.5 > 3; }\n', 'floating point'),
+    (LINE_C, None, 'int f(int x) { return x * 1e3 > 3; }\n', 'floating point'),
+    (LINE_C, None, '#ifdef __AVR__\n#endif\n', 'platform #if'),
+    (LINE_C, None, '#if defined(__linux__)\n#endif\n', 'platform #if'),
+    (LINE_H, None, '#ifndef FATHOM_SIZE\n#endif\n', 'platform #if'),
+    (LINE_H, '#ifndef FATHOM_LINE_H', '#ifndef LINE_H', 'no include guard'),
+    (LINE_C, None, 'void f(void) { setjmp(x); }\n', 'banned function'),
+    (LINE_C, None, 'void f(int n) { char *p = alloca(n); }\n', 'banned function'),
+    (LINE_C, None, 'void f(void) { __builtin_unreachable(); }\n', 'not C99'),
+    (LINE_C, None, '#pragma pack(1)\n', 'pragma'),
+    (LINE_C, '/* SPDX', '/* Copyright', 'SPDX'),
+]
+
+if __name__ == '__main__':
+    main(check, FAULTS)
