@@ -3,8 +3,9 @@
 """Measures what Fathom costs and prints it against its bounds.
 
     run.py            prints the table; exit status 0 unless something could not be measured
-    run.py --check    also fails when a figure is worse than the one kept in figures.csv
-    run.py --update   also keeps today's figures there
+    run.py --check    also fails when a figure is worse than the one kept in figures.csv, or when the README's
+                      table is not what is kept
+    run.py --update   also keeps today's figures there, and in the README's table
     run.py --csv FILE also writes the table as CSV
     run.py --functions
                       also prints which function costs what
@@ -24,6 +25,8 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 FIGURES = os.path.join(HERE, 'figures.csv')
+README = os.path.join(ROOT, 'README.md')
+TABLE = re.compile(r'(?s)(?<=<!-- figures: kept by tests/bench/run.py --update -->\n).*?(?=<!-- end -->)')
 
 # name, what, unit, bound, stretch
 ROWS = [
@@ -274,6 +277,18 @@ def show_functions(functions):
         print(f'{name:45}' + ''.join(f'{costs[c]:>8}' if c in costs else f'{"-":>8}' for c in columns))
 
 
+def readme_table(figures):
+    lines = ['| | measured | bound |', '|---|---|---|']
+    for name, what, unit, bound, _ in ROWS:
+        lines.append(f'| {what} | {figures[name]} {unit} | {bound or ""} |')
+    return '\n'.join(lines) + '\n'
+
+
+def readme():
+    with open(README, encoding='utf-8') as file:
+        return file.read()
+
+
 def write_csv(path, figures):
     with open(path, 'w', encoding='utf-8', newline='') as file:
         out = csv.writer(file, lineterminator='\n')
@@ -306,6 +321,9 @@ def self_test():
     for name in same:
         assert len(worse(dict(same, **{name: 101}), same, 'gcc 1', 'gcc 1')) == 1
         assert len(worse(same, {k: v for k, v in same.items() if k != name}, 'gcc 1', 'gcc 1')) == 1
+    marked = '<!-- figures: kept by tests/bench/run.py --update -->\n%s<!-- end -->'
+    assert TABLE.findall(marked % readme_table(same)) == [readme_table(same)]
+    assert TABLE.findall(marked % readme_table(dict(same, m0_ram=101))) != [readme_table(same)]
     assert verdict(101, 100, 90) == 'OVER by 1'
     assert verdict(100, 100, 90) == 'ok'
     assert verdict(90, 100, 90) == 'ok, stretch too'
@@ -360,10 +378,15 @@ def main():
             print('name,figure', file=file)
             for row in ROWS:
                 print(f'{row[0]},{figures[row[0]]}', file=file)
+        text = TABLE.sub(readme_table(figures), readme())
+        with open(README, 'w', encoding='utf-8') as file:
+            file.write(text)
     if not options.check:
         return 0
     made_with, kept = kept_figures()
     lines = worse(figures, kept, made_with, versions())
+    if TABLE.findall(readme()) != [readme_table(kept)]:
+        lines.append('the table of README.md is not that of figures.csv: run.py --update')
     print('\n'.join(lines))
     return 1 if lines else 0
 
