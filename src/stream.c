@@ -39,11 +39,26 @@ static void accept(fathom_stream_t *stream, uint32_t time_us)
 static void judge(fathom_stream_t *stream, uint32_t time_us)
 {
     const uint8_t length = stream->config->length;
-    if ((stream->gap && stream->run == length) || stream->since == length)
+    if (stream->gap && stream->run == length) {
         accept(stream, time_us);
-    else
+    } else if (stream->since == length) {
+        stream->candidate = true;
+        stream->candidate_us = time_us;
+    } else {
         count(stream, stream->since < length ? FATHOM_STREAM_AMBIGUOUS : FATHOM_STREAM_UNSURE);
+    }
     stream->since = 0;
+}
+
+/* What comes after the candidate is known: is it the end of a frame? */
+static void decide(fathom_stream_t *stream, bool is_end)
+{
+    if (!stream->candidate) return;
+    stream->candidate = false;
+    if (is_end)
+        accept(stream, stream->candidate_us);
+    else
+        count(stream, FATHOM_STREAM_UNSURE);
 }
 
 static void take(fathom_stream_t *stream, uint8_t byte, uint32_t time_us)
@@ -51,6 +66,7 @@ static void take(fathom_stream_t *stream, uint8_t byte, uint32_t time_us)
     const uint8_t length = stream->config->length;
     uint8_t *const ring = stream->config->storage;
     uint8_t frame[FATHOM_DYP_MAX_LENGTH];
+    decide(stream, byte == FATHOM_DYP_START);
     ring[stream->oldest] = byte;
     if (++stream->oldest == length) stream->oldest = 0;
     count(stream, FATHOM_STREAM_BYTES);
@@ -65,6 +81,7 @@ void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t c
                         uint32_t time_us)
 {
     if (after_gap) {
+        decide(stream, true);
         stream->run = 0;
         stream->since = UINT8_MAX;
         stream->gap = true;
@@ -90,12 +107,14 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
     stream->polled_us = now_us;
     stream->left_us = stale_us(stream);
     stream->time_us = now_us;
+    stream->candidate_us = now_us;
     /* volatile: or compilers make it a call of memset, which costs more than all of this. */
     for (volatile uint16_t *c = stream->counters; c != stream->counters + FATHOM_STREAM_COUNTERS; c++) *c = 0;
     stream->oldest = 0;
     stream->run = 0;
     stream->since = UINT8_MAX;
     stream->gap = false;
+    stream->candidate = false;
     stream->fresh = false;
     return FATHOM_READY;
 }

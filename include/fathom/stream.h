@@ -19,7 +19,9 @@ extern "C" {
  *
  * A good sum does not prove where a frame begins, so a frame is believed only if
  *  - it is the first thing after a silence that the clock or the port saw (gap_us), or
- *  - it follows right upon another valid frame, and no other alignment of the bytes between was valid.
+ *  - it follows right upon another valid frame, no other alignment of the bytes between was valid, and the
+ *    next byte begins another one (FF), or a silence follows. So where no gaps are seen a frame is given one
+ *    byte late: after a lost byte its place in the order is right, and one sum in 256 would be.
  * Everything else is counted and dropped. So with gaps seen no stream can show a value of another alignment;
  * without them, a value that is valid in two alignments (511 mm held still) is never shown: the stream turns
  * stale and says so by its AMBIGUOUS counter. What 8 bits of sum cannot see stays unseen: one damaged frame
@@ -61,11 +63,13 @@ typedef struct {
     uint32_t polled_us;
     uint32_t left_us; /* until it is stale */
     uint32_t time_us; /* of the newest good frame */
+    uint32_t candidate_us;
     uint16_t counters[FATHOM_STREAM_COUNTERS];
     uint8_t oldest; /* where in the ring */
     uint8_t run;    /* bytes since a gap; stops at 255 */
     uint8_t since;  /* bytes since the end of the last valid window; stops at 255 */
     bool gap;       /* the run began with a gap that was seen */
+    bool candidate; /* the ring holds a frame, if the next byte begins another one */
     bool fresh;     /* the newest good frame has not been polled */
 } fathom_stream_t;
 

@@ -80,7 +80,7 @@ static void a_frame_may_come_in_any_two_pieces(void **state)
     }
 }
 
-static void without_a_gap_the_second_of_two_frames_in_step_is_believed(void **state)
+static void without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins(void **state)
 {
     (void)state;
     begin(4, 0);
@@ -88,7 +88,38 @@ static void without_a_gap_the_second_of_two_frames_in_step_is_believed(void **st
     assert_int_equal(poll(10), FATHOM_PENDING);
     assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 1);
     feed(mm_1953, 4, false, 20);
-    assert_int_equal(poll(20), FATHOM_READY);
+    assert_int_equal(poll(20), FATHOM_PENDING);
+    feed(mm_1953, 1, false, 30);
+    assert_int_equal(poll(30), FATHOM_READY);
+    assert_memory_equal(frame, mm_1953, 4);
+    assert_int_equal(stream.time_us, 20); /* when it came, not when it was believed */
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
+}
+
+static void a_silence_ends_a_frame_as_well_as_the_next_one_does(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, false, 10);
+    feed(mm_1953, 4, false, 20);
+    feed(mm_1953, 2, true, 30);
+    assert_int_equal(poll(30), FATHOM_READY);
+    assert_int_equal(stream.time_us, 20);
+}
+
+/* A byte of FF 80 xx 80 is lost, and what is left makes a right sum with the FF of the next frame: FF + 80 + 80 =
+ * 1FF. What follows it, 07, begins nothing. */
+static void a_right_sum_that_no_frame_follows_is_not_believed(void **state)
+{
+    static const uint8_t lost_a_byte[] = {0xFF, 0x80, 0x80};
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, true, 10);
+    assert_int_equal(poll(10), FATHOM_READY);
+    feed(lost_a_byte, 3, false, 20);
+    feed(mm_1953, 4, false, 30);
+    assert_int_equal(poll(30), FATHOM_PENDING);
+    assert_true(stream.counters[FATHOM_STREAM_UNSURE] + stream.counters[FATHOM_STREAM_AMBIGUOUS] >= 1);
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
 }
 
@@ -99,12 +130,14 @@ static void frames_that_follow_without_a_pause_are_believed_while_they_stay_in_s
     feed(mm_1953, 4, true, 10);
     assert_int_equal(poll(10), FATHOM_READY);
     feed(mm_1953, 4, false, 20);
-    assert_int_equal(poll(20), FATHOM_READY);
     feed(mm_1953, 1, false, 25); /* the rest of this frame is lost */
+    assert_int_equal(poll(25), FATHOM_READY);
     feed(mm_1953, 4, false, 30);
     assert_int_equal(poll(30), FATHOM_PENDING); /* in step with nothing */
     feed(mm_1953, 4, false, 40);
-    assert_int_equal(poll(40), FATHOM_READY);
+    feed(mm_1953, 1, false, 50);
+    assert_int_equal(poll(50), FATHOM_READY);
+    assert_int_equal(stream.time_us, 40);
 }
 
 static void a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap(void **state)
@@ -279,7 +312,9 @@ int main(void)
         cmocka_unit_test(a_config_without_storage_or_with_another_length_is_refused),
         cmocka_unit_test(the_first_frame_after_a_gap_is_believed_at_once),
         cmocka_unit_test(a_frame_may_come_in_any_two_pieces),
-        cmocka_unit_test(without_a_gap_the_second_of_two_frames_in_step_is_believed),
+        cmocka_unit_test(without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins),
+        cmocka_unit_test(a_silence_ends_a_frame_as_well_as_the_next_one_does),
+        cmocka_unit_test(a_right_sum_that_no_frame_follows_is_not_believed),
         cmocka_unit_test(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step),
         cmocka_unit_test(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap),
         cmocka_unit_test(the_same_value_is_shown_rightly_where_gaps_are_seen),
