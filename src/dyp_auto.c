@@ -55,9 +55,9 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us(void *ctx)
 {
     const fathom_dyp_auto_t *const sensor = ctx;
+    if (sensor->answer.left != 0) return 0;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
     const uint32_t stream_us = fathom_stream_due_us(&sensor->stream, now_us(sensor));
-    if (sensor->answer.left != 0) return 0;
     return line_us < stream_us ? line_us : stream_us;
 }
 

@@ -161,16 +161,18 @@ static uint8_t judge(fathom_line_t *line, const fathom_match_t *match, bool is_w
 {
     const fathom_exchange_t *const exchange = asked(line);
     const bool is_asked = exchange != NULL && match->length != 0 && match->unit == exchange->unit;
-    if (!is_whole || match->length == 0 || match->status == FATHOM_ERR_CHECKSUM) {
-        if (is_asked && is_whole)
-            line->state = DAMAGED;
-        else if (is_asked && line->have >= LEAST_TORN && line->state != DAMAGED)
-            line->state = TORN;
-        return 1;
+    uint8_t length = match->length;
+    uint8_t state = ANSWERED_WRONG;
+    if (!is_whole || length == 0 || match->status == FATHOM_ERR_CHECKSUM) {
+        state = DAMAGED;
+        if (!is_whole) state = line->have < LEAST_TORN ? line->state : TORN;
+        length = 1;
+    } else {
+        *taken = is_asked ? end_with(line, &line->head, match->status) : deliver_late(line, match->unit);
     }
-    *taken = is_asked ? end_with(line, &line->head, match->status) : deliver_late(line, match->unit);
-    if (is_asked && !*taken) line->state = ANSWERED_WRONG;
-    return match->length;
+    /* Before the request has left the unit cannot have spoilt its answer; that is an echo, or noise. */
+    if (is_asked && !*taken && line->state != SENDING && line->state != DAMAGED) line->state = state;
+    return length;
 }
 
 /*

@@ -25,7 +25,9 @@ extern "C" {
  *  - A damaged answer ends the attempt at the first gap after it.
  *  - A unit that did not answer in time owes an answer. Until that came (it is counted as late and never
  *    taken for another's), or until twice the time-out has passed since the request, that unit is asked
- *    nothing; other units are asked meanwhile. A late answer does serve a retry of the same exchange.
+ *    nothing; other units are asked meanwhile. A late answer does serve a retry of the same exchange. After
+ *    an answer that was damaged the unit owes as well, for what is left of the time-out, or for twice the
+ *    time-out if it broke off. One deadline, the latest, serves all units that owe.
  *  - An exchange that has failed with retries left goes on waiting in the queue; other units come first.
  *
  * What cannot be told apart on a wire, and so is taken for the answer: one that comes later than twice the
@@ -69,10 +71,9 @@ struct fathom_exchange {
     uint8_t (*encode)(const fathom_exchange_t *exchange, uint8_t *frame);
     /*
      * Looks at `have` (>= 1) received bytes and says in *match what they are. On an answer it writes the
-     * results, and only then. NULL when
-     * no answer is expected (a broadcast): the exchange is READY timeout_us after it was sent.
-     * It is also called with `exchange` NULL, by which the line asks for the frame alone; it must be a
-     * plain function that needs nothing else.
+     * results, and only then. It is also called with `exchange` NULL, by which the line asks for the frame
+     * alone; so it must be a plain function that needs nothing else.
+     * NULL when no answer is expected (a broadcast): the exchange is READY timeout_us after it was sent.
      */
     void (*receive)(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match);
     uint32_t timeout_us; /* from the end of the request to the first byte of the answer; of a broadcast:
@@ -102,15 +103,15 @@ struct fathom_listener {
     /*
      * `count` (>= 1) bytes in the order in which they came. after_gap: the line was seen to be silent for at
      * least gap_us before the first of them. time_us: the clock when the last of them came, as well as the
-     * port or the polling can tell.
+     * port or the polling can tell. Called within fathom_line_poll; it may not call the line.
      */
     void (*receive)(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
                     uint32_t time_us);
     uint16_t gap_us; /* the silence it wants to know of: fathom_line_due_us() makes room to see it */
 };
 
-/* Counters; each stops at 65535, and the user may set it to 0. An attempt counts at -status; a retry is an attempt
- * of its own. */
+/* Counters; each stops at 65535, and the user may set it to 0. A failed attempt counts at -status; a retry is an
+ * attempt of its own. */
 enum {
     FATHOM_LINE_ANSWERS = 0,
     FATHOM_LINE_DROPPED_BYTES = 1, /* belonged to no frame, and no listener was there */
@@ -121,7 +122,7 @@ enum {
     FATHOM_LINE_MALFORMED = 6,
     FATHOM_LINE_LATE_ANSWERS = 7, /* from a unit that owed one */
     FATHOM_LINE_STRAYS = 8,       /* whole frames that nobody had asked for: another master's traffic */
-    FATHOM_LINE_BAD_BYTES = 9,    /* that the port marked: parity, framing; and overruns */
+    FATHOM_LINE_BAD_BYTES = 9,    /* dropped because the port had marked them: parity, framing */
     FATHOM_LINE_COUNTERS = 10
 };
 
