@@ -128,7 +128,7 @@ static void the_descriptor_does_not_block_and_is_not_inherited(void **state)
     fathom_posix_close(&port);
 }
 
-/* 0: opened, and this session has no controlling terminal. */
+/* 0: opened, and there is no controlling terminal after it. */
 static int open_in_a_new_session(void *path)
 {
     fathom_posix_uart_t port;
