@@ -2,20 +2,23 @@
 #include "fathom/line.h"
 
 /*
- * The state of the exchange at the head of the queue. Where time can run out, the state's number is that of
- * the error which it then ends with.
+ * The state of the exchange at the head of the queue: how far it is, and what has gone wrong with its answer.
  */
 enum {
-    IDLE = 0,                               /* nothing is on the wire */
-    REFUSED = 1,                            /* the port was too busy to take the request */
-    SENDING = -FATHOM_ERR_PORT,             /* the port has taken it */
-    LISTENING = -FATHOM_ERR_NO_ANSWER,      /* it has left; the answer may come */
-    DAMAGED = -FATHOM_ERR_CHECKSUM,         /* an answer came and was wrong */
-    ANSWERED_WRONG = -FATHOM_ERR_MALFORMED, /* the unit sent something else; the answer may still come */
-    TORN = 7 /* an answer seemed to begin and broke off; ends as DAMAGED does */
+    IDLE = 0,            /* nothing is on the wire */
+    REFUSED = 1,         /* the port was too busy to take the request */
+    SENDING = 2,         /* the port has taken it */
+    LISTENING = 3,       /* it has left; the answer may come */
+    PHASE = 3,           /* these two bits */
+    DAMAGED = 4,         /* an answer came and was wrong from end to end */
+    TORN = 8,            /* an answer seemed to begin and broke off */
+    SPOILT = 12,         /* either: nothing more is to be expected than the rest of it */
+    ANSWERED_WRONG = 16, /* the unit sent something else; the answer may still come */
 };
 
 enum { MAX_READS = 16, LEAST_FRAME = 8, SEND_POLL_US = 1000, LEAST_TORN = 3 };
+
+static uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
 
 static uint16_t owing_bit(uint8_t unit) { return (uint16_t)(1u << (unit & 15)); }
 
@@ -70,8 +73,8 @@ static void owe(fathom_line_t *line)
 {
     const fathom_exchange_t *const exchange = line->head;
     if (exchange->receive == NULL) return;
-    uint32_t longest_us = line->state == SENDING ? exchange->timeout_us : line->left_us;
-    if (line->state != DAMAGED) longest_us += exchange->timeout_us;
+    uint32_t longest_us = phase(line) == SENDING ? exchange->timeout_us : line->left_us;
+    if ((line->state & DAMAGED) == 0) longest_us += exchange->timeout_us;
     if (line->owed_us < longest_us) line->owed_us = longest_us;
     line->owing |= owing_bit(exchange->unit);
 }
@@ -79,7 +82,11 @@ static void owe(fathom_line_t *line)
 /* The attempt on the wire has failed. */
 static void fail(fathom_line_t *line)
 {
-    const uint8_t error = line->state == TORN ? DAMAGED : line->state;
+    uint8_t error = -FATHOM_ERR_NO_ANSWER;
+    if ((line->state & SPOILT) != 0)
+        error = -FATHOM_ERR_CHECKSUM;
+    else if ((line->state & ANSWERED_WRONG) != 0)
+        error = -FATHOM_ERR_MALFORMED;
     count(line, error, 1);
     owe(line);
     line->state = IDLE;
@@ -98,7 +105,7 @@ static fathom_status_t broken(fathom_line_t *line)
 /* The exchange that the bytes which come now may answer. */
 static fathom_exchange_t *asked(const fathom_line_t *line)
 {
-    return line->state >= SENDING && line->head->receive != NULL ? line->head : NULL;
+    return line->state > REFUSED && line->head->receive != NULL ? line->head : NULL;
 }
 
 /*
@@ -161,18 +168,17 @@ static uint8_t judge(fathom_line_t *line, const fathom_match_t *match, bool is_w
 {
     const fathom_exchange_t *const exchange = asked(line);
     const bool is_asked = exchange != NULL && match->length != 0 && match->unit == exchange->unit;
-    uint8_t length = match->length;
-    uint8_t state = ANSWERED_WRONG;
-    if (!is_whole || length == 0 || match->status == FATHOM_ERR_CHECKSUM) {
-        state = DAMAGED;
-        if (!is_whole) state = line->have < LEAST_TORN ? line->state : TORN;
-        length = 1;
-    } else {
-        *taken = is_asked ? end_with(line, &line->head, match->status) : deliver_late(line, match->unit);
+    if (!is_whole || match->length == 0 || match->status == FATHOM_ERR_CHECKSUM) {
+        /* While the request leaves, noise is likelier than an answer. */
+        if (is_asked && is_whole && phase(line) == LISTENING)
+            line->state |= DAMAGED;
+        else if (is_asked && (is_whole || line->have >= LEAST_TORN))
+            line->state |= TORN;
+        return 1;
     }
-    /* Before the request has left the unit cannot have spoilt its answer; that is an echo, or noise. */
-    if (is_asked && !*taken && line->state != SENDING && line->state != DAMAGED) line->state = state;
-    return length;
+    *taken = is_asked ? end_with(line, &line->head, match->status) : deliver_late(line, match->unit);
+    if (is_asked && !*taken) line->state |= ANSWERED_WRONG;
+    return match->length;
 }
 
 /*
@@ -233,8 +239,7 @@ static bool receive(fathom_line_t *line, uint32_t passed_us)
     return true;
 }
 
-/* Nothing more is to be expected than the rest of an answer that cannot be used. */
-static bool is_spoilt(const fathom_line_t *line) { return line->state == DAMAGED || line->state == TORN; }
+static bool is_spoilt(const fathom_line_t *line) { return (line->state & SPOILT) != 0; }
 
 /* Time has passed for the exchange on the wire. */
 static fathom_status_t pass(fathom_line_t *line)
@@ -242,10 +247,10 @@ static fathom_status_t pass(fathom_line_t *line)
     const fathom_uart_t *const uart = line->config->uart;
     fathom_exchange_t *const exchange = line->head;
     const bool over = line->left_us == 0;
-    if (line->state == SENDING) {
+    if (phase(line) == SENDING) {
         line->silent_us = 0;
         if (uart->sent(uart->ctx)) {
-            line->state = LISTENING;
+            line->state |= LISTENING;
             line->left_us = exchange->timeout_us;
         } else if (over) {
             return broken(line);
@@ -375,7 +380,7 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
     uint32_t due_us = line->left_us;
     if (line->state == IDLE)
         due_us = queue_due_us(line);
-    else if (line->state <= SENDING)
+    else if (phase(line) != LISTENING)
         due_us = SEND_POLL_US;
     if (line->have != 0 || is_spoilt(line)) due_us = least(due_us, still_to_be_silent(line, gap_us(line)));
     if (line->listener != NULL && line->silent_us < line->listener->gap_us)

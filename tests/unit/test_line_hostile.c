@@ -81,23 +81,25 @@ static void a_damaged_answer_ends_the_attempt_at_the_first_gap(void **state)
     assert_int_equal(counter(FATHOM_LINE_CHECKSUM_ERRORS), 1);
 }
 
-/* 01 03 02 00 00 01 85 B2 asks for register 0x0200; as an answer it would be 01 03 02 .., 7 bytes with a wrong CRC. */
-static void a_request_heard_as_an_echo_while_it_leaves_spoils_nothing(void **state)
+/* USB adapters say up to 16 ms late that a request has left; the answer may be here by then. */
+static void a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_left(void **state)
 {
-    static const uint8_t echo[] = {0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2};
+    uint8_t damaged[sizeof answer_1_754];
     (void)state;
-    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0200, 1, &bench.value);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    fathom_modbus_client_submit(&bench.line, &bench.request);
-    fake_trickle(&bench.fake, T3_5_US + 50, BYTE_US, echo, sizeof echo);
-    run(T3_5_US + 9 * BYTE_US);
-    assert_memory_equal(bench.fake.writes[0].bytes, echo, sizeof echo);
-    assert_true(fake_drained(&bench.fake));
+    memcpy(damaged, answer_1_754, sizeof damaged);
+    damaged[4] ^= 0x10;
+    bench.fake.never_sent = true;
+    ask(&bench.request, 1, &bench.value, 1);
     run(20000);
-    receive(answer_1_754, sizeof answer_1_754);
-    run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
-    assert_int_equal(bench.value, 754);
+    receive(damaged, sizeof damaged);
+    run(1000);
+    bench.fake.never_sent = false;
+    run(GAP_US + 400);
+    assert_int_equal(counter(FATHOM_LINE_CHECKSUM_ERRORS), 1);
+    run(2 * TIMEOUT_US - GAP_US - 1500); /* it might have been noise: owes for twice the time-out */
+    assert_int_equal(bench.fake.written, 1);
+    run(2000);
+    assert_int_equal(bench.fake.written, 2);
 }
 
 static void an_answer_that_breaks_off_is_a_checksum_error(void **state)
@@ -358,7 +360,7 @@ int main(void)
         TEST(another_units_answer_is_a_stray_and_the_wait_goes_on),
         TEST(an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows),
         TEST(a_damaged_answer_ends_the_attempt_at_the_first_gap),
-        TEST(a_request_heard_as_an_echo_while_it_leaves_spoils_nothing),
+        TEST(a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_left),
         TEST(an_answer_that_breaks_off_is_a_checksum_error),
         TEST(less_than_three_bytes_are_noise_and_end_nothing),
         TEST(a_frame_longer_than_the_memory_is_dropped_without_overrun),
