@@ -11,7 +11,7 @@ set -eu
 cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8
 
-packages='gcc g++ libc6-dev make cmake pkg-config python3 libcmocka-dev gcovr
+packages='gcc g++ libc6-dev make patch cmake pkg-config python3 libcmocka-dev gcovr
 clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc simavr libsimavr-dev
 libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'

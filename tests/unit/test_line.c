@@ -254,6 +254,17 @@ static void a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clo
     }
 }
 
+static void a_single_poll_across_the_wrap_sees_all_the_time_that_passed(void **state)
+{
+    (void)state;
+    with_clock_at(0u - 20000);
+    ask_1_and_send(0);
+    assert_true(bench.fake.now_us > 0x80000000u);
+    run_in_steps(TIMEOUT_US, TIMEOUT_US);
+    assert_true(bench.fake.now_us < 0x80000000u);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
+}
+
 static void a_late_poll_finds_the_answer_before_it_looks_at_the_time(void **state)
 {
     (void)state;
@@ -475,6 +486,7 @@ int main(void)
         TEST(sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause),
         TEST(counters_stop_at_their_end),
         TEST(a_poll_reads_the_port_a_bounded_number_of_times),
+        TEST(a_single_poll_across_the_wrap_sees_all_the_time_that_passed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -295,6 +295,39 @@ static void a_port_that_cannot_be_read_ends_every_exchange_and_recovers(void **s
     assert_int_equal(bench.other_value, 222);
 }
 
+static void a_unit_that_was_asked_when_the_port_broke_still_owes(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    bench.fake.read_fails = true;
+    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
+    bench.fake.read_fails = false;
+    ask(&bench.request, 1, &bench.value, 0);
+    run(20000);
+    assert_int_equal(bench.fake.written, 1);
+    receive_answer(1, 111); /* to the request of before */
+    run(100);
+    assert_int_equal(bench.value, 0xDEAD);
+    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    run(20000);
+    assert_int_equal(bench.fake.written, 2);
+}
+
+static void what_was_received_before_the_port_broke_is_forgotten(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    receive(answer_1_754, 3);
+    run(100);
+    bench.fake.read_fails = true;
+    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
+    bench.fake.read_fails = false;
+    receive(answer_1_754 + 3, 4); /* no late answer: some of it may have been lost */
+    run(2 * GAP_US);
+    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 0);
+    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 4);
+}
+
 static void a_port_that_cannot_write_or_tears_a_request_ends_the_exchange(void **state)
 {
     (void)state;
@@ -378,6 +411,8 @@ int main(void)
         TEST(a_busy_port_gets_the_request_when_it_is_free),
         TEST(a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken),
         TEST(an_answer_counts_although_the_port_does_not_say_yet_that_the_request_has_left),
+        TEST(a_unit_that_was_asked_when_the_port_broke_still_owes),
+        TEST(what_was_received_before_the_port_broke_is_forgotten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

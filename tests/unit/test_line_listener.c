@@ -151,6 +151,33 @@ static void unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_doe
     assert_memory_equal(ear.bytes + 4, auto_frame, 4);
 }
 
+static void only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    ask_1_and_send(0);
+    run(6000);
+    receive(auto_frame, 4); /* given one by one: each might have begun an answer */
+    run(2 * GAP_US);
+    assert_int_equal(ear.length, 4);
+    assert_int_equal(ear.calls, 4);
+    assert_int_equal(ear.gaps, 1);
+    assert_int_equal(ear.gap_at, 0);
+}
+
+static void our_own_request_is_no_silence(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    ask_1_and_send(0); /* 8 ms of it */
+    receive(auto_frame, 4);
+    run(2 * GAP_US);
+    assert_int_equal(ear.length, 4);
+    assert_int_equal(ear.gaps, 0);
+}
+
 static void whole_foreign_frames_go_to_the_listener(void **state)
 {
     (void)state;
@@ -193,6 +220,8 @@ int main(void)
         TEST(unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not),
         TEST(whole_foreign_frames_go_to_the_listener),
         TEST(due_makes_room_for_the_listener_to_see_its_gap),
+        TEST(only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap),
+        TEST(our_own_request_is_no_silence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -310,11 +310,13 @@ static void another_repeated_question_replaces_the_first_when_that_has_ended(voi
 static void registers_with_one_equal_byte_are_two_questions(void **state)
 {
     const fathom_modbus_question_t high = {TIMEOUT_US, PACE_US, values, 0x0000, 1, 0, false};
+    const fathom_modbus_question_t low = {TIMEOUT_US, PACE_US, values, 0x0101, 1, 0, false};
     (void)state;
     ask_and_send(&version); /* 0001 */
     fake_modbus_answer(&fake, three_values, 3);
     pending_after(PACE_US, &high);
     pending_after(PACE_US, &measure); /* 0100 */
+    pending_after(PACE_US, &low);
     assert_int_equal(read_after(0, &version), FATHOM_READY);
 }
 

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Plants faults in a copy of the sources, one at a time, and sees that a test finds each.
+
+    run.py [--list] [-j N] [NAME ...]
+
+A fault is a file NNN-NAME.patch: a line that says what is broken, "Promise: " and what it breaks, "Seen by: "
+and the test programs that are expected to find it, then a unified diff with one line of context. Those programs
+run first, and only if they pass do all the others of the kinds below. A fault is missed when all pass; a file
+that does not apply any more, or does not compile, is a failure too. NAME: only the faults whose names have it."""
+import argparse
+import concurrent.futures
+import os
+import queue
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+COPIED = ('CMakeLists.txt', 'README.md', 'include', 'port', 'src', 'tests')
+KINDS = ('unit', 'golden', 'property', 'port')
+LIMIT_S = 20  # for one test program
+CONFIGURE = ['-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_C_FLAGS_DEBUG=-O1', '-DFATHOM_STRICT=OFF', '-DFATHOM_CHECKS=OFF',
+             '-DFATHOM_EXAMPLES=OFF', '-DFATHOM_INSTALL=OFF', '-DCMAKE_C_COMPILER=' + os.environ.get('CC', 'gcc')]
+
+
+class Broken(Exception):
+    """Not a fault that was missed, but one that could not be tried."""
+
+
+class Fault:
+    def __init__(self, file_name):
+        self.name = file_name.removesuffix('.patch')
+        self.path = os.path.join(HERE, file_name)
+        with open(self.path, encoding='utf-8') as file:
+            head, _, diff = file.read().partition('\n--- a/')
+        found = re.fullmatch(r'(.+)\nPromise: (.+)\nSeen by: (.+)\n', head)
+        if not found or not diff:
+            raise SystemExit(f'{file_name}: not the form that run.py --help tells')
+        self.what, self.promise = found[1], found[2]
+        self.programs = found[3].split()
+        self.files = re.findall(r'^--- a/(\S+)', '\n--- a/' + diff, re.M)
+
+
+class Copy:
+    """A copy of the sources with a build folder."""
+
+    def __init__(self, root):
+        self.root = root
+        self.build_root = os.path.join(root, 'build')
+        os.makedirs(root)
+        for name in COPIED:
+            source, target = os.path.join(ROOT, name), os.path.join(root, name)
+            if os.path.isdir(source):
+                shutil.copytree(source, target, ignore=shutil.ignore_patterns('*.patch', '__pycache__'))
+            else:
+                shutil.copy(source, target)
+        folders = {kind: os.path.join(root, 'tests', kind) for kind in KINDS}
+        self.programs = [name[:-2] for kind in KINDS for name in sorted(os.listdir(folders[kind]))
+                         if name.startswith('test_') and name.endswith('.c')]
+        self.command(['cmake', '-S', root, '-B', self.build_root, *CONFIGURE], 'not configured')
+        self.build(self.programs)
+
+    def command(self, command, words):
+        done = subprocess.run(command, cwd=self.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              check=False)
+        if done.returncode != 0:
+            errors = [line for line in done.stdout.splitlines() if re.search('error|FAILED|undefined', line)]
+            raise Broken('\n    '.join([words, *errors[:5]]))
+
+    def build(self, programs):
+        self.command(['cmake', '--build', self.build_root, '--target', *programs], 'it does not compile')
+
+    def seen_by(self, program):
+        """What the test program says against the sources as they are; None when it passes."""
+        path = os.path.join(self.build_root, 'tests', program)
+        with tempfile.TemporaryFile('w+', errors='replace') as output:
+            test = subprocess.Popen([path], cwd=self.build_root, stdin=subprocess.DEVNULL, stdout=output,
+                                    stderr=subprocess.STDOUT, start_new_session=True)
+            try:
+                status = test.wait(LIMIT_S)
+            except subprocess.TimeoutExpired:
+                status = None
+            finally:
+                try:
+                    os.killpg(test.pid, signal.SIGKILL)  # a test that failed may leave a child behind
+                except ProcessLookupError:
+                    pass
+                test.wait()
+            output.seek(0)
+            failed = re.search(r'^\[  FAILED  \] (\w+)$', output.read(), re.M)
+        if status == 0:
+            return None
+        how = ', which hangs' if status is None else ', which crashes' if status < 0 else ''
+        return f'{program}: {failed[1]}{how}' if failed else f'{program}{how or ", before its first case"}'
+
+    def first_seen_by(self, programs):
+        return next(filter(None, map(self.seen_by, programs)), None)
+
+    def plant(self, fault):
+        """Who sees the fault; the sources are as before afterwards."""
+        unknown = [program for program in fault.programs if program not in self.programs]
+        if unknown:
+            raise Broken(f'there is no {" ".join(unknown)}')
+        kept = {}
+        for name in fault.files:
+            with open(os.path.join(self.root, name), 'rb') as file:
+                kept[name] = file.read()
+        try:
+            self.command(['patch', '-p1', '--fuzz=0', '--no-backup-if-mismatch', '--reject-file=-', '-i', fault.path],
+                         'the patch does not apply any more')
+            self.build(fault.programs)
+            seen = self.first_seen_by(fault.programs)
+            if seen is None:
+                self.build(self.programs)
+                seen = self.first_seen_by(p for p in self.programs if p not in fault.programs)
+                seen = seen and f'{seen} (not by {" ".join(fault.programs)})'
+            return seen
+        finally:
+            for name, content in kept.items():
+                with open(os.path.join(self.root, name), 'wb') as file:
+                    file.write(content)
+
+
+def try_all(faults, copies):
+    """Prints a line a fault, in order; returns how many were not seen."""
+    free = queue.Queue()
+    for copy in copies:
+        free.put(copy)
+
+    def attempt(fault):
+        copy = free.get()
+        try:
+            return copy.plant(fault), ''
+        except (Broken, OSError) as error:
+            return None, str(error).rstrip()
+        finally:
+            free.put(copy)
+
+    missed = 0
+    with concurrent.futures.ThreadPoolExecutor(len(copies)) as pool:
+        for fault, (seen, why) in zip(faults, pool.map(attempt, faults)):
+            if seen is None:
+                missed += 1
+                why = why or f'no test sees it ({fault.what})'
+            print(f'{fault.name}: {f"seen by {seen}" if seen else f"FAILED, {why}"}', flush=True)
+    return missed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--list', action='store_true', help='only list the faults')
+    parser.add_argument('-j', '--jobs', type=int, default=min(4, os.cpu_count() or 1), help='copies that work at once')
+    parser.add_argument('names', nargs='*', metavar='NAME', help='a part of the name of the faults to plant')
+    options = parser.parse_args()
+    faults = [Fault(name) for name in sorted(os.listdir(HERE)) if name.endswith('.patch')]
+    faults = [f for f in faults if not options.names or any(name in f.name for name in options.names)]
+    if options.list:
+        for fault in faults:
+            print(f'{fault.name}: {fault.what}\n    breaks: {fault.promise}\n    seen by: {" ".join(fault.programs)}')
+        return 0
+    jobs = max(1, min(options.jobs, len(faults)))
+    with tempfile.TemporaryDirectory(prefix='fathom-faults.') as folder:
+        try:
+            with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+                copies = list(pool.map(Copy, [os.path.join(folder, str(number)) for number in range(jobs)]))
+        except Broken as error:
+            print(f'without a fault: {error}\n0 passed, 1 failed')
+            return 1
+        seen = copies[0].first_seen_by(copies[0].programs)
+        if seen:
+            print(f'without a fault: {seen} fails\n0 passed, 1 failed')
+            return 1
+        missed = try_all(faults, copies)
+    print(f'{len(faults) - missed} passed, {missed} failed')
+    return 1 if missed or not faults else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
