@@ -127,6 +127,7 @@ fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us, con
     stream->left_us = stale_us(stream);
     if (!stream->fresh) {
         count(stream, FATHOM_STREAM_STALES);
+        stream->candidate = false; /* too old to be shown when the sensor speaks again */
         return FATHOM_ERR_STALE;
     }
     stream->fresh = false;

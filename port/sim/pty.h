@@ -22,6 +22,8 @@ extern "C" {
  *         wait until fathom_sim_pty_fd(&pty) is readable, or for due_us
  *     }
  *
+ * A frame of a device is handed over as a whole, when its last bit has come, as USB adapters do.
+ *
  * Rate: the simulator sees the rate that the client has set, and a device answers at its own only. Parity
  * and stop bits cannot be seen through a pseudo terminal: they are taken to be as the line was initialised.
  *

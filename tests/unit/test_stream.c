@@ -107,6 +107,19 @@ static void a_silence_ends_a_frame_as_well_as_the_next_one_does(void **state)
     assert_int_equal(stream.time_us, 20);
 }
 
+static void a_frame_that_waited_for_its_successor_is_not_shown_after_the_stream_was_stale(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, false, 10);
+    feed(mm_1953, 4, false, 20);
+    assert_int_equal(poll(1000), FATHOM_PENDING);
+    assert_int_equal(poll(2000000), FATHOM_ERR_STALE);
+    feed(mm_1953, 2, true, 600000000);
+    assert_int_equal(poll(600000000), FATHOM_ERR_STALE); /* ten minutes later: no old value */
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+}
+
 /* A byte of FF 80 xx 80 is lost, and what is left makes a right sum with the FF of the next frame: FF + 80 + 80 =
  * 1FF. What follows it, 07, begins nothing. */
 static void a_right_sum_that_no_frame_follows_is_not_believed(void **state)
@@ -314,6 +327,7 @@ int main(void)
         cmocka_unit_test(a_frame_may_come_in_any_two_pieces),
         cmocka_unit_test(without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins),
         cmocka_unit_test(a_silence_ends_a_frame_as_well_as_the_next_one_does),
+        cmocka_unit_test(a_frame_that_waited_for_its_successor_is_not_shown_after_the_stream_was_stale),
         cmocka_unit_test(a_right_sum_that_no_frame_follows_is_not_believed),
         cmocka_unit_test(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step),
         cmocka_unit_test(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap),
