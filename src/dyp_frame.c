@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/dyp_frame.h"
 
-static uint8_t sum_of(const uint8_t *bytes, uint8_t length)
+uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length)
 {
     uint8_t sum = 0;
     for (; length != 0; length--) sum = (uint8_t)(sum + *bytes++);
@@ -11,7 +11,7 @@ static uint8_t sum_of(const uint8_t *bytes, uint8_t length)
 bool fathom_dyp_frame_valid(const uint8_t *frame, uint8_t length)
 {
     const uint8_t last = (uint8_t)(length - 1);
-    return frame[0] == FATHOM_DYP_START && sum_of(frame, last) == frame[last];
+    return frame[0] == FATHOM_DYP_START && fathom_dyp_sum(frame, last) == frame[last];
 }
 
 void fathom_dyp_frame_decode(const uint8_t *frame, uint16_t *values, uint8_t probes)
@@ -27,6 +27,6 @@ uint8_t fathom_dyp_frame_encode(uint8_t *frame, const uint16_t *values, uint8_t 
         frame[length++] = (uint8_t)(*values >> 8);
         frame[length++] = (uint8_t)*values;
     }
-    frame[length] = sum_of(frame, length);
+    frame[length] = fathom_dyp_sum(frame, length);
     return (uint8_t)(length + 1);
 }

@@ -30,6 +30,9 @@ enum {
     FATHOM_DYP_MAX_LENGTH = FATHOM_DYP_A05_LENGTH
 };
 
+/* The low byte of the sum of `length` (0..255) bytes. */
+uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length);
+
 /* Do these `length` (4 or 10) bytes begin with FF and end in their sum? */
 bool fathom_dyp_frame_valid(const uint8_t *frame, uint8_t length);
 

@@ -11,7 +11,7 @@ from common import files, main, read
 # its own layer what stands before it. A new header is placed here.
 LAYERS = [
     ('words', 'status hal version sample'),
-    ('codecs', 'crc16 modbus_rtu dyp_frame'),
+    ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol'),
     ('engines', 'line stream modbus modbus_client modbus_unit'),
     ('sensors', 'sensor wait dyp dyp_auto dyp_modbus a16_auto a16_modbus a05_auto a05_modbus hps167s'),
     ('all', 'fathom'),

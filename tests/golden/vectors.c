@@ -119,14 +119,25 @@ const modbus_vector_t modbus_vectors[MODBUS_ROWS] = {
      {1, READ, 0x0008, 4, 2, {0}}},
 };
 
-const vector_t dyp_vectors[DYP_ROWS] = {
-    {"A05", "A05 2(3)3", "all probes", "", VECTOR_REQUEST, BYTES(0x55, 0xAA, 0x01, 0x01, 0x01)},
-    {"A05", "A05 2(3)3", "all probes", "1000 2000 1953 3562 mm; printed sum is 60", VECTOR_ANSWER,
-     BYTES(0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62)},
-    {"A05", "A05 2(3)4", "probe 1", "", VECTOR_REQUEST, BYTES(0x55, 0xAA, 0x01, 0x10, 0x10)},
-    {"A05", "A05 2(3)4", "probe 1", "1953 mm", VECTOR_ANSWER,
-     BYTES(0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8)},
-    {"A05", "A05 2(3)5", "set address 5", "", VECTOR_BOTH, BYTES(0x55, 0xAA, 0x05, 0x03, 0x07)},
+const dyp_vector_t dyp_vectors[DYP_ROWS] = {
+    {{"A05", "A05 2(3)3", "all probes", "", VECTOR_REQUEST, BYTES(0x55, 0xAA, 0x01, 0x01, 0x01)},
+     1,
+     0x01,
+     {0}},
+    {{"A05", "A05 2(3)3", "all probes", "printed sum is 60", VECTOR_ANSWER,
+      BYTES(0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62)},
+     1,
+     0x01,
+     {1000, 2000, 1953, 3562}},
+    {{"A05", "A05 2(3)4", "probe 1", "", VECTOR_REQUEST, BYTES(0x55, 0xAA, 0x01, 0x10, 0x10)}, 1, 0x10, {0}},
+    {{"A05", "A05 2(3)4", "probe 1", "", VECTOR_ANSWER, BYTES(0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8)},
+     1,
+     0x10,
+     {1953}},
+    {{"A05", "A05 2(3)5", "set address 5", "", VECTOR_BOTH, BYTES(0x55, 0xAA, 0x05, 0x03, 0x07)},
+     5,
+     0x03,
+     {0}},
 };
 
 /* The last is the check value that every catalogue of CRCs gives for "123456789". */

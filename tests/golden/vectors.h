@@ -34,6 +34,14 @@ typedef struct {
     uint16_t values[4];
 } auto_vector_t;
 
+/* A 55 AA frame of the A05 (A05 2(3)) and its meaning. */
+typedef struct {
+    vector_t frame;
+    uint8_t address;
+    uint8_t command;
+    uint16_t values[4];
+} dyp_vector_t;
+
 /* A Modbus frame and its meaning; with an answer stands the request that it answers. */
 typedef struct {
     uint8_t unit;
@@ -58,11 +66,9 @@ typedef struct {
 } crc_vector_t;
 
 extern const auto_vector_t auto_vectors[AUTO_ROWS];
+extern const dyp_vector_t dyp_vectors[DYP_ROWS];
 extern const modbus_vector_t modbus_vectors[MODBUS_ROWS];
 extern const crc_vector_t crc_vectors[CRC_ROWS];
-
-/* 55 AA frames of the A05 (A05 2(3)), for which there is no codec yet. */
-extern const vector_t dyp_vectors[DYP_ROWS];
 
 /* auchCRCHi just as the appendix of the HPS-167S prints it. */
 extern const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES];
