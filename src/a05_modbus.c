@@ -26,6 +26,8 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     question->first = (uint16_t)(registers + first);
     question->count = count;
     question->retries = config->retries;
+    question->backoff_us = config->backoff_us;
+    question->settings = config->settings;
     base->answer.values = sensor->values;
     base->answer.window.min_mm = config->window.min_mm;
     base->answer.window.max_mm = config->window.max_mm;

@@ -19,6 +19,8 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
     question->first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
     question->count = 1;
     question->retries = config->retries;
+    question->backoff_us = config->backoff_us;
+    question->settings = config->settings;
     base->answer.values = sensor->values;
     base->answer.window.min_mm = config->window.min_mm;
     base->answer.window.max_mm = config->window.max_mm;

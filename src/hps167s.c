@@ -32,6 +32,8 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     question->first = MEASURE_FIRST;
     question->count = MEASURE_COUNT;
     question->retries = config->retries;
+    question->backoff_us = config->backoff_us;
+    question->settings = config->settings;
     question->is_command = false;
     sensor->sequence = 0;
     sensor->implausible = 0;

@@ -3,24 +3,45 @@
 
 #include "fathom/crc16.h"
 
-static uint8_t encode(const fathom_exchange_t *exchange, uint8_t *frame)
+/* What stands at the front: is it the request itself, or the beginning of it? An answer comes first: that to a
+ * write of one register is the request again, that to a write of many begins like it. */
+static void look_for_request(const fathom_modbus_message_t *message, const uint8_t *bytes, uint8_t have,
+                             fathom_match_t *match)
 {
-    return fathom_modbus_rtu_encode_request(&((const fathom_modbus_request_t *)exchange)->message, frame);
+    const uint8_t length = fathom_modbus_rtu_begun_request(message, bytes, have);
+    if (length == 0) return;
+    if (length > have) {
+        if (match->length <= have || length < match->length) match->length = length;
+    } else if (fathom_crc16(bytes, length) == 0) {
+        match->request = length;
+    }
 }
 
-static void receive(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match)
+static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match)
 {
+    fathom_modbus_message_t *const message = &((fathom_modbus_request_t *)exchange)->message;
     const uint8_t length = fathom_modbus_rtu_response_length(bytes, have);
     match->length = length;
     match->unit = bytes[0];
-    match->status = FATHOM_PENDING;
-    if (length == 0 || length > have) return;
-    if (fathom_crc16(bytes, length) != 0) {
-        match->status = FATHOM_ERR_CHECKSUM;
+    match->status = FATHOM_ERR_CHECKSUM;
+    match->request = 0;
+    if (length != 0 && length <= have && fathom_crc16(bytes, length) == 0) {
+        match->status = FATHOM_PENDING;
+        if (exchange == NULL) return;
+        match->status = (int8_t)fathom_modbus_rtu_parse_response(message, bytes);
+        if (fathom_modbus_rtu_begun_request(message, bytes, have) == length) match->request = length;
     } else if (exchange != NULL) {
-        fathom_modbus_request_t *const request = (fathom_modbus_request_t *)exchange;
-        match->status = (int8_t)fathom_modbus_rtu_parse_response(&request->message, bytes);
+        look_for_request(message, bytes, have, match);
     }
+}
+
+static void protocol(fathom_exchange_t *exchange, uint8_t *frame, uint8_t have, fathom_match_t *match)
+{
+    if (have != 0)
+        judge(exchange, frame, have, match);
+    else
+        match->length =
+            fathom_modbus_rtu_encode_request(&((const fathom_modbus_request_t *)exchange)->message, frame);
 }
 
 fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_request_t *request)
@@ -28,12 +49,11 @@ fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_r
     const fathom_modbus_message_t *const message = &request->message;
     const uint8_t room = fathom_modbus_rtu_room(message);
     fathom_exchange_t *const exchange = &request->exchange;
-    const bool is_broadcast = message->head[0] == FATHOM_MODBUS_BROADCAST;
-    if (room == 0 || (is_broadcast && message->head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS))
+    if (room == 0 || (message->head[0] == FATHOM_MODBUS_BROADCAST &&
+                      message->head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS))
         return FATHOM_ERR_ARGUMENT;
     if (room > line->config->frame_size) return FATHOM_ERR_CAPACITY;
-    exchange->encode = encode;
-    exchange->receive = is_broadcast ? NULL : receive;
+    exchange->protocol = protocol;
     exchange->unit = message->head[0];
     return fathom_line_submit(line, exchange);
 }

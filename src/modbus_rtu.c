@@ -126,6 +126,18 @@ uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
     return is_even && size != 0 && size <= 2 * FATHOM_MODBUS_MAX_READ ? (uint8_t)(size + READ_OVERHEAD) : 0;
 }
 
+uint8_t fathom_modbus_rtu_begun_request(const fathom_modbus_message_t *message, const uint8_t *bytes,
+                                        uint8_t have)
+{
+    const uint8_t *const head = message->head;
+    const bool has_values = head[FUNCTION] == WRITE_MANY;
+    const uint8_t size = (uint8_t)(2 * head[COUNT]);
+    for (uint8_t i = 0; i != have && i != HEAD; i++)
+        if (bytes[i] != head[i]) return 0;
+    if (!has_values) return FIXED_LENGTH;
+    return have <= HEAD || bytes[HEAD] == size ? (uint8_t)(size + WRITE_MANY_OVERHEAD) : 0;
+}
+
 fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *message, const uint8_t *frame)
 {
     const uint8_t *const head = message->head;

@@ -3,9 +3,29 @@
 
 enum { IDLE = 0, ASKED = 1, ANSWERED = 2 };
 
+/* After so many silences in a row a unit is left alone, and with each of the next the time is doubled. */
+enum { PATIENCE = 3, DOUBLINGS = 4 };
+#define LONGEST_US 0x80000000u
+
 static uint16_t one_more(uint16_t n) { return n != UINT16_MAX ? (uint16_t)(n + 1) : n; }
 
 static uint32_t now_us(const fathom_modbus_unit_t *unit) { return unit->clock->now_us(unit->clock->ctx); }
+
+/* An outcome is there: for how long is the unit left alone? */
+static void back_off(fathom_modbus_unit_t *unit)
+{
+    const fathom_exchange_t *const exchange = &unit->request.exchange;
+    uint32_t wait_us = exchange->timeout_us;
+    if (exchange->status != FATHOM_ERR_NO_ANSWER) {
+        unit->silences = 0;
+        return;
+    }
+    if (unit->silences != PATIENCE + DOUBLINGS) unit->silences++;
+    if (unit->silences < PATIENCE) return;
+    for (uint8_t n = unit->silences; n != PATIENCE && wait_us < unit->backoff_us; n--) wait_us += wait_us;
+    if (wait_us > unit->backoff_us) wait_us = unit->backoff_us;
+    if (unit->pause_us < wait_us) unit->pause_us = wait_us;
+}
 
 /* Lets time pass and the carrier work; returns how that is. */
 static fathom_status_t advance(fathom_modbus_unit_t *unit)
@@ -29,6 +49,7 @@ static fathom_status_t advance(fathom_modbus_unit_t *unit)
         unit->answers = one_more(unit->answers);
     else
         unit->failures = one_more(unit->failures);
+    back_off(unit);
     return carrier;
 }
 
@@ -38,6 +59,7 @@ static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_quest
     if (unit->pause_us != 0) return FATHOM_PENDING;
     request->exchange.timeout_us = question->timeout_us;
     request->exchange.retries = question->retries;
+    request->exchange.settings = question->settings;
     fathom_modbus_read_holding_registers(&request->message, unit->address, question->first, question->count,
                                          question->values);
     unit->waiting = 0;
@@ -47,6 +69,7 @@ static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_quest
         unit->attempts = 0;
         unit->is_command = question->is_command;
         unit->pace_us = question->pace_us;
+        unit->backoff_us = question->backoff_us != 0 ? question->backoff_us : LONGEST_US;
         unit->pause_us = question->pace_us;
     }
     return status;
@@ -69,6 +92,8 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->is_command = false;
     unit->waiting = 0;
     unit->pace_us = 0;
+    unit->backoff_us = 0;
+    unit->silences = 0;
     unit->request.message.exception = 0;
     return FATHOM_READY;
 }
@@ -82,6 +107,8 @@ static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_ques
     if (!question->is_command) return is_waiting || is_untaken ? FATHOM_PENDING : FATHOM_READY;
     if (is_waiting || is_untaken) return FATHOM_ERR_BUSY;
     unit->waiting = question->first;
+    if (unit->pause_us > unit->pace_us)
+        unit->pause_us = unit->pace_us; /* the unit may be dead, the user is not */
     return unit->state == ASKED ? FATHOM_PENDING : FATHOM_READY;
 }
 

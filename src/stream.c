@@ -85,6 +85,10 @@ void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t c
         stream->run = 0;
         stream->since = UINT8_MAX;
         stream->gap = true;
+    } else if (count_of_bytes == 0) { /* some were lost: the next one is in no known place */
+        stream->gap = false;
+        stream->candidate = false;
+        stream->since = UINT8_MAX;
     }
     for (; count_of_bytes != 0; count_of_bytes--) take(stream, *bytes++, time_us);
 }

@@ -34,8 +34,12 @@ enum { FATHOM_A05_REGISTERS = 0x0106, FATHOM_A05_REGISTERS_ALIAS = 0x0010 };
 typedef struct {
     const fathom_modbus_t *modbus;
     const fathom_clock_t *clock;
-    uint32_t period_us;         /* from one request to the next; 0 and anything less: 100 ms a probe */
-    uint32_t timeout_us;        /* 0: 200 ms, and 100 ms a probe */
+    const fathom_line_settings_t
+        *settings;       /* NULL: as the line is; else where sensors with different ones share
+                                               a line (line.h) */
+    uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
+    uint32_t period_us;  /* from one request to the next; 0 and anything less: 100 ms a probe */
+    uint32_t timeout_us; /* 0: 200 ms, and 100 ms a probe */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
     uint8_t address;            /* 1..254; 0: 1, the factory's */

@@ -37,8 +37,12 @@ typedef enum {
 typedef struct {
     const fathom_modbus_t *modbus;
     const fathom_clock_t *clock;
-    uint32_t period_us;         /* from one request to the next; 0 and anything less: 120 ms */
-    uint32_t timeout_us;        /* 0: 1 s for the processed value, 300 ms for the real-time one */
+    const fathom_line_settings_t
+        *settings;       /* NULL: as the line is; else where sensors with different ones share
+                                               a line (line.h) */
+    uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
+    uint32_t period_us;  /* from one request to the next; 0 and anything less: 120 ms */
+    uint32_t timeout_us; /* 0: 1 s for the processed value, 300 ms for the real-time one */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
     uint8_t address;            /* 1..254; 0: 1, the factory's */
     uint8_t retries;            /* after a failed attempt; 0: none */

@@ -4,6 +4,7 @@
 
 /* Everything that an application needs. Including it costs nothing: what is not called is not linked. */
 #include "fathom/a05_auto.h"
+#include "fathom/a05_dyp.h"
 #include "fathom/a05_modbus.h"
 #include "fathom/a16_auto.h"
 #include "fathom/a16_modbus.h"

@@ -54,11 +54,16 @@ typedef struct {
  *        pointer. On RS-485 the port drives the transceiver.
  * sent   True when the last stop bit of all that was written has left the pin. May turn true late (a USB
  *        adapter cannot know better): bytes that were read before it counts still count as an answer.
+ * set_line  Changes the line settings; what was received is kept. 1: they hold now (at once, if they did
+ *        before; it is called before each request that names settings). 0: bytes are still leaving, ask again.
+ *        < 0: this port cannot reach them within 2.5 %; the settings before still hold. NULL where they are
+ *        fixed.
  */
 typedef struct {
     int (*read)(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
     int (*write)(void *ctx, const uint8_t *bytes, size_t length);
     bool (*sent)(void *ctx);
+    int (*set_line)(void *ctx, const fathom_line_settings_t *settings);
     void *ctx;
 } fathom_uart_t;
 

@@ -15,7 +15,8 @@ extern "C" {
 /*
  * The one owner of a UART. Whoever wants to ask something on the wire hands it an exchange; whoever only
  * listens registers a listener; nobody else reads the port. Silence before a request, time-outs, damaged,
- * late and foreign answers, retries, broadcasts and counters are kept here, once, for every protocol.
+ * late and foreign answers, echo, line settings, retries, broadcasts and counters are kept here, once, for every
+ * protocol.
  *
  * It never waits, never allocates and keeps no state but in the structs below, which the caller owns. One
  * context only: no function of a line may be called from an interrupt, or from two tasks at once.
@@ -29,6 +30,11 @@ extern "C" {
  *    an answer that was damaged the unit owes as well, for what is left of the time-out, or for twice the
  *    time-out if it broke off. One deadline, the latest, serves all units that owe.
  *  - An exchange that has failed with retries left goes on waiting in the queue; other units come first.
+ *  - Local echo: many RS-485 adapters hand back what they send. The line finds that out: the first exchange
+ *    whose answer cannot equal its request, a read, shows the echo or shows that there is none. Until then a
+ *    write whose answer equals its request (Modbus function 06, 55 AA 03) is not taken as acknowledged by a
+ *    single copy: FATHOM_ERR_ECHO. So read something first, or tell the line in its config. Where there is
+ *    echo, a write needs two copies.
  *
  * What cannot be told apart on a wire, and so is taken for the answer: one that comes later than twice the
  * time-out; an unasked frame of the very shape that is being waited for. Choose time-outs accordingly.
@@ -53,31 +59,47 @@ typedef struct fathom_exchange fathom_exchange_t;
 
 /* What a protocol says of the bytes at the front of the line. */
 typedef struct {
-    uint8_t length; /* 0: none of its frames begins here. More than there are: so many are needed to tell.
+    uint8_t length;  /* 0: none of its frames begins here. More than there are: so many are needed to tell.
                        Else the length of the whole frame that stands here. */
-    uint8_t unit;   /* with length > 0: whose frame it is, or would be */
-    int8_t status;  /* of a whole frame. FATHOM_READY or FATHOM_ERR_EXCEPTION: it answers the exchange.
+    uint8_t unit;    /* with length > 0: whose frame it is, or would be */
+    int8_t status;   /* of a whole frame. FATHOM_READY or FATHOM_ERR_EXCEPTION: it answers the exchange.
                        FATHOM_ERR_MALFORMED: right checksum, from the unit that was asked, but no answer.
                        FATHOM_PENDING: right checksum, not for this exchange.
                        FATHOM_ERR_CHECKSUM: wrong checksum. */
+    uint8_t request; /* not 0: the first so many bytes are the request itself. If they are no whole frame, or
+                        one with another length or a wrong checksum, they can only be an echo; a frame of
+                        that length may be an echo or an answer that equals the request. */
 } fathom_match_t;
+
+/*
+ * What the line has to know of a protocol: a plain function that needs nothing but its arguments.
+ *
+ * have == 0: writes the request of `exchange` to `frame` (the line's, frame_size bytes) and its length, 1..255,
+ *   to match->length.
+ * have >= 1: looks at the `have` received bytes in `frame`, changes none, and says in *match what they are. On
+ *   an answer it writes the results of `exchange`, and only then. It is also called with `exchange` NULL, by
+ *   which the line asks for the frame alone.
+ */
+typedef void (*fathom_protocol_t)(fathom_exchange_t *exchange, uint8_t *frame, uint8_t have,
+                                  fathom_match_t *match);
+
+/* Units with a meaning of their own. */
+enum {
+    FATHOM_LINE_ALL_UNITS = 0, /* all are told, none answers */
+    FATHOM_LINE_ANY_UNIT = 255 /* all are asked, and the first answer is taken, whosever it is */
+};
 
 /*
  * One request and the answer to it, in the caller's memory. Set the first five members and submit it; then
  * leave it alone until its status is no longer FATHOM_PENDING. It may be submitted again at once.
  */
 struct fathom_exchange {
-    /* Writes the request to `frame` (the line's, frame_size bytes) and returns its length, 1..255. */
-    uint8_t (*encode)(const fathom_exchange_t *exchange, uint8_t *frame);
-    /*
-     * Looks at `have` (>= 1) received bytes and says in *match what they are. On an answer it writes the
-     * results, and only then. It is also called with `exchange` NULL, by which the line asks for the frame
-     * alone; so it must be a plain function that needs nothing else.
-     * NULL when no answer is expected (a broadcast): the exchange is READY timeout_us after it was sent.
-     */
-    void (*receive)(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match);
-    uint32_t timeout_us; /* from the end of the request to the first byte of the answer; of a broadcast:
-                            the time that devices need before the next request */
+    fathom_protocol_t protocol;
+    const fathom_line_settings_t
+        *settings;       /* set before the request leaves; NULL: as they are. On a line where
+                                               one exchange names its settings, all have to */
+    uint32_t timeout_us; /* from the end of the request to the first byte of the answer; to all units: the
+                            time that they need before the next request, after which it is READY */
     uint8_t unit;        /* who is asked; units that are equal modulo 16 may delay, never confuse, each
                             other after a time-out */
     uint8_t retries;     /* further attempts after a failed one; 0..254 */
@@ -89,7 +111,10 @@ struct fathom_exchange {
                          FATHOM_ERR_CHECKSUM    an answer from the unit was damaged or broke off
                          FATHOM_ERR_MALFORMED   the unit sent something else with a right checksum
                          FATHOM_ERR_EXCEPTION   the unit refused; the number is in the request
+                         FATHOM_ERR_ECHO        one copy of the request came, and the line does not know yet
+                                                whether it echoes; counts as NO_ANSWER
                          FATHOM_ERR_CANCELLED   by fathom_line_cancel
+                         FATHOM_ERR_UNSUPPORTED the port cannot do `settings`; nothing was sent
                          FATHOM_ERR_PORT        the HAL reported an error or did not send */
     union {
         fathom_exchange_t *next; /* the line's, while it is queued */
@@ -101,7 +126,7 @@ struct fathom_exchange {
 typedef struct fathom_listener fathom_listener_t;
 struct fathom_listener {
     /*
-     * `count` (>= 1) bytes in the order in which they came. after_gap: the line was seen to be silent for at
+     * `count` bytes in the order in which they came; 0: here bytes were lost, as the port has said. after_gap: the line was seen to be silent for at
      * least gap_us before the first of them. time_us: the clock when the last of them came, as well as the
      * port or the polling can tell. Called within fathom_line_poll; it may not call the line.
      */
@@ -122,8 +147,16 @@ enum {
     FATHOM_LINE_MALFORMED = 6,
     FATHOM_LINE_LATE_ANSWERS = 7, /* from a unit that owed one */
     FATHOM_LINE_STRAYS = 8,       /* whole frames that nobody had asked for: another master's traffic */
-    FATHOM_LINE_BAD_BYTES = 9,    /* dropped because the port had marked them: parity, framing */
+    FATHOM_LINE_BAD_BYTES = 9,    /* dropped because the port had marked them: parity, framing. An overrun,
+                                     whose bytes nobody could count, is one */
     FATHOM_LINE_COUNTERS = 10
+};
+
+/* Whether the line hands back what is sent on it. */
+enum {
+    FATHOM_LINE_ECHO_AUTO = 0, /* not told: the line finds out */
+    FATHOM_LINE_ECHO_OFF = 1,
+    FATHOM_LINE_ECHO_ON = 2
 };
 
 /* Const and the caller's; read at every call, so it outlives the line. */
@@ -133,7 +166,9 @@ typedef struct {
     uint8_t *frame;      /* where requests are built and answers gathered; the line's alone */
     uint8_t frame_size;  /* 8..255 bytes: the longest frame on this line. 13 for A16, A05 and HPS-167S
                             distances; 27 for HPS-167S details; more lets longer foreign frames pass whole */
-    uint16_t silence_us; /* kept before a request: FATHOM_T3_5_US(baud, bits); 0: 4011 */
+    uint8_t echo;        /* FATHOM_LINE_ECHO_... */
+    uint16_t silence_us; /* kept before a request: FATHOM_T3_5_US(baud, bits), of the slowest settings that
+                            are used on the line; 0: 4011 */
     uint16_t gap_us;     /* a frame is over when nothing came for so long. At least 1.5 characters; more
                             than a slow sender or a slow port pauses: 25000 behind an operating system, whose
                             USB adapters hold bytes back for 16 ms. 0: 5000 */
@@ -141,19 +176,19 @@ typedef struct {
 
 typedef struct {
     uint8_t state;
-    uint8_t have;       /* bytes in the frame */
-    uint8_t need;       /* below so many there is nothing new to say */
-    bool after_gap;     /* the listener's gap was seen before the first byte in the frame */
-    uint16_t owing;     /* bit unit % 16: may still answer */
+    uint8_t have;   /* bytes in the frame */
+    uint8_t need;   /* below so many there is nothing new to say */
+    uint8_t known;  /* bit 0: the listener's gap was seen before the first byte in the frame; the two above
+                           it: fathom_line_echo() */
+    uint16_t owing; /* bit unit % 16: may still answer */
     uint16_t silent_us; /* known silence since the last byte either way; stops at 65535 */
     const fathom_line_config_t *config;
     fathom_exchange_t *head; /* the queue; the one on the wire is first */
     fathom_listener_t *listener;
-    /* the protocol last spoken */
-    void (*receive)(fathom_exchange_t *, const uint8_t *, uint8_t, fathom_match_t *);
-    uint32_t polled_us; /* the clock at the last poll */
-    uint32_t left_us;   /* of the present time-out */
-    uint32_t owed_us;   /* until `owing` is forgotten */
+    fathom_protocol_t protocol; /* last spoken */
+    uint32_t polled_us;         /* the clock at the last poll */
+    uint32_t left_us;           /* of the present time-out */
+    uint32_t owed_us;           /* until `owing` is forgotten */
     uint16_t counters[FATHOM_LINE_COUNTERS];
 } fathom_line_t;
 
@@ -193,6 +228,10 @@ fathom_status_t fathom_line_poll(fathom_line_t *line);
  * report the end of sending by an event.
  */
 uint32_t fathom_line_due_us(const fathom_line_t *line);
+
+/* What is known of local echo: what the config says or, with FATHOM_LINE_ECHO_AUTO, what was found out last;
+ * FATHOM_LINE_ECHO_AUTO as long as nothing was. */
+uint8_t fathom_line_echo(const fathom_line_t *line);
 
 /* The clock when the last byte came, as well as it is known; exact to the port's time stamps or to the
  * polling, for 65 ms after it. */

@@ -15,6 +15,10 @@ extern "C" {
  * One Modbus unit as a driver deals with it: one request at a time, no faster than the device can, and each
  * outcome handed over once. The Modbus drivers are built on it; their users need not know it.
  *
+ * A unit that does not answer is asked less and less often, so that it does not take the line from the others:
+ * after the third time in a row it is left alone for one time-out, then for two, four, eight, sixteen. The first
+ * thing that it says ends that. A command is asked at once all the same.
+ *
  * There are two kinds of question. The repeated one (a measurement) comes again and again, and nobody minds
  * if an outcome is replaced by a newer one. A command is asked once, and its outcome waits for whoever asked.
  */
@@ -22,9 +26,11 @@ typedef struct {
     uint32_t timeout_us; /* first byte of the answer */
     uint32_t pace_us;    /* from this request to the next one to the unit, at least; retries come when the
                             line sends them, and the next one that much after the last of them */
-    uint16_t *values;    /* count registers, the driver's; written on FATHOM_READY only */
-    uint16_t first;      /* address of the first register; tells the questions of a driver apart; not 0 */
-    uint8_t count;       /* 1..125 */
+    uint32_t backoff_us; /* the longest that a dead unit is left alone; 0: 16 time-outs; up to 2^31 */
+    const fathom_line_settings_t *settings; /* fathom_exchange_t.settings */
+    uint16_t *values;                       /* count registers, the driver's; written on FATHOM_READY only */
+    uint16_t first; /* address of the first register; tells the questions of a driver apart; not 0 */
+    uint8_t count;  /* 1..125 */
     uint8_t retries;
     bool is_command;
 } fathom_modbus_question_t;
@@ -34,7 +40,8 @@ typedef struct {
     const fathom_modbus_t *modbus;
     const fathom_clock_t *clock;
     uint32_t polled_us;
-    uint32_t pace_us;  /* of the present question */
+    uint32_t pace_us; /* of the present question */
+    uint32_t backoff_us;
     uint32_t pause_us; /* until the unit may be asked again */
     uint32_t heard_us; /* the clock when the last answer came */
     uint16_t answers;  /* counters; each stops at 65535. The other outcomes: */
@@ -42,6 +49,7 @@ typedef struct {
     uint8_t address; /* 1..254 */
     uint8_t state;
     uint8_t attempts; /* of the present question that were seen to leave */
+    uint8_t silences; /* outcomes in a row that were FATHOM_ERR_NO_ANSWER, as far as they matter */
     bool is_command;  /* the present question */
     uint16_t waiting; /* the first register of a command that waits for its turn; 0: none */
 } fathom_modbus_unit_t;

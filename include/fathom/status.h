@@ -27,7 +27,10 @@ typedef enum {
     FATHOM_ERR_STALE = -7,     /* a sensor that sends by itself has sent nothing good for too long */
     FATHOM_ERR_CANCELLED = -8, /* ended by cancel */
     FATHOM_ERR_BUSY = -9,      /* this object is already at work; try again when it has finished */
-    FATHOM_ERR_CAPACITY = -10  /* the memory that the caller gave is too small for this request */
+    FATHOM_ERR_CAPACITY = -10, /* the memory that the caller gave is too small for this request */
+    FATHOM_ERR_ECHO = -11,     /* a write: all that came equals the request, so it may be the device's answer
+                                  or the line's own echo, and which is not known yet (line.h) */
+    FATHOM_ERR_UNSUPPORTED = -12 /* the port cannot do the line settings of this request */
 } fathom_status_t;
 
 #ifdef __cplusplus

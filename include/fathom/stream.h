@@ -81,7 +81,7 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
                                    uint32_t now_us);
 
 /*
- * Takes `count` bytes. after_gap: the line was seen to be silent for gap_us before the first. time_us: when
+ * Takes `count` bytes; 0: bytes were lost here. after_gap: the line was seen to be silent for gap_us before the first. time_us: when
  * the last one came. A stream that listens to a line is fed by it.
  */
 void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t count, bool after_gap,

@@ -103,9 +103,21 @@ bool fathom_posix_sent(fathom_posix_uart_t *port)
 
 static bool uart_sent(void *ctx) { return fathom_posix_sent(ctx); }
 
+static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    fathom_posix_uart_t *const port = ctx;
+    const fathom_line_settings_t *const line = &port->line;
+    if (line->baud == settings->baud && line->parity == settings->parity &&
+        line->stop_bits == settings->stop_bits)
+        return 1;
+    const fathom_posix_status_t status = fathom_posix_set_line(port, settings);
+    if (status == FATHOM_POSIX_ERR_BUSY) return 0;
+    return status == FATHOM_POSIX_OK ? 1 : -1;
+}
+
 fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port)
 {
-    const fathom_uart_t uart = {uart_read, uart_write, uart_sent, port};
+    const fathom_uart_t uart = {uart_read, uart_write, uart_sent, uart_set_line, port};
     return uart;
 }
 

@@ -88,6 +88,14 @@ static bool sent(void *ctx)
     return fathom_sim_sent(uart->line, uart->clock->now_us);
 }
 
+static int set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    if (!sent(ctx)) return 0;
+    fathom_sim_set_line(uart->line, settings, uart->clock->now_us);
+    return 1;
+}
+
 void fathom_sim_uart_init(fathom_sim_uart_t *uart, fathom_sim_line_t *line, fathom_sim_clock_t *clock)
 {
     uart->line = line;
@@ -102,6 +110,6 @@ void fathom_sim_uart_init(fathom_sim_uart_t *uart, fathom_sim_line_t *line, fath
 
 fathom_uart_t fathom_sim_uart(fathom_sim_uart_t *uart)
 {
-    const fathom_uart_t hal = {read, write, sent, uart};
+    const fathom_uart_t hal = {read, write, sent, set_line, uart};
     return hal;
 }

@@ -35,6 +35,7 @@ static int fake_write(void *ctx, const uint8_t *bytes, size_t length)
     memcpy(write->bytes, bytes, length);
     write->length = length;
     write->at_us = fake->now_us;
+    write->baud = fake->settings.baud;
     fake->busy_until_us = fake->now_us + (uint32_t)length * fake->byte_us;
     return (int)length;
 }
@@ -43,6 +44,16 @@ static bool fake_sent(void *ctx)
 {
     const fake_t *const fake = ctx;
     return !fake->never_sent && is_due(fake, fake->busy_until_us);
+}
+
+static int fake_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    fake_t *const fake = ctx;
+    fake->set_lines++;
+    if (settings->baud == fake->unsupported_baud) return -1;
+    if (!fake_sent(ctx)) return 0;
+    fake->settings = *settings;
+    return 1;
 }
 
 static uint32_t fake_now_us(void *ctx)
@@ -57,7 +68,7 @@ void fake_init(fake_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000;
     fake->busy_until_us = fake->now_us;
-    fake->uart = (fathom_uart_t){fake_read, fake_write, fake_sent, fake};
+    fake->uart = (fathom_uart_t){fake_read, fake_write, fake_sent, fake_set_line, fake};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 

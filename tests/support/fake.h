@@ -27,6 +27,7 @@ typedef struct {
     uint8_t bytes[FAKE_CHUNK];
     size_t length;
     uint32_t at_us;
+    uint32_t baud; /* that was set then */
 } fake_write_t;
 
 typedef struct {
@@ -41,6 +42,8 @@ typedef struct {
     fake_write_t writes[FAKE_WRITES];
     size_t written;
     unsigned reads;
+    unsigned set_lines;
+    fathom_line_settings_t settings;
 
     /* What goes wrong. */
     bool read_fails;
@@ -48,6 +51,7 @@ typedef struct {
     bool write_busy;
     bool write_torn;
     bool never_sent;
+    uint32_t unsupported_baud;
 
     fathom_uart_t uart;
     fathom_clock_t clock;

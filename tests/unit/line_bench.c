@@ -14,8 +14,9 @@ int set_up(void **state)
     memset(&bench, 0, sizeof bench);
     fake_init(&bench.fake);
     bench.fake.byte_us = BYTE_US;
-    bench.config = (fathom_line_config_t){&bench.fake.uart,   &bench.fake.clock, bench.frame,
-                                          sizeof bench.frame, T3_5_US,           GAP_US};
+    bench.config =
+        (fathom_line_config_t){&bench.fake.uart,     &bench.fake.clock, bench.frame, sizeof bench.frame,
+                               FATHOM_LINE_ECHO_OFF, T3_5_US,           GAP_US};
     assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
     *state = &bench;
     return 0;

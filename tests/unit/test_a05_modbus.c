@@ -325,7 +325,8 @@ static void the_example_of_the_datasheet_goes_over_a_line(void **state)
     (void)state;
     fake_init(&uart);
     uart.byte_us = 1042;
-    const fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, sizeof frame, 3646, 5000};
+    const fathom_line_config_t line_config = {
+        &uart.uart, &uart.clock, frame, sizeof frame, FATHOM_LINE_ECHO_AUTO, 3646, 5000};
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     config.modbus = &modbus;

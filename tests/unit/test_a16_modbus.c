@@ -283,8 +283,8 @@ static void start_wire(wire_t *wire)
 {
     fake_init(&wire->uart);
     wire->uart.byte_us = 1042;
-    wire->line_config =
-        (fathom_line_config_t){&wire->uart.uart, &wire->uart.clock, wire->frame, 13, 3646, 5000};
+    wire->line_config = (fathom_line_config_t){
+        &wire->uart.uart, &wire->uart.clock, wire->frame, 13, FATHOM_LINE_ECHO_AUTO, 3646, 5000};
     assert_int_equal(fathom_line_init(&wire->line, &wire->line_config), FATHOM_READY);
     wire->modbus = fathom_modbus_client(&wire->line);
     config.modbus = &wire->modbus;

@@ -33,7 +33,8 @@ static void commands_3_and_5_go_over_a_line_byte_for_byte(void **state)
     (void)state;
     fake_init(&uart);
     uart.byte_us = 573;
-    const fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, 27, 2006, 5000};
+    const fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, 27, FATHOM_LINE_ECHO_AUTO,
+                                              2006,       5000};
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &uart.clock};
@@ -69,7 +70,8 @@ static void a_line_with_less_room_than_an_answer_says_capacity(void **state)
     fathom_line_t line;
     (void)state;
     fake_init(&uart);
-    fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, 26, 2006, 5000};
+    fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, 26, FATHOM_LINE_ECHO_AUTO,
+                                        2006,       5000};
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &uart.clock};

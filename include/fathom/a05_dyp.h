@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_A05_DYP_H
+#define FATHOM_A05_DYP_H
+
+#include <stdint.h>
+
+#include "fathom/dyp.h"
+#include "fathom/dyp_client.h"
+#include "fathom/dyp_frame.h"
+#include "fathom/dyp_modbus.h"
+#include "fathom/line.h"
+#include "fathom/sensor.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A05 on RS-485, asked with the frames 55 AA of its "DYP protocol" (A05 2). 9600 8N1. One command measures all
+ * four probes (200..210 ms) or one (65..75 ms).
+ *
+ * The same unit speaks Modbus on the same wires (a05_modbus.h), and Modbus is to be preferred: its checksum has 16
+ * bits instead of 8; and one flipped bit in an answer (command 01 to 03) makes a command of it that gives its
+ * address to every other A05 that hears it. So use these frames with one A05 on the line.
+ *
+ * Samples and errors of fathom_poll are those of a05_modbus.h, but for FATHOM_ERR_EXCEPTION, which this protocol
+ * does not have. FATHOM_ERR_CHECKSUM stands for a wrong sum.
+ */
+
+/* From one command to the next, at least (A05 2(3)1). */
+#define FATHOM_A05_DYP_ALL_PROBES_US 250000ul
+#define FATHOM_A05_DYP_ONE_PROBE_US  100000ul
+
+/* Read by init only; line and clock outlive the sensor. Members that are 0 mean their defaults. */
+typedef struct {
+    fathom_line_t *line; /* its frame buffer has 13 bytes or more */
+    const fathom_line_settings_t
+        *settings;       /* NULL: as the line is; else where sensors with different ones share
+                                               a line (line.h) */
+    uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
+    uint32_t period_us;  /* from one command to the next; 0 and anything less: the two above */
+    uint32_t timeout_us; /* 0: 500 ms for all probes, 200 ms for one */
+    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
+    uint8_t address;            /* 1..254; 0: 1, the factory's */
+    uint8_t retries;            /* after a failed attempt; 0: none */
+    uint8_t probes; /* bit probe - 1: wanted; 0: all four. One bit alone: that probe is measured alone,
+                                   which is faster; else all are */
+} fathom_a05_dyp_config_t;
+
+typedef struct {
+    fathom_dyp_modbus_t base;
+    fathom_modbus_t client;
+    uint16_t values[FATHOM_DYP_PROBES];
+} fathom_a05_dyp_t;
+
+/* The sensor may not be moved from then on. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, address 255, a probe over
+ * 4, min_mm over max_mm. */
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config);
+
+/* Cancels what is under way; the memory is the caller's again. */
+void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor);
+
+/* For fathom_poll. */
+fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor);
+
+/* ---- which address does the one A05 on this line have? ---- */
+
+/* All members are find's own. Set it to zero before the first call. */
+typedef struct {
+    fathom_modbus_request_t request;
+    uint16_t value;
+    bool is_asked;
+} fathom_a05_dyp_find_t;
+
+/*
+ * Asks whoever is there, at FF, to measure its first probe, which changes nothing, and takes the address from
+ * the first answer. Call it, with the loop going on in between, until it is not FATHOM_PENDING; it polls the line.
+ * FATHOM_READY: *address is where the answer came from. Each outcome comes once; the next call asks anew.
+ * FATHOM_ERR_NO_ANSWER: nothing in 200 ms. The datasheet does not say whether a unit answers FF (A05 2(3)2).
+ * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several answered at once. Others: as fathom_exchange_t.
+ */
+fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *line, uint8_t *address);
+
+/* Gives it up; the memory is the caller's again. */
+void fathom_a05_dyp_find_cancel(fathom_a05_dyp_find_t *find, fathom_line_t *line);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

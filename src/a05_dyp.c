@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/a05_dyp.h"
+
+/* The answer comes after 200..210 or 65..75 ms (A05 2(3)1). */
+#define ALL_PROBES_TIMEOUT_US 500000ul
+#define ONE_PROBE_TIMEOUT_US  200000ul
+
+enum { ALL_PROBES = 0x0F };
+
+static bool is_one(uint8_t probes) { return (probes & (probes - 1)) == 0; }
+
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
+{
+    fathom_dyp_modbus_t *const base = &sensor->base;
+    fathom_modbus_question_t *const question = &base->question;
+    const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
+    if (config->line == NULL || probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+
+    uint8_t first = 0;
+    question->count = FATHOM_DYP_PROBES;
+    question->timeout_us = ALL_PROBES_TIMEOUT_US;
+    question->pace_us = FATHOM_A05_DYP_ALL_PROBES_US;
+    if (is_one(probes)) {
+        while ((probes >> first & 1) == 0) first++;
+        question->count = 1;
+        question->timeout_us = ONE_PROBE_TIMEOUT_US;
+        question->pace_us = FATHOM_A05_DYP_ONE_PROBE_US;
+    }
+    if (config->timeout_us != 0) question->timeout_us = config->timeout_us;
+    if (config->period_us > question->pace_us) question->pace_us = config->period_us;
+    question->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
+    question->retries = config->retries;
+    question->backoff_us = config->backoff_us;
+    question->settings = config->settings;
+    base->answer.values = sensor->values;
+    base->answer.window.min_mm = config->window.min_mm;
+    base->answer.window.max_mm = config->window.max_mm;
+    base->answer.model = FATHOM_A05;
+    base->answer.first = (uint8_t)(first + 1);
+    base->probes = probes;
+    sensor->client = fathom_dyp_client(config->line);
+    return fathom_dyp_modbus_init(base, &sensor->client, config->line->config->clock,
+                                  config->address != 0 ? config->address : 1, FATHOM_A05_MAX_MM);
+}
+
+void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}
+
+fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *line, uint8_t *address)
+{
+    fathom_modbus_request_t *const request = &find->request;
+    if (!find->is_asked) {
+        request->exchange.timeout_us = ONE_PROBE_TIMEOUT_US;
+        request->exchange.retries = 0;
+        request->exchange.settings = NULL;
+        fathom_modbus_read_holding_registers(&request->message, FATHOM_LINE_ANY_UNIT,
+                                             FATHOM_DYP_FIRST_REGISTER, 1, &find->value);
+        const fathom_status_t status = fathom_dyp_client_submit(line, request);
+        if (status != FATHOM_PENDING) return status;
+        find->is_asked = true;
+    }
+    (void)fathom_line_poll(line); /* a broken port ends the request */
+    if (request->exchange.status == FATHOM_PENDING) return FATHOM_PENDING;
+    find->is_asked = false;
+    if (request->exchange.status == FATHOM_READY) *address = request->message.head[0];
+    return (fathom_status_t)request->exchange.status;
+}
+
+void fathom_a05_dyp_find_cancel(fathom_a05_dyp_find_t *find, fathom_line_t *line)
+{
+    if (find->is_asked) fathom_line_cancel(line, &find->request.exchange);
+    find->is_asked = false;
+}

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_LINE_INSIDE_H
+#define FATHOM_LINE_INSIDE_H
+
+#include "fathom/line.h"
+
+/* What the two halves of a line share: line.c has the queue, what goes out and what time brings about;
+ * line_receive.c what comes in. For nobody else. */
+
+/*
+ * The state of the exchange at the head of the queue: how far it is, and what has gone wrong with its answer.
+ */
+enum {
+    IDLE = 0,            /* nothing is on the wire */
+    REFUSED = 1,         /* the port was too busy to take the request */
+    SENDING = 2,         /* the port has taken it */
+    LISTENING = 3,       /* it has left; the answer may come */
+    PHASE = 3,           /* these two bits */
+    DAMAGED = 4,         /* an answer came and was wrong from end to end */
+    TORN = 8,            /* an answer seemed to begin and broke off */
+    SPOILT = 12,         /* either: nothing more is to be expected than the rest of it */
+    ANSWERED_WRONG = 16, /* the unit sent something else; the answer may still come */
+    NOISY = 32,          /* bytes came that nobody took */
+    ECHOED = 64          /* the request came back */
+};
+
+/* fathom_line_t.known */
+enum { AFTER_GAP = 1, ECHO_SHIFT = 1 };
+
+static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
+
+/* An answer to all may come from anyone. */
+static inline uint16_t owing_bits(uint8_t unit)
+{
+    return unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : (uint16_t)(1u << (unit & 15));
+}
+
+static inline bool is_answered(const fathom_exchange_t *exchange)
+{
+    return exchange->unit != FATHOM_LINE_ALL_UNITS;
+}
+
+static inline uint16_t gap_us(const fathom_line_t *line)
+{
+    const uint16_t us = line->config->gap_us;
+    return us != 0 ? us : FATHOM_LINE_DEFAULT_GAP_US;
+}
+
+static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
+{
+    uint16_t *const counter = &line->counters[which];
+    const uint16_t sum = (uint16_t)(*counter + by);
+    *counter = sum < by ? UINT16_MAX : sum;
+}
+
+static inline void set_silent(fathom_line_t *line, uint32_t us)
+{
+    line->silent_us = us > UINT16_MAX ? UINT16_MAX : (uint16_t)us;
+}
+
+/* *link leaves the queue; if it was on the wire, the wire is free. */
+void fathom_line_finish(fathom_line_t *line, fathom_exchange_t **link, int8_t status);
+
+/*
+ * The exchange on the wire may still be answered: its unit is asked nothing until twice the time-out has
+ * passed since the request left. What broke off may have been noise, and the answer late; what was damaged
+ * from end to end hardly was, so that after it the rest of the time-out is enough.
+ */
+void fathom_line_owe(fathom_line_t *line);
+
+/* The attempt on the wire has failed. */
+void fathom_line_fail(fathom_line_t *line);
+
+/*
+ * Reads what has come and looks at it; false: the port is broken. A silence is known only where a read found
+ * nothing: what a read brings may have come at any time since the one before.
+ */
+bool fathom_line_receive(fathom_line_t *line, uint32_t passed_us);
+
+#endif
