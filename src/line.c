@@ -3,7 +3,7 @@
 
 #include "line_inside.h"
 
-enum { LEAST_FRAME = 8, SEND_POLL_US = 1000 };
+enum { MAX_READS = 16, LEAST_FRAME = 8, SEND_POLL_US = 1000 };
 
 static uint16_t silence_us(const fathom_line_t *line)
 {
@@ -17,6 +17,13 @@ static fathom_exchange_t **find(fathom_line_t *line, const fathom_exchange_t *ex
     fathom_exchange_t **link = &line->head;
     while (*link != NULL && *link != exchange) link = &(*link)->link.next;
     return link;
+}
+
+void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by)
+{
+    uint16_t *const counter = &line->counters[which];
+    const uint16_t sum = (uint16_t)(*counter + by);
+    *counter = sum < by ? UINT16_MAX : sum;
 }
 
 void fathom_line_finish(fathom_line_t *line, fathom_exchange_t **link, int8_t status)
@@ -45,7 +52,7 @@ void fathom_line_fail(fathom_line_t *line)
         error = -FATHOM_ERR_CHECKSUM;
     else if ((line->state & ANSWERED_WRONG) != 0)
         error = -FATHOM_ERR_MALFORMED;
-    count(line, error, 1);
+    fathom_line_count(line, error, 1);
     fathom_line_owe(line);
     if ((line->state & (ECHOED | SPOILT | ANSWERED_WRONG)) == ECHOED &&
         fathom_line_echo(line) == FATHOM_LINE_ECHO_AUTO)
@@ -57,11 +64,31 @@ void fathom_line_fail(fathom_line_t *line)
 static fathom_status_t broken(fathom_line_t *line)
 {
     if (line->state > REFUSED) fathom_line_owe(line);
-    count(line, FATHOM_LINE_PORT_ERRORS, 1);
+    fathom_line_count(line, FATHOM_LINE_PORT_ERRORS, 1);
     line->have = 0;
     line->known = 0; /* perhaps it comes back as another one */
     while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_PORT);
     return FATHOM_ERR_PORT;
+}
+
+/* Reads what has come and looks at it; false: the port is broken. */
+static bool receive(fathom_line_t *line, uint32_t passed_us)
+{
+    for (uint8_t reads = MAX_READS; reads != 0; reads--) {
+        int came = fathom_line_read(line, passed_us);
+        if (came < 0) return false;
+        if (came == 0) break;
+        if (came > COUNT_READ) {
+            const uint8_t had = line->have;
+            fathom_line_scan(line, true);
+            came = fathom_line_lose(line, had, came);
+        }
+        passed_us = 0;
+        line->have = (uint8_t)(line->have + came);
+        fathom_line_scan(line, false);
+    }
+    fathom_line_scan(line, line->silent_us >= gap_us(line));
+    return true;
 }
 
 static bool is_spoilt(const fathom_line_t *line) { return (line->state & SPOILT) != 0; }
@@ -192,7 +219,7 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
     line->polled_us = now_us;
     if (fathom_run_down(&line->owed_us, passed_us)) line->owing = 0;
     fathom_run_down(&line->left_us, passed_us);
-    if (!fathom_line_receive(line, passed_us)) return broken(line);
+    if (!receive(line, passed_us)) return broken(line);
     if (line->state > REFUSED) status = pass(line);
     if (line->state <= REFUSED && status == FATHOM_PENDING) status = send(line);
     return status;

@@ -46,13 +46,6 @@ static inline uint16_t gap_us(const fathom_line_t *line)
     return us != 0 ? us : FATHOM_LINE_DEFAULT_GAP_US;
 }
 
-static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
-{
-    uint16_t *const counter = &line->counters[which];
-    const uint16_t sum = (uint16_t)(*counter + by);
-    *counter = sum < by ? UINT16_MAX : sum;
-}
-
 static inline void set_silent(fathom_line_t *line, uint32_t us)
 {
     line->silent_us = us > UINT16_MAX ? UINT16_MAX : (uint16_t)us;
@@ -71,10 +64,25 @@ void fathom_line_owe(fathom_line_t *line);
 /* The attempt on the wire has failed. */
 void fathom_line_fail(fathom_line_t *line);
 
+/* Adds to a counter. */
+void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
+
 /*
- * Reads what has come and looks at it; false: the port is broken. A silence is known only where a read found
- * nothing: what a read brings may have come at any time since the one before.
+ * One read of the port, to the end of the frame: how many bytes, with LOST where some were lost before them and BAD
+ * where they are wrong; 0, or < 0 when the port is broken. A silence is known only where a read found nothing: what
+ * a read brings may have come at any time since the one before, passed_us ago.
  */
-bool fathom_line_receive(fathom_line_t *line, uint32_t passed_us);
+enum { COUNT_READ = 0x0FF, LOST = 0x100, BAD = 0x200 };
+int fathom_line_read(fathom_line_t *line, uint32_t passed_us);
+
+/*
+ * Takes frames from the front of what was received, and drops what cannot begin one; `over`: nothing more will
+ * come to complete a frame.
+ */
+void fathom_line_scan(fathom_line_t *line, bool over);
+
+/* After a read that was marked LOST or BAD, and after what had come before it, `had` bytes, was scanned as over: how
+ * many of the bytes are to be kept, which now stand at the front. */
+uint8_t fathom_line_lose(fathom_line_t *line, uint8_t had, int came);
 
 #endif

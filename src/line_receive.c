@@ -3,7 +3,7 @@
 
 #include "line_inside.h"
 
-enum { MAX_READS = 16, LEAST_TORN = 3 };
+enum { LEAST_TORN = 3 };
 
 /* The exchange that the bytes which come now may answer. */
 static fathom_exchange_t *asked(const fathom_line_t *line)
@@ -21,7 +21,7 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
     fathom_listener_t *const listener = line->listener;
     if (!taken) {
         if (listener == NULL)
-            count(line, FATHOM_LINE_DROPPED_BYTES, length);
+            fathom_line_count(line, FATHOM_LINE_DROPPED_BYTES, length);
         else
             listener->receive(listener, to, length, (line->known & AFTER_GAP) != 0,
                               fathom_line_heard_us(line));
@@ -44,7 +44,7 @@ static bool end_with(fathom_line_t *line, fathom_exchange_t **link, int8_t statu
         if (status != FATHOM_ERR_EXCEPTION) return false;
         which = FATHOM_LINE_EXCEPTIONS;
     }
-    count(line, which, 1);
+    fathom_line_count(line, which, 1);
     fathom_line_finish(line, link, status);
     return true;
 }
@@ -55,7 +55,7 @@ static bool deliver_late(fathom_line_t *line, uint8_t unit)
 {
     const uint16_t owing = line->owing & (uint16_t)~owing_bits(unit);
     const bool is_late = owing != line->owing;
-    count(line, is_late ? FATHOM_LINE_LATE_ANSWERS : FATHOM_LINE_STRAYS, 1);
+    fathom_line_count(line, is_late ? FATHOM_LINE_LATE_ANSWERS : FATHOM_LINE_STRAYS, 1);
     line->owing = owing;
     if (!is_late) return false;
     for (fathom_exchange_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
@@ -128,11 +128,7 @@ static uint8_t judge(fathom_line_t *line, const fathom_match_t *match, bool is_w
     return 1;
 }
 
-/*
- * Takes frames from the front of what was received, and drops what cannot begin one; `over`: nothing more will
- * come to complete a frame.
- */
-static void scan(fathom_line_t *line, bool over)
+void fathom_line_scan(fathom_line_t *line, bool over)
 {
     while (line->have != 0 && (over || line->have >= line->need)) {
         fathom_exchange_t *const exchange = asked(line);
@@ -152,46 +148,39 @@ static void scan(fathom_line_t *line, bool over)
     }
 }
 
-/* The port knows that bytes are wrong or missing here: what had begun before them will never be whole. */
-static void lose(fathom_line_t *line)
-{
-    fathom_listener_t *const listener = line->listener;
-    scan(line, true);
-    if (listener != NULL)
-        listener->receive(listener, line->config->frame, 0, false, fathom_line_heard_us(line));
-    if (asked(line) != NULL) line->state |= NOISY;
-}
-
-bool fathom_line_receive(fathom_line_t *line, uint32_t passed_us)
+int fathom_line_read(fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_line_config_t *const config = line->config;
     const fathom_uart_t *const uart = config->uart;
-    for (uint8_t reads = MAX_READS; reads != 0; reads--) {
-        fathom_rx_t rx = {0, 0};
-        const int n =
-            uart->read(uart->ctx, config->frame + line->have, (size_t)(config->frame_size - line->have), &rx);
-        if (n < 0) return false;
-        if (n == 0) {
-            set_silent(line, line->silent_us + passed_us);
-            break;
-        }
-        const bool is_silent = (rx.flags & FATHOM_RX_SILENCE) != 0 ||
-                               (line->listener != NULL && line->silent_us >= line->listener->gap_us);
-        passed_us = 0;
-        set_silent(line,
-                   (rx.flags & FATHOM_RX_TIMED) != 0 ? fathom_elapsed_us(line->polled_us, rx.last_us) : 0);
-        if ((rx.flags & (FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN)) != 0) {
-            const bool is_bad = (rx.flags & (FATHOM_RX_PARITY | FATHOM_RX_FRAMING)) != 0;
-            const uint8_t *from = config->frame + line->have;
-            count(line, FATHOM_LINE_BAD_BYTES, (uint8_t)(is_bad ? n : 1));
-            lose(line);
-            if (is_bad) continue;
-            for (uint8_t i = 0; i != (uint8_t)n; i++) config->frame[i] = *from++;
-        }
-        if (line->have == 0 && is_silent) line->known |= AFTER_GAP;
-        line->have = (uint8_t)(line->have + n);
-        scan(line, false);
+    fathom_rx_t rx = {0, 0};
+    int n = uart->read(uart->ctx, config->frame + line->have, (size_t)(config->frame_size - line->have), &rx);
+    if (n <= 0) {
+        set_silent(line, line->silent_us + passed_us);
+        return n;
     }
-    scan(line, line->silent_us >= gap_us(line));
-    return true;
+    if (line->have == 0 && ((rx.flags & FATHOM_RX_SILENCE) != 0 ||
+                            (line->listener != NULL && line->silent_us >= line->listener->gap_us)))
+        line->known |= AFTER_GAP;
+    set_silent(line, (rx.flags & FATHOM_RX_TIMED) != 0 ? fathom_elapsed_us(line->polled_us, rx.last_us) : 0);
+    if ((rx.flags & FATHOM_RX_OVERRUN) != 0) n |= LOST;
+    if ((rx.flags & (FATHOM_RX_PARITY | FATHOM_RX_FRAMING)) != 0) n |= BAD;
+    return n;
+}
+
+uint8_t fathom_line_lose(fathom_line_t *line, uint8_t had, int came)
+{
+    uint8_t *to = line->config->frame;
+    const uint8_t *from = to + had;
+    fathom_listener_t *const listener = line->listener;
+    const uint8_t count = (uint8_t)came;
+    if (asked(line) != NULL) line->state |= NOISY;
+    if (listener != NULL) listener->receive(listener, to, 0, false, fathom_line_heard_us(line));
+    if ((came & BAD) != 0) {
+        line->known &= (uint8_t)~AFTER_GAP;
+        fathom_line_count(line, FATHOM_LINE_BAD_BYTES, count);
+        return 0;
+    }
+    fathom_line_count(line, FATHOM_LINE_BAD_BYTES, 1);
+    for (uint8_t left = count; left != 0; left--) *to++ = *from++;
+    return count;
 }
