@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/dyp_protocol.h"
+
+enum { GUARD = 0xA5, GUARD16 = 0xA5A5, BYTES = 256, MOST = FATHOM_DYP_MAX_ANSWER };
+
+/* A05 2(3)2: 01 all probes, 10 to 13 one probe, 03 the address; anything else is no command. */
+static uint8_t length_by_the_datasheet(unsigned command)
+{
+    static const uint8_t one_probe[] = {0x10, 0x11, 0x12, 0x13};
+    if (command == 0x01) return 13;
+    if (command == 0x03) return 5;
+    for (unsigned i = 0; i != sizeof one_probe; i++)
+        if (command == one_probe[i]) return 7;
+    return 0;
+}
+
+/* The sum by the datasheet's formula, over whole numbers. */
+static uint8_t sum_of(const uint8_t *bytes, unsigned count)
+{
+    unsigned sum = 0;
+    while (count != 0) sum += bytes[--count];
+    return (uint8_t)(sum & 0x00FF);
+}
+
+/* A05 2(3)3 with the right sum, 2(3)4, 2(3)5. */
+static const uint8_t all_probes[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07,
+                                     0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
+static const uint16_t all_values[] = {1000, 2000, 1953, 3562};
+static const uint8_t probe_1[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
+static const uint8_t address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07};
+
+/* ---- commands ---- */
+
+static void every_command_has_the_length_and_the_values_of_the_datasheet(void **state)
+{
+    unsigned known = 0;
+    (void)state;
+    for (unsigned command = 0; command != BYTES; command++) {
+        const uint8_t length = length_by_the_datasheet(command);
+        const uint8_t values = length == 13 ? 4 : length == 7 ? 1 : 0;
+        assert_int_equal(fathom_dyp_protocol_answer_length((uint8_t)command), length);
+        assert_int_equal(fathom_dyp_protocol_values((uint8_t)command), values);
+        known += length != 0;
+    }
+    assert_int_equal(known, 6);
+}
+
+/* 55 + AA = FF, so the sum is address + command - 1. */
+static void every_request_is_55_AA_address_command_and_the_sum(void **state)
+{
+    unsigned tried = 0;
+    (void)state;
+    for (unsigned address = 0; address != BYTES; address++) {
+        for (unsigned command = 0; command != BYTES; command++, tried++) {
+            const uint8_t expected[] = {
+                0x55, 0xAA, (uint8_t)address, (uint8_t)command, (uint8_t)(address + command - 1), GUARD};
+            uint8_t frame[sizeof expected];
+            memset(frame, GUARD, sizeof frame);
+            assert_int_equal(fathom_dyp_protocol_encode_request(frame, (uint8_t)address, (uint8_t)command),
+                             5);
+            assert_memory_equal(frame, expected, sizeof expected);
+        }
+    }
+    assert_int_equal(tried, 65536);
+}
+
+/* ---- how long an answer is ---- */
+
+/* The buffer is as large as what came, so that the address sanitizer sees a look beyond it; and with every byte
+ * behind it the result is the same. */
+static uint8_t length_of(const uint8_t *bytes, uint8_t have)
+{
+    uint8_t *const alone = malloc(have);
+    uint8_t behind[MOST + 1];
+    assert_non_null(alone);
+    memcpy(alone, bytes, have);
+    const uint8_t length = fathom_dyp_protocol_length(alone, have);
+    free(alone);
+    for (unsigned filling = 0; filling != BYTES; filling++) {
+        memset(behind, (int)filling, sizeof behind);
+        memcpy(behind, bytes, have);
+        assert_int_equal(fathom_dyp_protocol_length(behind, have), length);
+    }
+    return length;
+}
+
+static void the_length_of_every_answer_is_known_from_its_fourth_byte(void **state)
+{
+    unsigned tried = 0;
+    (void)state;
+    for (unsigned command = 0; command != BYTES; command++) {
+        uint8_t bytes[MOST];
+        memset(bytes, 0, sizeof bytes);
+        memcpy(bytes, address_5, 3);
+        bytes[3] = (uint8_t)command;
+        for (uint8_t have = 1; have <= MOST; have++, tried++)
+            assert_int_equal(length_of(bytes, have), have < 4 ? 4 : length_by_the_datasheet(command));
+    }
+    assert_int_equal(tried, 256 * 13);
+}
+
+static void no_address_changes_the_length(void **state)
+{
+    (void)state;
+    for (unsigned address = 0; address != BYTES; address++) {
+        uint8_t bytes[MOST];
+        memcpy(bytes, all_probes, MOST);
+        bytes[2] = (uint8_t)address;
+        for (uint8_t have = 1; have <= MOST; have++)
+            assert_int_equal(fathom_dyp_protocol_length(bytes, have), have < 4 ? 4 : 13);
+    }
+}
+
+static void what_does_not_begin_with_55_AA_is_no_answer_from_any_prefix(void **state)
+{
+    unsigned refused = 0;
+    (void)state;
+    for (unsigned byte = 0; byte != BYTES; byte++) {
+        uint8_t first[MOST];
+        uint8_t second[MOST];
+        memcpy(first, all_probes, MOST);
+        memcpy(second, all_probes, MOST);
+        first[0] = (uint8_t)byte;
+        second[1] = (uint8_t)byte;
+        for (uint8_t have = 1; have <= MOST; have++) {
+            const uint8_t whole = have < 4 ? 4 : 13;
+            assert_int_equal(length_of(first, have), byte == 0x55 ? whole : 0);
+            assert_int_equal(length_of(second, have), byte == 0xAA || have == 1 ? whole : 0);
+            refused += byte != 0x55;
+            refused += byte != 0xAA && have != 1;
+        }
+    }
+    assert_int_equal(refused, 255 * 13 + 255 * 12);
+}
+
+/* ---- sums ---- */
+
+/* One length after the other, every last byte: just the one that the formula gives is right. */
+static void of_256_last_bytes_one_is_the_sum_at_every_length(void **state)
+{
+    (void)state;
+    for (uint8_t length = 1; length <= MOST; length++) {
+        uint8_t frame[MOST];
+        unsigned right = 0;
+        memcpy(frame, all_probes, MOST);
+        for (unsigned last = 0; last != BYTES; last++) {
+            frame[length - 1] = (uint8_t)last;
+            const bool is_valid = fathom_dyp_protocol_valid(frame, length);
+            assert_int_equal(is_valid, last == sum_of(frame, length - 1u));
+            right += is_valid;
+        }
+        assert_int_equal(right, 1);
+    }
+}
+
+static void what_lies_behind_a_frame_does_not_count(void **state)
+{
+    (void)state;
+    uint8_t *const alone = malloc(sizeof address_5);
+    assert_non_null(alone);
+    memcpy(alone, address_5, sizeof address_5);
+    assert_true(fathom_dyp_protocol_valid(alone, sizeof address_5));
+    free(alone);
+    for (unsigned filling = 0; filling != BYTES; filling++) {
+        uint8_t frame[MOST];
+        memset(frame, (int)filling, sizeof frame);
+        memcpy(frame, address_5, sizeof address_5);
+        assert_true(fathom_dyp_protocol_valid(frame, sizeof address_5));
+    }
+}
+
+/* ---- answers ---- */
+
+static void the_answers_of_the_datasheet_go_both_ways(void **state)
+{
+    static const uint16_t mm_1953[] = {1953};
+    uint8_t frame[MOST + 1];
+    uint16_t values[5];
+    (void)state;
+    memset(frame, GUARD, sizeof frame);
+    assert_int_equal(fathom_dyp_protocol_encode_answer(frame, 1, FATHOM_DYP_ALL_PROBES, all_values), 13);
+    assert_memory_equal(frame, all_probes, 13);
+    assert_int_equal(frame[13], GUARD);
+    memset(values, GUARD, sizeof values);
+    fathom_dyp_protocol_decode(all_probes, values);
+    assert_memory_equal(values, all_values, sizeof all_values);
+    assert_int_equal(values[4], GUARD16);
+
+    memset(frame, GUARD, sizeof frame);
+    assert_int_equal(fathom_dyp_protocol_encode_answer(frame, 1, FATHOM_DYP_FIRST_PROBE, mm_1953), 7);
+    assert_memory_equal(frame, probe_1, 7);
+    assert_int_equal(frame[7], GUARD);
+    memset(values, GUARD, sizeof values);
+    fathom_dyp_protocol_decode(probe_1, values);
+    assert_int_equal(values[0], 1953);
+    assert_int_equal(values[1], GUARD16);
+
+    memset(frame, GUARD, sizeof frame);
+    assert_int_equal(fathom_dyp_protocol_encode_answer(frame, 5, FATHOM_DYP_SET_ADDRESS, NULL), 5);
+    assert_memory_equal(frame, address_5, 5);
+    assert_int_equal(frame[5], GUARD);
+    memset(values, GUARD, sizeof values);
+    fathom_dyp_protocol_decode(address_5, values);
+    assert_int_equal(values[0], GUARD16);
+}
+
+static void every_command_from_every_address_goes_both_ways(void **state)
+{
+    static const uint8_t commands[] = {0x01, 0x03, 0x10, 0x11, 0x12, 0x13};
+    unsigned tried = 0;
+    (void)state;
+    for (unsigned i = 0; i != sizeof commands; i++) {
+        const uint8_t length = length_by_the_datasheet(commands[i]);
+        const unsigned count = (length - 5u) / 2;
+        for (unsigned address = 0; address != BYTES; address++, tried++) {
+            /* Values that move with the address, all bytes of them different. */
+            const uint16_t sent[] = {(uint16_t)(address * 257 + 1), (uint16_t)(address * 514 + 0x1234),
+                                     (uint16_t)(65535 - address), (uint16_t)(address * 256)};
+            uint8_t expected[MOST + 1] = {0x55, 0xAA, (uint8_t)address, commands[i]};
+            uint8_t frame[MOST + 1];
+            uint16_t values[5];
+            for (unsigned n = 0; n != count; n++) {
+                expected[4 + 2 * n] = (uint8_t)(sent[n] / 256);
+                expected[5 + 2 * n] = (uint8_t)(sent[n] % 256);
+            }
+            expected[length - 1] = sum_of(expected, length - 1u);
+            expected[length] = GUARD;
+            memset(frame, GUARD, sizeof frame);
+            assert_int_equal(fathom_dyp_protocol_encode_answer(frame, (uint8_t)address, commands[i], sent),
+                             length);
+            assert_memory_equal(frame, expected, length + 1u);
+            assert_true(fathom_dyp_protocol_valid(expected, length));
+            memset(values, GUARD, sizeof values);
+            fathom_dyp_protocol_decode(expected, values);
+            assert_memory_equal(values, sent, count * sizeof *sent);
+            assert_int_equal(values[count], GUARD16);
+        }
+    }
+    assert_int_equal(tried, 6 * 256);
+}
+
+/* SUM = 00 + 10 + H + L for address 1: 55 + AA + 01 is 100. */
+static void every_value_of_one_probe_goes_both_ways(void **state)
+{
+    (void)state;
+    for (unsigned mm = 0; mm != 65536; mm++) {
+        const uint8_t high = (uint8_t)(mm / 256);
+        const uint8_t low = (uint8_t)(mm % 256);
+        const uint8_t expected[] = {0x55, 0xAA, 0x01, 0x10, high, low, (uint8_t)(0x10 + high + low)};
+        const uint16_t value = (uint16_t)mm;
+        uint16_t decoded = (uint16_t)~mm;
+        uint8_t frame[7];
+        assert_int_equal(fathom_dyp_protocol_encode_answer(frame, 1, FATHOM_DYP_FIRST_PROBE, &value), 7);
+        assert_memory_equal(frame, expected, 7);
+        assert_true(fathom_dyp_protocol_valid(expected, 7));
+        fathom_dyp_protocol_decode(expected, &decoded);
+        assert_int_equal(decoded, mm);
+    }
+}
+
+/* ---- mistakes in the datasheet ---- */
+
+/* A05 2(3)3 prints 60 for the answer with four distances, which is the sum of the UART frame of 1(3). By its own
+ * formula: 55 + AA + 01 + 01 + 03 + E8 + 07 + D0 + 07 + A1 + 0D + EA = 462. */
+static void A05_2_3_3_the_printed_sum_60_is_refused_and_62_is_right(void **state)
+{
+    uint8_t frame[MOST];
+    (void)state;
+    memcpy(frame, all_probes, MOST);
+    frame[12] = 0x60;
+    assert_false(fathom_dyp_protocol_valid(frame, MOST));
+    frame[12] = 0x62;
+    assert_true(fathom_dyp_protocol_valid(frame, MOST));
+}
+
+/* A05 2(3)5 prints the command of set-address as 10 and its answer with Data_H and Data_L, 7 bytes; its example and
+ * the list of commands have 03 and 5 bytes. 55 + AA + 05 + 03 = 107. */
+static void A05_2_3_5_command_10_with_7_bytes_is_not_the_answer_to_set_address(void **state)
+{
+    uint8_t frame[MOST];
+    (void)state;
+    assert_int_equal(FATHOM_DYP_SET_ADDRESS, 0x03);
+    assert_int_equal(fathom_dyp_protocol_encode_request(frame, 5, FATHOM_DYP_SET_ADDRESS), 5);
+    assert_memory_equal(frame, address_5, 5);
+    assert_int_equal(fathom_dyp_protocol_length(address_5, 5), 5);
+    assert_true(fathom_dyp_protocol_valid(address_5, 5));
+    assert_int_equal(fathom_dyp_protocol_values(FATHOM_DYP_SET_ADDRESS), 0);
+    /* Command 10 is a measurement of probe 1, whoever prints it under another head. */
+    assert_int_equal(fathom_dyp_protocol_answer_length(0x10), 7);
+    assert_int_equal(fathom_dyp_protocol_values(0x10), 1);
+}
+
+/* A05 2(3)3's table prints "Data_1H Data_1H" and "Data_2H Data_2H"; its example has 03 E8 for 1000 mm. */
+static void A05_2_3_3_the_table_has_the_high_byte_twice_but_high_and_then_low_is_right(void **state)
+{
+    uint16_t values[4] = {0};
+    uint8_t frame[MOST];
+    (void)state;
+    fathom_dyp_protocol_decode(all_probes, values);
+    assert_int_equal(values[0], 1000); /* not 0303, not E803 */
+    assert_int_equal(values[1], 2000);
+    assert_int_equal(fathom_dyp_protocol_encode_answer(frame, 1, FATHOM_DYP_ALL_PROBES, all_values), 13);
+    assert_int_equal(frame[4], 0x03);
+    assert_int_equal(frame[5], 0xE8);
+    assert_int_equal(frame[6], 0x07);
+    assert_int_equal(frame[7], 0xD0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_command_has_the_length_and_the_values_of_the_datasheet),
+        cmocka_unit_test(every_request_is_55_AA_address_command_and_the_sum),
+        cmocka_unit_test(the_length_of_every_answer_is_known_from_its_fourth_byte),
+        cmocka_unit_test(no_address_changes_the_length),
+        cmocka_unit_test(what_does_not_begin_with_55_AA_is_no_answer_from_any_prefix),
+        cmocka_unit_test(of_256_last_bytes_one_is_the_sum_at_every_length),
+        cmocka_unit_test(what_lies_behind_a_frame_does_not_count),
+        cmocka_unit_test(the_answers_of_the_datasheet_go_both_ways),
+        cmocka_unit_test(every_command_from_every_address_goes_both_ways),
+        cmocka_unit_test(every_value_of_one_probe_goes_both_ways),
+        cmocka_unit_test(A05_2_3_3_the_printed_sum_60_is_refused_and_62_is_right),
+        cmocka_unit_test(A05_2_3_5_command_10_with_7_bytes_is_not_the_answer_to_set_address),
+        cmocka_unit_test(A05_2_3_3_the_table_has_the_high_byte_twice_but_high_and_then_low_is_right),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
