@@ -8,11 +8,10 @@
 #include <cmocka.h>
 
 #include "fathom/crc16.h"
-#include "fathom/dyp_frame.h"
 #include "fathom/modbus_rtu.h"
 #include "vectors.h"
 
-/* What a wrong byte on the wire does to the frames of vectors.c. */
+/* What a wrong byte on the wire does to the Modbus frames of vectors.c; test_corruption_sums.c has the others. */
 
 typedef uint8_t length_of_t(const uint8_t *, uint8_t);
 
@@ -186,35 +185,6 @@ static void the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_co
                                                                                                    : 13);
 }
 
-static void every_single_byte_error_in_a_frame_of_its_own_accord_is_refused(void **state)
-{
-    (void)state;
-    for (unsigned i = 0; i != AUTO_ROWS; i++) {
-        const vector_t *const row = &auto_vectors[i].frame;
-        uint8_t bytes[VECTOR_BYTES];
-        memcpy(bytes, row->bytes, sizeof bytes);
-        for (unsigned at = 0; at != row->length; at++) {
-            for (unsigned change = 1; change != 256; change++) {
-                bytes[at] = (uint8_t)(row->bytes[at] ^ change);
-                assert_false(fathom_dyp_frame_valid(bytes, row->length));
-            }
-            bytes[at] = row->bytes[at];
-        }
-    }
-}
-
-/* 8 bits of sum do not see the order of bytes, nor two errors that cancel out. Not refused, and known: */
-static void what_an_8_bit_sum_cannot_see_is_this_list(void **state)
-{
-    static const uint8_t unseen[3][4] = {
-        {0xFF, 0xA1, 0x07, 0xA7}, /* the bytes of A16 2(4) changed places: 41223 mm */
-        {0xFF, 0x08, 0xA0, 0xA7}, /* one more and one less: 2208 mm */
-        {0xFF, 0x87, 0x21, 0xA7}, /* bit 7 of both: 34593 mm */
-    };
-    (void)state;
-    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_frame_valid(unseen[i], 4));
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -226,8 +196,6 @@ int main(void)
         cmocka_unit_test(a_modbus_frame_that_breaks_off_is_refused_wherever_it_does),
         cmocka_unit_test(the_length_of_an_answer_is_known_from_its_third_byte),
         cmocka_unit_test(the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count),
-        cmocka_unit_test(every_single_byte_error_in_a_frame_of_its_own_accord_is_refused),
-        cmocka_unit_test(what_an_8_bit_sum_cannot_see_is_this_list),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,352 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/dyp_frame.h"
+#include "fathom/dyp_protocol.h"
+#include "vectors.h"
+
+/*
+ * What wrong bytes on the wire do to the frames of vectors.c that have a sum of 8 bits; test_corruption.c has those
+ * with a CRC. One wrong byte always changes the sum of its frame. What can still be taken is another frame: a
+ * shorter one at the front, if the command became another, or a request, which a unit hears in an answer.
+ *
+ * So there are three receivers of 55 AA frames. Each looks at every byte of what came as a beginning, which is the
+ * most that a receiver can do to find a frame.
+ */
+typedef bool receiver_t(const vector_t *sent, const uint8_t *bytes, uint8_t have);
+
+static bool takes_any(const uint8_t *bytes, uint8_t have)
+{
+    const uint8_t length = fathom_dyp_protocol_length(bytes, have);
+    return length != 0 && length <= have && fathom_dyp_protocol_valid(bytes, length);
+}
+
+/* Takes any answer: who only listens, or sets an address and does not look at which. */
+static bool takes_any_answer(const vector_t *sent, const uint8_t *bytes, uint8_t have)
+{
+    (void)sent;
+    for (; have != 0; have--, bytes++)
+        if (takes_any(bytes, have)) return true;
+    return false;
+}
+
+/* Takes the answer to what it asked: the address and the command of the frame that was sent, and so its length. */
+static bool takes_its_answer(const vector_t *sent, const uint8_t *bytes, uint8_t have)
+{
+    for (; have != 0; have--, bytes++)
+        if (takes_any(bytes, have) && bytes[2] == sent->bytes[2] && bytes[3] == sent->bytes[3]) return true;
+    return false;
+}
+
+static bool is_command(uint8_t byte)
+{
+    return byte == 0x01 || byte == 0x03 || (byte >= 0x10 && byte <= 0x13);
+}
+
+/* A unit on the line, of whatever address: obeys 55 AA ADDRESS COMMAND SUM (A05 2(3)), wherever it hears that. */
+static bool hears_a_request(const vector_t *sent, const uint8_t *bytes, uint8_t have)
+{
+    (void)sent;
+    for (; have >= 5; have--, bytes++) {
+        const unsigned sum = (unsigned)bytes[0] + bytes[1] + bytes[2] + bytes[3];
+        if (bytes[0] == 0x55 && bytes[1] == 0xAA && is_command(bytes[3]) && bytes[4] == (sum & 0xFF))
+            return true;
+    }
+    return false;
+}
+
+/* Whoever takes FF frames knows how long they are. */
+static bool takes_its_frame(const vector_t *sent, const uint8_t *bytes, uint8_t have)
+{
+    (void)sent;
+    return fathom_dyp_frame_valid(bytes, have);
+}
+
+/* A wrong byte that leaves something to be taken. A list of them ends with END. */
+typedef struct {
+    uint8_t row, at, byte;
+} unrefused_t;
+
+enum { NO_ROW = 0xFF };
+#define END                                                                                                  \
+    {                                                                                                        \
+        NO_ROW, 0, 0                                                                                         \
+    }
+
+static const unrefused_t nothing[] = {END};
+
+static unsigned tried;
+
+static bool is_one_bit(unsigned change) { return (change & (change - 1)) == 0; }
+
+/* Every other value of every byte; what is taken has to be the next of the list. Returns how many were. */
+static unsigned corrupt(const vector_t *sent, uint8_t row, receiver_t *takes, bool bits,
+                        const unrefused_t *list)
+{
+    uint8_t bytes[VECTOR_BYTES];
+    unsigned taken = 0;
+    memcpy(bytes, sent->bytes, sizeof bytes);
+    for (uint8_t at = 0; at != sent->length; at++) {
+        for (unsigned byte = 0; byte != 256; byte++) {
+            const unsigned change = byte ^ sent->bytes[at];
+            if (change == 0 || (bits && !is_one_bit(change))) continue;
+            tried++;
+            bytes[at] = (uint8_t)byte;
+            if (!takes(sent, bytes, sent->length)) continue;
+            assert_int_equal(list[taken].row, row);
+            assert_int_equal(list[taken].at, at);
+            assert_int_equal(list[taken].byte, byte);
+            taken++;
+        }
+        bytes[at] = sent->bytes[at];
+    }
+    return taken;
+}
+
+/* Over all rows of 55 AA frames that go in `direction`. */
+static unsigned corrupt_rows(uint8_t direction, receiver_t *takes, bool bits, const unrefused_t *list)
+{
+    unsigned taken = 0;
+    tried = 0;
+    for (uint8_t row = 0; row != DYP_ROWS; row++)
+        if ((dyp_vectors[row].frame.direction & direction) != 0)
+            taken += corrupt(&dyp_vectors[row].frame, row, takes, bits, list + taken);
+    return taken;
+}
+
+/* Bytes of the tables: FF frames 4 + 10; 55 AA requests 5 + 5 + 5, answers 13 + 7 + 5. The last of each is one
+ * frame. */
+enum { FF_BYTES = 14, REQUEST_BYTES = 15, ANSWER_BYTES = 25, DYP_BYTES = 35 };
+
+enum { REQUEST_ALL = 0, ANSWER_ALL = 1, REQUEST_ONE = 2, ANSWER_ONE = 3, ADDRESS_5 = 4 }; /* rows */
+
+static void every_frame_without_an_error_is_taken_by_whom_it_is_meant_for(void **state)
+{
+    unsigned bytes = 0;
+    (void)state;
+    for (unsigned i = 0; i != AUTO_ROWS; i++) {
+        const vector_t *const frame = &auto_vectors[i].frame;
+        assert_true(takes_its_frame(frame, frame->bytes, frame->length));
+        bytes += frame->length;
+    }
+    assert_int_equal(bytes, FF_BYTES);
+    bytes = 0;
+    for (unsigned i = 0; i != DYP_ROWS; i++) {
+        const vector_t *const frame = &dyp_vectors[i].frame;
+        const bool is_answer = (frame->direction & VECTOR_ANSWER) != 0;
+        assert_int_equal(takes_its_answer(frame, frame->bytes, frame->length), is_answer);
+        assert_int_equal(takes_any_answer(frame, frame->bytes, frame->length), is_answer);
+        assert_int_equal(hears_a_request(frame, frame->bytes, frame->length),
+                         (frame->direction & VECTOR_REQUEST) != 0);
+        bytes += frame->length;
+    }
+    assert_int_equal(bytes, DYP_BYTES);
+    assert_int_equal(dyp_vectors[ANSWER_ALL].frame.length, 13);
+    assert_int_equal(dyp_vectors[ANSWER_ONE].frame.length, 7);
+}
+
+static void every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refused(void **state)
+{
+    (void)state;
+    for (unsigned bits = 0; bits != 2; bits++) {
+        tried = 0;
+        for (uint8_t i = 0; i != AUTO_ROWS; i++)
+            assert_int_equal(corrupt(&auto_vectors[i].frame, i, takes_its_frame, bits != 0, nothing), 0);
+        assert_int_equal(tried, (bits != 0 ? 8 : 255) * FF_BYTES);
+    }
+}
+
+static void every_single_bit_and_byte_error_in_a_55_AA_request_is_refused_by_all_units(void **state)
+{
+    (void)state;
+    assert_int_equal(corrupt_rows(VECTOR_REQUEST, hears_a_request, true, nothing), 0);
+    assert_int_equal(tried, 8 * REQUEST_BYTES);
+    assert_int_equal(corrupt_rows(VECTOR_REQUEST, hears_a_request, false, nothing), 0);
+    assert_int_equal(tried, 255 * REQUEST_BYTES);
+}
+
+static void no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_was_asked(void **state)
+{
+    (void)state;
+    assert_int_equal(corrupt_rows(VECTOR_ANSWER, takes_its_answer, true, nothing), 0);
+    assert_int_equal(tried, 8 * ANSWER_BYTES);
+    assert_int_equal(corrupt_rows(VECTOR_ANSWER, takes_its_answer, false, nothing), 0);
+    assert_int_equal(tried, 255 * ANSWER_BYTES);
+    /* Nor a request that comes back as an echo. */
+    assert_int_equal(corrupt_rows(VECTOR_REQUEST, takes_its_answer, false, nothing), 0);
+    assert_int_equal(tried, 255 * REQUEST_BYTES);
+}
+
+/*
+ * One does leave an answer to something else, and it takes no more than one bit:
+ *   55 AA 01 01 03 ..   command 01 -> 03 leaves 55 AA 01 03 03, and 55 + AA + 01 + 03 = 103
+ * No other: by the command alone another length can come. In the answer with four distances 10 to 13 would need
+ * 55 + AA + 01 + 1n + 03 + E8 = 1FB to 1FE to end in the seventh byte, 07. In that of probe 1 command 03 would need
+ * a fifth byte of 03, which is 07; 11 to 13 leave the length, and the sum wrong by 1 to 3; 01 needs 13 bytes. In a
+ * frame of 5 bytes, 03 leaves the length and the others need more bytes.
+ */
+static void one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address(void **state)
+{
+    static const unrefused_t list[] = {{ANSWER_ALL, 3, 0x03}, END};
+    enum { LISTED = sizeof list / sizeof list[0] - 1 };
+    (void)state;
+    assert_int_equal(LISTED, 1);
+    assert_int_equal(corrupt_rows(VECTOR_BOTH, takes_any_answer, true, list), LISTED);
+    assert_int_equal(tried, 8 * DYP_BYTES);
+    assert_int_equal(corrupt_rows(VECTOR_BOTH, takes_any_answer, false, list), LISTED);
+    assert_int_equal(tried, 255 * DYP_BYTES);
+}
+
+/*
+ * What the other units on the line can take a damaged answer for, by its first five bytes:
+ *   55 AA 01 01 03 ..   55 + AA + a + 01 = 100 + a: address 01 -> 03 asks unit 3 for all probes      one bit
+ *                       command 01 -> 03 is the one above, and sets the address of all units to 1     one bit
+ *                       03 -> 01 asks unit 1 for all probes again                                     one bit
+ *   55 AA 01 10 07 ..   55 + AA + a + 10 = 10F + a: address 01 -> F8 asks unit F8 for probe 1
+ *                       07 -> 10 asks unit 1 for probe 1 again
+ * Any other command but 07, which there is not, has another sum.
+ */
+static void five_wrong_bytes_make_an_answer_a_request_and_three_of_them_are_one_bit(void **state)
+{
+    static const unrefused_t list[] = {
+        {ANSWER_ALL, 2, 0x03}, {ANSWER_ALL, 3, 0x03}, {ANSWER_ALL, 4, 0x01},
+        {ANSWER_ONE, 2, 0xF8}, {ANSWER_ONE, 4, 0x10}, END,
+    };
+    enum { LISTED = sizeof list / sizeof list[0] - 1, OF_ONE_BIT = 3 };
+    (void)state;
+    assert_int_equal(LISTED, 5);
+    assert_int_equal(corrupt_rows(VECTOR_ANSWER, hears_a_request, true, list), OF_ONE_BIT);
+    assert_int_equal(tried, 8 * ANSWER_BYTES);
+    assert_int_equal(corrupt_rows(VECTOR_ANSWER, hears_a_request, false, list), LISTED);
+    assert_int_equal(tried, 255 * ANSWER_BYTES);
+}
+
+/* ---- two wrong bytes ---- */
+
+/* Every two bytes, every other value of both: how many are taken. */
+static unsigned corrupt_twice(const vector_t *sent, receiver_t *takes)
+{
+    uint8_t bytes[VECTOR_BYTES];
+    unsigned taken = 0;
+    tried = 0;
+    memcpy(bytes, sent->bytes, sizeof bytes);
+    for (unsigned one = 0; one != sent->length; one++) {
+        for (unsigned other = one + 1; other != sent->length; other++) {
+            for (unsigned change = 0x0101; change != 0x10000; change++) {
+                if ((change & 0xFF) == 0) continue;
+                bytes[one] = (uint8_t)(sent->bytes[one] ^ change >> 8);
+                bytes[other] = (uint8_t)(sent->bytes[other] ^ (change & 0xFF));
+                taken += takes(sent, bytes, sent->length);
+                tried++;
+            }
+            bytes[other] = sent->bytes[other];
+        }
+        bytes[one] = sent->bytes[one];
+    }
+    print_message("  %s, %u bytes: %u of %u pairs of wrong bytes pass", sent->source, sent->length, taken,
+                  tried);
+    if (taken != 0) print_message(", one in %u", (tried + taken / 2) / taken);
+    print_message("\n");
+    return taken;
+}
+
+enum { CHANGES = 255 * 255 }; /* of two bytes, neither as it was */
+
+/*
+ * Two wrong bytes that the sum covers, or one and the sum itself, cancel out for one value of the second to each
+ * value of the first: 255 of 255 * 255, one in 255. A wrong start is refused at once. So of 4 bytes, 3 * 2 / 2
+ * pairs without the start pass so often, and of 10 bytes 9 * 8 / 2.
+ */
+static void of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes(void **state)
+{
+    (void)state;
+    assert_int_equal(corrupt_twice(&auto_vectors[0].frame, takes_its_frame), 3 * 255);
+    assert_int_equal(tried, 6 * CHANGES);
+    assert_int_equal(corrupt_twice(&auto_vectors[1].frame, takes_its_frame), 36 * 255);
+    assert_int_equal(tried, 45 * CHANGES);
+}
+
+/*
+ * Whoever asked knows four bytes of the answer. The others, data and sum, are 9 of the 13 bytes with four distances
+ * and 3 of the 7 with one: 9 * 8 / 2 and 3 * 2 / 2 pairs. An answer to set-address has one that is not known, and
+ * no two wrong bytes pass.
+ */
+static void of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes(void **state)
+{
+    (void)state;
+    assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ALL].frame, takes_its_answer), 36 * 255);
+    assert_int_equal(tried, 78 * CHANGES);
+    assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ONE].frame, takes_its_answer), 3 * 255);
+    assert_int_equal(tried, 21 * CHANGES);
+    assert_int_equal(corrupt_twice(&dyp_vectors[ADDRESS_5].frame, takes_its_answer), 0);
+    assert_int_equal(tried, 10 * CHANGES);
+}
+
+/*
+ * Who takes any answer gets in addition, of 55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62:
+ *   the address and one of the 9 bytes of data and sum                                              9 * 255
+ *   command 03, whose 5 bytes are right as they are, with one of the 8 bytes behind them             8 * 255
+ *   command 1n and the address a: FF + a + 1n + 03 + E8 = 07 for a = 1D - 1n, 0D to 0A                     4
+ *   command 1n and the fifth byte, the sixth, or the seventh, which is their sum: one value each       3 * 4
+ * of 55 AA 01 10 07 A1 B8:
+ *   the address and one of the 3 bytes of data and sum                                              3 * 255
+ *   command 11 to 13 and the address, or one of the 3: one value each                                 4 * 3
+ *   command 03 and the address a: FF + a + 03 = 07 for a = 05; or the fifth byte, 03                       2
+ * and of 55 AA 05 03 07 the address and the sum                                                        255
+ */
+static void who_takes_any_55_AA_answer_takes_these_too(void **state)
+{
+    (void)state;
+    assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ALL].frame, takes_any_answer),
+                     36 * 255 + 9 * 255 + 8 * 255 + 4 + 12);
+    assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ONE].frame, takes_any_answer),
+                     3 * 255 + 3 * 255 + 12 + 2);
+    assert_int_equal(corrupt_twice(&dyp_vectors[ADDRESS_5].frame, takes_any_answer), 255);
+}
+
+/* A request has three bytes that may differ: the address with the sum in 255 ways, and each of the 5 other
+ * commands with the address or with the sum. So two ways make a question for a distance set an address:
+ * 55 AA FF 03 01 and 55 AA 01 03 03; 55 AA 0E 03 10 and 55 AA 01 03 03. */
+static void of_two_wrong_bytes_in_a_55_AA_request_265_pass(void **state)
+{
+    (void)state;
+    assert_int_equal(corrupt_twice(&dyp_vectors[REQUEST_ALL].frame, hears_a_request), 255 + 5 + 5);
+    assert_int_equal(corrupt_twice(&dyp_vectors[REQUEST_ONE].frame, hears_a_request), 255 + 5 + 5);
+    assert_int_equal(corrupt_twice(&dyp_vectors[ADDRESS_5].frame, hears_a_request), 255 + 5 + 5);
+    assert_int_equal(tried, 10 * CHANGES);
+}
+
+/* Sums do not see the order of bytes, nor two errors that cancel out. Not refused, and known: */
+static void what_an_8_bit_sum_cannot_see_is_this_list(void **state)
+{
+    static const uint8_t unseen[3][4] = {
+        {0xFF, 0xA1, 0x07, 0xA7}, /* the bytes of A16 2(4) changed places: 41223 mm */
+        {0xFF, 0x08, 0xA0, 0xA7}, /* one more and one less: 2208 mm */
+        {0xFF, 0x87, 0x21, 0xA7}, /* bit 7 of both: 34593 mm */
+    };
+    (void)state;
+    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_frame_valid(unseen[i], 4));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_frame_without_an_error_is_taken_by_whom_it_is_meant_for),
+        cmocka_unit_test(every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refused),
+        cmocka_unit_test(every_single_bit_and_byte_error_in_a_55_AA_request_is_refused_by_all_units),
+        cmocka_unit_test(no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_was_asked),
+        cmocka_unit_test(one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address),
+        cmocka_unit_test(five_wrong_bytes_make_an_answer_a_request_and_three_of_them_are_one_bit),
+        cmocka_unit_test(of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes),
+        cmocka_unit_test(of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes),
+        cmocka_unit_test(who_takes_any_55_AA_answer_takes_these_too),
+        cmocka_unit_test(of_two_wrong_bytes_in_a_55_AA_request_265_pass),
+        cmocka_unit_test(what_an_8_bit_sum_cannot_see_is_this_list),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
