@@ -6,23 +6,13 @@
 
 #include <cmocka.h>
 
-#include "fathom/stream.h"
+#include "stream_rig.h"
 
 /*
  * A sensor that looks at something that does not move sends the same frame again and again, and nothing in the
- * bytes says where it begins. Every value there is, held still, from every byte of the frame on.
+ * bytes says where it begins. Every value there is, held still, from every byte of the frame on, in every way.
  */
 enum { LENGTH = 4, VALUES = 65536, FRAMES = 6 };
-
-static fathom_stream_t stream;
-static uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_MAX_LENGTH)];
-
-static void begin(fathom_stream_config_t *config, uint8_t length)
-{
-    *config = (fathom_stream_config_t){.storage = storage, .length = length};
-    memset(storage, 0, sizeof storage);
-    assert_int_equal(fathom_stream_init(&stream, config, 0), FATHOM_READY);
-}
 
 /* The frame of a value by the datasheet's formula (A16 2(4)). */
 static void make_frame(uint8_t *frame, unsigned value)
@@ -33,52 +23,28 @@ static void make_frame(uint8_t *frame, unsigned value)
     frame[3] = (uint8_t)(0xFF + frame[1] + frame[2]);
 }
 
-typedef struct {
-    unsigned right;
-    unsigned wrong;
-} shown_t;
-
-/* Feeds `frames` repetitions from byte `start` on, and polls after every byte. */
-static shown_t show(const uint8_t *sent, uint8_t length, uint8_t start, unsigned frames, bool gaps)
+static void hold(uint8_t *sent, unsigned value)
 {
-    shown_t shown = {0, 0};
-    for (unsigned i = start; i != frames * length; i++) {
-        const uint8_t *frame;
-        fathom_stream_feed(&stream, sent + i % length, 1, gaps && i % length == 0, 1);
-        if (fathom_stream_poll(&stream, 1, &frame) != FATHOM_READY) continue;
-        if (memcmp(frame, sent, length) == 0)
-            shown.right++;
-        else
-            shown.wrong++;
-    }
-    return shown;
+    for (unsigned i = 0; i != FRAMES; i++) make_frame(sent + i * LENGTH, value);
 }
 
 static void with_gaps_seen_every_value_is_shown_rightly_from_every_start(void **state)
 {
+    unsigned runs = 0;
     (void)state;
-    fathom_stream_config_t config;
     for (unsigned value = 0; value != VALUES; value++) {
-        uint8_t sent[LENGTH];
-        make_frame(sent, value);
+        uint8_t sent[FRAMES * LENGTH];
+        hold(sent, value);
         for (uint8_t start = 0; start != LENGTH; start++) {
-            begin(&config, LENGTH);
-            const shown_t shown = show(sent, LENGTH, start, FRAMES, true);
-            assert_int_equal(shown.wrong, 0);
-            assert_int_equal(shown.right, start == 0 ? FRAMES : FRAMES - 1);
+            for (int way = 0; way != RIG_WAYS; way++, runs++) {
+                const rig_outcome_t outcome = rig_run(sent, FRAMES, LENGTH, start, true, way);
+                assert_int_equal(outcome.wrong, 0);
+                assert_int_equal(outcome.right, start == 0 ? FRAMES : FRAMES - 1);
+                assert_int_equal(outcome.first, start == 0 ? 0 : 1);
+            }
         }
     }
-}
-
-/* Could the frame be read at another byte too? By brute force, apart from the code under test. */
-static bool has_two_alignments(const uint8_t *sent, uint8_t length)
-{
-    for (uint8_t shift = 1; shift != length; shift++) {
-        uint8_t sum = 0;
-        for (uint8_t i = 0; i != length - 1; i++) sum = (uint8_t)(sum + sent[(shift + i) % length]);
-        if (sent[shift] == 0xFF && sum == sent[(shift + length - 1) % length]) return true;
-    }
-    return false;
+    assert_int_equal(runs, 65536 * 4 * 3);
 }
 
 /*
@@ -91,29 +57,34 @@ static const unsigned two_readings[] = {0x01FF, 0x817F, 0xFF01, 0xFF81};
 enum { TWO_READINGS = sizeof two_readings / sizeof two_readings[0] };
 
 /* Without gaps those four are never shown, the others always, but for the first one or two frames and the last,
- * which no other follows; and no value is ever shown wrongly. */
+ * which no other follows; and no value is ever shown wrongly. What is not shown is counted as ambiguous. */
 static void without_gaps_no_value_is_shown_wrongly_and_four_are_not_shown(void **state)
 {
-    (void)state;
-    fathom_stream_config_t config;
     unsigned hidden = 0;
-    unsigned wrong = 0;
+    unsigned runs = 0;
+    (void)state;
     for (unsigned value = 0; value != VALUES; value++) {
-        uint8_t sent[LENGTH];
-        make_frame(sent, value);
-        const bool is_ambiguous = has_two_alignments(sent, LENGTH);
+        uint8_t sent[FRAMES * LENGTH];
+        hold(sent, value);
+        const bool is_ambiguous = rig_has_two_alignments(sent, LENGTH);
         if (is_ambiguous) assert_int_equal(value, two_readings[hidden++]);
         for (uint8_t start = 0; start != LENGTH; start++) {
-            begin(&config, LENGTH);
-            const shown_t shown = show(sent, LENGTH, start, FRAMES, false);
-            wrong += shown.wrong;
-            if (is_ambiguous)
-                assert_int_equal(shown.right, 0);
-            else
-                assert_in_range(shown.right, FRAMES - 3, FRAMES - 2);
+            for (int way = 0; way != RIG_WAYS; way++, runs++) {
+                const rig_outcome_t outcome = rig_run(sent, FRAMES, LENGTH, start, false, way);
+                const uint16_t *const counters = outcome.counters;
+                const unsigned shown = outcome.right + counters[FATHOM_STREAM_MISSED];
+                assert_int_equal(outcome.wrong, 0);
+                assert_int_equal(counters[FATHOM_STREAM_UNSURE], 1); /* the first */
+                assert_int_equal(shown, counters[FATHOM_STREAM_FRAMES]);
+                if (is_ambiguous)
+                    assert_int_equal(counters[FATHOM_STREAM_AMBIGUOUS], outcome.windows - 1);
+                else
+                    assert_int_equal(counters[FATHOM_STREAM_AMBIGUOUS], 0);
+                assert_int_equal(shown, is_ambiguous ? 0 : start == 0 ? FRAMES - 2 : FRAMES - 3);
+            }
         }
     }
-    assert_int_equal(wrong, 0);
+    assert_int_equal(runs, 65536 * 4 * 3);
     assert_int_equal(hidden, TWO_READINGS);
 }
 
@@ -124,33 +95,25 @@ static void frames_of_four_probes_are_never_shown_out_of_step(void **state)
                                       0x0DEA, 0xFF00, 0xFFFD, 0xFFFE, 0xFFFF, 0x1770, 0x00FA};
     enum { COUNT = sizeof values / sizeof values[0], LONG = FATHOM_DYP_A05_LENGTH };
     (void)state;
-    fathom_stream_config_t config;
     unsigned ambiguous = 0;
+    unsigned runs = 0;
     for (unsigned n = 0; n != COUNT * COUNT * COUNT * COUNT; n++) {
         const uint16_t probes[] = {values[n % COUNT], values[n / COUNT % COUNT],
                                    values[n / COUNT / COUNT % COUNT], values[n / COUNT / COUNT / COUNT]};
-        uint8_t sent[LONG] = {0xFF};
-        for (int i = 0; i != 4; i++) {
-            sent[2 * i + 1] = (uint8_t)(probes[i] / 256);
-            sent[2 * i + 2] = (uint8_t)(probes[i] % 256);
-        }
-        for (int i = 0; i != LONG - 1; i++) sent[LONG - 1] = (uint8_t)(sent[LONG - 1] + sent[i]);
-        const bool is_ambiguous = has_two_alignments(sent, LONG);
+        uint8_t sent[4 * LONG];
+        for (int i = 0; i != 4; i++) rig_make_frame(sent + i * LONG, LONG, probes);
+        const bool is_ambiguous = rig_has_two_alignments(sent, LONG);
         if (is_ambiguous) ambiguous++;
-        for (uint8_t start = 0; start != LONG; start++) {
-            begin(&config, LONG);
-            shown_t shown = show(sent, LONG, start, 4, true);
-            assert_int_equal(shown.wrong, 0);
-            assert_int_equal(shown.right, start == 0 ? 4 : 3);
-            begin(&config, LONG);
-            shown = show(sent, LONG, start, 4, false);
-            assert_int_equal(shown.wrong, 0);
-            if (is_ambiguous)
-                assert_int_equal(shown.right, 0);
-            else
-                assert_in_range(shown.right, 1, 2);
+        for (uint8_t start = 0; start != LONG; start++, runs += 2) {
+            rig_outcome_t outcome = rig_run(sent, 4, LONG, start, true, RIG_BY_BYTE);
+            assert_int_equal(outcome.wrong, 0);
+            assert_int_equal(outcome.right, start == 0 ? 4 : 3);
+            outcome = rig_run(sent, 4, LONG, start, false, RIG_BY_BYTE);
+            assert_int_equal(outcome.wrong, 0);
+            assert_int_equal(outcome.right, is_ambiguous ? 0 : start == 0 ? 2 : 1);
         }
     }
+    assert_int_equal(runs, 14 * 14 * 14 * 14 * 10 * 2);
     assert_true(ambiguous > 100); /* the set-up does hold such frames */
 }
 
