@@ -1,0 +1,327 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "stream_rig.h"
+
+/*
+ * One byte of a run of frames is lost, changed, doubled, or one too many: every byte, every value. With gaps seen a
+ * frame that is a byte short or has one other byte is refused. One byte too many can pass: the sensor's last byte is
+ * then left over, and the sum of what stands before it is compared with the last byte of the data, d. FF + all the
+ * data but d + the new byte X = d has one solution X, wherever X stands between the start and d: a frame of L bytes
+ * has L - 2 such places, and in each of them one in 256 passes. X in front of the start can be taken for it if X is
+ * FF, and X in front of the sum for the sum if it is the same; then the frame is right.
+ */
+enum { RUN = 4, LONGEST = RUN * FATHOM_DYP_A05_LENGTH + 1 };
+
+/* What comes on the wire. */
+static struct {
+    uint8_t bytes[LONGEST];
+    uint8_t frame_of[LONGEST]; /* whose byte it is, or with whose bytes it comes */
+    bool first[LONGEST];       /* of those of its frame */
+    unsigned end[RUN];         /* the number of the byte behind the frame's own */
+    unsigned count;
+} wire;
+
+static void put(uint8_t byte, unsigned frame)
+{
+    wire.bytes[wire.count] = byte;
+    wire.frame_of[wire.count] = (uint8_t)frame;
+    wire.first[wire.count] = wire.count == 0 || wire.frame_of[wire.count - 1] != frame;
+    wire.count++;
+}
+
+typedef enum { LOST, CHANGED, ADDED } damage_t;
+
+/* The run with byte `place` of frame `hit` lost or changed to `byte`, or with `byte` added before it; place may be
+ * `length` then, behind the last. */
+static void send(const uint8_t *sent, uint8_t length, damage_t damage, unsigned hit, unsigned place,
+                 uint8_t byte)
+{
+    wire.count = 0;
+    for (unsigned frame = 0; frame != RUN; frame++) {
+        for (unsigned at = 0; at != length; at++, sent++) {
+            const bool is_hit = frame == hit && at == place;
+            if (is_hit && damage != LOST) put(byte, frame);
+            if (!is_hit || damage == ADDED) put(*sent, frame);
+        }
+        wire.end[frame] = wire.count;
+        if (frame == hit && place == length) put(byte, frame);
+    }
+}
+
+typedef struct {
+    unsigned runs, right, wrong;
+    unsigned due; /* by the formula above, how many should be wrong */
+} tally_t;
+
+/* Byte by byte, so that a reading has one place: with gaps the frame whose byte has just come; without, one whose
+ * bytes had all come before this one. Right ones come in order, each once. */
+static void receive(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+{
+    static fathom_stream_t stream;
+    static uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_MAX_LENGTH)];
+    const fathom_stream_config_t config = {.storage = storage, .length = length};
+    unsigned next = 0;
+    tally->runs++;
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    for (unsigned i = 0; i != wire.count; i++) {
+        const uint8_t *frame;
+        fathom_stream_feed(&stream, wire.bytes + i, 1, gaps && wire.first[i], 1);
+        if (fathom_stream_poll(&stream, 1, &frame) != FATHOM_READY) continue;
+        unsigned at = gaps ? wire.frame_of[i] : RUN - 1;
+        while (!gaps && at > next && (wire.end[at] > i || memcmp(frame, sent + at * length, length) != 0))
+            at--;
+        if (at >= next && (gaps || wire.end[at] <= i) && memcmp(frame, sent + at * length, length) == 0) {
+            tally->right++;
+            next = at + 1;
+        } else {
+            tally->wrong++;
+        }
+    }
+}
+
+/* Is what then begins the frame's bytes a right frame, and not the one that was sent? */
+static bool is_due(const uint8_t *frame, uint8_t length, unsigned place, uint8_t byte)
+{
+    uint8_t bytes[FATHOM_DYP_MAX_LENGTH + 1];
+    memcpy(bytes, frame, place);
+    bytes[place] = byte;
+    memcpy(bytes + place + 1, frame + place, length - place);
+    return rig_is_valid(bytes, length) && memcmp(bytes, frame, length) != 0;
+}
+
+static void lose_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+{
+    for (unsigned i = 0; i != RUN * length; i++) {
+        send(sent, length, LOST, i / length, i % length, 0);
+        receive(tally, sent, length, gaps);
+    }
+}
+
+static void change_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+{
+    for (unsigned i = 0; i != RUN * length; i++) {
+        for (unsigned change = 1; change != 256; change++) {
+            send(sent, length, CHANGED, i / length, i % length, (uint8_t)(sent[i] ^ change));
+            receive(tally, sent, length, gaps);
+        }
+    }
+}
+
+static void add_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+{
+    for (unsigned hit = 0; hit != RUN; hit++) {
+        for (unsigned place = 0; place <= length; place++) {
+            for (unsigned byte = 0; byte != 256; byte++) {
+                send(sent, length, ADDED, hit, place, (uint8_t)byte);
+                receive(tally, sent, length, gaps);
+                tally->due += is_due(sent + hit * length, length, place, (uint8_t)byte);
+            }
+        }
+    }
+}
+
+static void double_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+{
+    for (unsigned i = 0; i != RUN * length; i++) {
+        send(sent, length, ADDED, i / length, i % length, sent[i]);
+        receive(tally, sent, length, gaps);
+        tally->due += is_due(sent + i / length * length, length, i % length, sent[i]);
+    }
+}
+
+/* ---- the runs ---- */
+
+enum { EXAMPLES = 2, MOVING = 40, RUNS = EXAMPLES + MOVING };
+
+typedef void damage_each_t(tally_t *, const uint8_t *, uint8_t, bool);
+
+/* The first two of a length are an example of a datasheet and the frame that can be read out of step, held still
+ * (A16 2(4), 511 mm; A05 1(3), 1000 2000 2047 1339 mm); in the others every frame is another, 250 to 4500 mm. */
+static void make_run(uint8_t *sent, uint8_t length, unsigned number)
+{
+    static const uint16_t still[2][2][4] = {{{1953}, {511}},
+                                            {{1000, 2000, 1953, 3562}, {1000, 2000, 2047, 1339}}};
+    for (unsigned frame = 0; frame != RUN; frame++) {
+        uint16_t values[4];
+        for (unsigned i = 0; i != 4; i++) values[i] = (uint16_t)(250 + rig_random_below(4251));
+        rig_make_frame(sent + frame * length, length, number < 2 ? still[length != 4][number] : values);
+    }
+}
+
+enum { OF_FOUR = 0, OF_TEN = 1, LENGTHS = 2 };
+
+static const uint8_t lengths[LENGTHS] = {FATHOM_DYP_A16_LENGTH, FATHOM_DYP_A05_LENGTH};
+
+/* All runs of one length. */
+static tally_t damage_all(damage_each_t *each, unsigned which, bool gaps)
+{
+    tally_t tally = {0, 0, 0, 0};
+    rig_seed(7);
+    for (unsigned number = 0; number != RUNS; number++) {
+        uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
+        make_run(sent, lengths[which], number);
+        each(&tally, sent, lengths[which], gaps);
+    }
+    print_message("  %2u bytes, gaps %s: %u runs, %u right readings, %u wrong, %u by the formula",
+                  lengths[which], gaps ? "seen" : "not seen", tally.runs, tally.right, tally.wrong,
+                  tally.due);
+    if (tally.wrong != 0) print_message(", one run in %u", (tally.runs + tally.wrong / 2) / tally.wrong);
+    print_message("\n");
+    return tally;
+}
+
+/* How many bytes the runs of one length have. */
+static unsigned bytes_of(unsigned which) { return RUNS * RUN * lengths[which]; }
+
+static void with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else(void **state)
+{
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        const tally_t tally = damage_all(lose_each, which, true);
+        assert_int_equal(tally.wrong, 0);
+        assert_int_equal(tally.runs, bytes_of(which));
+        assert_int_equal(tally.right, tally.runs * (RUN - 1));
+    }
+}
+
+static void with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else(void **state)
+{
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        const tally_t tally = damage_all(change_each, which, true);
+        assert_int_equal(tally.wrong, 0);
+        assert_int_equal(tally.runs, 255 * bytes_of(which));
+        assert_int_equal(tally.right, tally.runs * (RUN - 1));
+    }
+}
+
+/* The bound: L - 2 of the 256 (L + 1) ways a frame, and FF in front of the start. */
+static void with_gaps_seen_one_added_byte_in_256_inside_a_frame_passes(void **state)
+{
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        const unsigned frames = RUNS * RUN;
+        const tally_t tally = damage_all(add_each, which, true);
+        assert_int_equal(tally.wrong, tally.due);
+        assert_in_range(tally.wrong, frames, frames * (lengths[which] - 1u));
+        assert_int_equal(tally.runs, 256 * frames * (lengths[which] + 1u));
+        assert_in_range(tally.right, tally.runs * (RUN - 1), tally.runs * RUN);
+    }
+}
+
+/*
+ * By hand, in each of four frames the same. FF 07 A1 A7: FF + 07 + X = A1 for X = 9B, before the 07 or before the A1.
+ * FF 03 E8 07 D0 07 A1 0D EA 60: all but EA and the sum make 76, so X = EA - 76 = 74, in 8 places. None of the
+ * frame's own bytes is X, so no doubled one passes. FF in front would want 05 for the A1, and 75 for the EA.
+ */
+static void of_the_bytes_added_to_the_examples_of_the_datasheets_2_and_8_pass(void **state)
+{
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
+        tally_t added = {0, 0, 0, 0};
+        tally_t doubled = {0, 0, 0, 0};
+        make_run(sent, lengths[which], 0);
+        add_each(&added, sent, lengths[which], true);
+        assert_int_equal(added.wrong, RUN * (which == OF_FOUR ? 2 : 8));
+        assert_int_equal(added.runs, RUN * 256 * (lengths[which] + 1));
+        double_each(&doubled, sent, lengths[which], true);
+        assert_int_equal(doubled.wrong, 0);
+        assert_int_equal(doubled.runs, RUN * lengths[which]);
+    }
+}
+
+/* A byte that comes twice is one of the added ones: a chance of L - 2 in 256 L if it were any. */
+static void with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does(void **state)
+{
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        const tally_t tally = damage_all(double_each, which, true);
+        assert_int_equal(tally.wrong, tally.due);
+        assert_in_range(tally.wrong, 0, bytes_of(which) / 64);
+        assert_int_equal(tally.runs, bytes_of(which));
+        assert_in_range(tally.right, tally.runs * (RUN - 1), tally.runs * RUN);
+    }
+}
+
+static void without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading(void **state)
+{
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        tally_t tally = damage_all(lose_each, which, false);
+        assert_int_equal(tally.wrong, 0);
+        assert_int_equal(tally.runs, bytes_of(which));
+        assert_true(tally.right > tally.runs / 2);
+        tally = damage_all(change_each, which, false);
+        assert_int_equal(tally.wrong, 0);
+        assert_int_equal(tally.runs, 255 * bytes_of(which));
+        assert_true(tally.right > tally.runs / 2);
+    }
+}
+
+/*
+ * Without gaps a byte that is added inside a frame never passes: what it leaves over, the sum, does not begin a
+ * frame. What passes is 511 mm held still with an FF too many, FF 01 FF FF (FF) FF 01 FF FF: from the added FF on
+ * it reads FF FF 01 FF, 65281 mm, right upon a valid frame and with an FF behind it. That is beyond all that an
+ * A16 measures. The FF can be added at 5 places between two frames' 01: 15 in a run of four. Doubled it can be at 3
+ * of them: 9.
+ */
+static void without_gaps_only_511_mm_held_still_and_one_FF_more_is_shown_wrongly(void **state)
+{
+    enum { ADDED_FF = 5 * (RUN - 1), DOUBLED_FF = 3 * (RUN - 1) };
+    (void)state;
+    for (unsigned which = 0; which != LENGTHS; which++) {
+        tally_t tally = damage_all(add_each, which, false);
+        assert_int_equal(tally.wrong, which == OF_FOUR ? ADDED_FF : 0);
+        assert_int_equal(tally.runs, 256 * RUNS * RUN * (lengths[which] + 1));
+        assert_true(tally.right > tally.runs / 2);
+        tally = damage_all(double_each, which, false);
+        assert_int_equal(tally.wrong, which == OF_FOUR ? DOUBLED_FF : 0);
+        assert_int_equal(tally.runs, bytes_of(which));
+        assert_true(tally.right > tally.runs / 2);
+    }
+}
+
+/*
+ * The frame that can be read out of step, twice, and then with one millimetre more at probe 1, twice:
+ *   FF 03 E8 07 D0 07 FF 05 3B 07   FF 03 E9 07 D0 07 FF 05 3B 08
+ * Out of step by six the first two are valid, and the second with the third would be if it were one less:
+ * FF + 05 + 3B + 07 + FF + 03 + E9 + 07 + D0 = 408, and 07 ends it. So without gaps one wrong bit of the second, 05 ->
+ * 04, 3B -> 3A or 07 -> 06, spoils the right frame and makes a second one out of step.
+ */
+static void without_gaps_these_three_bits_permute_the_probes(void **state)
+{
+    static const uint16_t values[2][4] = {{1000, 2000, 2047, 1339}, {1001, 2000, 2047, 1339}};
+    uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
+    tally_t tally = {0, 0, 0, 0};
+    (void)state;
+    for (unsigned i = 0; i != RUN; i++) rig_make_frame(sent + i * 10, 10, values[i / 2]);
+    change_each(&tally, sent, 10, false);
+    assert_int_equal(tally.runs, 255 * RUN * 10);
+    assert_int_equal(tally.wrong, 3);
+    tally = (tally_t){0, 0, 0, 0};
+    change_each(&tally, sent, 10, true);
+    assert_int_equal(tally.runs, 255 * RUN * 10);
+    assert_int_equal(tally.wrong, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else),
+        cmocka_unit_test(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else),
+        cmocka_unit_test(with_gaps_seen_one_added_byte_in_256_inside_a_frame_passes),
+        cmocka_unit_test(of_the_bytes_added_to_the_examples_of_the_datasheets_2_and_8_pass),
+        cmocka_unit_test(with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does),
+        cmocka_unit_test(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading),
+        cmocka_unit_test(without_gaps_only_511_mm_held_still_and_one_FF_more_is_shown_wrongly),
+        cmocka_unit_test(without_gaps_these_three_bits_permute_the_probes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
