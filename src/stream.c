@@ -41,12 +41,13 @@ static void judge(fathom_stream_t *stream, uint32_t time_us)
     const uint8_t length = stream->config->length;
     if (stream->gap && stream->run == length) {
         accept(stream, time_us);
-    } else if (stream->since == length) {
+    } else if (stream->since == length && !stream->doubtful) {
         stream->candidate = true;
         stream->candidate_us = time_us;
     } else {
         count(stream, stream->since < length ? FATHOM_STREAM_AMBIGUOUS : FATHOM_STREAM_UNSURE);
     }
+    stream->doubtful = stream->since < length;
     stream->since = 0;
 }
 
@@ -118,6 +119,7 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
     stream->run = 0;
     stream->since = UINT8_MAX;
     stream->gap = false;
+    stream->doubtful = false;
     stream->candidate = false;
     stream->fresh = false;
     return FATHOM_READY;

@@ -19,10 +19,10 @@ extern "C" {
  *
  * A good sum does not prove where a frame begins, so a frame is believed only if
  *  - it is the first thing after a silence that the clock or the port saw (gap_us), or
- *  - it follows right upon another valid frame, no other alignment of the bytes between was valid, and the
- *    next byte begins another one (FF), or a silence follows. So where no gaps are seen a frame is given one
- *    byte late. Without that, a frame of which a byte was lost would pass with the FF of the next one as its
- *    sum, once in 256.
+ *  - it follows right upon another valid frame, no other alignment of the bytes of both was valid, and the next
+ *    byte begins another one (FF), or a silence follows. So where no gaps are seen a frame is given one byte
+ *    late. Without that, a frame of which a byte was lost would pass with the FF of the next one as its sum,
+ *    once in 256.
  * Everything else is counted and dropped. So with gaps seen no stream can show a value of another alignment;
  * without them, a value that is valid in two alignments (511 mm held still) is never shown: the stream turns
  * stale and says so by its AMBIGUOUS counter. What 8 bits of sum cannot see stays unseen: one damaged frame
@@ -43,8 +43,8 @@ enum {
     FATHOM_STREAM_FRAMES = 0,    /* good ones */
     FATHOM_STREAM_MISSED = 1,    /* good ones that a newer one replaced before it was polled */
     FATHOM_STREAM_AMBIGUOUS = 2, /* right sums in a place where another alignment was right too */
-    FATHOM_STREAM_UNSURE = 3,    /* right sums with neither a silence nor a valid frame before them, or with
-                                    something else than a frame or a silence behind them */
+    FATHOM_STREAM_UNSURE = 3,    /* right sums with neither a silence nor an unambiguous frame before them, or
+                                    with something else than a frame or a silence behind them */
     FATHOM_STREAM_STALES = 4,    /* times that the deadline passed */
     FATHOM_STREAM_BYTES = 5,     /* all that came */
     FATHOM_STREAM_COUNTERS = 6
@@ -71,6 +71,7 @@ typedef struct {
     uint8_t run;    /* bytes since a gap; stops at 255 */
     uint8_t since;  /* bytes since the end of the last valid window; stops at 255 */
     bool gap;       /* the run began with a gap that was seen */
+    bool doubtful;  /* the last valid window overlapped a valid one before it */
     bool candidate; /* the ring holds a frame, if the next byte begins another one */
     bool fresh;     /* the newest good frame has not been polled */
 } fathom_stream_t;
