@@ -312,6 +312,42 @@ static void without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_
     assert_int_equal(tally.wrong, 0);
 }
 
+/*
+ * Without gaps a lost byte is made up for by the FF that begins the next frame, and a frame is taken to begin behind
+ * that if the next frame's own first value begins with FF, which "nothing in range" does: FF FF FD FB. By hand, over
+ * all FF H L S, S = H + L - 1:
+ *   H lost, FF L S FF: FF + L + S = FF for 2 L + H = 1, one H to each L                              256 values
+ *   L lost, FF H S FF: FF + H + S = FF for 2 H + L = 1, one L to each H; 01FF stays what it is        255
+ *   FF lost, which is seen only if H is FF; that is H lost, and L is 01 or 81                            2
+ *   S lost: it was FF, and the frame is right
+ * So one in 511 of the lost bytes passes; 2035 mm, FF 07 F3 F9, without F3 reads 2041 mm.
+ */
+static void without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target(void **state)
+{
+    enum { PASS = 256 + 255 + 2 };
+    static const uint16_t example = 1953;
+    static const uint16_t no_target = 0xFFFD;
+    uint8_t sent[RUN * FATHOM_DYP_A16_LENGTH];
+    tally_t tally = {0, 0, 0, 0};
+    tally_t with_gaps = {0, 0, 0, 0};
+    (void)state;
+    rig_make_frame(sent, 4, &example);
+    for (unsigned frame = 2; frame != RUN; frame++) rig_make_frame(sent + frame * 4, 4, &no_target);
+    for (unsigned mm = 0; mm != 65536; mm++) {
+        const uint16_t value = (uint16_t)mm;
+        rig_make_frame(sent + 4, 4, &value);
+        for (unsigned place = 0; place != 4; place++) {
+            send(sent, 4, LOST, 1, place, 0);
+            receive(&tally, sent, 4, false);
+            receive(&with_gaps, sent, 4, true);
+        }
+    }
+    assert_int_equal(tally.runs, 4 * 65536);
+    assert_int_equal(tally.wrong, PASS);
+    assert_int_equal(with_gaps.runs, 4 * 65536);
+    assert_int_equal(with_gaps.wrong, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -323,6 +359,7 @@ int main(void)
         cmocka_unit_test(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading),
         cmocka_unit_test(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_value),
         cmocka_unit_test(without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_of_step),
+        cmocka_unit_test(without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
