@@ -97,6 +97,18 @@ static void every_other_start_and_every_other_sum_is_refused(void **state)
     }
 }
 
+/* 255 bytes of FF are 65025 = FE01; of n bytes of FF the sum is 256 - n. What lies behind does not count. */
+static void the_sum_of_0_to_255_bytes_is_the_low_byte(void **state)
+{
+    uint8_t bytes[256];
+    (void)state;
+    memset(bytes, 0xFF, sizeof bytes);
+    assert_int_equal(fathom_dyp_sum(bytes, 0), 0);
+    for (unsigned n = 1; n != 256; n++) assert_int_equal(fathom_dyp_sum(bytes, (uint8_t)n), 256 - n);
+    assert_int_equal(fathom_dyp_sum(bytes, 255), 0x01);
+    assert_int_equal(fathom_dyp_sum(a05_frame, 9), 0x60); /* A05 1(3) */
+}
+
 /* Why stream.h has further rules. Each of these is a valid frame that no sensor sent. */
 static void a_good_sum_does_not_prove_where_a_frame_begins(void **state)
 {
@@ -136,6 +148,7 @@ int main(void)
         cmocka_unit_test(every_value_of_an_A16_goes_both_ways),
         cmocka_unit_test(every_value_of_every_probe_of_an_A05_goes_both_ways),
         cmocka_unit_test(every_other_start_and_every_other_sum_is_refused),
+        cmocka_unit_test(the_sum_of_0_to_255_bytes_is_the_low_byte),
         cmocka_unit_test(a_good_sum_does_not_prove_where_a_frame_begins),
         cmocka_unit_test(FF_may_follow_the_start),
     };
