@@ -22,7 +22,7 @@ extern "C" {
  *  - it follows right upon another valid frame, no other alignment of the bytes of both was valid, and the next
  *    byte begins another one (FF), or a silence follows. So where no gaps are seen a frame is given one byte
  *    late. Without that, a frame of which a byte was lost would pass with the FF of the next one as its sum,
- *    once in 256.
+ *    once in 256; now it does only where the next one goes on with FF, as FF FF FD FB (no target) does.
  * Everything else is counted and dropped. So with gaps seen no stream can show a value of another alignment;
  * without them, a value that is valid in two alignments (511 mm held still) is never shown: the stream turns
  * stale and says so by its AMBIGUOUS counter. What 8 bits of sum cannot see stays unseen: one damaged frame
