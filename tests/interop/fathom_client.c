@@ -67,9 +67,10 @@ static bool run(fathom_line_t *line, fathom_posix_uart_t *port, step_t *step, ui
         (void)printf("not sent, status %d\n", (int)status);
         return true;
     }
-    while (request.exchange.status == FATHOM_PENDING) {
+    for (;;) {
         (void)fathom_line_poll(line);
-        if (request.exchange.status == FATHOM_PENDING) fathom_posix_wait(port, fathom_line_due_us(line));
+        if (request.exchange.status != FATHOM_PENDING) break;
+        fathom_posix_wait(port, fathom_line_due_us(line));
     }
     print_outcome(&request, step);
     (void)fflush(stdout);

@@ -109,7 +109,8 @@ int main(int argc, char **argv)
 {
     if (argc < 6) return 2;
     const unsigned long timeout_ms = strtoul(argv[4], NULL, 10);
-    modbus_t *const client = modbus_new_rtu(argv[1], atoi(argv[2]), argv[3][0] == 'e' ? 'E' : 'N', 8, 1);
+    modbus_t *const client =
+        modbus_new_rtu(argv[1], (int)strtol(argv[2], NULL, 10), argv[3][0] == 'e' ? 'E' : 'N', 8, 1);
     if (client == NULL || modbus_set_slave(client, 1) != 0 || modbus_connect(client) != 0 ||
         modbus_set_response_timeout(client, (uint32_t)(timeout_ms / 1000),
                                     (uint32_t)(timeout_ms % 1000 * 1000)) != 0) {

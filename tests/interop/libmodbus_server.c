@@ -54,7 +54,8 @@ int main(int argc, char **argv)
     if (argc < 7 || argc - 6 > MAX_REGISTERS) return 2;
     refusals.first = (int)strtol(argv[5], NULL, 0);
     refusals.count = argc - 6;
-    modbus_t *const server = modbus_new_rtu(argv[1], atoi(argv[2]), argv[3][0] == 'e' ? 'E' : 'N', 8, 1);
+    modbus_t *const server =
+        modbus_new_rtu(argv[1], (int)strtol(argv[2], NULL, 10), argv[3][0] == 'e' ? 'E' : 'N', 8, 1);
     modbus_mapping_t *const mapping = modbus_mapping_new_start_address(0, 0, 0, 0, (unsigned)refusals.first,
                                                                        (unsigned)refusals.count, 0, 0);
     if (server == NULL || mapping == NULL) return 1;
@@ -65,7 +66,7 @@ int main(int argc, char **argv)
         else
             mapping->tab_registers[i] = (uint16_t)strtol(value, NULL, 0);
     }
-    if (modbus_set_slave(server, atoi(argv[4])) != 0 || modbus_connect(server) != 0) {
+    if (modbus_set_slave(server, (int)strtol(argv[4], NULL, 10)) != 0 || modbus_connect(server) != 0) {
         (void)fprintf(stderr, "%s: %s\n", argv[1], modbus_strerror(errno));
         return 1;
     }

@@ -77,7 +77,7 @@ class MbpollRefusals(interop.Mbpoll, Refusals, interop.Case):
 
 class Damage(interop.Pymodbus, interop.Case):
     """Requests as no client sends them, through pymodbus' own open port, and then one of its own."""
-    patience = 0.1  # of each: these take the simulator 20 ms
+    patience = 0.08  # of each: these take the simulator 20 ms
 
     def silent(self, device, good, said, head):
         request = e2e.adu(*head)

@@ -7,10 +7,10 @@ DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 72
 
 
 class Servers:
-    def read(self, sensor, first, values, *arguments, unit=1, code=0):
+    def read(self, sensor, first, values, *arguments, unit=1, code=0, count=3):
         server, client = self.ends()
         self.serve(server, interop.LINES[sensor], unit, first, values)
-        done = self.run_fathom('read', sensor, *arguments, '--mode', 'modbus', '--port', client, '--count', '3',
+        done = self.run_fathom('read', sensor, *arguments, '--mode', 'modbus', '--port', client, '--count', count,
                                '--format', 'csv')
         self.assertEqual(done.code, code, done.err)
         return [row.split(',') for row in done.out.splitlines()[1:]], done.err
@@ -62,9 +62,9 @@ class Servers:
     def test_a_unit_that_is_not_there_is_silent(self):
         for sensor, first, values in (('a16', 0x0100, ['1']), ('a05', 0x0106, ['1'] * 4), ('hps167s', 8, DATASHEET)):
             with self.subTest(sensor):
-                rows, err = self.read(sensor, first, values, '--address', '2', '--timeout', '100', code=1)
+                rows, err = self.read(sensor, first, values, '--address', '2', '--timeout', '100', code=1, count=1)
                 self.assertEqual(rows, [])
-                self.assertEqual(err.count('no answer from address 2: nothing was heard at all'), 3, err)
+                self.assertIn('attempt 1: no answer from address 2: nothing was heard at all', err)
 
 
 class Pymodbus(interop.PymodbusServer, Servers, interop.Case):
