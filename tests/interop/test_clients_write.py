@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Other people's Modbus clients change our simulated sensors, and see by a read that they did, or did not."""
 import interop
-from interop import QUIET
+from interop import QUIET, e2e
 
 
 class Writes:
@@ -72,6 +72,24 @@ class PymodbusWrites(interop.Pymodbus, Writes, interop.Case):
 
     def test_an_a05_obeys_what_is_for_all(self):
         self.all_obey('a05')
+
+
+    def stops(self, device, frame):
+        """Automatic output ends with the first command to this address (A16 5(0), A05 1(1)); a frame may still come."""
+        sim = self.sensor(f'{device}:5:auto', '--distance', '754')
+        port = self.connect(sim).socket
+        port.reset_input_buffer()
+        self.assertEqual(port.read(len(frame)), frame)
+        self.ask(sim, 5, 'read:0x0200:1')  # whatever comes: frames and the answer may be side by side
+        port.timeout = 0.4  # more than the period of either sensor
+        self.assertIn(b'', (port.read(64) for _ in range(4)), 'it does not stop')
+        self.assertEqual(self.ask(sim, 5, 'read:0x0200:1'), ['0005'])
+
+    def test_the_first_command_ends_the_automatic_output_of_an_a16(self):
+        self.stops('a16', e2e.frame(754))
+
+    def test_the_first_command_ends_the_automatic_output_of_an_a05(self):
+        self.stops('a05', e2e.frame(754, 754, 754, 754))
 
 
 class MbpollWrites(interop.Mbpoll, Writes, interop.Case):
