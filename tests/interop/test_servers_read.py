@@ -61,10 +61,9 @@ class Servers:
 
     def test_a_unit_that_is_not_there_is_silent(self):
         for sensor, first, values in (('a16', 0x0100, ['1']), ('a05', 0x0106, ['1'] * 4), ('hps167s', 8, DATASHEET)):
-            with self.subTest(sensor):
-                rows, err = self.read(sensor, first, values, '--address', '2', '--timeout', '100', code=1, count=1)
-                self.assertEqual(rows, [])
-                self.assertIn('attempt 1: no answer from address 2: nothing was heard at all', err)
+            rows, err = self.read(sensor, first, values, '--address', '2', '--timeout', '100', code=1, count=1)
+            self.assertEqual(rows, [])
+            self.assertIn('attempt 1: no answer from address 2: nothing was heard at all', err)
 
 
 class Pymodbus(interop.PymodbusServer, Servers, interop.Case):
@@ -77,8 +76,7 @@ class Libmodbus(interop.LibmodbusServer, Servers, interop.Case):
                              (4, 'device failure'), (5, 'acknowledge'), (6, 'device busy'), (7, 'unknown'),
                              (8, 'memory parity error'), (10, 'gateway path unavailable'),
                              (11, 'gateway target silent')):
-            with self.subTest(number):
-                self.refused('hps167s', 8, [f'!{number}', '0', '0', '0'], f'{number:02}', name)
+            self.refused('hps167s', 8, [f'!{number}', '0', '0', '0'], f'{number:02}', name)
 
 
 if __name__ == '__main__':
