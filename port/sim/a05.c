@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fathom/dyp_frame.h"
+#include "fathom/dyp_protocol.h"
 
 enum { PROBES = FATHOM_DYP_PROBES, FIRST_PROBE = 0x0106, FIRST_ALIAS = 0x0010, ADDRESS = 0x0200 };
 
@@ -53,6 +54,27 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
     return fathom_sim_device_delay_us(device, most_us);
 }
 
+/* 55 AA. "t2 = 200~210ms", "65~75ms" (A05 2(3)1): the spread is 10 ms. */
+static uint32_t command(fathom_sim_device_t *device, uint8_t address, uint8_t code)
+{
+    const fathom_sim_a05_t *const a05 = a05_of(device);
+    const uint32_t spread_us = 10000;
+    switch (fathom_dyp_protocol_values(code)) {
+    case PROBES:
+        return fathom_sim_device_between_us(device, a05->all_us - spread_us, a05->all_us);
+    case 1:
+        return fathom_sim_device_between_us(device, a05->one_us - spread_us, a05->one_us);
+    default:
+        break;
+    }
+    /* The address is 01..FE (A05 2(3)2). */
+    if (code != FATHOM_DYP_SET_ADDRESS || address == 0 || address == FATHOM_DYP_ANY_ADDRESS)
+        return FATHOM_NO_DEADLINE;
+    device->unit = address;
+    device->counters.writes++;
+    return fathom_sim_device_delay_us(device, a05->settings_us);
+}
+
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
     uint8_t probe = probe_at(get16(message->head + 2));
@@ -76,7 +98,13 @@ static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 
 
 void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config)
 {
-    static const fathom_sim_model_t model = {request, fill, automatic, 0xFF, false, true};
+    static const fathom_sim_model_t model = {.request = request,
+                                             .fill = fill,
+                                             .automatic = automatic,
+                                             .command = command,
+                                             .reading = {FIRST_PROBE, PROBES},
+                                             .broadcast = 0xFF,
+                                             .deaf_at_start = true};
     fathom_sim_device_t *const device = &a05->device;
     memset(a05, 0, sizeof *a05);
     device->model = &model;
@@ -88,10 +116,18 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
     device->random = config->seed;
     device->unit = config->unit != 0 ? config->unit : 1;
     device->listens = true;
+    device->dyp_silent_broadcast = config->dyp_silent_broadcast;
+    device->protocols[0] = &fathom_sim_modbus;
+    if (config->mode == FATHOM_SIM_A05_DYP) {
+        device->protocols[0] = &fathom_sim_dyp;
+        device->protocols[1] = &fathom_sim_modbus;
+    }
     device->answers_broadcast = config->answers_broadcast;
-    if (config->mode != FATHOM_SIM_A05_MODBUS) device->period_us = or_else(config->period_us, 300000);
+    if (config->mode == FATHOM_SIM_A05_AUTO) device->period_us = or_else(config->period_us, 300000);
     device->linger_us = or_else(config->linger_us, 150000);
     a05->probe_us = or_else(config->probe_us, 100000);
+    a05->all_us = or_else(config->all_us, 210000);
+    a05->one_us = or_else(config->one_us, 75000);
     a05->settings_us = or_else(config->settings_us, 20000);
     a05->exceptions = config->exceptions;
 }

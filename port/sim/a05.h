@@ -22,11 +22,16 @@ extern "C" {
  *   0x0200 address, by itself
  * and function 06 of 0x0200, 0x00..0xFE: echoed from the old address, obeyed at once. Everything else is
  * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered.
- * Not yet: the 55 AA protocol (A05 2), relay output.
+ * 55 AA (A05 2), 01..FE as address: 01 all probes, 10..13 one, measured at the moment of the answer; 03 sets
+ * the address, which is the only one in it, so that every unit obeys that hears it. 0xFF is obeyed, and
+ * answered from its own address (whether it is, is not in the datasheet). Silence: 00 or FF as a new address,
+ * another command, another length, a wrong sum.
+ * Not yet: relay output.
  */
 typedef enum {
-    FATHOM_SIM_A05_AUTO = 1,  /* UART: automatic, then Modbus (A05 1) */
-    FATHOM_SIM_A05_MODBUS = 2 /* RS-485 (A05 3) */
+    FATHOM_SIM_A05_AUTO = 1,   /* UART: automatic, then Modbus (A05 1) */
+    FATHOM_SIM_A05_MODBUS = 2, /* RS-485 (A05 3) */
+    FATHOM_SIM_A05_DYP = 3     /* RS-485, 55 AA, and "Modbus at the same time" (A05 2(2)) */
 } fathom_sim_a05_mode_t;
 
 /* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
@@ -34,7 +39,8 @@ typedef struct {
     uint8_t unit;                      /* Modbus address; default 1 */
     uint8_t mode;                      /* fathom_sim_a05_mode_t; must be given */
     bool exceptions;                   /* answers 01, 02 or 03 where the default is silence */
-    bool answers_broadcast;            /* answers 0xFF, from its own address */
+    bool answers_broadcast;            /* answers 0xFF in Modbus, from its own address */
+    bool dyp_silent_broadcast;         /* obeys 0xFF in 55 AA, but does not answer it */
     uint32_t seed;                     /* of the spread of the answer times; any */
     fathom_sim_scene_t scene;          /* probes 1..4; no target when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
@@ -43,13 +49,17 @@ typedef struct {
     uint32_t linger_us;                /* automatic frames still come for so long after the first command;
                                           default 150 ms; 1: none that has not begun */
     uint32_t probe_us;                 /* longest time a probe of a read takes; default 100 ms (A05 3(3)) */
-    uint32_t settings_us;              /* register 0x0200; 20 ms */
+    uint32_t settings_us;              /* register 0x0200, and 55 AA 03; 20 ms */
+    uint32_t all_us;                   /* 55 AA 01, longest, at least 10 ms; it is up to 10 ms less; 210 ms */
+    uint32_t one_us;                   /* 55 AA 10..13; 75 ms */
 } fathom_sim_a05_config_t;
 
 typedef struct {
     fathom_sim_device_t device; /* for fathom_sim_attach; device.counters */
     uint32_t probe_us;
     uint32_t settings_us;
+    uint32_t all_us;
+    uint32_t one_us;
     bool exceptions;
 } fathom_sim_a05_t;
 

@@ -99,7 +99,12 @@ static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 
 
 void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *config)
 {
-    static const fathom_sim_model_t model = {request, fill, automatic, 0xFF, false, true};
+    static const fathom_sim_model_t model = {.request = request,
+                                             .fill = fill,
+                                             .automatic = automatic,
+                                             .reading = {REALTIME, 1},
+                                             .broadcast = 0xFF,
+                                             .deaf_at_start = true};
     fathom_sim_device_t *const device = &a16->device;
     memset(a16, 0, sizeof *a16);
     device->model = &model;
@@ -110,6 +115,7 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->start_us = config->start_us;
     device->random = config->seed;
     device->unit = config->unit != 0 ? config->unit : 1;
+    device->protocols[0] = &fathom_sim_modbus;
     device->listens = config->mode != FATHOM_SIM_A16_UART;
     device->answers_broadcast = config->answers_broadcast;
     if (config->mode != FATHOM_SIM_A16_MODBUS) device->period_us = or_else(config->period_us, 100000);

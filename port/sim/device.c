@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "device.h"
 
+#include <string.h>
+
 enum {
+    POWER = FATHOM_SIM_ALARM_POWER,
     START = FATHOM_SIM_ALARM_START,
     SILENCE = FATHOM_SIM_ALARM_SILENCE,
     ANSWER = FATHOM_SIM_ALARM_ANSWER,
@@ -16,18 +19,26 @@ void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uin
 
 /* ---- what the sensors need ---- */
 
-uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_us)
+uint32_t fathom_sim_device_between_us(fathom_sim_device_t *device, uint32_t least_us, uint32_t most_us)
 {
     /* The generator of Numerical Recipes; its high bits are the good ones. */
     device->random = (uint32_t)(device->random * UINT32_C(1664525) + UINT32_C(1013904223));
-    return most_us - (device->random >> 8) % (most_us / 8 + 1);
+    return most_us - (device->random >> 8) % (most_us - least_us + 1);
+}
+
+uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_us)
+{
+    return fathom_sim_device_between_us(device, most_us - most_us / 8, most_us);
 }
 
 int32_t fathom_sim_device_measure(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
 {
+    int32_t value = FATHOM_SIM_NO_TARGET;
     device->counters.measurements++;
-    if (device->scene.distance == NULL) return FATHOM_SIM_NO_TARGET;
-    return device->scene.distance(device->scene.ctx, probe, now_us);
+    if (device->scene.distance != NULL) value = device->scene.distance(device->scene.ctx, probe, now_us);
+    if (device->faults != NULL && device->faults->measured != NULL)
+        value = device->faults->measured(device->faults->ctx, probe, value);
+    return value;
 }
 
 uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
@@ -44,7 +55,8 @@ void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
     for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) device->alarms[i].set = false;
     device->sender.length = device->sender.sent = 0;
     device->sender.on_wire = false;
-    device->carriers = device->length = 0;
+    device->length = 0;
+    device->off_us = 0;
     device->torn = device->busy = device->leaving = false;
     if (device->start_us != 0) fathom_sim_device_set_alarm(device, START, now_us + device->start_us);
     if (device->period_us != 0) {
@@ -54,13 +66,19 @@ void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
     }
 }
 
+static void power_off(fathom_sim_device_t *device, uint32_t for_us, uint32_t now_us)
+{
+    for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) device->alarms[i].set = false;
+    fathom_sim_device_set_alarm(device, POWER, now_us + for_us);
+}
+
 /* ---- hearing ---- */
 
 static bool deaf(const fathom_sim_device_t *device, bool full_duplex)
 {
     const bool sending = device->sender.on_wire && !full_duplex;
     const bool starting = device->model->deaf_at_start && device->alarms[START].set;
-    return !device->listens || device->busy || sending || starting;
+    return !device->listens || device->busy || sending || starting || device->alarms[POWER].set;
 }
 
 void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
@@ -96,7 +114,7 @@ void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_s
 
 static void frame_ended(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_frame_t frame = {device->frame, device->length, false, now_us, 0};
+    fathom_sim_frame_t frame = {.bytes = device->frame, .length = device->length, .now_us = now_us};
     const bool torn = device->torn;
     device->length = 0;
     device->torn = false;
@@ -106,33 +124,48 @@ static void frame_ended(fathom_sim_device_t *device, uint32_t now_us)
     }
     if (device->faults != NULL && device->faults->incoming != NULL)
         device->faults->incoming(device->faults->ctx, &frame);
-    if (frame.length != 0) fathom_sim_device_serve(device, frame.bytes, frame.length, now_us);
+    if (frame.length == 0) return;
+    for (uint8_t i = 0; i < FATHOM_SIM_PROTOCOLS && device->protocols[i] != NULL; i++)
+        if (device->protocols[i]->hear(device, frame.bytes, frame.length, now_us)) return;
 }
 
 /* ---- sending ---- */
+
+void fathom_sim_device_reply(fathom_sim_device_t *device, const fathom_sim_protocol_t *protocol,
+                             uint32_t delay_us)
+{
+    device->protocol = protocol;
+    device->busy = true;
+    /* A time that is over by now, t3.5 after the request, means at once. */
+    fathom_sim_device_set_alarm(device, ANSWER, device->heard_us + delay_us);
+}
 
 /* False: a hook kept the frame back. */
 static bool send(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
                  fathom_sim_frame_t *frame)
 {
+    fathom_sim_sender_t *const sender = &device->sender;
     if (device->faults != NULL && device->faults->outgoing != NULL)
         device->faults->outgoing(device->faults->ctx, frame);
-    if (frame->length == 0) return false;
-    fathom_sim_sender_put(&device->sender, settings, frame->bytes, frame->length,
-                          frame->now_us + frame->delay_us);
-    return true;
+    if (frame->length == 0) {
+        if (frame->off_us != 0) power_off(device, frame->off_us, frame->now_us);
+        return false;
+    }
+    fathom_sim_sender_put(sender, settings, frame->bytes, frame->length, frame->now_us + frame->delay_us);
+    sender->paused = frame->paused;
+    sender->marked = frame->marked;
+    memcpy(sender->pauses, frame->pauses, sizeof sender->pauses);
+    if (frame->marked) memcpy(sender->marks, frame->marks, frame->length);
+    device->own = (uint16_t)(frame->length - frame->after);
+    device->off_us = frame->off_us;
+    return device->own != 0;
 }
 
 static void answer(fathom_sim_device_t *device, uint32_t now_us)
 {
     uint8_t bytes[FATHOM_SIM_MAX_FRAME];
-    fathom_sim_frame_t frame = {bytes, 0, false, now_us, 0};
-    fathom_modbus_message_t *const message = &device->message;
-    if (message->exception != 0)
-        device->counters.exceptions++;
-    else if (message->head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS && device->model->fill != NULL)
-        device->model->fill(device, message, now_us);
-    frame.length = fathom_modbus_rtu_encode_response(message, bytes);
+    fathom_sim_frame_t frame = {.bytes = bytes, .now_us = now_us, .protocol = device->protocol->id};
+    frame.length = device->protocol->answer(device, bytes, now_us);
     device->counters.answered++;
     device->busy = send(device, &device->reply_settings, &frame);
 }
@@ -140,7 +173,8 @@ static void answer(fathom_sim_device_t *device, uint32_t now_us)
 static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t now_us)
 {
     uint8_t bytes[FATHOM_SIM_MAX_FRAME];
-    fathom_sim_frame_t frame = {bytes, 0, true, now_us, 0};
+    fathom_sim_frame_t frame = {
+        .bytes = bytes, .automatic = true, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
     if (device->leaving && fathom_sim_until_us(device->leave_us, now_us) == 0) return;
     frame.length = device->model->automatic(device, bytes, now_us);
     device->counters.automatic++;
@@ -151,7 +185,12 @@ static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t
     send(device, &device->settings, &frame);
 }
 
-void fathom_sim_device_sent(fathom_sim_device_t *device) { device->busy = device->alarms[ANSWER].set; }
+void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
+{
+    const bool idle = fathom_sim_sender_idle(&device->sender);
+    if (idle || device->sender.sent == device->own) device->busy = device->alarms[ANSWER].set;
+    if (idle && device->off_us != 0) power_off(device, device->off_us, now_us);
+}
 
 /* ---- time ---- */
 
@@ -179,6 +218,7 @@ void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us)
         fathom_sim_alarm_t *const alarm = &device->alarms[i];
         if (!alarm->set || held(device, i) || fathom_sim_until_us(alarm->at_us, now_us) != 0) continue;
         alarm->set = false;
+        if (i == POWER) fathom_sim_device_power_on(device, now_us);
         if (i == SILENCE) frame_ended(device, now_us);
         if (i == ANSWER) answer(device, now_us);
         if (i == AUTOMATIC) automatic(device, alarm->at_us, now_us);

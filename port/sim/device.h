@@ -43,40 +43,53 @@ typedef struct {
     void *ctx;
 } fathom_sim_scene_t;
 
-/* ---- faults: hooks on whole frames ---- */
+/* ---- faults: hooks on whole frames, and on what is measured ---- */
 
 /*
+ * measured   what probe `probe` has measured for the frame that follows; returns what it says instead.
  * incoming   a frame that the device has heard, before it checks the CRC. The hook may alter it; length 0
  *            makes the device miss it. delay_us means nothing.
  * outgoing   a frame that is about to leave. The hook may alter the bytes and the length (0: it does not
  *            leave, but the device believes that it has answered), and set delay_us: so much later does the
  *            first bit leave, and the device stays busy until the last one has (up to 30 minutes).
- * Either may be NULL. They must not call into the simulator.
+ *            More than the device's own bytes may be there: `after` of those at the end are somebody else's,
+ *            and it listens again before them. Pauses may stand between bytes, and bytes may have a mark.
+ * Any may be NULL. They must not call into the line.
  */
+enum { FATHOM_SIM_STREAM = 1, FATHOM_SIM_MODBUS = 2, FATHOM_SIM_DYP = 4 }; /* protocols; sets of them */
+
 typedef struct {
     uint8_t *bytes;    /* room for FATHOM_SIM_MAX_FRAME */
     uint8_t length;    /* 0..FATHOM_SIM_MAX_FRAME */
     bool automatic;    /* nobody asked for it */
     uint32_t now_us;   /* outgoing: when it would leave; incoming: when the device knew that it had ended */
-    uint32_t delay_us; /* outgoing, 0 on entry */
+    uint32_t delay_us; /* outgoing, 0 on entry, as all that follows */
+    uint32_t off_us;   /* when the bytes have left, the device loses power for so long */
+    uint8_t protocol;  /* FATHOM_SIM_STREAM and so on; 0 incoming */
+    uint8_t after;
+    uint8_t paused; /* used of `pauses` */
+    bool marked;    /* `marks` are set, all of them */
+    fathom_sim_pause_t pauses[FATHOM_SIM_PAUSES];
+    uint8_t marks[FATHOM_SIM_MAX_FRAME]; /* FATHOM_RX_PARITY, _FRAMING, or _OVERRUN: the byte is lost */
 } fathom_sim_frame_t;
 
 typedef struct {
     void (*incoming)(void *ctx, fathom_sim_frame_t *frame);
     void (*outgoing)(void *ctx, fathom_sim_frame_t *frame);
+    int32_t (*measured)(void *ctx, uint8_t probe, int32_t value);
     void *ctx;
 } fathom_sim_faults_t;
 
 /* ---- counters: read them in place; set them to 0 at will ---- */
 
 typedef struct {
-    uint32_t requests;       /* whole, CRC right, to its own address or to all */
+    uint32_t requests;       /* whole, CRC or sum right, to its own address or to all */
     uint32_t answered;       /* answers that left, exceptions among them */
     uint32_t exceptions;     /* of these, exceptions */
     uint32_t unserved;       /* requests to its address that it let pass in silence: unknown register,
                                  function or value, a length that fits no request, warming up */
-    uint32_t others;         /* frames with a right CRC for another address */
-    uint32_t crc_errors;     /* frames with a wrong CRC, or shorter than any frame */
+    uint32_t others;         /* frames with a right CRC or sum for another address */
+    uint32_t crc_errors;     /* frames with a wrong CRC or sum, or shorter than any frame */
     uint32_t torn;           /* frames dropped: a gap over t1.5 (HPS-167S 2.2.3), noise in them, too long */
     uint32_t unheard;        /* bytes that came while it was busy, sending or starting up */
     uint32_t wrong_settings; /* bytes at a rate or parity that it does not have */
@@ -90,7 +103,8 @@ typedef struct {
 /* ---- inside: for sim.c and the sensors ---- */
 
 enum {
-    FATHOM_SIM_ALARM_START = 0, /* set: still starting or warming up */
+    FATHOM_SIM_ALARM_POWER = 0, /* set: without power until then */
+    FATHOM_SIM_ALARM_START,     /* set: still starting or warming up */
     FATHOM_SIM_ALARM_REST,      /* set: the last measurement has been handed out, the next is under way */
     FATHOM_SIM_ALARM_SILENCE,   /* t3.5 after the last byte: the request is whole */
     FATHOM_SIM_ALARM_ANSWER,    /* the answer is ready */
@@ -105,6 +119,22 @@ typedef struct {
 
 enum { FATHOM_SIM_REGISTERS = 11 }; /* of the longest answer: HPS-167S #3 */
 
+/* A protocol in which a device is asked: modbus.c, dyp.c. */
+typedef struct {
+    /* A whole frame was heard. False: it is none of this protocol, another one may look at it. */
+    bool (*hear)(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us);
+    /* The answer to the last one is due: write it (up to FATHOM_SIM_MAX_FRAME bytes), return its length. */
+    uint8_t (*answer)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
+    /* The same for what nobody asked for: all that it measures. */
+    uint8_t (*unasked)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
+    uint8_t id; /* FATHOM_SIM_MODBUS and so on */
+} fathom_sim_protocol_t;
+
+extern const fathom_sim_protocol_t fathom_sim_modbus;
+extern const fathom_sim_protocol_t fathom_sim_dyp;
+
+enum { FATHOM_SIM_PROTOCOLS = 2 };
+
 /* What tells one sensor from another. A NULL function is never called for. */
 typedef struct {
     /* A request to this device, or to all. `message` has its head; message->exception is not 0 when the
@@ -115,9 +145,13 @@ typedef struct {
     void (*fill)(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us);
     /* An automatic frame is due: write it (up to FATHOM_SIM_MAX_FRAME bytes), return its length. */
     uint8_t (*automatic)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
-    uint8_t broadcast;  /* the address that all obey */
-    bool strict_gap;    /* a silence over t1.5 spoils a frame */
-    bool deaf_at_start; /* hears nothing while FATHOM_SIM_ALARM_START is set */
+    /* A command of the 55 AA protocol, to this device or to all. Returns as `request` does. */
+    uint32_t (*command)(fathom_sim_device_t *device, uint8_t address, uint8_t command);
+    uint16_t reading[2]; /* the Modbus read of all that it measures: address, count */
+    uint8_t broadcast;   /* the address that all obey */
+    bool strict_gap;     /* a silence over t1.5 spoils a frame */
+    bool deaf_at_start;  /* hears nothing while FATHOM_SIM_ALARM_START is set */
+    bool optical;        /* says FATHOM_SIM_FAULT, and no FATHOM_SIM_INTERFERENCE */
 } fathom_sim_model_t;
 
 struct fathom_sim_device {
@@ -132,12 +166,16 @@ struct fathom_sim_device {
     uint32_t linger_us;              /* automatic frames go on for so long after the first command */
     uint32_t random;                 /* state of the generator, from the seed */
     bool listens;                    /* false: takes no commands at all */
-    bool answers_broadcast;          /* from its own address */
+    bool answers_broadcast;          /* in Modbus, from its own address */
+    bool dyp_silent_broadcast;       /* in 55 AA none answers */
     uint8_t unit;
+    const fathom_sim_protocol_t *protocols[FATHOM_SIM_PROTOCOLS]; /* looked at in this order; NULL: none */
 
     fathom_sim_alarm_t alarms[FATHOM_SIM_ALARMS];
     fathom_sim_sender_t sender;
-    fathom_modbus_message_t message; /* the request that is being served */
+    const fathom_sim_protocol_t *protocol; /* of the request that is being served */
+    fathom_modbus_message_t message;       /* that request, in Modbus */
+    uint8_t command;                       /* that request, in 55 AA */
     fathom_line_settings_t reply_settings;
     uint16_t values[FATHOM_SIM_REGISTERS];
     uint32_t heard_us; /* end of the last byte */
@@ -145,6 +183,8 @@ struct fathom_sim_device {
     uint8_t carriers;  /* bytes on the wire now, of others */
     uint8_t length;    /* bytes of the frame that is being heard */
     bool torn;         /* that frame is spoiled */
+    uint16_t own;      /* bytes at the sender that are the device's; the rest is somebody else's */
+    uint32_t off_us;   /* without power for so long when the sender is idle */
     bool busy;         /* between a request and the end of its answer */
     bool leaving;
     uint8_t frame[FATHOM_SIM_MAX_FRAME];
@@ -156,7 +196,7 @@ void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us);
 /* good: false for a byte that was talked into. full_duplex: hearing and sending have a wire each. */
 void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
                                 uint8_t byte, bool good, bool full_duplex, uint32_t now_us);
-void fathom_sim_device_sent(fathom_sim_device_t *device); /* its sender went idle */
+void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us); /* a byte of it has left */
 uint32_t fathom_sim_device_due_us(const fathom_sim_device_t *device, uint32_t now_us);
 void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us); /* something is due */
 
@@ -168,9 +208,11 @@ uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe
 uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_us);
 void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uint32_t at_us);
 
-/* modbus.c: a whole frame was heard. */
-void fathom_sim_device_serve(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length,
-                             uint32_t now_us);
+uint32_t fathom_sim_device_between_us(fathom_sim_device_t *device, uint32_t least_us, uint32_t most_us);
+
+/* What the protocols call: the request is to be answered so long after its end. */
+void fathom_sim_device_reply(fathom_sim_device_t *device, const fathom_sim_protocol_t *protocol,
+                             uint32_t delay_us);
 
 #ifdef __cplusplus
 }

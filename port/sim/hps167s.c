@@ -186,7 +186,12 @@ static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 
 
 void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s_config_t *config)
 {
-    static const fathom_sim_model_t model = {request, fill, NULL, FATHOM_MODBUS_BROADCAST, true, false};
+    static const fathom_sim_model_t model = {.request = request,
+                                             .fill = fill,
+                                             .reading = {MEASURE, 4},
+                                             .broadcast = FATHOM_MODBUS_BROADCAST,
+                                             .strict_gap = true,
+                                             .optical = true};
     fathom_sim_device_t *const device = &hps->device;
     memset(hps, 0, sizeof *hps);
     device->model = &model;
@@ -198,6 +203,7 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
     device->start_us = (uint32_t)config->warm_up_s * UINT32_C(1000000);
     device->random = config->seed;
     device->unit = config->unit != 0 ? config->unit : FACTORY_UNIT;
+    device->protocols[0] = &fathom_sim_modbus;
     device->listens = true;
     hps->optics = config->optics != NULL ? config->optics : &example_optics;
     hps->details = config->details != NULL ? config->details : example_details;

@@ -25,18 +25,18 @@ static bool fits(const uint8_t *frame, uint8_t length)
     return fathom_modbus_rtu_request_length(frame, length) == length;
 }
 
-void fathom_sim_device_serve(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length,
-                             uint32_t now_us)
+/* What is no frame of another protocol is a damaged one of this. */
+static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us)
 {
     fathom_modbus_message_t *const message = &device->message;
     if (length < MIN_LENGTH || fathom_crc16(frame, length) != 0) {
         device->counters.crc_errors++;
-        return;
+        return true;
     }
     const bool to_all = frame[UNIT] == device->model->broadcast;
     if (!to_all && frame[UNIT] != device->unit) {
         device->counters.others++;
-        return;
+        return true;
     }
     device->counters.requests++;
     leave_automatic(device, now_us);
@@ -51,9 +51,30 @@ void fathom_sim_device_serve(fathom_sim_device_t *device, const uint8_t *frame, 
         if (to_all && device->answers_broadcast) message->head[UNIT] = unit;
     }
     if (delay_us == FATHOM_NO_DEADLINE) device->counters.unserved++;
-    if (delay_us == FATHOM_NO_DEADLINE || (to_all && !device->answers_broadcast)) return;
-
-    /* A time that is over by now, t3.5 after the request, means at once. */
-    device->busy = true;
-    fathom_sim_device_set_alarm(device, FATHOM_SIM_ALARM_ANSWER, device->heard_us + delay_us);
+    if (delay_us != FATHOM_NO_DEADLINE && (!to_all || device->answers_broadcast))
+        fathom_sim_device_reply(device, &fathom_sim_modbus, delay_us);
+    return true;
 }
+
+static uint8_t answer(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
+{
+    fathom_modbus_message_t *const message = &device->message;
+    if (message->exception != 0)
+        device->counters.exceptions++;
+    else if (message->head[FUNCTION] == FATHOM_MODBUS_READ_HOLDING_REGISTERS && device->model->fill != NULL)
+        device->model->fill(device, message, now_us);
+    return fathom_modbus_rtu_encode_response(message, bytes);
+}
+
+static uint8_t unasked(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
+{
+    uint16_t values[FATHOM_SIM_REGISTERS];
+    fathom_modbus_message_t message;
+    fathom_modbus_read_holding_registers(&message, device->unit, device->model->reading[0],
+                                         (uint8_t)device->model->reading[1], values);
+    message.exception = 0;
+    device->model->fill(device, &message, now_us);
+    return fathom_modbus_rtu_encode_response(&message, bytes);
+}
+
+const fathom_sim_protocol_t fathom_sim_modbus = {hear, answer, unasked, FATHOM_SIM_MODBUS};

@@ -188,10 +188,17 @@ static void forget_old(const fathom_sim_pty_t *pty)
         (void)tcflush(pty->slave, TCIFLUSH);
 }
 
+/* A byte is coming, or one follows before t3.5 has passed. */
 static bool is_in_a_frame(const fathom_sim_line_t *line)
 {
-    for (const fathom_sim_device_t *device = line->devices; device != NULL; device = device->next)
-        if (!fathom_sim_sender_idle(&device->sender)) return true;
+    const uint32_t silence_us = fathom_sim_silence_us(&line->settings);
+    for (const fathom_sim_device_t *device = line->devices; device != NULL; device = device->next) {
+        const fathom_sim_sender_t *const sender = &device->sender;
+        if (fathom_sim_sender_idle(sender)) continue;
+        if (sender->on_wire ||
+            fathom_sim_until_us(fathom_sim_sender_next_us(sender), line->now_us) < silence_us)
+            return true;
+    }
     return false;
 }
 

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+enum { BYTE_ERRORS = FATHOM_RX_PARITY | FATHOM_RX_FRAMING };
+
 void fathom_sim_line_init(fathom_sim_line_t *line, const fathom_line_settings_t *settings, uint32_t now_us)
 {
     memset(line, 0, sizeof *line);
@@ -16,12 +18,13 @@ void fathom_sim_line_init(fathom_sim_line_t *line, const fathom_line_settings_t 
 /* What a UART makes of a byte that it cannot hear right is anybody's guess; here the same every time. */
 static uint8_t garbled(uint8_t byte) { return (uint8_t) ~(byte << 1); }
 
-static void arrive(fathom_sim_line_t *line, const fathom_sim_sender_t *sender, uint8_t byte)
+/* mark: what the UART says of the byte besides (FATHOM_RX_...). */
+static void arrive(fathom_sim_line_t *line, const fathom_sim_sender_t *sender, uint8_t byte, uint8_t mark)
 {
-    uint8_t flags = sender->after_silence ? FATHOM_RX_SILENCE : 0;
+    uint8_t flags = (uint8_t)((sender->after_silence ? FATHOM_RX_SILENCE : 0) | (mark & BYTE_ERRORS));
     line->arrived_us = line->now_us;
     line->quiet = false;
-    if (line->waiting == FATHOM_SIM_QUEUE) {
+    if (line->waiting == FATHOM_SIM_QUEUE || (mark & FATHOM_RX_OVERRUN) != 0) {
         line->counters.overruns++;
         line->lost = true;
         return;
@@ -83,15 +86,17 @@ static void byte_begins(fathom_sim_line_t *line, fathom_sim_sender_t *sender,
 static void byte_ends(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fathom_sim_device_t *device)
 {
     const uint8_t byte = sender->bytes[sender->sent];
+    const uint8_t mark = sender->marked ? sender->marks[sender->sent] : 0;
     sender->sent++;
     sender->on_wire = false;
     if (device == NULL) line->counters.from_host++;
-    if (device != NULL || line->echo) arrive(line, sender, byte);
+    if (device != NULL || line->echo) arrive(line, sender, byte, mark);
     for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next)
         if (hears(line, at, device))
-            fathom_sim_device_hear_end(at, &sender->settings, byte, !sender->spoiled, line->full_duplex,
+            fathom_sim_device_hear_end(at, &sender->settings, byte,
+                                       !sender->spoiled && (mark & BYTE_ERRORS) == 0, line->full_duplex,
                                        line->now_us);
-    if (device != NULL && fathom_sim_sender_idle(sender)) fathom_sim_device_sent(device);
+    if (device != NULL) fathom_sim_device_sent(device, line->now_us);
 }
 
 /* ---- time ---- */
@@ -176,6 +181,7 @@ void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
     while (*end != NULL) end = &(*end)->next;
     *end = device;
     device->next = NULL;
+    device->carriers = 0;
     /* whoever talks now is in the middle of a byte, whose end will be counted too */
     fathom_sim_device_power_on(device, line->now_us);
     if (line->host.on_wire) device->carriers++;
@@ -222,14 +228,13 @@ bool fathom_sim_sent(fathom_sim_line_t *line, uint32_t now_us)
 size_t fathom_sim_transmit_timed(fathom_sim_line_t *line, uint32_t now_us, uint8_t *bytes, size_t capacity,
                                  uint8_t knows, fathom_rx_t *rx)
 {
-    const uint8_t errors = FATHOM_RX_PARITY | FATHOM_RX_FRAMING;
     const uint8_t before = FATHOM_RX_SILENCE | FATHOM_RX_OVERRUN;
     size_t count = 0;
     fathom_sim_run(line, now_us);
     while (count < capacity && line->waiting != 0) {
         const fathom_sim_arrival_t *const arrival = &line->arrivals[line->first];
         const uint8_t flags = arrival->flags & knows;
-        if (count != 0 && (flags & (errors | before)) != 0) break;
+        if (count != 0 && (flags & (BYTE_ERRORS | before)) != 0) break;
         bytes[count++] = arrival->byte;
         rx->flags |= flags;
         if ((knows & FATHOM_RX_TIMED) != 0) {
@@ -238,7 +243,7 @@ size_t fathom_sim_transmit_timed(fathom_sim_line_t *line, uint32_t now_us, uint8
         }
         line->first = (uint16_t)((line->first + 1) % FATHOM_SIM_QUEUE);
         line->waiting--;
-        if ((flags & errors) != 0) break;
+        if ((flags & BYTE_ERRORS) != 0) break;
     }
     return count;
 }

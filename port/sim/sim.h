@@ -33,7 +33,7 @@ extern "C" {
 typedef struct {
     uint32_t from_host;  /* bytes that the host sent */
     uint32_t to_host;    /* bytes that reached it */
-    uint32_t overruns;   /* bytes lost because the host did not read */
+    uint32_t overruns;   /* bytes lost because the host did not read, or marked so by a fault */
     uint32_t collisions; /* bytes that began while another talked (two-wire lines) */
 } fathom_sim_line_counters_t;
 

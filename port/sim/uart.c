@@ -12,6 +12,8 @@ void fathom_sim_clock_init(fathom_sim_clock_t *clock, uint32_t start_us, uint32_
     clock->now_us = start_us;
     clock->step_us = step_us;
     clock->unseen_us = 0;
+    clock->ahead_us = clock->was_ahead_us = 0;
+    clock->jumped_us = start_us;
     clock->lines = NULL;
 }
 
@@ -22,11 +24,19 @@ static void show(fathom_sim_clock_t *clock)
     clock->unseen_us = 0;
 }
 
+/* Nothing is waiting to be read from before the last jump: forget it, before times compare wrong. */
+static void settle(fathom_sim_clock_t *clock)
+{
+    clock->jumped_us = clock->now_us;
+    clock->was_ahead_us = clock->ahead_us;
+}
+
 /* by_us: at most most_unseen_us */
 static void move(fathom_sim_clock_t *clock, uint32_t by_us)
 {
     clock->now_us += by_us;
     clock->unseen_us += by_us;
+    if (fathom_elapsed_us(clock->now_us, clock->jumped_us) > most_unseen_us) settle(clock);
     if (clock->unseen_us >= most_unseen_us) show(clock);
 }
 
@@ -35,6 +45,13 @@ void fathom_sim_clock_advance(fathom_sim_clock_t *clock, uint32_t by_us)
     for (; by_us > most_unseen_us; by_us -= most_unseen_us) move(clock, most_unseen_us);
     move(clock, by_us);
     show(clock);
+}
+
+void fathom_sim_clock_jump(fathom_sim_clock_t *clock, uint32_t at_us, uint32_t by_us)
+{
+    clock->jumped_us = at_us;
+    clock->was_ahead_us = clock->ahead_us;
+    clock->ahead_us += by_us;
 }
 
 void fathom_sim_clock_idle(void *ctx, uint32_t max_us)
@@ -56,7 +73,7 @@ static uint32_t now_us(void *ctx)
         fathom_sim_clock_advance(clock, clock->step_us);
     else
         move(clock, clock->step_us);
-    return clock->now_us;
+    return clock->now_us + clock->ahead_us;
 }
 
 fathom_clock_t fathom_sim_clock(fathom_sim_clock_t *clock)
@@ -72,7 +89,13 @@ static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
     const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
     /* more than the line can hold is never there, so the result fits an int */
     if (capacity > FATHOM_SIM_QUEUE) capacity = FATHOM_SIM_QUEUE;
-    return (int)fathom_sim_transmit_timed(uart->line, uart->clock->now_us, bytes, capacity, uart->knows, rx);
+    const size_t count =
+        fathom_sim_transmit_timed(uart->line, uart->clock->now_us, bytes, capacity, uart->knows, rx);
+    if ((rx->flags & FATHOM_RX_TIMED) != 0) {
+        const bool before = fathom_elapsed_us(rx->last_us, uart->clock->jumped_us) > INT32_MAX;
+        rx->last_us += before ? uart->clock->was_ahead_us : uart->clock->ahead_us;
+    }
+    return (int)count;
 }
 
 static int write(void *ctx, const uint8_t *bytes, size_t length)

@@ -27,6 +27,9 @@ typedef struct {
     uint32_t now_us;  /* may be read; is moved by the functions below only */
     uint32_t step_us; /* the caller's to change */
     uint32_t unseen_us;
+    uint32_t ahead_us; /* of now_us is what the HAL's clock and time stamps say */
+    uint32_t was_ahead_us;
+    uint32_t jumped_us; /* at this now_us it was `was_ahead_us` until then */
     fathom_sim_line_t *lines;
 } fathom_sim_clock_t;
 
@@ -35,6 +38,10 @@ void fathom_sim_clock_init(fathom_sim_clock_t *clock, uint32_t start_us, uint32_
 
 /* Moves the time on by as much as you like and lets all lines live through it. */
 void fathom_sim_clock_advance(fathom_sim_clock_t *clock, uint32_t by_us);
+
+/* The HAL's clock, and nothing else, jumps: the host was stopped with its clock going on, or somebody set it.
+ * From then on it says so much more than now_us; bytes that ended before at_us keep their time stamps. */
+void fathom_sim_clock_jump(fathom_sim_clock_t *clock, uint32_t at_us, uint32_t by_us);
 
 /* The idle hook; `clock` is a fathom_sim_clock_t. With no limit (FATHOM_NO_DEADLINE) and nothing to come it
  * moves one second. */

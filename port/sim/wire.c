@@ -60,6 +60,8 @@ size_t fathom_sim_sender_put(fathom_sim_sender_t *sender, const fathom_line_sett
         sender->settings = *settings;
         sender->begin_us = at_us;
         sender->length = 0;
+        sender->paused = 0;
+        sender->marked = false;
     } else if (sender->sent != 0) {
         sender->begin_us += fathom_sim_span_us(&sender->settings, sender->sent);
         sender->length = (uint16_t)(sender->length - sender->sent);
@@ -76,5 +78,8 @@ size_t fathom_sim_sender_put(fathom_sim_sender_t *sender, const fathom_line_sett
 uint32_t fathom_sim_sender_next_us(const fathom_sim_sender_t *sender)
 {
     const uint16_t characters = (uint16_t)(sender->sent + (sender->on_wire ? 1 : 0));
-    return (uint32_t)(sender->begin_us + fathom_sim_span_us(&sender->settings, characters));
+    uint32_t next_us = sender->begin_us + fathom_sim_span_us(&sender->settings, characters);
+    for (uint8_t i = 0; i < sender->paused; i++)
+        if (sender->sent >= sender->pauses[i].at) next_us += sender->pauses[i].us;
+    return next_us;
 }

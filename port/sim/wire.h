@@ -21,8 +21,15 @@ extern "C" {
  */
 enum {
     FATHOM_SIM_MAX_FRAME = 255, /* bytes of the longest frame that a device hears or sends */
-    FATHOM_SIM_QUEUE = 256      /* bytes that wait to leave */
+    FATHOM_SIM_QUEUE = 256,     /* bytes that wait to leave */
+    FATHOM_SIM_PAUSES = 6       /* in what a device sends at a time */
 };
+
+/* Silence before byte `at` of what is being sent. */
+typedef struct {
+    uint32_t us;
+    uint16_t at;
+} fathom_sim_pause_t;
 
 /* What `characters` (0..256) last in a row, rounded up to a whole us. baud: 1200 and up. */
 uint32_t fathom_sim_span_us(const fathom_line_settings_t *settings, uint16_t characters);
@@ -47,12 +54,18 @@ typedef struct {
     bool on_wire;                    /* bytes[sent] is leaving now */
     bool spoiled;                    /* somebody else talked into it */
     bool after_silence;              /* t3.5 had passed before it */
+    uint8_t paused;                  /* used of `pauses` */
+    bool marked;                     /* `marks` has any */
+    fathom_sim_pause_t pauses[FATHOM_SIM_PAUSES];
+    uint8_t marks[FATHOM_SIM_QUEUE]; /* FATHOM_RX_... that the host's UART will say of each byte */
     uint8_t bytes[FATHOM_SIM_QUEUE];
 } fathom_sim_sender_t;
 
 bool fathom_sim_sender_idle(const fathom_sim_sender_t *sender);
 
-/* Appends up to `count` bytes without a gap; from idle they begin at `at_us`. Returns how many fitted. */
+/* Appends up to `count` bytes without a gap; from idle they begin at `at_us`. Returns how many fitted. Pauses
+ * and marks are set after this, from idle, and hold until the next bytes from idle; nothing is appended to
+ * them. */
 size_t fathom_sim_sender_put(fathom_sim_sender_t *sender, const fathom_line_settings_t *settings,
                              const uint8_t *bytes, size_t count, uint32_t at_us);
 
