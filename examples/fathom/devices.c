@@ -37,6 +37,11 @@ void device_a05_modbus(device_t *device, const device_settings_t *settings)
     make_a05(device, settings, FATHOM_SIM_A05_MODBUS);
 }
 
+void device_a05_dyp(device_t *device, const device_settings_t *settings)
+{
+    make_a05(device, settings, FATHOM_SIM_A05_DYP);
+}
+
 void device_hps167s(device_t *device, const device_settings_t *settings)
 {
     const fathom_sim_hps167s_config_t config = {

@@ -28,6 +28,7 @@ void device_a16_auto(device_t *device, const device_settings_t *settings);
 void device_a16_modbus(device_t *device, const device_settings_t *settings);
 void device_a05_auto(device_t *device, const device_settings_t *settings);
 void device_a05_modbus(device_t *device, const device_settings_t *settings);
+void device_a05_dyp(device_t *device, const device_settings_t *settings);
 void device_hps167s(device_t *device, const device_settings_t *settings);
 
 #endif

@@ -7,6 +7,12 @@
 
 int options_parse(const char *command, int argc, char **argv, const struct option *table, const char **values)
 {
+    return options_parse_each(command, argc, argv, table, values, NULL, NULL);
+}
+
+int options_parse_each(const char *command, int argc, char **argv, const struct option *table,
+                       const char **values, option_each_t each, void *ctx)
+{
     int row = 0;
     opterr = 0;
     for (;;) {
@@ -25,6 +31,7 @@ int options_parse(const char *command, int argc, char **argv, const struct optio
             return -1;
         }
         values[row] = optarg != NULL ? optarg : "";
+        if (each != NULL) each(ctx, row, values[row]);
     }
 }
 

@@ -15,6 +15,11 @@
 int options_parse(const char *command, int argc, char **argv, const struct option *table,
                   const char **values);
 
+/* The same for options that may come several times: `each` is told every one of them, in order. */
+typedef void (*option_each_t)(void *ctx, int row, const char *value);
+int options_parse_each(const char *command, int argc, char **argv, const struct option *table,
+                       const char **values, option_each_t each, void *ctx);
+
 /* All of `text` is a decimal number from min to max. No sign, no space, nothing after it. */
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);
 

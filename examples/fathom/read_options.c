@@ -97,6 +97,11 @@ bool read_options(read_options_t *options, int argc, char **argv)
     options->mode = sensor_mode_find(command, options->sensor, values[MODE]);
     options->format = format_find(command, values[FORMAT]);
     if (options->mode == NULL || options->format == NULL) return false;
+    if (options->mode->read == NULL) {
+        (void)usage_error(command, "mode %s of %s can be simulated only", options->mode->name,
+                          options->sensor->name);
+        return false;
+    }
     options->line = options->sensor->line;
     if (!take_baud(values[BAUD], &options->line.baud) ||
         !take_parity(values[PARITY], &options->line.parity) || !take_numbers(options, values))

@@ -10,12 +10,12 @@
 /* One way in which a sensor can be read and simulated. */
 typedef struct {
     const char *name;
-    bool is_asked; /* by Modbus, at an address; else it sends by itself */
-    reader_init_t read;
+    bool is_asked;      /* at an address; else it sends by itself */
+    reader_init_t read; /* NULL: can be simulated only */
     device_init_t simulate;
 } sensor_mode_t;
 
-enum { SENSOR_MODES = 2 };
+enum { SENSOR_MODES = 3 };
 
 /* What the tool knows of a sensor. The first mode is the default, the line is the factory's. */
 typedef struct {

@@ -14,6 +14,7 @@ typedef struct {
     fathom_sim_line_t line;
     fathom_sim_pty_t pty;
     device_t device;
+    fathom_sim_fault_t fault;
 } session_t;
 
 static bool open_line(session_t *session)
@@ -26,6 +27,8 @@ static bool open_line(session_t *session)
     fathom_sim_line_init(&session->line, &options->sensor->line, now_us);
     session->line.full_duplex = !options->mode->is_asked; /* what sends by itself has a wire each way */
     options->mode->simulate(&session->device, &settings);
+    sim_faults_begin(&options->faults, &session->fault, options->seed);
+    fathom_sim_fault_attach(&session->fault, &session->line, session->device.base);
     fathom_sim_attach(&session->line, session->device.base, now_us);
     if (fathom_sim_pty_open(&session->pty, &session->line, &config) == 0) return true;
     if (options->link != NULL && errno == EEXIST)

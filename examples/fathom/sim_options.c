@@ -9,12 +9,11 @@
 
 static const char command[] = "sim";
 
-enum { LINK, DISTANCE, SEED, HELP, OPTIONS };
+enum { LINK, DISTANCE, SEED, FAULT, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    [LINK] = {"link", required_argument, NULL, 256},
-    [DISTANCE] = {"distance", required_argument, NULL, 256},
-    [SEED] = {"seed", required_argument, NULL, 256},
+    [LINK] = {"link", required_argument, NULL, 256}, [DISTANCE] = {"distance", required_argument, NULL, 256},
+    [SEED] = {"seed", required_argument, NULL, 256}, [FAULT] = {"fault", required_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -45,11 +44,16 @@ static bool take_device(sim_options_t *options, const char *text)
     return true;
 }
 
+static void each(void *ctx, int row, const char *value)
+{
+    if (row == FAULT) sim_faults_note(ctx, value);
+}
+
 bool sim_options(sim_options_t *options, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     memset(options, 0, sizeof *options);
-    const int rest = options_parse(command, argc, argv, table, values);
+    const int rest = options_parse_each(command, argc, argv, table, values, each, &options->faults);
     if (rest < 0) return false;
     options->wants_help = values[HELP] != NULL;
     if (options->wants_help) return true;
@@ -58,7 +62,8 @@ bool sim_options(sim_options_t *options, int argc, char **argv)
         return false;
     }
     if (!take_device(options, argv[rest]) ||
-        !option_number(command, "seed", values[SEED], 0, UINT32_MAX, &options->seed))
+        !option_number(command, "seed", values[SEED], 0, UINT32_MAX, &options->seed) ||
+        !sim_faults_parse(&options->faults, command, options->sensor, options->mode))
         return false;
     options->link = values[LINK];
     if (values[DISTANCE] == NULL) {
@@ -84,8 +89,19 @@ void sim_help(FILE *to)
         "                    a05) or fault (hps167s). An a05 takes up to four, separated by commas; the last "
         "one\n"
         "                    holds for the probes that are left. Default: something that moves to and fro\n"
-        "  --seed N          where the movement begins, and the small differences of the answer times; "
-        "default 0\n\n"
+        "  --seed N          where the movement begins, the small differences of the answer times, and the "
+        "faults;\n"
+        "                    default 0\n"
+        "  --fault KIND[=P[@N]]\n"
+        "                    damages what it sends: each frame with the chance P, such as 0.05 or 5% "
+        "(default "
+        "1), or\n"
+        "                    only the N-th, counted from 1. May be given several times, such as\n"
+        "                    --fault silence=10% --fault flip-bit=0.01. The kinds:\n",
+        to);
+    sim_faults_print(to);
+    (void)fputs(
+        "\n"
         "It answers only at its own baud rate. Parity cannot be seen through a pseudo terminal.\n"
         "Exit status: 0 after Ctrl-C, 1 when the port or the link cannot be made, 2 for wrong usage.\n\n"
         "examples, each with what reads it:\n"

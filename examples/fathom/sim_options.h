@@ -4,6 +4,7 @@
 
 #include "scenery.h"
 #include "sensors.h"
+#include "sim_faults.h"
 
 /* What `fathom sim` was asked to do. */
 typedef struct {
@@ -13,6 +14,7 @@ typedef struct {
     uint8_t address;
     uint32_t seed;
     scenery_t scene;
+    sim_faults_t faults;
     bool wants_help;
 } sim_options_t;
 
