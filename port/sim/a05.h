@@ -23,7 +23,8 @@ extern "C" {
  * and function 06 of 0x0200, 0x00..0xFE: echoed from the old address, obeyed at once. Everything else is
  * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered.
  * 55 AA (A05 2), 01..FE as address: 01 all probes, 10..13 one, measured at the moment of the answer; 03 sets
- * the address, which is the only one in it, so that every unit obeys that hears it. 0xFF is obeyed, and
+ * the address, which is the only one in it, so that every unit obeys that hears it, also when what it hears
+ * is another unit's answer, which has the same bytes: several units may then answer each other for ever. 0xFF is obeyed, and
  * answered from its own address (whether it is, is not in the datasheet). Silence: 00 or FF as a new address,
  * another command, another length, a wrong sum.
  * Not yet: relay output.
