@@ -98,7 +98,7 @@ static inline void stage_expect(const stage_t *s, const uint8_t *bytes, size_t c
     assert_memory_equal(s->bytes, bytes, count);
 }
 
-/* The frame of each setting, undamaged: A16 5(3), 6; A05 1(2), 2(3)3, 3(4); HPS-167S #5. */
+/* The frame of each setting but A05_MODBUS, undamaged: A16 5(3), 6; A05 1(2), 2(3)3, 3(4); HPS-167S #5. */
 static const struct {
     uint8_t request[8];
     uint8_t asked; /* bytes of it; 0: it sends by itself */
@@ -114,7 +114,6 @@ static const struct {
                     7,
                     200 * MS},
     [A05_AUTO] = {{0}, 0, {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60}, 10, 300 * MS},
-    /* three probes, and their values, of A05 3(4)1 example 3 are in the test of `count` */
     [A05_DYP] = {{0x55, 0xAA, 0x01, 0x01, 0x01},
                  5,
                  {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62},
