@@ -24,9 +24,9 @@ extern "C" {
  * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered.
  * 55 AA (A05 2), 01..FE as address: 01 all probes, 10..13 one, measured at the moment of the answer; 03 sets
  * the address, which is the only one in it, so that every unit obeys that hears it, also when what it hears
- * is another unit's answer, which has the same bytes: several units may then answer each other for ever. 0xFF is obeyed, and
- * answered from its own address (whether it is, is not in the datasheet). Silence: 00 or FF as a new address,
- * another command, another length, a wrong sum.
+ * is another unit's answer, which has the same bytes: several units may then answer each other for ever.
+ * 0xFF is obeyed, and answered from its own address (whether it is, is not in the datasheet). Silence: 00 or
+ * FF as a new address, another command, another length, a wrong sum. A frame ends with t3.5 of silence.
  * Not yet: relay output.
  */
 typedef enum {

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: MIT */
+#include "fault_bench.h"
+
+/* How often faults come, that they come again the same, and what is known of them. */
+
+enum { FRAMES = 20000, FIRST = 1, LAST = FATHOM_SIM_FAULT_END - 1 };
+
+/* Lets `frames` automatic frames of an A16 come, and reckons a number from all bytes, marks and times. */
+static uint64_t run_frames(stage_t *s, uint32_t frames)
+{
+    uint64_t number = 0;
+    while (s->fault.frames < frames) {
+        stage_wait(s, 100 * MS);
+        for (size_t i = 0; i < s->count; i++) {
+            number = number * 31 + s->bytes[i];
+            number = number * 31 + s->flags[i];
+            number = number * 31 + (s->end_us[i] - bench_start_us);
+        }
+    }
+    return number;
+}
+
+/* |hits - n p| <= 5 sqrt(n p (1 - p)), squared. With a fixed seed the answer is always the same; for an even
+ * generator it is wrong once in 1.7 million. */
+static bool is_likely(uint32_t hits, uint32_t n, uint32_t chance_ppm)
+{
+    const int64_t apart = (int64_t)hits * 1000000 - (int64_t)n * chance_ppm; /* in millionths of a hit */
+    const int64_t variance =
+        (int64_t)n * chance_ppm / 1000 * (1000000 - (int64_t)chance_ppm) / 1000; /* 10^-6 */
+    return apart / 1000 * (apart / 1000) <= 25 * variance;
+}
+
+static void the_bound_is_five_sigma(void **state)
+{
+    (void)state;
+    /* 10000 at 50 %: sigma 50 */
+    assert_true(is_likely(5250, 10000, 500000));
+    assert_true(is_likely(4750, 10000, 500000));
+    assert_false(is_likely(5251, 10000, 500000));
+    assert_false(is_likely(4749, 10000, 500000));
+    /* 10000 at 1 %: sigma 9.95 */
+    assert_true(is_likely(149, 10000, 10000));
+    assert_false(is_likely(150, 10000, 10000));
+}
+
+static void each_kind_comes_as_often_as_it_is_told(void **state)
+{
+    static const uint32_t chances_ppm[] = {1000, 50000, 500000};
+    (void)state;
+    for (uint8_t kind = FIRST; kind <= LAST; kind++) {
+        for (size_t i = 0; i < 3; i++) {
+            stage_t s;
+            fathom_sim_clock_t clock;
+            const setting_t setting = kind == FATHOM_SIM_FAULT_FAULT       ? HPS167S
+                                      : kind == FATHOM_SIM_FAULT_EXCEPTION ? A16_MODBUS
+                                                                           : A16_AUTO;
+            stage_set(&s, setting, 7);
+            fathom_sim_clock_init(&clock, bench_start_us, 0);
+            s.fault.clock = &clock;
+            fathom_sim_fault_rule_t *const rule = fathom_sim_fault_add(&s.fault, kind, chances_ppm[i], 0);
+            rule->us = kind == FATHOM_SIM_FAULT_POWER_CYCLE || kind == FATHOM_SIM_FAULT_LATE ? 1 * MS : 0;
+            if (!fathom_sim_fault_applies(kind, s.device)) fail_msg("%s", fathom_sim_fault_name(kind));
+            /* what needs a request is asked for, the rest comes by itself */
+            const bool is_asked = kind == FATHOM_SIM_FAULT_UNIT || kind == FATHOM_SIM_FAULT_FUNCTION ||
+                                  kind == FATHOM_SIM_FAULT_ECHO || setting != A16_AUTO;
+            const uint32_t frames = is_asked ? FRAMES / 4 : FRAMES;
+            const setting_t asked = setting == HPS167S ? HPS167S : A16_MODBUS;
+            if (is_asked && setting == A16_AUTO) {
+                stage_set(&s, A16_MODBUS, 7);
+                assert_non_null(fathom_sim_fault_add(&s.fault, kind, chances_ppm[i], 0));
+            }
+            if (is_asked)
+                while (s.fault.frames < frames) stage_next(&s, asked);
+            else
+                (void)run_frames(&s, frames);
+            if (!is_likely(s.fault.counters[kind], s.fault.frames, chances_ppm[i]))
+                fail_msg("%s: %u hits in %u frames at %u ppm", fathom_sim_fault_name(kind),
+                         (unsigned)s.fault.counters[kind], (unsigned)s.fault.frames,
+                         (unsigned)chances_ppm[i]);
+            assert_int_equal(s.fault.frames_hit, s.fault.counters[kind]);
+        }
+    }
+}
+
+static void what_the_host_finds_damaged_is_what_was_counted(void **state)
+{
+    stage_t s;
+    uint32_t missing = 0;
+    uint32_t wrong = 0;
+    (void)state;
+    stage_set(&s, A16_AUTO, 3);
+    ADD(&s, SILENCE, 100000, 0);
+    ADD(&s, FLIP_BIT, 100000, 0);
+    for (uint32_t n = 1; n <= FRAMES; n++) {
+        stage_wait(&s, n == 1 ? 150 * MS : 100 * MS);
+        assert_int_equal(s.fault.frames, n);
+        missing += s.count == 0;
+        wrong += s.count == 4 && !sum_is_right(s.bytes, 4); /* one bit always shows in a sum */
+        const bool is_bad = s.count == 0 || memcmp(s.bytes, golden[A16_AUTO].frame, 4) != 0;
+        assert_int_equal(is_bad, s.fault.last_kinds != 0);
+    }
+    assert_int_equal(missing, HITS(&s, SILENCE));
+    /* both at once: the bit is flipped first, and then the frame does not come */
+    const uint32_t both = HITS(&s, SILENCE) + HITS(&s, FLIP_BIT) - s.fault.frames_hit;
+    assert_int_equal(wrong, HITS(&s, FLIP_BIT) - both);
+    assert_true(is_likely(both, FRAMES, 10000)); /* 10 % of 10 %: they do not know of each other */
+}
+
+static void a_chance_may_be_never_and_one_in_a_million_is_rare(void **state)
+{
+    stage_t s;
+    (void)state;
+    stage_set(&s, A16_AUTO, 3);
+    ADD(&s, SILENCE, 0, 0);
+    ADD(&s, DROP, 0, 5);
+    ADD(&s, FLIP_BIT, 1, 0);
+    (void)run_frames(&s, FRAMES);
+    assert_int_equal(HITS(&s, SILENCE) + HITS(&s, DROP), 0);
+    assert_true(HITS(&s, FLIP_BIT) <= 1);
+}
+
+static void add_many(stage_t *s, uint32_t chance_ppm)
+{
+    for (uint8_t kind = FIRST; kind <= LAST; kind++)
+        if (kind != FATHOM_SIM_FAULT_CLOCK_JUMP)
+            assert_non_null(fathom_sim_fault_add(&s->fault, kind, chance_ppm, 0));
+}
+
+static uint64_t run_many(uint32_t seed, uint32_t *frames_hit)
+{
+    stage_t s;
+    stage_set(&s, A16_AUTO, seed);
+    add_many(&s, 20000);
+    const uint64_t number = run_frames(&s, 3000);
+    *frames_hit = s.fault.frames_hit;
+    return number;
+}
+
+static void the_same_seed_is_the_same_run_and_another_is_another(void **state)
+{
+    uint32_t hit[3];
+    (void)state;
+    const uint64_t first = run_many(5, &hit[0]);
+    assert_true(first == run_many(5, &hit[1]));
+    assert_int_equal(hit[0], hit[1]);
+    assert_true(hit[0] > 500);
+    assert_true(first != run_many(6, &hit[2]));
+}
+
+static void one_rule_more_does_not_move_the_hits_of_the_others(void **state)
+{
+    uint32_t hits[2] = {0, 0};
+    uint64_t frames[2] = {0, 0};
+    (void)state;
+    for (int more = 0; more < 2; more++) {
+        stage_t s;
+        stage_set(&s, A16_AUTO, 9);
+        ADD(&s, FLIP_BIT, 100000, 0);
+        if (more == 1) ADD(&s, TRAILING, 300000, 0);
+        for (uint32_t n = 1; n <= 500; n++) {
+            stage_wait(&s, n == 1 ? 150 * MS : 100 * MS);
+            if ((s.fault.last_kinds & BIT(FLIP_BIT)) == 0) continue;
+            frames[more] = frames[more] * 31 + n;
+            hits[more]++;
+        }
+    }
+    assert_true(hits[0] > 20);
+    assert_int_equal(hits[0], hits[1]);
+    assert_true(frames[0] == frames[1]);
+}
+
+static void two_kinds_may_hit_one_frame(void **state)
+{
+    stage_t s;
+    (void)state;
+    stage_set(&s, A16_MODBUS, 1);
+    ADD(&s, EXCEPTION, ALWAYS, 2)->code = 2;
+    ADD(&s, DUPLICATE, ALWAYS, 2);
+    ADD(&s, TRAILING, ALWAYS, 3);
+    ADD(&s, DROP, ALWAYS, 3);
+    stage_next(&s, A16_MODBUS);
+    expect_golden(&s, A16_MODBUS);
+    stage_next(&s, A16_MODBUS);
+    EXPECT_BYTES(&s, 0x01, 0x83, 0x02, 0xC0, 0xF1, 0x01, 0x83, 0x02, 0xC0, 0xF1);
+    assert_int_equal(s.fault.last_kinds, BIT(EXCEPTION) | BIT(DUPLICATE));
+    stage_next(&s, A16_MODBUS);
+    assert_in_range(s.count, 7, 10);
+    assert_int_equal(s.fault.last_kinds, BIT(TRAILING) | BIT(DROP));
+    assert_int_equal(s.fault.frames_hit, 2);
+    assert_int_equal(fathom_sim_fault_take(&s.fault),
+                     BIT(EXCEPTION) | BIT(DUPLICATE) | BIT(TRAILING) | BIT(DROP));
+}
+
+static void a_run_of_frames_is_hit_together(void **state)
+{
+    stage_t s;
+    uint32_t longest = 0;
+    uint32_t length = 0;
+    (void)state;
+    stage_set(&s, A16_AUTO, 1);
+    ADD(&s, SILENCE, ALWAYS, 3)->run = 4;
+    for (uint32_t n = 1; n <= 9; n++) {
+        stage_wait(&s, n == 1 ? 150 * MS : 100 * MS);
+        assert_int_equal(s.count, n >= 3 && n < 7 ? 0 : 4);
+    }
+    stage_set(&s, A16_AUTO, 1);
+    ADD(&s, SILENCE, 10000, 0)->run = 5;
+    for (uint32_t n = 1; n <= 2000; n++) {
+        stage_wait(&s, n == 1 ? 150 * MS : 100 * MS);
+        if (s.count == 0) {
+            length++;
+        } else {
+            if (length != 0) assert_true(length >= 5);
+            length = 0;
+        }
+        if (length > longest) longest = length;
+    }
+    assert_true(longest >= 5);
+}
+
+static void all_stops_when_they_are_switched_off_and_goes_on_again(void **state)
+{
+    stage_t s;
+    (void)state;
+    stage_set(&s, A16_AUTO, 1);
+    add_many(&s, 300000);
+    (void)run_frames(&s, 200);
+    assert_true(s.fault.frames_hit > 150);
+    fathom_sim_fault_enable(&s.fault, false);
+    (void)run_frames(&s, 230); /* what was under way */
+    const uint32_t hit = s.fault.frames_hit;
+    const uint32_t frames = s.fault.frames;
+    for (uint32_t n = 1; n <= 300; n++) {
+        stage_wait(&s, 100 * MS);
+        assert_int_equal(s.count % 4, 0);
+        for (size_t i = 0; i < s.count; i++) assert_int_equal(s.flags[i], 0);
+    }
+    assert_true(s.fault.frames >= frames + 299);
+    assert_int_equal(s.fault.frames_hit, hit);
+    assert_int_equal(s.fault.last_kinds, 0);
+    fathom_sim_fault_enable(&s.fault, true);
+    (void)run_frames(&s, s.fault.frames + 50);
+    assert_true(s.fault.frames_hit > hit + 30);
+}
+
+static void everything_at_once_still_ends(void **state)
+{
+    static const setting_t settings[] = {A16_AUTO, A16_MODBUS, A05_AUTO, A05_DYP, HPS167S};
+    (void)state;
+    for (size_t n = 0; n < sizeof settings / sizeof settings[0]; n++) {
+        stage_t s;
+        stage_set(&s, settings[n], 4);
+        add_many(&s, 200000);
+        for (int i = 0; i < 2000; i++) stage_next(&s, settings[n]);
+        assert_true(s.fault.frames > 100);
+        for (uint8_t kind = FIRST; kind <= LAST; kind++) {
+            const bool can = kind != FATHOM_SIM_FAULT_CLOCK_JUMP && fathom_sim_fault_applies(kind, s.device);
+            const bool asked_only = kind == FATHOM_SIM_FAULT_UNIT || kind == FATHOM_SIM_FAULT_FUNCTION ||
+                                    kind == FATHOM_SIM_FAULT_EXCEPTION || kind == FATHOM_SIM_FAULT_ECHO;
+            const bool modbus_only = kind == FATHOM_SIM_FAULT_EXCEPTION;
+            if (!can || (asked_only && golden[settings[n]].asked == 0) ||
+                (modbus_only && settings[n] == A05_DYP)) /* it is not asked in Modbus here */
+                assert_int_equal(s.fault.counters[kind], 0);
+            else
+                assert_true(s.fault.counters[kind] > 0);
+        }
+    }
+}
+
+static void kinds_have_names_and_can_be_found(void **state)
+{
+    (void)state;
+    for (uint8_t kind = FIRST; kind <= LAST; kind++) {
+        assert_non_null(fathom_sim_fault_name(kind));
+        assert_true(strlen(fathom_sim_fault_text(kind)) > 5);
+        assert_int_equal(fathom_sim_fault_find(fathom_sim_fault_name(kind)), kind);
+    }
+    assert_int_equal(fathom_sim_fault_find("flip-bit"), FATHOM_SIM_FAULT_FLIP_BIT);
+    assert_int_equal(fathom_sim_fault_find("clock-jump"), FATHOM_SIM_FAULT_CLOCK_JUMP);
+    assert_int_equal(fathom_sim_fault_find("flip"), 0);
+    assert_int_equal(fathom_sim_fault_find(""), 0);
+    assert_null(fathom_sim_fault_name(0));
+    assert_null(fathom_sim_fault_name(FATHOM_SIM_FAULT_END));
+    assert_null(fathom_sim_fault_text(0));
+}
+
+static void what_cannot_hit_a_device_is_known(void **state)
+{
+    static const struct {
+        setting_t setting;
+        uint32_t cannot;
+    } rows[] = {
+        {A16_MODBUS, BIT(FAULT)}, {A05_MODBUS, BIT(FAULT)},
+        {A05_DYP, BIT(FAULT)},    {A16_AUTO, BIT(FAULT)}, /* it can be asked, too */
+        {A05_AUTO, BIT(FAULT)},   {HPS167S, BIT(INTERFERENCE)},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        stage_t s;
+        uint32_t cannot = 0;
+        stage_set(&s, rows[i].setting, 0);
+        for (uint8_t kind = FIRST; kind <= LAST; kind++)
+            if (!fathom_sim_fault_applies(kind, s.device)) cannot |= FATHOM_SIM_FAULT_BIT(kind);
+        assert_int_equal(cannot, rows[i].cannot);
+        assert_false(fathom_sim_fault_applies(0, s.device));
+        assert_false(fathom_sim_fault_applies(FATHOM_SIM_FAULT_END, s.device));
+    }
+    fathom_sim_a16_t a16; /* sends for ever and hears nothing */
+    fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_UART});
+    uint32_t cannot = 0;
+    for (uint8_t kind = FIRST; kind <= LAST; kind++)
+        if (!fathom_sim_fault_applies(kind, &a16.device)) cannot |= FATHOM_SIM_FAULT_BIT(kind);
+    assert_int_equal(cannot, BIT(FAULT) | BIT(UNIT) | BIT(FUNCTION) | BIT(EXCEPTION) | BIT(ECHO));
+}
+
+static void there_is_an_end_to_the_rules(void **state)
+{
+    stage_t s;
+    (void)state;
+    stage_set(&s, A16_AUTO, 0);
+    assert_null(fathom_sim_fault_add(&s.fault, 0, ALWAYS, 0));
+    assert_null(fathom_sim_fault_add(&s.fault, FATHOM_SIM_FAULT_END, ALWAYS, 0));
+    for (int i = 0; i < FATHOM_SIM_FAULT_RULES; i++) assert_non_null(ADD(&s, NOISE, ALWAYS, 0));
+    assert_null(ADD(&s, NOISE, ALWAYS, 0));
+    stage_wait(&s, 350 * MS); /* six pauses fit a frame: the rest of the rules finds no room */
+    assert_true(s.count > 0);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(the_bound_is_five_sigma),
+    cmocka_unit_test(each_kind_comes_as_often_as_it_is_told),
+    cmocka_unit_test(what_the_host_finds_damaged_is_what_was_counted),
+    cmocka_unit_test(a_chance_may_be_never_and_one_in_a_million_is_rare),
+    cmocka_unit_test(the_same_seed_is_the_same_run_and_another_is_another),
+    cmocka_unit_test(one_rule_more_does_not_move_the_hits_of_the_others),
+    cmocka_unit_test(two_kinds_may_hit_one_frame),
+    cmocka_unit_test(a_run_of_frames_is_hit_together),
+    cmocka_unit_test(all_stops_when_they_are_switched_off_and_goes_on_again),
+    cmocka_unit_test(everything_at_once_still_ends),
+    cmocka_unit_test(kinds_have_names_and_can_be_found),
+    cmocka_unit_test(what_cannot_hit_a_device_is_known),
+    cmocka_unit_test(there_is_an_end_to_the_rules),
+};
+
+/* Once: millions of frames, whose times the other tests look at. */
+int main(void)
+{
+    bench_start_us = UINT32_C(0xFFFF0000);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
