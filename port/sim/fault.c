@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "fault_internal.h"
+#include "internal/fault_parts.h"
 
 /* ---- chance ---- */
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "fault_internal.h"
+#include "internal/fault_parts.h"
 
 enum { MAX_FRAME = FATHOM_SIM_MAX_FRAME, MAX_NOISE = 8, MAX_TRAILING = 4 };
 

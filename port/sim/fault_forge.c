@@ -5,7 +5,7 @@
 #include "fathom/dyp_frame.h"
 #include "fathom/dyp_protocol.h"
 #include "fathom/modbus_rtu.h"
-#include "fault_internal.h"
+#include "internal/fault_parts.h"
 
 /*
  * Other frames, whose CRC or sum is right. Where they are in a frame:
@@ -43,8 +43,8 @@ static void change(fathom_sim_fault_rule_t *rule, uint8_t *byte, uint8_t least, 
 {
     const uint8_t was = *byte;
     const bool inside = was >= least && was <= most;
-    const uint32_t count = (uint32_t)(most - least) + (inside ? 0 : 1);
-    uint8_t other = (uint8_t)(least + fathom_sim_fault_below(rule, count));
+    const uint32_t choices = (uint32_t)(most - least) + (inside ? 0 : 1);
+    uint8_t other = (uint8_t)(least + fathom_sim_fault_below(rule, choices));
     if (inside && other >= was) other++;
     *byte = other;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "fault_internal.h"
+#include "internal/fault_parts.h"
 
 enum { ASKED = FATHOM_SIM_MODBUS | FATHOM_SIM_DYP, ANY = ASKED | FATHOM_SIM_STREAM };
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef FATHOM_SIM_FAULT_INTERNAL_H
-#define FATHOM_SIM_FAULT_INTERNAL_H
+#ifndef FATHOM_SIM_FAULT_PARTS_H
+#define FATHOM_SIM_FAULT_PARTS_H
 
-#include "fault.h"
+#include "../fault.h"
 
 /* Between the files of the fault module. */
 
