@@ -168,6 +168,13 @@ static void the_hosts_clock_jumps_and_the_line_does_not(void **state)
     assert_int_equal(port.read(port.ctx, bytes, 16, &rx), 4);
     assert_in_range(rx.last_us - bench_start_us, 10204166, 10204168);
     assert_memory_equal(bytes, ((const uint8_t[]){A16_FRAME}), 4);
+    /* the second jump counts from the first */
+    fathom_sim_clock_advance(&clock, 100 * MS);
+    fathom_sim_clock_jump(&clock, clock.now_us, 5000 * MS);
+    assert_int_equal(hal.now_us(hal.ctx) - bench_start_us, 15350 * MS);
+    rx = (fathom_rx_t){0, 0};
+    assert_int_equal(port.read(port.ctx, bytes, 16, &rx), 4);
+    assert_in_range(rx.last_us - bench_start_us, 10304166, 10304168);
     /* much later the stamps still agree with the clock */
     fathom_sim_fault_enable(&s.fault, false);
     for (int i = 0; i < 5; i++) {

@@ -41,6 +41,26 @@ static void split_pauses_before_any_byte_but_the_first(void **state)
     assert_int_equal(places, 0xE);
 }
 
+static void a_pause_moves_with_its_byte_when_a_break_comes_first(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 0; seed < SEEDS; seed++) {
+        uint32_t places[2] = {0, 0};
+        for (int with = 0; with < 2; with++) {
+            stage_t s;
+            stage_set(&s, A16_AUTO, seed);
+            ADD(&s, SPLIT, ALWAYS, 1);
+            if (with == 1) ADD(&s, BREAK, ALWAYS, 1);
+            stage_wait(&s, 150 * MS);
+            assert_int_equal(s.count, 4 + (size_t)with);
+            for (size_t n = 1; n < s.count; n++)
+                if (s.end_us[n] - s.end_us[n - 1] > 5 * MS) places[with] |= 1u << n;
+        }
+        assert_int_not_equal(places[0], 0);
+        assert_int_equal(places[1], places[0] << 1);
+    }
+}
+
 static void duplicate_comes_twice_at_once_or_after_a_pause(void **state)
 {
     stage_t s;
@@ -299,6 +319,7 @@ static void a_line_that_has_an_echo_keeps_it(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(split_pauses_before_any_byte_but_the_first),
+    cmocka_unit_test(a_pause_moves_with_its_byte_when_a_break_comes_first),
     cmocka_unit_test(duplicate_comes_twice_at_once_or_after_a_pause),
     cmocka_unit_test(delay_and_late_come_later_by_so_much),
     cmocka_unit_test(a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too),

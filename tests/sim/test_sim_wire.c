@@ -64,6 +64,28 @@ static void a_sender_takes_what_fits_and_goes_on_without_a_gap(void **state)
     assert_int_equal(fathom_sim_sender_next_us(&sender), 102042);
 }
 
+static void a_pause_is_before_its_byte_and_gone_with_the_next_bytes_from_idle(void **state)
+{
+    fathom_sim_sender_t sender = {0};
+    const uint8_t bytes[4] = {0};
+    (void)state;
+    (void)fathom_sim_sender_put(&sender, &bench_9600, bytes, 4, 1000);
+    sender.pauses[0] = (fathom_sim_pause_t){5000, 2};
+    sender.paused = 1;
+    sender.marked = true;
+    sender.sent = 1;
+    sender.on_wire = true; /* the second byte ends before the pause, 2083.3 us after the beginning */
+    assert_int_equal(fathom_sim_sender_next_us(&sender), 3084);
+    sender.sent = 2;
+    sender.on_wire = false; /* and the third begins after it */
+    assert_int_equal(fathom_sim_sender_next_us(&sender), 8084);
+    sender.sent = 4;
+    (void)fathom_sim_sender_put(&sender, &bench_9600, bytes, 4, 20000);
+    sender.sent = 3;
+    assert_int_equal(fathom_sim_sender_next_us(&sender), 23125);
+    assert_false(sender.marked);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -72,6 +94,7 @@ int main(void)
         cmocka_unit_test(settings_match_within_a_fortieth_and_whatever_the_stop_bits),
         cmocka_unit_test(until_is_right_across_the_wrap_and_zero_for_the_past),
         cmocka_unit_test(a_sender_takes_what_fits_and_goes_on_without_a_gap),
+        cmocka_unit_test(a_pause_is_before_its_byte_and_gone_with_the_next_bytes_from_idle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
