@@ -35,7 +35,7 @@ void come(unsigned seed, uint32_t in_us, const uint8_t *bytes, size_t length)
         size_t piece = 1;
         if (seed != BY_BYTE) {
             random = random * 1664525u + 1013904223u;
-            piece += (random >> 24) % 5;
+            piece += (random >> 24) % 4; /* under GAP_US apart */
         }
         if (piece > length - at) piece = length - at;
         fake_receive(&bench.fake, in_us + (uint32_t)(at + piece) * BYTE_US, bytes + at, piece);
