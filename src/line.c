@@ -19,6 +19,11 @@ static fathom_exchange_t **find(fathom_line_t *line, const fathom_exchange_t *ex
     return link;
 }
 
+uint16_t fathom_line_owing_bits(uint8_t unit)
+{
+    return unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : (uint16_t)(1u << (unit & 15));
+}
+
 void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by)
 {
     uint16_t *const counter = &line->counters[which];
@@ -42,7 +47,7 @@ void fathom_line_owe(fathom_line_t *line)
     uint32_t longest_us = phase(line) == SENDING ? exchange->timeout_us : line->left_us;
     if ((line->state & DAMAGED) == 0) longest_us += exchange->timeout_us;
     if (line->owed_us < longest_us) line->owed_us = longest_us;
-    line->owing |= owing_bits(exchange->unit);
+    line->owing |= fathom_line_owing_bits(exchange->unit);
 }
 
 void fathom_line_fail(fathom_line_t *line)
@@ -141,7 +146,7 @@ static fathom_status_t send(fathom_line_t *line)
 {
     if (line->have != 0 || line->silent_us < silence_us(line)) return FATHOM_PENDING;
     for (fathom_exchange_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
-        if ((line->owing & owing_bits(x->unit)) != 0) continue;
+        if ((line->owing & fathom_line_owing_bits(x->unit)) != 0) continue;
         *link = x->link.next;
         x->link.next = line->head;
         line->head = x;
@@ -245,7 +250,8 @@ static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 static uint32_t queue_due_us(const fathom_line_t *line)
 {
     for (const fathom_exchange_t *x = line->head; x != NULL; x = x->link.next)
-        if ((line->owing & owing_bits(x->unit)) == 0) return still_to_be_silent(line, silence_us(line));
+        if ((line->owing & fathom_line_owing_bits(x->unit)) == 0)
+            return still_to_be_silent(line, silence_us(line));
     return line->head != NULL ? line->owed_us : FATHOM_NO_DEADLINE;
 }
 

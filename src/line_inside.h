@@ -29,12 +29,6 @@ enum { AFTER_GAP = 1, ECHO_SHIFT = 1 };
 
 static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
 
-/* An answer to all may come from anyone. */
-static inline uint16_t owing_bits(uint8_t unit)
-{
-    return unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : (uint16_t)(1u << (unit & 15));
-}
-
 static inline bool is_answered(const fathom_exchange_t *exchange)
 {
     return exchange->unit != FATHOM_LINE_ALL_UNITS;
@@ -50,6 +44,9 @@ static inline void set_silent(fathom_line_t *line, uint32_t us)
 {
     line->silent_us = us > UINT16_MAX ? UINT16_MAX : (uint16_t)us;
 }
+
+/* The bits of `owing` for a unit; all of them for any unit. */
+uint16_t fathom_line_owing_bits(uint8_t unit);
 
 /* *link leaves the queue; if it was on the wire, the wire is free. */
 void fathom_line_finish(fathom_line_t *line, fathom_exchange_t **link, int8_t status);

@@ -53,7 +53,7 @@ static bool end_with(fathom_line_t *line, fathom_exchange_t **link, int8_t statu
  * waits for a retry? */
 static bool deliver_late(fathom_line_t *line, uint8_t unit)
 {
-    const uint16_t owing = line->owing & (uint16_t)~owing_bits(unit);
+    const uint16_t owing = line->owing & (uint16_t)~fathom_line_owing_bits(unit);
     const bool is_late = owing != line->owing;
     fathom_line_count(line, is_late ? FATHOM_LINE_LATE_ANSWERS : FATHOM_LINE_STRAYS, 1);
     line->owing = owing;

@@ -3,6 +3,8 @@
 
 #include "fathom/crc16.h"
 
+enum { LEAST_REQUEST = 8 };
+
 /* What stands at the front: is it the request itself, or the beginning of it? An answer comes first: that to a
  * write of one register is the request again, that to a write of many begins like it. */
 static void look_for_request(const fathom_modbus_message_t *message, const uint8_t *bytes, uint8_t have,
@@ -29,8 +31,10 @@ static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t hav
         match->status = FATHOM_PENDING;
         if (exchange == NULL) return;
         match->status = (int8_t)fathom_modbus_rtu_parse_response(message, bytes);
-        if (fathom_modbus_rtu_begun_request(message, bytes, have) == length) match->request = length;
-    } else if (exchange != NULL) {
+        /* Whoever acknowledges a write of one register sends it back. */
+        if (match->status == FATHOM_READY && message->head[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER)
+            match->request = length;
+    } else if (exchange != NULL && (length <= have || have >= LEAST_REQUEST)) {
         look_for_request(message, bytes, have, match);
     }
 }
