@@ -1,68 +1,161 @@
 /* SPDX-License-Identifier: MIT */
 #include "advice.h"
 
+#include <inttypes.h>
+
+typedef struct {
+    const char *name;
+    const char *hint;
+} exception_t;
+
 /* MODBUS Application Protocol V1.1b3, 7; the last two are a gateway's. */
-static const char *exception_name(uint8_t number)
+static exception_t exception_text(uint8_t number)
 {
-    static const char *const names[] = {
-        [1] = "illegal function",
-        [2] = "illegal data address",
-        [3] = "illegal data value",
-        [4] = "device failure",
-        [5] = "acknowledge",
-        [6] = "device busy",
-        [8] = "memory parity error",
-        [10] = "gateway path unavailable",
-        [11] = "gateway target silent",
+    static const exception_t texts[] = {
+        [1] = {"illegal function",
+               "it does not know this kind of request; check that it is the right sensor"},
+        [2] = {"illegal data address", "it has no such register; check that it is the right sensor"},
+        [3] = {"illegal data value", "it does not take this request; check that it is the right sensor"},
+        [4] = {"device failure", "it says that it has failed; switch its supply off and on"},
+        [5] = {"acknowledge", "it is still at work; try a longer --interval"},
+        [6] = {"device busy", "try --retries 2 or a longer --interval"},
+        [8] = {"memory parity error", "it says that its memory is damaged; switch its supply off and on"},
+        [10] = {"gateway path unavailable", "a gateway between answers; check its settings"},
+        [11] = {"gateway target silent", "a gateway between answers, but the sensor behind it does not"},
     };
-    const char *const name = number < sizeof names / sizeof names[0] ? names[number] : NULL;
-    return name != NULL ? name : "unknown";
+    static const exception_t unknown = {"unknown", "check that it is the right sensor"};
+    return number < sizeof texts / sizeof texts[0] && texts[number].name != NULL ? texts[number] : unknown;
+}
+
+/* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
+static void print_settings(FILE *to, const failure_t *failure)
+{
+    const fathom_line_settings_t *const now = &failure->channel->port.line;
+    const fathom_line_settings_t *const factory = &failure->sensor->line;
+    const uint64_t *const port = failure->tally->attempt.port;
+    char text[SETTINGS_TEXT];
+    (void)fprintf(to, "check --baud and --parity (now %s)", settings_text(now, text));
+    if (now->baud != factory->baud || now->parity != factory->parity)
+        (void)fprintf(to, ", try without them (%s, as from the factory)", settings_text(factory, text));
+    else if (failure->sensor->other_settings != NULL)
+        (void)fprintf(to, ", try %s", failure->sensor->other_settings);
+    if (port[PORT_FRAMING] != 0)
+        (void)fputs("; the port saw characters without an end, so most likely --baud", to);
+    else if (port[PORT_PARITY] != 0)
+        (void)fputs("; the port saw wrong parity, so most likely --parity", to);
+}
+
+static bool is_only_echo(const evidence_t *evidence)
+{
+    return evidence->echoes != 0 && evidence->rest == 0 && evidence->own == 0 && evidence->foreign == 0 &&
+           evidence->masters == 0;
+}
+
+static void print_late(FILE *to, uint32_t slowest_us)
+{
+    /* Twice as long as it took, in steps of 100 ms. */
+    const uint32_t try_ms = (slowest_us / 500u + 99u) / 100u * 100u;
+    (void)fprintf(to, "it answers, but too late; try a longer --timeout");
+    if (slowest_us != 0)
+        (void)fprintf(to, ": it took %" PRIu32 " ms, so --timeout %" PRIu32, slowest_us / 1000u, try_ms);
+}
+
+/* What else is on the line, if that explains why nothing was understood. */
+static bool print_others(FILE *to, const failure_t *failure)
+{
+    const evidence_t *const evidence = &failure->evidence;
+    if (evidence->masters != 0)
+        (void)fprintf(to,
+                      "requests of another master were heard (it asked address %u), so two ask on this line; "
+                      "disconnect the other one or stop its program",
+                      evidence->masters_address);
+    else if (evidence->foreign != 0)
+        (void)fprintf(to, "the line works, but it was address %u that was heard; try --address %u",
+                      evidence->foreign_address, evidence->foreign_address);
+    else if (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)
+        (void)fprintf(to, "frames of %s that sends by itself were heard; try: fathom read %s --mode auto",
+                      evidence->streamed_a05 != 0 ? "an a05" : "an a16",
+                      evidence->streamed_a05 != 0 ? "a05" : "a16");
+    else
+        return false;
+    return true;
 }
 
 static void print_no_answer(FILE *to, const failure_t *failure)
 {
-    const uint64_t *const line = failure->counts->line;
-    char settings[SETTINGS_TEXT];
-    (void)settings_text(&failure->channel->port.line, settings);
+    const evidence_t *const evidence = &failure->evidence;
     (void)fprintf(to, "no answer from address %u: ", failure->address);
-    if (line[FATHOM_LINE_LATE_ANSWERS] != 0)
-        (void)fputs("it answers, but too late; try a longer --timeout", to);
-    else if (line[FATHOM_LINE_STRAYS] != 0)
-        (void)fputs(
-            "other frames were heard, so the line works; check --address, and that no other master asks", to);
-    else if (line[FATHOM_LINE_DROPPED_BYTES] != 0)
-        (void)fprintf(
-            to, "bytes were heard, but no Modbus frame; check --baud and --parity (now %s), and for noise",
-            settings);
-    else
+    if (failure->tally->attempt.line[FATHOM_LINE_LATE_ANSWERS] != 0) {
+        print_late(to, evidence->slowest_us);
+    } else if (print_others(to, failure)) {
+        return;
+    } else if (is_only_echo(evidence)) {
+        (void)fputs("only the tool's own request came back, so the adapter works and echoes, but no sensor "
+                    "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
+                    "supply, and --address",
+                    to);
+    } else if (evidence->own != 0) {
+        (void)fputs("frames of this address were heard, but none that answers; check that no other master "
+                    "asks, and that only one sensor has this address",
+                    to);
+    } else if (evidence->bytes != 0) {
+        (void)fputs("bytes were heard, but no Modbus frame; ", to);
+        print_settings(to, failure);
+        (void)fputs("; A and B swapped and noise look like this too", to);
+    } else {
+        char settings[SETTINGS_TEXT];
         (void)fprintf(
             to,
             "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, --address, and "
             "--baud and --parity (now %s)",
-            settings);
+            settings_text(&failure->channel->port.line, settings));
+    }
+}
+
+static void print_damaged(FILE *to, const failure_t *failure)
+{
+    const tally_t *const tally = failure->tally;
+    (void)fprintf(to, "the answer of address %u was damaged; ", failure->address);
+    if (print_others(to, failure)) return;
+    if (tally->readings != 0)
+        (void)fprintf(to,
+                      "other answers were good, so the settings are right and it is the line: check the "
+                      "screw terminals, the cable, its termination and its ground, and keep it away from "
+                      "motors (%" PRIu64 " of %" PRIu64 " attempts damaged)",
+                      tally->failures[-FATHOM_ERR_CHECKSUM], tally->attempts + 1);
+    else
+        (void)fputs("check --parity, the cable and its termination, and that no other unit has this address",
+                    to);
 }
 
 static void print_stale(FILE *to, const failure_t *failure)
 {
-    const uint64_t *const stream = failure->counts->stream;
-    char settings[SETTINGS_TEXT];
-    (void)settings_text(&failure->channel->port.line, settings);
-    if (stream[FATHOM_STREAM_BYTES] == 0)
+    const uint64_t *const stream = failure->tally->attempt.stream;
+    const evidence_t *const evidence = &failure->evidence;
+    const bool is_other =
+        failure->sensor->probes > 1 ? evidence->streamed_a05 == 0 : evidence->streamed_a16 == 0;
+    if (evidence->bytes == 0) {
         (void)fputs(
             "nothing was heard at all; check the supply, the wire from the sensor's TX, and that it sends by "
             "itself (if not: --mode modbus)",
             to);
-    else if (stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE] != 0)
+    } else if (is_other && (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)) {
+        (void)print_others(to, failure);
+    } else if (evidence->masters + evidence->foreign != 0) {
+        (void)fputs(
+            "Modbus was heard on this line, and no frame of a sensor that sends by itself; try --mode modbus",
+            to);
+    } else if (stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE] != 0) {
         (void)fprintf(
             to,
             "bytes were heard that look like frames of %s, but not where one begins; check that nothing else "
             "sends on this line, and for noise",
             failure->sensor->name);
-    else
-        (void)fprintf(
-            to,
-            "bytes were heard, but no frame of %s; check --baud and --parity (now %s), and that it is one",
-            failure->sensor->name, settings);
+    } else {
+        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->sensor->name);
+        print_settings(to, failure);
+        (void)fprintf(to, ", that it is an %s, and for noise", failure->sensor->name);
+    }
 }
 
 /* Which values were refused: all of a frame that came by itself, one probe's of an answer, or all of it. */
@@ -71,7 +164,7 @@ static void print_values(FILE *to, const failure_t *failure)
     const reader_t *const reader = failure->reader;
     uint8_t first = 0;
     uint8_t end = reader->value_count;
-    if (reader->request != NULL && reader->left != NULL) {
+    if (reader->unit != NULL && reader->left != NULL) {
         for (uint8_t left = *reader->left; left != 0; left &= (uint8_t)(left - 1)) end--;
         first = (uint8_t)(end - 1);
         if (failure->sensor->probes > 1) (void)fprintf(to, "probe %u: ", end);
@@ -81,53 +174,53 @@ static void print_values(FILE *to, const failure_t *failure)
     (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
 }
 
-static void print_malformed(FILE *to, const failure_t *failure)
+static void print_port(FILE *to, const failure_t *failure)
 {
-    const fathom_modbus_request_t *const request = failure->reader->request;
-    if (request != NULL && request->exchange.status == FATHOM_ERR_MALFORMED)
-        (void)fprintf(to,
-                      "address %u answered something else than was asked; check that it is %s, and alone at "
-                      "this address",
-                      failure->address, failure->sensor->name);
+    const fathom_posix_uart_t *const port = &failure->channel->port;
+    if (fathom_posix_error(port) != FATHOM_POSIX_ERR_LOST) {
+        (void)fprintf(to, "%s: the port did not send the request; check the adapter", port->path);
+        return;
+    }
+    (void)fputs(fathom_posix_error_text(port), to);
+    if (!failure->waits)
+        (void)fputs("; connect it again and start again (with --reconnect it is waited for)", to);
     else
-        print_values(to, failure);
+        (void)fputs("; waiting until it is back", to);
 }
 
 void advice_print(FILE *to, const failure_t *failure)
 {
-    const fathom_modbus_request_t *const request = failure->reader->request;
     switch (failure->status) {
-    case FATHOM_ERR_NO_ANSWER:
-        print_no_answer(to, failure);
+    case FATHOM_ERR_CHECKSUM:
+        if (is_only_echo(&failure->evidence))
+            print_no_answer(to, failure);
+        else
+            print_damaged(to, failure);
         break;
     case FATHOM_ERR_STALE:
         print_stale(to, failure);
         break;
     case FATHOM_ERR_MALFORMED:
-        print_malformed(to, failure);
-        break;
-    case FATHOM_ERR_CHECKSUM:
-        (void)fprintf(
-            to,
-            "the answer of address %u was damaged; check --parity, the cable and its termination, and that "
-            "no other unit has this address",
-            failure->address);
-        break;
-    case FATHOM_ERR_EXCEPTION:
-        (void)fprintf(to, "address %u refused: exception %02u (%s); check that it is %s", failure->address,
-                      request->message.exception, exception_name(request->message.exception),
-                      failure->sensor->name);
-        break;
-    case FATHOM_ERR_PORT:
-        if (fathom_posix_error(&failure->channel->port) == FATHOM_POSIX_ERR_LOST)
-            (void)fprintf(to, "%s; connect it again and start again",
-                          fathom_posix_error_text(&failure->channel->port));
+        if (reader_was_answered_wrong(failure->reader))
+            (void)fprintf(to,
+                          "address %u answered something else than was asked; check that it is %s, and alone "
+                          "at this address",
+                          failure->address, failure->sensor->name);
         else
-            (void)fprintf(to, "%s: the port did not send the request; check the adapter",
-                          failure->channel->port.path);
+            print_values(to, failure);
         break;
-    default:
-        (void)fprintf(to, "unexpected status %d", (int)failure->status);
+    case FATHOM_ERR_EXCEPTION: {
+        const uint8_t number = failure->reader->unit->request.message.exception;
+        const exception_t text = exception_text(number);
+        (void)fprintf(to, "address %u refused: exception %02u (%s); %s", failure->address, number, text.name,
+                      text.hint);
+        break;
+    }
+    case FATHOM_ERR_PORT:
+        print_port(to, failure);
+        break;
+    default: /* FATHOM_ERR_NO_ANSWER, and that only the echo came */
+        print_no_answer(to, failure);
         break;
     }
 }

@@ -11,14 +11,15 @@
 typedef struct {
     fathom_status_t status;
     const sensor_t *sensor;
-    const sensor_mode_t *mode;
     const reader_t *reader;
     const channel_t *channel;
-    const counts_t *counts; /* of this attempt */
+    const tally_t *tally;
+    evidence_t evidence; /* of this attempt */
     uint8_t address;
+    bool waits; /* for a lost port, which is opened again */
 } failure_t;
 
-/* What happened and what to try, without a line feed: the cause as far as the counters tell it. */
+/* What happened and what to try, without a line feed: the cause as far as the evidence tells it. */
 void advice_print(FILE *to, const failure_t *failure);
 
 #endif

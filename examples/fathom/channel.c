@@ -7,12 +7,10 @@
 bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings)
 {
     const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
-    if (fathom_posix_open(&channel->port, path, settings) != FATHOM_POSIX_OK) {
-        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&channel->port));
-        return false;
-    }
+    if (fathom_posix_open(&channel->port, path, settings) != FATHOM_POSIX_OK) return false;
     channel->uart = fathom_posix_uart(&channel->port);
     channel->clock = fathom_posix_clock();
+    ear_begin(&channel->ear, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;
     channel->config.clock = &channel->clock;
     channel->config.frame = channel->frame;

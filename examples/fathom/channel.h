@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "ear.h"
 #include "fathom/line.h"
 #include "fathom/modbus_client.h"
 #include "fathom_posix.h"
@@ -14,9 +15,11 @@ typedef struct {
     fathom_posix_uart_t port;
     fathom_uart_t uart;
     fathom_clock_t clock;
+    ear_t ear; /* between uart and port */
     fathom_line_config_t config;
     fathom_line_t line;
     fathom_modbus_t modbus;
+    uint8_t echo; /* fathom_line_config_t.echo; to be set before it is opened */
     uint8_t frame[255];
 } channel_t;
 
@@ -28,7 +31,7 @@ typedef struct {
  */
 enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
 
-/* False, after saying why on stderr. The channel may not be moved. */
+/* False: channel->port has the error. The channel may not be moved. One that was closed may be opened again. */
 bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
 

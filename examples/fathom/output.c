@@ -188,9 +188,9 @@ static void write_text(FILE *to, const reading_t *reading)
 /* ---- formats ---- */
 
 static const format_t formats[] = {
-    {"text", NULL, write_text},
-    {"json", NULL, write_json},
-    {"csv", begin_csv, write_csv},
+    {"text", false, NULL, write_text},
+    {"json", true, NULL, write_json},
+    {"csv", false, begin_csv, write_csv},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 

@@ -16,6 +16,7 @@ typedef struct {
 /* A way to write readings. begin may be NULL. */
 typedef struct {
     const char *name;
+    bool is_json;
     void (*begin)(FILE *to, const sensor_t *sensor);
     void (*write)(FILE *to, const reading_t *reading);
 } format_t;

@@ -8,7 +8,23 @@
 
 static const char command[] = "read";
 
-enum { PORT, MODE, ADDRESS, BAUD, PARITY, COUNT, INTERVAL, TIMEOUT, RETRIES, FORMAT, HELP, OPTIONS };
+enum {
+    PORT,
+    MODE,
+    ADDRESS,
+    BAUD,
+    PARITY,
+    COUNT,
+    INTERVAL,
+    TIMEOUT,
+    RETRIES,
+    FORMAT,
+    ECHO_OF,
+    RECONNECT,
+    STATS,
+    HELP,
+    OPTIONS
+};
 
 /* getopt_long returns 256 for each: the row counts. */
 static const struct option table[OPTIONS + 1] = {
@@ -22,6 +38,9 @@ static const struct option table[OPTIONS + 1] = {
     [TIMEOUT] = {"timeout", required_argument, NULL, 256},
     [RETRIES] = {"retries", required_argument, NULL, 256},
     [FORMAT] = {"format", required_argument, NULL, 256},
+    [ECHO_OF] = {"echo", required_argument, NULL, 256},
+    [RECONNECT] = {"reconnect", no_argument, NULL, 256},
+    [STATS] = {"stats", optional_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -29,7 +48,13 @@ static const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400};
 enum { RATES = sizeof rates / sizeof rates[0] };
 
 /* The longest ones keep every sum of times below the 32 bits of the library's clock. */
-enum { MAX_COUNT = 1000000000, MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254 };
+enum {
+    MAX_COUNT = 1000000000,
+    MAX_INTERVAL_MS = 3600000,
+    MAX_TIMEOUT_MS = 600000,
+    MAX_RETRIES = 254,
+    MAX_STATS_S = 4000
+};
 
 static bool take_baud(const char *text, uint32_t *baud)
 {
@@ -57,6 +82,30 @@ static bool take_parity(const char *text, uint8_t *parity)
     }
     (void)usage_error(command, "--parity takes none, even or odd, not '%s'", text);
     return false;
+}
+
+/* In the order of fathom_line_config_t.echo: found out, told that there is none, told that there is. */
+static bool take_echo(const char *text, uint8_t *echo)
+{
+    static const char *const names[] = {"auto", "off", "on"};
+    if (text == NULL) return true;
+    for (uint8_t i = 0; i != sizeof names / sizeof names[0]; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        *echo = i;
+        return true;
+    }
+    (void)usage_error(command, "--echo takes auto, on or off, not '%s'", text);
+    return false;
+}
+
+static bool take_stats(read_options_t *options, const char *text)
+{
+    uint32_t seconds = 0;
+    options->stats = text != NULL;
+    if (text == NULL || text[0] == '\0') return true;
+    if (!option_number(command, "stats", text, 1, MAX_STATS_S, &seconds)) return false;
+    options->stats_us = seconds * 1000000u;
+    return true;
 }
 
 static bool take_numbers(read_options_t *options, const char *const *values)
@@ -104,11 +153,15 @@ bool read_options(read_options_t *options, int argc, char **argv)
     }
     options->line = options->sensor->line;
     if (!take_baud(values[BAUD], &options->line.baud) ||
-        !take_parity(values[PARITY], &options->line.parity) || !take_numbers(options, values))
+        !take_parity(values[PARITY], &options->line.parity) || !take_numbers(options, values) ||
+        !take_echo(values[ECHO_OF], &options->echo) || !take_stats(options, values[STATS]))
         return false;
-    if (!options->mode->is_asked && (values[ADDRESS] != NULL || values[RETRIES] != NULL))
-        (void)fprintf(stderr, "fathom: in mode %s nothing is asked, so %s has no effect\n",
-                      options->mode->name, values[ADDRESS] != NULL ? "--address" : "--retries");
+    options->reconnect = values[RECONNECT] != NULL;
+    const int asking[] = {ADDRESS, RETRIES, ECHO_OF};
+    for (size_t i = 0; i != sizeof asking / sizeof asking[0] && !options->mode->is_asked; i++)
+        if (values[asking[i]] != NULL)
+            (void)fprintf(stderr, "fathom: in mode %s nothing is asked, so --%s has no effect\n",
+                          options->mode->name, table[asking[i]].name);
     options->port = values[PORT];
     if (options->port == NULL) (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
     return options->port != NULL;
@@ -134,9 +187,21 @@ void read_help(FILE *to)
         "for a\n"
         "                    good frame of a sensor that sends by itself (default 2000)\n"
         "  --retries N       how often a failed request is repeated before it counts; default 0\n"
-        "  --format FORMAT   text (default), json (an object a line) or csv (with a header line)\n\n"
-        "Readings go to the standard output, everything else to the standard error. No target in range and a "
-        "fault\n"
+        "  --format FORMAT   text (default), json (an object a line) or csv (with a header line)\n"
+        "  --reconnect       when the adapter is unplugged, or not there yet: waits for it and goes on. A "
+        "USB "
+        "adapter\n"
+        "                    is known again by its serial number, also as another /dev/ttyUSB; one without "
+        "by the\n"
+        "                    USB socket that it was in. Any other port is known by its path\n"
+        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n"
+        "  --stats[=SECONDS] all counters at the end, and every so many seconds; with --format json an "
+        "object a\n"
+        "                    line. Every request, and every frame that came, is in them: read, failed or "
+        "skipped\n\n"
+        "Readings go to the standard output, everything else to the standard error, --stats too. No target "
+        "in range\n"
+        "and a fault\n"
         "that the sensor reports are readings. An attempt that fails is a line that says what to try.\n"
         "Exit status: 0 when nothing failed, 1 when an attempt, the port or the output did, 2 for wrong "
         "usage.\n\n"

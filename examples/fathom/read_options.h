@@ -14,6 +14,10 @@ typedef struct {
     reader_settings_t reader;
     uint32_t count; /* attempts; 0: endless */
     uint32_t interval_us;
+    uint32_t stats_us; /* all counters so often; 0: at the end only */
+    uint8_t echo;      /* fathom_line_config_t.echo */
+    bool stats;        /* all counters at the end */
+    bool reconnect;
     bool wants_help;
 } read_options_t;
 

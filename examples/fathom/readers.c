@@ -10,16 +10,18 @@ static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_
     reader->values = base->answer.values;
     reader->value_count = (uint8_t)(base->stream_config.length / 2 - 1);
     reader->left = &base->answer.left;
+    reader->sequence = &base->answer.sequence;
     return true;
 }
 
-static bool begin_modbus(reader_t *reader, const fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
+static bool begin_modbus(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
-    reader->request = &base->unit.request;
+    reader->unit = &base->unit;
     reader->values = base->answer.values;
     reader->value_count = base->question.count;
     reader->left = &base->answer.left;
+    reader->sequence = &base->answer.sequence;
     return true;
 }
 
@@ -89,10 +91,16 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
     memset(reader, 0, sizeof *reader);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
-    reader->request = &driver->unit.request;
+    reader->unit = &driver->unit;
+    reader->sequence = &driver->sequence;
     reader->values = driver->values;
     reader->value_count = driver->question.count;
     return true;
+}
+
+bool reader_was_answered_wrong(const reader_t *reader)
+{
+    return reader->unit != NULL && reader->unit->request.exchange.status == FATHOM_ERR_MALFORMED;
 }
 
 bool reader_has_more(const reader_t *reader) { return reader->left != NULL && *reader->left != 0; }

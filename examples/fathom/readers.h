@@ -23,12 +23,13 @@ typedef struct {
 /* Any driver, with what the library's common interface does not show: the causes of an error. */
 typedef struct {
     fathom_sensor_t sensor;
-    const uint16_t *values;                 /* the 16-bit values of the last answer, ... */
-    uint8_t value_count;                    /* ... and how many there are */
-    const uint8_t *left;                    /* probes of the last answer that poll has not handed over yet, a
+    const uint16_t *values;     /* the 16-bit values of the last answer, ... */
+    uint8_t value_count;        /* ... and how many there are */
+    const uint8_t *left;        /* probes of the last answer that poll has not handed over yet, a
                                                bit each; NULL: an answer is one sample */
-    const fathom_modbus_request_t *request; /* NULL: it sends by itself */
-    fathom_stream_t *stream;                /* NULL: it is asked */
+    uint16_t *sequence;         /* of the last answer */
+    fathom_modbus_unit_t *unit; /* NULL: it sends by itself */
+    fathom_stream_t *stream;    /* NULL: it is asked */
     union {
         fathom_a16_auto_t a16_auto;
         fathom_a16_modbus_t a16_modbus;
@@ -46,6 +47,9 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
 bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+/* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the answer that did not fit, and not a value in it? */
+bool reader_was_answered_wrong(const reader_t *reader);
 
 /* Has the last answer more samples? Then poll again before anything else. */
 bool reader_has_more(const reader_t *reader);

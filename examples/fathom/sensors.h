@@ -23,6 +23,7 @@ typedef struct {
     const char *what;
     fathom_line_settings_t line;
     sensor_mode_t modes[SENSOR_MODES]; /* rows without a name end it */
+    const char *other_settings; /* options with other line settings that it can have; NULL: it has none */
     uint8_t max_address;
     uint8_t probes;
     bool has_optics;  /* magnitude, ambient light and precision, and it can report a fault */

@@ -7,6 +7,15 @@
 #include "channel.h"
 #include "readers.h"
 
+/* What the port's driver counts, where it does. */
+enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, PORT_COUNTERS = 4 };
+
+/* What the driver of a sensor that is asked counts. */
+enum { UNIT_ANSWERS = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
+
+/* Failures by kind: -status, and beside it those whose values were refused. */
+enum { FAILURE_VALUE = 0, FAILURE_KINDS = 16 };
+
 /*
  * The library's counters stop at 65535 and run from the beginning. Here they are taken out after each attempt:
  * so there are those of one attempt, from which its failure is explained, and the sums of all.
@@ -14,6 +23,8 @@
 typedef struct {
     uint64_t line[FATHOM_LINE_COUNTERS];
     uint64_t stream[FATHOM_STREAM_COUNTERS];
+    uint64_t unit[UNIT_COUNTERS];
+    uint64_t port[PORT_COUNTERS];
 } counts_t;
 
 typedef struct {
@@ -22,14 +33,35 @@ typedef struct {
     uint64_t attempts;
     uint64_t failed;
     uint64_t readings;
+    uint64_t skipped; /* frames that came sooner than the interval */
+    uint64_t reconnects;
+    uint64_t failures[FAILURE_KINDS]; /* each is a line on stderr; four of an a05 may be one failed attempt */
+    uint64_t timed;                   /* answers whose time is in the next three: from the request's start */
+    uint64_t time_sum_us;
+    uint32_t time_min_us;
+    uint32_t time_max_us;
+    fathom_posix_line_errors_t port_at; /* the driver's counters at the last look */
+    bool has_port;                      /* the driver counts */
 } tally_t;
 
-/* Takes the counters out of the line and the stream and adds them. */
+/* A port has been opened: the driver's counters begin here. */
+void tally_begin_port(tally_t *tally, channel_t *channel);
+
+/* Takes the counters out of the line, the stream, the unit and the port and adds them. */
 void tally_take(tally_t *tally, channel_t *channel, const reader_t *reader);
 
 void tally_begin_attempt(tally_t *tally);
 
+void tally_failure(tally_t *tally, fathom_status_t status, const reader_t *reader);
+
+void tally_time(tally_t *tally, uint32_t took_us);
+
 /* The sums, in two lines or less; what is 0 is left out. */
 void tally_print(const tally_t *tally, FILE *to);
+
+/* All of it, for people and as a JSON object in one line. requests: how many were sent. is_asked: a sensor that is
+ * asked, not one that sends by itself. */
+void tally_print_all(const tally_t *tally, FILE *to, uint64_t requests, bool is_asked);
+void tally_print_json(const tally_t *tally, FILE *to, uint64_t requests, bool is_asked, uint64_t time_us);
 
 #endif

@@ -114,7 +114,8 @@ class Silence(e2e.Case):
 
     def test_another_sensor_than_was_said(self):
         sim = self.sim('a05', '--distance', '1000,2000,1953,3562')
-        self.fails('but no frame of a16; check', 'a16', '--port', sim.port, '--timeout', '700')
+        self.fails('frames of an a05 that sends by itself were heard; try: fathom read a05', 'a16', '--port',
+                   sim.port, '--timeout', '700')
 
     def test_a_distance_that_the_sensor_cannot_mean(self):
         sim = self.sim('a16::modbus', '--distance', '40000')
@@ -244,7 +245,7 @@ class Noise(e2e.Case):
         self.asked(e2e.registers(1, 754)[:5], 'the answer of address 1 was damaged')
 
     def test_an_answer_of_another_unit(self):
-        self.asked(e2e.registers(2, 754), 'no answer from address 1: other frames were heard')
+        self.asked(e2e.registers(2, 754), 'no answer from address 1: the line works, but it was address 2 that was heard; try --address 2')
 
     def test_an_answer_of_another_length(self):
         self.asked(e2e.registers(1, 754, 755), 'address 1 answered something else than was asked')
