@@ -5,25 +5,26 @@
 
 typedef struct {
     const char *name;
-    const char *hint;
+    const char *meaning;
+    bool is_other_sensor; /* most likely */
 } exception_t;
 
 /* MODBUS Application Protocol V1.1b3, 7; the last two are a gateway's. */
 static exception_t exception_text(uint8_t number)
 {
     static const exception_t texts[] = {
-        [1] = {"illegal function",
-               "it does not know this kind of request; check that it is the right sensor"},
-        [2] = {"illegal data address", "it has no such register; check that it is the right sensor"},
-        [3] = {"illegal data value", "it does not take this request; check that it is the right sensor"},
-        [4] = {"device failure", "it says that it has failed; switch its supply off and on"},
-        [5] = {"acknowledge", "it is still at work; try a longer --interval"},
-        [6] = {"device busy", "try --retries 2 or a longer --interval"},
-        [8] = {"memory parity error", "it says that its memory is damaged; switch its supply off and on"},
-        [10] = {"gateway path unavailable", "a gateway between answers; check its settings"},
-        [11] = {"gateway target silent", "a gateway between answers, but the sensor behind it does not"},
+        [1] = {"illegal function", "it does not know this kind of request", true},
+        [2] = {"illegal data address", "it has no such register", true},
+        [3] = {"illegal data value", "it does not take so many registers", true},
+        [4] = {"device failure", "it has failed; switch its supply off and on", false},
+        [5] = {"acknowledge", "it is still at work; try a longer --interval", false},
+        [6] = {"device busy", "try --retries 2 or a longer --interval", false},
+        [8] = {"memory parity error", "its memory is damaged; switch its supply off and on", false},
+        [10] = {"gateway path unavailable", "a gateway in between cannot reach it; check the gateway", false},
+        [11] = {"gateway target silent", "a gateway in between hears nothing of it; check the wiring there",
+                false},
     };
-    static const exception_t unknown = {"unknown", "check that it is the right sensor"};
+    static const exception_t unknown = {"unknown", "no code of the Modbus standard", true};
     return number < sizeof texts / sizeof texts[0] && texts[number].name != NULL ? texts[number] : unknown;
 }
 
@@ -212,8 +213,9 @@ void advice_print(FILE *to, const failure_t *failure)
     case FATHOM_ERR_EXCEPTION: {
         const uint8_t number = failure->reader->unit->request.message.exception;
         const exception_t text = exception_text(number);
-        (void)fprintf(to, "address %u refused: exception %02u (%s); %s", failure->address, number, text.name,
-                      text.hint);
+        (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, number, text.name,
+                      text.meaning);
+        if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->sensor->name);
         break;
     }
     case FATHOM_ERR_PORT:

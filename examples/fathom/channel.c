@@ -17,6 +17,7 @@ bool channel_open(channel_t *channel, const char *path, const fathom_line_settin
     channel->config.frame_size = sizeof channel->frame;
     channel->config.silence_us = FATHOM_T3_5_US(settings->baud, bits);
     channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
+    channel->config.echo = channel->echo;
     (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
     channel->modbus = fathom_modbus_client(&channel->line);
     return true;

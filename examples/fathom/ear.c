@@ -42,6 +42,12 @@ static bool ear_sent(void *ctx)
     return ear->inner.sent(ear->inner.ctx);
 }
 
+static int ear_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    ear_t *const ear = ctx;
+    return ear->inner.set_line(ear->inner.ctx, settings);
+}
+
 void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
 {
     ear->inner = *uart;
@@ -51,6 +57,7 @@ void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
     uart->read = ear_read;
     uart->write = ear_write;
     uart->sent = ear_sent;
+    if (uart->set_line != NULL) uart->set_line = ear_set_line;
     uart->ctx = ear;
 }
 

@@ -3,6 +3,10 @@
 
 #include <string.h>
 
+/* Less than any period, so that a sensor that does not answer is asked as often as one that does: somebody may be
+ * looking for the loose wire. */
+enum { READER_BACKOFF_US = 1 };
+
 static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
@@ -55,6 +59,7 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
+        .backoff_us = READER_BACKOFF_US,
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
@@ -71,6 +76,7 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
+        .backoff_us = READER_BACKOFF_US,
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
@@ -87,6 +93,7 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
+        .backoff_us = READER_BACKOFF_US,
     };
     memset(reader, 0, sizeof *reader);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
