@@ -13,7 +13,7 @@ import e2e
 A16 = ('a16', '--mode', 'modbus'), e2e.adu(1, 3, 1, 0, 0, 1), lambda mm: e2e.registers(1, mm)
 HPS = ('hps167s',), e2e.adu(1, 3, 0, 8, 0, 4), lambda mm: e2e.registers(1, mm, 0xDCB2, 0x0701, 0)
 SENSORS = [('a16', *A16), ('hps167s', *HPS)]
-TIMEOUT = 300  # ms; a script on a busy machine answers well within
+TIMEOUT = 200  # ms; a script on a busy machine answers well within
 OWN = 1111  # what the sensor says
 BAD = 2222  # what nobody may be shown
 
@@ -64,12 +64,7 @@ class Asked(e2e.Case):
         self.each([OWN] * 2, 0, '', lambda answer: [b'\x00\x55\xFE\x80' + answer(OWN)], self.good)
 
     def test_garbage_that_looks_like_the_beginning_of_an_answer(self):
-        # address, function, and then nothing that fits: found out when the answer's time is over, or at a gap
-        for name, *which in SENSORS:
-            with self.subTest(name):
-                done = self.play(which, [b'\x01\x03' + which[2](OWN)], [which[2](OWN)])
-                self.assertIn(distances(done), ([OWN, OWN], [OWN]))
-                self.assertEqual(done.code, 0 if len(distances(done)) == 2 else 1)
+        self.each([OWN] * 2, 0, '', lambda answer: [b'\x01\x03' + answer(OWN)], self.good)
 
     def test_the_answer_in_two_writes_with_a_pause(self):
         for cut in (1, 3, 5):
@@ -123,22 +118,19 @@ class Asked(e2e.Case):
         """The second copy comes before the next request and belongs to nobody."""
         self.each([OWN] * 2, 0, '', lambda answer: [answer(OWN) * 2], self.good)
 
-    def test_every_flipped_bit(self):
+    def test_a_flipped_bit_in_every_byte(self):
         for name, *which in SENSORS:
             whole = which[2](BAD)
-            bits = range(8 * len(whole))
-            # one process for many: the requests come one after the other
-            for part in (bits[0::4], bits[1::4], bits[2::4], bits[3::4]):
-                scripts = []
-                for bit in part:
-                    flipped = bytearray(whole)
-                    flipped[bit // 8] ^= 1 << bit % 8
-                    scripts.append([bytes(flipped)])
-                with self.subTest(name):
-                    done = self.play(which, *scripts)
-                    self.assertEqual((distances(done), done.code), ([], 1))
-                    failed = re.findall(r'attempt \d+: (the answer of address 1 was damaged|no answer)', done.err)
-                    self.assertEqual(len(failed), len(scripts))
+            scripts = []
+            for at in range(len(whole)):
+                flipped = bytearray(whole)
+                flipped[at] ^= 1 << 3 * at % 8
+                scripts.append([bytes(flipped)])
+            with self.subTest(name):
+                done = self.play(which, *scripts)
+                self.assertEqual((distances(done), done.code), ([], 1))
+                failed = re.findall(r'attempt \d+: (the answer of address 1 was damaged|no answer)', done.err)
+                self.assertEqual(len(failed), len(scripts))
 
     def test_an_exception(self):
         self.each([OWN], 1, r'attempt 1: address 1 refused: exception 04 \(device failure\)',
@@ -270,17 +262,36 @@ class Sending(e2e.Case):
         self.never(cut, 'bytes were heard, but no frame of')
 
     def test_frames_that_come_shifted_by_some_bytes(self):
-        """Each write ends a frame and begins the next: with a pause in mid-frame, none begins at a pause. 2047 mm and
-        1339 mm are such that a shifted A05 frame is valid too."""
-        for sensor, values in (('a16', (1953,)), ('a05', (1000, 2000, 2047, 1339))):
+        """Each write ends a frame and begins the next, so that the pauses are in the middle of frames. (Where a
+        shifted frame that is valid follows a pause, nobody could tell it from a right one.)"""
+        for sensor, values in self.VALUES.items():
             frame = e2e.frame(*values)
-            for shift in (1, len(frame) // 2, len(frame) - 1, 6 % len(frame)):
+            for shift in (1, len(frame) // 2, len(frame) - 1):
                 with self.subTest(f'{sensor} {shift}'):
-                    done = self.stream(sensor, [frame[shift:] + frame[:shift]], count=1, timeout=400)
+                    done = self.stream(sensor, [frame[shift:] + frame[:shift]], count=1, timeout=300)
+                    self.assertEqual(done.code, 0 if self.shown(done, sensor) else 1)
+
+    def test_frames_without_pauses_of_which_the_beginning_was_missed(self):
+        """FF 03 E8 07 D0 07 FF 05 3B 07: six bytes further it is 1339 2047 1000 2000 with a right sum. And 511 mm is
+        FF 01 FF FF, a byte further 65281. Neither may be shown as what it is not."""
+        for sensor, values in (('a05', (1000, 2000, 2047, 1339)), ('a16', (511,)), ('a16', (1953,))):
+            frame = e2e.frame(*values)
+            for shift in range(len(frame)):
+                if (shift, len(frame)) == (6, 10):
+                    continue  # a valid frame at the very beginning, which may be a pause
+                with self.subTest(f'{sensor} {values} {shift}'):
+                    device = self.device()
+                    reader = self.fathom('read', sensor, '--port', device.path, '--count', 1, '--timeout', 200,
+                                         '--format', 'csv')
+                    reader.expect('^sensor,')
+                    device.write(frame[shift:] + frame * 12)
+                    done = reader.finish(5)
                     for row in done.out.splitlines()[1:]:
                         self.assertEqual(int(row.split(',')[9]), values[int(row.split(',')[3]) - 1])
-                    if not done.out.splitlines()[1:]:
-                        self.assertEqual(done.code, 1)
+                    is_shown = done.out.count('\n') > 1
+                    self.assertTrue(is_shown or values != (1953,))
+                    self.assertEqual(done.code, 0 if is_shown else 1)
+                    self.assertNotIn('nothing was heard', done.err)
 
     def test_a_stuck_line(self):
         for byte in (0x00, 0xFF, 0x55):
@@ -294,14 +305,15 @@ class Sending(e2e.Case):
         for sensor, values in self.VALUES.items():
             with self.subTest(sensor):
                 device = self.device()
-                reader = self.fathom('read', sensor, '--port', device.path, '--count', 2, '--timeout', 400, '--format', 'csv')
+                reader = self.fathom('read', sensor, '--port', device.path, '--count', 6, '--timeout', 150, '--format', 'csv')
                 reader.expect('^sensor,')
                 while len(reader.seen['out']) < 1 + len(values):
                     device.write(e2e.frame(*values))
                     select.select([reader.pidfd], [], [], 0.06)
                 done = reader.finish(5)
-                self.assertEqual(done.code, 1 if 'attempt 2: ' in done.err else 0)
-                self.shown(done, sensor)
+                self.assertEqual(done.code, 1)
+                self.assertLess(self.shown(done, sensor), 6 * len(values))
+                self.assertIn('attempt 6: nothing was heard at all', done.err)
 
     def test_random_bytes_between_good_frames(self):
         noise = random.Random(7)

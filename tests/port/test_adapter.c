@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT */
+/* How the tool knows a USB adapter again: against a sysfs that is built here, of links and one-line files laid out as
+ * Linux does for usb-serial (ttyUSB0 below the interface) and cdc_acm (the interface itself). */
+#define _DEFAULT_SOURCE 1
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "../../examples/fathom/adapter.h"
+
+enum { LONG = 512 };
+
+static char root[64];
+
+static void run(const char *command)
+{
+    assert_int_equal(system(command), 0); /* NOLINT: the command is this file's */
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    char command[LONG];
+    strcpy(root, "/tmp/fathom-sysfs-XXXXXX");
+    if (mkdtemp(root) == NULL) return -1;
+    (void)snprintf(command, sizeof command, "mkdir -p %s/class/tty %s/devices %s/dev", root, root, root);
+    run(command);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    char command[LONG];
+    (void)snprintf(command, sizeof command, "rm -rf %s", root);
+    run(command);
+    return 0;
+}
+
+static void write_file(const char *folder, const char *name, const char *text)
+{
+    char path[LONG];
+    (void)snprintf(path, sizeof path, "%s/devices/%s/%s", root, folder, name);
+    FILE *const file = fopen(path, "w");
+    assert_non_null(file);
+    (void)fprintf(file, "%s\n", text);
+    (void)fclose(file);
+}
+
+/* A USB device in a socket, with one interface; serial NULL: it has none. */
+static void plug_in(const char *socket, const char *vendor, const char *product, const char *serial)
+{
+    char folder[LONG];
+    char command[LONG];
+    (void)snprintf(command, sizeof command, "mkdir -p %s/devices/usb1/%s/%s:1.0", root, socket, socket);
+    run(command);
+    (void)snprintf(folder, sizeof folder, "usb1/%s", socket);
+    write_file(folder, "idVendor", vendor);
+    write_file(folder, "idProduct", product);
+    if (serial != NULL) write_file(folder, "serial", serial);
+    (void)snprintf(folder, sizeof folder, "usb1/%s/%s:1.0", socket, socket);
+    write_file(folder, "bInterfaceNumber", "00");
+}
+
+static void unplug(const char *socket, const char *tty)
+{
+    char command[LONG];
+    (void)snprintf(command, sizeof command, "rm -rf %s/devices/usb1/%s %s/class/tty/%s", root, socket, root,
+                   tty);
+    run(command);
+}
+
+/* Its tty: `below` is the folder of devices/ that its `device` link shows. */
+static void add_tty(const char *tty, const char *below)
+{
+    char command[LONG];
+    (void)snprintf(command, sizeof command,
+                   "mkdir -p %s/devices/%s %s/class/tty/%s && ln -s %s/devices/%s %s/class/tty/%s/device && "
+                   "touch %s/dev/%s",
+                   root, below, root, tty, root, below, root, tty, root, tty);
+    run(command);
+}
+
+static bool identify(adapter_t *adapter, const char *tty)
+{
+    char path[LONG];
+    (void)snprintf(path, sizeof path, "%s/dev/%s", root, tty);
+    return adapter_identify(adapter, root, path);
+}
+
+static void an_adapter_is_what_its_usb_device_says(void **state)
+{
+    (void)state;
+    adapter_t adapter;
+    plug_in("1-2", "0403", "6001", "A50285BI");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    write_file("usb1/1-2/1-2:1.0/ttyUSB0", "port_number", "0");
+    assert_true(identify(&adapter, "ttyUSB0"));
+    assert_string_equal(adapter.vendor, "0403");
+    assert_string_equal(adapter.product, "6001");
+    assert_string_equal(adapter.serial, "A50285BI");
+    assert_string_equal(adapter.socket, "1-2");
+    assert_string_equal(adapter.interface, "00");
+    assert_string_equal(adapter.port, "0");
+    assert_false(adapter.needs_socket);
+}
+
+static void an_adapter_of_the_cdc_class_too_and_through_a_link(void **state)
+{
+    (void)state;
+    adapter_t adapter;
+    char target[LONG];
+    char link_path[LONG];
+    plug_in("1-3.4", "1a86", "55d3", "5424");
+    add_tty("ttyACM0", "usb1/1-3.4/1-3.4:1.0");
+    (void)snprintf(target, sizeof target, "%s/dev/ttyACM0", root);
+    (void)snprintf(link_path, sizeof link_path, "%s/dev/tank", root);
+    assert_int_equal(symlink(target, link_path), 0);
+    assert_true(identify(&adapter, "tank"));
+    assert_string_equal(adapter.serial, "5424");
+    assert_string_equal(adapter.socket, "1-3.4");
+}
+
+static void a_tty_that_is_no_usb_adapter_is_none(void **state)
+{
+    (void)state;
+    char path[ADAPTER_PATH] = "untouched";
+    adapter_t adapter;
+    add_tty("ttyS0", "platform/serial8250");
+    assert_false(identify(&adapter, "ttyS0"));
+    assert_string_equal(adapter.vendor, "");
+    assert_false(identify(&adapter, "nowhere"));
+    assert_false(adapter_find(&adapter, root, path)); /* and it is not found as the first best */
+    assert_string_equal(path, "untouched");
+}
+
+static void with_a_serial_number_it_is_found_in_another_socket_under_another_name(void **state)
+{
+    (void)state;
+    char path[ADAPTER_PATH];
+    adapter_t adapter;
+    plug_in("1-2", "0403", "6001", "A50285BI");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    assert_true(identify(&adapter, "ttyUSB0"));
+    unplug("1-2", "ttyUSB0");
+    assert_false(adapter_find(&adapter, root, path));
+    plug_in("1-4", "0403", "6001", "OTHER"); /* takes its old name */
+    add_tty("ttyUSB0", "usb1/1-4/1-4:1.0/ttyUSB0");
+    assert_false(adapter_find(&adapter, root, path));
+    plug_in("1-5", "0403", "6001", "A50285BI");
+    add_tty("ttyUSB1", "usb1/1-5/1-5:1.0/ttyUSB1");
+    assert_true(adapter_find(&adapter, root, path));
+    assert_string_equal(path, "/dev/ttyUSB1");
+}
+
+static void another_vendor_or_product_with_its_serial_number_is_another(void **state)
+{
+    (void)state;
+    char path[ADAPTER_PATH];
+    adapter_t adapter;
+    plug_in("1-2", "0403", "6001", "0001");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    assert_true(identify(&adapter, "ttyUSB0"));
+    unplug("1-2", "ttyUSB0");
+    plug_in("1-2", "10c4", "6001", "0001");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    assert_false(adapter_find(&adapter, root, path));
+    unplug("1-2", "ttyUSB0");
+    plug_in("1-2", "0403", "6010", "0001");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    assert_false(adapter_find(&adapter, root, path));
+}
+
+static void without_a_serial_number_it_is_found_in_its_socket_only(void **state)
+{
+    (void)state;
+    char path[ADAPTER_PATH];
+    adapter_t adapter;
+    plug_in("1-2", "1a86", "7523", NULL);
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    assert_true(identify(&adapter, "ttyUSB0"));
+    assert_true(adapter.needs_socket);
+    unplug("1-2", "ttyUSB0");
+    plug_in("1-3", "1a86", "7523", NULL);
+    add_tty("ttyUSB0", "usb1/1-3/1-3:1.0/ttyUSB0");
+    assert_false(adapter_find(&adapter, root, path));
+    plug_in("1-2", "1a86", "7523", NULL);
+    add_tty("ttyUSB5", "usb1/1-2/1-2:1.0/ttyUSB5");
+    assert_true(adapter_find(&adapter, root, path));
+    assert_string_equal(path, "/dev/ttyUSB5");
+}
+
+static void two_with_the_same_serial_number_are_told_apart_by_their_socket(void **state)
+{
+    (void)state;
+    char path[ADAPTER_PATH];
+    adapter_t adapter;
+    plug_in("1-2", "10c4", "ea60", "0001");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    plug_in("1-3", "10c4", "ea60", "0001");
+    add_tty("ttyUSB1", "usb1/1-3/1-3:1.0/ttyUSB1");
+    assert_true(identify(&adapter, "ttyUSB0"));
+    assert_true(adapter.needs_socket);
+    unplug("1-2", "ttyUSB0");
+    assert_false(adapter_find(&adapter, root, path)); /* ttyUSB1 has another sensor */
+}
+
+static void the_ports_of_one_adapter_are_told_apart(void **state)
+{
+    (void)state;
+    char path[ADAPTER_PATH];
+    adapter_t adapter;
+    plug_in("1-2", "0403", "6011", "FT4ABC");
+    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    add_tty("ttyUSB1", "usb1/1-2/1-2:1.1/ttyUSB1");
+    write_file("usb1/1-2/1-2:1.1", "bInterfaceNumber", "01");
+    assert_true(identify(&adapter, "ttyUSB1"));
+    assert_string_equal(adapter.interface, "01");
+    assert_false(adapter.needs_socket);
+    assert_true(adapter_find(&adapter, root, path));
+    assert_string_equal(path, "/dev/ttyUSB1");
+}
+
+int main(void)
+{
+#define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(an_adapter_is_what_its_usb_device_says),
+        TEST(an_adapter_of_the_cdc_class_too_and_through_a_link),
+        TEST(a_tty_that_is_no_usb_adapter_is_none),
+        TEST(with_a_serial_number_it_is_found_in_another_socket_under_another_name),
+        TEST(another_vendor_or_product_with_its_serial_number_is_another),
+        TEST(without_a_serial_number_it_is_found_in_its_socket_only),
+        TEST(two_with_the_same_serial_number_are_told_apart_by_their_socket),
+        TEST(the_ports_of_one_adapter_are_told_apart),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
