@@ -45,6 +45,12 @@ WRONG = [
     ([*READ, '--timeout', '0'], '--timeout takes a whole number from 1 to 600000'),
     ([*READ, '--timeout', '600001'], "not '600001'"),
     ([*READ, '--retries', '255'], '--retries takes a whole number from 0 to 254'),
+    ([*READ, '--echo', 'yes'], "--echo takes auto, on or off, not 'yes'"),
+    ([*READ, '--echo', ''], "not ''"),
+    ([*READ, '--stats=0'], '--stats takes a whole number from 1 to 4000'),
+    ([*READ, '--stats=1s'], "not '1s'"),
+    ([*READ, '--stats', '5'], 'one sensor at a time'),
+    ([*READ, '--reconnect=1'], 'there is no option --reconnect=1'),
     ([*READ, '--fast'], 'there is no option --fast'),
     ([*READ, '-p'], 'there is no option -p'),
     ([*READ, '--help=3'], 'there is no option --help=3'),
@@ -113,7 +119,7 @@ class Help(e2e.Case):
     def test_help_of_read_names_sensors_options_and_examples(self):
         text = self.told('read', '--help')
         for word in ('a16', 'a05', 'hps167s', '19200 8E1', '--port', '--mode', '--address', '--baud', '--parity', '--count',
-                     '--interval', '--timeout', '--retries', '--format', 'Exit status', 'examples:'):
+                     '--interval', '--timeout', '--retries', '--format', '--reconnect', '--echo', '--stats[=SECONDS]', 'Exit status', 'examples:'):
             self.assertIn(word, text)
 
     def test_help_of_sim_names_sensors_options_and_examples(self):
@@ -144,6 +150,8 @@ class Help(e2e.Case):
         self.assertIn('in mode auto nothing is asked, so --address has no effect\n', done.err)
         done = self.run_fathom(*READ, '--retries', '7')
         self.assertIn('in mode auto nothing is asked, so --retries has no effect\n', done.err)
+        done = self.run_fathom(*READ, '--echo', 'on')
+        self.assertIn('in mode auto nothing is asked, so --echo has no effect\n', done.err)
         self.assertNotIn('no effect', self.run_fathom(*READ, '--mode', 'modbus', '--retries', '7').err)
 
 
