@@ -19,9 +19,13 @@ static void look_for_request(const fathom_modbus_message_t *message, const uint8
     }
 }
 
+static fathom_modbus_message_t *message_of(fathom_exchange_t *exchange)
+{
+    return &((fathom_modbus_request_t *)exchange)->message;
+}
+
 static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match)
 {
-    fathom_modbus_message_t *const message = &((fathom_modbus_request_t *)exchange)->message;
     const uint8_t length = fathom_modbus_rtu_response_length(bytes, have);
     match->length = length;
     match->unit = bytes[0];
@@ -30,12 +34,13 @@ static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t hav
     if (length != 0 && length <= have && fathom_crc16(bytes, length) == 0) {
         match->status = FATHOM_PENDING;
         if (exchange == NULL) return;
+        fathom_modbus_message_t *const message = message_of(exchange);
         match->status = (int8_t)fathom_modbus_rtu_parse_response(message, bytes);
         /* Whoever acknowledges a write of one register sends it back. */
         if (match->status == FATHOM_READY && message->head[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER)
             match->request = length;
     } else if (exchange != NULL && (length <= have || have >= LEAST_REQUEST)) {
-        look_for_request(message, bytes, have, match);
+        look_for_request(message_of(exchange), bytes, have, match);
     }
 }
 
