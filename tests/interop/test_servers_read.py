@@ -46,7 +46,7 @@ class Servers:
     def refused(self, sensor, first, values, number, name):
         rows, err = self.read(sensor, first, values, code=1)
         self.assertEqual(rows, [])
-        words = f'address 1 refused: exception {number} ({name}); check that it is {sensor}\n'
+        words = f'address 1 refused: exception {number} ({name}): '
         self.assertEqual(err.count(words), 3, err)
         self.assertIn('line: exceptions 3\n', err)
 
