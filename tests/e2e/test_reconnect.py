@@ -206,6 +206,7 @@ class Plug(e2e.Case):
         fcntl.flock(device.slave, fcntl.LOCK_EX)
         os.symlink(device.path, self.path('port'))
         reader.expect('still waiting: .*in use by another program', 'err')
+        time.sleep(1.2)  # two more tries, and not a word
         fcntl.flock(device.slave, fcntl.LOCK_UN)
         self.answer(device, 1113)
         done = reader.finish()
