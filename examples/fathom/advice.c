@@ -70,6 +70,9 @@ static bool print_others(FILE *to, const failure_t *failure)
                       "requests of another master were heard (it asked address %u), so two ask on this line; "
                       "disconnect the other one or stop its program",
                       evidence->masters_address);
+    else if (evidence->foreign_address > failure->sensor->max_address)
+        (void)fprintf(to, "the line works, but it was address %u that was heard, which no %s can have",
+                      evidence->foreign_address, failure->sensor->name);
     else if (evidence->foreign != 0)
         (void)fprintf(to, "the line works, but it was address %u that was heard; try --address %u",
                       evidence->foreign_address, evidence->foreign_address);
@@ -100,7 +103,7 @@ static void print_no_answer(FILE *to, const failure_t *failure)
                     "asks, and that only one sensor has this address",
                     to);
     } else if (evidence->bytes != 0) {
-        (void)fputs("bytes were heard, but no Modbus frame; ", to);
+        (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->reader->protocol);
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
     } else {

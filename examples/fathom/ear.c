@@ -5,6 +5,7 @@
 
 #include "fathom/crc16.h"
 #include "fathom/dyp_frame.h"
+#include "fathom/dyp_protocol.h"
 #include "fathom/modbus_rtu.h"
 
 static uint32_t now_us(const ear_t *ear) { return ear->clock.now_us(ear->clock.ctx); }
@@ -96,6 +97,37 @@ static uint16_t streamed(const ear_t *ear, uint16_t at, uint8_t length, uint32_t
     return (uint16_t)(end - at);
 }
 
+static void note_answer(evidence_t *evidence, uint8_t from, uint8_t address)
+{
+    if (from == address)
+        evidence->own++;
+    else if (evidence->foreign++ == 0)
+        evidence->foreign_address = from;
+}
+
+static void note_request(evidence_t *evidence, uint8_t to)
+{
+    if (evidence->masters++ == 0) evidence->masters_address = to;
+}
+
+/* As account, for the frames 55 AA. A request that is no echo has the length and the sum of one and the command of a
+ * measurement. */
+static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, evidence_t *evidence)
+{
+    enum { ADDRESS = 2, COMMAND = 3 };
+    const uint8_t length = fathom_dyp_protocol_length(bytes, have);
+    if (length == 0 || have < FATHOM_DYP_REQUEST_LENGTH) return 0;
+    if (length <= have && fathom_dyp_protocol_valid(bytes, length)) {
+        note_answer(evidence, bytes[ADDRESS], address);
+        return length;
+    }
+    if (fathom_dyp_protocol_values(bytes[COMMAND]) == 0 ||
+        !fathom_dyp_protocol_valid(bytes, FATHOM_DYP_REQUEST_LENGTH))
+        return 0;
+    note_request(evidence, bytes[ADDRESS]);
+    return FATHOM_DYP_REQUEST_LENGTH;
+}
+
 /* What begins at the front of these bytes: how many of them are accounted for, 0 if none. */
 static uint16_t account(const ear_t *ear, uint16_t at, uint8_t address, evidence_t *evidence)
 {
@@ -108,17 +140,16 @@ static uint16_t account(const ear_t *ear, uint16_t at, uint8_t address, evidence
     }
     uint8_t length = whole(bytes, have, fathom_modbus_rtu_response_length(bytes, have));
     if (length != 0) {
-        if (bytes[0] == address)
-            evidence->own++;
-        else if (evidence->foreign++ == 0)
-            evidence->foreign_address = bytes[0];
+        note_answer(evidence, bytes[0], address);
         return length;
     }
     length = whole(bytes, have, fathom_modbus_rtu_request_length(bytes, have));
     if (length != 0) {
-        if (evidence->masters++ == 0) evidence->masters_address = bytes[0];
+        note_request(evidence, bytes[0]);
         return length;
     }
+    length = account_dyp(bytes, have, address, evidence);
+    if (length != 0) return length;
     const uint16_t a05 = streamed(ear, at, FATHOM_DYP_A05_LENGTH, &evidence->streamed_a05);
     return a05 != 0 ? a05 : streamed(ear, at, FATHOM_DYP_A16_LENGTH, &evidence->streamed_a16);
 }

@@ -146,11 +146,6 @@ bool read_options(read_options_t *options, int argc, char **argv)
     options->mode = sensor_mode_find(command, options->sensor, values[MODE]);
     options->format = format_find(command, values[FORMAT]);
     if (options->mode == NULL || options->format == NULL) return false;
-    if (options->mode->read == NULL) {
-        (void)usage_error(command, "mode %s of %s can be simulated only", options->mode->name,
-                          options->sensor->name);
-        return false;
-    }
     options->line = options->sensor->line;
     if (!take_baud(values[BAUD], &options->line.baud) ||
         !take_parity(values[PARITY], &options->line.parity) || !take_numbers(options, values) ||
@@ -174,11 +169,13 @@ void read_help(FILE *to)
                 to);
     sensors_print(to);
     (void)fputs(
-        "\nThe first mode is the default: auto listens to a sensor that sends by itself, modbus asks it.\n"
+        "\nThe first mode is the default: auto listens to a sensor that sends by itself, modbus and dyp "
+        "(frames 55 AA)\n"
+        "ask it.\n"
         "A single Modbus request ends the automatic output of an A16 or A05; for an A05 until power-off.\n\n"
         "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`\n"
         "  --mode MODE       how the sensor is read\n"
-        "  --address N       Modbus address; 1 from the factory\n"
+        "  --address N       of a sensor that is asked; 1 from the factory\n"
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"
         "  --count N         ends after N attempts; without it Ctrl-C does\n"

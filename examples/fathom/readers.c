@@ -7,6 +7,8 @@
  * looking for the loose wire. */
 enum { READER_BACKOFF_US = 1 };
 
+static const char modbus[] = "Modbus";
+
 static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
@@ -18,9 +20,11 @@ static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_
     return true;
 }
 
-static bool begin_modbus(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
+static bool begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor,
+                        const char *protocol)
 {
     reader->sensor = sensor;
+    reader->protocol = protocol;
     reader->unit = &base->unit;
     reader->values = base->answer.values;
     reader->value_count = base->question.count;
@@ -63,7 +67,7 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
-           begin_modbus(reader, &driver->base, fathom_a16_modbus_sensor(driver));
+           begin_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver), modbus);
 }
 
 bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
@@ -80,7 +84,23 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
-           begin_modbus(reader, &driver->base, fathom_a05_modbus_sensor(driver));
+           begin_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver), modbus);
+}
+
+bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
+    const fathom_a05_dyp_config_t config = {
+        .line = &channel->line,
+        .period_us = settings->period_us,
+        .timeout_us = settings->timeout_us,
+        .address = settings->address,
+        .retries = settings->retries,
+        .backoff_us = READER_BACKOFF_US,
+    };
+    memset(reader, 0, sizeof *reader);
+    return fathom_a05_dyp_init(driver, &config) == FATHOM_READY &&
+           begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
 }
 
 bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
@@ -98,6 +118,7 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
     memset(reader, 0, sizeof *reader);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
+    reader->protocol = modbus;
     reader->unit = &driver->unit;
     reader->sequence = &driver->sequence;
     reader->values = driver->values;

@@ -7,6 +7,7 @@
 
 #include "channel.h"
 #include "fathom/a05_auto.h"
+#include "fathom/a05_dyp.h"
 #include "fathom/a05_modbus.h"
 #include "fathom/a16_auto.h"
 #include "fathom/a16_modbus.h"
@@ -30,11 +31,13 @@ typedef struct {
     uint16_t *sequence;         /* of the last answer */
     fathom_modbus_unit_t *unit; /* NULL: it sends by itself */
     fathom_stream_t *stream;    /* NULL: it is asked */
+    const char *protocol;       /* with which it is asked */
     union {
         fathom_a16_auto_t a16_auto;
         fathom_a16_modbus_t a16_modbus;
         fathom_a05_auto_t a05_auto;
         fathom_a05_modbus_t a05_modbus;
+        fathom_a05_dyp_t a05_dyp;
         fathom_hps167s_t hps167s;
     } driver;
 } reader_t;
@@ -46,6 +49,7 @@ bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings
 bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 
 /* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the answer that did not fit, and not a value in it? */

@@ -24,7 +24,7 @@ static const sensor_t sensors[] = {
         {9600, FATHOM_PARITY_NONE, 1},
         {{"auto", false, reader_a05_auto, device_a05_auto},
          {"modbus", true, reader_a05_modbus, device_a05_modbus},
-         {"dyp", true, NULL, device_a05_dyp}},
+         {"dyp", true, reader_a05_dyp, device_a05_dyp}},
         .max_address = 254,
         .probes = 4,
         .near_mm = 250,

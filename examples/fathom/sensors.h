@@ -10,8 +10,8 @@
 /* One way in which a sensor can be read and simulated. */
 typedef struct {
     const char *name;
-    bool is_asked;      /* at an address; else it sends by itself */
-    reader_init_t read; /* NULL: can be simulated only */
+    bool is_asked; /* at an address; else it sends by itself */
+    reader_init_t read;
     device_init_t simulate;
 } sensor_mode_t;
 

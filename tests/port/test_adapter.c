@@ -47,8 +47,8 @@ static int tear_down(void **state)
 
 static void write_file(const char *folder, const char *name, const char *text)
 {
-    char path[LONG];
-    (void)snprintf(path, sizeof path, "%s/devices/%s/%s", root, folder, name);
+    char path[2 * LONG];
+    assert_true(snprintf(path, sizeof path, "%s/devices/%s/%s", root, folder, name) < (int)sizeof path);
     FILE *const file = fopen(path, "w");
     assert_non_null(file);
     (void)fprintf(file, "%s\n", text);
