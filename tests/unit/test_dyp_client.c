@@ -1,0 +1,407 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/dyp_client.h"
+#include "line_bench.h"
+
+/* 55 AA frames on a line. SUM is the low byte of the sum of all before it, and 55 + AA = FF. */
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
+/* A05 2(3)3 with the sum put right (printed: 60), 2(3)4 and 2(3)5. */
+static const uint8_t ask_all[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
+static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
+static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
+static const uint8_t address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07};
+
+static uint16_t values[6]; /* two guards behind the four */
+
+static void fill(uint8_t unit, uint16_t first, uint8_t count)
+{
+    memset(values, 0xA5, sizeof values);
+    fathom_modbus_read_holding_registers(&bench.request.message, unit, first, count, values);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+}
+
+static fathom_status_t submit(void) { return fathom_dyp_client_submit(&bench.line, &bench.request); }
+
+static void send_request(void)
+{
+    assert_int_equal(submit(), FATHOM_PENDING);
+    run(T3_5_US + 5 * BYTE_US + 400);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+static void ask_four(void)
+{
+    fill(1, 0x0106, 4);
+    send_request();
+}
+
+static void assert_values_untouched(void)
+{
+    for (size_t i = 0; i != COUNT_OF(values); i++) assert_int_equal(values[i], 0xA5A5);
+}
+
+static fathom_status_t status(void) { return status_of(&bench.request); }
+
+/* ---- what goes out ---- */
+
+typedef struct {
+    uint8_t unit;
+    uint16_t first;
+    uint8_t count;
+    uint8_t bytes[5];
+} request_t;
+
+static const request_t requests[] = {
+    {1, 0x0106, 4, {0x55, 0xAA, 0x01, 0x01, 0x01}},   {1, 0x0106, 1, {0x55, 0xAA, 0x01, 0x10, 0x10}},
+    {1, 0x0107, 1, {0x55, 0xAA, 0x01, 0x11, 0x11}},   {1, 0x0108, 1, {0x55, 0xAA, 0x01, 0x12, 0x12}},
+    {1, 0x0109, 1, {0x55, 0xAA, 0x01, 0x13, 0x13}},   {254, 0x0106, 4, {0x55, 0xAA, 0xFE, 0x01, 0xFE}},
+    {254, 0x0109, 1, {0x55, 0xAA, 0xFE, 0x13, 0x10}}, {255, 0x0106, 1, {0x55, 0xAA, 0xFF, 0x10, 0x0E}},
+};
+
+static void each_read_is_its_command(void **state)
+{
+    for (size_t i = 0; i != COUNT_OF(requests); i++) {
+        set_up(state);
+        fill(requests[i].unit, requests[i].first, requests[i].count);
+        send_request();
+        assert_int_equal(bench.fake.writes[0].length, 5);
+        assert_memory_equal(bench.fake.writes[0].bytes, requests[i].bytes, 5);
+    }
+}
+
+static void each_probe_is_answered_by_its_own_command(void **state)
+{
+    for (uint8_t probe = 0; probe != 4; probe++)
+        for (uint8_t command = 0x10; command != 0x14; command++) {
+            /* 1953 mm: FF + 01 + 07 + A1 = 1A8, and the command. */
+            const uint8_t answer[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
+            set_up(state);
+            fill(1, (uint16_t)(0x0106 + probe), 1);
+            send_request();
+            receive(answer, sizeof answer);
+            run(100);
+            if (command == 0x10 + probe) {
+                assert_int_equal(status(), FATHOM_READY);
+                assert_int_equal(values[0], 1953);
+                assert_int_equal(values[1], 0xA5A5);
+                continue;
+            }
+            assert_int_equal(status(), FATHOM_PENDING); /* the right one may still come */
+            run(TIMEOUT_US);
+            assert_int_equal(status(), FATHOM_ERR_MALFORMED);
+            assert_values_untouched();
+        }
+}
+
+static void the_example_with_four_distances_is_read(void **state)
+{
+    (void)state;
+    ask_four();
+    receive(four, sizeof four);
+    run(100);
+    assert_int_equal(status(), FATHOM_READY);
+    assert_int_equal(values[0], 1000);
+    assert_int_equal(values[1], 2000);
+    assert_int_equal(values[2], 1953);
+    assert_int_equal(values[3], 3562);
+    assert_int_equal(values[4], 0xA5A5);
+    assert_int_equal(bench.request.message.head[0], 1);
+}
+
+static void setting_the_address_is_acknowledged_by_its_own_words(void **state)
+{
+    (void)state;
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
+    run(T3_5_US + 5 * BYTE_US + 400);
+    assert_int_equal(bench.fake.writes[0].length, 5);
+    assert_memory_equal(bench.fake.writes[0].bytes, address_5, sizeof address_5);
+    receive(first_1953, sizeof first_1953);
+    run(100);
+    assert_int_equal(status(), FATHOM_PENDING);
+    receive(address_5, sizeof address_5);
+    run(100);
+    assert_int_equal(status(), FATHOM_READY);
+}
+
+/* ---- refusals ---- */
+
+static void reads_without_a_command_are_unsupported(void **state)
+{
+    static const struct {
+        uint16_t first;
+        uint8_t count;
+    } none[] = {{0x0105, 1}, {0x010A, 1}, {0x0105, 4}, {0x0107, 4}, {0x0109, 4}, {0x0106, 0},
+                {0x0106, 2}, {0x0106, 3}, {0x0106, 5}, {0x0107, 3}, {0x0010, 1}, {0x0010, 4},
+                {0x0200, 1}, {0x0006, 1}, {0x0206, 4}, {0x0000, 1}, {0xFFFF, 1}};
+    (void)state;
+    for (size_t i = 0; i != COUNT_OF(none); i++) {
+        fill(1, none[i].first, none[i].count);
+        bench.request.exchange.status = 77;
+        assert_int_equal(submit(), FATHOM_ERR_UNSUPPORTED);
+        assert_int_equal(bench.request.exchange.status, 77);
+    }
+    fill(1, 0x0106, 4);
+    bench.request.message.head[4] = 1; /* 260 registers */
+    assert_int_equal(submit(), FATHOM_ERR_UNSUPPORTED);
+    run(20000);
+    assert_int_equal(bench.fake.written, 0);
+}
+
+/* The command that sets the address has a name of its own: through the seam no driver can reach it. */
+static void writes_are_unsupported(void **state)
+{
+    (void)state;
+    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
+    assert_int_equal(submit(), FATHOM_ERR_UNSUPPORTED);
+    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0106, 1);
+    assert_int_equal(submit(), FATHOM_ERR_UNSUPPORTED);
+    fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0106, 4, values);
+    assert_int_equal(submit(), FATHOM_ERR_UNSUPPORTED);
+    run(20000);
+    assert_int_equal(bench.fake.written, 0);
+}
+
+static void wrong_units_and_addresses_are_refused(void **state)
+{
+    (void)state;
+    fill(0, 0x0106, 4);
+    assert_int_equal(submit(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 0),
+                     FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 255),
+                     FATHOM_ERR_ARGUMENT);
+    run(20000);
+    assert_int_equal(bench.fake.written, 0);
+}
+
+static void a_line_without_room_for_the_longest_answer_is_refused(void **state)
+{
+    for (uint8_t size = 12; size != 14; size++) {
+        const fathom_status_t expected = size == 12 ? FATHOM_ERR_CAPACITY : FATHOM_PENDING;
+        set_up(state);
+        bench.config.frame_size = size;
+        fill(1, 0x0106, 1);
+        assert_int_equal(submit(), expected);
+        assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.other, 5), expected);
+    }
+}
+
+static void a_request_under_way_is_busy(void **state)
+{
+    (void)state;
+    ask_four();
+    assert_int_equal(submit(), FATHOM_ERR_BUSY);
+    receive(four, sizeof four);
+    run(100);
+    assert_int_equal(status(), FATHOM_READY);
+    fill(1, 0x0107, 1);
+    assert_int_equal(submit(), FATHOM_PENDING);
+}
+
+/* ---- what comes back ---- */
+
+static void an_answer_of_another_unit_is_a_stray(void **state)
+{
+    uint8_t of_unit_2[sizeof four];
+    (void)state;
+    memcpy(of_unit_2, four, sizeof four);
+    of_unit_2[2]++;
+    of_unit_2[12]++;
+    ask_four();
+    receive(of_unit_2, sizeof of_unit_2);
+    run(100);
+    assert_int_equal(status(), FATHOM_PENDING);
+    assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
+    assert_values_untouched();
+    receive(four, sizeof four);
+    run(100);
+    assert_int_equal(values[0], 1000);
+}
+
+static void an_answer_to_another_command_is_malformed_unless_the_right_one_follows(void **state)
+{
+    for (unsigned follows = 0; follows != 2; follows++) {
+        set_up(state);
+        ask_four();
+        receive(first_1953, sizeof first_1953);
+        run(100);
+        assert_int_equal(status(), FATHOM_PENDING);
+        assert_values_untouched();
+        if (follows != 0) receive(four, sizeof four);
+        run(TIMEOUT_US);
+        assert_int_equal(status(), follows != 0 ? FATHOM_READY : FATHOM_ERR_MALFORMED);
+        assert_int_equal(values[0], follows != 0 ? 1000 : 0xA5A5);
+    }
+}
+
+/* One bit makes the command 03 of 01, and 1H = 03 the right sum of what is then a whole frame. Every other bit spoils
+ * the sum or the shape. */
+static void an_answer_with_one_wrong_bit_is_never_taken(void **state)
+{
+    uint8_t damaged[sizeof four];
+    for (unsigned bit = 0; bit != 8 * sizeof four; bit++) {
+        set_up(state);
+        memcpy(damaged, four, sizeof four);
+        damaged[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        ask_four();
+        receive(damaged, sizeof damaged);
+        run(TIMEOUT_US + 400);
+        if (bit == 8 * 3 + 1)
+            assert_int_equal(status(), FATHOM_ERR_MALFORMED);
+        else
+            assert_true(status() == FATHOM_ERR_CHECKSUM || status() == FATHOM_ERR_NO_ANSWER);
+        assert_values_untouched();
+    }
+}
+
+static void a_wrong_sum_is_a_checksum_error_after_a_gap(void **state)
+{
+    uint8_t printed[sizeof four]; /* the sum that A05 2(3)3 prints */
+    (void)state;
+    memcpy(printed, four, sizeof four);
+    printed[12] = 0x60;
+    ask_four();
+    receive(printed, sizeof printed);
+    run(GAP_US + 300);
+    assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
+    assert_values_untouched();
+}
+
+static void an_answer_that_breaks_off_is_a_checksum_error(void **state)
+{
+    for (size_t length = 3; length != sizeof four; length++) {
+        set_up(state);
+        ask_four();
+        receive(four, length);
+        run(GAP_US + 300);
+        assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
+        assert_values_untouched();
+    }
+}
+
+static void an_answer_glued_to_noise_is_found(void **state)
+{
+    static const uint8_t noises[][4] = {{0x55, 0x55, 0x55, 0x55},
+                                        {0x00, 0xFF, 0xAA, 0x55},
+                                        {0x55, 0xAA, 0x55, 0xAA},
+                                        {0x55, 0xAA, 0x01, 0x02},
+                                        {0xAA, 0x01, 0x10, 0x07}};
+    for (size_t i = 0; i != COUNT_OF(noises); i++)
+        for (size_t used = 1; used <= 4; used++) {
+            uint8_t glued[4 + sizeof four];
+            set_up(state);
+            memcpy(glued, noises[i], used);
+            memcpy(glued + used, four, sizeof four);
+            ask_four();
+            receive(glued, used + sizeof four);
+            run(GAP_US + 300);
+            assert_int_equal(status(), FATHOM_READY);
+            assert_int_equal(values[3], 3562);
+        }
+}
+
+static void every_cut_of_an_answer_into_two_reads_is_put_together(void **state)
+{
+    for (size_t cut = 1; cut != sizeof four; cut++) {
+        set_up(state);
+        ask_four();
+        receive(four, cut);
+        receive(four + cut, sizeof four - cut);
+        fathom_line_poll(&bench.line);
+        assert_int_equal(status(), FATHOM_READY);
+    }
+}
+
+static void a_late_answer_serves_the_retry_and_no_other_request(void **state)
+{
+    for (uint8_t retries = 0; retries != 2; retries++) {
+        set_up(state);
+        bench.request.exchange.retries = retries;
+        ask_four();
+        run(TIMEOUT_US + 400);
+        assert_int_equal(status(), retries != 0 ? FATHOM_PENDING : FATHOM_ERR_NO_ANSWER);
+        if (retries == 0) {
+            fill(1, 0x0106, 4);
+            assert_int_equal(submit(), FATHOM_PENDING);
+        }
+        receive(four, sizeof four);
+        run(100);
+        assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+        assert_int_equal(status(), retries != 0 ? FATHOM_READY : FATHOM_PENDING);
+        assert_int_equal(values[0], retries != 0 ? 1000 : 0xA5A5);
+        assert_int_equal(bench.fake.written, 1);
+    }
+}
+
+static void a_late_answer_of_another_unit_is_known_as_such(void **state)
+{
+    uint8_t of_unit_2[sizeof first_1953];
+    (void)state;
+    memcpy(of_unit_2, first_1953, sizeof first_1953);
+    of_unit_2[2]++;
+    of_unit_2[6]++;
+    ask_four();
+    run(TIMEOUT_US + 400);
+    fill(2, 0x0106, 1);
+    assert_int_equal(submit(), FATHOM_PENDING);
+    run(T3_5_US + 5 * BYTE_US + 400);
+    assert_int_equal(bench.fake.written, 2);
+    assert_memory_equal(bench.fake.writes[0].bytes, ask_all, sizeof ask_all);
+    receive(four, sizeof four);
+    receive(of_unit_2, sizeof of_unit_2);
+    run(100);
+    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    assert_int_equal(status(), FATHOM_READY);
+    assert_int_equal(values[0], 1953);
+}
+
+/* ---- the seam ---- */
+
+static void the_seam_does_what_the_functions_do(void **state)
+{
+    const fathom_modbus_t seam = fathom_dyp_client(&bench.line);
+    (void)state;
+    assert_ptr_equal(seam.ctx, &bench.line);
+    fill(0, 0x0106, 4);
+    assert_int_equal(seam.submit(seam.ctx, &bench.request), FATHOM_ERR_ARGUMENT);
+    fill(1, 0x0106, 4);
+    assert_int_equal(seam.submit(seam.ctx, &bench.request), FATHOM_PENDING);
+    assert_int_equal(seam.due_us(seam.ctx), fathom_line_due_us(&bench.line));
+    bench.fake.now_us += T3_5_US;
+    assert_int_equal(seam.poll(seam.ctx), FATHOM_PENDING);
+    bench.fake.now_us += T3_5_US;
+    assert_int_equal(seam.poll(seam.ctx), FATHOM_PENDING);
+    assert_int_equal(bench.fake.written, 1);
+    seam.cancel(seam.ctx, &bench.request);
+    seam.cancel(seam.ctx, &bench.request);
+    assert_int_equal(status(), FATHOM_ERR_CANCELLED);
+    bench.fake.read_fails = true;
+    assert_int_equal(seam.poll(seam.ctx), FATHOM_ERR_PORT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(each_read_is_its_command),
+        TEST(each_probe_is_answered_by_its_own_command),
+        TEST(the_example_with_four_distances_is_read),
+        TEST(setting_the_address_is_acknowledged_by_its_own_words),
+        TEST(reads_without_a_command_are_unsupported),
+        TEST(writes_are_unsupported),
+        TEST(wrong_units_and_addresses_are_refused),
+        TEST(a_line_without_room_for_the_longest_answer_is_refused),
+        TEST(a_request_under_way_is_busy),
+        TEST(an_answer_of_another_unit_is_a_stray),
+        TEST(an_answer_to_another_command_is_malformed_unless_the_right_one_follows),
+        TEST(an_answer_with_one_wrong_bit_is_never_taken),
+        TEST(a_wrong_sum_is_a_checksum_error_after_a_gap),
+        TEST(an_answer_that_breaks_off_is_a_checksum_error),
+        TEST(an_answer_glued_to_noise_is_found),
+        TEST(every_cut_of_an_answer_into_two_reads_is_put_together),
+        TEST(a_late_answer_serves_the_retry_and_no_other_request),
+        TEST(a_late_answer_of_another_unit_is_known_as_such),
+        TEST(the_seam_does_what_the_functions_do),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
