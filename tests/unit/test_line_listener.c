@@ -61,6 +61,8 @@ typedef struct {
     unsigned calls;
     unsigned gaps;
     size_t gap_at; /* of the last one */
+    unsigned losses;
+    size_t lost_at; /* of the last one */
     uint32_t time_us;
 } ear_t;
 
@@ -68,7 +70,7 @@ static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t coun
                  uint32_t time_us)
 {
     ear_t *const ear = (ear_t *)listener;
-    assert_true(count >= 1);
+    if (count == 0) ear->losses++, ear->lost_at = ear->length;
     if (after_gap) ear->gaps++, ear->gap_at = ear->length;
     memcpy(ear->bytes + ear->length, bytes, count);
     ear->length += count;
@@ -195,6 +197,119 @@ static void whole_foreign_frames_go_to_the_listener(void **state)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 7);
 }
 
+/* ---- bytes that the port knows to be wrong or missing ---- */
+
+static void a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one(void **state)
+{
+    static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING,
+                                    FATHOM_RX_PARITY | FATHOM_RX_OVERRUN};
+    for (size_t i = 0; i != sizeof flags; i++) {
+        set_up(state);
+        ear_t ear = ear_of(5000);
+        fathom_line_listen(&bench.line, &ear.listener);
+        receive(auto_frame, 2);
+        fake_receive_rx(&bench.fake, 0, auto_frame, 3, (fathom_rx_t){0, flags[i]});
+        receive(auto_frame + 2, 2);
+        run(100);
+        assert_int_equal(ear.length, 4);
+        assert_memory_equal(ear.bytes, auto_frame, 4);
+        assert_int_equal(ear.losses, 1);
+        assert_int_equal(ear.lost_at, 2);
+        assert_int_equal(ear.gaps, 0);
+        assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 3);
+        assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
+    }
+}
+
+static void a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    receive(auto_frame, 1);
+    fake_receive_rx(&bench.fake, 0, auto_frame + 2, 2, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    run(100);
+    assert_int_equal(ear.length, 3);
+    assert_memory_equal(ear.bytes + 1, auto_frame + 2, 2);
+    assert_int_equal(ear.losses, 1);
+    assert_int_equal(ear.lost_at, 1);
+    assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 1);
+}
+
+/* What waited as the possible beginning of an answer comes before the loss, in the order in which it came. */
+static void what_an_exchange_held_back_goes_to_the_listener_before_the_loss(void **state)
+{
+    (void)state;
+    ear_t ear = ear_of(5000);
+    fathom_line_listen(&bench.line, &ear.listener);
+    ask_1_and_send(0);
+    receive(answer_1_754, 4);
+    run(100);
+    assert_int_equal(ear.length, 0);
+    fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    run(100);
+    run(2 * GAP_US);
+    assert_int_equal(ear.length, 8);
+    assert_memory_equal(ear.bytes, answer_1_754, 4);
+    assert_memory_equal(ear.bytes + 4, auto_frame, 4);
+    assert_int_equal(ear.lost_at, 4);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
+}
+
+/* The same read before and after: only together would they be an answer. */
+static void an_answer_is_never_put_together_across_lost_bytes(void **state)
+{
+    static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN};
+    for (size_t i = 0; i != sizeof flags; i++)
+        for (size_t cut = 1; cut != sizeof answer_1_754; cut++) {
+            const bool is_overrun = flags[i] == FATHOM_RX_OVERRUN;
+            set_up(state);
+            ask_1_and_send(0);
+            receive(answer_1_754, cut);
+            if (is_overrun) {
+                fake_receive_rx(&bench.fake, 0, answer_1_754 + cut, sizeof answer_1_754 - cut,
+                                (fathom_rx_t){0, flags[i]});
+            } else {
+                fake_receive_rx(&bench.fake, 0, auto_frame, 1, (fathom_rx_t){0, flags[i]});
+                receive(answer_1_754 + cut, sizeof answer_1_754 - cut);
+            }
+            run(TIMEOUT_US + 400);
+            assert_int_equal(status_of(&bench.request),
+                             cut >= 3 ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_ANSWER);
+            assert_int_equal(bench.value, 0xDEAD);
+        }
+}
+
+static void a_whole_answer_after_lost_bytes_is_taken(void **state)
+{
+    static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN};
+    for (size_t i = 0; i != sizeof flags; i++) {
+        set_up(state);
+        ask_1_and_send(0);
+        receive(answer_1_754, 5);
+        fake_receive_rx(&bench.fake, 0, flags[i] == FATHOM_RX_OVERRUN ? answer_1_751 : auto_frame,
+                        flags[i] == FATHOM_RX_OVERRUN ? 7 : 4, (fathom_rx_t){0, flags[i]});
+        if (flags[i] != FATHOM_RX_OVERRUN) receive(answer_1_751, sizeof answer_1_751);
+        run(100);
+        assert_int_equal(status_of(&bench.request), FATHOM_READY);
+        assert_int_equal(bench.value, 751);
+    }
+}
+
+static void lost_bytes_while_nothing_is_asked_are_only_counted(void **state)
+{
+    (void)state;
+    fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_FRAMING});
+    fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    run(100);
+    assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 5);
+    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 4);
+    ask_1_and_send(0);
+    receive(answer_1_754, sizeof answer_1_754);
+    run(100);
+    assert_int_equal(bench.value, 754);
+}
+
 static void due_makes_room_for_the_listener_to_see_its_gap(void **state)
 {
     (void)state;
@@ -219,6 +334,12 @@ int main(void)
         TEST(a_silence_that_the_port_saw_is_a_gap),
         TEST(unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not),
         TEST(whole_foreign_frames_go_to_the_listener),
+        TEST(a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one),
+        TEST(a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before),
+        TEST(what_an_exchange_held_back_goes_to_the_listener_before_the_loss),
+        TEST(an_answer_is_never_put_together_across_lost_bytes),
+        TEST(a_whole_answer_after_lost_bytes_is_taken),
+        TEST(lost_bytes_while_nothing_is_asked_are_only_counted),
         TEST(due_makes_room_for_the_listener_to_see_its_gap),
         TEST(only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap),
         TEST(our_own_request_is_no_silence),

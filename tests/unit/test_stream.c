@@ -319,6 +319,71 @@ static void a_long_run_of_noise_does_not_come_round_to_a_frame(void **state)
     }
 }
 
+/* ---- bytes that were lost ---- */
+
+static void no_frame_is_built_across_a_lost_byte(void **state)
+{
+    (void)state;
+    for (uint8_t cut = 1; cut != 4; cut++) {
+        begin(4, 0);
+        feed(mm_1953, cut, true, 10);
+        feed(NULL, 0, false, 20);
+        feed(mm_1953 + cut, (uint8_t)(4 - cut), false, 20);
+        assert_int_equal(poll(20), FATHOM_PENDING);
+        feed(mm_1953, 1, true, 30); /* nor does a silence behind it help */
+        assert_int_equal(poll(30), FATHOM_PENDING);
+        assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+    }
+}
+
+static void a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, false, 10);
+    feed(mm_1953, 4, false, 20); /* believed if FF follows, but what follows is not known */
+    feed(NULL, 0, false, 30);
+    feed(mm_1953, 1, false, 30);
+    assert_int_equal(poll(30), FATHOM_PENDING);
+    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+}
+
+/* The first after the loss is in step with nothing, the second with the first. */
+static void after_a_loss_two_frames_in_step_or_a_silence_are_needed_again(void **state)
+{
+    (void)state;
+    begin(4, 0);
+    feed(mm_1953, 4, true, 10);
+    assert_int_equal(poll(10), FATHOM_READY);
+    feed(NULL, 0, false, 20);
+    feed(mm_1953, 4, false, 20);
+    feed(mm_1953, 1, false, 25);
+    assert_int_equal(poll(25), FATHOM_PENDING);
+    feed(mm_1953 + 1, 3, false, 30);
+    feed(mm_1953, 1, false, 35);
+    assert_int_equal(poll(35), FATHOM_READY);
+    feed(NULL, 0, false, 40);
+    feed(mm_1953, 4, true, 50);
+    assert_int_equal(poll(50), FATHOM_READY);
+}
+
+/* 511 mm held still, FF 01 FF FF: without the two bytes FF 01 it reads FF FF FF 01, FF FF 01 FF. */
+static void a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value(void **state)
+{
+    (void)state;
+    for (uint8_t lost = 0; lost != 4; lost++) {
+        begin(4, 0);
+        feed(mm_511, 4, true, 0);
+        assert_int_equal(poll(0), FATHOM_READY);
+        feed(NULL, 0, false, 10);
+        feed(mm_511 + lost, (uint8_t)(4 - lost), false, 10);
+        for (uint32_t i = 0; i != 20; i++) {
+            feed(mm_511, 4, false, 20 + i);
+            if (poll(20 + i) == FATHOM_READY) assert_memory_equal(frame, mm_511, 4);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -342,6 +407,10 @@ int main(void)
         cmocka_unit_test(the_deadline_holds_across_the_wrap_of_the_clock),
         cmocka_unit_test(due_is_the_deadline_or_at_once),
         cmocka_unit_test(counters_stop_at_their_end),
+        cmocka_unit_test(no_frame_is_built_across_a_lost_byte),
+        cmocka_unit_test(a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost),
+        cmocka_unit_test(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again),
+        cmocka_unit_test(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value),
         cmocka_unit_test(a_long_run_of_noise_does_not_come_round_to_a_frame),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
