@@ -28,6 +28,10 @@ static const uint8_t all_500[] = {0x55, 0xAA, 0x01, 0x01, 0x01, 0xF4, 0x07,
                                   0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x6C};
 static const uint8_t first_4106[] = {0x55, 0xAA, 0x01, 0x10, 0x10, 0x0A, 0x2A};
 
+/* The same with 1L = 55, which begins no second frame: 6C - F4 + 55 = CD. */
+static const uint8_t all_341[] = {0x55, 0xAA, 0x01, 0x01, 0x01, 0x55, 0x07,
+                                  0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0xCD};
+
 /* Echo and answer glued: the 12 bytes 55 AA 01 01 01 55 AA 01 01 03 E8 07 have the sum FF + 03 + FF + 02 + 03 + E8
  * + 07 = 2F5, and F5 is the 13th, so that they look like one answer. 62 - D0 + F5 = 87. */
 static const uint8_t all_2037[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07,
@@ -36,6 +40,7 @@ static const uint8_t all_2037[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07,
 static const probe_t probes[] = {
     {4, ask_all, all_1000, sizeof all_1000, {1000, 2000, 1953, 3562}},
     {4, ask_all, all_500, sizeof all_500, {500, 2000, 1953, 3562}},
+    {4, ask_all, all_341, sizeof all_341, {341, 2000, 1953, 3562}},
     {4, ask_all, all_2037, sizeof all_2037, {1000, 2037, 1953, 3562}},
     {1, ask_first, first_1953, sizeof first_1953, {1953}},
     {1, ask_first, first_4106, sizeof first_4106, {4106}},
