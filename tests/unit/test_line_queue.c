@@ -15,8 +15,12 @@ static void one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire(
     run(100);
     assert_int_equal(bench.value, 754);
     ask(&bench.other, 2, &bench.other_value, 0); /* it was never asked, so it owes nothing */
-    run(T3_5_US + 400);
+    run(T3_5_US + 8 * BYTE_US + 400);
     assert_int_equal(bench.fake.written, 2);
+    receive_answer(2, 222);
+    ask(&bench.request, 1, &bench.value, 0); /* nor does the one that has answered */
+    run(T3_5_US + 400);
+    assert_int_equal(bench.fake.written, 3);
 }
 
 static void one_in_the_middle_of_the_queue_can_be_cancelled(void **state)
