@@ -21,7 +21,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-COPIED = ('CMakeLists.txt', 'README.md', 'include', 'port', 'src', 'tests')
+COPIED = ('CMakeLists.txt', 'README.md', 'examples', 'include', 'port', 'src', 'tests')
 KINDS = ('unit', 'golden', 'property', 'port')
 LIMIT_S = 20  # for one test program
 CONFIGURE = ['-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_C_FLAGS_DEBUG=-O1', '-DFATHOM_STRICT=OFF', '-DFATHOM_CHECKS=OFF',
