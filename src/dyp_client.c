@@ -95,6 +95,7 @@ fathom_status_t fathom_dyp_client_set_every_address(fathom_line_t *line, fathom_
                                                     uint8_t address)
 {
     if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    if (fathom_line_has(line, &request->exchange)) return FATHOM_ERR_BUSY;
     fathom_modbus_write_single_register(&request->message, address, ADDRESS_REGISTER, address);
     return start(line, request);
 }

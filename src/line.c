@@ -71,6 +71,7 @@ static fathom_status_t broken(fathom_line_t *line)
     if (line->state > REFUSED) fathom_line_owe(line);
     fathom_line_count(line, FATHOM_LINE_PORT_ERRORS, 1);
     line->have = 0;
+    line->need = 0;
     line->known = 0; /* perhaps it comes back as another one */
     while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_PORT);
     return FATHOM_ERR_PORT;
@@ -154,6 +155,7 @@ static fathom_status_t send(fathom_line_t *line)
         if (n > 0) {
             x->attempts++;
             line->protocol = x->protocol;
+            line->known &= (uint8_t)~ECHO_DUE;
             line->state = SENDING;
         } else if (n == FATHOM_ERR_UNSUPPORTED) {
             fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);
@@ -209,8 +211,19 @@ void fathom_line_cancel(fathom_line_t *line, fathom_exchange_t *exchange)
 {
     fathom_exchange_t **const link = find(line, exchange);
     if (*link == NULL) return;
-    if (link == &line->head && line->state > REFUSED) fathom_line_owe(line);
+    if (link == &line->head && line->state > REFUSED) {
+        fathom_line_owe(line);
+        if ((line->state & ECHOED) == 0 && fathom_line_echo(line) != FATHOM_LINE_ECHO_OFF)
+            line->known |= ECHO_DUE;
+    }
     fathom_line_finish(line, link, FATHOM_ERR_CANCELLED);
+}
+
+bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchange)
+{
+    const fathom_exchange_t *x = line->head;
+    while (x != NULL && x != exchange) x = x->link.next;
+    return x != NULL;
 }
 
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener) { line->listener = listener; }
@@ -233,7 +246,8 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
 uint8_t fathom_line_echo(const fathom_line_t *line)
 {
     const uint8_t told = line->config->echo;
-    return told != FATHOM_LINE_ECHO_AUTO ? told : (uint8_t)(line->known >> ECHO_SHIFT);
+    if (told != FATHOM_LINE_ECHO_AUTO) return told;
+    return (uint8_t)((line->known & ECHO_KNOWN) >> ECHO_SHIFT);
 }
 
 uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }

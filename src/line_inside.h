@@ -25,7 +25,12 @@ enum {
 };
 
 /* fathom_line_t.known */
-enum { AFTER_GAP = 1, ECHO_SHIFT = 1 };
+enum {
+    AFTER_GAP = 1,  /* of the listener's; before the first byte in the frame */
+    ECHO_SHIFT = 1, /* fathom_line_echo() */
+    ECHO_KNOWN = 6,
+    ECHO_DUE = 8 /* the request that was cancelled may still come back */
+};
 
 static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
 

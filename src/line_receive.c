@@ -27,7 +27,7 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
                               fathom_line_heard_us(line));
         if (asked(line) != NULL) {
             line->state |= NOISY;
-            if (line->left_us == 0) fathom_line_fail(line);
+            if (line->left_us == 0 && phase(line) == LISTENING) fathom_line_fail(line);
         }
     }
     line->known &= (uint8_t)~AFTER_GAP;
@@ -54,13 +54,14 @@ static bool end_with(fathom_line_t *line, fathom_exchange_t **link, int8_t statu
 static bool deliver_late(fathom_line_t *line, uint8_t unit)
 {
     const uint16_t owing = line->owing & (uint16_t)~fathom_line_owing_bits(unit);
-    const bool is_late = owing != line->owing;
+    const bool is_late = owing != line->owing && (line->known & ECHO_DUE) == 0;
+    line->known &= (uint8_t)~ECHO_DUE;
     fathom_line_count(line, is_late ? FATHOM_LINE_LATE_ANSWERS : FATHOM_LINE_STRAYS, 1);
-    line->owing = owing;
     if (!is_late) return false;
+    line->owing = owing;
     for (fathom_exchange_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
         fathom_match_t match;
-        if (x->attempts == 0 || x->unit != unit) continue;
+        if (x->attempts == 0 || (x->unit != unit && x->unit != FATHOM_LINE_ANY_UNIT)) continue;
         x->protocol(x, line->config->frame, line->have, &match);
         if (end_with(line, link, match.status)) return true;
     }
@@ -69,7 +70,7 @@ static bool deliver_late(fathom_line_t *line, uint8_t unit)
 
 static void learn(fathom_line_t *line, uint8_t echo)
 {
-    line->known = (uint8_t)((line->known & AFTER_GAP) | echo << ECHO_SHIFT);
+    line->known = (uint8_t)((line->known & ~ECHO_KNOWN) | echo << ECHO_SHIFT);
 }
 
 /*
@@ -91,6 +92,7 @@ static bool take(fathom_line_t *line, const fathom_match_t *match)
         line->state |= ECHOED;
         return true;
     }
+    if (line->head->unit == FATHOM_LINE_ANY_UNIT) fathom_line_owe(line);
     if (!end_with(line, &line->head, match->status)) {
         line->state |= ANSWERED_WRONG;
         return false;
@@ -175,8 +177,8 @@ uint8_t fathom_line_lose(fathom_line_t *line, uint8_t had, int came)
     const uint8_t count = (uint8_t)came;
     if (asked(line) != NULL) line->state |= NOISY;
     if (listener != NULL) listener->receive(listener, to, 0, false, fathom_line_heard_us(line));
+    line->known &= (uint8_t)~AFTER_GAP;
     if ((came & BAD) != 0) {
-        line->known &= (uint8_t)~AFTER_GAP;
         fathom_line_count(line, FATHOM_LINE_BAD_BYTES, count);
         return 0;
     }

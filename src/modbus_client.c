@@ -13,7 +13,7 @@ static void look_for_request(const fathom_modbus_message_t *message, const uint8
     const uint8_t length = fathom_modbus_rtu_begun_request(message, bytes, have);
     if (length == 0) return;
     if (length > have) {
-        if (match->length <= have || length < match->length) match->length = length;
+        match->length = length;
     } else if (fathom_crc16(bytes, length) == 0) {
         match->request = length;
     }
@@ -35,6 +35,7 @@ static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t hav
         match->status = FATHOM_PENDING;
         if (exchange == NULL) return;
         fathom_modbus_message_t *const message = message_of(exchange);
+        if (exchange->unit == FATHOM_LINE_ANY_UNIT) match->unit = FATHOM_LINE_ANY_UNIT;
         match->status = (int8_t)fathom_modbus_rtu_parse_response(message, bytes);
         /* Whoever acknowledges a write of one register sends it back. */
         if (match->status == FATHOM_READY && message->head[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER)

@@ -142,7 +142,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
 {
     const uint8_t *const head = message->head;
     const bool is_read = head[FUNCTION] == READ;
-    if (frame[UNIT] != head[UNIT]) return FATHOM_PENDING;
+    if (frame[UNIT] != head[UNIT] && head[UNIT] != FATHOM_MODBUS_ANY_UNIT) return FATHOM_PENDING;
     if (frame[FUNCTION] == (head[FUNCTION] | EXCEPTION)) {
         message->exception = frame[SIZE];
         return FATHOM_ERR_EXCEPTION;
@@ -154,6 +154,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
         if (frame[SIZE] != 2 * head[COUNT]) return FATHOM_ERR_MALFORMED;
         get_values(message->values, frame + SIZE + 1, head[COUNT]);
     }
+    message->head[UNIT] = frame[UNIT];
     return FATHOM_READY;
 }
 

@@ -18,13 +18,14 @@ static void back_off(fathom_modbus_unit_t *unit)
     uint32_t wait_us = exchange->timeout_us;
     if (exchange->status != FATHOM_ERR_NO_ANSWER) {
         unit->silences = 0;
+        unit->alone_us = 0;
         return;
     }
     if (unit->silences != PATIENCE + DOUBLINGS) unit->silences++;
     if (unit->silences < PATIENCE) return;
     for (uint8_t n = unit->silences; n != PATIENCE && wait_us < unit->backoff_us; n--) wait_us += wait_us;
     if (wait_us > unit->backoff_us) wait_us = unit->backoff_us;
-    if (unit->pause_us < wait_us) unit->pause_us = wait_us;
+    unit->alone_us = wait_us;
 }
 
 /* Lets time pass and the carrier work; returns how that is. */
@@ -35,6 +36,7 @@ static fathom_status_t advance(fathom_modbus_unit_t *unit)
     const uint32_t now = now_us(unit);
     const uint32_t passed_us = fathom_elapsed_us(now, unit->polled_us);
     unit->polled_us = now;
+    fathom_run_down(&unit->alone_us, passed_us);
     /* The pace counts from the last request on the wire, not from its place in a queue. */
     if (unit->state == ASKED && exchange->attempts != unit->attempts) {
         unit->attempts = exchange->attempts;
@@ -56,7 +58,7 @@ static fathom_status_t advance(fathom_modbus_unit_t *unit)
 static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
 {
     fathom_modbus_request_t *const request = &unit->request;
-    if (unit->pause_us != 0) return FATHOM_PENDING;
+    if (unit->pause_us != 0 || (unit->alone_us != 0 && !question->is_command)) return FATHOM_PENDING;
     request->exchange.timeout_us = question->timeout_us;
     request->exchange.retries = question->retries;
     request->exchange.settings = question->settings;
@@ -93,6 +95,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->waiting = 0;
     unit->pace_us = 0;
     unit->backoff_us = 0;
+    unit->alone_us = 0;
     unit->silences = 0;
     unit->request.message.exception = 0;
     return FATHOM_READY;
@@ -107,8 +110,6 @@ static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_ques
     if (!question->is_command) return is_waiting || is_untaken ? FATHOM_PENDING : FATHOM_READY;
     if (is_waiting || is_untaken) return FATHOM_ERR_BUSY;
     unit->waiting = question->first;
-    if (unit->pause_us > unit->pace_us)
-        unit->pause_us = unit->pace_us; /* the unit may be dead, the user is not */
     return unit->state == ASKED ? FATHOM_PENDING : FATHOM_READY;
 }
 
@@ -142,5 +143,7 @@ uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
         return has_ended ? 0 : unit->modbus->due_us(unit->modbus->ctx);
     }
     const uint32_t passed_us = fathom_elapsed_us(now_us(unit), unit->polled_us);
-    return unit->state == IDLE && unit->pause_us > passed_us ? unit->pause_us - passed_us : 0;
+    const bool is_alone = unit->waiting == 0 && unit->alone_us > unit->pause_us;
+    const uint32_t left_us = is_alone ? unit->alone_us : unit->pause_us;
+    return unit->state == IDLE && left_us > passed_us ? left_us - passed_us : 0;
 }

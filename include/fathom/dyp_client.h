@@ -29,7 +29,7 @@ fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_requ
 
 /*
  * Command 03: gives this address, 1..254, to EVERY A05 that hears it, since the frame carries the new address and
- * no old one. Have one unit on the line. exchange.timeout_us and exchange.retries are set by the caller.
+ * no old one. Have one unit on the line. exchange.timeout_us, retries and settings are set by the caller.
  * FATHOM_PENDING; FATHOM_ERR_ARGUMENT: 0 or 255; FATHOM_ERR_BUSY. The answer equals the request: where the line
  * does not know yet whether it echoes, the outcome is FATHOM_ERR_ECHO. Confirm it by a read at the new address.
  */

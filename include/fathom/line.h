@@ -36,6 +36,8 @@ extern "C" {
  *    single copy: FATHOM_ERR_ECHO. So read something first, or tell the line in its config. Where there is
  *    echo, a write needs two copies.
  *
+ * The echo of a request to all units belongs to nobody, and goes where such bytes go.
+ *
  * What cannot be told apart on a wire, and so is taken for the answer: one that comes later than twice the
  * time-out; an unasked frame of the very shape that is being waited for. Choose time-outs accordingly.
  */
@@ -86,7 +88,8 @@ typedef void (*fathom_protocol_t)(fathom_exchange_t *exchange, uint8_t *frame, u
 /* Units with a meaning of their own. */
 enum {
     FATHOM_LINE_ALL_UNITS = 0, /* all are told, none answers */
-    FATHOM_LINE_ANY_UNIT = 255 /* all are asked, and the first answer is taken, whosever it is */
+    FATHOM_LINE_ANY_UNIT = 255 /* all are asked, and the first answer is taken, whosever it is; the others owe
+                                  theirs as if it were late */
 };
 
 /*
@@ -176,11 +179,10 @@ typedef struct {
 
 typedef struct {
     uint8_t state;
-    uint8_t have;   /* bytes in the frame */
-    uint8_t need;   /* below so many there is nothing new to say */
-    uint8_t known;  /* bit 0: the listener's gap was seen before the first byte in the frame; the two above
-                           it: fathom_line_echo() */
-    uint16_t owing; /* bit unit % 16: may still answer */
+    uint8_t have;       /* bytes in the frame */
+    uint8_t need;       /* below so many there is nothing new to say */
+    uint8_t known;      /* of gaps and echo, bit by bit */
+    uint16_t owing;     /* bit unit % 16: may still answer */
     uint16_t silent_us; /* known silence since the last byte either way; stops at 65535 */
     const fathom_line_config_t *config;
     fathom_exchange_t *head; /* the queue; the one on the wire is first */
@@ -210,6 +212,9 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_exchange_t *excha
  * nothing to one that is not queued.
  */
 void fathom_line_cancel(fathom_line_t *line, fathom_exchange_t *exchange);
+
+/* Is it queued or in flight? */
+bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchange);
 
 /* Registers who takes the bytes that belong to no exchange, instead of the one before; NULL for nobody. */
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);

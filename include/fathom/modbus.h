@@ -15,8 +15,8 @@ extern "C" {
  */
 
 /*
- * A request in the caller's memory. Fill in the message (modbus_rtu.h), exchange.timeout_us and
- * exchange.retries, submit it, and leave it alone until exchange.status is no longer FATHOM_PENDING; what it
+ * A request in the caller's memory. Fill in the message (modbus_rtu.h), exchange.timeout_us,
+ * exchange.retries and exchange.settings (NULL: as the line is), submit it, and leave it alone until exchange.status is no longer FATHOM_PENDING; what it
  * may then be stands at fathom_exchange_t, as does the time of the answer, exchange.link.heard_us. The rest of
  * the exchange is the carrier's.
  */

@@ -26,7 +26,9 @@ enum {
 };
 
 enum {
-    FATHOM_MODBUS_BROADCAST = 0, /* the unit that all obey and none answers */
+    FATHOM_MODBUS_BROADCAST = 0,  /* the unit that all obey and none answers */
+    FATHOM_MODBUS_ANY_UNIT = 255, /* not the standard's: A16 and A05 obey it whatever their address is, and
+                                     where one answers, message.head[0] becomes its address */
     FATHOM_MODBUS_MAX_READ = 125,
     FATHOM_MODBUS_MAX_WRITE = 123,
     FATHOM_MODBUS_MAX_FRAME = 255

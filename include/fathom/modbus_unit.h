@@ -43,6 +43,7 @@ typedef struct {
     uint32_t pace_us; /* of the present question */
     uint32_t backoff_us;
     uint32_t pause_us; /* until the unit may be asked again */
+    uint32_t alone_us; /* until a unit that does not answer is asked the repeated question again */
     uint32_t heard_us; /* the clock when the last answer came */
     uint16_t answers;  /* counters; each stops at 65535. The other outcomes: */
     uint16_t failures;

@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: MIT */
+#include "echo_bench.h"
+#include "fake_modbus.h"
+#include "fathom/a05_dyp.h"
+#include "fathom/dyp_client.h"
+#include "fathom/modbus_unit.h"
+#include "fathom/stream.h"
+
+static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
+static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
+static uint16_t values[4];
+
+/* dyp_client.h: FATHOM_ERR_BUSY; line.h: "it is queued already; nothing changed". */
+static void a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address(void **state)
+{
+    (void)state;
+    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.exchange.retries = 1;
+    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    run_until_written(1, 100);
+    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
+    run_until_written(2, 100); /* the retry */
+    assert_memory_equal(bench.fake.writes[1].bytes, bench.fake.writes[0].bytes, 5);
+}
+
+/* the same for an answer that comes. */
+static void a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone(void **state)
+{
+    (void)state;
+    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    run_until_written(1, 100);
+    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
+    run(20000);
+    receive(four, sizeof four);
+    run(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+/* line.h: "A late answer does serve a retry of the same exchange." */
+static void a_late_answer_serves_the_retry_of_a_question_to_anyone(void **state)
+{
+    (void)state;
+    fathom_modbus_read_holding_registers(&bench.request.message, 255, 0x0106, 1, values);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.exchange.retries = 1;
+    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    run_until_written(1, 100);
+    run(TIMEOUT_US + 10000);
+    receive(from_5, sizeof from_5);
+    run(100);
+    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+/* line.h: FATHOM_LINE_ANY_UNIT: "the first answer is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast address. */
+static void modbus_to_unit_255_takes_any_units_answer(void **state)
+{
+    (void)state;
+    ask(&bench.request, 255, &bench.value, 0);
+    run_until_written(1, 100);
+    run(20000);
+    receive_answer(5, 111);
+    run(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+/* line.h: after_gap: "the line was seen to be silent ... before the first of them": but bytes were lost between. */
+static unsigned gaps, calls;
+static void hear(fathom_listener_t *l, const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t time_us)
+{
+    (void)l, (void)bytes, (void)time_us;
+    if (count != 0) calls++;
+    if (count != 0 && after_gap) gaps++;
+}
+static void bytes_after_an_overrun_are_not_the_first_after_a_silence(void **state)
+{
+    static const uint8_t rest[] = {0xA1, 0xA7};
+    fathom_listener_t ear = {hear, 5000};
+    (void)state;
+    gaps = calls = 0;
+    fathom_line_listen(&bench.line, &ear);
+    run(10000);
+    fake_receive_rx(&bench.fake, 0, rest, 2, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    run(100);
+    assert_int_equal(calls, 1);
+    assert_int_equal(gaps, 0);
+}
+static uint8_t storage[20];
+/* what follows from it: 1000 2000 2047 1339 permuted to 1339 2047 1000 2000, with plausible values. */
+static void an_overrun_after_a_silence_does_not_permute_the_probes(void **state)
+{
+    static const uint8_t good[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
+    static const fathom_stream_config_t config = {storage, 0, 0, 10};
+    fathom_stream_t stream;
+    const uint8_t *frame = NULL;
+    (void)state;
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    fathom_line_listen(&bench.line, &stream.listener);
+    run(10000);
+    fake_receive_rx(&bench.fake, 0, good + 6, 4, (fathom_rx_t){0, FATHOM_RX_OVERRUN}); /* six were lost */
+    receive(good, 10);
+    run(100);
+    if (fathom_stream_poll(&stream, 0, &frame) == FATHOM_READY) assert_memory_equal(frame, good, 10);
+}
+
+/* line.h: "An answer is complete by its length, at once". */
+static void after_a_broken_port_an_answer_is_complete_at_once(void **state)
+{
+    static const uint8_t long_one[] = {0x01, 0x03, 0x14, 0x00};
+    (void)state;
+    ask_1_and_send(0);
+    receive(long_one, sizeof long_one);
+    run(100);
+    bench.fake.read_fails = true;
+    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
+    bench.fake.read_fails = false;
+    ask(&bench.other, 2, &bench.other_value, 0);
+    run_until_written(2, 100);
+    run(9 * BYTE_US);
+    receive_answer(2, 222);
+    fathom_line_poll(&bench.line);
+    assert_int_equal(status_of(&bench.other), FATHOM_READY);
+}
+
+/* line.h: cancel: "the unit then owes an answer, which no later exchange takes for its own". The echo is no answer. */
+static void the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed(void **state)
+{
+    static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
+    set_up_with(state, FATHOM_LINE_ECHO_ON);
+    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    run_until_written(1, 100);
+    come(BY_BYTE, 0, set_address_5, 8);
+    fathom_line_cancel(&bench.line, &bench.request.exchange);
+    run(9 * BYTE_US);
+    fathom_modbus_write_single_register(&bench.other.message, 1, 0x0200, 5);
+    bench.other.exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.other), FATHOM_PENDING);
+    run(20000);
+    assert_int_equal(bench.fake.written, 1); /* the unit still owes */
+}
+
+/* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
+static void a_command_goes_out_at_once_when_the_pace_has_passed(void **state)
+{
+    static fake_modbus_t fake;
+    static fathom_modbus_unit_t unit;
+    const fathom_modbus_question_t measure = {300000, 100000, 0, NULL, values, 0x0100, 1, 0, false};
+    const fathom_modbus_question_t version = {1000000, 100000, 0, NULL, values, 0x0001, 3, 0, true};
+    (void)state;
+    fake_modbus_init(&fake);
+    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, 9), FATHOM_READY);
+    for (unsigned n = 0; n != 3; n++) {
+        assert_int_equal(fathom_modbus_unit_read(&unit, &measure), FATHOM_PENDING);
+        fake_modbus_send(&fake);
+        assert_int_equal(fathom_modbus_unit_read(&unit, &measure), FATHOM_PENDING);
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+        fake.now_us += 300000;
+        assert_int_equal(fathom_modbus_unit_read(&unit, &measure), FATHOM_ERR_NO_ANSWER);
+    }
+    assert_int_equal(fathom_modbus_unit_read(&unit, &version), FATHOM_PENDING);
+    assert_int_equal(fake.submits, 4);
+}
+
+/* line.h, FATHOM_LINE_SEND_US: "how long a port may ... take to send it, before it counts as broken". */
+static void a_port_that_never_sends_is_broken_on_a_noisy_line_too(void **state)
+{
+    static const uint8_t noise[] = {0x00};
+    (void)state;
+    bench.fake.never_sent = true;
+    ask(&bench.request, 1, &bench.value, 0);
+    run_until_written(1, 100);
+    for (unsigned i = 0; i != 60; i++) {
+        receive(noise, 1);
+        run_in_steps(20000, 20000);
+    }
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
+}
+
+/* two A05 answer FF; the second one's answer, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the answer to
+ * the next request. */
+static void the_second_answer_to_anyone_is_not_the_next_requests(void **state)
+{
+    static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
+    (void)state;
+    fathom_modbus_read_holding_registers(&bench.request.message, 255, 0x0106, 1, values);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    run_until_written(1, 100);
+    run(65000);
+    receive(from_5, sizeof from_5);
+    run(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    fathom_modbus_read_holding_registers(&bench.other.message, 254, 0x0106, 1, &bench.other_value);
+    bench.other.exchange.timeout_us = TIMEOUT_US;
+    bench.other_value = 0xDEAD;
+    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.other), FATHOM_PENDING);
+    run(10000);
+    receive(from_254, sizeof from_254);
+    run(100);
+    assert_int_equal(bench.other_value, 0xDEAD);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address),
+        TEST(a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone),
+        TEST(a_late_answer_serves_the_retry_of_a_question_to_anyone),
+        TEST(modbus_to_unit_255_takes_any_units_answer),
+        TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence),
+        TEST(an_overrun_after_a_silence_does_not_permute_the_probes),
+        TEST(after_a_broken_port_an_answer_is_complete_at_once),
+        TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed),
+        TEST(a_command_goes_out_at_once_when_the_pace_has_passed),
+        TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too),
+        TEST(the_second_answer_to_anyone_is_not_the_next_requests),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
