@@ -144,6 +144,26 @@ static void the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed(void **
     assert_int_equal(bench.fake.written, 1); /* the unit still owes */
 }
 
+/* After the echo the next copy is the answer that is owed. */
+static void the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt(void **state)
+{
+    static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
+    set_up_with(state, FATHOM_LINE_ECHO_ON);
+    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    run_until_written(1, 100);
+    come(BY_BYTE, 0, set_address_5, 8);
+    run(9 * BYTE_US);
+    fathom_line_cancel(&bench.line, &bench.request.exchange);
+    receive(set_address_5, 8);
+    run(100);
+    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    ask(&bench.other, 1, &bench.other_value, 0);
+    run(T3_5_US + 200);
+    assert_int_equal(bench.fake.written, 2);
+}
+
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
 static void a_command_goes_out_at_once_when_the_pace_has_passed(void **state)
 {
@@ -216,6 +236,7 @@ int main(void)
         TEST(an_overrun_after_a_silence_does_not_permute_the_probes),
         TEST(after_a_broken_port_an_answer_is_complete_at_once),
         TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed),
+        TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt),
         TEST(a_command_goes_out_at_once_when_the_pace_has_passed),
         TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too),
         TEST(the_second_answer_to_anyone_is_not_the_next_requests),

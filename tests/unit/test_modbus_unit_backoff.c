@@ -234,6 +234,24 @@ static void a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits(vo
     fake_modbus_assert_asked(&fake, 8, UNIT, 0x0001, 3);
 }
 
+/* The device's own pace holds for it all the same, and due says how long that is. */
+static void a_command_waits_for_the_pace_and_not_for_the_back_off(void **state)
+{
+    enum { SLOW_US = 4 * TIMEOUT_US };
+    (void)state;
+    silences(6);
+    measure.pace_us = SLOW_US;
+    assert_paused_for(8 * TIMEOUT_US);
+    silence();
+    const unsigned before = fake.submits;
+    assert_int_equal(read_after(0, &version), FATHOM_PENDING);
+    assert_int_equal(fathom_modbus_unit_due_us(&unit), SLOW_US - TIMEOUT_US);
+    assert_int_equal(read_after(SLOW_US - TIMEOUT_US - 1, &version), FATHOM_PENDING);
+    assert_int_equal(fake.submits, before);
+    assert_int_equal(read_after(1, &version), FATHOM_PENDING);
+    assert_int_equal(fake.submits, before + 1);
+}
+
 static void a_command_that_nobody_answers_counts_too(void **state)
 {
     (void)state;
@@ -268,6 +286,7 @@ int main(void)
         FRESH(the_pause_holds_across_the_wrap_of_the_clock),
         FRESH(a_command_is_not_held_back),
         FRESH(a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits),
+        FRESH(a_command_waits_for_the_pace_and_not_for_the_back_off),
         FRESH(a_command_that_nobody_answers_counts_too),
         FRESH(cancel_does_not_end_the_pause),
     };
