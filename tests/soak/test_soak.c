@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "plan.h"
+#include "theory.h"
+
+/* The short form: 10^5 exchanges and some more, the same each time. program/soak.c is the long one. */
+enum { SINGLES = 5000, PAIRS = 4000, MIXTURES = 1000, SEED = 1 };
+
+typedef struct {
+    uint32_t rows;
+    uint32_t broken;
+} seen_t;
+
+static void report(void *ctx, uint8_t setting, const char *name, const cell_result_t *result)
+{
+    seen_t *const seen = ctx;
+    const char *const broken = cell_broken_rule(result);
+    seen->rows++;
+    if (broken == NULL) return;
+    seen->broken++;
+    print_error("%s %s: %s (%lu wrong, %lu old, %.2f expected, %lu stuck, %lu unaccounted, %lu unexplained, "
+                "recovered within %lu of %lu us)\n",
+                soak_facts[setting].name, name, broken, (unsigned long)result->totals.wrong_answers,
+                (unsigned long)result->totals.old, result->expected, (unsigned long)result->totals.stuck,
+                (unsigned long)result->totals.unaccounted, (unsigned long)result->totals.unexplained,
+                (unsigned long)result->recovered_us, (unsigned long)result->bound_us);
+}
+
+static void each_fault_alone(void **state)
+{
+    const uint8_t *const setting = *state;
+    uint8_t kinds[CELL_KINDS];
+    seen_t seen = {0, 0};
+    const plan_t plan = {report, &seen, SEED};
+    plan_singles(&plan, *setting, SINGLES);
+    /* none, each kind, and where it is asked answers that are too late */
+    assert_int_equal(seen.rows, 1u + plan_kinds(*setting, kinds) + (soak_is_asked(*setting) ? 1u : 0u));
+    assert_int_equal(seen.broken, 0);
+}
+
+static void every_pair_of_faults(void **state)
+{
+    const uint8_t *const setting = *state;
+    uint8_t kinds[CELL_KINDS];
+    seen_t seen = {0, 0};
+    const plan_t plan = {report, &seen, SEED};
+    plan_pairs(&plan, *setting, PAIRS);
+    assert_int_equal(seen.rows, plan_kinds(*setting, kinds) - 1u);
+    assert_int_equal(seen.broken, 0);
+}
+
+static void all_faults_at_once(void **state)
+{
+    const uint8_t *const setting = *state;
+    seen_t seen = {0, 0};
+    const plan_t plan = {report, &seen, SEED};
+    plan_mixtures(&plan, *setting, MIXTURES);
+    assert_int_equal(seen.rows, 2);
+    assert_int_equal(seen.broken, 0);
+}
+
+static void three_causes_cannot_be_told_apart(void **state)
+{
+    (void)state;
+    assert_int_equal(THEORY_ALIKE, 3);
+    for (uint8_t i = 0; i < THEORY_ALIKE; i++) assert_non_null(theory_alike[i].why);
+}
+
+/* Poisson with mean 1: more than 9 come with probability 1.1e-7, more than 8 with 1.1e-6. With mean 0.001 two come
+ * with 5e-7, one with 1e-3. */
+static void the_bound_on_chance_is_that_of_one_in_a_million(void **state)
+{
+    (void)state;
+    assert_int_equal(theory_most(0), 0);
+    assert_int_equal(theory_most(1), 9);
+    assert_int_equal(theory_most(0.001), 1);
+}
+
+/* Bits of a checksum: 16, 8. */
+static void one_byte_that_stays_one_byte_is_never_let_pass(void **state)
+{
+    (void)state;
+    for (uint8_t setting = 0; setting < SOAK_SETTINGS; setting++) {
+        if (soak_facts[setting].proof == SOAK_NO_GAP) continue;
+        assert_int_equal(theory_pass(setting, FATHOM_SIM_FAULT_FLIP_BIT), 0);
+        assert_int_equal(theory_pass(setting, FATHOM_SIM_FAULT_FLIP_BYTE), 0);
+        assert_int_equal(theory_pass(setting, FATHOM_SIM_FAULT_PARITY), 0);
+        assert_int_equal(theory_pass(setting, FATHOM_SIM_FAULT_FRAMING), 0);
+    }
+    assert_int_equal(theory_pass(SOAK_HPS167S, FATHOM_SIM_FAULT_INSERT), 65536 >> 16);
+    assert_int_equal(theory_pass(SOAK_A05_DYP, FATHOM_SIM_FAULT_INSERT), 65536 >> 8);
+}
+
+#define CASE(what, number, sensor)                                                                           \
+    {                                                                                                        \
+        "soak_" #sensor "_" #what, what, NULL, NULL, (void *)&settings[number]                               \
+    }
+#define SENSOR(number, sensor)                                                                               \
+    CASE(each_fault_alone, number, sensor), CASE(every_pair_of_faults, number, sensor),                      \
+        CASE(all_faults_at_once, number, sensor)
+
+int main(void)
+{
+    static uint8_t settings[SOAK_SETTINGS];
+    for (uint8_t i = 0; i < SOAK_SETTINGS; i++) settings[i] = i;
+    const struct CMUnitTest tests[] = {
+        SENSOR(SOAK_A16_AUTO, a16_auto),
+        SENSOR(SOAK_A16_TIGHT, a16_tight),
+        SENSOR(SOAK_A05_AUTO, a05_auto),
+        SENSOR(SOAK_A05_TIGHT, a05_tight),
+        SENSOR(SOAK_A16_PROCESSED, a16_processed),
+        SENSOR(SOAK_A16_REAL_TIME, a16_real_time),
+        SENSOR(SOAK_A05_MODBUS, a05_modbus),
+        SENSOR(SOAK_A05_DYP, a05_dyp),
+        SENSOR(SOAK_A05_DYP_ONE, a05_dyp_one),
+        SENSOR(SOAK_HPS167S, hps167s),
+        cmocka_unit_test(three_causes_cannot_be_told_apart),
+        cmocka_unit_test(the_bound_on_chance_is_that_of_one_in_a_million),
+        cmocka_unit_test(one_byte_that_stays_one_byte_is_never_let_pass),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
