@@ -48,6 +48,9 @@ uint32_t rig_recovery_us(const rig_unit_t *unit)
         if (wait_us < facts->timeout_us) wait_us = facts->timeout_us;
     }
     const uint32_t attempts_us = 2 * facts->timeout_us * unit->rig->options.retries;
+    for (uint8_t i = 0; i < unit->rig->count; i++) /* the others have their turn first */
+        if (&unit->rig->units[i] != unit)
+            wait_us += soak_facts[unit->rig->units[i].setting].answer_us + WIRE_US;
     return attempts_us + facts->timeout_us + wait_us + facts->period_us + facts->answer_us + WIRE_US +
            slack_us;
 }

@@ -31,7 +31,6 @@ static void arm(const cell_t *cell, fathom_sim_fault_t *fault)
         fathom_sim_fault_rule_t *const rule =
             fathom_sim_fault_add(fault, cell->kinds[i], cell->chance_ppm, 0);
         if (rule->kind == FATHOM_SIM_FAULT_LATE) rule->us = late_us_of(cell);
-        rule->run = cell->run;
     }
 }
 
@@ -67,6 +66,7 @@ static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t exchanges, cel
     rig_t rig;
     rig_init(&rig, cell->setting, loops_us[seed % LOOPS], knows[seed / LOOPS % PORTS], &cell->options);
     rig_unit_t *const unit = rig_add(&rig, cell->setting, 1, seed);
+    unit->truth.held_mm = cell->held_mm;
     arm(cell, &unit->fault);
     const uint64_t stuck_limit = 3; /* more says no more */
     while (unit->totals.exchanges < exchanges && unit->totals.stuck < stuck_limit) rig_turn(&rig);

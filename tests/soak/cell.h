@@ -18,7 +18,7 @@ typedef struct {
     uint32_t chance_ppm;
     uint32_t late_us; /* of FATHOM_SIM_FAULT_LATE; 0: after the time-out, before twice the time-out */
     uint32_t seed;
-    uint32_t run; /* frames in a row that a hit lasts; 0: one */
+    uint16_t held_mm; /* truth_t.held_mm */
     soak_options_t options;
 } cell_t;
 

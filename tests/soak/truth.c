@@ -22,6 +22,7 @@ void truth_init(truth_t *truth, uint8_t setting, uint8_t index)
 int32_t truth_look(truth_t *truth, uint8_t probe)
 {
     const soak_facts_t *const facts = &soak_facts[truth->setting];
+    if (truth->held_mm != 0) return truth->held_mm;
     const uint32_t place = (truth->looks++ * UNITS + truth->index) % facts->span_mm;
     (void)probe;
     /* 16807 = 7^5 has no factor with the spans in common: all their values in an order that looks like none */

@@ -29,7 +29,8 @@ typedef struct {
     uint32_t newest_read;          /* of them, n + 1; 0: none */
     int32_t current[TRUTH_PROBES]; /* measured for the frame to come */
     bool any;
-    uint32_t looks; /* at the scene */
+    uint32_t looks;   /* at the scene */
+    uint16_t held_mm; /* the caller's: what it always sees; 0: another distance at each look */
     uint8_t setting;
     uint8_t index; /* of the unit on its line: two never measure the same */
 } truth_t;

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "eight.h"
+
+enum { SECONDS = 60, SEED = 1, SOUND = 0, NEVER_LESS_OFTEN = 1 };
+
+/* In a minute each unit has had its turn many times. */
+static void expect_sound(const eight_result_t *result, const char *name)
+{
+    const char *const broken = eight_broken_rule(result);
+    if (broken != NULL) print_error("%s: %s\n", name, broken);
+    assert_null(broken);
+    for (uint8_t i = 0; i < EIGHT_LAST; i++) assert_true(result->readings[i] > 10);
+}
+
+static void seven_keep_their_readings(uint8_t trouble)
+{
+    for (uint8_t mix = 0; mix < EIGHT_MIXES; mix++) {
+        eight_result_t alive;
+        eight_result_t result;
+        eight_run(mix, EIGHT_ALIVE, SOUND, SECONDS, SEED, &alive);
+        expect_sound(&alive, eight_mix_names[mix]);
+        assert_true(alive.readings[EIGHT_LAST] > 10);
+        eight_run(mix, trouble, SOUND, SECONDS, SEED, &result);
+        expect_sound(&result, eight_mix_names[mix]);
+        assert_int_equal(result.readings[EIGHT_LAST], 0);
+        const uint32_t percent = eight_percent(&alive, &result);
+        if (percent < EIGHT_LEAST_PERCENT)
+            print_error("%s: %lu percent\n", eight_mix_names[mix], (unsigned long)percent);
+        assert_true(percent >= EIGHT_LEAST_PERCENT);
+    }
+}
+
+static void with_one_of_eight_dead_seven_keep_nine_tenths_and_it_comes_back_in_time(void **state)
+{
+    (void)state;
+    seven_keep_their_readings(EIGHT_DEAD);
+}
+
+static void with_one_of_eight_always_damaged_seven_keep_nine_tenths_and_it_comes_back_in_time(void **state)
+{
+    (void)state;
+    seven_keep_their_readings(EIGHT_DAMAGED);
+}
+
+static void without_back_off_one_dead_unit_takes_more_than_a_tenth(void **state)
+{
+    (void)state;
+    for (uint8_t mix = 0; mix < EIGHT_MIXES; mix++) {
+        eight_result_t alive;
+        eight_result_t result;
+        eight_run(mix, EIGHT_ALIVE, NEVER_LESS_OFTEN, SECONDS, SEED, &alive);
+        eight_run(mix, EIGHT_DEAD, NEVER_LESS_OFTEN, SECONDS, SEED, &result);
+        expect_sound(&result, eight_mix_names[mix]);
+        assert_true(eight_percent(&alive, &result) < EIGHT_LEAST_PERCENT);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(with_one_of_eight_dead_seven_keep_nine_tenths_and_it_comes_back_in_time),
+        cmocka_unit_test(with_one_of_eight_always_damaged_seven_keep_nine_tenths_and_it_comes_back_in_time),
+        cmocka_unit_test(without_back_off_one_dead_unit_takes_more_than_a_tenth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

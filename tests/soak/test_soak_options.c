@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "defences.h"
+
+enum { EXCHANGES = 20000, SEED = 1 };
+
+static void run(const char *name, defence_result_t *result)
+{
+    for (uint8_t i = 0; i < DEFENCES; i++) {
+        if (strcmp(defences[i].name, name) != 0) continue;
+        defences[i].run(EXCHANGES, SEED, result);
+        if (!defence_matters(result))
+            print_error("%s: %lu with, %lu without\n", result->what, (unsigned long)result->with,
+                        (unsigned long)result->without);
+        return;
+    }
+    fail();
+}
+
+static void a_wide_window_lets_more_wrong_readings_pass(void **state)
+{
+    defence_result_t result;
+    (void)state;
+    run("plausibility window", &result);
+    assert_true(defence_matters(&result));
+}
+
+static void without_pauses_that_are_seen_511_mm_are_never_shown(void **state)
+{
+    defence_result_t result;
+    (void)state;
+    run("pauses that are seen", &result);
+    assert_true(result.with < EXCHANGES / 1000);
+    assert_true(result.without >= EXCHANGES);
+}
+
+static void without_its_deadline_a_silent_stream_is_stuck(void **state)
+{
+    defence_result_t result;
+    (void)state;
+    run("stale deadline", &result);
+    assert_int_equal(result.with, 0);
+    assert_true(defence_matters(&result));
+}
+
+static void an_echo_that_is_denied_acknowledges_writes_to_nobody(void **state)
+{
+    defence_result_t result;
+    (void)state;
+    run("echo found out", &result);
+    assert_int_equal(result.with, 0);
+    assert_int_equal(result.without, EXCHANGES / 100);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_wide_window_lets_more_wrong_readings_pass),
+        cmocka_unit_test(without_pauses_that_are_seen_511_mm_are_never_shown),
+        cmocka_unit_test(without_its_deadline_a_silent_stream_is_stuck),
+        cmocka_unit_test(an_echo_that_is_denied_acknowledges_writes_to_nobody),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
