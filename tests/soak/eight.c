@@ -29,8 +29,7 @@ static void come_back(rig_t *rig, rig_unit_t *unit, eight_result_t *result)
     while (fathom_elapsed_us(unit->right_us, begin_us) > INT32_MAX &&
            fathom_elapsed_us(rig->clock.now_us, begin_us) <= 2 * result->bound_us);
     result->returned_us = fathom_elapsed_us(unit->right_us, begin_us);
-    if (result->returned_us > INT32_MAX)
-        result->returned_us = fathom_elapsed_us(rig->clock.now_us, begin_us);
+    if (result->returned_us > INT32_MAX) result->returned_us = fathom_elapsed_us(rig->clock.now_us, begin_us);
 }
 
 void eight_run(uint8_t mix, uint8_t trouble, uint32_t backoff_us, uint32_t seconds, uint32_t seed,
@@ -44,7 +43,8 @@ void eight_run(uint8_t mix, uint8_t trouble, uint32_t backoff_us, uint32_t secon
     for (uint8_t i = 0; i < EIGHT_UNITS; i++)
         (void)rig_add(&rig, mixes[mix][i], (uint8_t)(i + 1), seed * EIGHT_UNITS + i);
     rig_unit_t *const last = &rig.units[EIGHT_LAST];
-    if (trouble != EIGHT_ALIVE) (void)fathom_sim_fault_add(&last->fault, kind, FATHOM_SIM_FAULT_ALWAYS_PPM, 0);
+    if (trouble != EIGHT_ALIVE)
+        (void)fathom_sim_fault_add(&last->fault, kind, FATHOM_SIM_FAULT_ALWAYS_PPM, 0);
     for (uint32_t i = 0; i < seconds; i++) rig_run(&rig, 1000000);
     for (uint8_t i = 0; i < EIGHT_UNITS; i++) result->readings[i] = rig.units[i].totals.readings;
     come_back(&rig, last, result);
@@ -58,7 +58,8 @@ uint32_t eight_percent(const eight_result_t *alive, const eight_result_t *result
 {
     uint64_t least = UINT32_MAX;
     for (uint8_t i = 0; i < EIGHT_LAST; i++) {
-        const uint64_t percent = result->readings[i] * 100 / (alive->readings[i] != 0 ? alive->readings[i] : 1);
+        const uint64_t percent =
+            result->readings[i] * 100 / (alive->readings[i] != 0 ? alive->readings[i] : 1);
         if (percent < least) least = percent;
     }
     return (uint32_t)least;
