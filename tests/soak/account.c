@@ -143,6 +143,7 @@ void rig_totals_add(rig_totals_t *a, const rig_totals_t *b)
     a->unaccounted += b->unaccounted;
     a->unexplained += b->unexplained;
     a->joint += b->joint;
+    a->joint_full += b->joint_full;
     a->old += b->old;
     a->wrong_answers += b->wrong_answers;
     for (uint8_t i = 0; i < TRUTH_VERDICTS; i++) a->verdicts[i] += b->verdicts[i];

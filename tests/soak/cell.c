@@ -76,6 +76,7 @@ static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t exchanges, cel
     for (uint8_t kind = 1; kind < FATHOM_SIM_FAULT_END; kind++)
         result->expected += (double)unit->totals.hits[kind] * theory_pass(cell->setting, kind) / 65536;
     result->expected += (double)unit->totals.joint * theory_pass_joint(cell->setting) / 65536;
+    result->expected += (double)unit->totals.joint_full * theory_pass_full() / 65536;
 }
 
 void cell_run(const cell_t *cell, uint64_t exchanges, cell_result_t *result)

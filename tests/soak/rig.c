@@ -16,6 +16,8 @@ static const uint32_t harmless =
 /* Frames may say the same then, or change places. */
 static const uint32_t repeating =
     BIT(STUCK) | BIT(INTERFERENCE) | BIT(FAULT) | BIT(NO_TARGET) | BIT(DUPLICATE) | BIT(UNASKED);
+/* FD and FE are sent behind FF, which may then pass for the beginning of a frame. */
+static const uint32_t full_of_ff = BIT(INTERFERENCE) | BIT(NO_TARGET);
 /* These make it another unit's word, or none on distances. */
 static const uint32_t disguising = BIT(UNIT) | BIT(FUNCTION) | BIT(EXCEPTION);
 /* Two of these in one frame are damage in two places. */
@@ -75,8 +77,13 @@ static void outgoing(void *ctx, fathom_sim_frame_t *frame)
     if (entry != NULL) entry->is_hit = entry->is_twice = true;
     unit->under_way_us = end_us;
     if ((kinds & ~harmless) != 0 && is_later(end_us, unit->trouble_end_us)) unit->trouble_end_us = end_us;
-    if (has_two(damage) || (is_adjacent && damage != 0 && unit->last_damage != 0)) unit->totals.joint++;
+    const bool is_near = is_adjacent && damage != 0 && unit->last_damage != 0;
+    const bool is_full = (kinds & full_of_ff) != 0;
+    if (has_two(damage) || is_near) unit->totals.joint++;
+    if (is_adjacent && ((damage != 0 && (is_full || unit->last_full)) || (is_full && unit->last_damage != 0)))
+        unit->totals.joint_full++;
     unit->last_damage = damage;
+    unit->last_full = is_full;
     if (!soak_is_asked(unit->setting)) unit->totals.exchanges++;
 }
 
@@ -158,6 +165,9 @@ rig_unit_t *rig_add(rig_t *rig, uint8_t setting, uint8_t address, uint32_t seed)
     unit->setting = setting;
     unit->address = address;
     truth_init(&unit->truth, setting, rig->count);
+    /* another part of the scene for each seed, the same for all on the line */
+    if (rig->count == 0) rig->first_look = seed % 65536 * 127;
+    unit->truth.looks = rig->first_look;
     unit->device = soak_device_init(&unit->model, setting, address, &scene, seed);
     fathom_sim_fault_init(&unit->fault, seed);
     unit->fault.clock = &rig->clock;
@@ -180,9 +190,11 @@ static void judge(rig_unit_t *unit, const fathom_sample_t *sample)
     rig_t *const rig = unit->rig;
     const bool is_asked = soak_is_asked(unit->setting);
     const uint32_t now_us = rig->clock.now_us;
-    /* A frame in doubt may wait for its successor until the stream is stale. */
+    /* A frame in doubt may wait for its successor until the stream is stale, which is counted from the turn of the
+     * loop in which the one before was read, and looked at in the turn after it. */
+    const soak_facts_t *const facts = &soak_facts[unit->setting];
     const uint32_t age_us =
-        soak_facts[unit->setting].timeout_us + soak_facts[unit->setting].period_us + rig->loop_us;
+        facts->timeout_us + facts->period_us + (uint32_t)facts->length * facts->char_us + 2 * rig->loop_us;
     const uint32_t since_us = is_asked ? unit->answer_us : now_us - age_us;
     truth_verdict_t verdict = truth_judge(&unit->truth, sample, now_us, since_us, !is_asked);
     if (sample->unit != (is_asked ? unit->address : 0)) verdict = TRUTH_DAMAGED;

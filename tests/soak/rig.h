@@ -29,7 +29,8 @@ typedef struct {
     uint64_t unaccounted;              /* books that do not balance; see account.c */
     uint64_t unexplained;              /* failures that no fault explains */
     uint64_t hits[FATHOM_SIM_FAULT_END];
-    uint64_t joint; /* frames that were damaged in two ways or more */
+    uint64_t joint;      /* frames that were damaged in two ways or, without gaps, after a damaged one */
+    uint64_t joint_full; /* without gaps: damaged frames beside one with FF in the place of a value */
 } rig_totals_t;
 
 typedef struct {
@@ -60,8 +61,9 @@ typedef struct {
     uint32_t clean_lost;     /* of them, not read though neither they nor their neighbours were hit */
     uint32_t under_way_us;   /* until then what left last is on its way */
     uint32_t last_damage;    /* kinds of the frame before */
-    int32_t wrong_sequence;  /* of the last wrong sample; -1: none yet */
-    uint32_t idle_turns;     /* in a row with due_us 0 and nothing coming of it */
+    bool last_full;
+    int32_t wrong_sequence; /* of the last wrong sample; -1: none yet */
+    uint32_t idle_turns;    /* in a row with due_us 0 and nothing coming of it */
     rig_totals_t totals;
 } rig_unit_t;
 
@@ -81,6 +83,7 @@ typedef struct rig {
     uint8_t count;
     uint32_t loop_us;
     soak_options_t options;
+    uint32_t first_look;    /* at the scene */
     uint32_t bytes_read;    /* from the port */
     uint32_t overruns_told; /* by the port, with bytes that are good */
 } rig_t;

@@ -10,8 +10,9 @@
 /* Frames that pass though a fault of this kind has hit them, at most, in 65536 of them. */
 uint32_t theory_pass(uint8_t setting, uint8_t kind);
 
-/* The same where two kinds have hit one frame. */
+/* The same where two kinds have hit one frame; and without gaps where FF stands beside it for other reasons. */
 uint32_t theory_pass_joint(uint8_t setting);
+uint32_t theory_pass_full(void);
 
 /* More than this many come about once in a million runs when `expected` are expected. */
 uint64_t theory_most(double expected);
