@@ -93,7 +93,7 @@ static int32_t measured(void *ctx, uint8_t probe, int32_t value)
     }
     if (probe <= 4 && !is_stuck) {
         fault->last[probe - 1] = real;
-        fault->known |= (uint8_t)(1u << probe);
+        fault->known = (uint8_t)(fault->known | 1u << probe);
     }
     return value;
 }

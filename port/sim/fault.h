@@ -82,7 +82,8 @@ typedef enum {
     FATHOM_SIM_FAULT_END
 } fathom_sim_fault_kind_t;
 
-enum { FATHOM_SIM_FAULT_RULES = 32, FATHOM_SIM_FAULT_ALWAYS_PPM = 1000000 };
+#define FATHOM_SIM_FAULT_ALWAYS_PPM UINT32_C(1000000)
+enum { FATHOM_SIM_FAULT_RULES = 32 };
 
 /* For the sets of kinds below. */
 #define FATHOM_SIM_FAULT_BIT(kind) (UINT32_C(1) << (kind))
