@@ -21,7 +21,7 @@ static fathom_exchange_t **find(fathom_line_t *line, const fathom_exchange_t *ex
 
 uint16_t fathom_line_owing_bits(uint8_t unit)
 {
-    return unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : (uint16_t)(1u << (unit & 15));
+    return (uint16_t)(unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : 1u << (unit & 15));
 }
 
 void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by)
