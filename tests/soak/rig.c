@@ -61,7 +61,12 @@ static void outgoing(void *ctx, fathom_sim_frame_t *frame)
     truth_entry_t *entry = truth_leaves(&unit->truth, frame->now_us);
     unit->fault.hooks.outgoing(unit->fault.hooks.ctx, frame);
     const uint32_t kinds = unit->fault.last_kinds;
-    const uint32_t end_us = frame->now_us + busy_us(unit, frame);
+    uint32_t end_us = frame->now_us + busy_us(unit, frame);
+    /* An overrun is told with the next byte: a stream cannot know then where a frame begins, and the fault ends
+     * with that frame. */
+    if (!soak_is_asked(unit->setting) && (kinds & BIT(OVERRUN)) != 0)
+        end_us += soak_facts[unit->setting].period_us +
+                  (uint32_t)soak_facts[unit->setting].length * soak_facts[unit->setting].char_us;
     const bool is_adjacent = soak_facts[unit->setting].proof == SOAK_NO_GAP;
     /* after a late frame of a stream the next one follows without a gap */
     const uint32_t damage = kinds & (damaging | (soak_is_asked(unit->setting) ? 0 : BIT(LATE)));
