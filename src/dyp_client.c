@@ -105,22 +105,4 @@ static fathom_status_t seam_submit(void *ctx, fathom_modbus_request_t *request)
     return fathom_dyp_client_submit(ctx, request);
 }
 
-static void seam_cancel(void *ctx, fathom_modbus_request_t *request)
-{
-    fathom_line_cancel(ctx, &request->exchange);
-}
-
-static fathom_status_t seam_poll(void *ctx) { return fathom_line_poll(ctx); }
-
-static uint32_t seam_due_us(void *ctx) { return fathom_line_due_us(ctx); }
-
-fathom_modbus_t fathom_dyp_client(fathom_line_t *line)
-{
-    fathom_modbus_t modbus;
-    modbus.submit = seam_submit;
-    modbus.cancel = seam_cancel;
-    modbus.poll = seam_poll;
-    modbus.due_us = seam_due_us;
-    modbus.ctx = line;
-    return modbus;
-}
+fathom_modbus_t fathom_dyp_client(fathom_line_t *line) { return fathom_modbus_over_line(line, seam_submit); }

@@ -78,22 +78,7 @@ static fathom_status_t seam_submit(void *ctx, fathom_modbus_request_t *request)
     return fathom_modbus_client_submit(ctx, request);
 }
 
-static void seam_cancel(void *ctx, fathom_modbus_request_t *request)
-{
-    fathom_modbus_client_cancel(ctx, request);
-}
-
-static fathom_status_t seam_poll(void *ctx) { return fathom_line_poll(ctx); }
-
-static uint32_t seam_due_us(void *ctx) { return fathom_line_due_us(ctx); }
-
 fathom_modbus_t fathom_modbus_client(fathom_line_t *line)
 {
-    fathom_modbus_t modbus;
-    modbus.submit = seam_submit;
-    modbus.cancel = seam_cancel;
-    modbus.poll = seam_poll;
-    modbus.due_us = seam_due_us;
-    modbus.ctx = line;
-    return modbus;
+    return fathom_modbus_over_line(line, seam_submit);
 }

@@ -43,6 +43,12 @@ typedef struct {
     void *ctx;
 } fathom_modbus_t;
 
+/* The seam over a line, for a carrier whose requests are exchanges of that line: all but submit is the line's. By
+ * value: keep it as long as the drivers that point to it. */
+fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
+                                        fathom_status_t (*submit)(void *line,
+                                                                  fathom_modbus_request_t *request));
+
 #ifdef __cplusplus
 }
 #endif

@@ -46,7 +46,7 @@ ROWS = [
     ('x86_two_polls', 'the same, answered before the second poll', 'instr.', None, None),
 ]
 
-CORE = ['line.c', 'line_receive.c', 'modbus_client.c', 'modbus_rtu.c']
+CORE = ['line.c', 'line_receive.c', 'modbus.c', 'modbus_client.c', 'modbus_rtu.c']
 USER = re.compile(r'main$|job_|stub_')  # the functions that are not the library's
 SMALL = ['-std=c99', '-Os', '-ffunction-sections', '-fdata-sections', '-Wl,--gc-sections']
 ARM = ['arm-none-eabi-gcc', '-mcpu=cortex-m0plus', '-mthumb'] + SMALL

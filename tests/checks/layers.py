@@ -19,7 +19,7 @@ LAYERS = [
 ORDER = [(name, layer) for layer, names in LAYERS for name in names.split()]
 RANK = {name: rank for rank, (name, _) in enumerate(ORDER)}
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
-HEADER_ONLY = {'status', 'hal', 'version', 'sample', 'modbus', 'fathom'}
+HEADER_ONLY = {'status', 'hal', 'version', 'sample', 'fathom'}
 SOURCE_ONLY = {'crc16_small': 'crc16', 'line_receive': 'line'}  # the other source for a header
 INSIDE = {'src/line_inside.h': {'line', 'line_receive'}}  # what the sources of one header share
 
