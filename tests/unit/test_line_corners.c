@@ -125,21 +125,31 @@ static void after_a_broken_port_an_answer_is_complete_at_once(void **state)
     assert_int_equal(status_of(&bench.other), FATHOM_READY);
 }
 
+/* A write on an echoing line, whose request has been handed over. */
+static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
+
+static void start_write(fathom_modbus_request_t *request)
+{
+    fathom_modbus_write_single_register(&request->message, 1, 0x0200, 5);
+    request->exchange.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, request), FATHOM_PENDING);
+}
+
+static void write_with_echo(void **state)
+{
+    set_up_with(state, FATHOM_LINE_ECHO_ON);
+    start_write(&bench.request);
+    run_until_written(1, 100);
+    come(BY_BYTE, 0, set_address_5, 8);
+}
+
 /* line.h: cancel: "the unit then owes an answer, which no later exchange takes for its own". The echo is no answer. */
 static void the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed(void **state)
 {
-    static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
-    set_up_with(state, FATHOM_LINE_ECHO_ON);
-    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    run_until_written(1, 100);
-    come(BY_BYTE, 0, set_address_5, 8);
+    write_with_echo(state);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
     run(9 * BYTE_US);
-    fathom_modbus_write_single_register(&bench.other.message, 1, 0x0200, 5);
-    bench.other.exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.other), FATHOM_PENDING);
+    start_write(&bench.other);
     run(20000);
     assert_int_equal(bench.fake.written, 1); /* the unit still owes */
 }
@@ -147,13 +157,7 @@ static void the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed(void **
 /* After the echo the next copy is the answer that is owed. */
 static void the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt(void **state)
 {
-    static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
-    set_up_with(state, FATHOM_LINE_ECHO_ON);
-    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    run_until_written(1, 100);
-    come(BY_BYTE, 0, set_address_5, 8);
+    write_with_echo(state);
     run(9 * BYTE_US);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
     receive(set_address_5, 8);
