@@ -212,6 +212,38 @@ static void a_change_of_the_line_keeps_what_was_received(void **state)
     assert_int_equal(byte, 'x');
 }
 
+static speed_t speed_at_the_other_end(const port_rig_t *rig)
+{
+    struct termios seen;
+    assert_int_equal(tcgetattr(rig->pty.master, &seen), 0);
+    return cfgetospeed(&seen);
+}
+
+/* hal.h: 1 they hold, 0 bytes are still leaving, < 0 it cannot. */
+static void the_hal_changes_the_line_between_two_requests(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_uart_t uart = fathom_posix_uart(&rig->port);
+    const fathom_line_settings_t slow = {9600, FATHOM_PARITY_NONE, 1};
+    const fathom_line_settings_t even = {9600, FATHOM_PARITY_EVEN, 1};
+    const fathom_line_settings_t odd_rate = {31250, FATHOM_PARITY_NONE, 1};
+    const uint8_t bytes[50] = {0};
+    assert_int_equal(uart.set_line(uart.ctx, &slow), 1);
+    assert_int_equal(speed_at_the_other_end(rig), B9600);
+    assert_int_equal(uart.set_line(uart.ctx, &even), 1);
+    assert_int_equal(rig->port.line.parity, FATHOM_PARITY_EVEN);
+    assert_int_equal(port_rig_write(rig, bytes, sizeof bytes), sizeof bytes);
+    assert_int_equal(uart.set_line(uart.ctx, &even), 1); /* nothing to change, so nothing to wait for */
+    assert_int_equal(uart.set_line(uart.ctx, &port_rig_fast), 0);
+    assert_int_equal(speed_at_the_other_end(rig), B9600);
+    while (!port_rig_sent(rig)) fathom_posix_wait(&rig->port, 1000);
+    assert_true(uart.set_line(uart.ctx, &odd_rate) < 0);
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(speed_at_the_other_end(rig), B9600);
+    assert_int_equal(uart.set_line(uart.ctx, &port_rig_fast), 1);
+    assert_int_equal(speed_at_the_other_end(rig), B230400);
+}
+
 static void a_closed_port_fails_and_can_be_closed_again(void **state)
 {
     port_rig_t *const rig = *state;
@@ -267,6 +299,7 @@ int main(void)
         TEST(sent_takes_as_long_as_the_bytes_take_on_a_wire),
         TEST(the_line_is_not_changed_under_bytes_that_leave),
         TEST(a_change_of_the_line_keeps_what_was_received),
+        TEST(the_hal_changes_the_line_between_two_requests),
         TEST(a_closed_port_fails_and_can_be_closed_again),
         cmocka_unit_test(a_port_of_zeros_is_a_closed_one_and_not_standard_input),
         TEST(a_pseudo_terminal_counts_no_line_errors),
