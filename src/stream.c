@@ -39,9 +39,8 @@ static void accept(fathom_stream_t *stream, uint32_t time_us)
 static void judge(fathom_stream_t *stream, uint32_t time_us)
 {
     const uint8_t length = stream->config->length;
-    if (stream->gap && stream->run == length) {
-        accept(stream, time_us);
-    } else if (stream->since == length && !stream->doubtful) {
+    const bool is_first = stream->gap && stream->run == length;
+    if (is_first || (stream->since == length && !stream->doubtful)) {
         stream->candidate = true;
         stream->candidate_us = time_us;
     } else {
@@ -125,15 +124,23 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
     return FATHOM_READY;
 }
 
+/* How long the line must go on being silent until that ends the candidate. */
+static uint32_t silence_left_us(const fathom_stream_t *stream, uint32_t now_us)
+{
+    const uint32_t passed_us = fathom_elapsed_us(now_us, stream->candidate_us);
+    const uint32_t gap_us = stream->listener.gap_us;
+    return gap_us > passed_us ? gap_us - passed_us : 0;
+}
+
 fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us, const uint8_t **frame)
 {
     const bool over = fathom_run_down(&stream->left_us, fathom_elapsed_us(now_us, stream->polled_us));
     stream->polled_us = now_us;
+    if (silence_left_us(stream, now_us) == 0) decide(stream, true);
     if (!stream->fresh && !over) return FATHOM_PENDING;
     stream->left_us = stale_us(stream);
     if (!stream->fresh) {
         count(stream, FATHOM_STREAM_STALES);
-        stream->candidate = false; /* too old to be shown when the sensor speaks again */
         return FATHOM_ERR_STALE;
     }
     stream->fresh = false;
@@ -144,5 +151,8 @@ fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us, con
 uint32_t fathom_stream_due_us(const fathom_stream_t *stream, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, stream->polled_us);
-    return stream->fresh || stream->left_us <= passed_us ? 0 : stream->left_us - passed_us;
+    if (stream->fresh || stream->left_us <= passed_us) return 0;
+    const uint32_t deadline_us = stream->left_us - passed_us;
+    const uint32_t silence_us = silence_left_us(stream, now_us);
+    return stream->candidate && silence_us < deadline_us ? silence_us : deadline_us;
 }

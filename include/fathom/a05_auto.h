@@ -15,8 +15,9 @@ extern "C" {
  * real-time; the datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no frame period. The
  * first Modbus command ends automatic output; power alone brings it back.
  *
- * Four samples a frame, one a fitted probe, with one sequence number and one time. FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the module
- * reports it). The errors of fathom_poll:
+ * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
+ * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET
+ * or FATHOM_NO_TARGET (with the interference mark where the module reports it). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Said once every stale_us.
  *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
@@ -27,7 +28,7 @@ extern "C" {
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
     uint32_t stale_us;   /* 0: 2 s */
-    uint16_t gap_us;     /* a silence of so much starts a frame (stream.h); behind an operating system
+    uint16_t gap_us; /* a silence of so much starts and ends a frame (stream.h); behind an operating system
                                    25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint8_t probes; /* bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it

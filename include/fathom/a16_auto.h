@@ -14,8 +14,9 @@ extern "C" {
  * is decided by its RX pin, high or open for processed, low for real-time; the datasheet gives settling times
  * of 2.5 to 7.5 s and of 500 ms for them, and no frame period.
  *
- * One sample a frame. FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the module
- * reports it). The errors of fathom_poll:
+ * One sample a frame, given when the line has been silent for gap_us behind it or the next frame begins;
+ * time_us is when its last byte came. FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the
+ * module reports it). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Said once every stale_us.
  *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
@@ -26,7 +27,7 @@ extern "C" {
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
     uint32_t stale_us;   /* 0: 2 s */
-    uint16_t gap_us;     /* a silence of so much starts a frame (stream.h); behind an operating system
+    uint16_t gap_us; /* a silence of so much starts and ends a frame (stream.h); behind an operating system
                                    25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
 } fathom_a16_auto_config_t;

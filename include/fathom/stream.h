@@ -17,16 +17,23 @@ extern "C" {
  * Turns the bytes of a sensor that sends by itself into frames FF .. SUM of 4 or 10 bytes (dyp_frame.h), as
  * the listener of a line or fed by hand.
  *
- * A good sum does not prove where a frame begins, so a frame is believed only if
- *  - it is the first thing after a silence that the clock or the port saw (gap_us), or
- *  - it follows right upon another valid frame, no other alignment of the bytes of both was valid, and the next
- *    byte begins another one (FF), or a silence follows. So where no gaps are seen a frame is given one byte
- *    late. Without that, a frame of which a byte was lost would pass with the FF of the next one as its sum,
- *    once in 256; now it does only where the next one goes on with FF, as FF FF FD FB (no target) does.
- * Everything else is counted and dropped. So with gaps seen no stream can show a value of another alignment;
- * without them, a value that is valid in two alignments (511 mm held still) is never shown: the stream turns
- * stale and says so by its AMBIGUOUS counter. What 8 bits of sum cannot see stays unseen: one damaged frame
- * in 256, where two bytes or more were hit, or one was added.
+ * A good sum does not prove where a frame begins or ends, so a frame is believed only if
+ *  - it stands in a believable place: it is the first thing after a silence that the clock or the port saw
+ *    (gap_us), or it follows right upon another valid frame and no other alignment of the bytes of both was
+ *    valid; and
+ *  - what comes next shows that it has ended: a byte that begins another frame (FF), or a silence of gap_us.
+ * So a frame is given one byte late, or where the line falls silent gap_us late: 5 ms on a microcontroller,
+ * 25 ms behind an operating system. fathom_stream_due_us tells when; time_us stays the time of its last byte.
+ * A gap_us that is longer than the pauses only means that the next frame decides.
+ *
+ * Everything else is counted and dropped. So with gaps seen no stream of whole frames can show a value of
+ * another alignment; without them, a value that is valid in two alignments (511 mm held still) is never
+ * shown: the stream turns stale and says so by its AMBIGUOUS counter. What 8 bits of sum cannot see stays
+ * unseen:
+ *  - a frame of which two bytes or more were hit, once in 256;
+ *  - a byte too many, once in 65536: the sum has to be FF and the byte has to fit;
+ *  - a byte too few, before a frame that follows without a silence and goes on with FF, as FF FF FD FB (no
+ *    target) does: once in 256 at most.
  *
  * The newest frame wins: when two come between two polls the older one is counted as MISSED.
  */
@@ -53,26 +60,27 @@ enum {
 typedef struct {
     uint8_t *storage;  /* FATHOM_STREAM_STORAGE(length) bytes, the stream's alone */
     uint32_t stale_us; /* without a good frame for so long, the stream is stale; 0: 2 s */
-    uint16_t gap_us;   /* a silence of so much starts a frame; more than a byte takes (1042 us at 9600 baud)
+    uint16_t
+        gap_us; /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at 9600 baud)
                           and less than the pause between frames; behind an operating system 25000.
                           0: 5000 */
-    uint8_t length;    /* 4 or 10 */
+    uint8_t length; /* 4 or 10 */
 } fathom_stream_config_t;
 
 typedef struct {
     fathom_listener_t listener; /* first, so that one pointer is both */
     const fathom_stream_config_t *config;
     uint32_t polled_us;
-    uint32_t left_us; /* until it is stale */
-    uint32_t time_us; /* of the newest good frame */
-    uint32_t candidate_us;
+    uint32_t left_us;      /* until it is stale */
+    uint32_t time_us;      /* of the newest good frame */
+    uint32_t candidate_us; /* when its last byte came */
     uint16_t counters[FATHOM_STREAM_COUNTERS];
     uint8_t oldest; /* where in the ring */
     uint8_t run;    /* bytes since a gap; stops at 255 */
     uint8_t since;  /* bytes since the end of the last valid window; stops at 255 */
     bool gap;       /* the run began with a gap that was seen */
     bool doubtful;  /* the last valid window overlapped a valid one before it */
-    bool candidate; /* the ring holds a frame, if the next byte begins another one */
+    bool candidate; /* the ring holds a frame, if the next byte begins another one or none comes for gap_us */
     bool fresh;     /* the newest good frame has not been polled */
 } fathom_stream_t;
 
@@ -82,13 +90,14 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
                                    uint32_t now_us);
 
 /*
- * Takes `count` bytes; 0: bytes were lost here. after_gap: the line was seen to be silent for gap_us before the first. time_us: when
- * the last one came. A stream that listens to a line is fed by it.
+ * Takes `count` bytes; 0: bytes were lost here. after_gap: the line was seen to be silent for gap_us before the
+ * first. time_us: when the last one came. A stream that listens to a line is fed by it.
  */
 void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t count, bool after_gap,
                         uint32_t time_us);
 
 /*
+ * To be called when all that came before now_us has been fed: a silence since the last byte ends a frame.
  * FATHOM_READY: *frame is the newest good frame, config->length bytes in the stream's storage, to be read
  *   before more is fed; stream->time_us is when it came. Each frame is given once.
  * FATHOM_ERR_STALE: no good frame for stale_us; said once, then the deadline begins again.
@@ -96,7 +105,8 @@ void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t c
  */
 fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us, const uint8_t **frame);
 
-/* How long until poll will say FATHOM_ERR_STALE if nothing comes; 0 when a frame waits to be polled. */
+/* How long until poll will say FATHOM_READY or FATHOM_ERR_STALE if nothing comes; 0 when a frame waits to be
+ * polled. */
 uint32_t fathom_stream_due_us(const fathom_stream_t *stream, uint32_t now_us);
 
 #ifdef __cplusplus
