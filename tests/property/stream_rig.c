@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-enum { BYTE_US = 1042, PAUSE_US = 90000, LOOP_US = 20000, LONGEST_CHUNK = 25 };
+enum { BYTE_US = 1042, PAUSE_US = 90000, GAP_US = 5000, LOOP_US = 20000, LONGEST_CHUNK = 25 };
 
 static uint32_t random_state;
 
@@ -69,10 +69,10 @@ static struct {
  * newest that was whole before the byte that shows that it ended, or an older one, but none from before the last
  * that was shown.
  */
-static void judge(unsigned end)
+static void judge(unsigned end, uint32_t now_us)
 {
     const uint8_t *frame;
-    if (fathom_stream_poll(&rig.stream, 1, &frame) != FATHOM_READY) return;
+    if (fathom_stream_poll(&rig.stream, now_us, &frame) != FATHOM_READY) return;
     const unsigned whole = (rig.gaps ? end : end - 1) / rig.length;
     const unsigned oldest = rig.gaps && whole > rig.next ? whole - 1 : rig.next;
     for (unsigned at = whole; at-- > oldest;) {
@@ -84,10 +84,10 @@ static void judge(unsigned end)
     rig.outcome.wrong++;
 }
 
-static void feed(unsigned at, unsigned count, bool after_gap)
+static void feed(unsigned at, unsigned count, bool after_gap, uint32_t now_us)
 {
-    fathom_stream_feed(&rig.stream, rig.sent + at, (uint8_t)count, after_gap, 1);
-    judge(at + count);
+    fathom_stream_feed(&rig.stream, rig.sent + at, (uint8_t)count, after_gap, now_us);
+    judge(at + count, now_us);
 }
 
 static uint32_t arrival_us(unsigned at)
@@ -99,13 +99,18 @@ static uint32_t arrival_us(unsigned at)
 static void feed_every_20_ms(unsigned at, unsigned end)
 {
     bool silent = rig.gaps && at == 0; /* the pause before the first frame was seen, too */
-    for (uint32_t now_us = arrival_us(at) + rig_random_below(LOOP_US); at != end; now_us += LOOP_US) {
+    uint32_t now_us = arrival_us(at) + rig_random_below(LOOP_US);
+    for (; at != end; now_us += LOOP_US) {
         unsigned to = at;
         while (to != end && arrival_us(to) <= now_us) to++;
-        if (to != at) feed(at, to - at, silent);
+        if (to != at)
+            feed(at, to - at, silent, now_us);
+        else
+            judge(at, now_us);
         silent = to == at;
         at = to;
     }
+    if (rig.gaps) judge(end, now_us);
 }
 
 static void feed_chunks(unsigned at, unsigned end, unsigned longest)
@@ -114,7 +119,9 @@ static void feed_chunks(unsigned at, unsigned end, unsigned longest)
         const unsigned left = rig.gaps ? rig.length - at % rig.length : end - at;
         count = longest != 1 ? 1 + rig_random_below(longest) : 1;
         if (count > left) count = left;
-        feed(at, count, rig.gaps && at % rig.length == 0);
+        const uint32_t now_us = arrival_us(at + count - 1);
+        feed(at, count, rig.gaps && at % rig.length == 0, now_us);
+        if (rig.gaps && (at + count) % rig.length == 0) judge(at + count, now_us + GAP_US);
     }
 }
 

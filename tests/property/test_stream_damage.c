@@ -10,13 +10,14 @@
 
 /*
  * One byte of a run of frames is lost, changed, doubled, or one too many: every byte, every value. With gaps seen a
- * frame that is a byte short or has one other byte is refused. One byte too many can pass: the sensor's last byte is
- * then left over, and the sum of what stands before it is compared with the last byte of the data, d. FF + all the
- * data but d + the new byte X = d has one solution X, wherever X stands between the start and d: a frame of L bytes
- * has L - 2 such places, and in each of them one in 256 passes. X in front of the start can be taken for it if X is
- * FF, and X in front of the sum for the sum if it is the same; then the frame is right.
+ * frame that is a byte short or has one other byte is refused. Of one byte too many the sensor's last byte is left
+ * over, its sum, and a frame is believed only if FF or a silence follows it: so only where the sum is FF can it pass.
+ * Then the sum of what stands before it is compared with the last byte of the data, d. FF + all the data but d + the
+ * new byte X = d has one solution X, wherever X stands between the start and d: a frame of L bytes has L - 2 such
+ * places, and in each of them one in 256 passes, of one frame in 256. X in front of the start can be taken for it if X
+ * is FF, and X in front of the sum for the sum if it is the same; then the frame is right.
  */
-enum { RUN = 4, LONGEST = RUN * FATHOM_DYP_A05_LENGTH + 1 };
+enum { GAP_US = 5000, PERIOD_US = 100000, RUN = 4, LONGEST = RUN * FATHOM_DYP_A05_LENGTH + 1 };
 
 /* What comes on the wire. */
 static struct {
@@ -59,8 +60,23 @@ typedef struct {
     unsigned due; /* by the formula above, how many should be wrong */
 } tally_t;
 
-/* Byte by byte, so that a reading has one place: with gaps the frame whose byte has just come; without, one whose
- * bytes had all come before this one. Right ones come in order, each once. */
+/* A reading after byte i: with gaps of the frame whose byte that is; without, of one whose bytes had all come before
+ * it. Right ones come in order, each once. */
+static void look(tally_t *tally, const uint8_t *sent, const uint8_t *frame, uint8_t length, bool gaps,
+                 unsigned i, unsigned *next)
+{
+    unsigned at = gaps ? wire.frame_of[i] : RUN - 1;
+    while (!gaps && at > *next && (wire.end[at] > i || memcmp(frame, sent + at * length, length) != 0)) at--;
+    if (at >= *next && (gaps || wire.end[at] <= i) && memcmp(frame, sent + at * length, length) == 0) {
+        tally->right++;
+        *next = at + 1;
+    } else {
+        tally->wrong++;
+    }
+}
+
+/* Byte by byte, so that a reading has one place. With gaps there is a silence of GAP_US behind the last byte of each
+ * frame, and it is polled at its end. */
 static void receive(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
 {
     static fathom_stream_t stream;
@@ -70,29 +86,25 @@ static void receive(tally_t *tally, const uint8_t *sent, uint8_t length, bool ga
     tally->runs++;
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
     for (unsigned i = 0; i != wire.count; i++) {
+        const uint32_t now_us = gaps ? wire.frame_of[i] * (uint32_t)PERIOD_US : 0;
+        const bool is_last = i + 1 == wire.count || wire.first[i + 1];
         const uint8_t *frame;
-        fathom_stream_feed(&stream, wire.bytes + i, 1, gaps && wire.first[i], 1);
-        if (fathom_stream_poll(&stream, 1, &frame) != FATHOM_READY) continue;
-        unsigned at = gaps ? wire.frame_of[i] : RUN - 1;
-        while (!gaps && at > next && (wire.end[at] > i || memcmp(frame, sent + at * length, length) != 0))
-            at--;
-        if (at >= next && (gaps || wire.end[at] <= i) && memcmp(frame, sent + at * length, length) == 0) {
-            tally->right++;
-            next = at + 1;
-        } else {
-            tally->wrong++;
-        }
+        fathom_stream_feed(&stream, wire.bytes + i, 1, gaps && wire.first[i], now_us);
+        if (fathom_stream_poll(&stream, now_us, &frame) == FATHOM_READY)
+            look(tally, sent, frame, length, gaps, i, &next);
+        if (gaps && is_last && fathom_stream_poll(&stream, now_us + GAP_US, &frame) == FATHOM_READY)
+            look(tally, sent, frame, length, gaps, i, &next);
     }
 }
 
-/* Is what then begins the frame's bytes a right frame, and not the one that was sent? */
+/* Is what then begins the frame's bytes a right frame with FF behind it, and not the one that was sent? */
 static bool is_due(const uint8_t *frame, uint8_t length, unsigned place, uint8_t byte)
 {
     uint8_t bytes[FATHOM_DYP_MAX_LENGTH + 1];
     memcpy(bytes, frame, place);
     bytes[place] = byte;
     memcpy(bytes + place + 1, frame + place, length - place);
-    return rig_is_valid(bytes, length) && memcmp(bytes, frame, length) != 0;
+    return rig_is_valid(bytes, length) && bytes[length] == 0xFF && memcmp(bytes, frame, length) != 0;
 }
 
 static void lose_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
@@ -201,50 +213,98 @@ static void with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else
     }
 }
 
-/* The bound: L - 2 of the 256 (L + 1) ways a frame, and FF in front of the start. */
-static void with_gaps_seen_one_added_byte_in_256_inside_a_frame_passes(void **state)
+/* None but of the frames that end in FF: L - 2 of the 256 (L + 1) ways of such a frame, and FF in front of the start.
+ * There are four of them at least, of 511 mm, FF 01 FF FF: in front of the start and behind it FF makes it FF FF 01 FF,
+ * and behind 01 it stays as it is, so 2 ways each. */
+static void with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF(void **state)
 {
     (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         const unsigned frames = RUNS * RUN;
+        unsigned ends_in_FF = 0;
+        rig_seed(7);
+        for (unsigned number = 0; number != RUNS; number++) {
+            uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
+            make_run(sent, lengths[which], number);
+            for (unsigned i = 1; i <= RUN; i++) ends_in_FF += sent[i * lengths[which] - 1] == 0xFF;
+        }
         const tally_t tally = damage_all(add_each, which, true);
         assert_int_equal(tally.wrong, tally.due);
-        assert_in_range(tally.wrong, frames, frames * (lengths[which] - 1u));
+        assert_in_range(tally.wrong, which == OF_FOUR ? 2 * RUN : 0, ends_in_FF * (lengths[which] - 1u));
         assert_int_equal(tally.runs, 256 * frames * (lengths[which] + 1u));
         assert_in_range(tally.right, tally.runs * (RUN - 1), tally.runs * RUN);
     }
 }
 
-/*
- * By hand, in each of four frames the same. FF 07 A1 A7: FF + 07 + X = A1 for X = 9B, before the 07 or before the A1.
- * FF 03 E8 07 D0 07 A1 0D EA 60: all but EA and the sum make 76, so X = EA - 76 = 74, in 8 places. None of the
- * frame's own bytes is X, so no doubled one passes. FF in front would want 05 for the A1, and 75 for the EA.
- */
-static void of_the_bytes_added_to_the_examples_of_the_datasheets_2_and_8_pass(void **state)
+/* In each of four frames the same. FF 07 A1 A7 and FF 03 E8 07 D0 07 A1 0D EA 60 do not end in FF. */
+static void of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes(void **state)
 {
     (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
         tally_t added = {0, 0, 0, 0};
-        tally_t doubled = {0, 0, 0, 0};
         make_run(sent, lengths[which], 0);
         add_each(&added, sent, lengths[which], true);
-        assert_int_equal(added.wrong, RUN * (which == OF_FOUR ? 2 : 8));
+        assert_int_equal(added.wrong, 0);
         assert_int_equal(added.runs, RUN * 256 * (lengths[which] + 1));
-        double_each(&doubled, sent, lengths[which], true);
-        assert_int_equal(doubled.wrong, 0);
-        assert_int_equal(doubled.runs, RUN * lengths[which]);
     }
 }
 
-/* A byte that comes twice is one of the added ones: a chance of L - 2 in 256 L if it were any. */
+/*
+ * All frames FF H L FF of an A16, where H + L = 100 or both are 0: one for each H. By hand, of the 5 x 256 ways to add
+ * a byte X to one:
+ *   X FF H L (FF): X is FF, and FF + FF + H = L for 2 H = 2, so H is 01 or 81                            2
+ *   FF X H L (FF): FF + X + H = L for one X, and it is never the frame that was sent                    256
+ *   FF H X L (FF): the same X; with H = 01 it is FF, and the frame stays FF 01 FF FF                    255
+ *   FF H L X (FF) is right for X = FF alone, and FF H L FF (X) as well
+ * Of all others none passes, which makes 513 of 65536 x 5 x 256, one in 163520.
+ */
+static void with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass(void **state)
+{
+    enum { PASS = 2 + 256 + 255 };
+    static const uint16_t example = 1953;
+    uint8_t sent[RUN * FATHOM_DYP_A16_LENGTH];
+    tally_t tally = {0, 0, 0, 0};
+    (void)state;
+    for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 4, 4, &example);
+    for (unsigned high = 0; high != 256; high++) {
+        const uint16_t value = (uint16_t)(high * 256 + (256 - high) % 256);
+        rig_make_frame(sent + 4, 4, &value);
+        assert_int_equal(sent[7], 0xFF);
+        for (unsigned place = 0; place <= 4; place++) {
+            for (unsigned byte = 0; byte != 256; byte++) {
+                send(sent, 4, ADDED, 1, place, (uint8_t)byte);
+                receive(&tally, sent, 4, true);
+            }
+        }
+    }
+    assert_int_equal(tally.runs, 256 * 5 * 256);
+    assert_int_equal(tally.wrong, PASS);
+}
+
+/* 1000 2000 1953 3465 mm: FF + 03 + E8 + 07 + D0 + 07 + A1 + 0D + 89 = 3FF. All but 89 and the sum make 376, so X =
+ * 89 - 76 = 13 passes, in 8 places; FF in front would want 75 for the 89. */
+static void of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass(void **state)
+{
+    static const uint16_t values[4] = {1000, 2000, 1953, 3465};
+    uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
+    tally_t tally = {0, 0, 0, 0};
+    (void)state;
+    for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 10, 10, values);
+    assert_int_equal(sent[9], 0xFF);
+    add_each(&tally, sent, 10, true);
+    assert_int_equal(tally.runs, RUN * 11 * 256);
+    assert_int_equal(tally.wrong, RUN * 8);
+}
+
+/* A byte that comes twice is one of the added ones: the first FF of 511 mm, and no other here. */
 static void with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does(void **state)
 {
     (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         const tally_t tally = damage_all(double_each, which, true);
         assert_int_equal(tally.wrong, tally.due);
-        assert_in_range(tally.wrong, 0, bytes_of(which) / 64);
+        assert_int_equal(tally.wrong, which == OF_FOUR ? RUN : 0);
         assert_int_equal(tally.runs, bytes_of(which));
         assert_in_range(tally.right, tally.runs * (RUN - 1), tally.runs * RUN);
     }
@@ -353,8 +413,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else),
         cmocka_unit_test(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else),
-        cmocka_unit_test(with_gaps_seen_one_added_byte_in_256_inside_a_frame_passes),
-        cmocka_unit_test(of_the_bytes_added_to_the_examples_of_the_datasheets_2_and_8_pass),
+        cmocka_unit_test(with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF),
+        cmocka_unit_test(of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes),
+        cmocka_unit_test(with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass),
+        cmocka_unit_test(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass),
         cmocka_unit_test(with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does),
         cmocka_unit_test(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading),
         cmocka_unit_test(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_value),

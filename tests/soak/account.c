@@ -36,7 +36,8 @@ uint32_t rig_recovery_us(const rig_unit_t *unit)
 {
     const soak_facts_t *const facts = &soak_facts[unit->setting];
     const uint32_t slack_us = TURNS * unit->rig->loop_us + (uint32_t)facts->length * facts->char_us;
-    if (facts->proof == SOAK_GAP) return facts->period_us + slack_us;
+    /* what ends a frame there is a silence */
+    if (facts->proof == SOAK_GAP) return facts->period_us + FATHOM_STREAM_DEFAULT_GAP_US + slack_us;
     if (facts->proof == SOAK_NO_GAP) return FRAMES_WITHOUT_GAP * facts->period_us + slack_us;
     /* The request that is out may be lost, and then the unit owes, or is left alone after several. */
     uint32_t wait_us = facts->timeout_us;

@@ -28,9 +28,9 @@ static void window(uint64_t exchanges, uint32_t seed, defence_result_t *result)
     const soak_options_t wide = {.max_mm = UINT16_MAX};
     cell_result_t cell;
     result->what = "wrong readings";
-    run_cell(SOAK_A05_AUTO, FATHOM_SIM_FAULT_INSERT, 300000, 0, &narrow, exchanges, seed, &cell);
+    run_cell(SOAK_A05_DYP, FATHOM_SIM_FAULT_INSERT, 300000, 0, &narrow, exchanges, seed, &cell);
     result->with = cell.totals.wrong_answers;
-    run_cell(SOAK_A05_AUTO, FATHOM_SIM_FAULT_INSERT, 300000, 0, &wide, exchanges, seed, &cell);
+    run_cell(SOAK_A05_DYP, FATHOM_SIM_FAULT_INSERT, 300000, 0, &wide, exchanges, seed, &cell);
     result->without = cell.totals.wrong_answers;
 }
 

@@ -68,8 +68,7 @@ static void outgoing(void *ctx, fathom_sim_frame_t *frame)
         end_us += soak_facts[unit->setting].period_us +
                   (uint32_t)soak_facts[unit->setting].length * soak_facts[unit->setting].char_us;
     const bool is_adjacent = soak_facts[unit->setting].proof == SOAK_NO_GAP;
-    /* after a late frame of a stream the next one follows without a gap */
-    const uint32_t damage = kinds & (damaging | (soak_is_asked(unit->setting) ? 0 : BIT(LATE)));
+    const uint32_t damage = kinds & damaging;
     if (entry != NULL) {
         entry->is_hit = (kinds & ~harmless) != 0;
         entry->is_twice = (kinds & repeating) != 0;

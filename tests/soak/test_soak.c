@@ -97,6 +97,9 @@ static void one_byte_that_stays_one_byte_is_never_let_pass(void **state)
     }
     assert_int_equal(theory_pass(SOAK_HPS167S, FATHOM_SIM_FAULT_INSERT), 65536 >> 16);
     assert_int_equal(theory_pass(SOAK_A05_DYP, FATHOM_SIM_FAULT_INSERT), 65536 >> 8);
+    /* a sum and the FF behind it */
+    assert_int_equal(theory_pass(SOAK_A16_AUTO, FATHOM_SIM_FAULT_INSERT), 65536 >> 16);
+    assert_int_equal(theory_pass(SOAK_A05_AUTO, FATHOM_SIM_FAULT_INSERT), 65536 >> 16);
 }
 
 #define CASE(what, number, sensor)                                                                           \

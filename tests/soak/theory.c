@@ -10,7 +10,8 @@
 /*
  * A CRC of 16 bits sees every damage to one byte (all bursts of up to 16 bits), and one in 65536 of the rest
  * passes. A sum of 8 bits sees every damage to one byte that stays one byte, and one in 256 of the rest passes.
- * In a stream without gaps FF has to stand in the right place besides, which another byte does once in 256.
+ * In a stream FF has to stand behind the frame besides, which another byte does once in 256: the byte that one
+ * too many leaves over, or that of the next frame where no gap is between.
  */
 enum { NEVER = 0, CRC = 1, START_AND_SUM = 1, SUM = 256 };
 
@@ -20,6 +21,7 @@ uint32_t theory_pass(uint8_t setting, uint8_t kind)
     const uint32_t windows = soak_facts[setting].length; /* each place where one could begin */
     switch (kind) {
     case FATHOM_SIM_FAULT_INSERT: /* what follows is one byte out of place, and all is there */
+        if (proof == SOAK_GAP) return START_AND_SUM;
         return proof == SOAK_CRC ? CRC : proof == SOAK_NO_GAP ? windows * START_AND_SUM : SUM;
     case FATHOM_SIM_FAULT_DROP:
     case FATHOM_SIM_FAULT_TRUNCATE:

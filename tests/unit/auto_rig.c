@@ -54,6 +54,8 @@ void rig_run(uint32_t for_us, uint32_t step_us)
 
 void rig_send(const uint8_t *frame, size_t length, uint32_t step_us)
 {
-    fake_trickle(&rig.fake, RIG_PERIOD_US - (uint32_t)length * RIG_BYTE_US, RIG_BYTE_US, frame, length);
-    rig_run(RIG_PERIOD_US, step_us);
+    const uint32_t period_us = RIG_PERIOD_US - rig.silent_us;
+    fake_trickle(&rig.fake, period_us - (uint32_t)length * RIG_BYTE_US, RIG_BYTE_US, frame, length);
+    rig.silent_us = RIG_GAP_US;
+    rig_run(period_us + RIG_GAP_US, step_us);
 }

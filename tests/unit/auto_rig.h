@@ -7,7 +7,7 @@
 #include "fathom/sensor.h"
 
 /* A fake UART, a real line on it, and a driver that listens there, with what its polls said. At 9600 8N1. */
-enum { RIG_BYTE_US = 1042, RIG_PERIOD_US = 100000, RIG_START_US = 1000 };
+enum { RIG_BYTE_US = 1042, RIG_PERIOD_US = 100000, RIG_GAP_US = 5000, RIG_START_US = 1000 };
 
 typedef struct {
     fake_t fake;
@@ -17,6 +17,7 @@ typedef struct {
     fathom_sensor_t sensor;  /* the test's, after it has started the line */
     fathom_sample_t sample;  /* the last one */
     fathom_sample_t last[4]; /* the last one of each probe */
+    uint32_t silent_us;      /* of the next period, which rig_send has used up */
     unsigned samples;
     unsigned stales;
     unsigned malformed;
@@ -35,7 +36,8 @@ fathom_status_t rig_poll(void);
  * advises. */
 void rig_run(uint32_t for_us, uint32_t step_us);
 
-/* One period of 100 ms: silence, with a frame at its end, byte by byte. */
+/* One period of 100 ms: silence, with a frame at its end, byte by byte; and the first 5 ms of the next one, which end
+ * the frame. */
 void rig_send(const uint8_t *frame, size_t length, uint32_t step_us);
 
 #endif

@@ -67,15 +67,36 @@ static void the_example_of_the_datasheet_is_a_sample_with_all_its_members(void *
     assert_true(fake_drained(&rig.fake));
 }
 
-static void a_sample_is_there_in_the_poll_that_reads_its_last_byte(void **state)
+static void a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came(void **state)
 {
     (void)state;
     rig_run(20000, 500);
     fake_receive(&rig.fake, 0, mm_1953, 3);
     assert_int_equal(rig_poll(), FATHOM_PENDING);
     fake_receive(&rig.fake, 0, mm_1953 + 3, 1);
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    const uint32_t came_us = rig.fake.now_us;
     assert_int_equal(rig_poll(), FATHOM_PENDING);
+    rig.fake.now_us += 4999;
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 1);
+    rig.fake.now_us += 1;
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig.sample.time_us, came_us);
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+}
+
+/* The byte behind it has come in time, but is read only when the silence would have been long enough. */
+static void a_byte_that_has_come_is_looked_at_before_the_silence(void **state)
+{
+    (void)state;
+    rig_run(20000, 500);
+    fake_receive(&rig.fake, 0, mm_1953, 4);
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    fake_receive(&rig.fake, 1042, mm_1953 + 3, 1); /* A7 begins nothing */
+    rig_run(20000, 20000);
+    assert_int_equal(rig.samples, 0);
+    assert_int_equal(counter(FATHOM_STREAM_UNSURE), 1);
 }
 
 static void every_frame_is_one_sample_in_loops_from_100_us_to_20_ms(void **state)
@@ -242,6 +263,9 @@ static void the_gap_that_counts_is_the_configs(void **state)
     rig_run(5500, 500);
     fake_receive(&rig.fake, 0, mm_511, 4);
     rig_poll();
+    rig_run(24500, 500);
+    assert_int_equal(rig.samples, 0);
+    rig_run(500, 500);
     assert_int_equal(rig.samples, 1);
 }
 
@@ -312,7 +336,7 @@ static void it_works_across_the_wrap_of_the_clock(void **state)
 
 /* ---- due ---- */
 
-static void it_is_due_when_a_gap_can_be_seen_and_then_when_it_turns_stale(void **state)
+static void it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale(void **state)
 {
     (void)state;
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 5000);
@@ -322,12 +346,14 @@ static void it_is_due_when_a_gap_can_be_seen_and_then_when_it_turns_stale(void *
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 1000000);
     fake_receive(&rig.fake, 0, mm_1953, 4);
     rig_poll();
-    assert_int_equal(rig.samples, 1);
+    assert_int_equal(rig.samples, 0);
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 5000);
     rig.fake.now_us += 5000;
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     rig_poll();
-    assert_int_equal(fathom_due_us(&rig.sensor, 1), 1995000);
-    rig.fake.now_us += 1995000;
+    assert_int_equal(rig.samples, 1);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 2000000);
+    rig.fake.now_us += 2000000;
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     assert_int_equal(rig_poll(), FATHOM_ERR_STALE);
 }
@@ -382,7 +408,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         FRESH(the_example_of_the_datasheet_is_a_sample_with_all_its_members),
-        FRESH(a_sample_is_there_in_the_poll_that_reads_its_last_byte),
+        FRESH(a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came),
+        FRESH(a_byte_that_has_come_is_looked_at_before_the_silence),
         FRESH(every_frame_is_one_sample_in_loops_from_100_us_to_20_ms),
         FRESH(frames_are_target_no_target_or_refused),
         FRESH(a_window_of_the_users_own_is_kept),
@@ -397,7 +424,7 @@ int main(void)
         FRESH(every_good_frame_begins_the_deadline_again),
         FRESH(noise_does_not_keep_it_from_turning_stale),
         FRESH(it_works_across_the_wrap_of_the_clock),
-        FRESH(it_is_due_when_a_gap_can_be_seen_and_then_when_it_turns_stale),
+        FRESH(it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale),
         FRESH(a_broken_port_is_said_by_every_poll_until_it_works_again),
         FRESH(no_line_or_a_window_upside_down_is_refused_and_nothing_listens),
         FRESH(deinit_stops_listening_unless_another_does),
