@@ -21,17 +21,30 @@ static void run_cell(uint8_t setting, uint8_t kind, uint32_t chance_ppm, uint16_
     cell_run(&cell, exchanges, result);
 }
 
-/* A frame with a byte too many passes once in 256, but then the distances behind that are made of halves. */
+/* A frame with a byte too few in one place and one too many in another has the right length, and one in 256 of them
+ * passes, but then the distances between the two are made of halves. Half the frames are hit so. */
 static void window(uint64_t exchanges, uint32_t seed, defence_result_t *result)
 {
-    const soak_options_t narrow = {.max_mm = 0};
-    const soak_options_t wide = {.max_mm = UINT16_MAX};
-    cell_result_t cell;
+    static const uint16_t max_mm[2] = {0, UINT16_MAX};
+    uint64_t wrong[2];
     result->what = "wrong readings";
-    run_cell(SOAK_A05_DYP, FATHOM_SIM_FAULT_INSERT, 300000, 0, &narrow, exchanges, seed, &cell);
-    result->with = cell.totals.wrong_answers;
-    run_cell(SOAK_A05_DYP, FATHOM_SIM_FAULT_INSERT, 300000, 0, &wide, exchanges, seed, &cell);
-    result->without = cell.totals.wrong_answers;
+    for (uint8_t i = 0; i < 2; i++) {
+        cell_t cell;
+        cell_result_t cell_result;
+        memset(&cell, 0, sizeof cell);
+        memset(&cell_result, 0, sizeof cell_result);
+        cell.setting = SOAK_A05_AUTO;
+        cell.kinds_used = 2;
+        cell.kinds[0] = FATHOM_SIM_FAULT_DROP;
+        cell.kinds[1] = FATHOM_SIM_FAULT_INSERT;
+        cell.chance_ppm = 700000;
+        cell.seed = seed;
+        cell.options.max_mm = max_mm[i];
+        cell_run(&cell, 2 * exchanges, &cell_result);
+        wrong[i] = cell_result.totals.wrong_answers;
+    }
+    result->with = wrong[0];
+    result->without = wrong[1];
 }
 
 /* 511 mm held still is FF 01 FF FF, which is a valid frame one byte later too. */

@@ -14,7 +14,8 @@ TABLE = [  # program, what is off, where it matters, in how many exchanges, and 
     ('no_quarantine', 'a unit that owes an answer is asked at once', 'a16-real-time:late', 4000, 'old'),
     ('no_crc', 'the CRC of an answer is not computed', 'a16-real-time:flip-byte', 4000, 'wrong'),
     ('no_unit', 'nobody looks whose answer it is', 'a16-real-time:unit', 4000, 'wrong'),
-    ('no_successor', 'a frame without a gap needs no successor', 'a16-tight:drop', 60000, 'wrong'),
+    ('no_successor', 'whatever follows a frame ends it', 'a16-tight:drop', 60000, 'wrong'),
+    ('no_successor', 'whatever follows a frame ends it', 'a16-auto:insert', 60000, 'wrong'),
     ('no_deadline', 'a silent stream is never stale', 'a16-auto:power-cycle', 4000, 'stuck'),
     ('no_debt_due', 'fathom_due_us forgets when a debt ends', 'a16-processed:unit', 4000, 'stuck'),
 ]
