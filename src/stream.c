@@ -26,16 +26,23 @@ static void copy_ring(const fathom_stream_t *stream, uint8_t *to)
     }
 }
 
-static void accept(fathom_stream_t *stream, uint32_t time_us)
+/* What comes after the candidate is known: is it the end of a frame? */
+static void decide(fathom_stream_t *stream, bool is_end)
 {
+    if (!stream->candidate) return;
+    stream->candidate = false;
+    if (!is_end) {
+        count(stream, FATHOM_STREAM_UNSURE);
+        return;
+    }
     copy_ring(stream, stream->config->storage + stream->config->length);
     if (stream->fresh) count(stream, FATHOM_STREAM_MISSED);
     count(stream, FATHOM_STREAM_FRAMES);
     stream->fresh = true;
-    stream->time_us = time_us;
+    stream->time_us = stream->candidate_us;
 }
 
-/* The ring holds a valid frame: is this where a frame begins? */
+/* The ring holds a valid frame: is this where a frame may stand? */
 static void judge(fathom_stream_t *stream, uint32_t time_us)
 {
     const uint8_t length = stream->config->length;
@@ -48,17 +55,6 @@ static void judge(fathom_stream_t *stream, uint32_t time_us)
     }
     stream->doubtful = stream->since < length;
     stream->since = 0;
-}
-
-/* What comes after the candidate is known: is it the end of a frame? */
-static void decide(fathom_stream_t *stream, bool is_end)
-{
-    if (!stream->candidate) return;
-    stream->candidate = false;
-    if (is_end)
-        accept(stream, stream->candidate_us);
-    else
-        count(stream, FATHOM_STREAM_UNSURE);
 }
 
 static void take(fathom_stream_t *stream, uint8_t byte, uint32_t time_us)
