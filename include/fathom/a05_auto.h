@@ -28,8 +28,8 @@ extern "C" {
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
     uint32_t stale_us;   /* 0: 2 s */
-    uint16_t gap_us; /* a silence of so much starts and ends a frame (stream.h); behind an operating system
-                                   25000; 0: 5000 */
+    uint16_t gap_us;     /* a silence of so much starts and ends a frame (stream.h); behind an operating
+                            system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint8_t probes; /* bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it
                        gives no sample */

@@ -60,11 +60,10 @@ enum {
 typedef struct {
     uint8_t *storage;  /* FATHOM_STREAM_STORAGE(length) bytes, the stream's alone */
     uint32_t stale_us; /* without a good frame for so long, the stream is stale; 0: 2 s */
-    uint16_t
-        gap_us; /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at 9600 baud)
-                          and less than the pause between frames; behind an operating system 25000.
-                          0: 5000 */
-    uint8_t length; /* 4 or 10 */
+    uint16_t gap_us;   /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at
+                          9600 baud) and less than the pause between frames; behind an operating system
+                          25000. 0: 5000 */
+    uint8_t length;    /* 4 or 10 */
 } fathom_stream_config_t;
 
 typedef struct {
