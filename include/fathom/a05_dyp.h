@@ -33,10 +33,8 @@ extern "C" {
 
 /* Read by init only; line and clock outlive the sensor. Members that are 0 mean their defaults. */
 typedef struct {
-    fathom_line_t *line; /* its frame buffer has 13 bytes or more */
-    const fathom_line_settings_t
-        *settings;       /* NULL: as the line is; else where sensors with different ones share
-                                               a line (line.h) */
+    fathom_line_t *line;                    /* its frame buffer has 13 bytes or more */
+    const fathom_line_settings_t *settings; /* where those on one line differ (line.h); NULL: as they are */
     uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
     uint32_t period_us;  /* from one command to the next; 0 and anything less: the two above */
     uint32_t timeout_us; /* 0: 500 ms for all probes, 200 ms for one */

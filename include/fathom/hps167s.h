@@ -37,9 +37,7 @@ extern "C" {
 typedef struct {
     const fathom_modbus_t *modbus;
     const fathom_clock_t *clock;
-    const fathom_line_settings_t
-        *settings;       /* NULL: as the line is; else where sensors with different ones share
-                                               a line (line.h) */
+    const fathom_line_settings_t *settings; /* where those on one line differ (line.h); NULL: as they are */
     uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
     uint32_t period_us;  /* from one request to the next; 0 and anything less: 18519 us */
     uint32_t timeout_us; /* of a measurement; the slowest rate is 6 a second. 0: 500 ms */

@@ -7,7 +7,7 @@
 
 enum { UNITS = 8 };
 
-/* What the datasheets and SENSORS say of codes; the example of HPS-167S #5, and the simulator's weak light. */
+/* The codes of the datasheets and of sister models; the example of HPS-167S #5, and the simulator's weak light. */
 enum { NO_TARGET = 0xFFFD, INTERFERENCE = 0xFFFE, HPS_OVER_RANGE = 65530, HPS_FAILED = 0xFFFF };
 enum { HPS_MAGNITUDE = 0xDCB2 << 7, HPS_WEAK = 0x0010, HPS_AMBIENT = 1, HPS_ONES = 0xFF };
 
