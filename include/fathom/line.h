@@ -98,9 +98,8 @@ enum {
  */
 struct fathom_exchange {
     fathom_protocol_t protocol;
-    const fathom_line_settings_t
-        *settings;       /* set before the request leaves; NULL: as they are. On a line where
-                                               one exchange names its settings, all have to */
+    /* Set before the request leaves; NULL: as they are. On a line where one exchange names them, all have to. */
+    const fathom_line_settings_t *settings;
     uint32_t timeout_us; /* from the end of the request to the first byte of the answer; to all units: the
                             time that they need before the next request, after which it is READY */
     uint8_t unit;        /* who is asked; units that are equal modulo 16 may delay, never confuse, each
