@@ -62,12 +62,12 @@ typedef struct fathom_exchange fathom_exchange_t;
 /* What a protocol says of the bytes at the front of the line. */
 typedef struct {
     uint8_t length;  /* 0: none of its frames begins here. More than there are: so many are needed to tell.
-                       Else the length of the whole frame that stands here. */
-    uint8_t unit;    /* with length > 0: whose frame it is, or would be */
+                        Else the length of the whole frame that stands here. */
+    uint8_t unit;    /* with length > 0: whose frame it is, or would be. Of a question to any unit: 255 */
     int8_t status;   /* of a whole frame. FATHOM_READY or FATHOM_ERR_EXCEPTION: it answers the exchange.
-                       FATHOM_ERR_MALFORMED: right checksum, from the unit that was asked, but no answer.
-                       FATHOM_PENDING: right checksum, not for this exchange.
-                       FATHOM_ERR_CHECKSUM: wrong checksum. */
+                        FATHOM_ERR_MALFORMED: right checksum, from the unit that was asked, but no answer.
+                        FATHOM_PENDING: right checksum, not for this exchange.
+                        FATHOM_ERR_CHECKSUM: wrong checksum. */
     uint8_t request; /* not 0: the first so many bytes are the request itself. If they are no whole frame, or
                         one with another length or a wrong checksum, they can only be an echo; a frame of
                         that length may be an echo or an answer that equals the request. */
@@ -128,9 +128,10 @@ struct fathom_exchange {
 typedef struct fathom_listener fathom_listener_t;
 struct fathom_listener {
     /*
-     * `count` bytes in the order in which they came; 0: here bytes were lost, as the port has said. after_gap: the line was seen to be silent for at
-     * least gap_us before the first of them. time_us: the clock when the last of them came, as well as the
-     * port or the polling can tell. Called within fathom_line_poll; it may not call the line.
+     * `count` bytes in the order in which they came; 0: here bytes were lost, as the port has said. after_gap:
+     * the line was seen to be silent for at least gap_us before the first of them. time_us: the clock when the
+     * last of them came, as well as the port or the polling can tell. Called within fathom_line_poll; it may not
+     * call the line.
      */
     void (*receive)(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
                     uint32_t time_us);
