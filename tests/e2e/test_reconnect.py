@@ -180,6 +180,7 @@ class Plug(e2e.Case):
                 device.read(8)
                 device.hang_up()
                 losses += 1
+                reader.expect(LOST, 'err')  # the last one too has to be seen before the end
                 device = self.plug_in()
         done = reader.end()
         self.assertTrue(2 <= losses <= 6, losses)
