@@ -18,7 +18,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_dyp_modbus_t *const sensor = ctx;
     const fathom_status_t next = fathom_dyp_next(&sensor->answer, sample);
     if (next != FATHOM_PENDING) return next;
-    const fathom_status_t status = fathom_modbus_unit_read(&sensor->unit, &sensor->question);
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->question);
     if (status != FATHOM_READY) return status;
     fathom_dyp_answer(&sensor->answer, sensor->probes, sensor->unit.heard_us);
     return fathom_dyp_next(&sensor->answer, sample);

@@ -70,7 +70,7 @@ fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_t *const sensor = ctx;
-    fathom_status_t status = fathom_modbus_unit_read(&sensor->unit, &sensor->question);
+    fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->question);
     if (status != FATHOM_READY) return status;
     status = fathom_hps167s_decode(sensor->values, sample);
     if (status != FATHOM_READY) {
@@ -107,7 +107,7 @@ static fathom_status_t command(fathom_hps167s_t *sensor, uint16_t first, uint8_t
     question.first = first;
     question.count = count;
     question.is_command = true;
-    return fathom_modbus_unit_read(&sensor->unit, &question);
+    return fathom_modbus_unit_ask(&sensor->unit, &question);
 }
 
 fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out)

@@ -113,7 +113,7 @@ static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_ques
     return unit->state == ASKED ? FATHOM_PENDING : FATHOM_READY;
 }
 
-fathom_status_t fathom_modbus_unit_read(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
+fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
 {
     const uint8_t *const head = unit->request.message.head;
     const fathom_status_t carrier = advance(unit);

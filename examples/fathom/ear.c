@@ -49,6 +49,12 @@ static int ear_set_line(void *ctx, const fathom_line_settings_t *settings)
     return ear->inner.set_line(ear->inner.ctx, settings);
 }
 
+static int ear_set_break(void *ctx, bool on)
+{
+    ear_t *const ear = ctx;
+    return ear->inner.set_break(ear->inner.ctx, on);
+}
+
 void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
 {
     ear->inner = *uart;
@@ -59,6 +65,7 @@ void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
     uart->write = ear_write;
     uart->sent = ear_sent;
     if (uart->set_line != NULL) uart->set_line = ear_set_line;
+    if (uart->set_break != NULL) uart->set_break = ear_set_break;
     uart->ctx = ear;
 }
 

@@ -58,12 +58,16 @@ typedef struct {
  *        before; it is called before each request that names settings). 0: bytes are still leaving, ask again.
  *        < 0: this port cannot reach them within 2.5 %; the settings before still hold. NULL where they are
  *        fixed.
+ * set_break  Holds TX low (true), or lets it go high again: the trigger and the mode select of modules whose RX
+ *        pin is our TX. 1: done. 0: bytes are still leaving, ask again. < 0: the port is broken. NULL where it
+ *        cannot.
  */
 typedef struct {
     int (*read)(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
     int (*write)(void *ctx, const uint8_t *bytes, size_t length);
     bool (*sent)(void *ctx);
     int (*set_line)(void *ctx, const fathom_line_settings_t *settings);
+    int (*set_break)(void *ctx, bool on);
     void *ctx;
 } fathom_uart_t;
 
@@ -75,6 +79,40 @@ typedef struct {
     uint32_t (*now_us)(void *ctx);
     void *ctx;
 } fathom_clock_t;
+
+/*
+ * A digital pin: a module's trigger or mode select, its switch output, a relay's contact.
+ *
+ * set    Drives it: true is high. NULL: it is an input.
+ * get    Its level: true is high. Of a contact: what the board's pull resistor makes of it. NULL: an output.
+ */
+typedef struct {
+    void (*set)(void *ctx, bool high);
+    bool (*get)(void *ctx);
+    void *ctx;
+} fathom_pin_t;
+
+/* A high pulse as it was captured. */
+typedef struct {
+    uint32_t width_us; /* from its rising to its falling edge */
+    uint32_t end_us;   /* the clock at the falling edge */
+    bool is_high;      /* the level now, also where there was no pulse: a line that never falls again */
+} fathom_pulse_t;
+
+/*
+ * What measures high pulses: a timer's capture input, or the times of a pin's edges (edges.h makes one of those).
+ *
+ * arm    Begins to look for pulses; what was captured before is forgotten, and a pulse that has begun before does
+ *        not count.
+ * take   1: a pulse has ended since arm, the oldest that was not taken; *pulse is all set. 0: none has, and only
+ *        pulse->is_high is set. < 0: the port is broken. It goes on looking after a pulse; one that comes while
+ *        another waits to be taken may be lost.
+ */
+typedef struct {
+    void (*arm)(void *ctx);
+    int (*take)(void *ctx, fathom_pulse_t *pulse);
+    void *ctx;
+} fathom_capture_t;
 
 /* "Nothing will happen without new bytes": what the due_us functions return instead of a time. */
 #define FATHOM_NO_DEADLINE UINT32_MAX

@@ -67,7 +67,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
  * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: as fathom_modbus_t.poll,
  * and nothing was asked.
  */
-fathom_status_t fathom_modbus_unit_read(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question);
+fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question);
 
 /* Forgets what was asked and any outcome; a request under way is cancelled. */
 void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);

@@ -13,7 +13,10 @@ extern "C" {
 typedef enum {
     FATHOM_TARGET = 1,    /* something is distance_mm away */
     FATHOM_NO_TARGET = 2, /* the device works and sees nothing in range */
-    FATHOM_FAULT = 3      /* the device says that it is broken (HPS-167S command #5, abnormal packet) */
+    FATHOM_FAULT = 3,     /* the device says that it is broken (HPS-167S command #5, abnormal packet), or its
+                             output does what no working one can */
+    FATHOM_NEAR = 4,      /* a switch or a contact says: something is nearer than its threshold, ... */
+    FATHOM_FAR = 5        /* ... nothing is. Neither has a distance */
 } fathom_sample_kind_t;
 
 typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model_t;
@@ -25,8 +28,9 @@ typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model
 typedef struct {
     uint32_t time_us;     /* the HAL's clock when the last byte of the answer came; wraps */
     uint32_t magnitude;   /* strength of the reflected light * 10000: 7231744 is 723.1744 (HPS-167S #5) */
+    uint32_t raw;         /* what the device sent, whatever it means: 16 bits, the width of a pulse in us, the
+                             level of a switch */
     uint16_t sequence;    /* of the answer; wraps; the probes of one A05 answer share it */
-    uint16_t raw;         /* the 16 bits that the device sent, whatever they mean */
     uint16_t distance_mm; /* 0 unless kind is FATHOM_TARGET */
     uint16_t precision;   /* the device's accuracy figure: the smaller the better, no unit (HPS-167S #5) */
     uint8_t kind;         /* fathom_sample_kind_t */

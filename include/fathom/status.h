@@ -30,7 +30,10 @@ typedef enum {
     FATHOM_ERR_CAPACITY = -10, /* the memory that the caller gave is too small for this request */
     FATHOM_ERR_ECHO = -11,     /* a write: all that came equals the request, so it may be the device's answer
                                   or the line's own echo, and which is not known yet (line.h) */
-    FATHOM_ERR_UNSUPPORTED = -12 /* the port cannot do the line settings of this request */
+    FATHOM_ERR_UNSUPPORTED = -12, /* the port, or what carries the request, cannot do this */
+    FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (the driver was told of it) */
+    FATHOM_ERR_UNCONFIRMED = -14, /* a setting was sent and could not be read back: it may hold, or not */
+    FATHOM_ERR_IN_USE = -15       /* a unit answers at the address that was to be set; nothing was changed */
 } fathom_status_t;
 
 #ifdef __cplusplus

@@ -115,9 +115,19 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
     return status == FATHOM_POSIX_OK ? 1 : -1;
 }
 
+static int uart_set_break(void *ctx, bool on)
+{
+    fathom_posix_uart_t *const port = ctx;
+    if (fathom_posix_usable(port) != FATHOM_POSIX_OK) return -1;
+    if (!fathom_posix_sent(port)) return 0;
+    if (ioctl(port->fd, on ? TIOCSBRK : TIOCCBRK) == 0) return 1;
+    (void)fathom_posix_fail_lost(port, errno);
+    return -1;
+}
+
 fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port)
 {
-    const fathom_uart_t uart = {uart_read, uart_write, uart_sent, uart_set_line, port};
+    const fathom_uart_t uart = {uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, port};
     return uart;
 }
 

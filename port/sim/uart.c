@@ -133,6 +133,6 @@ void fathom_sim_uart_init(fathom_sim_uart_t *uart, fathom_sim_line_t *line, fath
 
 fathom_uart_t fathom_sim_uart(fathom_sim_uart_t *uart)
 {
-    const fathom_uart_t hal = {read, write, sent, set_line, uart};
+    const fathom_uart_t hal = {read, write, sent, set_line, NULL, uart};
     return hal;
 }

@@ -47,7 +47,7 @@ static uint32_t stub_now_us(void *ctx)
     return time_us += 5000;
 }
 
-const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL};
+const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL, NULL};
 const fathom_clock_t clock = {stub_now_us, NULL};
 
 int main(int argc, char **argv)

@@ -39,7 +39,7 @@ static uint32_t stub_now_us(void *ctx)
     return timer_us;
 }
 
-const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL};
+const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL, NULL};
 const fathom_clock_t clock = {stub_now_us, NULL};
 
 int main(void)

@@ -167,7 +167,7 @@ typedef struct {
 
 static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t retries, uint32_t seed)
 {
-    static const fathom_uart_t uart = {world_read, world_write, world_sent, NULL, NULL};
+    static const fathom_uart_t uart = {world_read, world_write, world_sent, NULL, NULL, NULL};
     static const fathom_clock_t clock = {world_now_us, NULL};
     static uint8_t frame[32];
     const fathom_line_config_t config = {&uart, &clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF,

@@ -117,7 +117,7 @@ static bool was_sent(const uint16_t probes[4])
 
 static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigned flip, uint32_t seed)
 {
-    static const fathom_uart_t uart = {world_read, world_write, world_sent, NULL, NULL};
+    static const fathom_uart_t uart = {world_read, world_write, world_sent, NULL, NULL, NULL};
     static const fathom_clock_t clock = {world_now_us, NULL};
     uint8_t frame[16];
     const fathom_line_config_t line_config = {&uart, &clock, frame, sizeof frame, FATHOM_LINE_ECHO_AUTO,

@@ -59,7 +59,7 @@ truth_entry_t *truth_leaves(truth_t *truth, uint32_t now_us)
 static bool is_consistent(const truth_t *truth, const fathom_sample_t *sample)
 {
     const soak_facts_t *const facts = &soak_facts[truth->setting];
-    const uint16_t raw = sample->raw;
+    const uint16_t raw = (uint16_t)sample->raw;
     uint8_t kind = FATHOM_TARGET;
     if (facts->model == FATHOM_HPS167S) {
         if (raw == HPS_OVER_RANGE) kind = FATHOM_NO_TARGET;
@@ -151,7 +151,7 @@ truth_verdict_t truth_judge(truth_t *truth, const fathom_sample_t *sample, uint3
     }
     for (uint32_t n = truth->count; n-- > oldest(truth);)
         if (says(truth_at(truth, n), sample)) return TRUTH_STALE;
-    return truth_said(truth, sample->raw) ? TRUTH_PERMUTED : TRUTH_DAMAGED;
+    return truth_said(truth, (uint16_t)sample->raw) ? TRUTH_PERMUTED : TRUTH_DAMAGED;
 }
 
 bool truth_said(const truth_t *truth, uint16_t raw)

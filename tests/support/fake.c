@@ -56,6 +56,15 @@ static int fake_set_line(void *ctx, const fathom_line_settings_t *settings)
     return 1;
 }
 
+static int fake_set_break(void *ctx, bool on)
+{
+    fake_t *const fake = ctx;
+    if (!fake_sent(ctx)) return 0;
+    fake->breaks += on;
+    fake->in_break = on;
+    return 1;
+}
+
 static uint32_t fake_now_us(void *ctx)
 {
     fake_t *const fake = ctx;
@@ -68,7 +77,7 @@ void fake_init(fake_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000;
     fake->busy_until_us = fake->now_us;
-    fake->uart = (fathom_uart_t){fake_read, fake_write, fake_sent, fake_set_line, fake};
+    fake->uart = (fathom_uart_t){fake_read, fake_write, fake_sent, fake_set_line, fake_set_break, fake};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 

@@ -43,6 +43,8 @@ typedef struct {
     size_t written;
     unsigned reads;
     unsigned set_lines;
+    unsigned breaks; /* begun so far */
+    bool in_break;
     fathom_line_settings_t settings;
 
     /* What goes wrong. */

@@ -179,14 +179,14 @@ static void a_command_goes_out_at_once_when_the_pace_has_passed(void **state)
     fake_modbus_init(&fake);
     assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, 9), FATHOM_READY);
     for (unsigned n = 0; n != 3; n++) {
-        assert_int_equal(fathom_modbus_unit_read(&unit, &measure), FATHOM_PENDING);
+        assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_PENDING);
         fake_modbus_send(&fake);
-        assert_int_equal(fathom_modbus_unit_read(&unit, &measure), FATHOM_PENDING);
+        assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_PENDING);
         fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
         fake.now_us += 300000;
-        assert_int_equal(fathom_modbus_unit_read(&unit, &measure), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_ERR_NO_ANSWER);
     }
-    assert_int_equal(fathom_modbus_unit_read(&unit, &version), FATHOM_PENDING);
+    assert_int_equal(fathom_modbus_unit_ask(&unit, &version), FATHOM_PENDING);
     assert_int_equal(fake.submits, 4);
 }
 

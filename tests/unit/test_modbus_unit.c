@@ -42,7 +42,7 @@ static int set_up(void **state)
 static fathom_status_t read_after(uint32_t us, const fathom_modbus_question_t *question)
 {
     fake.now_us += us;
-    return fathom_modbus_unit_read(&unit, question);
+    return fathom_modbus_unit_ask(&unit, question);
 }
 
 static void pending_after(uint32_t us, const fathom_modbus_question_t *question)
