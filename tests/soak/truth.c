@@ -91,7 +91,7 @@ void truth_forget(truth_entry_t *entry)
 
 static bool says(const truth_entry_t *entry, const fathom_sample_t *sample)
 {
-    return entry->said[sample->probe - 1] == sample->raw;
+    return entry->said[sample->probe - 1] == (uint16_t)sample->raw;
 }
 
 /* Frame n, if it says that and was measured in time; else NULL. */
