@@ -7,6 +7,7 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
     const fathom_status_t status = fathom_dyp_answer_init(&sensor->answer, default_max_mm);
     sensor->question.values = sensor->answer.values;
     sensor->question.is_command = false;
+    sensor->question.function = 0;
     sensor->answer.unit = address;
     return status < 0 ? status : fathom_modbus_unit_init(&sensor->unit, modbus, clock, address);
 }

@@ -35,6 +35,7 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     question->backoff_us = config->backoff_us;
     question->settings = config->settings;
     question->is_command = false;
+    question->function = 0;
     sensor->sequence = 0;
     sensor->implausible = 0;
     return fathom_modbus_unit_init(&sensor->unit, config->modbus, config->clock,

@@ -219,6 +219,14 @@ void fathom_line_cancel(fathom_line_t *line, fathom_exchange_t *exchange)
     fathom_line_finish(line, link, FATHOM_ERR_CANCELLED);
 }
 
+void fathom_line_cancel_unit(fathom_line_t *line, uint8_t unit)
+{
+    for (fathom_exchange_t *x = line->head, *next; x != NULL; x = next) {
+        next = x->link.next;
+        if (x->unit == unit) fathom_line_cancel(line, x);
+    }
+}
+
 bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchange)
 {
     const fathom_exchange_t *x = line->head;

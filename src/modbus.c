@@ -6,6 +6,8 @@ static void cancel(void *ctx, fathom_modbus_request_t *request)
     fathom_line_cancel(ctx, &request->exchange);
 }
 
+static void cancel_unit(void *ctx, uint8_t unit) { fathom_line_cancel_unit(ctx, unit); }
+
 static fathom_status_t poll(void *ctx) { return fathom_line_poll(ctx); }
 
 static uint32_t due_us(void *ctx) { return fathom_line_due_us(ctx); }
@@ -17,6 +19,7 @@ fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
     fathom_modbus_t modbus;
     modbus.submit = submit;
     modbus.cancel = cancel;
+    modbus.cancel_unit = cancel_unit;
     modbus.poll = poll;
     modbus.due_us = due_us;
     modbus.ctx = line;

@@ -11,12 +11,17 @@ static uint16_t one_more(uint16_t n) { return n != UINT16_MAX ? (uint16_t)(n + 1
 
 static uint32_t now_us(const fathom_modbus_unit_t *unit) { return unit->clock->now_us(unit->clock->ctx); }
 
+uint16_t fathom_modbus_unit_name(const fathom_modbus_question_t *question)
+{
+    return (uint16_t)(question->first | (question->function != 0 ? 0x8000u : 0));
+}
+
 /* An outcome is there: for how long is the unit left alone? */
 static void back_off(fathom_modbus_unit_t *unit)
 {
     const fathom_exchange_t *const exchange = &unit->request.exchange;
     uint32_t wait_us = exchange->timeout_us;
-    if (exchange->status != FATHOM_ERR_NO_ANSWER) {
+    if (exchange->status != FATHOM_ERR_NO_ANSWER || unit->warm_us != 0) {
         unit->silences = 0;
         unit->alone_us = 0;
         return;
@@ -37,6 +42,7 @@ static fathom_status_t advance(fathom_modbus_unit_t *unit)
     const uint32_t passed_us = fathom_elapsed_us(now, unit->polled_us);
     unit->polled_us = now;
     fathom_run_down(&unit->alone_us, passed_us);
+    fathom_run_down(&unit->warm_us, passed_us);
     /* The pace counts from the last request on the wire, not from its place in a queue. */
     if (unit->state == ASKED && exchange->attempts != unit->attempts) {
         unit->attempts = exchange->attempts;
@@ -55,21 +61,33 @@ static fathom_status_t advance(fathom_modbus_unit_t *unit)
     return carrier;
 }
 
+static void describe(const fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question,
+                     fathom_modbus_message_t *message)
+{
+    fathom_modbus_read_holding_registers(message, unit->address, question->first, question->count,
+                                         question->values);
+    if (question->function == 0) return;
+    message->head[1] = question->function;
+    if (question->function != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return;
+    message->head[4] = (uint8_t)(*question->values >> 8);
+    message->head[5] = (uint8_t)*question->values;
+}
+
 static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
 {
     fathom_modbus_request_t *const request = &unit->request;
     if (unit->pause_us != 0 || (unit->alone_us != 0 && !question->is_command)) return FATHOM_PENDING;
     request->exchange.timeout_us = question->timeout_us;
     request->exchange.retries = question->retries;
-    request->exchange.settings = question->settings;
-    fathom_modbus_read_holding_registers(&request->message, unit->address, question->first, question->count,
-                                         question->values);
+    request->exchange.settings = unit->settings != NULL ? unit->settings : question->settings;
+    describe(unit, question, &request->message);
     unit->waiting = 0;
     const fathom_status_t status = unit->modbus->submit(unit->modbus->ctx, request);
     if (status == FATHOM_PENDING) {
         unit->state = ASKED;
         unit->attempts = 0;
         unit->is_command = question->is_command;
+        unit->asked = fathom_modbus_unit_name(question);
         unit->pace_us = question->pace_us;
         unit->backoff_us = question->backoff_us != 0 ? question->backoff_us : LONGEST_US;
         unit->pause_us = question->pace_us;
@@ -97,6 +115,10 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->backoff_us = 0;
     unit->alone_us = 0;
     unit->silences = 0;
+    unit->warm_us = 0;
+    unit->settings = NULL;
+    unit->asked = 0;
+    unit->setting = 0;
     unit->request.message.exception = 0;
     return FATHOM_READY;
 }
@@ -105,22 +127,36 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
  * way; the repeated question lets commands pass. */
 static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
 {
-    const bool is_waiting = unit->waiting != 0 && unit->waiting != question->first;
+    const uint16_t name = fathom_modbus_unit_name(question);
+    const bool is_waiting = unit->waiting != 0 && unit->waiting != name;
     const bool is_untaken = unit->state != IDLE && unit->is_command;
+    /* While a setting is carried out the device may be elsewhere. */
+    if (unit->setting != 0 && (unit->step & FATHOM_MODBUS_UNIT_INSIDE) == 0)
+        return question->is_command ? FATHOM_ERR_BUSY : FATHOM_PENDING;
     if (!question->is_command) return is_waiting || is_untaken ? FATHOM_PENDING : FATHOM_READY;
     if (is_waiting || is_untaken) return FATHOM_ERR_BUSY;
-    unit->waiting = question->first;
+    unit->waiting = name;
     return unit->state == ASKED ? FATHOM_PENDING : FATHOM_READY;
+}
+
+/* The present question has ended: how. */
+static fathom_status_t outcome(const fathom_modbus_unit_t *unit)
+{
+    const fathom_status_t status = (fathom_status_t)unit->request.exchange.status;
+    const bool is_warm = unit->warm_us == 0;
+    if (is_warm ||
+        (status != FATHOM_ERR_NO_ANSWER && status != FATHOM_ERR_CHECKSUM && status != FATHOM_ERR_EXCEPTION))
+        return status;
+    return FATHOM_ERR_WARMING_UP;
 }
 
 fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
 {
-    const uint8_t *const head = unit->request.message.head;
     const fathom_status_t carrier = advance(unit);
-    if (unit->state != IDLE && head[2] * 256u + head[3] == question->first) {
+    if (unit->state != IDLE && unit->asked == fathom_modbus_unit_name(question)) {
         if (unit->state == ASKED) return FATHOM_PENDING;
         unit->state = IDLE;
-        return (fathom_status_t)unit->request.exchange.status;
+        return outcome(unit);
     }
     if (carrier < 0) return carrier; /* nothing could be asked; not to say so would let a caller wait */
     const fathom_status_t status = turn(unit, question);
@@ -134,7 +170,23 @@ void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit)
     if (unit->state == ASKED) unit->modbus->cancel(unit->modbus->ctx, &unit->request);
     unit->state = IDLE;
     unit->waiting = 0;
+    if (unit->setting == 0) return;
+    unit->setting = 0;
+    unit->address = unit->home_address;
+    unit->settings = unit->home_settings;
 }
+
+void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us)
+{
+    fathom_modbus_unit_cancel(unit);
+    unit->polled_us = now_us(unit);
+    unit->warm_us = warm_us;
+    unit->pause_us = 0;
+    unit->alone_us = 0;
+    unit->silences = 0;
+}
+
+bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit) { return unit->warm_us != 0; }
 
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
 {

@@ -213,6 +213,9 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_exchange_t *excha
  */
 void fathom_line_cancel(fathom_line_t *line, fathom_exchange_t *exchange);
 
+/* The same for every exchange with this unit. */
+void fathom_line_cancel_unit(fathom_line_t *line, uint8_t unit);
+
 /* Is it queued or in flight? */
 bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchange);
 

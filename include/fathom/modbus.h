@@ -16,9 +16,9 @@ extern "C" {
 
 /*
  * A request in the caller's memory. Fill in the message (modbus_rtu.h), exchange.timeout_us,
- * exchange.retries and exchange.settings (NULL: as the line is), submit it, and leave it alone until exchange.status is no longer FATHOM_PENDING; what it
- * may then be stands at fathom_exchange_t, as does the time of the answer, exchange.link.heard_us. The rest of
- * the exchange is the carrier's.
+ * exchange.retries and exchange.settings (NULL: as the line is), submit it, and leave it alone until
+ * exchange.status is no longer FATHOM_PENDING; what it may then be stands at fathom_exchange_t, as does the time of
+ * the answer, exchange.link.heard_us. The rest of the exchange is the carrier's.
  */
 typedef struct {
     fathom_exchange_t exchange; /* first, so that one pointer is both */
@@ -31,6 +31,7 @@ typedef struct {
  *           FATHOM_ERR_CAPACITY   the carrier's frame buffer is too small for the request or its answer
  *           FATHOM_ERR_BUSY       this request is under way already
  * cancel    Ends a request with FATHOM_ERR_CANCELLED; its memory is the caller's again.
+ * cancel_unit  The same for every request to this unit that has not ended: it is no longer where it was.
  * poll      Does all that can be done without waiting. FATHOM_PENDING, or FATHOM_ERR_PORT: the carrier's port is
  *           broken, and what was under way has ended with that.
  * due_us    How long until poll has something to do if no byte comes; FATHOM_NO_DEADLINE.
@@ -38,6 +39,7 @@ typedef struct {
 typedef struct {
     fathom_status_t (*submit)(void *ctx, fathom_modbus_request_t *request);
     void (*cancel)(void *ctx, fathom_modbus_request_t *request);
+    void (*cancel_unit)(void *ctx, uint8_t unit);
     fathom_status_t (*poll)(void *ctx);
     uint32_t (*due_us)(void *ctx);
     void *ctx;

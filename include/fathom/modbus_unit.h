@@ -20,7 +20,8 @@ extern "C" {
  * thing that it says ends that. A command is asked at once all the same.
  *
  * There are two kinds of question. The repeated one (a measurement) comes again and again, and nobody minds
- * if an outcome is replaced by a newer one. A command is asked once, and its outcome waits for whoever asked.
+ * if an outcome is replaced by a newer one. A command is asked once, and its outcome waits for whoever asked. Both
+ * may be reads or writes; modbus_setting.h has the settings of a device, which take several of them.
  */
 typedef struct {
     uint32_t timeout_us; /* first byte of the answer */
@@ -28,11 +29,13 @@ typedef struct {
                             line sends them, and the next one that much after the last of them */
     uint32_t backoff_us; /* the longest that a dead unit is left alone; 0: 16 time-outs; up to 2^31 */
     const fathom_line_settings_t *settings; /* fathom_exchange_t.settings */
-    uint16_t *values;                       /* count registers, the driver's; written on FATHOM_READY only */
-    uint16_t first; /* address of the first register; tells the questions of a driver apart; not 0 */
-    uint8_t count;  /* 1..125 */
+    uint16_t *values; /* count registers, the driver's: those of a read are written on FATHOM_READY only */
+    uint16_t first; /* address of the first register, 1..0x7FFF; with the function it tells the questions of a
+                         driver apart */
+    uint8_t count;  /* 1..125; 1..123 to write many */
     uint8_t retries;
     bool is_command;
+    uint8_t function; /* 0: FATHOM_MODBUS_READ_HOLDING_REGISTERS; or one of the two that write */
 } fathom_modbus_question_t;
 
 typedef struct {
@@ -44,16 +47,29 @@ typedef struct {
     uint32_t backoff_us;
     uint32_t pause_us; /* until the unit may be asked again */
     uint32_t alone_us; /* until a unit that does not answer is asked the repeated question again */
+    uint32_t warm_us;  /* after power-on: until silence is an error */
     uint32_t heard_us; /* the clock when the last answer came */
-    uint16_t answers;  /* counters; each stops at 65535. The other outcomes: */
+    const fathom_line_settings_t
+        *settings;    /* not NULL: instead of a question's, since the device has changed its */
+    uint16_t answers; /* counters; each stops at 65535. The other outcomes: */
     uint16_t failures;
     uint8_t address; /* 1..254 */
     uint8_t state;
     uint8_t attempts; /* of the present question that were seen to leave */
     uint8_t silences; /* outcomes in a row that were FATHOM_ERR_NO_ANSWER, as far as they matter */
     bool is_command;  /* the present question */
-    uint16_t waiting; /* the first register of a command that waits for its turn; 0: none */
+    uint16_t asked;   /* which question is the present one; 0: none yet */
+    uint16_t waiting; /* the command that waits for its turn; 0: none */
+
+    /* modbus_setting.h: */
+    const fathom_line_settings_t *home_settings; /* where the device was, while a setting moves it */
+    uint16_t setting;                            /* the question that is carried out; 0: none */
+    uint8_t home_address;
+    uint8_t step;   /* FATHOM_MODBUS_UNIT_INSIDE: what is asked now belongs to the setting */
+    int8_t outcome; /* of the write */
 } fathom_modbus_unit_t;
+
+enum { FATHOM_MODBUS_UNIT_INSIDE = 8 };
 
 /* modbus and clock outlive the unit. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer is NULL or the address
  * is 0 or 255, which ask everybody. */
@@ -63,14 +79,26 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
 /*
  * Asks the question, or goes on with it: call it with the same question until it is not FATHOM_PENDING.
  * FATHOM_READY or the error with which the request ended (fathom_exchange_t), each outcome once.
- * FATHOM_ERR_BUSY: another command is not finished, or nobody has taken its outcome.
+ * FATHOM_ERR_BUSY: another command or setting is not finished, or nobody has taken its outcome.
+ * FATHOM_ERR_WARMING_UP: so soon after power-on the unit was silent, was not understood or refused.
  * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: as fathom_modbus_t.poll,
  * and nothing was asked.
  */
 fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question);
 
-/* Forgets what was asked and any outcome; a request under way is cancelled. */
+/* What tells the questions of one driver apart; not 0. */
+uint16_t fathom_modbus_unit_name(const fathom_modbus_question_t *question);
+
+/* Forgets what was asked and any outcome; a request under way is cancelled. A setting that was under way may hold or
+ * not; the unit is asked where it was before. */
 void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);
+
+/* The device gets power now: what was asked is forgotten, and for warm_us (up to 2^31) its silence, damaged answers
+ * and exceptions are FATHOM_ERR_WARMING_UP. */
+void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us);
+
+/* Is it so soon after power-on? As of the last call. */
+bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit);
 
 /* How long until something can happen without a new byte, given that the unit is asked again and again. */
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit);

@@ -12,7 +12,7 @@ from common import files, main, read
 LAYERS = [
     ('words', 'status hal version sample'),
     ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol'),
-    ('engines', 'line stream modbus modbus_client modbus_unit dyp_client'),
+    ('engines', 'line stream modbus modbus_client modbus_unit modbus_setting dyp_client'),
     ('sensors', 'sensor wait dyp dyp_auto dyp_modbus a16_auto a16_modbus a05_auto a05_modbus a05_dyp hps167s'),
     ('all', 'fathom'),
 ]

@@ -50,6 +50,14 @@ static void fake_cancel(void *ctx, fathom_modbus_request_t *request)
     end(fake, FATHOM_ERR_CANCELLED);
 }
 
+static void fake_cancel_unit(void *ctx, uint8_t unit)
+{
+    fake_modbus_t *const fake = ctx;
+    fake->unit_cancels++;
+    fake->cancelled_unit = unit;
+    if (fake->request != NULL && fake->request->message.head[0] == unit) end(fake, FATHOM_ERR_CANCELLED);
+}
+
 static fathom_status_t fake_poll(void *ctx)
 {
     fake_modbus_t *const fake = ctx;
@@ -78,7 +86,7 @@ void fake_modbus_init(fake_modbus_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 5000;
     fake->due_us = FATHOM_NO_DEADLINE;
-    fake->modbus = (fathom_modbus_t){fake_submit, fake_cancel, fake_poll, fake_due_us, fake};
+    fake->modbus = (fathom_modbus_t){fake_submit, fake_cancel, fake_cancel_unit, fake_poll, fake_due_us, fake};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 

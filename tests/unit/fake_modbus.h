@@ -35,6 +35,8 @@ typedef struct {
     uint8_t log[FAKE_MODBUS_LOG][6]; /* heads of all that was submitted: unit, function, first, count */
     unsigned submits;
     unsigned cancels;
+    unsigned unit_cancels;
+    uint8_t cancelled_unit; /* the last one */
     unsigned polls;
 } fake_modbus_t;
 

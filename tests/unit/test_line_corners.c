@@ -173,8 +173,8 @@ static void a_command_goes_out_at_once_when_the_pace_has_passed(void **state)
 {
     static fake_modbus_t fake;
     static fathom_modbus_unit_t unit;
-    const fathom_modbus_question_t measure = {300000, 100000, 0, NULL, values, 0x0100, 1, 0, false};
-    const fathom_modbus_question_t version = {1000000, 100000, 0, NULL, values, 0x0001, 3, 0, true};
+    const fathom_modbus_question_t measure = {300000, 100000, 0, NULL, values, 0x0100, 1, 0, false, 0};
+    const fathom_modbus_question_t version = {1000000, 100000, 0, NULL, values, 0x0001, 3, 0, true, 0};
     (void)state;
     fake_modbus_init(&fake);
     assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, 9), FATHOM_READY);

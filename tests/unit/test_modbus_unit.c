@@ -16,9 +16,9 @@ static fathom_modbus_unit_t unit;
 static uint16_t values[11];
 
 /* As drivers use them: one repeated question, and two commands. */
-static const fathom_modbus_question_t measure = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0100, 1, 2, false};
-static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true};
-static const fathom_modbus_question_t details = {1000000, PACE_US, 0, NULL, values, 0x0003, 11, 0, true};
+static const fathom_modbus_question_t measure = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0100, 1, 2, false, 0};
+static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true, 0};
+static const fathom_modbus_question_t details = {1000000, PACE_US, 0, NULL, values, 0x0003, 11, 0, true, 0};
 
 static const uint16_t one_value[] = {754};
 static const uint16_t three_values[] = {0x1409, 0x1B02, 0x0100};
@@ -298,7 +298,7 @@ static void a_second_command_is_told_busy_until_the_first_was_taken(void **state
 
 static void another_repeated_question_replaces_the_first_when_that_has_ended(void **state)
 {
-    const fathom_modbus_question_t other = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false};
+    const fathom_modbus_question_t other = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false, 0};
     (void)state;
     ask_and_send(&measure);
     pending_after(10, &other);
@@ -309,8 +309,8 @@ static void another_repeated_question_replaces_the_first_when_that_has_ended(voi
 
 static void registers_with_one_equal_byte_are_two_questions(void **state)
 {
-    const fathom_modbus_question_t high = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0000, 1, 0, false};
-    const fathom_modbus_question_t low = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false};
+    const fathom_modbus_question_t high = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0000, 1, 0, false, 0};
+    const fathom_modbus_question_t low = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false, 0};
     (void)state;
     ask_and_send(&version); /* 0001 */
     fake_modbus_answer(&fake, three_values, 3);

@@ -17,7 +17,7 @@ static fathom_modbus_unit_t unit;
 static uint16_t values[3];
 
 static fathom_modbus_question_t measure;
-static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true};
+static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true, 0};
 
 static const uint16_t one_value[] = {754};
 static const uint16_t three_values[] = {0x1409, 0x1B02, 0x0100};
@@ -26,7 +26,7 @@ static void set_up_at(uint32_t now_us)
 {
     fake_modbus_init(&fake);
     fake.now_us = now_us;
-    measure = (fathom_modbus_question_t){TIMEOUT_US, PACE_US, 0, NULL, values, 0x0100, 1, 0, false};
+    measure = (fathom_modbus_question_t){TIMEOUT_US, PACE_US, 0, NULL, values, 0x0100, 1, 0, false, 0};
     memset(&unit, 0x5A, sizeof unit);
     assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, UNIT), FATHOM_READY);
 }

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_MODBUS_SETTING_H
+#define FATHOM_MODBUS_SETTING_H
+
+#include "fathom/modbus_unit.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A setting of a device, from asking what it is to having seen that it is what was wanted. The set functions of the
+ * drivers are built on it, and share these rules:
+ *
+ *  1. The device is asked for the value that it has. If that is the one, nothing is written: flash wears.
+ *  2. Where the setting is its address, the new address is asked whether somebody is there; that costs a time-out.
+ *  3. The value is written, once: a write is never retried.
+ *  4. The driver follows the device to its new address or line settings. Requests of others that wait for the unit
+ *     end with FATHOM_ERR_CANCELLED.
+ *  5. The device is asked again; where that fails at the new place, at the old one too.
+ *
+ * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING.
+ */
+typedef struct {
+    /* A command of the driver that tells the present value: called until it is not FATHOM_PENDING. NULL: it cannot be
+     * read, and the acknowledgement is all there is. */
+    fathom_status_t (*read)(void *driver, uint32_t *value);
+    void *driver;
+    const fathom_modbus_question_t *write; /* a command */
+    uint32_t value;                        /* what read is to tell in the end */
+    /* Where the device is once it has taken the value. The settings are kept by the caller as long as the unit. */
+    const fathom_line_settings_t *settings; /* NULL: as before */
+    uint8_t address;                        /* 0: as before */
+} fathom_modbus_setting_t;
+
+/*
+ * To be called with the same setting until it is not FATHOM_PENDING:
+ *   FATHOM_READY            it was so already, or is now, and was read back; where there is nothing to read back, it
+ *                           was acknowledged
+ *   FATHOM_ERR_IN_USE       somebody answers at the new address already; nothing was written
+ *   FATHOM_ERR_UNCONFIRMED  it was written, and then the device could not be read, at the new place nor at the old: it
+ *                           is at one of the two. The driver goes on asking at the old one
+ *   FATHOM_ERR_MALFORMED    it acknowledged the value, and says afterwards that it has another
+ *   FATHOM_ERR_BUSY         another command or setting is not finished
+ *   any other               of fathom_modbus_unit_ask: nothing was written, or the device refused it (exception), or
+ *                           the write failed and the device says that it has the value that it had
+ */
+fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

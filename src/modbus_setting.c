@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/modbus_setting.h"
+
+enum { LOOK = 0, LOOK_THERE = 1, WRITE = 2, CONFIRM_THERE = 3, CONFIRM_HERE = 4, STEP = 7 };
+enum { INSIDE = FATHOM_MODBUS_UNIT_INSIDE };
+
+static void go_there(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
+{
+    if (setting->address != 0) unit->address = setting->address;
+    if (setting->settings != NULL) unit->settings = setting->settings;
+}
+
+static void go_home(fathom_modbus_unit_t *unit)
+{
+    unit->address = unit->home_address;
+    unit->settings = unit->home_settings;
+}
+
+static fathom_status_t end(fathom_modbus_unit_t *unit, fathom_status_t status)
+{
+    unit->setting = 0;
+    return status;
+}
+
+static bool moves(const fathom_modbus_setting_t *setting)
+{
+    return setting->address != 0 || setting->settings != NULL;
+}
+
+/* After the first look: is there anything to do? */
+static fathom_status_t looked(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                              fathom_status_t status, uint32_t value)
+{
+    if (status < 0 || value == setting->value) return end(unit, status);
+    unit->step = WRITE;
+    if (setting->address != 0) {
+        unit->step = LOOK_THERE;
+        go_there(unit, setting);
+    }
+    return FATHOM_PENDING;
+}
+
+/* At the new address: silence is what is hoped for. */
+static fathom_status_t looked_there(fathom_modbus_unit_t *unit, fathom_status_t status)
+{
+    go_home(unit);
+    unit->step = WRITE;
+    if (status == FATHOM_ERR_NO_ANSWER) return FATHOM_PENDING;
+    const bool is_heard = status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION ||
+                          status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+    return end(unit, is_heard ? FATHOM_ERR_IN_USE : status);
+}
+
+static bool never_left(fathom_status_t status)
+{
+    return status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_CAPACITY || status == FATHOM_ERR_UNSUPPORTED;
+}
+
+static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                               fathom_status_t status)
+{
+    if (setting->read == NULL || status == FATHOM_ERR_EXCEPTION || never_left(status))
+        return end(unit, status);
+    unit->outcome = (int8_t)status;
+    unit->step = CONFIRM_HERE;
+    if (moves(setting)) {
+        unit->step = CONFIRM_THERE;
+        unit->modbus->cancel_unit(unit->modbus->ctx, unit->address);
+        go_there(unit, setting);
+    }
+    return FATHOM_PENDING;
+}
+
+static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                                 fathom_status_t status, uint32_t value)
+{
+    if (status == FATHOM_READY && value == setting->value) return end(unit, FATHOM_READY);
+    if (unit->step == CONFIRM_THERE) {
+        unit->step = CONFIRM_HERE;
+        go_home(unit);
+        return FATHOM_PENDING;
+    }
+    if (status < 0) return end(unit, FATHOM_ERR_UNCONFIRMED);
+    return end(unit, unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_MALFORMED);
+}
+
+static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                             fathom_status_t status, uint32_t value)
+{
+    switch (unit->step) {
+    case LOOK:
+        return looked(unit, setting, status, value);
+    case LOOK_THERE:
+        return looked_there(unit, status);
+    case WRITE:
+        return written(unit, setting, status);
+    default:
+        return confirmed(unit, setting, status, value);
+    }
+}
+
+fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
+{
+    const uint16_t name = fathom_modbus_unit_name(setting->write);
+    fathom_status_t status;
+    if (unit->setting == 0) {
+        unit->setting = name;
+        unit->step = setting->read != NULL ? LOOK : WRITE;
+        unit->home_address = unit->address;
+        unit->home_settings = unit->settings;
+    } else if (unit->setting != name) {
+        return FATHOM_ERR_BUSY;
+    }
+    do {
+        uint32_t value = 0;
+        unit->step |= INSIDE;
+        status = unit->step == (WRITE | INSIDE) ? fathom_modbus_unit_ask(unit, setting->write)
+                                                : setting->read(setting->driver, &value);
+        unit->step &= STEP;
+        if (status == FATHOM_PENDING) return status;
+        status = go_on(unit, setting, status, value);
+    } while (status == FATHOM_PENDING);
+    return status;
+}
