@@ -50,6 +50,55 @@ fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor)
     return fathom_dyp_modbus_sensor(&sensor->base);
 }
 
+void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
+
+void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+/* The driver's seam to the line while the address is being set, and at no other time: so nothing else can send the
+ * command. */
+static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request)
+{
+    const uint8_t *const head = request->message.head;
+    if (head[1] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return fathom_dyp_client_submit(ctx, request);
+    return fathom_dyp_client_set_every_address(ctx, request, head[5]);
+}
+
+/* Measures the first probe; whoever answers is at the address that was asked. */
+static fathom_status_t read_address(void *driver, uint32_t *address)
+{
+    fathom_a05_dyp_t *const sensor = driver;
+    uint16_t distance = 0;
+    const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, FATHOM_DYP_FIRST_REGISTER, &distance);
+    *address = sensor->base.unit.address;
+    return status;
+}
+
+fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address)
+{
+    uint16_t value = address;
+    fathom_modbus_question_t write = sensor->base.question;
+    fathom_modbus_setting_t setting;
+    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    write.timeout_us = ONE_PROBE_TIMEOUT_US;
+    write.values = &value;
+    write.first = FATHOM_DYP_REGISTER_ADDRESS;
+    write.count = 1;
+    write.retries = 0;
+    write.is_command = true;
+    write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    setting.read = read_address;
+    setting.driver = sensor;
+    setting.write = &write;
+    setting.value = address;
+    setting.settings = NULL;
+    setting.address = address;
+    sensor->client.submit = submit_either;
+    const fathom_status_t status = fathom_modbus_set(&sensor->base.unit, &setting);
+    sensor->client = fathom_dyp_client(sensor->client.ctx);
+    sensor->base.answer.unit = sensor->base.unit.address;
+    return status;
+}
+
 fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *line, uint8_t *address)
 {
     fathom_modbus_request_t *const request = &find->request;

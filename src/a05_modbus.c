@@ -40,6 +40,20 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
 
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
+void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
+
+fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address)
+{
+    return fathom_dyp_modbus_address(&sensor->base, address);
+}
+
+fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address)
+{
+    return fathom_dyp_modbus_set_address(&sensor->base, address);
+}
+
 fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)
 {
     return fathom_dyp_modbus_sensor(&sensor->base);

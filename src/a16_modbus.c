@@ -33,6 +33,8 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
 
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
+void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
+
 fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor)
 {
     return fathom_dyp_modbus_sensor(&sensor->base);

@@ -14,6 +14,97 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
 
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
 
+void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor)
+{
+    sensor->answer.left = 0;
+    fathom_modbus_unit_power_on(&sensor->unit, FATHOM_DYP_START_US);
+}
+
+/* ---- commands ---- */
+
+static void describe(const fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value,
+                     fathom_modbus_question_t *question)
+{
+    *question = sensor->question; /* pace, back-off and line settings are the same */
+    question->timeout_us = FATHOM_DYP_COMMAND_TIMEOUT_US;
+    question->values = value;
+    question->first = address;
+    question->count = 1;
+    question->is_command = true;
+}
+
+fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
+{
+    fathom_modbus_question_t question;
+    describe(sensor, address, &sensor->setting, &question);
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &question);
+    if (status == FATHOM_READY) *value = sensor->setting;
+    return status;
+}
+
+fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address)
+{
+    uint16_t value = 0;
+    const fathom_status_t status = fathom_dyp_modbus_get(sensor, FATHOM_DYP_REGISTER_ADDRESS, &value);
+    if (status != FATHOM_READY) return status;
+    if (value > UINT8_MAX) return FATHOM_ERR_MALFORMED;
+    *address = (uint8_t)value;
+    return status;
+}
+
+/* What a setting reads: which register of which sensor. */
+typedef struct {
+    fathom_dyp_modbus_t *sensor;
+    uint16_t address;
+} place_t;
+
+static fathom_status_t read(void *driver, uint32_t *value)
+{
+    const place_t *const place = driver;
+    uint16_t found = 0;
+    const fathom_status_t status = fathom_dyp_modbus_get(place->sensor, place->address, &found);
+    *value = found;
+    return status;
+}
+
+static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value, uint8_t new_address,
+                           bool is_readable)
+{
+    place_t place = {sensor, address};
+    fathom_modbus_question_t write;
+    fathom_modbus_setting_t setting;
+    describe(sensor, address, &value, &write);
+    write.retries = 0;
+    write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    setting.read = is_readable ? read : NULL;
+    setting.driver = &place;
+    setting.write = &write;
+    setting.value = value;
+    setting.settings = NULL;
+    setting.address = new_address;
+    return fathom_modbus_set(&sensor->unit, &setting);
+}
+
+fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
+{
+    return set(sensor, address, value, 0, true);
+}
+
+fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
+{
+    return set(sensor, address, value, 0, false);
+}
+
+fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address)
+{
+    if (address == FATHOM_MODBUS_BROADCAST || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    const fathom_status_t status = set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address, address, true);
+    sensor->answer.unit = sensor->unit.address;
+    return status;
+}
+
+/* ---- measuring ---- */
+
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_dyp_modbus_t *const sensor = ctx;

@@ -13,7 +13,10 @@ static uint32_t now_us(const fathom_modbus_unit_t *unit) { return unit->clock->n
 
 uint16_t fathom_modbus_unit_name(const fathom_modbus_question_t *question)
 {
-    return (uint16_t)(question->first | (question->function != 0 ? 0x8000u : 0));
+    uint16_t name = question->first;
+    if (question->function != 0) name |= 0x8000u;
+    if (question->is_command) name |= 0x4000u;
+    return name;
 }
 
 /* An outcome is there: for how long is the unit left alone? */

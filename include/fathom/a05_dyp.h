@@ -61,6 +61,29 @@ void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor);
 /* For fathom_poll. */
 fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor);
 
+/* To be called when the sensor gets power: for 1.5 s its silence is FATHOM_ERR_WARMING_UP (not in the datasheet). */
+void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
+
+/*
+ * Gives EVERY A05 that hears it this address: the command (A05 2(3)5) has the new address in it and no old one. Have
+ * one unit on the line; where there are several, fathom_a05_modbus_set_address reaches one of them.
+ *
+ * Call it, with the loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. First the
+ * driver's own address is asked, then the new one whether somebody is there; the command is sent once; then the new
+ * address is asked. Some 2 s.
+ *   FATHOM_READY            the device was read at the address, where the driver asks from now on
+ *   FATHOM_ERR_ARGUMENT     0 or 255
+ *   FATHOM_ERR_IN_USE       somebody answers there already; nothing was sent
+ *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers at neither address: it is at one of the two
+ *   FATHOM_ERR_BUSY         another command is not finished
+ *   others                  of fathom_poll: nothing was changed
+ * Its answer equals the request, and so counts for nothing here: only the reading at the new address does.
+ */
+fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address);
+
+/* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
+void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor);
+
 /* ---- which address does the one A05 on this line have? ---- */
 
 /* All members are find's own. Set it to zero before the first call. */

@@ -58,6 +58,30 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor);
 
+/* To be called when the sensor gets power: for 1.5 s its silence is FATHOM_ERR_WARMING_UP (not in the datasheet). */
+void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
+
+/*
+ * The address, register 0x0200 (A05 3(3)), read and set. Each asks the device and returns at once: call it, with the
+ * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. An answer takes up to 1 s, a
+ * change some 3 s, since the new address is asked first whether somebody is there.
+ *
+ * address: FATHOM_READY with *address, or an error of fathom_poll.
+ * set_address: 1..254. The driver then asks at the new address. FATHOM_READY: the device was read there. Else, with
+ * the driver at the old address:
+ *   FATHOM_ERR_ARGUMENT     0 or 255
+ *   FATHOM_ERR_IN_USE       somebody answers there already; nothing was changed
+ *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers at neither: it is at one of the two
+ *   FATHOM_ERR_BUSY         another command is not finished
+ *   others                  of fathom_poll: nothing was changed
+ * Requests of others that wait for the old address end with FATHOM_ERR_CANCELLED.
+ */
+fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address);
+fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
+
+/* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
+void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);
+
 /* For fathom_poll. */
 fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor);
 

@@ -20,6 +20,7 @@ extern "C" {
  *   FATHOM_ERR_EXCEPTION  it refused; base.unit.request.message.exception has the number
  *   FATHOM_ERR_MALFORMED  it answered something else, or a distance outside the window
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ * The other registers are in a16_settings.h.
  */
 
 /* From one request to the next, at least. The datasheet gives 120 ms for a measurement (A16 3(2)). */
@@ -57,6 +58,9 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
 
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor);
+
+/* To be called when the sensor gets power: for 1.5 s its silence is FATHOM_ERR_WARMING_UP (not in the datasheet). */
+void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor);
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor);

@@ -3,7 +3,7 @@
 #define FATHOM_DYP_MODBUS_H
 
 #include "fathom/dyp.h"
-#include "fathom/modbus_unit.h"
+#include "fathom/modbus_setting.h"
 #include "fathom/sensor.h"
 
 #ifdef __cplusplus
@@ -16,8 +16,17 @@ typedef struct {
     fathom_modbus_unit_t unit;
     fathom_modbus_question_t question;
     fathom_dyp_answer_t answer;
-    uint8_t probes; /* bit probe - 1: wanted of those that are read */
+    uint8_t probes;   /* bit probe - 1: wanted of those that are read */
+    uint16_t setting; /* a register that a command reads */
 } fathom_dyp_modbus_t;
+
+/* Both sensors have their address here (A05 3(3), A16 6(3)). */
+enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
+
+/* Time-out of a command, and how long after power-on silence is no error: data comes after some 900 ms, as is known
+ * of sister models; not in the datasheets. */
+#define FATHOM_DYP_COMMAND_TIMEOUT_US 1000000ul
+#define FATHOM_DYP_START_US           1500000ul
 
 /* The caller has set the question and the probes, and values, window, model and first of the answer.
  * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or a window that is upside down. */
@@ -26,6 +35,21 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
 
 /* Cancels what is under way. */
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor);
+
+/* The sensor gets power now: for 1.5 s its silence is FATHOM_ERR_WARMING_UP. */
+void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
+
+/*
+ * Commands, to be called until they are not FATHOM_PENDING. get: FATHOM_READY with *value, or the errors of
+ * fathom_modbus_unit_ask; address: also FATHOM_ERR_MALFORMED, where the register says more than 255. set: as
+ * fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT.
+ * write: where nothing can be read back; FATHOM_READY is the acknowledgement.
+ */
+fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
+fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
+fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
+fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address);
+fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address);
 
 /* For fathom_poll and fathom_due_us. A value that is not plausible is refused alone: the CRC vouches
  * for its place. */

@@ -8,6 +8,8 @@
 #include "fathom/a05_modbus.h"
 #include "fathom/a16_auto.h"
 #include "fathom/a16_modbus.h"
+#include "fathom/a16_rs232.h"
+#include "fathom/a16_settings.h"
 #include "fathom/hps167s.h"
 #include "fathom/modbus_client.h"
 #include "fathom/sensor.h"

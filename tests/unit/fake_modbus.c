@@ -68,7 +68,7 @@ static fathom_status_t fake_poll(void *ctx)
     if (fake->is_sent) request->exchange.attempts++;
     fake->is_sent = false;
     if (fake->ends == FATHOM_PENDING) return fake->carrier;
-    if (fake->ends == FATHOM_READY) {
+    if (fake->ends == FATHOM_READY && request->message.head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) {
         assert_int_equal(request->message.head[5], fake->answer_count);
         memcpy(request->message.values, fake->answer, fake->answer_count * sizeof *fake->answer);
     }
@@ -86,7 +86,8 @@ void fake_modbus_init(fake_modbus_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 5000;
     fake->due_us = FATHOM_NO_DEADLINE;
-    fake->modbus = (fathom_modbus_t){fake_submit, fake_cancel, fake_cancel_unit, fake_poll, fake_due_us, fake};
+    fake->modbus =
+        (fathom_modbus_t){fake_submit, fake_cancel, fake_cancel_unit, fake_poll, fake_due_us, fake};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 
@@ -100,6 +101,13 @@ void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t cou
 {
     fake->answer = values;
     fake->answer_count = count;
+    fake_modbus_fail(fake, FATHOM_READY);
+}
+
+void fake_modbus_acknowledge(fake_modbus_t *fake)
+{
+    assert_non_null(fake->request);
+    assert_int_not_equal(fake->request->message.head[1], FATHOM_MODBUS_READ_HOLDING_REGISTERS);
     fake_modbus_fail(fake, FATHOM_READY);
 }
 

@@ -48,6 +48,7 @@ void fake_modbus_send(fake_modbus_t *fake);
 /* The next poll ends the request: with an answer of `count` registers, which must be as many as were asked, with
  * an exception, or with another error. A request that was not sent goes out in the same poll. */
 void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t count);
+void fake_modbus_acknowledge(fake_modbus_t *fake); /* a write */
 void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception);
 void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status);
 

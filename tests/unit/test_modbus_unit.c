@@ -16,7 +16,8 @@ static fathom_modbus_unit_t unit;
 static uint16_t values[11];
 
 /* As drivers use them: one repeated question, and two commands. */
-static const fathom_modbus_question_t measure = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0100, 1, 2, false, 0};
+static const fathom_modbus_question_t measure = {TIMEOUT_US, PACE_US, 0, NULL,  values,
+                                                 0x0100,     1,       2, false, 0};
 static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true, 0};
 static const fathom_modbus_question_t details = {1000000, PACE_US, 0, NULL, values, 0x0003, 11, 0, true, 0};
 

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/a16_rs232.h"
+
+static uint32_t now_us(const fathom_a16_rs232_t *rs232)
+{
+    const fathom_clock_t *const clock = rs232->modbus->base.unit.clock;
+    return clock->now_us(clock->ctx);
+}
+
+void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbus,
+                           fathom_a16_auto_t *automatic)
+{
+    rs232->modbus = modbus;
+    rs232->automatic = automatic;
+    rs232->since_us = 0;
+    rs232->is_listening = false;
+}
+
+static bool may_hold(fathom_status_t status)
+{
+    return status == FATHOM_READY || status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM ||
+           status == FATHOM_ERR_MALFORMED || status == FATHOM_ERR_ECHO;
+}
+
+static bool is_since(const fathom_a16_rs232_t *rs232, uint32_t time_us)
+{
+    return fathom_elapsed_us(time_us, rs232->since_us) <= INT32_MAX;
+}
+
+static fathom_status_t hear(const fathom_a16_rs232_t *rs232, fathom_sample_t *sample)
+{
+    const fathom_sensor_t automatic = fathom_a16_auto_sensor(rs232->automatic);
+    return fathom_poll(&automatic, sample);
+}
+
+fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample)
+{
+    fathom_sample_t heard;
+    fathom_status_t status;
+    if (!rs232->is_listening) {
+        status = fathom_a16_set_operating_mode(rs232->modbus, FATHOM_A16_AUTOMATIC);
+        if (status == FATHOM_PENDING || !may_hold(status)) return status;
+        rs232->is_listening = true;
+        rs232->since_us = now_us(rs232);
+    }
+    status = hear(rs232, &heard);
+    /* A frame from before the command may have waited to be taken; it proves nothing. */
+    if (status == FATHOM_READY && is_since(rs232, heard.time_us)) {
+        *sample = heard;
+    } else if (status != FATHOM_ERR_PORT) {
+        if (fathom_elapsed_us(now_us(rs232), rs232->since_us) < FATHOM_A16_RS232_RETURN_US)
+            return FATHOM_PENDING;
+        status = FATHOM_ERR_UNCONFIRMED;
+    }
+    rs232->is_listening = false;
+    return status;
+}
+
+uint32_t fathom_a16_rs232_due_us(const fathom_a16_rs232_t *rs232)
+{
+    if (!rs232->is_listening) return fathom_modbus_unit_due_us(&rs232->modbus->base.unit);
+    const fathom_sensor_t automatic = fathom_a16_auto_sensor(rs232->automatic);
+    const uint32_t due_us = fathom_due_us(&automatic, 1);
+    const uint32_t passed_us = fathom_elapsed_us(now_us(rs232), rs232->since_us);
+    const uint32_t left_us =
+        passed_us < FATHOM_A16_RS232_RETURN_US ? FATHOM_A16_RS232_RETURN_US - passed_us : 0;
+    return left_us < due_us ? left_us : due_us;
+}
