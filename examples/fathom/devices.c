@@ -42,10 +42,21 @@ void device_a05_dyp(device_t *device, const device_settings_t *settings)
     make_a05(device, settings, FATHOM_SIM_A05_DYP);
 }
 
+/* As command #9 counts them; 0: the default. */
+static uint8_t baud_code(uint32_t baud)
+{
+    static const uint32_t rates[] = {19200, 57600, 115200, 230400};
+    for (uint8_t i = 0; i != sizeof rates / sizeof rates[0]; i++)
+        if (rates[i] == baud) return (uint8_t)(i + 1);
+    return 0;
+}
+
 void device_hps167s(device_t *device, const device_settings_t *settings)
 {
-    const fathom_sim_hps167s_config_t config = {
-        .unit = settings->address, .seed = settings->seed, .scene = settings->scene};
+    const fathom_sim_hps167s_config_t config = {.unit = settings->address,
+                                                .baud_code = baud_code(settings->baud),
+                                                .seed = settings->seed,
+                                                .scene = settings->scene};
     fathom_sim_hps167s_init(&device->model.hps167s, &config);
     device->base = &device->model.hps167s.device;
 }

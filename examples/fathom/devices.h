@@ -8,6 +8,7 @@
 
 typedef struct {
     uint8_t address;
+    uint32_t baud; /* 0: the factory's; only a sensor that can be set to another rate looks at it */
     uint32_t seed;
     fathom_sim_scene_t scene;
 } device_settings_t;

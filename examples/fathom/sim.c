@@ -5,31 +5,43 @@
 
 #include "command.h"
 #include "events.h"
-#include "options.h"
 #include "sim/pty.h"
+#include "sim_help.h"
 #include "sim_options.h"
+#include "sim_report.h"
 
 typedef struct {
     sim_options_t options;
     fathom_sim_line_t line;
     fathom_sim_pty_t pty;
-    device_t device;
-    fathom_sim_fault_t fault;
+    device_t devices[SIM_DEVICES];
+    fathom_sim_fault_t faults[SIM_DEVICES];
 } session_t;
+
+static void hang_device(session_t *session, uint32_t i, uint32_t now_us)
+{
+    const sim_device_t *const asked = &session->options.devices[i];
+    const device_settings_t settings = {.address = asked->address,
+                                        .baud = asked->line.baud,
+                                        .seed = asked->seed,
+                                        .scene = asked->scene.scene};
+    device_t *const device = &session->devices[i];
+    asked->mode->simulate(device, &settings);
+    sim_faults_begin(&asked->faults, &session->faults[i], asked->seed);
+    fathom_sim_fault_attach(&session->faults[i], &session->line, device->base);
+    fathom_sim_attach(&session->line, device->base, now_us);
+}
 
 static bool open_line(session_t *session)
 {
     const sim_options_t *const options = &session->options;
     const fathom_sim_pty_config_t config = {.link = options->link};
-    const device_settings_t settings = {
-        .address = options->address, .seed = options->seed, .scene = options->scene.scene};
     const uint32_t now_us = fathom_sim_pty_now_us();
-    fathom_sim_line_init(&session->line, &options->sensor->line, now_us);
-    session->line.full_duplex = !options->mode->is_asked; /* what sends by itself has a wire each way */
-    options->mode->simulate(&session->device, &settings);
-    sim_faults_begin(&options->faults, &session->fault, options->seed);
-    fathom_sim_fault_attach(&session->fault, &session->line, session->device.base);
-    fathom_sim_attach(&session->line, session->device.base, now_us);
+    fathom_sim_line_init(&session->line, &options->devices[0].line, now_us);
+    /* What sends by itself has a wire each way; several share an RS485 pair. */
+    session->line.full_duplex = options->count == 1 && !options->devices[0].mode->is_asked;
+    session->line.echo = options->echo;
+    for (uint32_t i = 0; i != options->count; i++) hang_device(session, i, now_us);
     if (fathom_sim_pty_open(&session->pty, &session->line, &config) == 0) return true;
     if (options->link != NULL && errno == EEXIST)
         (void)fprintf(stderr, "fathom: %s is there already and is no link; choose another --link\n",
@@ -44,21 +56,12 @@ static bool open_line(session_t *session)
 /* The path alone on stdout, for scripts; what a person may want to know on stderr. */
 static bool announce(const session_t *session)
 {
-    const sim_options_t *const options = &session->options;
     const char *const path = fathom_sim_pty_path(&session->pty);
-    char line[SETTINGS_TEXT];
     if (printf("%s\n", path) < 0 || fflush(stdout) != 0) {
         (void)fprintf(stderr, "fathom: the path of the port cannot be written: %s\n", strerror(errno));
         return false;
     }
-    (void)fprintf(stderr,
-                  "fathom: simulates %s, mode %s, address %u, %s, until Ctrl-C; to read it: fathom read %s",
-                  options->sensor->name, options->mode->name, options->address,
-                  settings_text(&options->sensor->line, line), options->sensor->name);
-    if (options->mode != &options->sensor->modes[0]) (void)fprintf(stderr, " --mode %s", options->mode->name);
-    if (options->mode->is_asked && options->address != FACTORY_ADDRESS)
-        (void)fprintf(stderr, " --address %u", options->address);
-    (void)fprintf(stderr, " --port %s\n", options->link != NULL ? options->link : path);
+    sim_announce(stderr, &session->options, session->options.link != NULL ? session->options.link : path);
     return true;
 }
 
@@ -75,6 +78,12 @@ static int serve(session_t *session)
     return STATUS_OK;
 }
 
+static void print_counters(const session_t *session)
+{
+    for (uint32_t i = 0; i != session->options.count; i++)
+        sim_print_counters(stderr, &session->options, i, session->devices[i].base, &session->line);
+}
+
 static int run(int argc, char **argv)
 {
     static session_t session;
@@ -85,8 +94,9 @@ static int run(int argc, char **argv)
     }
     if (!events_begin() || !open_line(&session)) return STATUS_FAILED;
     const int status = announce(&session) ? serve(&session) : STATUS_FAILED;
+    if (session.options.counters) print_counters(&session);
     fathom_sim_pty_close(&session.pty);
     return status;
 }
 
-const command_t sim_command = {"sim", "puts a simulated sensor behind a serial port", sim_help, run};
+const command_t sim_command = {"sim", "puts simulated sensors behind a serial port", sim_help, run};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "sim_options.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #include "command.h"
@@ -9,18 +10,92 @@
 
 static const char command[] = "sim";
 
-enum { LINK, DISTANCE, SEED, FAULT, HELP, OPTIONS };
+enum { LINK, DISTANCE, SEED, FAULT, BAUD, ECHO_ON, COUNTERS, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    [LINK] = {"link", required_argument, NULL, 256}, [DISTANCE] = {"distance", required_argument, NULL, 256},
-    [SEED] = {"seed", required_argument, NULL, 256}, [FAULT] = {"fault", required_argument, NULL, 256},
+    [LINK] = {"link", required_argument, NULL, 256},
+    [DISTANCE] = {"distance", required_argument, NULL, 256},
+    [SEED] = {"seed", required_argument, NULL, 256},
+    [FAULT] = {"fault", required_argument, NULL, 256},
+    [BAUD] = {"baud", required_argument, NULL, 256},
+    [ECHO_ON] = {"echo", no_argument, NULL, 256},
+    [COUNTERS] = {"counters", no_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
+/* ---- options that hold for all devices, or as N@VALUE for the N-th ---- */
+
+enum { MAX_GIVEN = 1024 };
+
+typedef struct {
+    const char *whole; /* as it was given */
+    const char *value; /* without N@ */
+    uint32_t device;   /* counted from 1; 0: all */
+    int row;
+} given_t;
+
+typedef struct {
+    given_t list[MAX_GIVEN];
+    uint32_t count; /* of all, also of those beyond the list */
+} givens_t;
+
+/* The place on the command line tells devices apart; an address would not, two may have the same one. */
+static void each(void *ctx, int row, const char *value)
+{
+    givens_t *const givens = ctx;
+    given_t given = {value, value, 0, row};
+    const size_t digits = strspn(value, "0123456789");
+    if (row != DISTANCE && row != FAULT && row != BAUD) return;
+    if (digits != 0 && digits < 9 && value[digits] == '@') {
+        for (size_t i = 0; i != digits; i++) given.device = given.device * 10 + (uint32_t)(value[i] - '0');
+        if (given.device == 0) given.device = UINT32_MAX; /* there is no such device either */
+        given.value = value + digits + 1;
+    }
+    if (givens->count < MAX_GIVEN) givens->list[givens->count] = given;
+    givens->count++;
+}
+
+static bool check_givens(const givens_t *givens, uint32_t devices)
+{
+    if (givens->count > MAX_GIVEN) {
+        (void)usage_error(command, "there are more than %d options", MAX_GIVEN);
+        return false;
+    }
+    for (uint32_t i = 0; i != givens->count; i++) {
+        const given_t *const given = &givens->list[i];
+        if (given->device <= devices) continue;
+        (void)usage_error(command, "--%s %s is for a device that is not there; they count from 1 to %" PRIu32,
+                          table[given->row].name, given->whole, devices);
+        return false;
+    }
+    return true;
+}
+
+/* What was given for this device (0: for all) by itself; of several the last. NULL: nothing. */
+static const char *given_of(const givens_t *givens, int row, uint32_t device)
+{
+    for (uint32_t i = givens->count; i != 0; i--) {
+        const given_t *const given = &givens->list[i - 1];
+        if (given->row == row && given->device == device) return given->value;
+    }
+    return NULL;
+}
+
+static const char *given_for(const givens_t *givens, int row, uint32_t device)
+{
+    const char *const own = given_of(givens, row, device);
+    return own != NULL ? own : given_of(givens, row, 0);
+}
+
+/* ---- the devices ---- */
+
 enum { MAX_DEVICE_TEXT = 40 };
 
+/* Apart, so that two devices do not do everything at the same moment. */
+enum { SEED_STEP = 1000003 };
+
 /* SENSOR[:ADDR[:MODE]]; an empty ADDR is the factory's. */
-static bool take_device(sim_options_t *options, const char *text)
+static bool take_device(sim_device_t *device, const char *text)
 {
     char parts[MAX_DEVICE_TEXT];
     uint32_t address = FACTORY_ADDRESS;
@@ -30,86 +105,109 @@ static bool take_device(sim_options_t *options, const char *text)
     char *const mode_text = address_text != NULL ? strchr(address_text + 1, ':') : NULL;
     if (address_text != NULL) *address_text = '\0';
     if (mode_text != NULL) *mode_text = '\0';
-    options->sensor = sensor_find(command, parts);
-    if (options->sensor == NULL) return false;
-    options->mode = sensor_mode_find(command, options->sensor, mode_text != NULL ? mode_text + 1 : NULL);
-    if (options->mode == NULL) return false;
+    device->sensor = sensor_find(command, parts);
+    if (device->sensor == NULL) return false;
+    device->mode = sensor_mode_find(command, device->sensor, mode_text != NULL ? mode_text + 1 : NULL);
+    if (device->mode == NULL) return false;
     if (address_text != NULL && address_text[1] != '\0' &&
-        !number_parse(address_text + 1, 1, options->sensor->max_address, &address)) {
+        !number_parse(address_text + 1, 1, device->sensor->max_address, &address)) {
         (void)usage_error(command, "the address of %s is a number from 1 to %u, not '%s'",
-                          options->sensor->name, options->sensor->max_address, address_text + 1);
+                          device->sensor->name, device->sensor->max_address, address_text + 1);
         return false;
     }
-    options->address = (uint8_t)address;
+    device->address = (uint8_t)address;
+    device->line = device->sensor->line;
     return true;
 }
 
-static void each(void *ctx, int row, const char *value)
+static bool take_devices(sim_options_t *options, int count, char **texts)
 {
-    if (row == FAULT) sim_faults_note(ctx, value);
+    const sim_device_t *talker = NULL;
+    if (count == 0 || count > SIM_DEVICES) {
+        if (count == 0)
+            (void)usage_error(command, "which sensor? a16, a05 or hps167s");
+        else
+            (void)usage_error(command, "up to %d devices a line, not %d", SIM_DEVICES, count);
+        return false;
+    }
+    for (; options->count != (uint32_t)count; options->count++) {
+        sim_device_t *const device = &options->devices[options->count];
+        if (!take_device(device, texts[options->count])) return false;
+        if (device->mode->is_asked) continue;
+        if (talker != NULL) {
+            (void)usage_error(command,
+                              "%s and %s would both send by themselves, which one line cannot carry; "
+                              "give one of them a mode in which it is asked",
+                              talker->sensor->name, device->sensor->name);
+            return false;
+        }
+        talker = device;
+    }
+    return true;
+}
+
+static bool has_rates(const sim_device_t *device) { return device->sensor->other_settings != NULL; }
+
+static bool take_baud(sim_device_t *device, const char *text)
+{
+    static const uint32_t rates[] = {19200, 57600, 115200, 230400};
+    uint32_t baud = 0;
+    if (!has_rates(device)) {
+        (void)usage_error(command, "%s has one baud rate only", device->sensor->name);
+        return false;
+    }
+    if (number_parse(text, 1, UINT32_MAX, &baud))
+        for (size_t i = 0; i != sizeof rates / sizeof rates[0]; i++)
+            if (rates[i] == baud) {
+                device->line.baud = baud;
+                return true;
+            }
+    (void)usage_error(command, "--baud of %s takes 19200, 57600, 115200 or 230400, not '%s'",
+                      device->sensor->name, text);
+    return false;
+}
+
+/* Everything that may differ from device to device; number: from 1. A rate for all is meant for those that can
+ * have it, if there are any. */
+static bool equip(sim_device_t *device, const givens_t *givens, uint32_t number, uint32_t seed,
+                  bool any_rates)
+{
+    const bool for_all = given_of(givens, BAUD, number) == NULL;
+    const char *const baud = given_for(givens, BAUD, number);
+    const char *const distance = given_for(givens, DISTANCE, number);
+    device->seed = seed + (number - 1) * SEED_STEP;
+    for (uint32_t i = 0; i != givens->count; i++) {
+        const given_t *const given = &givens->list[i];
+        if (given->row == FAULT && (given->device == 0 || given->device == number))
+            sim_faults_note(&device->faults, given->value);
+    }
+    if (!sim_faults_parse(&device->faults, command, device->sensor, device->mode)) return false;
+    if (baud != NULL && !(for_all && any_rates && !has_rates(device)) && !take_baud(device, baud))
+        return false;
+    if (distance != NULL) return scenery_fixed(&device->scene, command, device->sensor, distance);
+    scenery_moving(&device->scene, device->sensor, device->seed, fathom_sim_pty_now_us());
+    return true;
 }
 
 bool sim_options(sim_options_t *options, int argc, char **argv)
 {
+    static givens_t givens;
     const char *values[OPTIONS] = {NULL};
+    uint32_t seed = 0;
     memset(options, 0, sizeof *options);
-    const int rest = options_parse_each(command, argc, argv, table, values, each, &options->faults);
+    const int rest = options_parse_each(command, argc, argv, table, values, each, &givens);
     if (rest < 0) return false;
     options->wants_help = values[HELP] != NULL;
     if (options->wants_help) return true;
-    if (rest != argc - 1) {
-        (void)usage_error(command, rest == argc ? "which sensor? a16, a05 or hps167s" : "one sensor a line");
-        return false;
-    }
-    if (!take_device(options, argv[rest]) ||
-        !option_number(command, "seed", values[SEED], 0, UINT32_MAX, &options->seed) ||
-        !sim_faults_parse(&options->faults, command, options->sensor, options->mode))
-        return false;
     options->link = values[LINK];
-    if (values[DISTANCE] == NULL) {
-        scenery_moving(&options->scene, options->sensor, options->seed, fathom_sim_pty_now_us());
-        return true;
-    }
-    return scenery_fixed(&options->scene, command, options->sensor, values[DISTANCE]);
-}
-
-void sim_help(FILE *to)
-{
-    (void)fputs("fathom sim puts a simulated sensor behind a pseudo terminal, which any program can open "
-                "like a serial\n"
-                "port. It prints the port's path and runs until Ctrl-C.\n\n"
-                "usage: fathom sim SENSOR[:ADDRESS[:MODE]] [OPTIONS]\n\n",
-                to);
-    sensors_print(to);
-    (void)fputs(
-        "\nThe first mode is the default, the address from the factory is 1.\n\n"
-        "  --link PATH       makes a link to the port, for a name that stays; removed at the end\n"
-        "  --distance MM     what it measures, 0..65535, which is sent as it is; or no-target, interference "
-        "(a16,\n"
-        "                    a05) or fault (hps167s). An a05 takes up to four, separated by commas; the last "
-        "one\n"
-        "                    holds for the probes that are left. Default: something that moves to and fro\n"
-        "  --seed N          where the movement begins, the small differences of the answer times, and the "
-        "faults;\n"
-        "                    default 0\n"
-        "  --fault KIND[=P[@N]]\n"
-        "                    damages what it sends: each frame with the chance P, such as 0.05 or 5% "
-        "(default "
-        "1), or\n"
-        "                    only the N-th, counted from 1. May be given several times, such as\n"
-        "                    --fault silence=10% --fault flip-bit=0.01. The kinds:\n",
-        to);
-    sim_faults_print(to);
-    (void)fputs(
-        "\n"
-        "It answers only at its own baud rate. Parity cannot be seen through a pseudo terminal.\n"
-        "Exit status: 0 after Ctrl-C, 1 when the port or the link cannot be made, 2 for wrong usage.\n\n"
-        "examples, each with what reads it:\n"
-        "  fathom sim a16 --link ./tank                    fathom read a16 --port ./tank\n"
-        "  fathom sim a05::modbus --link ./bumper --distance 1000,2000,1953,no-target\n"
-        "                                                  fathom read a05 --mode modbus --port ./bumper\n"
-        "  fathom sim hps167s:7 --link ./gate              fathom read hps167s --address 7 --port ./gate\n"
-        "  fathom sim hps167s --link ./tof                 mbpoll -m rtu -a 1 -b 19200 -P even -t 4:hex -0 "
-        "-r 8 -c 4 -1 ./tof\n",
-        to);
+    options->echo = values[ECHO_ON] != NULL;
+    options->counters = values[COUNTERS] != NULL;
+    if (!take_devices(options, argc - rest, argv + rest) || !check_givens(&givens, options->count) ||
+        !option_number(command, "seed", values[SEED], 0, UINT32_MAX, &seed))
+        return false;
+    bool any_rates = false;
+    for (uint32_t i = 0; i != options->count; i++) any_rates = any_rates || has_rates(&options->devices[i]);
+    for (uint32_t i = 0; i != options->count; i++)
+        if (!equip(&options->devices[i], &givens, i + 1, seed, any_rates)) return false;
+    return true;
 }

@@ -6,21 +6,29 @@
 #include "sensors.h"
 #include "sim_faults.h"
 
-/* What `fathom sim` was asked to do. */
+enum { SIM_DEVICES = 64 };
+
 typedef struct {
     const sensor_t *sensor;
     const sensor_mode_t *mode;
-    const char *link; /* NULL: none */
-    uint8_t address;
+    fathom_line_settings_t line; /* its own */
     uint32_t seed;
+    uint8_t address;
     scenery_t scene;
     sim_faults_t faults;
+} sim_device_t;
+
+/* What `fathom sim` was asked to do. */
+typedef struct {
+    const char *link; /* NULL: none */
+    bool echo;
+    bool counters;
     bool wants_help;
+    uint32_t count; /* of devices */
+    sim_device_t devices[SIM_DEVICES];
 } sim_options_t;
 
-/* False after saying what is wrong with them. The options may not be moved then: the scene is in them. */
+/* False after saying what is wrong with them. The options may not be moved then: the scenes are in them. */
 bool sim_options(sim_options_t *options, int argc, char **argv);
-
-void sim_help(FILE *to);
 
 #endif

@@ -122,6 +122,7 @@ int fathom_sim_pty_open(fathom_sim_pty_t *pty, fathom_sim_line_t *line, const fa
     const char *const link = config != NULL ? config->link : NULL;
     memset(pty, 0, sizeof *pty);
     pty->line = line;
+    pty->opened = line->settings;
     pty->master = pty->slave = -1;
     pty->ignore_baud = config != NULL && config->ignore_baud;
     if (link != NULL && strlen(link) >= sizeof pty->link) {
@@ -151,19 +152,30 @@ void fathom_sim_pty_close(fathom_sim_pty_t *pty)
 
 static bool nothing_now(void) { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
+/* Parity and stop bits do not come through: of two devices with one rate the first one is right. */
+static fathom_line_settings_t settings_at(const fathom_sim_pty_t *pty, uint32_t baud)
+{
+    fathom_line_settings_t settings = pty->opened;
+    settings.baud = baud;
+    for (const fathom_sim_device_t *device = pty->line->devices; device != NULL; device = device->next)
+        if (device->settings.baud == baud) return device->settings;
+    return settings;
+}
+
 /* What the client has set is what its UART would be at. */
 static int follow_baud(fathom_sim_pty_t *pty)
 {
     struct termios seen;
+    const fathom_line_settings_t *const now = &pty->line->settings;
     if (pty->ignore_baud) return 0;
     if (tcgetattr(pty->slave, &seen) < 0) return -1;
-    fathom_line_settings_t settings = pty->line->settings;
     const uint32_t baud = baud_of(cfgetospeed(&seen));
-    if (baud == settings.baud) return 0;
     /* a rate that is not in the table: no device has it, and the line needs one */
-    settings.baud = baud != 0 ? baud : 1200;
+    const fathom_line_settings_t wanted = settings_at(pty, baud != 0 ? baud : 1200);
+    if (wanted.baud == now->baud && wanted.parity == now->parity && wanted.stop_bits == now->stop_bits)
+        return 0;
     /* From where the line stands, so that a late call does not simulate what follows at the old rate. */
-    fathom_sim_set_line(pty->line, &settings, pty->line->now_us);
+    fathom_sim_set_line(pty->line, &wanted, pty->line->now_us);
     return 0;
 }
 

@@ -25,7 +25,8 @@ extern "C" {
  * A frame of a device is handed over as a whole, when its last bit has come, as USB adapters do.
  *
  * Rate: the simulator sees the rate that the client has set, and a device answers at its own only. Parity
- * and stop bits cannot be seen through a pseudo terminal: they are taken to be as the line was initialised.
+ * and stop bits cannot be seen through a pseudo terminal: they are taken to be those of the first device with
+ * the client's rate; where there is none, as the line was initialised.
  *
  * Clients come and go. The port is raw from the beginning and stays as the last client has set it. What a
  * device sends while no one reads is kept, as by an operating system, up to 255 bytes; then it is thrown away
@@ -43,7 +44,8 @@ enum { FATHOM_SIM_PTY_PATH = 64, FATHOM_SIM_PTY_LINK = 256 };
 typedef struct {
     fathom_sim_line_t *line;
     int master;
-    int slave; /* held open, so that the last client's leaving is no error here */
+    int slave;                     /* held open, so that the last client's leaving is no error here */
+    fathom_line_settings_t opened; /* the line's, when it was opened */
     bool ignore_baud;
     uint8_t pending_length; /* bytes that the terminal did not take yet */
     uint8_t pending[255];

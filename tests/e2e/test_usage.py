@@ -56,7 +56,7 @@ WRONG = [
     ([*READ, '--help=3'], 'there is no option --help=3'),
     (['read', 'a16', '--port'], '--port needs a value'),
     (['sim'], 'which sensor?'),
-    (['sim', 'a16', 'a05'], 'one sensor a line'),
+    (['sim', 'a16', 'a05'], 'a16 and a05 would both send by themselves'),
     (['sim', 'a17'], "there is no sensor 'a17'"),
     (['sim', 'a16' * 30], "there is no sensor 'a16a16"),
     (['sim', 'a16:0'], "the address of a16 is a number from 1 to 254, not '0'"),
@@ -134,7 +134,7 @@ class Help(e2e.Case):
         """Each is run with the port replaced by one that is not there: then 1, not 2, is the exit status."""
         examples = re.findall(r'(fathom read (?:(?! {2}|\||>).)*)', self.told('read', '--help').split('examples:')[1] +
                               self.told('sim', '--help').split('examples')[1])
-        self.assertEqual(len(examples), 7)
+        self.assertEqual(len(examples), 8)
         for example in examples:
             with self.subTest(example):
                 words = re.sub(r'--port \S+', '--port /nowhere', example).split()[1:]
