@@ -31,7 +31,7 @@ static exception_t exception_text(uint8_t number)
 /* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
 static void print_settings(FILE *to, const failure_t *failure)
 {
-    const fathom_line_settings_t *const now = &failure->channel->port.line;
+    const fathom_line_settings_t *const now = failure->line;
     const fathom_line_settings_t *const factory = &failure->sensor->line;
     const uint64_t *const port = failure->tally->attempt.port;
     char text[SETTINGS_TEXT];
@@ -74,8 +74,10 @@ static bool print_others(FILE *to, const failure_t *failure)
         (void)fprintf(to, "the line works, but it was address %u that was heard, which no %s can have",
                       evidence->foreign_address, failure->sensor->name);
     else if (evidence->foreign != 0)
-        (void)fprintf(to, "the line works, but it was address %u that was heard; try --address %u",
-                      evidence->foreign_address, evidence->foreign_address);
+        (void)fprintf(to, "the line works, but it was address %u that was heard; try %s%s%u",
+                      evidence->foreign_address,
+                      failure->shared != NULL ? failure->sensor->name : "--address",
+                      failure->shared != NULL ? ":" : " ", evidence->foreign_address);
     else if (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)
         (void)fprintf(to, "frames of %s that sends by itself were heard; try: fathom read %s --mode auto",
                       evidence->streamed_a05 != 0 ? "an a05" : "an a16",
@@ -106,13 +108,20 @@ static void print_no_answer(FILE *to, const failure_t *failure)
         (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->reader->protocol);
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
+    } else if (failure->others_answer) {
+        char settings[SETTINGS_TEXT];
+        (void)fprintf(
+            to,
+            "nothing was heard of it, while others on this line answer; check its supply, its wires, "
+            "its address and its settings (asked at %s)",
+            settings_text(failure->line, settings));
     } else {
         char settings[SETTINGS_TEXT];
         (void)fprintf(
             to,
             "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, --address, and "
             "--baud and --parity (now %s)",
-            settings_text(&failure->channel->port.line, settings));
+            settings_text(failure->line, settings));
     }
 }
 
@@ -224,6 +233,12 @@ void advice_print(FILE *to, const failure_t *failure)
     case FATHOM_ERR_PORT:
         print_port(to, failure);
         break;
+    case FATHOM_ERR_UNSUPPORTED: {
+        char settings[SETTINGS_TEXT];
+        (void)fprintf(to, "the port cannot be set to %s; nothing was sent",
+                      settings_text(failure->line, settings));
+        break;
+    }
     default: /* FATHOM_ERR_NO_ANSWER, and that only the echo came */
         print_no_answer(to, failure);
         break;

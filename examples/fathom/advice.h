@@ -14,9 +14,12 @@ typedef struct {
     const reader_t *reader;
     const channel_t *channel;
     const tally_t *tally;
-    evidence_t evidence; /* of this attempt */
+    const fathom_line_settings_t *line; /* at which it was asked */
+    const char *shared;                 /* its name on a line with others; NULL: it is alone */
+    evidence_t evidence;                /* of this attempt */
     uint8_t address;
-    bool waits; /* for a lost port, which is opened again */
+    bool others_answer; /* on this line */
+    bool waits;         /* for a lost port, which is opened again */
 } failure_t;
 
 /* What happened and what to try, without a line feed: the cause as far as the evidence tells it. */

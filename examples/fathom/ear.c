@@ -12,27 +12,30 @@ static uint32_t now_us(const ear_t *ear) { return ear->clock.now_us(ear->clock.c
 
 static int ear_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
-    ear_t *const ear = ctx;
-    const int n = ear->inner.read(ear->inner.ctx, bytes, capacity, rx);
+    const ear_t *const tap = ctx;
+    ear_t *const ear = tap->now != NULL ? tap->now : ctx;
+    const int n = tap->inner.read(tap->inner.ctx, bytes, capacity, rx);
     if (n <= 0) return n;
     const size_t room = sizeof ear->window - ear->have;
     const size_t kept = (size_t)n < room ? (size_t)n : room;
     memcpy(ear->window + ear->have, bytes, kept);
     ear->have = (uint16_t)(ear->have + kept);
     ear->bytes += (uint32_t)n;
-    const uint32_t took_us = fathom_elapsed_us(now_us(ear), ear->asked_us);
+    const uint32_t took_us = fathom_elapsed_us(now_us(tap), ear->asked_us);
     if (ear->request_length != 0 && took_us > ear->slowest_us) ear->slowest_us = took_us;
     return n;
 }
 
 static int ear_write(void *ctx, const uint8_t *bytes, size_t length)
 {
-    ear_t *const ear = ctx;
-    const int n = ear->inner.write(ear->inner.ctx, bytes, length);
-    if (n <= 0 || length > sizeof ear->request) return n;
+    ear_t *const tap = ctx;
+    const int n = tap->inner.write(tap->inner.ctx, bytes, length);
+    if (n <= 0 || length > sizeof tap->request) return n;
+    if (tap->whose != NULL) tap->now = tap->whose(tap->ctx);
+    ear_t *const ear = tap->now != NULL ? tap->now : tap;
     memcpy(ear->request, bytes, length);
     ear->request_length = (uint8_t)length;
-    ear->asked_us = now_us(ear);
+    ear->asked_us = now_us(tap);
     ear->requests++;
     return n;
 }
@@ -59,6 +62,7 @@ void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
 {
     ear->inner = *uart;
     ear->clock = *clock;
+    ear->now = NULL;
     ear->request_length = 0;
     ear_forget(ear);
     uart->read = ear_read;

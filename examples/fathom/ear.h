@@ -13,9 +13,15 @@
  */
 enum { EAR_WINDOW = 512, EAR_REQUEST = 255 };
 
-typedef struct {
+typedef struct ear ear_t;
+struct ear {
     fathom_uart_t inner;
     fathom_clock_t clock;
+    /* Where several sensors are asked: who remembers the request that is about to leave, and what passes until the
+     * next one does. NULL: this ear itself. */
+    ear_t *(*whose)(void *ctx);
+    void *ctx;
+    ear_t *now;                 /* who does at present; NULL: this ear itself */
     uint8_t window[EAR_WINDOW]; /* what was heard in this attempt; of more than fits, the beginning */
     uint16_t have;
     uint32_t bytes;      /* heard in this attempt, the window's included */
@@ -24,7 +30,7 @@ typedef struct {
     uint8_t request_length;       /* 0: none has been sent */
     uint32_t asked_us;
     uint64_t requests; /* since the start */
-} ear_t;
+};
 
 /* What is in the window. */
 typedef struct {

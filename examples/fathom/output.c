@@ -141,10 +141,10 @@ static void write_json(FILE *to, const reading_t *reading)
     (void)fputs("}\n", to);
 }
 
-static void begin_csv(FILE *to, const sensor_t *sensor)
+static void begin_csv(FILE *to, bool has_optics)
 {
     for (size_t i = 0; i != FIELDS; i++)
-        if (!fields[i].needs_optics || sensor->has_optics)
+        if (!fields[i].needs_optics || has_optics)
             (void)fprintf(to, "%s%s", i == 0 ? "" : ",", fields[i].name);
     (void)fputs("\n", to);
 }
@@ -154,8 +154,8 @@ static void write_csv(FILE *to, const reading_t *reading)
 {
     for (size_t i = 0; i != FIELDS; i++) {
         char text[VALUE_TEXT] = "";
-        if (fields[i].needs_optics && !reading->sensor->has_optics) continue;
-        fields[i].format(reading, text);
+        if (fields[i].needs_optics && !reading->has_optics) continue;
+        if (!fields[i].needs_optics || reading->sensor->has_optics) fields[i].format(reading, text);
         (void)fprintf(to, "%s%s", i == 0 ? "" : ",", text);
     }
     (void)fputs("\n", to);
@@ -167,7 +167,7 @@ static void write_text(FILE *to, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
     (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
-                  (unsigned)(reading->time_us / 1000u % 1000u), reading->sensor->name);
+                  (unsigned)(reading->time_us / 1000u % 1000u), reading->name);
     if (reading->sensor->probes > 1) (void)fprintf(to, " probe %u", sample->probe);
     if (sample->kind == FATHOM_TARGET)
         (void)fprintf(to, "  %6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,

@@ -8,16 +8,18 @@
 typedef struct {
     const sensor_t *sensor;
     const sensor_mode_t *mode;
+    const char *name; /* in text */
     const fathom_sample_t *sample;
     uint64_t time_us; /* since the program's start; does not wrap */
     uint64_t utc_us;  /* since 1970 */
+    bool has_optics;  /* this sensor or another one that stands in the same table */
 } reading_t;
 
 /* A way to write readings. begin may be NULL. */
 typedef struct {
     const char *name;
     bool is_json;
-    void (*begin)(FILE *to, const sensor_t *sensor);
+    void (*begin)(FILE *to, bool has_optics);
     void (*write)(FILE *to, const reading_t *reading);
 } format_t;
 

@@ -3,10 +3,6 @@
 
 #include <string.h>
 
-/* Less than any period, so that a sensor that does not answer is asked as often as one that does: somebody may be
- * looking for the loose wire. */
-enum { READER_BACKOFF_US = 1 };
-
 static const char modbus[] = "Modbus";
 
 static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
@@ -63,7 +59,8 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
-        .backoff_us = READER_BACKOFF_US,
+        .backoff_us = settings->backoff_us,
+        .settings = settings->line,
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
@@ -80,7 +77,8 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
-        .backoff_us = READER_BACKOFF_US,
+        .backoff_us = settings->backoff_us,
+        .settings = settings->line,
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
@@ -96,7 +94,8 @@ bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
-        .backoff_us = READER_BACKOFF_US,
+        .backoff_us = settings->backoff_us,
+        .settings = settings->line,
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a05_dyp_init(driver, &config) == FATHOM_READY &&
@@ -113,7 +112,8 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
         .timeout_us = settings->timeout_us,
         .address = settings->address,
         .retries = settings->retries,
-        .backoff_us = READER_BACKOFF_US,
+        .backoff_us = settings->backoff_us,
+        .settings = settings->line,
     };
     memset(reader, 0, sizeof *reader);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;

@@ -17,9 +17,15 @@
 typedef struct {
     uint32_t timeout_us; /* of an answer; of a sensor that sends by itself: until it is stale */
     uint32_t period_us;  /* between two requests */
+    const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
+    uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
     uint8_t address;
     uint8_t retries;
 } reader_settings_t;
+
+/* For the only sensor on a line: less than any period, so that one that does not answer is asked as often as one that
+ * does: somebody may be looking for the loose wire. */
+enum { READER_BACKOFF_US = 1 };
 
 /* Any driver, with what the library's common interface does not show: the causes of an error. */
 typedef struct {

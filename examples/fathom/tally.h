@@ -33,35 +33,39 @@ typedef struct {
     uint64_t attempts;
     uint64_t failed;
     uint64_t readings;
-    uint64_t skipped; /* frames that came sooner than the interval */
-    uint64_t reconnects;
+    uint64_t skipped;                 /* frames that came sooner than the interval */
     uint64_t failures[FAILURE_KINDS]; /* each is a line on stderr; four of an a05 may be one failed attempt */
     uint64_t timed;                   /* answers whose time is in the next three: from the request's start */
     uint64_t time_sum_us;
     uint32_t time_min_us;
     uint32_t time_max_us;
-    fathom_posix_line_errors_t port_at; /* the driver's counters at the last look */
-    bool has_port;                      /* the driver counts */
 } tally_t;
 
+/* The counters of the port's driver. */
+typedef struct {
+    fathom_posix_line_errors_t at; /* at the last look */
+    bool is_there;                 /* the driver counts */
+} port_counts_t;
+
 /* A port has been opened: the driver's counters begin here. */
-void tally_begin_port(tally_t *tally, channel_t *channel);
+void tally_begin_port(port_counts_t *port, channel_t *channel);
 
 /* Takes the counters out of the line, the stream, the unit and the port and adds them. */
-void tally_take(tally_t *tally, channel_t *channel, const reader_t *reader);
+void tally_take(tally_t *tally, port_counts_t *port, channel_t *channel, const reader_t *reader);
+
+/* Takes the line's late answers alone: they are this sensor's. */
+void tally_take_late(tally_t *tally, channel_t *channel);
 
 void tally_begin_attempt(tally_t *tally);
+
+/* FAILURE_VALUE, or -status: its name; NULL: counted as the last one, "other". */
+const char *tally_failure_name(size_t kind);
 
 void tally_failure(tally_t *tally, fathom_status_t status, const reader_t *reader);
 
 void tally_time(tally_t *tally, uint32_t took_us);
 
-/* The sums, in two lines or less; what is 0 is left out. */
-void tally_print(const tally_t *tally, FILE *to);
-
-/* All of it, for people and as a JSON object in one line. requests: how many were sent. is_asked: a sensor that is
- * asked, not one that sends by itself. */
-void tally_print_all(const tally_t *tally, FILE *to, uint64_t requests, bool is_asked);
-void tally_print_json(const tally_t *tally, FILE *to, uint64_t requests, bool is_asked, uint64_t time_us);
+/* Adds what one sensor has counted to the sums of all; the present attempt is left out. */
+void tally_add(tally_t *sum, const tally_t *part);
 
 #endif

@@ -42,7 +42,7 @@ class Stats(e2e.Case):
         self.assertEqual(done.code, 1)
         one, = self.objects(done)
         self.assertEqual(list(one), ['time_us', 'attempts', 'failed', 'readings', 'requests', 'skipped_frames', 'reconnects',
-                                     'failures', 'line', 'stream', 'unit', 'port', 'answer_us'])
+                                     'failures', 'line', 'stream', 'unit', 'port', 'answer_us', 'units'])
         self.assertEqual((list(one['failures']), list(one['line']), list(one['unit'])),
                          (FAILURES, LINE, ['answers', 'failures']))
         self.assertEqual((one['attempts'], one['failed'], one['readings'], one['requests'], one['reconnects']),
@@ -73,7 +73,9 @@ class Stats(e2e.Case):
                                    'damaged answers 0, exceptions 0, answers that do not fit 0, late answers 0, '
                                    'frames that nobody asked for 0, bad bytes 0')
         self.assertEqual(lines[4], 'fathom: unit: answers 1, failures 1')
-        self.assertRegex(lines[5], r'^fathom: time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')
+        self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, answers 1, failures 1, '
+                                   r'silences in a row 1, left alone for 0\.0 s, '
+                                   r'time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')
         self.assertEqual(len(lines), 6)
 
     def test_retries_are_requests(self):

@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: MIT */
+#include "session.h"
+
+#include "events.h"
+#include "output.h"
+
+enum { TEXT = 512 };
+
+static bool is_done(const session_t *session, const station_t *station)
+{
+    const uint32_t count = session->options.count;
+    return count != 0 && station->tally.attempts >= count;
+}
+
+static bool is_shared(const session_t *session) { return session->options.station_count > 1; }
+
+static station_t *end_of(session_t *session)
+{
+    return session->options.stations + session->options.station_count;
+}
+
+static bool is_over(const session_t *session)
+{
+    const session_options_t *const options = &session->options;
+    const station_t *const end = options->stations + options->station_count;
+    const station_t *station = options->stations;
+    while (station != end && is_done(session, station)) station++;
+    return events_ended() || events_output_gone() || session->user->is_over(session->ctx) ||
+           (session->is_lost && !options->reconnect) || station == end ||
+           (options->duration_us != 0 && session_time_us(session) >= options->duration_us);
+}
+
+uint64_t session_time_us(const session_t *session) { return fathom_posix_now_us() - session->start_us; }
+
+uint64_t session_sample_us(const session_t *session, const fathom_sample_t *sample)
+{
+    return time_extend(fathom_posix_now_us(), sample->time_us) - session->start_us;
+}
+
+/* ---- what was heard, and of whom ---- */
+
+/* A request is about to leave: whose is it? The line has put it at the front. */
+static ear_t *whose(void *ctx)
+{
+    session_t *const session = ctx;
+    for (station_t *station = session->options.stations; station != end_of(session); station++)
+        if (session->channel.line.head == &station->reader.unit->request.exchange) return station->ear;
+    return NULL;
+}
+
+/* The one on this line that has this address; NULL: none. */
+static station_t *station_at(session_t *session, uint8_t address)
+{
+    for (station_t *station = session->options.stations; station != end_of(session); station++)
+        if (station->address == address) return station;
+    return NULL;
+}
+
+/* A late answer comes while its unit is asked nothing, and perhaps another one is: it explains the failures of the
+ * unit that it is from. */
+static void take_late(session_t *session)
+{
+    const channel_t *const channel = &session->channel;
+    if (!is_shared(session) || channel->line.counters[FATHOM_LINE_LATE_ANSWERS] == 0) return;
+    for (station_t *station = session->options.stations; station != end_of(session); station++) {
+        evidence_t evidence;
+        if (channel->ear.now != station->ear) continue;
+        ear_judge(station->ear, station->address, &evidence);
+        station_t *const other = evidence.foreign != 0 ? station_at(session, evidence.foreign_address) : NULL;
+        tally_take_late(other != NULL ? &other->tally : &station->tally, &session->channel);
+        return;
+    }
+}
+
+/* Has another sensor of this line answered? */
+static bool others_answer(const session_t *session, const station_t *station)
+{
+    const session_options_t *const options = &session->options;
+    for (size_t i = 0; i != options->station_count; i++)
+        if (&options->stations[i] != station && options->stations[i].tally.readings != 0) return true;
+    return false;
+}
+
+/* What others of this line have said late is no evidence of anything else. */
+static void judge(session_t *session, const station_t *station, evidence_t *evidence)
+{
+    ear_judge(station->ear, station->mode->is_asked ? station->address : 0, evidence);
+    if (evidence->foreign == 0 || station_at(session, evidence->foreign_address) == NULL) return;
+    evidence->foreign = 0;
+    if (evidence->rest == 0 && evidence->own == 0) evidence->bytes = 0;
+}
+
+/* ---- attempts ---- */
+
+/* Is there anything to wait for when the port is lost? */
+static bool has_more_to_do(const session_t *session, const station_t *station)
+{
+    const session_options_t *const options = &session->options;
+    if (options->count == 0 || station->tally.attempts + 1 < options->count) return true;
+    for (size_t i = 0; i != options->station_count; i++)
+        if (&options->stations[i] != station && !is_done(session, &options->stations[i])) return true;
+    return false;
+}
+
+static void report_failure(session_t *session, station_t *station, fathom_status_t status)
+{
+    failure_t failure = {
+        .status = status,
+        .sensor = station->sensor,
+        .reader = &station->reader,
+        .channel = &session->channel,
+        .tally = &station->tally,
+        .line = &station->line,
+        .shared = is_shared(session) ? station->name : NULL,
+        .address = station->address,
+        .others_answer = others_answer(session, station),
+        .waits = session->options.reconnect && has_more_to_do(session, station),
+    };
+    tally_failure(&station->tally, status, &station->reader);
+    judge(session, station, &failure.evidence);
+    station->has_failed = true;
+    session->user->failure(session->ctx, &failure, station);
+}
+
+/* What is heard from now on, and counted, is the next attempt's. */
+static void begin_attempt(station_t *station)
+{
+    tally_begin_attempt(&station->tally);
+    ear_forget(station->ear);
+}
+
+static void end_attempt(const session_t *session, station_t *station)
+{
+    const uint64_t now_us = fathom_posix_now_us();
+    station->tally.attempts++;
+    if (station->has_failed) station->tally.failed++;
+    station->has_failed = false;
+    station->answering = false;
+    station->next_us += session->options.interval_us;
+    if (station->next_us < now_us) station->next_us = now_us; /* what is late is not made up for */
+    begin_attempt(station);
+}
+
+/*
+ * A sensor that sends by itself does not keep the user's interval: what comes between two attempts is dropped,
+ * a whole answer at a time. The driver of a sensor that is asked keeps the interval itself.
+ */
+static bool is_early(station_t *station, fathom_status_t status)
+{
+    if (station->reader.stream == NULL || station->answering) return false;
+    const bool is_first = !station->skipping;
+    if (is_first) station->skipping = fathom_posix_now_us() < station->next_us;
+    if (!station->skipping) return false;
+    if (is_first && status != FATHOM_ERR_STALE) station->tally.skipped++;
+    station->skipping = reader_has_more(&station->reader);
+    begin_attempt(station);
+    return true;
+}
+
+/* Something other than FATHOM_PENDING. */
+static void take_outcome(session_t *session, station_t *station, fathom_status_t status,
+                         const fathom_sample_t *sample)
+{
+    tally_take(&station->tally, &session->port_counts, &session->channel, &station->reader);
+    if (status != FATHOM_ERR_PORT && is_early(station, status)) return;
+    if (status == FATHOM_READY && station->reader.unit != NULL && !station->answering)
+        tally_time(&station->tally, fathom_elapsed_us(sample->time_us, station->ear->asked_us));
+    station->answering = true;
+    if (status == FATHOM_READY) {
+        if (session->user->reading(session->ctx, station, sample)) station->tally.readings++;
+    } else {
+        report_failure(session, station, status);
+    }
+    if (status == FATHOM_ERR_PORT || !reader_has_more(&station->reader)) end_attempt(session, station);
+}
+
+/* ---- the loop ---- */
+
+/* Sleeps for max_us at most. */
+static void wait_for(session_t *session, int fd, short events, uint32_t max_us)
+{
+    const uint64_t duration_us = session->options.duration_us;
+    const uint64_t time_us = session_time_us(session);
+    const uint64_t left_us = time_us < duration_us ? duration_us - time_us : 0;
+    const uint32_t tick_us = session->user->tick(session->ctx);
+    if (max_us > tick_us) max_us = tick_us;
+    if (duration_us != 0 && max_us > left_us) max_us = (uint32_t)left_us;
+    events_wait(fd, events, max_us, true);
+}
+
+/* False: it has nothing to say now. */
+static bool poll_station(session_t *session, station_t *station)
+{
+    fathom_posix_uart_t *const port = &session->channel.port;
+    do {
+        fathom_sample_t sample;
+        fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
+        take_late(session);
+        /* Between two requests a driver has nobody to tell it to, and waiting for the port would not wait. */
+        session->is_lost = fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST;
+        if (session->is_lost && status == FATHOM_PENDING) status = FATHOM_ERR_PORT;
+        if (status == FATHOM_PENDING) return false;
+        take_outcome(session, station, status, &sample);
+    } while (!session->is_lost && reader_has_more(&station->reader));
+    return true;
+}
+
+/* Whoever has nothing left to do is not polled, and asks nothing more. True: somebody had something to say. */
+static bool poll_all(session_t *session)
+{
+    bool has_come = false;
+    for (station_t *station = session->options.stations; station != end_of(session); station++) {
+        if (is_done(session, station)) continue;
+        if (poll_station(session, station)) has_come = true;
+        if (session->is_lost) return true;
+    }
+    return has_come;
+}
+
+static uint32_t due_us(session_t *session)
+{
+    uint32_t soonest_us = FATHOM_NO_DEADLINE;
+    for (station_t *station = session->options.stations; station != end_of(session); station++) {
+        if (is_done(session, station)) continue;
+        const uint32_t due_us = fathom_due_us(&station->reader.sensor, 1);
+        if (due_us < soonest_us) soonest_us = due_us;
+    }
+    return soonest_us;
+}
+
+static bool begin_station(session_t *session, station_t *station)
+{
+    const session_options_t *const options = &session->options;
+    const reader_settings_t settings = {
+        .timeout_us = options->timeout_us,
+        .period_us = options->interval_us,
+        .line = options->has_mixed_lines ? &station->line : NULL,
+        .backoff_us = is_shared(session) ? 0 : READER_BACKOFF_US,
+        .address = station->address,
+        .retries = options->retries,
+    };
+    const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
+    if (!station->mode->read(&station->reader, &session->channel, &settings)) {
+        (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n",
+                      station->sensor->name);
+        return false;
+    }
+    /* Goes on after a loss, so that the gap is not taken for a new start. */
+    *station->reader.sequence = sequence;
+    station->ear = is_shared(session) ? &station->own_ear : &session->channel.ear;
+    begin_attempt(station);
+    station->next_us = fathom_posix_now_us();
+    station->skipping = false;
+    station->answering = false;
+    return true;
+}
+
+/* The port is open: begins to read. */
+static bool begin_reading(session_t *session)
+{
+    for (station_t *station = session->options.stations; station != end_of(session); station++)
+        if (!begin_station(session, station)) return false;
+    session->channel.ear.whose = is_shared(session) ? whose : NULL;
+    session->channel.ear.ctx = session;
+    tally_begin_port(&session->port_counts, &session->channel);
+    session->is_lost = false;
+    return true;
+}
+
+/* False: it is to end before the port is there. */
+static bool wait_for_port(session_t *session)
+{
+    const fathom_line_settings_t *const line = &session->options.line;
+    do wait_for(session, -1, 0, PLUG_RETRY_US);
+    while (!is_over(session) && !plug_try(&session->plug, &session->channel, line));
+    return !is_over(session);
+}
+
+static bool reconnect(session_t *session)
+{
+    const adapter_t *const adapter = &session->plug.adapter;
+    char text[TEXT];
+    /* All sensors' counters, since those of the line are lost with it. */
+    for (station_t *station = session->options.stations; station != end_of(session); station++)
+        tally_take(&station->tally, &session->port_counts, &session->channel, &station->reader);
+    channel_close(&session->channel);
+    if (adapter->vendor[0] != '\0' && adapter->needs_socket)
+        session->user->port(session->ctx,
+                            "this adapter has no serial number of its own: use the same USB socket again",
+                            false);
+    if (!wait_for_port(session)) return true;
+    if (!begin_reading(session)) return false;
+    session->reconnects++;
+    (void)snprintf(text, sizeof text, "%s: it is back; reading goes on", plug_path(&session->plug));
+    session->user->port(session->ctx, text, true);
+    return true;
+}
+
+bool session_run(session_t *session)
+{
+    if (!begin_reading(session)) return false;
+    while (!is_over(session)) {
+        const bool has_come = poll_all(session);
+        const fathom_posix_uart_t *const port = &session->channel.port;
+        if (session->is_lost) {
+            if (!is_over(session) && !reconnect(session)) return false;
+        } else if (!has_come) {
+            wait_for(session, fathom_posix_fd(port), fathom_posix_poll_events(port), due_us(session));
+        }
+    }
+    return true;
+}
+
+/* ---- begin and end ---- */
+
+void session_begin(session_t *session, const session_user_t *user, void *ctx)
+{
+    session->start_us = fathom_posix_now_us();
+    session->user = user;
+    session->ctx = ctx;
+}
+
+bool session_open(session_t *session)
+{
+    const session_options_t *const options = &session->options;
+    const fathom_posix_uart_t *const port = &session->channel.port;
+    char text[TEXT];
+    session->channel.echo = options->echo;
+    session->plug.path = options->port;
+    if (plug_try(&session->plug, &session->channel, &options->line)) return true;
+    session->is_lost = options->reconnect && fathom_posix_error(port) == FATHOM_POSIX_ERR_NOT_FOUND;
+    (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(port),
+                   session->is_lost ? "; waiting until it is there" : "");
+    session->user->port(session->ctx, text, false);
+    if (!session->is_lost || !wait_for_port(session)) return false;
+    (void)snprintf(text, sizeof text, "%s: it is there; reading begins", plug_path(&session->plug));
+    session->user->port(session->ctx, text, true);
+    return true;
+}
+
+void session_close(session_t *session) { channel_close(&session->channel); }
+
+void session_account(session_t *session, account_t *account)
+{
+    const session_options_t *const options = &session->options;
+    *account = (account_t){.stations = options->stations, .station_count = options->station_count};
+    for (station_t *station = session->options.stations; station != end_of(session); station++) {
+        /* Whoever reads first takes what the line has counted; the sums are right all the same. */
+        if (station->reader.sequence != NULL)
+            tally_take(&station->tally, &session->port_counts, &session->channel, &station->reader);
+        tally_add(&account->sum, &station->tally);
+        account->requests += station->ear != NULL ? station->ear->requests : 0;
+    }
+    account->reconnects = session->reconnects;
+    account->time_us = session_time_us(session);
+    account->has_port = session->port_counts.is_there;
+}
