@@ -14,6 +14,9 @@ typedef struct {
 
 extern const command_t read_command;
 extern const command_t sim_command;
+extern const command_t info_command;
+extern const command_t get_command;
+extern const command_t set_command;
 
 /* Exit statuses of every command. */
 enum {

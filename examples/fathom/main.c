@@ -8,7 +8,8 @@
 #include "command.h"
 #include "fathom/version.h"
 
-static const command_t *const commands[] = {&read_command, &sim_command};
+static const command_t *const commands[] = {&read_command, &info_command, &get_command, &set_command,
+                                            &sim_command};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 int usage_error(const char *command, const char *format, ...)

@@ -6,6 +6,7 @@
 
 #include "devices.h"
 #include "readers.h"
+#include "settings.h"
 
 /* One way in which a sensor can be read and simulated. */
 typedef struct {
@@ -24,6 +25,7 @@ typedef struct {
     fathom_line_settings_t line;
     sensor_mode_t modes[SENSOR_MODES]; /* rows without a name end it */
     const char *other_settings; /* options with other line settings that it can have; NULL: it has none */
+    const setting_t *settings;
     uint8_t max_address;
     uint8_t probes;
     bool has_optics;  /* magnitude, ambient light and precision, and it can report a fault */

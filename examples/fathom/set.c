@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT */
+#include <inttypes.h>
+#include <string.h>
+
+#include "command.h"
+#include "talk.h"
+
+/* fathom set: one setting of one device, confirmed by reading it back where that can be. */
+
+static const char command[] = "set";
+static talk_t talk;
+
+static void print_value(const setting_t *setting, const char *text)
+{
+    const bool has_unit = setting->unit != NULL && setting->words == NULL;
+    (void)printf("%s%s%s", text, has_unit ? " " : "", has_unit ? setting->unit : "");
+}
+
+/* Where the device is asked from now on. */
+static void print_next(const setting_t *setting)
+{
+    const station_t *const station = talk.station;
+    const sensor_t *const sensor = station->sensor;
+    const fathom_modbus_unit_t *const unit = station->reader.unit;
+    const fathom_line_settings_t *const line = unit->settings != NULL ? unit->settings : &station->line;
+    if (!setting->moves) return;
+    (void)printf("from now on: fathom read %s:%u:%s --port %s", sensor->name, unit->address,
+                 station->mode->name, talk.options.port);
+    if (line->baud != sensor->line.baud) (void)printf(" --baud %" PRIu32, line->baud);
+    (void)puts("");
+}
+
+static void print_done(const setting_t *setting, const char *was, const char *is)
+{
+    const station_t *const station = talk.station;
+    const bool was_so = was[0] != '\0' && strcmp(was, is) == 0;
+    if (talk.is_json) {
+        (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->sensor->name,
+                     setting->name);
+        talk_print_json(stdout, is);
+        (void)fputs(", \"was\": ", stdout);
+        if (was[0] != '\0')
+            talk_print_json(stdout, was);
+        else
+            (void)fputs("null", stdout);
+        (void)printf(", \"written\": %s, \"confirmed\": %s, \"address\": %u}\n", was_so ? "false" : "true",
+                     setting->get != NULL || setting->moves ? "true" : "false",
+                     station->reader.unit->address);
+        return;
+    }
+    (void)printf("%s: %s is ", station->name, setting->name);
+    print_value(setting, is);
+    if (was_so)
+        (void)puts(" already; nothing was written");
+    else if (setting->get != NULL)
+        (void)printf(" (was %s)\n", was);
+    else
+        (void)puts(setting->moves ? "" : " as far as the device has acknowledged it; it cannot be read back");
+    if (!was_so) print_next(setting);
+}
+
+/* The two places at which the device may be. */
+static void print_places(const setting_t *setting, const char *was, const char *wanted)
+{
+    const station_t *const station = talk.station;
+    char line[SETTINGS_TEXT];
+    if (!setting->moves) {
+        (void)fputs("it was sent, and could not be read back: it may hold or not; ask for it with fathom get",
+                    stderr);
+        return;
+    }
+    (void)fprintf(stderr, "it was sent, and then the device could not be read: ");
+    if (setting->is_baud)
+        (void)fprintf(
+            stderr,
+            "it is at %s or at %s baud, perhaps from the next power-on; try fathom scan --port %s --baud "
+            "%s,%s",
+            was, wanted, talk.options.port, was, wanted);
+    else
+        (void)fprintf(stderr, "it is at address %u or at address %s, %s; try fathom read with either",
+                      station->address, wanted, settings_text(&station->line, line));
+}
+
+static void explain(fathom_status_t status)
+{
+    talk_explain(&talk, status);
+    (void)fputs("; nothing was changed", stderr);
+}
+
+static int fail(const setting_t *setting, fathom_status_t status, const char *was, const char *wanted)
+{
+    (void)fprintf(stderr, "fathom: %s: %s %s: ", talk.station->name, setting->name, wanted);
+    switch (status) {
+    case FATHOM_ERR_UNCONFIRMED:
+        print_places(setting, was, wanted);
+        break;
+    case FATHOM_ERR_IN_USE:
+        (void)fprintf(
+            stderr,
+            "a device answers at address %s already, so nothing was changed; two at one address would "
+            "answer at once",
+            wanted);
+        break;
+    case FATHOM_ERR_NO_ANSWER:
+        if (was[0] == '\0') {
+            explain(status);
+            break;
+        }
+        (void)fputs(
+            "the device answers questions, but nothing came to this, and it has the value that it had; not "
+            "every variant has it",
+            stderr);
+        break;
+    case FATHOM_ERR_MALFORMED:
+        if (talk.station->reader.unit->request.exchange.status == FATHOM_READY) {
+            (void)fputs(
+                "the device has acknowledged it and tells another value afterwards; perhaps this variant "
+                "does not have it",
+                stderr);
+            break;
+        } /* fall through */
+    default:
+        explain(status);
+        break;
+    }
+    (void)fputs("\n", stderr);
+    return STATUS_FAILED;
+}
+
+static int set(const setting_t *setting, int32_t value)
+{
+    char was[SETTING_TEXT] = "";
+    char wanted[SETTING_TEXT];
+    setting_print_value(setting, value, wanted);
+    if (setting->get != NULL) {
+        const fathom_status_t status = talk_get(&talk, setting, was);
+        if (status != FATHOM_READY) return fail(setting, status, "", wanted);
+    }
+    const fathom_status_t status = talk_set(&talk, setting, value);
+    if (status != FATHOM_READY) return fail(setting, status, was, wanted);
+    print_done(setting, was, wanted);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        (void)fputs("fathom: the output cannot be written; the setting holds\n", stderr);
+        return STATUS_FAILED;
+    }
+    return STATUS_OK;
+}
+
+static void help(FILE *to)
+{
+    (void)fputs("fathom set changes a setting of a device: it asks for the value, writes it if it is another "
+                "one, and "
+                "reads it\nback. It follows a device to its new address or baud rate.\n\n"
+                "usage: fathom set SENSOR[:ADDRESS[:MODE]] --port PATH SETTING VALUE [OPTIONS]\n\n"
+                "`fathom get SENSOR` lists the settings, their values, and when they take effect.\n\n",
+                to);
+    talk_options_help(to);
+    (void)fputs(
+        "\nA new address is asked first whether somebody is there. What the device does not tell is written "
+        "without a look.\n"
+        "Exit status: 0 when it holds (or was acknowledged, where it cannot be read), 1 when not or when "
+        "that "
+        "is not\nknown, 2 for wrong usage.\n\n"
+        "examples:\n"
+        "  fathom set hps167s --port /dev/ttyUSB0 address 7\n"
+        "  fathom set hps167s:7 --port /dev/ttyUSB0 termination off\n"
+        "  fathom set hps167s --port /dev/ttyUSB0 baud 115200\n"
+        "  fathom set a16 --port /dev/ttyUSB0 switch-threshold 2000\n"
+        "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -- -15      a negative value\n",
+        to);
+}
+
+static int run(int argc, char **argv)
+{
+    const char *values[TALK_OPTIONS] = {NULL};
+    char **words = NULL;
+    int count = 0;
+    int32_t value = 0;
+    bool wants_help = false;
+    if (!talk_options(&talk, command, argc, argv, talk_table, values, &words, &count, &wants_help))
+        return STATUS_USAGE;
+    if (wants_help) {
+        help(stdout);
+        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+    }
+    const char *const sensor = talk.station->sensor->name;
+    if (count != 2)
+        return usage_error(command,
+                           count == 0   ? "which setting? `fathom get %s` lists them"
+                           : count == 1 ? "a value is missing; `fathom get %s` lists them"
+                                        : "one setting and one value of %s at a time",
+                           sensor);
+    const setting_t *const setting = setting_find(command, sensor, talk_settings(&talk), words[0]);
+    if (setting == NULL) return STATUS_USAGE;
+    if (setting->set == NULL)
+        return usage_error(command, "%s is told by the device and cannot be set", setting->name);
+    if (!setting_parse(command, setting, words[1], &value) ||
+        !talk_set_mode(&talk, command, values, setting->mode))
+        return STATUS_USAGE;
+    if (!talk_open(&talk)) return STATUS_FAILED;
+    const int status = set(setting, value);
+    talk_close(&talk);
+    return status;
+}
+
+const command_t set_command = {"set", "changes a setting of a device and confirms it", help, run};
