@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The README's table of the datasheets: a row for each section of tests/golden/sections.csv, and what a row names is
+there: functions and headers, commands of the tool, tests."""
+import os
+import re
+
+import common
+from common import code_of, files, main, read
+
+common.COPIED = (*common.COPIED, 'tests', 'README.md')
+
+LIST = 'tests/golden/sections.csv'
+BEGIN, END = '<!-- datasheets: ', '<!-- end -->'
+
+
+def sections(text):
+    lines = [line for line in text.splitlines() if line and not line.startswith('#')]
+    return [line.split(',', 1)[0] for line in lines[1:]]
+
+
+def rows(text):
+    """(section, API, tool, tests) of each row."""
+    begin = text.index(BEGIN)
+    found = []
+    for line in text[begin:text.index(END, begin)].splitlines():
+        cells = [cell.strip() for cell in line.strip('|').split('|')]
+        if line.startswith('|') and len(cells) == 5 and not cells[0].startswith('-') and cells[0] != 'datasheet':
+            found.append((cells[0], cells[2], cells[3], cells[4]))
+    return found
+
+
+def quoted(cell):
+    return re.findall(r'`([^`]+)`', cell)
+
+
+class Tree:
+    def __init__(self, root):
+        self.root = root
+        code = '\n'.join(code_of(read(root, path)) for path in files(root, 'include'))
+        self.names = set(re.findall(r'\b[A-Za-z_]\w*\b', code))
+        self.commands = set(re.findall(r'&(\w+)_command\b', read(root, 'examples/fathom/main.c')))
+
+    def has_api(self, name):
+        if name.endswith('.h'):
+            return os.path.exists(os.path.join(self.root, 'include/fathom', name))
+        return name in self.names
+
+    def has_test(self, name):
+        path, _, case = name.partition(':')
+        path = os.path.join('tests', path)
+        if not os.path.exists(os.path.join(self.root, path)):
+            return False
+        text = read(self.root, path)
+        if path.endswith('.py'):
+            return re.search(rf'\bdef {re.escape(case)}\(', text) is not None
+        # Defined, and in the list of those that are run.
+        return len(re.findall(rf'\b{re.escape(case)}\b', code_of(text))) >= 2
+
+
+def check(root, only):
+    tree = Tree(root)
+    wanted = sections(read(root, LIST))
+    found = rows(read(root, 'README.md'))
+    names = [row[0] for row in found]
+    problems = [f'README.md: no row for {name}' for name in wanted if name not in names]
+    problems += [f'README.md: {name} is no section of {LIST}' for name in names if name not in wanted]
+    problems += [f'README.md: {name} stands there twice' for name in set(names) if names.count(name) > 1]
+    for name, api, tool, tests in found:
+        if not quoted(api):
+            problems.append(f'README.md: {name}: no function or header')
+        problems += [f'README.md: {name}: {word} is not in include/fathom'
+                     for word in quoted(api) if not tree.has_api(word)]
+        for words in quoted(tool):
+            if words.split()[0] not in tree.commands:
+                problems.append(f'README.md: {name}: the tool has no command {words.split()[0]}')
+        if not quoted(tests):
+            problems.append(f'README.md: {name}: no test')
+        problems += [f'README.md: {name}: there is no test {word}' for word in quoted(tests)
+                     if not tree.has_test(word)]
+    return [problem for problem in problems if only is None or any(path in problem for path in only)]
+
+
+FAULTS = [
+    (LIST, None, 'HPS 3 #16,another command\n', 'no row for HPS 3 #16'),
+    (LIST, 'A16 1(1),', 'A16 1(0),', 'is no section of'),
+    ('README.md', '| A16 1(1) |', '| A16 1(2) |', 'stands there twice'),
+    ('README.md', '`fathom_a16_set_address`', '`fathom_a16_set_adress`', 'is not in include/fathom'),
+    ('README.md', '`a16_pwm.h`', '`a16_pmw.h`', 'is not in include/fathom'),
+    ('README.md', '`set hps167s', '`put hps167s', 'the tool has no command put'),
+    ('README.md', '`golden/test_mistakes_dyp.c:', '`golden/test_mistake_dyp.c:', 'there is no test'),
+    ('README.md', ':a05_2_3_3_prints_60', ':a05_2_3_3_prints_61', 'there is no test'),
+]
+
+if __name__ == '__main__':
+    main(check, FAULTS)
