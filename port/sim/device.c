@@ -8,7 +8,8 @@ enum {
     START = FATHOM_SIM_ALARM_START,
     SILENCE = FATHOM_SIM_ALARM_SILENCE,
     ANSWER = FATHOM_SIM_ALARM_ANSWER,
-    AUTOMATIC = FATHOM_SIM_ALARM_AUTOMATIC
+    AUTOMATIC = FATHOM_SIM_ALARM_AUTOMATIC,
+    PIN = FATHOM_SIM_ALARM_PIN
 };
 
 void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uint32_t at_us)
@@ -48,6 +49,39 @@ uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe
     return value < 0 ? 0xFFFD : (uint16_t)value;
 }
 
+/* ---- pins ---- */
+
+void fathom_sim_device_set_level(fathom_sim_device_t *device, bool high, uint32_t now_us)
+{
+    fathom_sim_sender_t *const sender = &device->sender;
+    const uint8_t nothing = 0;
+    if (device->tx_high == high) return;
+    device->tx_high = high;
+    if (device->watch != NULL) device->watch(device->watch_ctx, high, now_us);
+    if (high || !device->tx_is_uart || !fathom_sim_sender_idle(sender)) return;
+    fathom_sim_sender_put(sender, &device->settings, &nothing, 1, now_us);
+    sender->marked = true;
+    sender->marks[0] = FATHOM_RX_FRAMING;
+    device->own = 1;
+}
+
+bool fathom_sim_device_level(const fathom_sim_device_t *device, uint32_t now_us)
+{
+    /* a break that set_level sends is no byte: the level is what it is */
+    const bool is_break = device->sender.marked && (device->sender.marks[0] & FATHOM_RX_FRAMING) != 0;
+    return device->sender.on_wire && !is_break ? fathom_sim_sender_level(&device->sender, now_us)
+                                               : device->tx_high;
+}
+
+void fathom_sim_device_hold_rx(fathom_sim_device_t *device, uint8_t by, bool low, uint32_t now_us)
+{
+    const bool was_high = device->rx_held == 0;
+    device->rx_held = (uint8_t)(low ? device->rx_held | by : device->rx_held & ~by);
+    const bool high = device->rx_held == 0;
+    if (high == was_high || device->alarms[POWER].set || device->model->edge == NULL) return;
+    device->model->edge(device, high, now_us);
+}
+
 /* ---- power ---- */
 
 void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
@@ -64,12 +98,18 @@ void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
         fathom_sim_device_set_alarm(device, AUTOMATIC,
                                     device->model->deaf_at_start ? first_us + device->start_us : first_us);
     }
+    if (device->model->power_on != NULL)
+        device->model->power_on(device, now_us);
+    else
+        fathom_sim_device_set_level(device, true, now_us);
 }
 
 static void power_off(fathom_sim_device_t *device, uint32_t for_us, uint32_t now_us)
 {
     for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) device->alarms[i].set = false;
     fathom_sim_device_set_alarm(device, POWER, now_us + for_us);
+    if (device->tx_high && device->watch != NULL) device->watch(device->watch_ctx, false, now_us);
+    device->tx_high = false;
 }
 
 /* ---- hearing ---- */
@@ -222,6 +262,7 @@ void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us)
         if (i == SILENCE) frame_ended(device, now_us);
         if (i == ANSWER) answer(device, now_us);
         if (i == AUTOMATIC) automatic(device, alarm->at_us, now_us);
+        if (i == PIN) device->model->alarm(device, now_us);
         return;
     }
 }

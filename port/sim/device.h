@@ -109,6 +109,7 @@ enum {
     FATHOM_SIM_ALARM_SILENCE,   /* t3.5 after the last byte: the request is whole */
     FATHOM_SIM_ALARM_ANSWER,    /* the answer is ready */
     FATHOM_SIM_ALARM_AUTOMATIC, /* the next automatic frame */
+    FATHOM_SIM_ALARM_PIN,       /* the model's own: something is to happen at its pins */
     FATHOM_SIM_ALARMS
 };
 
@@ -147,12 +148,26 @@ typedef struct {
     uint8_t (*automatic)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
     /* A command of the 55 AA protocol, to this device or to all. Returns as `request` does. */
     uint32_t (*command)(fathom_sim_device_t *device, uint8_t address, uint8_t command);
+    /* It has got power. Sets the level at which its TX pin rests, and takes what it notices at its RX pin; where
+     * there is no such function TX rests high, as a UART does. */
+    void (*power_on)(fathom_sim_device_t *device, uint32_t now_us);
+    /* The level at its RX pin has changed. Not called without power. */
+    void (*edge)(fathom_sim_device_t *device, bool high, uint32_t now_us);
+    /* FATHOM_SIM_ALARM_PIN, which it has set, is due. */
+    void (*alarm)(fathom_sim_device_t *device, uint32_t now_us);
     uint16_t reading[2]; /* the Modbus read of all that it measures: address, count */
     uint8_t broadcast;   /* the address that all obey */
     bool strict_gap;     /* a silence over t1.5 spoils a frame */
     bool deaf_at_start;  /* hears nothing while FATHOM_SIM_ALARM_START is set */
     bool optical;        /* says FATHOM_SIM_FAULT, and no FATHOM_SIM_INTERFERENCE */
 } fathom_sim_model_t;
+
+/* What can hold the RX pin of a device low; it is high, also where nobody drives it, when nothing does. */
+enum {
+    FATHOM_SIM_HELD_BY_PIN = 1,   /* the host's fathom_pin_t (pin.h) */
+    FATHOM_SIM_HELD_BY_BREAK = 2, /* a break of the host's UART */
+    FATHOM_SIM_HELD_BY_BYTE = 4   /* a byte of the host: from its start bit to its end, to keep it simple */
+};
 
 struct fathom_sim_device {
     const fathom_sim_model_t *model;
@@ -187,6 +202,12 @@ struct fathom_sim_device {
     uint32_t off_us;   /* without power for so long when the sender is idle */
     bool busy;         /* between a request and the end of its answer */
     bool leaving;
+    bool tx_high;    /* the level of its TX pin where no byte is leaving */
+    bool tx_is_uart; /* the model's: a TX pin that falls is a break to the host's UART, which is on it too */
+    uint8_t rx_held; /* FATHOM_SIM_HELD_BY_..., a set */
+    /* Who sees the edges of tx_high; set by pin.h. */
+    void (*watch)(void *ctx, bool high, uint32_t now_us);
+    void *watch_ctx;
     uint8_t frame[FATHOM_SIM_MAX_FRAME];
 };
 
@@ -196,6 +217,8 @@ void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us);
 /* good: false for a byte that was talked into. full_duplex: hearing and sending have a wire each. */
 void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
                                 uint8_t byte, bool good, bool full_duplex, uint32_t now_us);
+/* Somebody begins or ceases to hold the RX pin low; by: FATHOM_SIM_HELD_BY_... */
+void fathom_sim_device_hold_rx(fathom_sim_device_t *device, uint8_t by, bool low, uint32_t now_us);
 void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us); /* a byte of it has left */
 uint32_t fathom_sim_device_due_us(const fathom_sim_device_t *device, uint32_t now_us);
 void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us); /* something is due */
@@ -207,6 +230,14 @@ uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe
 /* `most_us` less a part of it, 0..1/8, that the seed decides: no real device answers to the microsecond. */
 uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_us);
 void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uint32_t at_us);
+
+/*
+ * The level of the TX pin from now on: a pulse, a switch output, a relay's contact. Bytes that leave on the same
+ * pin have it while they do. With tx_is_uart a fall reaches the host as a byte 00 with FATHOM_RX_FRAMING.
+ */
+void fathom_sim_device_set_level(fathom_sim_device_t *device, bool high, uint32_t now_us);
+/* What the host can see of the TX pin now: the bits of a byte that is leaving, else the level. */
+bool fathom_sim_device_level(const fathom_sim_device_t *device, uint32_t now_us);
 
 uint32_t fathom_sim_device_between_us(fathom_sim_device_t *device, uint32_t least_us, uint32_t most_us);
 

@@ -67,6 +67,13 @@ static bool hears(const fathom_sim_line_t *line, const fathom_sim_device_t *list
     return listener != device && (device == NULL || !line->full_duplex);
 }
 
+/* What the host does with its TX pin, as edges. */
+static void hold_rx(const fathom_sim_line_t *line, uint8_t by, bool low)
+{
+    for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next)
+        fathom_sim_device_hold_rx(at, by, low, line->now_us);
+}
+
 static void byte_begins(fathom_sim_line_t *line, fathom_sim_sender_t *sender,
                         const fathom_sim_device_t *device)
 {
@@ -81,6 +88,7 @@ static void byte_begins(fathom_sim_line_t *line, fathom_sim_sender_t *sender,
     sender->on_wire = true;
     for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next)
         if (hears(line, at, device)) fathom_sim_device_hear_begin(at, line->now_us);
+    if (device == NULL) hold_rx(line, FATHOM_SIM_HELD_BY_BYTE, true);
 }
 
 static void byte_ends(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fathom_sim_device_t *device)
@@ -96,6 +104,7 @@ static void byte_ends(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fath
             fathom_sim_device_hear_end(at, &sender->settings, byte,
                                        !sender->spoiled && (mark & BYTE_ERRORS) == 0, line->full_duplex,
                                        line->now_us);
+    if (device == NULL) hold_rx(line, FATHOM_SIM_HELD_BY_BYTE, false);
     if (device != NULL) fathom_sim_device_sent(device, line->now_us);
 }
 
@@ -184,7 +193,9 @@ void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
     device->carriers = 0;
     /* whoever talks now is in the middle of a byte, whose end will be counted too */
     fathom_sim_device_power_on(device, line->now_us);
-    if (line->host.on_wire) device->carriers++;
+    fathom_sim_device_hold_rx(device, FATHOM_SIM_HELD_BY_BYTE, line->host.on_wire, line->now_us);
+    fathom_sim_device_hold_rx(device, FATHOM_SIM_HELD_BY_BREAK, line->in_break, line->now_us);
+    if (line->host.on_wire || line->in_break) device->carriers++;
     for (const fathom_sim_device_t *at = line->devices; at != device; at = at->next)
         if (at->sender.on_wire && !line->full_duplex) device->carriers++;
 }
@@ -210,7 +221,22 @@ void fathom_sim_set_line(fathom_sim_line_t *line, const fathom_line_settings_t *
 size_t fathom_sim_receive(fathom_sim_line_t *line, const uint8_t *bytes, size_t count, uint32_t now_us)
 {
     fathom_sim_run(line, now_us);
+    if (line->in_break) return 0;
     return fathom_sim_sender_put(&line->host, &line->settings, bytes, count, line->now_us);
+}
+
+void fathom_sim_break(fathom_sim_line_t *line, bool on, uint32_t now_us)
+{
+    fathom_sim_run(line, now_us);
+    if (line->in_break == on) return;
+    line->in_break = on;
+    for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next) {
+        if (on)
+            fathom_sim_device_hear_begin(at, line->now_us);
+        else
+            fathom_sim_device_hear_end(at, &line->settings, 0, false, line->full_duplex, line->now_us);
+    }
+    hold_rx(line, FATHOM_SIM_HELD_BY_BREAK, on);
 }
 
 size_t fathom_sim_queued(fathom_sim_line_t *line, uint32_t now_us)

@@ -55,6 +55,7 @@ typedef struct fathom_sim_line {
     fathom_sim_device_t *devices;
     fathom_line_settings_t settings;
     uint32_t now_us;
+    bool in_break;       /* of the host */
     uint32_t arrived_us; /* end of the last byte that reached the host */
     bool quiet;          /* t3.5 has passed since */
     bool lost;           /* bytes were lost before the next one */
@@ -82,6 +83,13 @@ size_t fathom_sim_receive(fathom_sim_line_t *line, const uint8_t *bytes, size_t 
 
 /* Bytes of the host that have not left yet: FATHOM_SIM_QUEUE less this many will be taken. */
 size_t fathom_sim_queued(fathom_sim_line_t *line, uint32_t now_us);
+
+/*
+ * The host holds its TX low (true), or lets it go: an edge at the RX pin of every device, and one spoilt byte to those
+ * that listen. While it lasts no bytes of the host are taken. Of a two-wire line it disturbs what the host sends to
+ * the devices, and nothing else.
+ */
+void fathom_sim_break(fathom_sim_line_t *line, bool on, uint32_t now_us);
 
 /* Has the last stop bit left that the host sent? */
 bool fathom_sim_sent(fathom_sim_line_t *line, uint32_t now_us);

@@ -66,6 +66,20 @@ void fathom_sim_clock_idle(void *ctx, uint32_t max_us)
     fathom_sim_clock_advance(clock, by_us);
 }
 
+void fathom_sim_clock_add(fathom_sim_clock_t *clock, fathom_sim_line_t *line)
+{
+    for (const fathom_sim_line_t *at = clock->lines; at != NULL; at = at->next)
+        if (at == line) return;
+    line->next = clock->lines;
+    clock->lines = line;
+}
+
+uint32_t fathom_sim_clock_stamp_us(const fathom_sim_clock_t *clock, uint32_t at_us)
+{
+    const bool before = fathom_elapsed_us(at_us, clock->jumped_us) > INT32_MAX;
+    return at_us + (before ? clock->was_ahead_us : clock->ahead_us);
+}
+
 static uint32_t now_us(void *ctx)
 {
     fathom_sim_clock_t *const clock = (fathom_sim_clock_t *)ctx;
@@ -91,10 +105,7 @@ static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
     if (capacity > FATHOM_SIM_QUEUE) capacity = FATHOM_SIM_QUEUE;
     const size_t count =
         fathom_sim_transmit_timed(uart->line, uart->clock->now_us, bytes, capacity, uart->knows, rx);
-    if ((rx->flags & FATHOM_RX_TIMED) != 0) {
-        const bool before = fathom_elapsed_us(rx->last_us, uart->clock->jumped_us) > INT32_MAX;
-        rx->last_us += before ? uart->clock->was_ahead_us : uart->clock->ahead_us;
-    }
+    if ((rx->flags & FATHOM_RX_TIMED) != 0) rx->last_us = fathom_sim_clock_stamp_us(uart->clock, rx->last_us);
     return (int)count;
 }
 
@@ -111,6 +122,14 @@ static bool sent(void *ctx)
     return fathom_sim_sent(uart->line, uart->clock->now_us);
 }
 
+static int set_break(void *ctx, bool on)
+{
+    const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    if (!sent(ctx)) return 0;
+    fathom_sim_break(uart->line, on, uart->clock->now_us);
+    return 1;
+}
+
 static int set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
@@ -125,14 +144,11 @@ void fathom_sim_uart_init(fathom_sim_uart_t *uart, fathom_sim_line_t *line, fath
     uart->clock = clock;
     uart->knows =
         FATHOM_RX_TIMED | FATHOM_RX_SILENCE | FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN;
-    for (const fathom_sim_line_t *at = clock->lines; at != NULL; at = at->next)
-        if (at == line) return;
-    line->next = clock->lines;
-    clock->lines = line;
+    fathom_sim_clock_add(clock, line);
 }
 
 fathom_uart_t fathom_sim_uart(fathom_sim_uart_t *uart)
 {
-    const fathom_uart_t hal = {read, write, sent, set_line, NULL, uart};
+    const fathom_uart_t hal = {read, write, sent, set_line, set_break, uart};
     return hal;
 }

@@ -47,12 +47,18 @@ void fathom_sim_clock_jump(fathom_sim_clock_t *clock, uint32_t at_us, uint32_t b
  * moves one second. */
 void fathom_sim_clock_idle(void *clock, uint32_t max_us);
 
+/* Puts `line` on the clock, if it is not there yet: it lives through what the clock does. */
+void fathom_sim_clock_add(fathom_sim_clock_t *clock, fathom_sim_line_t *line);
+
+/* What the HAL's clock said when it was at_us, up to 10 minutes ago. */
+uint32_t fathom_sim_clock_stamp_us(const fathom_sim_clock_t *clock, uint32_t at_us);
+
 /* The HAL's clock: each now_us() moves the time by step_us first. */
 fathom_clock_t fathom_sim_clock(fathom_sim_clock_t *clock);
 
 /*
  * A UART at the host's end of a line. write takes all or, until the last one has left the pin, nothing;
- * sent is exact. read tells what is in `knows` (FATHOM_RX_..., all of them after init): set it to 0 to be a
+ * sent is exact. set_break holds the RX pins of the devices low. read tells what is in `knows` (FATHOM_RX_..., all of them after init): set it to 0 to be a
  * port that knows nothing. None of them moves the time.
  */
 typedef struct {

@@ -83,3 +83,19 @@ uint32_t fathom_sim_sender_next_us(const fathom_sim_sender_t *sender)
         if (sender->sent >= sender->pauses[i].at) next_us += sender->pauses[i].us;
     return next_us;
 }
+
+bool fathom_sim_sender_level(const fathom_sim_sender_t *sender, uint32_t now_us)
+{
+    const fathom_line_settings_t *const settings = &sender->settings;
+    const uint8_t byte = sender->bytes[sender->sent];
+    const uint32_t left_us = fathom_sim_until_us(fathom_sim_sender_next_us(sender), now_us);
+    const uint32_t left = (left_us * settings->baud + 999999) / 1000000; /* bits, the present one included */
+    if (left >= character_bits(settings)) return false;
+    if (left <= settings->stop_bits) return true;
+    if (settings->parity != FATHOM_PARITY_NONE && left == settings->stop_bits + UINT32_C(1)) {
+        bool odd = settings->parity == FATHOM_PARITY_ODD;
+        for (uint8_t rest = byte; rest != 0; rest >>= 1) odd ^= (rest & 1) != 0;
+        return odd;
+    }
+    return (byte >> (character_bits(settings) - left - 1) & 1) != 0;
+}

@@ -73,6 +73,10 @@ size_t fathom_sim_sender_put(fathom_sim_sender_t *sender, const fathom_line_sett
  * Not for an idle one. */
 uint32_t fathom_sim_sender_next_us(const fathom_sim_sender_t *sender);
 
+/* The level that the bits of the byte on the wire make at this time: start bit low, data from the lowest bit on,
+ * parity, stop bits high. Not for one that has none on the wire. */
+bool fathom_sim_sender_level(const fathom_sim_sender_t *sender, uint32_t now_us);
+
 #ifdef __cplusplus
 }
 #endif
