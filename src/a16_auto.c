@@ -16,10 +16,32 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
     base->answer.first = 1;
     base->line = config->line;
     base->probes = 1;
-    return fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
+    sensor->select = config->select;
+    sensor->real_time = false;
+    fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
+    if (status < 0 || (sensor->select == NULL && !config->real_time)) return status;
+    status = fathom_a16_auto_select(sensor, config->real_time);
+    if (status == FATHOM_READY) return status;
+    fathom_dyp_auto_deinit(base);
+    return status == FATHOM_PENDING ? FATHOM_ERR_BUSY : status;
 }
 
-void fathom_a16_auto_deinit(fathom_a16_auto_t *sensor) { fathom_dyp_auto_deinit(&sensor->base); }
+fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, bool real_time)
+{
+    fathom_status_t status = FATHOM_READY;
+    if (sensor->select != NULL)
+        sensor->select->set(sensor->select->ctx, !real_time);
+    else
+        status = fathom_line_break(sensor->base.line, real_time);
+    if (status == FATHOM_READY) sensor->real_time = real_time;
+    return status;
+}
+
+void fathom_a16_auto_deinit(fathom_a16_auto_t *sensor)
+{
+    if (sensor->select == NULL && sensor->real_time) (void)fathom_a16_auto_select(sensor, false);
+    fathom_dyp_auto_deinit(&sensor->base);
+}
 
 fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor)
 {

@@ -145,7 +145,8 @@ static int hand_over(fathom_line_t *line, fathom_exchange_t *exchange)
  */
 static fathom_status_t send(fathom_line_t *line)
 {
-    if (line->have != 0 || line->silent_us < silence_us(line)) return FATHOM_PENDING;
+    if (line->have != 0 || line->silent_us < silence_us(line) || (line->known & IN_BREAK) != 0)
+        return FATHOM_PENDING;
     for (fathom_exchange_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
         if ((line->owing & fathom_line_owing_bits(x->unit)) != 0) continue;
         *link = x->link.next;
@@ -236,6 +237,23 @@ bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchang
 
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener) { line->listener = listener; }
 
+fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
+{
+    const fathom_uart_t *const uart = line->config->uart;
+    if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
+    if (line->state > REFUSED) return FATHOM_ERR_BUSY;
+    const int is_set = uart->set_break(uart->ctx, on);
+    if (is_set <= 0) return is_set < 0 ? FATHOM_ERR_PORT : FATHOM_PENDING;
+    line->state = IDLE; /* a port that refused a request is given its time anew */
+    if (on) {
+        line->known |= IN_BREAK;
+    } else {
+        line->known &= (uint8_t)~IN_BREAK;
+        line->silent_us = 0;
+    }
+    return FATHOM_READY;
+}
+
 fathom_status_t fathom_line_poll(fathom_line_t *line)
 {
     const fathom_clock_t *const clock = line->config->clock;
@@ -271,6 +289,7 @@ static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 /* When the queue can go on, with nothing on the wire. */
 static uint32_t queue_due_us(const fathom_line_t *line)
 {
+    if ((line->known & IN_BREAK) != 0) return FATHOM_NO_DEADLINE;
     for (const fathom_exchange_t *x = line->head; x != NULL; x = x->link.next)
         if ((line->owing & fathom_line_owing_bits(x->unit)) == 0)
             return still_to_be_silent(line, silence_us(line));

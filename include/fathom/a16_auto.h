@@ -26,22 +26,39 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    uint32_t stale_us;   /* 0: 2 s */
-    uint16_t gap_us;     /* a silence of so much starts and ends a frame (stream.h); behind an operating
+    /* The module's RX pin, which outlives the sensor; NULL: it is open, or the TX of the line's port, whose break
+     * then selects. */
+    const fathom_pin_t *select;
+    uint32_t stale_us; /* 0: 2 s */
+    uint16_t gap_us;   /* a silence of so much starts and ends a frame (stream.h); behind an operating
                             system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
+    /* What fathom_a16_auto_select selects at init; false: the processed value, as where nobody selects. */
+    bool real_time;
 } fathom_a16_auto_config_t;
 
 typedef struct {
     fathom_dyp_auto_t base;
+    const fathom_pin_t *select;
+    bool real_time;
     uint16_t values[1];
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_auto_t;
 
-/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm. */
+/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm; with real_time also the
+ * errors of fathom_a16_auto_select, FATHOM_ERR_BUSY where that says FATHOM_PENDING. */
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
 
-/* Stops listening; the memory is the caller's again. */
+/*
+ * UART automatic (A16 2(2)) alone: which value the module sends from now on. Its RX pin goes high for the processed
+ * one, low for the real-time one, by the `select` pin or else by a break of the line, during which nothing can be
+ * sent there. Values in the first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; no
+ * frame says of which kind it is.
+ * FATHOM_READY, always where there is a pin; else what fathom_line_break returns, after which nothing has changed.
+ */
+fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, bool real_time);
+
+/* Stops listening and ends a break that selected; the memory is the caller's again. */
 void fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 
 /* For fathom_poll. */

@@ -223,6 +223,15 @@ bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchang
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
 
 /*
+ * Holds TX low (true), or lets it go high again: the trigger, or the mode select, of a module whose input is our TX.
+ * While it is low nothing is sent and exchanges wait in the queue; after it the silence before a request is kept.
+ * FATHOM_READY: it is so now, also where it was. FATHOM_PENDING: bytes of the port are still leaving, ask again.
+ * FATHOM_ERR_BUSY: an exchange is on the wire. FATHOM_ERR_UNSUPPORTED: the port has no set_break. FATHOM_ERR_PORT: it
+ * is broken. After all but READY nothing has changed.
+ */
+fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
+
+/*
  * Does all that can be done without waiting: reads what has come (at most 16 reads of the port), ends and
  * begins exchanges. Call it often; at the latest every 71 minutes. Several users of one line may each call it.
  * FATHOM_PENDING, or FATHOM_ERR_PORT: the port is broken; every queued exchange has ended with that. Go on

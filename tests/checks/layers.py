@@ -11,9 +11,9 @@ from common import files, main, read
 # its own layer what stands before it. A new header is placed here.
 LAYERS = [
     ('words', 'status hal version sample'),
-    ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol'),
-    ('engines', 'line stream modbus modbus_client modbus_unit modbus_setting dyp_client'),
-    ('sensors', 'sensor wait dyp dyp_auto dyp_modbus a16_auto a16_modbus a16_settings a16_rs232 a05_auto a05_modbus a05_dyp hps167s'),
+    ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol pulse_width'),
+    ('engines', 'line stream pulse edges modbus modbus_client modbus_unit modbus_setting dyp_client'),
+    ('sensors', 'sensor wait dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm a16_settings a16_rs232 a05_auto a05_modbus a05_dyp hps167s'),
     ('all', 'fathom'),
 ]
 ORDER = [(name, layer) for layer, names in LAYERS for name in names.split()]

@@ -15,7 +15,7 @@ ARM_HELPERS = {'__aeabi_uidiv', '__aeabi_uidivmod', '__aeabi_idiv', '__aeabi_idi
                '__gnu_thumb1_case_shi', '__gnu_thumb1_case_si'}
 AVR_HELPERS = {'__prologue_saves__', '__epilogue_restores__', '__tablejump2__', '__udivmodqi4',
                '__udivmodhi4', '__divmodhi4', '__udivmodsi4', '__divmodsi4', '__mulsi3', '__mulhi3',
-               '__umulhisi3', '__mulhisi3', '__muluhisi3', '__mulshisi3'}
+               '__umulhisi3', '__mulhisi3', '__muluhisi3', '__mulshisi3', '__usmulhisi3'}
 # On a desk gcc may turn a loop into one of these; where they cost, on the two below, it must not.
 HOST_HELPERS = {'memcpy', 'memset', 'memmove', 'memcmp'}
 

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/a16_pwm.h"
+
+#include "fathom/pulse_width.h"
+
+fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
+{
+    fathom_pulse_config_t *const meter = &sensor->meter_config;
+    meter->clock = config->clock;
+    meter->capture = config->capture;
+    meter->trigger = config->trigger;
+    meter->uart = config->uart;
+    meter->cycle_us = config->cycle_us;
+    meter->low_us = config->low_us;
+    meter->noise_us = config->noise_us;
+    meter->no_target_us = config->no_target_us;
+    meter->stuck_us = config->stuck_us;
+    sensor->window.min_mm = config->window.min_mm != 0 ? config->window.min_mm : 1;
+    sensor->window.max_mm = config->window.max_mm;
+    if (sensor->window.max_mm == 0)
+        sensor->window.max_mm = config->in_air ? FATHOM_A16_PWM_MAX_MM_IN_AIR : FATHOM_A16_MAX_MM;
+    sensor->sequence = 0;
+    sensor->implausible = 0;
+    sensor->air_dc = config->air_dc;
+    sensor->in_air = config->in_air;
+    if (sensor->window.min_mm > sensor->window.max_mm) return FATHOM_ERR_ARGUMENT;
+    return fathom_pulse_init(&sensor->meter, meter);
+}
+
+void fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor) { fathom_pulse_deinit(&sensor->meter); }
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_a16_pwm_t *const sensor = ctx;
+    fathom_pulse_reading_t reading;
+    uint16_t mm = 0;
+    const fathom_status_t status = fathom_pulse_poll(&sensor->meter, &reading);
+    if (status != FATHOM_READY) return status;
+    if (reading.kind == FATHOM_TARGET) {
+        mm = sensor->in_air ? fathom_pulse_width_mm_in_air(reading.width_us, sensor->air_dc)
+                            : fathom_pulse_width_mm(reading.width_us);
+        if (mm < sensor->window.min_mm || mm > sensor->window.max_mm) {
+            if (sensor->implausible != UINT16_MAX) sensor->implausible++;
+            return FATHOM_ERR_MALFORMED;
+        }
+    }
+    sample->time_us = reading.time_us;
+    sample->magnitude = 0;
+    sample->raw = reading.width_us;
+    sample->sequence = ++sensor->sequence;
+    sample->distance_mm = mm;
+    sample->precision = 0;
+    sample->kind = reading.kind;
+    sample->model = FATHOM_A16;
+    sample->unit = 0;
+    sample->probe = 1;
+    sample->ambient = 0;
+    sample->interference = false;
+    return FATHOM_READY;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_a16_pwm_t *const sensor = ctx;
+    return fathom_pulse_due_us(&sensor->meter);
+}
+
+fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor)
+{
+    fathom_sensor_t handle;
+    handle.poll = poll;
+    handle.due_us = due_us;
+    handle.ctx = sensor;
+    return handle;
+}
