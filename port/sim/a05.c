@@ -27,6 +27,13 @@ static uint32_t refuse(fathom_sim_a05_t *a05, fathom_modbus_message_t *message, 
     return a05->exceptions ? fathom_sim_device_delay_us(&a05->device, a05->settings_us) : FATHOM_NO_DEADLINE;
 }
 
+static void set_address(fathom_sim_device_t *device, uint16_t address)
+{
+    device->unit = (uint8_t)address;
+    device->counters.writes++;
+    device->counters.flash_writes++;
+}
+
 static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
     fathom_sim_a05_t *const a05 = a05_of(device);
@@ -45,8 +52,7 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
     case FATHOM_MODBUS_WRITE_SINGLE_REGISTER:
         if (address != ADDRESS) return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS);
         if (value > 0xFE) return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
-        device->unit = (uint8_t)value;
-        device->counters.writes++;
+        set_address(device, value);
         break;
     default: /* A05 3(1): 03 and 06 only */
         return refuse(a05, message, FATHOM_MODBUS_ILLEGAL_FUNCTION);
@@ -70,8 +76,7 @@ static uint32_t command(fathom_sim_device_t *device, uint8_t address, uint8_t co
     /* The address is 01..FE (A05 2(3)2). */
     if (code != FATHOM_DYP_SET_ADDRESS || address == 0 || address == FATHOM_DYP_ANY_ADDRESS)
         return FATHOM_NO_DEADLINE;
-    device->unit = address;
-    device->counters.writes++;
+    set_address(device, address);
     return fathom_sim_device_delay_us(device, a05->settings_us);
 }
 
@@ -83,15 +88,24 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
         return;
     }
     for (uint8_t i = 0; i < message->head[5]; i++, probe++)
-        message->values[i] = fathom_sim_device_ultrasonic(device, probe, now_us);
+        message->values[i] = fathom_sim_device_ultrasonic(device, probe, false, now_us); /* A05 3(3) */
 }
 
 static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
+    const bool processed = !a05_of(device)->selected;
     uint16_t values[PROBES];
     for (uint8_t i = 0; i < PROBES; i++)
-        values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(i + 1), now_us);
+        values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(i + 1), processed, now_us);
     return fathom_dyp_frame_encode(bytes, values, PROBES);
+}
+
+/* "The level of the RX input pin will be read and recorded within one second of power-on" (A05 1(1)). */
+static void power_on(fathom_sim_device_t *device, uint32_t now_us)
+{
+    fathom_sim_a05_t *const a05 = a05_of(device);
+    (void)now_us;
+    a05->selected = a05->real_time;
 }
 
 static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
@@ -102,6 +116,7 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
                                              .fill = fill,
                                              .automatic = automatic,
                                              .command = command,
+                                             .power_on = power_on,
                                              .reading = {FIRST_PROBE, PROBES},
                                              .broadcast = 0xFF,
                                              .deaf_at_start = true};
@@ -110,6 +125,7 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
     device->model = &model;
     device->faults = config->faults;
     device->scene = config->scene;
+    device->processed = config->processed;
     device->settings.baud = 9600; /* 8N1 (A05 1(1), 2(1)) */
     device->settings.stop_bits = 1;
     device->start_us = config->start_us;
@@ -123,6 +139,7 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
         device->protocols[1] = &fathom_sim_modbus;
     }
     device->answers_broadcast = config->answers_broadcast;
+    device->answers_from_new = config->answers_from_new;
     if (config->mode == FATHOM_SIM_A05_AUTO) device->period_us = or_else(config->period_us, 300000);
     device->linger_us = or_else(config->linger_us, 150000);
     a05->probe_us = or_else(config->probe_us, 100000);
@@ -130,4 +147,5 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
     a05->one_us = or_else(config->one_us, 75000);
     a05->settings_us = or_else(config->settings_us, 20000);
     a05->exceptions = config->exceptions;
+    a05->real_time = config->real_time;
 }

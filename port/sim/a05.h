@@ -15,13 +15,15 @@ extern "C" {
  * A05, four ultrasonic probes, 9600 8N1.
  *
  * Automatic: FF 1H 1L 2H 2L 3H 3L 4H 4L SUM every 300 ms (A05 1; the datasheet prints no period). The first
- * Modbus command to its address or to 0xFF ends that until power-off (A05 1(1)).
+ * Modbus command to its address or to 0xFF ends that until power-off (A05 1(1)). The level of its RX pin
+ * when power came chooses real-time or processed values for them; all other ways to ask give real-time ones.
  * Modbus (A05 3): function 03 of
  *   0x0106..0x0109 probes 1..4 and the same at 0x0010..0x0013, 1..4 in a read but not past the last; about
  *   100 ms a probe (all are measured at the moment of the answer)
  *   0x0200 address, by itself
  * and function 06 of 0x0200, 0x00..0xFE: echoed from the old address, obeyed at once. Everything else is
- * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered.
+ * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered. The address is kept without
+ * power, however it was set; each time wears the flash (counters.flash_writes).
  * 55 AA (A05 2), 01..FE as address: 01 all probes, 10..13 one, measured at the moment of the answer; 03 sets
  * the address, which is the only one in it, so that every unit obeys that hears it, also when what it hears
  * is another unit's answer, which has the same bytes: several units may then answer each other for ever.
@@ -41,9 +43,13 @@ typedef struct {
     uint8_t mode;                      /* fathom_sim_a05_mode_t; must be given */
     bool exceptions;                   /* answers 01, 02 or 03 where the default is silence */
     bool answers_broadcast;            /* answers 0xFF in Modbus, from its own address */
+    bool answers_from_new;             /* acknowledges a new address from itself; default: from the old. In 55
+                                          AA it does so anyway (A05 2(3)5) */
+    bool real_time;                    /* RX is low in the first second after power-on (A05 1(1)) */
     bool dyp_silent_broadcast;         /* obeys 0xFF in 55 AA, but does not answer it */
     uint32_t seed;                     /* of the spread of the answer times; any */
     fathom_sim_scene_t scene;          /* probes 1..4; no target when empty */
+    fathom_sim_scene_t processed;      /* their processed values; as `scene` when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
     uint32_t period_us;                /* of automatic frames, from start to start; default 300 ms */
     uint32_t start_us;                 /* from power-on, silent and deaf; default none */
@@ -62,6 +68,8 @@ typedef struct {
     uint32_t all_us;
     uint32_t one_us;
     bool exceptions;
+    bool real_time; /* the level; the caller may change it, for the next power-on */
+    bool selected;  /* real-time, since power-on */
 } fathom_sim_a05_t;
 
 void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config);

@@ -5,10 +5,13 @@
 
 #include "fathom/dyp_frame.h"
 
+enum { AUTOMATIC = 1, POSITIVE = 1, REAL_TIME = 1 }; /* values of 0x0202, 0x0205, 0x0207 */
+
 enum {
     PROCESSED = 0x0100,
     REALTIME = 0x0101,
     ADDRESS = 0x0200,
+    MODE = 0x0202,
     POLARITY = 0x0205,
     THRESHOLD = 0x0206,
     DATA_TYPE = 0x0207
@@ -43,12 +46,54 @@ static uint32_t refuse(fathom_sim_a16_t *a16, fathom_modbus_message_t *message, 
     return a16->exceptions ? fathom_sim_device_delay_us(&a16->device, a16->settings_us) : FATHOM_NO_DEADLINE;
 }
 
+/* "To exit the controlled mode and return to the original automatic mode" (A16 6(4) example 4): this command
+ * has ended the automatic output itself, if none has before. */
+static void set_mode(fathom_sim_device_t *device, uint16_t mode)
+{
+    if (device->period_us == 0 || mode != AUTOMATIC) return;
+    device->leaving = false;
+    fathom_sim_device_set_alarm(device, FATHOM_SIM_ALARM_AUTOMATIC, device->heard_us + device->period_us);
+}
+
+/* 0, or the exception: there is no such register to write, or it has no such value. */
+static uint8_t write(fathom_sim_a16_t *a16, uint16_t address, uint16_t value)
+{
+    fathom_sim_device_t *const device = &a16->device;
+    switch (address) {
+    case ADDRESS:
+        if (value > 0xFE) return FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
+        device->unit = (uint8_t)value;
+        break;
+    case MODE:
+        if (value > AUTOMATIC) return FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
+        set_mode(device, value);
+        break;
+    case POLARITY:
+        if (value > POSITIVE) return FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
+        a16->polarity = (uint8_t)value;
+        break;
+    case THRESHOLD:
+        a16->threshold_mm = value;
+        break;
+    case DATA_TYPE:
+        if (value > REAL_TIME) return FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
+        a16->data_type = (uint8_t)value;
+        break;
+    default:
+        return FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
+    }
+    device->counters.writes++;
+    if (address != MODE) device->counters.flash_writes++; /* "do not save when power off" */
+    return 0;
+}
+
 static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
     fathom_sim_a16_t *const a16 = a16_of(device);
     const uint16_t address = get16(message->head + 2);
     const uint16_t value = get16(message->head + 4);
     uint32_t most_us = a16->settings_us;
+    uint8_t exception;
     switch (message->head[1]) {
     case FATHOM_MODBUS_READ_HOLDING_REGISTERS:
         most_us = read_us(a16, address);
@@ -56,10 +101,8 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
         if (value != 1) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
         break;
     case FATHOM_MODBUS_WRITE_SINGLE_REGISTER:
-        if (address != ADDRESS) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS);
-        if (value > 0xFE) return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_DATA_VALUE);
-        device->unit = (uint8_t)value;
-        device->counters.writes++;
+        exception = write(a16, address, value);
+        if (exception != 0) return refuse(a16, message, exception);
         break;
     default: /* A16 6(1): 03 and 06 only */
         return refuse(a16, message, FATHOM_MODBUS_ILLEGAL_FUNCTION);
@@ -70,7 +113,8 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
     const fathom_sim_a16_t *const a16 = a16_of(device);
-    switch (get16(message->head + 2)) {
+    const uint16_t address = get16(message->head + 2);
+    switch (address) {
     case ADDRESS:
         message->values[0] = device->unit;
         break;
@@ -84,14 +128,15 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
         message->values[0] = a16->data_type;
         break;
     default:
-        message->values[0] = fathom_sim_device_ultrasonic(device, 1, now_us);
+        message->values[0] = fathom_sim_device_ultrasonic(device, 1, address == PROCESSED, now_us);
         break;
     }
 }
 
 static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
-    const uint16_t value = fathom_sim_device_ultrasonic(device, 1, now_us);
+    const bool processed = a16_of(device)->data_type != REAL_TIME;
+    const uint16_t value = fathom_sim_device_ultrasonic(device, 1, processed, now_us);
     return fathom_dyp_frame_encode(bytes, &value, 1);
 }
 
@@ -110,6 +155,7 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->model = &model;
     device->faults = config->faults;
     device->scene = config->scene;
+    device->processed = config->processed;
     device->settings.baud = 9600; /* 8N1 (A16 2(2), 5(2)) */
     device->settings.stop_bits = 1;
     device->start_us = config->start_us;
@@ -118,12 +164,14 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->protocols[0] = &fathom_sim_modbus;
     device->listens = config->mode != FATHOM_SIM_A16_UART;
     device->answers_broadcast = config->answers_broadcast;
+    device->answers_from_new = config->answers_from_new;
     if (config->mode != FATHOM_SIM_A16_MODBUS) device->period_us = or_else(config->period_us, 100000);
     device->linger_us = or_else(config->linger_us, 150000);
     a16->realtime_us = or_else(config->realtime_us, 120000);
     a16->processed_us = or_else(config->processed_us, 520000);
     a16->settings_us = or_else(config->settings_us, 20000);
     a16->threshold_mm = config->threshold_mm != 0 ? config->threshold_mm : 1000;
-    a16->polarity = 1;
+    a16->polarity = POSITIVE;
+    a16->data_type = config->real_time ? REAL_TIME : 0;
     a16->exceptions = config->exceptions;
 }

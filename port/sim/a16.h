@@ -15,13 +15,22 @@ extern "C" {
  * A16, one ultrasonic probe, 9600 8N1.
  *
  * Automatic: FF H L SUM every 100 ms (A16 2, 5; the datasheet prints no period). The first Modbus command
- * to its address or to 0xFF ends that until power-off (A16 5(0), 6(3)).
- * Modbus (A16 6): function 03, one register a read:
- *   0x0100 processed distance, 0x0101 real-time distance (here the scene at the moment of the answer, both),
- *   0x0200 address, 0x0205 polarity, 0x0206 threshold, 0x0207 data type
- * and function 06 of 0x0200, 0x00..0xFE: echoed from the old address, obeyed at once. Everything else is
- * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered.
- * Not yet: 06 of 0x0202, 0x0205, 0x0206, 0x0207; PWM, controlled and switch output.
+ * to its address or to 0xFF ends that until power-off or 0x0202 = 1 (A16 5(0), 6(3)).
+ * Modbus (A16 6): function 03, one register a read, function 06:
+ *   0x0100 processed distance    03; measured at the moment of the answer
+ *   0x0101 real-time distance    03; the same
+ *   0x0200 address               03, 06 of 0x00..0xFE: obeyed at once
+ *   0x0202 operating mode        06 of 0 (as it is then: controlled) and 1 (automatic again, the first frame a
+ *                                period after the command); not kept. RS-485 has no automatic mode and
+ *                                acknowledges both
+ *   0x0205 switch polarity       03, 06 of 0 and 1
+ *   0x0206 switch threshold      03, 06 of any number (no range is printed); mm
+ *   0x0207 automatic data type   03, 06 of 0 (processed) and 1 (real-time): from the next frame, RS-232 only
+ * Writes are echoed, from the old address. 0x0200, 0x0205, 0x0206 and 0x0207 are kept without power; each
+ * write of them wears the flash (counters.flash_writes). 0x0205 to 0x0207 are there in every mode with Modbus,
+ * though they act in one only. Everything else is silence: the datasheet knows no exceptions. 0xFF is obeyed
+ * and not answered.
+ * Not yet: PWM, controlled and switch output.
  */
 typedef enum {
     FATHOM_SIM_A16_AUTO = 1,   /* RS-232: automatic, then Modbus (A16 5) */
@@ -35,9 +44,12 @@ typedef struct {
     uint8_t mode;                      /* fathom_sim_a16_mode_t; must be given */
     bool exceptions;                   /* answers 01, 02 or 03 where the default is silence */
     bool answers_broadcast;            /* answers 0xFF, from its own address */
+    bool answers_from_new;             /* a new address is acknowledged from itself; default: from the old */
+    bool real_time;                    /* 0x0207 is 1; UART: RX is held low (A16 2(2)) */
     uint16_t threshold_mm;             /* register 0x0206; default 1000 (A16 4(2)) */
     uint32_t seed;                     /* of the spread of the answer times; any */
     fathom_sim_scene_t scene;          /* probe 1; no target when empty */
+    fathom_sim_scene_t processed;      /* the processed value; as `scene` when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
     uint32_t period_us;                /* of automatic frames, from start to start; default 100 ms */
     uint32_t start_us;                 /* from power-on, silent and deaf; default none */
@@ -55,7 +67,7 @@ typedef struct {
     uint32_t settings_us;
     uint16_t threshold_mm;
     uint8_t polarity;  /* 0x0205; 1 from the factory */
-    uint8_t data_type; /* 0x0207; 0 processed */
+    uint8_t data_type; /* 0x0207; 0 processed, also what automatic frames of the UART say */
     bool exceptions;
 } fathom_sim_a16_t;
 

@@ -32,19 +32,27 @@ uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_u
     return fathom_sim_device_between_us(device, most_us - most_us / 8, most_us);
 }
 
-int32_t fathom_sim_device_measure(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
+static int32_t measure(fathom_sim_device_t *device, const fathom_sim_scene_t *scene, uint8_t probe,
+                       uint32_t now_us)
 {
     int32_t value = FATHOM_SIM_NO_TARGET;
     device->counters.measurements++;
-    if (device->scene.distance != NULL) value = device->scene.distance(device->scene.ctx, probe, now_us);
+    if (scene->distance != NULL) value = scene->distance(scene->ctx, probe, now_us);
     if (device->faults != NULL && device->faults->measured != NULL)
         value = device->faults->measured(device->faults->ctx, probe, value);
     return value;
 }
 
-uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
+int32_t fathom_sim_device_measure(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us)
 {
-    const int32_t value = fathom_sim_device_measure(device, probe, now_us);
+    return measure(device, &device->scene, probe, now_us);
+}
+
+uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe, bool processed,
+                                      uint32_t now_us)
+{
+    const bool differs = processed && device->processed.distance != NULL;
+    const int32_t value = measure(device, differs ? &device->processed : &device->scene, probe, now_us);
     if (value == FATHOM_SIM_INTERFERENCE) return 0xFFFE;
     return value < 0 ? 0xFFFD : (uint16_t)value;
 }
@@ -84,7 +92,8 @@ void fathom_sim_device_hold_rx(fathom_sim_device_t *device, uint8_t by, bool low
 
 /* ---- power ---- */
 
-void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
+/* It forgets what it was doing. */
+static void stop(fathom_sim_device_t *device)
 {
     for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) device->alarms[i].set = false;
     device->sender.length = device->sender.sent = 0;
@@ -92,21 +101,26 @@ void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
     device->length = 0;
     device->off_us = 0;
     device->torn = device->busy = device->leaving = false;
+}
+
+void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
+{
+    stop(device);
+    if (device->model->power_on != NULL)
+        device->model->power_on(device, now_us);
+    else
+        fathom_sim_device_set_level(device, true, now_us);
     if (device->start_us != 0) fathom_sim_device_set_alarm(device, START, now_us + device->start_us);
     if (device->period_us != 0) {
         const uint32_t first_us = now_us + device->period_us;
         fathom_sim_device_set_alarm(device, AUTOMATIC,
                                     device->model->deaf_at_start ? first_us + device->start_us : first_us);
     }
-    if (device->model->power_on != NULL)
-        device->model->power_on(device, now_us);
-    else
-        fathom_sim_device_set_level(device, true, now_us);
 }
 
-static void power_off(fathom_sim_device_t *device, uint32_t for_us, uint32_t now_us)
+void fathom_sim_device_power_off(fathom_sim_device_t *device, uint32_t for_us, uint32_t now_us)
 {
-    for (uint8_t i = 0; i < FATHOM_SIM_ALARMS; i++) device->alarms[i].set = false;
+    stop(device);
     fathom_sim_device_set_alarm(device, POWER, now_us + for_us);
     if (device->tx_high && device->watch != NULL) device->watch(device->watch_ctx, false, now_us);
     device->tx_high = false;
@@ -188,7 +202,7 @@ static bool send(fathom_sim_device_t *device, const fathom_line_settings_t *sett
     if (device->faults != NULL && device->faults->outgoing != NULL)
         device->faults->outgoing(device->faults->ctx, frame);
     if (frame->length == 0) {
-        if (frame->off_us != 0) power_off(device, frame->off_us, frame->now_us);
+        if (frame->off_us != 0) fathom_sim_device_power_off(device, frame->off_us, frame->now_us);
         return false;
     }
     fathom_sim_sender_put(sender, settings, frame->bytes, frame->length, frame->now_us + frame->delay_us);
@@ -212,24 +226,39 @@ static void answer(fathom_sim_device_t *device, uint32_t now_us)
 
 static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t now_us)
 {
+    const fathom_sim_protocol_t *const unasked = device->model->unasked;
     uint8_t bytes[FATHOM_SIM_MAX_FRAME];
     fathom_sim_frame_t frame = {
         .bytes = bytes, .automatic = true, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
     if (device->leaving && fathom_sim_until_us(device->leave_us, now_us) == 0) return;
-    frame.length = device->model->automatic(device, bytes, now_us);
-    device->counters.automatic++;
     /* from start to start, also where an answer was in the way, and never two for one delay */
     do was_due_us += device->period_us;
     while (fathom_sim_until_us(was_due_us, now_us) == 0);
     fathom_sim_device_set_alarm(device, AUTOMATIC, was_due_us);
-    send(device, &device->settings, &frame);
+    if (device->model->silent != NULL && device->model->silent(device)) return;
+    if (unasked != NULL) frame.protocol = unasked->id;
+    frame.length = unasked != NULL ? unasked->unasked(device, bytes, now_us)
+                                   : device->model->automatic(device, bytes, now_us);
+    device->counters.automatic++;
+    /* a new rate counts from behind the answer to the command that sets it */
+    send(device, device->busy ? &device->reply_settings : &device->settings, &frame);
+}
+
+/* A frame of Modbus stands alone (HPS-167S 2.2.3), also beside those that nobody asked for. */
+static void keep_silence(fathom_sim_device_t *device, uint32_t now_us)
+{
+    const uint32_t silence_us = fathom_sim_silence_us(&device->sender.settings);
+    for (uint8_t i = ANSWER; i <= AUTOMATIC; i++)
+        if (device->alarms[i].set && fathom_sim_until_us(device->alarms[i].at_us, now_us) < silence_us)
+            device->alarms[i].at_us = now_us + silence_us;
 }
 
 void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
 {
     const bool idle = fathom_sim_sender_idle(&device->sender);
     if (idle || device->sender.sent == device->own) device->busy = device->alarms[ANSWER].set;
-    if (idle && device->off_us != 0) power_off(device, device->off_us, now_us);
+    if (idle && device->model->strict_gap) keep_silence(device, now_us);
+    if (idle && device->off_us != 0) fathom_sim_device_power_off(device, device->off_us, now_us);
 }
 
 /* ---- time ---- */

@@ -37,7 +37,8 @@ enum {
 };
 typedef int32_t (*fathom_sim_distance_t)(void *ctx, uint8_t probe, uint32_t now_us);
 
-/* distance: NULL means that there is never a target. scene.h has two ready-made ones. */
+/* distance: NULL means that there is never a target. scene.h has two ready-made ones. A16 and A05 tell a
+ * real-time value from a processed one, and may have a scene for each. */
 typedef struct {
     fathom_sim_distance_t distance;
     void *ctx;
@@ -94,9 +95,11 @@ typedef struct {
     uint32_t unheard;        /* bytes that came while it was busy, sending or starting up */
     uint32_t wrong_settings; /* bytes at a rate or parity that it does not have */
     uint32_t automatic;      /* frames sent by itself */
-    uint32_t writes;         /* settings changed */
-    uint32_t resets;         /* factory resets carried out (HPS-167S #6) */
-    uint32_t resets_refused; /* requests that touched the reset address with a wrong length */
+    uint32_t writes;         /* obeyed: 06, 10, 55 AA 03 */
+    uint32_t writes_refused; /* 06, 10 and 55 AA 03 to it or to all that it did not obey */
+    uint32_t flash_writes;   /* times its flash wore: a setting saved, also one that was already so */
+    uint32_t resets;         /* to factory settings, carried out: HPS-167S #6, and #13 with FF */
+    uint32_t resets_refused; /* requests that touched the address of #6 and were not #6 */
     uint32_t measurements;   /* times the scene was asked */
 } fathom_sim_counters_t;
 
@@ -106,6 +109,7 @@ enum {
     FATHOM_SIM_ALARM_POWER = 0, /* set: without power until then */
     FATHOM_SIM_ALARM_START,     /* set: still starting or warming up */
     FATHOM_SIM_ALARM_REST,      /* set: the last measurement has been handed out, the next is under way */
+    FATHOM_SIM_ALARM_LOST,      /* set: no data from the sensor inside, and not yet for long */
     FATHOM_SIM_ALARM_SILENCE,   /* t3.5 after the last byte: the request is whole */
     FATHOM_SIM_ALARM_ANSWER,    /* the answer is ready */
     FATHOM_SIM_ALARM_AUTOMATIC, /* the next automatic frame */
@@ -148,18 +152,22 @@ typedef struct {
     uint8_t (*automatic)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
     /* A command of the 55 AA protocol, to this device or to all. Returns as `request` does. */
     uint32_t (*command)(fathom_sim_device_t *device, uint8_t address, uint8_t command);
-    /* It has got power. Sets the level at which its TX pin rests, and takes what it notices at its RX pin; where
-     * there is no such function TX rests high, as a UART does. */
+    /* Power has come: what is not kept is as at the beginning, what acts from the next power-on acts. Sets the level at
+     * which its TX pin rests, and takes what it notices at its RX pin; where there is no such function TX rests high, as
+     * a UART does. */
     void (*power_on)(fathom_sim_device_t *device, uint32_t now_us);
     /* The level at its RX pin has changed. Not called without power. */
     void (*edge)(fathom_sim_device_t *device, bool high, uint32_t now_us);
     /* FATHOM_SIM_ALARM_PIN, which it has set, is due. */
     void (*alarm)(fathom_sim_device_t *device, uint32_t now_us);
-    uint16_t reading[2]; /* the Modbus read of all that it measures: address, count */
-    uint8_t broadcast;   /* the address that all obey */
-    bool strict_gap;     /* a silence over t1.5 spoils a frame */
-    bool deaf_at_start;  /* hears nothing while FATHOM_SIM_ALARM_START is set */
-    bool optical;        /* says FATHOM_SIM_FAULT, and no FATHOM_SIM_INTERFERENCE */
+    /* Whose frames it sends by itself where there is no `automatic`: no command ends those. */
+    const fathom_sim_protocol_t *unasked;
+    bool (*silent)(fathom_sim_device_t *device); /* this time it has none to send */
+    uint16_t reading[2];                         /* the Modbus read of all that it measures: address, count */
+    uint8_t broadcast;                           /* the address that all obey */
+    bool strict_gap;                             /* a silence over t1.5 spoils a frame */
+    bool deaf_at_start;                          /* hears nothing while FATHOM_SIM_ALARM_START is set */
+    bool optical;                                /* says FATHOM_SIM_FAULT, and no FATHOM_SIM_INTERFERENCE */
 } fathom_sim_model_t;
 
 /* What can hold the RX pin of a device low; it is high, also where nobody drives it, when nothing does. */
@@ -173,7 +181,8 @@ struct fathom_sim_device {
     const fathom_sim_model_t *model;
     fathom_sim_device_t *next; /* on the line */
     const fathom_sim_faults_t *faults;
-    fathom_sim_scene_t scene;
+    fathom_sim_scene_t scene;     /* real-time values */
+    fathom_sim_scene_t processed; /* where these differ */
     fathom_sim_counters_t counters;
     fathom_line_settings_t settings; /* its own */
     uint32_t start_us;               /* from power-on until it is up; 0: at once */
@@ -183,6 +192,7 @@ struct fathom_sim_device {
     bool listens;                    /* false: takes no commands at all */
     bool answers_broadcast;          /* in Modbus, from its own address */
     bool dyp_silent_broadcast;       /* in 55 AA none answers */
+    bool answers_from_new;           /* what changes its address, in Modbus */
     uint8_t unit;
     const fathom_sim_protocol_t *protocols[FATHOM_SIM_PROTOCOLS]; /* looked at in this order; NULL: none */
 
@@ -213,6 +223,7 @@ struct fathom_sim_device {
 
 /* What the line calls. Times never go back. */
 void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us);
+void fathom_sim_device_power_off(fathom_sim_device_t *device, uint32_t for_us, uint32_t now_us);
 void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us);
 /* good: false for a byte that was talked into. full_duplex: hearing and sending have a wire each. */
 void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
@@ -225,8 +236,9 @@ void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us); /* som
 
 /* What the sensors call. */
 int32_t fathom_sim_device_measure(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us);
-/* As the ultrasonic ones put it on the wire (SENSORS: 0xFFFD no target, 0xFFFE interference). */
-uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe, uint32_t now_us);
+/* As the ultrasonic ones put it on the wire (not in the datasheets: 0xFFFD no target, 0xFFFE interference). */
+uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe, bool processed,
+                                      uint32_t now_us);
 /* `most_us` less a part of it, 0..1/8, that the seed decides: no real device answers to the microsecond. */
 uint32_t fathom_sim_device_delay_us(fathom_sim_device_t *device, uint32_t most_us);
 void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uint32_t at_us);

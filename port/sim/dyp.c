@@ -26,6 +26,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
     if (length == FATHOM_DYP_REQUEST_LENGTH)
         delay_us = device->model->command(device, frame[ADDRESS], command);
     if (delay_us == FATHOM_NO_DEADLINE) {
+        if (command == FATHOM_DYP_SET_ADDRESS) device->counters.writes_refused++;
         device->counters.unserved++;
         return true;
     }
@@ -43,7 +44,7 @@ static uint8_t measure(fathom_sim_device_t *device, uint8_t command, uint8_t *by
     const uint8_t first =
         command == FATHOM_DYP_ALL_PROBES ? 1 : (uint8_t)(command - FATHOM_DYP_FIRST_PROBE + 1);
     for (uint8_t i = 0; i < count; i++)
-        values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(first + i), now_us);
+        values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(first + i), false, now_us);
     return fathom_dyp_protocol_encode_answer(bytes, device->unit, command, values);
 }
 

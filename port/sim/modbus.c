@@ -8,7 +8,8 @@ enum { UNIT = 0, FUNCTION = 1, MIN_LENGTH = 4 };
 /* "any Modbus command switches the module" (A16 5(0), A05 1(1)) */
 static void leave_automatic(fathom_sim_device_t *device, uint32_t now_us)
 {
-    if (device->leaving || !device->alarms[FATHOM_SIM_ALARM_AUTOMATIC].set) return;
+    if (device->model->unasked != NULL || device->leaving || !device->alarms[FATHOM_SIM_ALARM_AUTOMATIC].set)
+        return;
     device->leaving = true;
     device->leave_us = now_us + device->linger_us;
 }
@@ -23,6 +24,12 @@ static bool fits(const uint8_t *frame, uint8_t length)
         frame[FUNCTION] != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS)
         return true; /* to be refused, whatever its length */
     return fathom_modbus_rtu_request_length(frame, length) == length;
+}
+
+static bool is_write(const uint8_t *frame)
+{
+    return frame[FUNCTION] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER ||
+           frame[FUNCTION] == FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS;
 }
 
 /* What is no frame of another protocol is a damaged one of this. */
@@ -48,7 +55,13 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
         const uint8_t unit = device->unit;
         device->reply_settings = device->settings;
         delay_us = device->model->request(device, message);
-        if (to_all && device->answers_broadcast) message->head[UNIT] = unit;
+        if (device->answers_from_new)
+            message->head[UNIT] = device->unit;
+        else if (to_all && device->answers_broadcast)
+            message->head[UNIT] = unit;
+        /* whatever a write asked for: a refused one was sent all the same */
+        if (is_write(frame) && (delay_us == FATHOM_NO_DEADLINE || message->exception != 0))
+            device->counters.writes_refused++;
     }
     if (delay_us == FATHOM_NO_DEADLINE) device->counters.unserved++;
     if (delay_us != FATHOM_NO_DEADLINE && (!to_all || device->answers_broadcast))

@@ -200,14 +200,30 @@ void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
         if (at->sender.on_wire && !line->full_duplex) device->carriers++;
 }
 
+/* Nothing is heard of the byte that it is sending. */
+static void cut_off(fathom_sim_line_t *line, const fathom_sim_device_t *device)
+{
+    if (!device->sender.on_wire || line->full_duplex) return;
+    for (fathom_sim_device_t *other = line->devices; other != NULL; other = other->next)
+        if (other != device) other->carriers--;
+}
+
+void fathom_sim_power_cycle(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t off_us,
+                            uint32_t now_us)
+{
+    fathom_sim_run(line, now_us);
+    cut_off(line, device);
+    fathom_sim_device_power_off(device, off_us, line->now_us);
+    fathom_sim_run(line, now_us); /* power that is back at once is there now */
+}
+
 void fathom_sim_detach(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_run(line, now_us);
     for (fathom_sim_device_t **at = &line->devices; *at != NULL; at = &(*at)->next) {
         if (*at != device) continue;
         *at = device->next;
-        for (fathom_sim_device_t *other = line->devices; other != NULL; other = other->next)
-            if (device->sender.on_wire && !line->full_duplex) other->carriers--;
+        cut_off(line, device);
         return;
     }
 }

@@ -74,6 +74,12 @@ void fathom_sim_line_init(fathom_sim_line_t *line, const fathom_line_settings_t 
 void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t now_us);
 void fathom_sim_detach(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t now_us);
 
+/* Takes the power from a device that hangs on the line for `off_us` (up to 30 minutes; 0: it comes back at
+ * once), in mid-byte if need be. What its datasheet says is kept is there afterwards, the rest is as at the
+ * beginning. fault.h has the same as an accident, at the end of a frame. */
+void fathom_sim_power_cycle(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t off_us,
+                            uint32_t now_us);
+
 /* Changes the host's settings; bytes that are on their way keep the old ones. */
 void fathom_sim_set_line(fathom_sim_line_t *line, const fathom_line_settings_t *settings, uint32_t now_us);
 

@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: MIT */
+/* The registers of the A16 that are written: A16 6(3), 6(4). */
+#include "bench.h"
+#include "sim/a16.h"
+#include "sim/scene.h"
+
+enum { MS = 1000 };
+
+typedef struct {
+    bench_t bench;
+    fathom_sim_fixed_t fixed;
+    fathom_sim_fixed_t processed;
+    fathom_sim_a16_t a16;
+} stage_t;
+
+/* 751 mm, or processed 754 mm: examples 1 and 2. */
+static void set(stage_t *stage, uint8_t mode, fathom_sim_a16_config_t config)
+{
+    bench_init(&stage->bench, &bench_9600);
+    stage->fixed.value[0] = 751;
+    stage->processed.value[0] = 754;
+    config.mode = mode;
+    config.linger_us = 1;
+    config.scene = fathom_sim_fixed(&stage->fixed);
+    config.processed = fathom_sim_fixed(&stage->processed);
+    fathom_sim_a16_init(&stage->a16, &config);
+    stage->bench.line.full_duplex = mode != FATHOM_SIM_A16_MODBUS;
+    bench_attach(&stage->bench, &stage->a16.device);
+}
+
+#define DEFAULTS       ((fathom_sim_a16_config_t){0})
+#define AUTO_REAL_TIME 0xFF, 0x02, 0xEF, 0xF0 /* 751 mm */
+#define AUTO_PROCESSED 0xFF, 0x02, 0xF2, 0xF3 /* 754 mm */
+
+static void cycle_power(stage_t *s)
+{
+    fathom_sim_power_cycle(&s->bench.line, &s->a16.device, 100 * MS, s->bench.now_us);
+    bench_wait(&s->bench, 101 * MS);
+    EXPECT_SILENCE(&s->bench);
+}
+
+static void polarity_of_example_6_is_echoed_read_back_and_kept(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
+    cycle_power(&s);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
+}
+
+static void threshold_of_the_last_example_is_echoed_read_back_and_kept(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
+    cycle_power(&s);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0xFF, 0xFF, 0x69, 0xC3); /* no range is printed */
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x06, 0xFF, 0xFF, 0x69, 0xC3);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0xFF, 0xFF, 0xB9, 0xF4);
+}
+
+static void data_type_of_example_5_is_echoed_read_back_and_kept(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
+    cycle_power(&s);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x00, 0x39, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x07, 0x00, 0x00, 0x39, 0xB3);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
+}
+
+static void processed_and_real_time_values_are_two(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6); /* example 1 */
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1);
+    ASK(&s.bench, 200 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36); /* example 2 */
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
+    s.a16.device.processed.distance = NULL; /* then they are one */
+    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
+}
+
+static void automatic_frames_say_the_value_of_the_data_type(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
+    bench_wait(&s.bench, 105 * MS);
+    EXPECT(&s.bench, AUTO_PROCESSED);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
+    bench_forget(&s.bench);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    bench_forget(&s.bench);
+    bench_wait(&s.bench, 60 * MS);
+    EXPECT(&s.bench, AUTO_REAL_TIME);
+    cycle_power(&s);
+    bench_wait(&s.bench, 105 * MS);
+    EXPECT(&s.bench, AUTO_REAL_TIME);
+    set(&s, FATHOM_SIM_A16_AUTO, (fathom_sim_a16_config_t){.real_time = true});
+    bench_wait(&s.bench, 105 * MS);
+    EXPECT(&s.bench, AUTO_REAL_TIME);
+}
+
+static void a_uart_module_says_what_the_level_of_rx_selects_2_2(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_UART, DEFAULTS);
+    bench_wait(&s.bench, 105 * MS);
+    EXPECT(&s.bench, AUTO_PROCESSED);
+    set(&s, FATHOM_SIM_A16_UART, (fathom_sim_a16_config_t){.real_time = true});
+    bench_wait(&s.bench, 105 * MS);
+    EXPECT(&s.bench, AUTO_REAL_TIME);
+}
+
+/* ---- 0x0202 ---- */
+
+static void automatic_output_returns_with_the_command_of_example_4(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
+    ASK(&s.bench, 2000 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
+    const uint32_t end_us = ASK(&s.bench, 98 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    bench_wait(&s.bench, 210 * MS);
+    ASSERT_SPAN(s.bench.end_us[0], end_us, 100 * MS + 1041, 100 * MS + 1043);
+    EXPECT(&s.bench, AUTO_PROCESSED, AUTO_PROCESSED, AUTO_PROCESSED);
+    ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2); /* and ends again */
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
+    assert_int_equal(s.a16.device.counters.writes, 1);
+    assert_int_equal(s.a16.device.counters.flash_writes, 0);
+}
+
+static void a_module_that_still_is_automatic_stays_so(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    bench_wait(&s.bench, 1000 * MS);
+    assert_in_range(s.bench.heard, 9 * 4, 10 * 4);
+}
+
+static void the_controlled_mode_stays_and_no_mode_is_kept(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
+    ASK(&s.bench, 1000 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x00, 0x29, 0xB2);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x00, 0x29, 0xB2);
+    cycle_power(&s);
+    bench_wait(&s.bench, 105 * MS);
+    EXPECT(&s.bench, AUTO_PROCESSED);
+    ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x02, 0x02, 0x00, 0x01, 0x24,
+        0x72); /* write-only: no answer, and it ends the output */
+    EXPECT_SILENCE(&s.bench);
+}
+
+static void rs485_has_no_automatic_mode_to_return_to(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 2000 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
+    assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
+}
+
+/* ---- what it does not take, and what it counts ---- */
+
+static void refuse_all(stage_t *s)
+{
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0xFF, 0xC8, 0x32);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x01, 0x05, 0x49, 0xE1);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x02, 0xA8, 0x73);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x01, 0x01, 0xE9, 0xE2);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x02, 0x19, 0xB2);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0xFF, 0x00, 0xD9, 0x83);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x02, 0xB8, 0x72);
+    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x01, 0x00, 0x38, 0x23);
+    assert_int_equal(s->a16.device.counters.writes, 0);
+    assert_int_equal(s->a16.device.counters.flash_writes, 0);
+    assert_int_equal(s->a16.device.counters.writes_refused, 8);
+}
+
+static void a_value_that_a_register_does_not_have_is_silence_or_exception_3(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    refuse_all(&s);
+    EXPECT_SILENCE(&s.bench);
+    set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.exceptions = true});
+    refuse_all(&s);
+    assert_int_equal(s.bench.heard, 40);
+    for (size_t i = 0; i < 8; i++)
+        assert_memory_equal(s.bench.bytes + 5 * i, ((uint8_t[]){0x01, 0x86, 0x03, 0x02, 0x61}), 5);
+    bench_forget(&s.bench);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x01, 0x00, 0x00, 0x01, 0x49,
+        0xF6); /* a distance, and between the registers */
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x03, 0x00, 0x01, 0xB9, 0xB2);
+    EXPECT(&s.bench, 0x01, 0x86, 0x02, 0xC3, 0xA1, 0x01, 0x86, 0x02, 0xC3, 0xA1);
+    ASK(&s.bench, 50 * MS, 0x01, 0x10, 0x02, 0x06, 0x00, 0x01, 0x02, 0x07, 0xD0, 0x86,
+        0x5A); /* no function 16 */
+    EXPECT(&s.bench, 0x01, 0x90, 0x01, 0x8D, 0xC0);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84, 0x01, 0x03, 0x02, 0x03, 0xE8, 0xB8, 0xFA, 0x01,
+           0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
+}
+
+static void flash_wears_with_each_setting_that_is_kept(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3); /* as it is */
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0x03, 0xE8, 0x68, 0xCD);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x00, 0x39, 0xB3);
+    assert_int_equal(s.a16.device.counters.flash_writes, 3);
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
+    assert_int_equal(s.a16.device.counters.flash_writes, 4);
+    assert_int_equal(s.a16.device.counters.writes, 4);
+    bench_forget(&s.bench);
+    cycle_power(&s);
+    ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
+    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
+}
+
+static void a_broadcast_is_obeyed_without_an_answer(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x7E, 0x01);
+    EXPECT_SILENCE(&s.bench);
+    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
+    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
+}
+
+static void a_new_address_is_acknowledged_from_itself_as_an_option(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.answers_from_new = true});
+    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
+    EXPECT(&s.bench, 0x05, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xF5);
+    ASK(&s.bench, 50 * MS, 0x05, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6A, 0x5B);
+    EXPECT(&s.bench, 0x05, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6A, 0x5B);
+    set(&s, FATHOM_SIM_A16_MODBUS,
+        (fathom_sim_a16_config_t){.answers_from_new = true, .answers_broadcast = true});
+    ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x06, 0x1D, 0xAE);
+    EXPECT(&s.bench, 0x06, 0x06, 0x02, 0x00, 0x00, 0x06, 0x09, 0xC7);
+    set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.answers_broadcast = true});
+    ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x06, 0x1D, 0xAE);
+    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x00, 0x00, 0x06, 0x08, 0x70);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(polarity_of_example_6_is_echoed_read_back_and_kept),
+    cmocka_unit_test(threshold_of_the_last_example_is_echoed_read_back_and_kept),
+    cmocka_unit_test(data_type_of_example_5_is_echoed_read_back_and_kept),
+    cmocka_unit_test(processed_and_real_time_values_are_two),
+    cmocka_unit_test(automatic_frames_say_the_value_of_the_data_type),
+    cmocka_unit_test(a_uart_module_says_what_the_level_of_rx_selects_2_2),
+    cmocka_unit_test(automatic_output_returns_with_the_command_of_example_4),
+    cmocka_unit_test(a_module_that_still_is_automatic_stays_so),
+    cmocka_unit_test(the_controlled_mode_stays_and_no_mode_is_kept),
+    cmocka_unit_test(rs485_has_no_automatic_mode_to_return_to),
+    cmocka_unit_test(a_value_that_a_register_does_not_have_is_silence_or_exception_3),
+    cmocka_unit_test(flash_wears_with_each_setting_that_is_kept),
+    cmocka_unit_test(a_broadcast_is_obeyed_without_an_answer),
+    cmocka_unit_test(a_new_address_is_acknowledged_from_itself_as_an_option),
+};
+
+BENCH_MAIN(tests)

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+/* A power cycle at any moment: what it interrupts, and that a line works on. What is kept stands with each
+ * sensor's tests. */
+#include "bench.h"
+#include "sim/a05.h"
+#include "sim/a16.h"
+#include "sim/hps167s.h"
+#include "sim/scene.h"
+
+enum { MS = 1000 };
+
+typedef struct {
+    bench_t bench;
+    fathom_sim_fixed_t fixed;
+    fathom_sim_a16_t a16;
+    fathom_sim_a05_t a05;
+} stage_t;
+
+/* An A16 at 1 that needs `start_us`, an A05 at 5, on one pair. */
+static void set(stage_t *stage, uint32_t start_us)
+{
+    bench_init(&stage->bench, &bench_9600);
+    stage->fixed.value[0] = 751;
+    fathom_sim_a16_init(&stage->a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_MODBUS,
+                                                                .start_us = start_us,
+                                                                .scene = fathom_sim_fixed(&stage->fixed)});
+    fathom_sim_a05_init(&stage->a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_MODBUS, .unit = 5});
+    bench_attach(&stage->bench, &stage->a16.device);
+    bench_attach(&stage->bench, &stage->a05.device);
+}
+
+static void cycle(stage_t *s, uint32_t off_us)
+{
+    fathom_sim_power_cycle(&s->bench.line, &s->a16.device, off_us, s->bench.now_us);
+}
+
+#define REALTIME 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36 /* A16 6(4) example 2 */
+#define ANSWER   0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8
+#define OTHER    0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36
+#define OTHERS   0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87
+
+static void expect_both_work(stage_t *s)
+{
+    bench_forget(&s->bench);
+    ASK(&s->bench, 200 * MS, OTHER);
+    EXPECT(&s->bench, OTHERS);
+    ASK(&s->bench, 200 * MS, REALTIME);
+    EXPECT(&s->bench, ANSWER);
+    assert_int_equal(s->a16.device.carriers, 0);
+    assert_int_equal(s->a05.device.carriers, 0);
+}
+
+static void without_power_it_hears_and_says_nothing(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, 0);
+    cycle(&s, 1000 * MS);
+    for (int i = 0; i < 4; i++) ASK(&s.bench, 200 * MS, REALTIME); /* 833 ms */
+    EXPECT_SILENCE(&s.bench);
+    assert_int_equal(s.a16.device.counters.unheard, 32);
+    assert_int_equal(s.a16.device.counters.requests, 0);
+    bench_wait(&s.bench, 168 * MS);
+    expect_both_work(&s);
+}
+
+static void it_starts_anew_when_power_is_back(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, 900 * MS);
+    bench_wait(&s.bench, 1000 * MS);
+    cycle(&s, 100 * MS);
+    bench_wait(&s.bench, 985 * MS);
+    ASK(&s.bench, 5 * MS, REALTIME); /* ends at 993 ms, it is up at 1000 */
+    bench_wait(&s.bench, 200 * MS);
+    EXPECT_SILENCE(&s.bench);
+    expect_both_work(&s);
+}
+
+static void power_that_is_back_at_once_still_ends_what_it_was_doing(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, 0);
+    ASK(&s.bench, 50 * MS, REALTIME); /* 105..120 ms */
+    cycle(&s, 0);
+    bench_wait(&s.bench, 200 * MS);
+    EXPECT_SILENCE(&s.bench);
+    assert_int_equal(s.a16.device.counters.requests, 1);
+    assert_int_equal(s.a16.device.counters.answered, 0);
+    expect_both_work(&s);
+}
+
+static void it_is_cut_off_at_any_moment_of_an_answer(void **state)
+{
+    stage_t s;
+    (void)state;
+    for (uint32_t into_us = 0; into_us < 7300; into_us += 130) { /* seven characters */
+        set(&s, 0);
+        bench_say(&s.bench, (const uint8_t[]){REALTIME}, 8);
+        while (!s.a16.device.sender.on_wire) bench_wait(&s.bench, 10);
+        bench_wait(&s.bench, into_us);
+        const size_t heard = s.bench.heard;
+        cycle(&s, 20 * MS);
+        bench_wait(&s.bench, 300 * MS);
+        assert_int_equal(s.bench.heard, heard); /* nothing of the byte that it was saying */
+        assert_memory_equal(s.bench.bytes, ((uint8_t[]){ANSWER}), heard);
+        assert_in_range(heard, into_us / 1042, (into_us + 10) / 1041);
+        expect_both_work(&s);
+    }
+}
+
+static void it_hears_nothing_of_a_request_that_it_woke_up_in(void **state)
+{
+    stage_t s;
+    (void)state;
+    for (uint32_t into_us = 1050; into_us < 8300; into_us += 130) { /* the second character to the eighth */
+        set(&s, 0);
+        bench_say(&s.bench, (const uint8_t[]){REALTIME}, 8);
+        bench_wait(&s.bench, into_us);
+        cycle(&s, into_us % 3 * 100);
+        bench_wait(&s.bench, 300 * MS);
+        EXPECT_SILENCE(&s.bench);
+        assert_int_equal(s.a05.device.counters.others, 1); /* who had power heard it */
+        expect_both_work(&s);
+    }
+}
+
+static void a_wire_each_way_is_cut_off_as_well(void **state)
+{
+    fathom_sim_a16_t a16;
+    bench_t bench;
+    (void)state;
+    bench_init(&bench, &bench_9600);
+    bench.line.full_duplex = true;
+    fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO});
+    bench_attach(&bench, &a16.device);
+    bench_wait(&bench, 102 * MS); /* within its second byte */
+    EXPECT(&bench, 0xFF);
+    fathom_sim_power_cycle(&bench.line, &a16.device, 50 * MS, bench.now_us);
+    bench_wait(&bench, 145 * MS); /* 97 ms with power */
+    EXPECT_SILENCE(&bench);
+    bench_wait(&bench, 10 * MS);
+    EXPECT(&bench, 0xFF, 0xFF, 0xFD, 0xFB);
+    assert_int_equal(a16.device.carriers, 0);
+}
+
+static void half_an_hour_is_the_longest(void **state)
+{
+    stage_t s;
+    (void)state;
+    set(&s, 0);
+    cycle(&s, UINT32_C(1800000000));
+    bench_wait(&s.bench, UINT32_C(1799900000));
+    ASK(&s.bench, 50 * MS, REALTIME);
+    EXPECT_SILENCE(&s.bench);
+    bench_wait(&s.bench, 100 * MS);
+    expect_both_work(&s);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(without_power_it_hears_and_says_nothing),
+    cmocka_unit_test(it_starts_anew_when_power_is_back),
+    cmocka_unit_test(power_that_is_back_at_once_still_ends_what_it_was_doing),
+    cmocka_unit_test(it_is_cut_off_at_any_moment_of_an_answer),
+    cmocka_unit_test(it_hears_nothing_of_a_request_that_it_woke_up_in),
+    cmocka_unit_test(a_wire_each_way_is_cut_off_as_well),
+    cmocka_unit_test(half_an_hour_is_the_longest),
+};
+
+BENCH_MAIN(tests)
