@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "hps167s.h"
-
 #include <string.h>
+
+#include "internal/hps167s_parts.h"
 
 enum {
     VERSION = 0x0001,       /* #1 */
@@ -9,11 +9,9 @@ enum {
     DETAILS = 0x0003,       /* #3 */
     TEMPERATURE = 0x0004,   /* #4 */
     MEASURE = 0x0008,       /* #5 */
-    RESET = 0x0009          /* #6 */
+    RESET = FATHOM_SIM_HPS167S_RESET
 };
 
-enum { FACTORY_UNIT = 1, FACTORY_BAUD_CODE = 1, FACTORY_WARM_UP_S = 5 };
-static const uint32_t factory_reconnect_ms = 180;
 static const uint16_t over_range = 65530; /* "65.53 meters" (#5, note) */
 
 /* The example of #3: UUID, 2019-09-23, version 3.9 (the datasheet's own reading of the bytes is wrong). */
@@ -25,7 +23,7 @@ static const uint8_t default_version[6] = {20, 9, 27, 2, 1, 0};
 static const fathom_sim_optics_t example_optics = {0xDCB2, 0x07, 0x01, 0x0000};
 
 /* The device is the first member. */
-static fathom_sim_hps167s_t *hps_of(fathom_sim_device_t *device)
+fathom_sim_hps167s_t *fathom_sim_hps167s_of(fathom_sim_device_t *device)
 {
     return (fathom_sim_hps167s_t *)(void *)device;
 }
@@ -33,20 +31,6 @@ static fathom_sim_hps167s_t *hps_of(fathom_sim_device_t *device)
 static uint16_t pair(uint8_t high, uint8_t low) { return (uint16_t)(high * 256u + low); }
 
 static uint16_t get16(const uint8_t *at) { return pair(at[0], at[1]); }
-
-static uint32_t rate(uint8_t baud_code)
-{
-    switch (baud_code) { /* #9: "the others are all 19200" */
-    case 2:
-        return 57600;
-    case 3:
-        return 115200;
-    case 4:
-        return 230400;
-    default:
-        return 19200;
-    }
-}
 
 /* The one count that a command allows; 0: no command. */
 static uint16_t length_of(uint16_t address)
@@ -69,28 +53,30 @@ static uint16_t length_of(uint16_t address)
     }
 }
 
-/* All settings of the interface; what acts from the next power-on does so here too. */
-static void factory_reset(fathom_sim_hps167s_t *hps)
+static bool warming_up(const fathom_sim_hps167s_t *hps)
 {
-    hps->device.unit = FACTORY_UNIT;
-    hps->device.settings.baud = rate(FACTORY_BAUD_CODE);
-    hps->device.counters.resets++;
-    hps->baud_code = FACTORY_BAUD_CODE;
-    hps->warm_up_s = FACTORY_WARM_UP_S;
-    hps->reconnect_ms = factory_reconnect_ms;
-    hps->termination = true;
-    hps->auto_output = true;
+    return hps->device.alarms[FATHOM_SIM_ALARM_START].set;
+}
+
+/* `least_us`, or longer when an alarm wants it. */
+static uint32_t until_us(const fathom_sim_hps167s_t *hps, uint8_t alarm, uint32_t least_us)
+{
+    if (!hps->device.alarms[alarm].set) return least_us;
+    const uint32_t due_us = fathom_sim_until_us(hps->device.alarms[alarm].at_us, hps->device.heard_us);
+    return due_us > least_us ? due_us : least_us;
 }
 
 /* From the end of the request to the answer: a measurement is ready, under way, or begins now. */
-static uint32_t measure_us(fathom_sim_hps167s_t *hps, uint32_t reply_us)
+static uint32_t measure_us(const fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message,
+                           uint32_t reply_us)
 {
-    const fathom_sim_alarm_t *const rest = &hps->device.alarms[FATHOM_SIM_ALARM_REST];
-    if (hps->device.alarms[FATHOM_SIM_ALARM_START].set) return FATHOM_NO_DEADLINE; /* #7: no output */
+    if (warming_up(hps) && hps->warm_up_says != FATHOM_SIM_HPS167S_ABNORMAL) {
+        if (hps->warm_up_says != FATHOM_SIM_HPS167S_EXCEPTION) return FATHOM_NO_DEADLINE;
+        message->exception = FATHOM_MODBUS_SERVER_DEVICE_FAILURE;
+        return reply_us;
+    }
     if (!hps->measuring) return hps->period_us;
-    if (!rest->set) return reply_us;
-    const uint32_t ready_us = fathom_sim_until_us(rest->at_us, hps->device.heard_us);
-    return ready_us > reply_us ? ready_us : reply_us;
+    return until_us(hps, FATHOM_SIM_ALARM_LOST, until_us(hps, FATHOM_SIM_ALARM_REST, reply_us));
 }
 
 static uint32_t read(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message, uint32_t reply_us)
@@ -103,26 +89,30 @@ static uint32_t read(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message
         message->exception = hps->wrong_length;
         if (address == RESET) hps->device.counters.resets_refused++;
     } else if (address == RESET) {
-        factory_reset(hps);
+        fathom_sim_hps167s_reset(hps);
     } else if (address == MEASURE) {
-        return measure_us(hps, reply_us);
+        return measure_us(hps, message, reply_us);
     }
     return reply_us;
 }
 
 static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
-    fathom_sim_hps167s_t *const hps = hps_of(device);
+    fathom_sim_hps167s_t *const hps = fathom_sim_hps167s_of(device);
     const uint32_t reply_us = fathom_sim_device_delay_us(device, hps->reply_us);
     switch (message->head[1]) {
     case FATHOM_MODBUS_READ_HOLDING_REGISTERS:
         return read(hps, message, reply_us);
     case FATHOM_MODBUS_WRITE_SINGLE_REGISTER:
+        fathom_sim_hps167s_write(hps, message);
+        break;
     case FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS:
-        return FATHOM_NO_DEADLINE;
-    default:
-        return reply_us; /* the codec has set exception 01 */
+        fathom_sim_hps167s_write_many(hps, message);
+        break;
+    default: /* the codec has set exception 01 */
+        break;
     }
+    return reply_us;
 }
 
 static void put_bytes(uint16_t *values, const uint8_t *bytes, uint8_t count)
@@ -130,9 +120,19 @@ static void put_bytes(uint16_t *values, const uint8_t *bytes, uint8_t count)
     for (uint8_t i = 0; i < count; i++) values[i] = get16(bytes + 2 * i);
 }
 
+/* #12. What is beyond all distances stays: 65530 and up are marks. */
+static uint16_t compensated(const fathom_sim_hps167s_t *hps, int32_t distance)
+{
+    if (distance >= over_range) return (uint16_t)distance;
+    distance += hps->sensor.offset_mm;
+    if (distance < 0) return 0;
+    return distance < over_range ? (uint16_t)distance : (uint16_t)(over_range - 1);
+}
+
 static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32_t now_us)
 {
-    const int32_t distance = fathom_sim_device_measure(&hps->device, 1, now_us);
+    const bool has_data = !hps->lost && !warming_up(hps);
+    const int32_t distance = has_data ? fathom_sim_device_measure(&hps->device, 1, now_us) : FATHOM_SIM_FAULT;
     const fathom_sim_optics_t *const optics = hps->optics;
     fathom_sim_device_set_alarm(&hps->device, FATHOM_SIM_ALARM_REST, now_us + hps->period_us);
     if (distance == FATHOM_SIM_FAULT) { /* #5: "all 0xFF and the value of Magnitude is 0x00" */
@@ -142,7 +142,7 @@ static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32
         values[3] = 0xFFFF;
         return;
     }
-    values[0] = (uint16_t)distance;
+    values[0] = compensated(hps, distance);
     values[1] = optics->magnitude;
     values[2] = pair(optics->exponent, optics->ambient);
     values[3] = optics->precision;
@@ -155,7 +155,7 @@ static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32
 
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
-    fathom_sim_hps167s_t *const hps = hps_of(device);
+    fathom_sim_hps167s_t *const hps = fathom_sim_hps167s_of(device);
     uint16_t *const values = message->values;
     switch (get16(message->head + 2)) {
     case VERSION:
@@ -182,12 +182,30 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
     }
 }
 
+/* Of continuous output. */
+static bool silent(fathom_sim_device_t *device)
+{
+    const fathom_sim_hps167s_t *const hps = fathom_sim_hps167s_of(device);
+    if (warming_up(hps)) return hps->warm_up_says != FATHOM_SIM_HPS167S_ABNORMAL;
+    return device->alarms[FATHOM_SIM_ALARM_LOST].set;
+}
+
+void fathom_sim_hps167s_lose(fathom_sim_hps167s_t *hps, bool lost, uint32_t now_us)
+{
+    hps->device.alarms[FATHOM_SIM_ALARM_LOST].set = false;
+    hps->lost = lost;
+    if (lost) fathom_sim_hps167s_wait_for_data(hps, now_us);
+}
+
 static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
 
 void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s_config_t *config)
 {
     static const fathom_sim_model_t model = {.request = request,
                                              .fill = fill,
+                                             .power_on = fathom_sim_hps167s_power_on,
+                                             .unasked = &fathom_sim_modbus,
+                                             .silent = silent,
                                              .reading = {MEASURE, 4},
                                              .broadcast = FATHOM_MODBUS_BROADCAST,
                                              .strict_gap = true,
@@ -197,25 +215,30 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
     device->model = &model;
     device->faults = config->faults;
     device->scene = config->scene;
-    device->settings.baud = rate(config->baud_code);
     device->settings.parity = FATHOM_PARITY_EVEN; /* 8E1 (HPS-167S 2.2.2, table 6) */
     device->settings.stop_bits = 1;
-    device->start_us = (uint32_t)config->warm_up_s * UINT32_C(1000000);
     device->random = config->seed;
-    device->unit = config->unit != 0 ? config->unit : FACTORY_UNIT;
+    device->unit = config->unit != 0 ? config->unit : FATHOM_SIM_HPS167S_UNIT;
     device->protocols[0] = &fathom_sim_modbus;
     device->listens = true;
+    device->answers_from_new = config->answers_from_new;
     hps->optics = config->optics != NULL ? config->optics : &example_optics;
     hps->details = config->details != NULL ? config->details : example_details;
     hps->version = config->version != NULL ? config->version : default_version;
-    hps->reconnect_ms = or_else(config->reconnect_ms, factory_reconnect_ms);
+    hps->reconnect_ms = or_else(config->reconnect_ms, FATHOM_SIM_HPS167S_RECONNECT_MS);
+    hps->unasked_us = config->unasked_us;
     hps->period_us = or_else(config->period_us, 18519);
     hps->reply_us = or_else(config->reply_us, 2500);
     hps->temperature_f = config->temperature_f != 0 ? config->temperature_f : 77;
     hps->warm_up_s = config->warm_up_s;
     hps->wrong_length = config->wrong_length != 0 ? config->wrong_length : FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
-    hps->baud_code = config->baud_code >= 1 && config->baud_code <= 4 ? config->baud_code : FACTORY_BAUD_CODE;
+    hps->wrong_value = config->wrong_value != 0 ? config->wrong_value : FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
+    hps->warm_up_says = config->warm_up_says;
+    hps->baud_code =
+        config->baud_code >= 1 && config->baud_code <= 4 ? config->baud_code : FATHOM_SIM_HPS167S_BAUD_CODE;
+    hps->baud_at_power_on = config->baud_at_power_on;
+    hps->offset_adds = config->offset_adds;
     hps->termination = !config->no_termination;
     hps->auto_output = !config->no_auto_output;
-    hps->measuring = hps->auto_output;
+    fathom_sim_hps167s_power_on(device, 0); /* as it will be; nothing is lost yet, so that no time counts */
 }

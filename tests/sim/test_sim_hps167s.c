@@ -217,17 +217,6 @@ static void an_unknown_function_is_exception_1_whatever_its_length(void **state)
     EXPECT_SILENCE(&s.bench);
 }
 
-static void writes_are_not_there_yet_and_say_nothing(void **state)
-{
-    stage_t s;
-    (void)state;
-    set(&s, 2083, DEFAULTS);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x05, 0x69, 0xCB); /* table 21 */
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.hps.device.counters.unserved, 1);
-    assert_int_equal(s.hps.device.counters.writes, 0);
-}
-
 static void factory_reset_is_that_of_tables_19_and_20_and_is_counted(void **state)
 {
     stage_t s;
@@ -394,7 +383,6 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_command_with_another_length_is_exception_2),
     cmocka_unit_test(every_length_but_the_right_one_is_refused_at_every_address),
     cmocka_unit_test(an_unknown_function_is_exception_1_whatever_its_length),
-    cmocka_unit_test(writes_are_not_there_yet_and_say_nothing),
     cmocka_unit_test(factory_reset_is_that_of_tables_19_and_20_and_is_counted),
     cmocka_unit_test(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_to_a_reset),
     cmocka_unit_test(nothing_else_resets_it),

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_SIM_HPS167S_PARTS_H
+#define FATHOM_SIM_HPS167S_PARTS_H
+
+#include "../hps167s.h"
+
+/* Between the files of the HPS-167S: hps167s.c reads and measures, hps167s_settings.c changes and keeps. */
+
+enum { FATHOM_SIM_HPS167S_RESET = 0x0009 }; /* #6 */
+enum { FATHOM_SIM_HPS167S_UNIT = 1, FATHOM_SIM_HPS167S_BAUD_CODE = 1, FATHOM_SIM_HPS167S_RECONNECT_MS = 180 };
+
+fathom_sim_hps167s_t *fathom_sim_hps167s_of(fathom_sim_device_t *device);
+
+/* The rate of baud_code acts. */
+void fathom_sim_hps167s_set_rate(fathom_sim_hps167s_t *hps);
+
+/* #6 */
+void fathom_sim_hps167s_reset(fathom_sim_hps167s_t *hps);
+
+/* #7 to #14, #15; message->exception says what is wrong with them, and nothing has changed then. */
+void fathom_sim_hps167s_write(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message);
+void fathom_sim_hps167s_write_many(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message);
+
+/* LOST lasts so long from now on. */
+void fathom_sim_hps167s_wait_for_data(fathom_sim_hps167s_t *hps, uint32_t now_us);
+
+/* The model's. */
+void fathom_sim_hps167s_power_on(fathom_sim_device_t *device, uint32_t now_us);
+
+#endif
