@@ -104,7 +104,7 @@ static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t n
 static void power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_a05_t *const a05 = a05_of(device);
-    (void)now_us;
+    fathom_sim_device_set_level(device, true, now_us);
     a05->selected = a05->real_time;
 }
 

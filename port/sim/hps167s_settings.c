@@ -57,6 +57,7 @@ void fathom_sim_hps167s_wait_for_data(fathom_sim_hps167s_t *hps, uint32_t now_us
 void fathom_sim_hps167s_power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_hps167s_t *const hps = fathom_sim_hps167s_of(device);
+    fathom_sim_device_set_level(device, true, now_us);
     fathom_sim_hps167s_set_rate(hps);
     hps->measuring = hps->auto_output;
     hps->terminated = hps->termination;
