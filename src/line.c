@@ -235,6 +235,8 @@ bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchang
     return x != NULL;
 }
 
+bool fathom_line_is_idle(const fathom_line_t *line) { return line->state <= REFUSED && line->have == 0; }
+
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener) { line->listener = listener; }
 
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)

@@ -219,6 +219,10 @@ void fathom_line_cancel_unit(fathom_line_t *line, uint8_t unit);
 /* Is it queued or in flight? */
 bool fathom_line_has(const fathom_line_t *line, const fathom_exchange_t *exchange);
 
+/* Was nothing on the wire at the last poll: no request leaving, no answer to come in its time, no part of a frame?
+ * What is queued does not count. */
+bool fathom_line_is_idle(const fathom_line_t *line);
+
 /* Registers who takes the bytes that belong to no exchange, instead of the one before; NULL for nobody. */
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
 
