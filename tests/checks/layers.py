@@ -12,8 +12,9 @@ from common import files, main, read
 LAYERS = [
     ('words', 'status hal version sample'),
     ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol pulse_width'),
-    ('engines', 'line stream pulse edges modbus modbus_client modbus_unit modbus_setting dyp_client'),
-    ('sensors', 'sensor wait dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm a16_settings a16_rs232 a05_auto a05_modbus a05_dyp hps167s'),
+    ('engines', 'line stream pulse edges debounce modbus modbus_client modbus_unit modbus_setting dyp_client'),
+    ('sensors', 'sensor wait contact dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm '
+                'a16_settings a16_rs232 a16_switch a05_auto a05_modbus a05_dyp a05_relay a05_relay_rule hps167s'),
     ('all', 'fathom'),
 ]
 ORDER = [(name, layer) for layer, names in LAYERS for name in names.split()]

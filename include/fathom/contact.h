@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_CONTACT_H
+#define FATHOM_CONTACT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/line.h"
+#include "fathom/sensor.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * A level that a sensor drives: what a16_switch.h and a05_relay.h are built on, and what reads any other switch.
+ *
+ * A look at the pin is all there is, so it sees what stands at its looks and nothing between them. A level counts
+ * when it stood at every look for settle_us; then, if it says something new, there is a sample. Between two looks
+ * less than 71 minutes pass.
+ */
+
+/* Zero-valued members of the config mean these. */
+#define FATHOM_CONTACT_DEFAULT_SETTLE_US 20000u
+#define FATHOM_CONTACT_DEFAULT_LOOK_US   10000u
+#define FATHOM_CONTACT_DEFAULT_STALE_US  2000000u
+
+/* After the last byte on a line on the same pin. More than a character at 9600 baud, which a look could hit. */
+#define FATHOM_CONTACT_QUIET_US 5000u
+
+typedef struct {
+    const fathom_pin_t *pin; /* an input */
+    const fathom_clock_t *clock;
+    fathom_line_t
+        *line; /* of a UART on the same pin: the level is not looked at while an exchange is on it, nor
+                            until 5 ms after the last byte. NULL: there is none */
+    uint32_t settle_us; /* how long a level stands before it counts: longer than a contact bounces and than an
+                            answer on the pin takes; 0: 20 ms; 1: two looks are enough */
+    uint32_t period_us; /* a sample that repeats the level, so long after the last one; 0: changes alone */
+    uint32_t look_us;  /* the longest that due_us advises between looks; FATHOM_NO_DEADLINE where an interrupt
+                            of the pin wakes the program; 0: 10 ms */
+    uint32_t stale_us; /* FATHOM_ERR_STALE when no level has counted for so long; 0: 2 s */
+    bool near_is_high; /* what a high level means: FATHOM_NEAR, or FATHOM_FAR */
+    uint8_t model;     /* of the samples; fathom_model_t */
+    uint8_t unit;      /* of the samples */
+} fathom_contact_config_t;
+
+typedef struct {
+    fathom_contact_config_t config;
+    uint32_t looked_us;
+    uint32_t since_us;  /* the first look at which the present level stood */
+    uint32_t settle_us; /* until it counts */
+    uint32_t period_us; /* until the next sample */
+    uint32_t stale_us;  /* until it is stale */
+    uint16_t sequence;
+    uint8_t said;  /* kind of the last sample; 0: none yet */
+    bool is_high;  /* the level at the last look */
+    bool is_clear; /* nothing was on the line then */
+} fathom_contact_t;
+
+/* The caller has set the config; its zero members become their defaults. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no
+ * clock, or no pin that can be read. It looks at the pin once. */
+fathom_status_t fathom_contact_init(fathom_contact_t *contact);
+
+/* What a high level means from now on. The level has to settle anew; if what it says is the same as before there is
+ * no sample. */
+void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high);
+
+/*
+ * For fathom_poll. Each poll is one look, and one poll of the line.
+ * FATHOM_READY       a sample: the first level that counts, one that says something new, or the period is over.
+ *                    raw is the level, 1 for high; time_us is the look at which it was first seen to stand, or the
+ *                    present one when it repeats
+ * FATHOM_PENDING     nothing new; the level may be settling, or the line at work
+ * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, or the line is never silent; said
+ *                    once every stale_us
+ * FATHOM_ERR_PORT    the line's port is broken; said by every poll that has nothing else to say
+ * A cut wire is no error: it reads as the level that the board pulls it to. fathom_due_us says when the next look
+ * makes sense: in look_us at the latest, sooner while a level settles.
+ */
+fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,266 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/a05_relay_rule.h"
+
+enum { HALF_S = 500000, NONE = 0 };
+
+static fathom_a05_relay_rule_config_t config;
+static fathom_a05_relay_rule_t rule;
+static uint32_t now_us;
+static uint16_t sequence;
+
+static void start(void)
+{
+    memset(&rule, 0x5A, sizeof rule);
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_READY);
+    assert_int_equal(rule.debounce.level, 0);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(&config, 0, sizeof config);
+    now_us = UINT32_MAX - 3 * HALF_S; /* the clock and the numbers wrap in every longer test */
+    sequence = UINT16_MAX - 2;
+    start();
+    return 0;
+}
+
+static bool give(uint8_t probe, uint8_t kind, uint16_t mm)
+{
+    const fathom_sample_t sample = {
+        .time_us = now_us, .sequence = sequence, .kind = kind, .probe = probe, .distance_mm = mm};
+    return fathom_a05_relay_rule_sample(&rule, &sample);
+}
+
+/* The next measurement, 500 ms after the last; a distance of NONE is no target. True: the level has changed. */
+static bool measure(uint16_t one, uint16_t two, uint16_t three, uint16_t four)
+{
+    const uint16_t mm[] = {one, two, three, four};
+    bool changed = false;
+    now_us += HALF_S;
+    sequence++;
+    for (uint8_t i = 0; i != 4; i++)
+        changed |= give((uint8_t)(i + 1), mm[i] == NONE ? FATHOM_NO_TARGET : FATHOM_TARGET, mm[i]);
+    return changed;
+}
+
+static void any_probe_nearer_than_the_threshold_closes(void **state)
+{
+    (void)state;
+    for (uint8_t near = 0; near != 4; near++) {
+        set_up(state);
+        assert_true(measure(1001, NONE, 4500, 1001));
+        assert_int_equal(rule.debounce.level, FATHOM_FAR);
+        measure(1001, 1001, 1001, 1001);
+        assert_true(measure(near == 0 ? 999 : 1001, near == 1 ? 999 : NONE, near == 2 ? 999 : 4500,
+                            near == 3 ? 999 : 1001));
+        assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    }
+}
+
+static void it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one(void **state)
+{
+    (void)state;
+    sequence++;
+    assert_false(give(1, FATHOM_TARGET, 1001));
+    assert_true(give(2, FATHOM_TARGET, 999));
+    assert_false(give(3, FATHOM_TARGET, 999));
+    assert_false(give(4, FATHOM_TARGET, 4000));
+    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    now_us += 1000000;
+    sequence++;
+    assert_false(give(1, FATHOM_NO_TARGET, 0));
+    assert_false(give(2, FATHOM_NO_TARGET, 0));
+    assert_false(give(3, FATHOM_TARGET, 1001));
+    assert_true(give(4, FATHOM_TARGET, 1001));
+    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+}
+
+/* ---- Decision: each state lasts at least 1 s ---- */
+
+static void each_state_lasts_at_least_1_s(void **state)
+{
+    (void)state;
+    assert_true(measure(999, 999, 999, 999));
+    assert_false(measure(1001, 1001, 1001, 1001)); /* 0.5 s */
+    assert_true(measure(1001, 1001, 1001, 1001));
+    assert_false(measure(999, 999, 999, 999));
+    now_us -= 1; /* 999999 us */
+    assert_false(measure(999, 999, 999, 999));
+    now_us -= HALF_S - 1;
+    assert_true(measure(999, 999, 999, 999));
+}
+
+static void how_long_a_state_lasts_is_an_option(void **state)
+{
+    (void)state;
+    config.hold_us = 1;
+    start();
+    assert_true(measure(999, 999, 999, 999));
+    assert_true(measure(1001, 1001, 1001, 1001));
+    config.hold_us = 1500000;
+    start();
+    assert_true(measure(999, 999, 999, 999));
+    assert_false(measure(1001, 1001, 1001, 1001));
+    assert_false(measure(1001, 1001, 1001, 1001));
+    assert_true(measure(1001, 1001, 1001, 1001));
+}
+
+/* ---- Decision: what is not fitted never closes it ---- */
+
+static void a_probe_that_is_not_fitted_counts_for_nothing(void **state)
+{
+    (void)state;
+    config.probes = 0x05; /* 1 and 3 */
+    start();
+    assert_true(measure(1001, 1, 1001, 1));
+    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+    for (int i = 0; i != 5; i++) assert_false(measure(2000, 1, 2000, 1));
+    assert_true(measure(2000, 3000, 999, 3000));
+    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    measure(2000, 1, 2000, 1);
+    assert_true(measure(2000, 1, 2000, 1));
+    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+}
+
+static void every_mask_of_probes_heeds_its_own_and_no_other(void **state)
+{
+    (void)state;
+    for (uint8_t probes = 1; probes != 16; probes++) {
+        for (uint8_t near = 0; near != 16; near++) {
+            config.probes = probes;
+            start();
+            assert_true(measure((near & 1) != 0 ? 999 : 1001, (near & 2) != 0 ? 999 : 1001,
+                                (near & 4) != 0 ? 999 : 1001, (near & 8) != 0 ? 999 : 1001));
+            assert_int_equal(rule.debounce.level, (near & probes) != 0 ? FATHOM_NEAR : FATHOM_FAR);
+        }
+    }
+}
+
+/* ---- what is missing ---- */
+
+static void a_measurement_without_one_of_its_probes_holds_unless_another_is_near(void **state)
+{
+    (void)state;
+    assert_true(measure(999, 999, 999, 999));
+    for (int i = 0; i != 9; i++) {
+        now_us += HALF_S;
+        sequence++;
+        for (uint8_t probe = 1; probe <= 3; probe++) assert_false(give(probe, FATHOM_TARGET, 2000));
+        if (i > 4) assert_false(give(4, FATHOM_FAULT, 0));
+    }
+    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    assert_true(measure(2000, 2000, 2000, 2000));
+    now_us += 1000000;
+    sequence++;
+    assert_true(give(4, FATHOM_TARGET, 999));
+    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+}
+
+static void a_sample_of_a_measurement_before_completes_none(void **state)
+{
+    (void)state;
+    for (uint8_t probe = 1; probe <= 4; probe++, sequence++) assert_false(give(probe, FATHOM_TARGET, 2000));
+    assert_int_equal(rule.debounce.level, 0);
+}
+
+static void a_probe_that_speaks_twice_in_a_measurement_is_heard_once(void **state)
+{
+    (void)state;
+    for (int i = 0; i != 4; i++) assert_false(give(1, FATHOM_TARGET, 2000));
+    assert_false(give(1, FATHOM_TARGET, 999));
+    assert_false(give(2, FATHOM_TARGET, 2000));
+    assert_false(give(3, FATHOM_TARGET, 2000));
+    assert_true(give(4, FATHOM_TARGET, 2000));
+    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+}
+
+static void a_first_measurement_of_any_number_counts(void **state)
+{
+    static const uint16_t numbers[] = {0, 1, 255, UINT16_MAX};
+    (void)state;
+    for (int i = 0; i != 4; i++) {
+        start();
+        sequence = (uint16_t)(numbers[i] - 1);
+        assert_true(measure(2000, 2000, 2000, 2000));
+    }
+}
+
+/* ---- options ---- */
+
+static void the_threshold_goes_from_250_to_4500_mm(void **state)
+{
+    static const uint16_t allowed_mm[] = {250, 1000, 4500};
+    static const uint16_t refused_mm[] = {1, 249, 4501, UINT16_MAX};
+    (void)state;
+    for (int i = 0; i != 3; i++) {
+        config.threshold_mm = allowed_mm[i];
+        start();
+        const uint16_t mm = allowed_mm[i];
+        assert_true(measure(NONE, mm, NONE, (uint16_t)(mm - 1)));
+        measure(NONE, mm, NONE, mm);
+        assert_false(measure(NONE, mm, NONE, mm));
+        assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+        assert_true(measure(NONE, NONE, NONE, (uint16_t)(mm + 1)));
+    }
+    for (int i = 0; i != 4; i++) {
+        config.threshold_mm = refused_mm[i];
+        assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
+    }
+}
+
+static void equality_holds_the_state_unless_it_is_told_otherwise(void **state)
+{
+    (void)state;
+    assert_false(measure(1000, 1001, 1001, 1001));
+    assert_true(measure(1000, 1001, 1001, 999));
+    measure(1001, 1001, 1001, 1000);
+    for (int i = 0; i != 9; i++) assert_false(measure(1000, 1001, 1001, 1001));
+    assert_true(measure(1001, 1001, 1001, 1001));
+    config.equal = FATHOM_EQUAL_IS_NEAR;
+    start();
+    assert_true(measure(1001, 1001, 1000, 1001));
+    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    config.equal = FATHOM_EQUAL_IS_FAR;
+    start();
+    assert_true(measure(1001, 1001, 1000, 1001));
+    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+}
+
+static void a_config_without_sense_is_refused(void **state)
+{
+    (void)state;
+    config.probes = 0x10;
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
+    config.probes = 0x0F;
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_READY);
+    config.equal = FATHOM_EQUAL_IS_FAR + 1;
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(any_probe_nearer_than_the_threshold_closes, set_up),
+        cmocka_unit_test_setup(it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one, set_up),
+        cmocka_unit_test_setup(each_state_lasts_at_least_1_s, set_up),
+        cmocka_unit_test_setup(how_long_a_state_lasts_is_an_option, set_up),
+        cmocka_unit_test_setup(a_probe_that_is_not_fitted_counts_for_nothing, set_up),
+        cmocka_unit_test_setup(every_mask_of_probes_heeds_its_own_and_no_other, set_up),
+        cmocka_unit_test_setup(a_measurement_without_one_of_its_probes_holds_unless_another_is_near, set_up),
+        cmocka_unit_test_setup(a_sample_of_a_measurement_before_completes_none, set_up),
+        cmocka_unit_test_setup(a_probe_that_speaks_twice_in_a_measurement_is_heard_once, set_up),
+        cmocka_unit_test_setup(a_first_measurement_of_any_number_counts, set_up),
+        cmocka_unit_test_setup(the_threshold_goes_from_250_to_4500_mm, set_up),
+        cmocka_unit_test_setup(equality_holds_the_state_unless_it_is_told_otherwise, set_up),
+        cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
