@@ -13,7 +13,7 @@
 #include "fathom/sensor.h"
 
 /* A pin whose level the test sets or plans, a clock, and a driver that looks at it, with what its polls said. */
-enum { CONTACT_EDGES = 64 };
+enum { CONTACT_EDGES = 128 };
 
 typedef struct {
     fake_t fake;

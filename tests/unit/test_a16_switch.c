@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: MIT */
+#include "contact_rig.h"
+#include "fathom/a16_switch.h"
+#include "fathom/modbus_client.h"
+
+enum { MS = 1000, START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000, SETTLE_US = 20000 };
+
+/* A16 6(4), the last two examples: threshold to 2000 mm, polarity to negative. The answers equal the requests. */
+static const uint8_t threshold_2000[8] = {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF};
+static const uint8_t negative[8] = {0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73};
+static const uint8_t nothing = 0;
+
+static fathom_a16_switch_config_t config;
+static fathom_a16_switch_t a16;
+static uint8_t frame[13];
+static fathom_line_config_t line_config;
+static fathom_line_t line;
+static fathom_modbus_request_t request;
+
+static void start_at(uint32_t now_us, bool level)
+{
+    pins_start(now_us);
+    pins.level = level;
+    pins.fake.byte_us = BYTE_US;
+    line_config = (fathom_line_config_t){
+        &pins.fake.uart, &pins.fake.clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF, 3646, 5000};
+    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
+    config.pin = &pins.pin;
+    config.clock = &pins.fake.clock;
+    memset(&a16, 0x5A, sizeof a16);
+    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_READY);
+    pins.sensor = fathom_a16_switch_sensor(&a16);
+}
+
+static void start(bool level) { start_at(START_US, level); }
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(&config, 0, sizeof config);
+    config.line = &line;
+    start(false);
+    return 0;
+}
+
+static uint8_t read_as(bool level)
+{
+    start(level);
+    pins_run(100 * MS, 1000);
+    assert_int_equal(pins.samples, 1);
+    assert_int_equal(pins.sample.raw, level);
+    return pins.sample.kind;
+}
+
+/* Writes a register of unit 1. */
+static void set_register(uint16_t address, uint16_t value)
+{
+    memset(&request, 0, sizeof request);
+    request.exchange.timeout_us = TIMEOUT_US;
+    fathom_modbus_write_single_register(&request.message, 1, address, value);
+    assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
+}
+
+static int8_t status(void) { return request.exchange.status; }
+
+/* The bits of an answer on the pin, whose level is `level` before and after it, and the bytes at the UART. */
+static void answer(uint32_t in_us, bool level, const uint8_t *bytes, size_t length)
+{
+    bool now = level;
+    fake_trickle(&pins.fake, in_us, BYTE_US, bytes, length);
+    for (uint32_t n = 0; n <= 10 * (uint32_t)length; n++) {
+        const uint32_t bit = n % 10;
+        bool high = bit == 9 || (bit != 0 && (bytes[n / 10 < length ? n / 10 : 0] >> (bit - 1) & 1) != 0);
+        if (n == 10 * (uint32_t)length) high = level;
+        if (high != now) pins_turn(in_us + n / 10 * BYTE_US + bit * BIT_US);
+        now = high;
+    }
+}
+
+/* ---- the level ---- */
+
+static void high_is_near_from_the_factory(void **state)
+{
+    (void)state;
+    assert_int_equal(read_as(true), FATHOM_NEAR);
+    assert_int_equal(read_as(false), FATHOM_FAR);
+    config.polarity = FATHOM_A16_SWITCH_POSITIVE;
+    assert_int_equal(read_as(true), FATHOM_NEAR);
+    assert_int_equal(read_as(false), FATHOM_FAR);
+}
+
+static void polarity_is_an_option(void **state)
+{
+    (void)state;
+    config.polarity = FATHOM_A16_SWITCH_NEGATIVE;
+    assert_int_equal(read_as(true), FATHOM_FAR);
+    assert_int_equal(read_as(false), FATHOM_NEAR);
+}
+
+static void a_sample_says_who_it_is(void **state)
+{
+    (void)state;
+    config.address = 5;
+    assert_int_equal(read_as(true), FATHOM_NEAR);
+    assert_int_equal(pins.sample.model, FATHOM_A16);
+    assert_int_equal(pins.sample.unit, 5);
+    assert_int_equal(pins.sample.probe, 1);
+}
+
+static void without_a_line_the_level_alone_counts(void **state)
+{
+    (void)state;
+    config.line = NULL;
+    start(true);
+    pins_run(SETTLE_US, 20000);
+    pins_expect(1, FATHOM_NEAR);
+    assert_int_equal(pins.fake.reads, 0);
+}
+
+static void the_times_are_options(void **state)
+{
+    (void)state;
+    config.line = NULL;
+    config.settle_us = 30000;
+    config.period_us = 400000;
+    config.look_us = 3000;
+    config.stale_us = 60000;
+    start(true);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
+    pins_run(29 * MS, 1000);
+    assert_int_equal(pins.samples, 0);
+    pins_run(1 * MS, 1000);
+    assert_int_equal(pins.samples, 1);
+    pins_run(400 * MS, 1000);
+    assert_int_equal(pins.samples, 2);
+    for (uint32_t i = 0; i != 100; i++) pins_turn((i + 1) * MS);
+    pins_run(61 * MS, 1000);
+    assert_int_equal(pins.stales, 1);
+}
+
+static void a_config_without_sense_is_refused(void **state)
+{
+    (void)state;
+    config.polarity = 3;
+    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
+    config.polarity = 0;
+    config.pin = NULL;
+    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
+}
+
+/* ---- Modbus on the same pins ---- */
+
+/* Loops of 100 us to 20 ms, levels, and offsets of the answer to the loop: the bits of the answer are no levels. */
+static void an_answer_on_the_pin_is_no_change_in_any_loop(void **state)
+{
+    static const uint32_t steps_us[] = {100, 1000, 7000, 20000};
+    (void)state;
+    for (unsigned s = 0; s != 4; s++) {
+        for (uint32_t offset_us = 0; offset_us < 20000; offset_us += 700) {
+            for (unsigned level = 0; level != 2; level++) {
+                const uint32_t step_us = steps_us[s];
+                start_at(UINT32_MAX - 150 * MS, level != 0);
+                pins_run(60 * MS, step_us);
+                pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+                set_register(0x0206, 2000);
+                while (pins.fake.written == 0) pins_run(step_us, step_us);
+                assert_memory_equal(pins.fake.writes[0].bytes, threshold_2000, 8);
+                answer(30 * MS + offset_us, level != 0, threshold_2000, 8);
+                pins_run(200 * MS, step_us);
+                assert_int_equal(status(), FATHOM_READY);
+                assert_int_equal(pins.samples, 1);
+                assert_int_equal(pins.stales, 0);
+            }
+        }
+    }
+}
+
+static void a_level_that_turns_during_an_exchange_is_a_sample_after_it(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    pins_expect(1, FATHOM_FAR);
+    set_register(0x0206, 2000);
+    pins_run(10 * MS, 1000);
+    assert_int_equal(pins.fake.written, 1);
+    pins_turn(0);
+    pins_run(100 * MS, 1000);
+    assert_int_equal(pins.samples, 1); /* it has stood for 100 ms: not looked at */
+    answer(0, true, threshold_2000, 8);
+    const uint32_t ended_us = pins.fake.now_us + 8 * BYTE_US;
+    while (pins.samples == 1) pins_run(100, 100);
+    assert_int_equal(status(), FATHOM_READY);
+    pins_expect(2, FATHOM_NEAR);
+    /* 5 ms of silence, and 20 ms in which the level stood */
+    const uint32_t after_us = fathom_elapsed_us(pins.fake.now_us, ended_us);
+    assert_in_range(after_us, 25000, 25300);
+    assert_in_range(fathom_elapsed_us(pins.sample.time_us, ended_us), 5000, 5300);
+}
+
+/* To the host's UART a low level is a break: 00 without a stop bit, before the answer and after it. */
+static void garbage_with_framing_errors_around_an_answer_is_dropped_and_counted(void **state)
+{
+    const fathom_rx_t spoilt = {0, FATHOM_RX_FRAMING};
+    (void)state;
+    pins_run(60 * MS, 1000);
+    set_register(0x0206, 2000);
+    pins_run(10 * MS, 1000);
+    fake_receive_rx(&pins.fake, 2 * MS, &nothing, 1, spoilt);
+    fake_receive_rx(&pins.fake, 30 * MS, &nothing, 1, spoilt);
+    fake_receive_rx(&pins.fake, 31 * MS, &nothing, 1, spoilt);
+    fake_trickle(&pins.fake, 31 * MS, BYTE_US, threshold_2000, 8);
+    fake_receive_rx(&pins.fake, 31 * MS + 9 * BYTE_US, &nothing, 1, spoilt);
+    pins_run(100 * MS, 1000);
+    assert_int_equal(status(), FATHOM_READY);
+    assert_int_equal(line.counters[FATHOM_LINE_BAD_BYTES], 4);
+    assert_int_equal(line.counters[FATHOM_LINE_ANSWERS], 1);
+    pins_expect(1, FATHOM_FAR);
+}
+
+/* A port that cannot tell: the bytes of a break are noise before the answer. */
+static void unmarked_garbage_before_an_answer_is_dropped_too(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    set_register(0x0206, 2000);
+    pins_run(10 * MS, 1000);
+    fake_receive(&pins.fake, 30 * MS, &nothing, 1);
+    fake_trickle(&pins.fake, 30 * MS, BYTE_US, threshold_2000, 8);
+    pins_run(100 * MS, 1000);
+    assert_int_equal(status(), FATHOM_READY);
+    assert_int_equal(line.counters[FATHOM_LINE_DROPPED_BYTES], 1);
+    pins_expect(1, FATHOM_FAR);
+}
+
+static void an_answer_after_its_time_out_is_no_change_either(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    set_register(0x0206, 2000);
+    while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+    assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
+    pins_run(60 * MS, 1000);
+    answer(3 * MS, false, threshold_2000, 8);
+    pins_run(200 * MS, 1000);
+    assert_int_equal(line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
+    pins_expect(1, FATHOM_FAR);
+    assert_int_equal(pins.stales, 0);
+}
+
+/* The unit owes an answer, so the next request waits for it; the pin is free. */
+static void a_request_that_waits_does_not_hide_the_level(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    set_register(0x0206, 2000);
+    while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+    set_register(0x0206, 2000);
+    pins_turn(0);
+    pins_run(50 * MS, 1000);
+    assert_int_equal(pins.fake.written, 1);
+    pins_expect(2, FATHOM_NEAR);
+}
+
+static void bytes_that_never_end_make_it_stale(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i != 4200; i++) {
+        fake_receive(&pins.fake, 0, &nothing, 1);
+        pins_run(1 * MS, 1000);
+    }
+    assert_int_equal(pins.samples, 0);
+    assert_int_equal(pins.stales, 2);
+    pins_run(26 * MS, 1000);
+    pins_expect(1, FATHOM_FAR);
+}
+
+static void while_the_line_is_busy_a_look_is_due_in_5_ms(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 10000);
+    set_register(0x0206, 2000);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 0); /* the line's: send it */
+    pins_run(1 * MS, 1000);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 1000); /* the line's: has it left? */
+    pins_run(20 * MS, 1000);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 5000);
+    pins.fake.now_us += 2000;
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
+}
+
+static void a_broken_port_is_said_but_does_not_hide_the_level(void **state)
+{
+    (void)state;
+    pins.fake.read_fails = true;
+    pins_run(100 * MS, 1000);
+    pins_expect(1, FATHOM_FAR);
+    assert_int_equal(pins.ports, 99);
+    pins_turn(0);
+    pins_run(22 * MS, 1000);
+    pins_expect(2, FATHOM_NEAR);
+}
+
+/* ---- polarity by Modbus ---- */
+
+static void polarity_that_is_set_and_told_is_no_change(void **state)
+{
+    (void)state;
+    for (unsigned level = 0; level != 2; level++) {
+        start(level != 0);
+        pins_run(60 * MS, 1000);
+        set_register(0x0205, 0);
+        pins_run(10 * MS, 1000);
+        assert_memory_equal(pins.fake.writes[0].bytes, negative, 8);
+        fake_trickle(&pins.fake, 30 * MS, BYTE_US, negative, 8);
+        while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+        assert_int_equal(fathom_a16_switch_set_polarity(&a16, FATHOM_A16_SWITCH_NEGATIVE), FATHOM_READY);
+        pins_turn(10 * MS);
+        pins_run(200 * MS, 1000);
+        pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+        pins_turn(0);
+        pins_run(50 * MS, 1000);
+        pins_expect(2, level != 0 ? FATHOM_FAR : FATHOM_NEAR);
+        assert_int_equal(fathom_a16_switch_set_polarity(&a16, FATHOM_A16_SWITCH_POSITIVE), FATHOM_READY);
+        pins_run(50 * MS, 1000);
+        pins_expect(3, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+    }
+}
+
+static void no_such_polarity_is_refused_and_changes_nothing(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    assert_int_equal(fathom_a16_switch_set_polarity(&a16, 0), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_switch_set_polarity(&a16, 3), FATHOM_ERR_ARGUMENT);
+    pins_run(60 * MS, 1000);
+    pins_expect(1, FATHOM_FAR);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(high_is_near_from_the_factory, set_up),
+        cmocka_unit_test_setup(polarity_is_an_option, set_up),
+        cmocka_unit_test_setup(a_sample_says_who_it_is, set_up),
+        cmocka_unit_test_setup(without_a_line_the_level_alone_counts, set_up),
+        cmocka_unit_test_setup(the_times_are_options, set_up),
+        cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
+        cmocka_unit_test_setup(an_answer_on_the_pin_is_no_change_in_any_loop, set_up),
+        cmocka_unit_test_setup(a_level_that_turns_during_an_exchange_is_a_sample_after_it, set_up),
+        cmocka_unit_test_setup(garbage_with_framing_errors_around_an_answer_is_dropped_and_counted, set_up),
+        cmocka_unit_test_setup(unmarked_garbage_before_an_answer_is_dropped_too, set_up),
+        cmocka_unit_test_setup(an_answer_after_its_time_out_is_no_change_either, set_up),
+        cmocka_unit_test_setup(a_request_that_waits_does_not_hide_the_level, set_up),
+        cmocka_unit_test_setup(bytes_that_never_end_make_it_stale, set_up),
+        cmocka_unit_test_setup(while_the_line_is_busy_a_look_is_due_in_5_ms, set_up),
+        cmocka_unit_test_setup(a_broken_port_is_said_but_does_not_hide_the_level, set_up),
+        cmocka_unit_test_setup(polarity_that_is_set_and_told_is_no_change, set_up),
+        cmocka_unit_test_setup(no_such_polarity_is_refused_and_changes_nothing, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
