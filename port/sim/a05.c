@@ -5,6 +5,7 @@
 
 #include "fathom/dyp_frame.h"
 #include "fathom/dyp_protocol.h"
+#include "internal/switches.h"
 
 enum { PROBES = FATHOM_DYP_PROBES, FIRST_PROBE = 0x0106, FIRST_ALIAS = 0x0010, ADDRESS = 0x0200 };
 
@@ -121,6 +122,10 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
                                              .broadcast = 0xFF,
                                              .deaf_at_start = true};
     fathom_sim_device_t *const device = &a05->device;
+    if (config->mode == FATHOM_SIM_A05_RELAY) {
+        fathom_sim_a05_relay_init(a05, config);
+        return;
+    }
     memset(a05, 0, sizeof *a05);
     device->model = &model;
     device->faults = config->faults;

@@ -29,12 +29,15 @@ extern "C" {
  * is another unit's answer, which has the same bytes: several units may then answer each other for ever.
  * 0xFF is obeyed, and answered from its own address (whether it is, is not in the datasheet). Silence: 00 or
  * FF as a new address, another command, another length, a wrong sum. A frame ends with t3.5 of silence.
- * Not yet: relay output.
+ * Relay (A05 4): measures all probes every 300 ms (the datasheet prints no period) and hears nothing. The relay
+ * closes when one is nearer than the threshold, opens when all are farther, and does not move again for 1 s. Its
+ * contact is at the host's TX pin of the device (pin.h), pulled up: low is conducting.
  */
 typedef enum {
     FATHOM_SIM_A05_AUTO = 1,   /* UART: automatic, then Modbus (A05 1) */
     FATHOM_SIM_A05_MODBUS = 2, /* RS-485 (A05 3) */
-    FATHOM_SIM_A05_DYP = 3     /* RS-485, 55 AA, and "Modbus at the same time" (A05 2(2)) */
+    FATHOM_SIM_A05_DYP = 3,    /* RS-485, 55 AA, and "Modbus at the same time" (A05 2(2)) */
+    FATHOM_SIM_A05_RELAY = 4   /* a contact (A05 4) */
 } fathom_sim_a05_mode_t;
 
 /* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
@@ -51,7 +54,8 @@ typedef struct {
     fathom_sim_scene_t scene;          /* probes 1..4; no target when empty */
     fathom_sim_scene_t processed;      /* their processed values; as `scene` when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
-    uint32_t period_us;                /* of automatic frames, from start to start; default 300 ms */
+    uint32_t period_us;                /* of automatic frames, from start to start, and of a relay's
+                                          measurements; default 300 ms */
     uint32_t start_us;                 /* from power-on, silent and deaf; default none */
     uint32_t linger_us;                /* automatic frames still come for so long after the first command;
                                           default 150 ms; 1: none that has not begun */
@@ -59,6 +63,11 @@ typedef struct {
     uint32_t settings_us;              /* register 0x0200, and 55 AA 03; 20 ms */
     uint32_t all_us;                   /* 55 AA 01, longest, at least 10 ms; it is up to 10 ms less; 210 ms */
     uint32_t one_us;                   /* 55 AA 10..13; 75 ms */
+    uint32_t hold_us;                  /* relay: it does not move again before; default 1 s (A05 4(1)) */
+    uint16_t threshold_mm;             /* relay: as it was taught on the board; default 1000 (A05 4(2)) */
+    uint8_t probes;                    /* relay: bit probe - 1, fitted; default all */
+    uint8_t bounces; /* relay: edges too many when it moves, 0.7 ms apart; even, up to 200; default none */
+    bool normally_closed; /* relay: which contact is wired */
 } fathom_sim_a05_config_t;
 
 typedef struct {
@@ -70,6 +79,19 @@ typedef struct {
     bool exceptions;
     bool real_time; /* the level; the caller may change it, for the next power-on */
     bool selected;  /* real-time, since power-on */
+
+    /* a relay's */
+    uint32_t every_us;   /* measurements */
+    uint32_t measure_us; /* the next one */
+    uint32_t hold_us;
+    uint32_t moved_us; /* with is_young: less than hold_us ago */
+    uint16_t threshold_mm;
+    uint8_t probes;
+    uint8_t bounces;
+    uint8_t bounces_left;
+    bool normally_closed;
+    bool is_closed;
+    bool is_young;
 } fathom_sim_a05_t;
 
 void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fathom/dyp_frame.h"
+#include "internal/switches.h"
 
 enum { AUTOMATIC = 1, POSITIVE = 1, REAL_TIME = 1 }; /* values of 0x0202, 0x0205, 0x0207 */
 
@@ -110,6 +111,17 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
     return fathom_sim_device_delay_us(device, most_us);
 }
 
+/* "Only valid for switch output" (A16 6(3)). */
+static uint32_t switch_request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
+{
+    const uint32_t delay_us = request(device, message);
+    const uint16_t address = get16(message->head + 2);
+    if (message->head[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER && message->exception == 0 &&
+        (address == POLARITY || address == THRESHOLD))
+        fathom_sim_a16_switch_obey(a16_of(device));
+    return delay_us;
+}
+
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
     const fathom_sim_a16_t *const a16 = a16_of(device);
@@ -150,9 +162,19 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
                                              .reading = {REALTIME, 1},
                                              .broadcast = 0xFF,
                                              .deaf_at_start = true};
+    static const fathom_sim_model_t switch_model = {.request = switch_request,
+                                                    .fill = fill,
+                                                    .power_on = fathom_sim_a16_switch_power_on,
+                                                    .alarm = fathom_sim_a16_switch_alarm,
+                                                    .reading = {REALTIME, 1},
+                                                    .broadcast = 0xFF,
+                                                    .deaf_at_start = true};
+    const bool is_switch = config->mode == FATHOM_SIM_A16_SWITCH;
     fathom_sim_device_t *const device = &a16->device;
     memset(a16, 0, sizeof *a16);
-    device->model = &model;
+    device->model = is_switch ? &switch_model : &model;
+    device->tx_is_uart = is_switch;
+    a16->every_us = or_else(config->period_us, 500000);
     device->faults = config->faults;
     device->scene = config->scene;
     device->processed = config->processed;
@@ -165,7 +187,8 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->listens = config->mode != FATHOM_SIM_A16_UART;
     device->answers_broadcast = config->answers_broadcast;
     device->answers_from_new = config->answers_from_new;
-    if (config->mode != FATHOM_SIM_A16_MODBUS) device->period_us = or_else(config->period_us, 100000);
+    if (config->mode != FATHOM_SIM_A16_MODBUS && !is_switch)
+        device->period_us = or_else(config->period_us, 100000);
     device->linger_us = or_else(config->linger_us, 150000);
     a16->realtime_us = or_else(config->realtime_us, 120000);
     a16->processed_us = or_else(config->processed_us, 520000);

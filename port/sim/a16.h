@@ -30,12 +30,18 @@ extern "C" {
  * write of them wears the flash (counters.flash_writes). 0x0205 to 0x0207 are there in every mode with Modbus,
  * though they act in one only. Everything else is silence: the datasheet knows no exceptions. 0xFF is obeyed
  * and not answered.
- * Not yet: PWM, controlled and switch output.
+ * Switch (A16 4): measures every 500 ms; 3 in a row nearer than the threshold (0x0206) make its TX pin high, 5
+ * farther low, or the other way round (0x0205 = 0); a distance that equals it ends a row, and low is what TX has
+ * before the first decision. RX hears Modbus, and 06 of these two registers is obeyed at once; the answers leave by
+ * TX. Where that rests low, the host's UART gets a break whenever it falls and before each answer: 00 with
+ * FATHOM_RX_FRAMING. The line is full-duplex; pin.h has the host's end of the pin.
+ * Not yet: PWM and controlled output.
  */
 typedef enum {
     FATHOM_SIM_A16_AUTO = 1,   /* RS-232: automatic, then Modbus (A16 5) */
     FATHOM_SIM_A16_MODBUS = 2, /* RS-485: Modbus only (A16 5) */
-    FATHOM_SIM_A16_UART = 3    /* automatic for ever, hears nothing (A16 2) */
+    FATHOM_SIM_A16_UART = 3,   /* automatic for ever, hears nothing (A16 2) */
+    FATHOM_SIM_A16_SWITCH = 4  /* a level on TX, and Modbus (A16 4) */
 } fathom_sim_a16_mode_t;
 
 /* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
@@ -51,7 +57,8 @@ typedef struct {
     fathom_sim_scene_t scene;          /* probe 1; no target when empty */
     fathom_sim_scene_t processed;      /* the processed value; as `scene` when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
-    uint32_t period_us;                /* of automatic frames, from start to start; default 100 ms */
+    uint32_t period_us;                /* of automatic frames, from start to start; default 100 ms. Of the
+                                          measurements of a switch; default 500 ms */
     uint32_t start_us;                 /* from power-on, silent and deaf; default none */
     uint32_t linger_us;                /* automatic frames still come for so long after the first command;
                                           default 150 ms; 1: none that has not begun */
@@ -69,6 +76,13 @@ typedef struct {
     uint8_t polarity;  /* 0x0205; 1 from the factory */
     uint8_t data_type; /* 0x0207; 0 processed, also what automatic frames of the UART say */
     bool exceptions;
+
+    /* a switch's */
+    uint32_t every_us;   /* measurements */
+    uint32_t measure_us; /* the next one */
+    uint8_t nearer;      /* in a row */
+    uint8_t farther;
+    bool is_near; /* what it has decided */
 } fathom_sim_a16_t;
 
 void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *config);

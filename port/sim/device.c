@@ -59,18 +59,24 @@ uint16_t fathom_sim_device_ultrasonic(fathom_sim_device_t *device, uint8_t probe
 
 /* ---- pins ---- */
 
-void fathom_sim_device_set_level(fathom_sim_device_t *device, bool high, uint32_t now_us)
+static void send_break(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_sender_t *const sender = &device->sender;
     const uint8_t nothing = 0;
-    if (device->tx_high == high) return;
-    device->tx_high = high;
-    if (device->watch != NULL) device->watch(device->watch_ctx, high, now_us);
-    if (high || !device->tx_is_uart || !fathom_sim_sender_idle(sender)) return;
     fathom_sim_sender_put(sender, &device->settings, &nothing, 1, now_us);
+    sender->paused = 0;
     sender->marked = true;
     sender->marks[0] = FATHOM_RX_FRAMING;
     device->own = 1;
+    device->in_break = true;
+}
+
+void fathom_sim_device_set_level(fathom_sim_device_t *device, bool high, uint32_t now_us)
+{
+    if (device->tx_high == high) return;
+    device->tx_high = high;
+    if (device->watch != NULL) device->watch(device->watch_ctx, high, now_us);
+    if (!high && device->tx_is_uart && fathom_sim_sender_idle(&device->sender)) send_break(device, now_us);
 }
 
 bool fathom_sim_device_level(const fathom_sim_device_t *device, uint32_t now_us)
@@ -100,7 +106,7 @@ static void stop(fathom_sim_device_t *device)
     device->sender.on_wire = false;
     device->length = 0;
     device->off_us = 0;
-    device->torn = device->busy = device->leaving = false;
+    device->torn = device->busy = device->leaving = device->in_break = device->is_raised = false;
 }
 
 void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
@@ -215,8 +221,20 @@ static bool send(fathom_sim_device_t *device, const fathom_line_settings_t *sett
     return device->own != 0;
 }
 
+/* True: TX rests low, and the host's UART makes noise of its rise; the answer follows that. */
+static bool rise(fathom_sim_device_t *device, uint32_t now_us)
+{
+    if (!device->tx_is_uart || device->tx_high || device->is_raised) return false;
+    device->is_raised = true;
+    send_break(device, now_us);
+    fathom_sim_device_set_alarm(device, ANSWER, now_us);
+    return true;
+}
+
 static void answer(fathom_sim_device_t *device, uint32_t now_us)
 {
+    if (rise(device, now_us)) return;
+    device->is_raised = false;
     uint8_t bytes[FATHOM_SIM_MAX_FRAME];
     fathom_sim_frame_t frame = {.bytes = bytes, .now_us = now_us, .protocol = device->protocol->id};
     frame.length = device->protocol->answer(device, bytes, now_us);
@@ -258,6 +276,9 @@ void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
     const bool idle = fathom_sim_sender_idle(&device->sender);
     if (idle || device->sender.sent == device->own) device->busy = device->alarms[ANSWER].set;
     if (idle && device->model->strict_gap) keep_silence(device, now_us);
+    const bool falls = !device->in_break && !device->tx_high && device->tx_is_uart;
+    if (idle) device->in_break = false;
+    if (idle && falls && device->off_us == 0) send_break(device, now_us);
     if (idle && device->off_us != 0) fathom_sim_device_power_off(device, device->off_us, now_us);
 }
 

@@ -214,6 +214,8 @@ struct fathom_sim_device {
     bool leaving;
     bool tx_high;    /* the level of its TX pin where no byte is leaving */
     bool tx_is_uart; /* the model's: a TX pin that falls is a break to the host's UART, which is on it too */
+    bool in_break;   /* that is what it is sending */
+    bool is_raised;  /* the answer that is due may begin, on a TX pin that rests low */
     uint8_t rx_held; /* FATHOM_SIM_HELD_BY_..., a set */
     /* Who sees the edges of tx_high; set by pin.h. */
     void (*watch)(void *ctx, bool high, uint32_t now_us);
@@ -245,7 +247,8 @@ void fathom_sim_device_set_alarm(fathom_sim_device_t *device, uint8_t alarm, uin
 
 /*
  * The level of the TX pin from now on: a pulse, a switch output, a relay's contact. Bytes that leave on the same
- * pin have it while they do. With tx_is_uart a fall reaches the host as a byte 00 with FATHOM_RX_FRAMING.
+ * pin have it while they do. With tx_is_uart a fall reaches the host as a byte 00 with FATHOM_RX_FRAMING, the one
+ * after an answer too, and so does what stands before an answer where the pin rests low.
  */
 void fathom_sim_device_set_level(fathom_sim_device_t *device, bool high, uint32_t now_us);
 /* What the host can see of the TX pin now: the bits of a byte that is leaving, else the level. */
