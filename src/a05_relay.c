@@ -3,21 +3,17 @@
 
 fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a05_relay_config_t *config)
 {
-    fathom_contact_config_t *const base = &sensor->base.config;
+    fathom_contact_t *const base = &sensor->base;
     base->pin = config->pin;
     base->clock = config->clock;
     base->line = NULL;
-    base->settle_us = config->settle_us;
-    base->period_us = config->period_us;
-    base->look_us = config->look_us;
-    base->stale_us = config->stale_us;
     base->near_is_high = (config->wiring == FATHOM_A05_RELAY_NORMALLY_CLOSED) !=
                          (config->level == FATHOM_A05_RELAY_CONDUCTS_HIGH);
     base->model = FATHOM_A05;
     base->unit = 0;
     if (config->wiring > FATHOM_A05_RELAY_NORMALLY_CLOSED || config->level > FATHOM_A05_RELAY_CONDUCTS_HIGH)
         return FATHOM_ERR_ARGUMENT;
-    return fathom_contact_init(&sensor->base);
+    return fathom_contact_init(base, &config->timing);
 }
 
 fathom_sensor_t fathom_a05_relay_sensor(fathom_a05_relay_t *sensor)

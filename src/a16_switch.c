@@ -3,27 +3,19 @@
 
 fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config)
 {
-    fathom_contact_config_t *const base = &sensor->base.config;
+    fathom_contact_t *const base = &sensor->base;
     base->pin = config->pin;
     base->clock = config->clock;
     base->line = config->line;
-    base->settle_us = config->settle_us;
-    base->period_us = config->period_us;
-    base->look_us = config->look_us;
-    base->stale_us = config->stale_us;
-    base->near_is_high = config->polarity != FATHOM_A16_SWITCH_NEGATIVE;
+    base->near_is_high = !config->negative;
     base->model = FATHOM_A16;
     base->unit = config->address;
-    if (config->polarity > FATHOM_A16_SWITCH_NEGATIVE) return FATHOM_ERR_ARGUMENT;
-    return fathom_contact_init(&sensor->base);
+    return fathom_contact_init(base, &config->timing);
 }
 
-fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, uint8_t polarity)
+void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity)
 {
-    if (polarity != FATHOM_A16_SWITCH_POSITIVE && polarity != FATHOM_A16_SWITCH_NEGATIVE)
-        return FATHOM_ERR_ARGUMENT;
-    fathom_contact_set_near_is_high(&sensor->base, polarity == FATHOM_A16_SWITCH_POSITIVE);
-    return FATHOM_READY;
+    fathom_contact_set_near_is_high(&sensor->base, polarity == FATHOM_A16_POSITIVE);
 }
 
 fathom_sensor_t fathom_a16_switch_sensor(fathom_a16_switch_t *sensor)

@@ -3,39 +3,38 @@
 
 static uint32_t now_us(const fathom_contact_t *contact)
 {
-    const fathom_clock_t *const clock = contact->config.clock;
+    const fathom_clock_t *const clock = contact->clock;
     return clock->now_us(clock->ctx);
 }
 
 static bool is_high_now(const fathom_contact_t *contact)
 {
-    const fathom_pin_t *const pin = contact->config.pin;
+    const fathom_pin_t *const pin = contact->pin;
     return pin->get(pin->ctx);
 }
 
 static void settle(fathom_contact_t *contact)
 {
     contact->since_us = contact->looked_us;
-    contact->settle_us = contact->config.settle_us;
+    contact->settle_us = contact->timing.settle_us;
 }
 
-static void or_else(uint32_t *us, uint32_t default_us)
-{
-    if (*us == 0) *us = default_us;
-}
+static uint32_t or_else(uint32_t us, uint32_t default_us) { return us != 0 ? us : default_us; }
 
-fathom_status_t fathom_contact_init(fathom_contact_t *contact)
+fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing)
 {
-    fathom_contact_config_t *const config = &contact->config;
-    if (config->pin == NULL || config->pin->get == NULL || config->clock == NULL) return FATHOM_ERR_ARGUMENT;
-    or_else(&config->settle_us, FATHOM_CONTACT_DEFAULT_SETTLE_US);
-    or_else(&config->look_us, FATHOM_CONTACT_DEFAULT_LOOK_US);
-    or_else(&config->stale_us, FATHOM_CONTACT_DEFAULT_STALE_US);
+    fathom_contact_timing_t *const own = &contact->timing;
+    if (contact->pin == NULL || contact->pin->get == NULL || contact->clock == NULL)
+        return FATHOM_ERR_ARGUMENT;
+    own->settle_us = or_else(timing->settle_us, FATHOM_CONTACT_DEFAULT_SETTLE_US);
+    own->period_us = timing->period_us;
+    own->look_us = or_else(timing->look_us, FATHOM_CONTACT_DEFAULT_LOOK_US);
+    own->stale_us = or_else(timing->stale_us, FATHOM_CONTACT_DEFAULT_STALE_US);
     contact->looked_us = now_us(contact);
     contact->is_high = is_high_now(contact);
-    contact->is_clear = config->line == NULL;
-    contact->period_us = config->period_us;
-    contact->stale_us = config->stale_us;
+    contact->is_clear = contact->line == NULL;
+    contact->period_us = own->period_us;
+    contact->stale_us = own->stale_us;
     contact->sequence = 0;
     contact->said = 0;
     settle(contact);
@@ -44,14 +43,14 @@ fathom_status_t fathom_contact_init(fathom_contact_t *contact)
 
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high)
 {
-    contact->config.near_is_high = near_is_high;
+    contact->near_is_high = near_is_high;
     settle(contact);
 }
 
 /* Has the line on the same pin, if there is one, nothing to do with its level? */
 static bool is_clear(const fathom_contact_t *contact)
 {
-    const fathom_line_t *const line = contact->config.line;
+    const fathom_line_t *const line = contact->line;
     return line == NULL ||
            (fathom_line_is_idle(line) &&
             fathom_elapsed_us(contact->looked_us, fathom_line_heard_us(line)) >= FATHOM_CONTACT_QUIET_US);
@@ -79,35 +78,35 @@ static void say(fathom_contact_t *contact, uint8_t kind, fathom_sample_t *sample
     sample->distance_mm = 0;
     sample->precision = 0;
     sample->kind = kind;
-    sample->model = contact->config.model;
-    sample->unit = contact->config.unit;
+    sample->model = contact->model;
+    sample->unit = contact->unit;
     sample->probe = 1;
     sample->ambient = 0;
     sample->interference = false;
     contact->said = kind;
-    contact->period_us = contact->config.period_us;
+    contact->period_us = contact->timing.period_us;
 }
 
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_contact_t *const contact = ctx;
-    const fathom_contact_config_t *const config = &contact->config;
-    const fathom_status_t port = config->line != NULL ? fathom_line_poll(config->line) : FATHOM_PENDING;
+    const fathom_contact_timing_t *const timing = &contact->timing;
+    const fathom_status_t port = contact->line != NULL ? fathom_line_poll(contact->line) : FATHOM_PENDING;
     const uint32_t now = now_us(contact);
     const uint32_t passed_us = fathom_elapsed_us(now, contact->looked_us);
     /* Until the look before this one all was well, and how long ago it ceased to be nobody knows. */
     const bool counted = contact->settle_us == 0;
-    const bool repeats = fathom_run_down(&contact->period_us, passed_us) && config->period_us != 0;
+    const bool repeats = fathom_run_down(&contact->period_us, passed_us) && timing->period_us != 0;
     contact->looked_us = now;
-    if (counted) contact->stale_us = config->stale_us;
+    if (counted) contact->stale_us = timing->stale_us;
     if (look(contact, passed_us)) {
-        const uint8_t kind = contact->is_high == config->near_is_high ? FATHOM_NEAR : FATHOM_FAR;
+        const uint8_t kind = contact->is_high == contact->near_is_high ? FATHOM_NEAR : FATHOM_FAR;
         if (kind != contact->said || repeats) {
             say(contact, kind, sample);
             return FATHOM_READY;
         }
     } else if (!counted && fathom_run_down(&contact->stale_us, passed_us)) {
-        contact->stale_us = config->stale_us;
+        contact->stale_us = timing->stale_us;
         return FATHOM_ERR_STALE;
     }
     return port;
@@ -118,19 +117,19 @@ static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 static uint32_t due_us(void *ctx)
 {
     const fathom_contact_t *const contact = ctx;
-    const fathom_contact_config_t *const config = &contact->config;
-    uint32_t us = config->look_us;
+    const fathom_contact_timing_t *const timing = &contact->timing;
+    uint32_t us = timing->look_us;
     if (!contact->is_clear)
         us = least(us, FATHOM_CONTACT_QUIET_US);
     else if (contact->settle_us != 0)
         us = least(us, contact->settle_us);
-    else if (config->period_us != 0)
+    else if (timing->period_us != 0)
         us = least(us, contact->period_us);
     if (us != FATHOM_NO_DEADLINE) {
         const uint32_t passed_us = fathom_elapsed_us(now_us(contact), contact->looked_us);
         us = us > passed_us ? us - passed_us : 0;
     }
-    return config->line != NULL ? least(us, fathom_line_due_us(config->line)) : us;
+    return contact->line != NULL ? least(us, fathom_line_due_us(contact->line)) : us;
 }
 
 fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact)

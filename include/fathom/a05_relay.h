@@ -41,14 +41,9 @@ typedef enum {
 typedef struct {
     const fathom_pin_t *pin;
     const fathom_clock_t *clock;
-    uint32_t
-        settle_us; /* how long the level stands before it counts: longer than the contact bounces; 0: 20 ms */
-    uint32_t period_us; /* a sample that repeats the state, so long after the last one; 0: changes alone */
-    uint32_t look_us;  /* the longest that due_us advises between looks; FATHOM_NO_DEADLINE where an interrupt
-                           of the pin wakes the program; 0: 10 ms */
-    uint32_t stale_us; /* FATHOM_ERR_STALE after so long without a level that counts; 0: 2 s */
-    uint8_t wiring;    /* fathom_a05_relay_wiring_t; 0: normally open */
-    uint8_t level;     /* fathom_a05_relay_level_t; 0: low while it conducts */
+    fathom_contact_timing_t timing; /* contact.h: how long a level stands, how often it is said, and so on */
+    uint8_t wiring;                 /* fathom_a05_relay_wiring_t; 0: normally open */
+    uint8_t level;                  /* fathom_a05_relay_level_t; 0: low while it conducts */
 } fathom_a05_relay_config_t;
 
 typedef struct {

@@ -32,17 +32,18 @@ enum { FATHOM_A05_RELAY_MIN_MM = 250, FATHOM_A05_RELAY_MAX_MM = 4500, FATHOM_A05
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
-    uint32_t hold_us; /* each state lasts at least so long. "Pull-in and cut-off time will be maintained for 1
-                         second" (A05 4(1)) is read so; 0: 1 s; 1: as good as none */
+    /* Each state lasts at least so long: "pull-in and cut-off time will be maintained for 1 second" (A05 4(1)) is read
+     * so. 0: 1 s; 1: as good as none. */
+    uint32_t hold_us;
     uint16_t threshold_mm; /* 250..4500; 0: 1000 mm */
     uint8_t probes;        /* bit probe - 1: fitted, and read by the sensor's driver; 0: all four */
     uint8_t equal;         /* fathom_equal_t */
 } fathom_a05_relay_rule_config_t;
 
 typedef struct {
-    fathom_debounce_t
-        debounce;      /* debounce.level may be read: FATHOM_NEAR is closed; 0: not known yet, which a
-                                   relay without power shows as open */
+    /* debounce.level may be read: FATHOM_NEAR is closed; 0 is not known yet, which a relay without power shows as
+     * open. */
+    fathom_debounce_t debounce;
     uint16_t sequence; /* of the measurement under way */
     uint8_t probes;
     uint8_t missing; /* bit probe - 1: has not been seen in it */

@@ -20,7 +20,7 @@ extern "C" {
  * less than 71 minutes pass.
  */
 
-/* Zero-valued members of the config mean these. */
+/* Zero-valued members of the timing mean these. */
 #define FATHOM_CONTACT_DEFAULT_SETTLE_US 20000u
 #define FATHOM_CONTACT_DEFAULT_LOOK_US   10000u
 #define FATHOM_CONTACT_DEFAULT_STALE_US  2000000u
@@ -28,25 +28,33 @@ extern "C" {
 /* After the last byte on a line on the same pin. More than a character at 9600 baud, which a look could hit. */
 #define FATHOM_CONTACT_QUIET_US 5000u
 
+/* Members that are 0 mean their defaults. */
 typedef struct {
+    /* How long a level stands before it counts: longer than a contact bounces, and than an answer on the pin takes.
+     * 0: 20 ms; 1: two looks are enough. */
+    uint32_t settle_us;
+    /* A sample that repeats the level, so long after the last one. 0: changes alone. */
+    uint32_t period_us;
+    /* The longest that due_us advises between looks; FATHOM_NO_DEADLINE where an interrupt of the pin wakes the
+     * program. 0: 10 ms. */
+    uint32_t look_us;
+    /* FATHOM_ERR_STALE when no level has counted for so long. 0: 2 s. */
+    uint32_t stale_us;
+} fathom_contact_timing_t;
+
+typedef struct {
+    /* Set by the caller before init, which keeps the pointers. */
     const fathom_pin_t *pin; /* an input */
     const fathom_clock_t *clock;
-    fathom_line_t
-        *line; /* of a UART on the same pin: the level is not looked at while an exchange is on it, nor
-                            until 5 ms after the last byte. NULL: there is none */
-    uint32_t settle_us; /* how long a level stands before it counts: longer than a contact bounces and than an
-                            answer on the pin takes; 0: 20 ms; 1: two looks are enough */
-    uint32_t period_us; /* a sample that repeats the level, so long after the last one; 0: changes alone */
-    uint32_t look_us;  /* the longest that due_us advises between looks; FATHOM_NO_DEADLINE where an interrupt
-                            of the pin wakes the program; 0: 10 ms */
-    uint32_t stale_us; /* FATHOM_ERR_STALE when no level has counted for so long; 0: 2 s */
+    /* Of a UART on the same pin: the level is not looked at while an exchange is on it, nor until 5 ms after the last
+     * byte. NULL: there is none. */
+    fathom_line_t *line;
     bool near_is_high; /* what a high level means: FATHOM_NEAR, or FATHOM_FAR */
     uint8_t model;     /* of the samples; fathom_model_t */
     uint8_t unit;      /* of the samples */
-} fathom_contact_config_t;
 
-typedef struct {
-    fathom_contact_config_t config;
+    /* The engine's. */
+    fathom_contact_timing_t timing;
     uint32_t looked_us;
     uint32_t since_us;  /* the first look at which the present level stood */
     uint32_t settle_us; /* until it counts */
@@ -58,9 +66,9 @@ typedef struct {
     bool is_clear; /* nothing was on the line then */
 } fathom_contact_t;
 
-/* The caller has set the config; its zero members become their defaults. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no
- * clock, or no pin that can be read. It looks at the pin once. */
-fathom_status_t fathom_contact_init(fathom_contact_t *contact);
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read. It looks at the pin once. The timing is
+ * copied. */
+fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing);
 
 /* What a high level means from now on. The level has to settle anew; if what it says is the same as before there is
  * no sample. */

@@ -79,10 +79,10 @@ static void a_sample_says_who_and_when_and_has_no_distance(void **state)
 static void the_times_are_options(void **state)
 {
     (void)state;
-    config.settle_us = 30000;
-    config.period_us = 400000;
-    config.look_us = 3000;
-    config.stale_us = 60000;
+    config.timing.settle_us = 30000;
+    config.timing.period_us = 400000;
+    config.timing.look_us = 3000;
+    config.timing.stale_us = 60000;
     start(true);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
     pins_run(29 * MS, 1000);

@@ -84,15 +84,12 @@ static void high_is_near_from_the_factory(void **state)
     (void)state;
     assert_int_equal(read_as(true), FATHOM_NEAR);
     assert_int_equal(read_as(false), FATHOM_FAR);
-    config.polarity = FATHOM_A16_SWITCH_POSITIVE;
-    assert_int_equal(read_as(true), FATHOM_NEAR);
-    assert_int_equal(read_as(false), FATHOM_FAR);
 }
 
 static void polarity_is_an_option(void **state)
 {
     (void)state;
-    config.polarity = FATHOM_A16_SWITCH_NEGATIVE;
+    config.negative = true;
     assert_int_equal(read_as(true), FATHOM_FAR);
     assert_int_equal(read_as(false), FATHOM_NEAR);
 }
@@ -121,10 +118,10 @@ static void the_times_are_options(void **state)
 {
     (void)state;
     config.line = NULL;
-    config.settle_us = 30000;
-    config.period_us = 400000;
-    config.look_us = 3000;
-    config.stale_us = 60000;
+    config.timing.settle_us = 30000;
+    config.timing.period_us = 400000;
+    config.timing.look_us = 3000;
+    config.timing.stale_us = 60000;
     start(true);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
     pins_run(29 * MS, 1000);
@@ -141,10 +138,10 @@ static void the_times_are_options(void **state)
 static void a_config_without_sense_is_refused(void **state)
 {
     (void)state;
-    config.polarity = 3;
-    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
-    config.polarity = 0;
     config.pin = NULL;
+    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
+    config.pin = &pins.pin;
+    config.clock = NULL;
     assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
 }
 
@@ -314,27 +311,17 @@ static void polarity_that_is_set_and_told_is_no_change(void **state)
         assert_memory_equal(pins.fake.writes[0].bytes, negative, 8);
         fake_trickle(&pins.fake, 30 * MS, BYTE_US, negative, 8);
         while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
-        assert_int_equal(fathom_a16_switch_set_polarity(&a16, FATHOM_A16_SWITCH_NEGATIVE), FATHOM_READY);
+        fathom_a16_switch_polarity_is(&a16, FATHOM_A16_NEGATIVE);
         pins_turn(10 * MS);
         pins_run(200 * MS, 1000);
         pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
         pins_turn(0);
         pins_run(50 * MS, 1000);
         pins_expect(2, level != 0 ? FATHOM_FAR : FATHOM_NEAR);
-        assert_int_equal(fathom_a16_switch_set_polarity(&a16, FATHOM_A16_SWITCH_POSITIVE), FATHOM_READY);
+        fathom_a16_switch_polarity_is(&a16, FATHOM_A16_POSITIVE);
         pins_run(50 * MS, 1000);
         pins_expect(3, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
     }
-}
-
-static void no_such_polarity_is_refused_and_changes_nothing(void **state)
-{
-    (void)state;
-    pins_run(60 * MS, 1000);
-    assert_int_equal(fathom_a16_switch_set_polarity(&a16, 0), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_switch_set_polarity(&a16, 3), FATHOM_ERR_ARGUMENT);
-    pins_run(60 * MS, 1000);
-    pins_expect(1, FATHOM_FAR);
 }
 
 int main(void)
@@ -356,7 +343,6 @@ int main(void)
         cmocka_unit_test_setup(while_the_line_is_busy_a_look_is_due_in_5_ms, set_up),
         cmocka_unit_test_setup(a_broken_port_is_said_but_does_not_hide_the_level, set_up),
         cmocka_unit_test_setup(polarity_that_is_set_and_told_is_no_change, set_up),
-        cmocka_unit_test_setup(no_such_polarity_is_refused_and_changes_nothing, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,7 +12,8 @@ enum { STEPS = sizeof steps_us / sizeof *steps_us };
 static const uint32_t starts_us[] = {START_US, UINT32_MAX - 10000, UINT32_MAX - 60000, UINT32_MAX - 200000};
 enum { STARTS = sizeof starts_us / sizeof *starts_us };
 
-static fathom_contact_config_t config;
+static fathom_contact_timing_t timing;
+static bool near_is_high;
 static fathom_contact_t contact;
 
 static void start_at(uint32_t now_us, bool level)
@@ -20,10 +21,13 @@ static void start_at(uint32_t now_us, bool level)
     pins_start(now_us);
     pins.level = level;
     memset(&contact, 0x5A, sizeof contact);
-    contact.config = config;
-    contact.config.pin = &pins.pin;
-    contact.config.clock = &pins.fake.clock;
-    assert_int_equal(fathom_contact_init(&contact), FATHOM_READY);
+    contact.pin = &pins.pin;
+    contact.clock = &pins.fake.clock;
+    contact.line = NULL;
+    contact.near_is_high = near_is_high;
+    contact.model = FATHOM_A05;
+    contact.unit = 7;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
     pins.sensor = fathom_contact_sensor(&contact);
 }
 
@@ -32,10 +36,8 @@ static void start(void) { start_at(START_US, false); }
 static int set_up(void **state)
 {
     (void)state;
-    memset(&config, 0, sizeof config);
-    config.near_is_high = true;
-    config.model = FATHOM_A05;
-    config.unit = 7;
+    memset(&timing, 0, sizeof timing);
+    near_is_high = true;
     start();
     return 0;
 }
@@ -130,7 +132,7 @@ static void a_level_that_does_not_stand_for_20_ms_is_nothing(void **state)
 static void how_long_a_level_stands_is_an_option(void **state)
 {
     (void)state;
-    config.settle_us = 1;
+    timing.settle_us = 1;
     start();
     assert_int_equal(pins_poll(), FATHOM_PENDING); /* no time has passed */
     pins_run(50, 50);
@@ -138,7 +140,7 @@ static void how_long_a_level_stands_is_an_option(void **state)
     pins_turn(50);
     pins_run(100, 50);
     pins_expect(2, FATHOM_NEAR);
-    config.settle_us = 300000;
+    timing.settle_us = 300000;
     start();
     pins_run(299 * MS, 1000);
     assert_int_equal(pins.samples, 0);
@@ -149,7 +151,7 @@ static void how_long_a_level_stands_is_an_option(void **state)
 static void what_a_high_level_means_is_an_option(void **state)
 {
     (void)state;
-    config.near_is_high = false;
+    near_is_high = false;
     start();
     pins_run(20 * MS, 1000);
     pins_expect(1, FATHOM_NEAR);
@@ -194,7 +196,7 @@ static void with_a_period_the_level_is_repeated(void **state)
 {
     (void)state;
     for (unsigned at = 0; at != STARTS; at++) {
-        config.period_us = 50000;
+        timing.period_us = 50000;
         start_at(starts_us[at], true);
         pins_run(20 * MS, 1000);
         pins_expect(1, FATHOM_NEAR);
@@ -218,7 +220,7 @@ static void with_a_period_the_level_is_repeated(void **state)
 static void a_level_that_is_settling_is_not_repeated(void **state)
 {
     (void)state;
-    config.period_us = 50000;
+    timing.period_us = 50000;
     start();
     pins_run(20 * MS, 1000);
     pins_expect(1, FATHOM_FAR);
@@ -253,7 +255,7 @@ static void a_level_that_never_stands_still_is_stale_every_2_s(void **state)
 static void when_it_is_stale_is_an_option(void **state)
 {
     (void)state;
-    config.stale_us = 100000;
+    timing.stale_us = 100000;
     start();
     for (unsigned i = 0; i != 110; i++) {
         pins.level = !pins.level;
@@ -302,7 +304,7 @@ static void the_next_look_is_due_in_10_ms_or_when_the_level_has_settled(void **s
 static void where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands(void **state)
 {
     (void)state;
-    config.look_us = FATHOM_NO_DEADLINE;
+    timing.look_us = FATHOM_NO_DEADLINE;
     start();
     assert_int_equal(due_us(), 20000);
     pins_run(20 * MS, 20000);
@@ -313,7 +315,7 @@ static void where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_
     assert_int_equal(due_us(), 20000);
     pins_run(20 * MS, 20000);
     assert_int_equal(pins.samples, 2);
-    config.period_us = 500000;
+    timing.period_us = 500000;
     start();
     pins_run(20 * MS, 20000);
     assert_int_equal(due_us(), 500000);
@@ -322,7 +324,7 @@ static void where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_
 static void a_loop_that_sleeps_until_it_is_due_misses_nothing(void **state)
 {
     (void)state;
-    config.period_us = 45000;
+    timing.period_us = 45000;
     start_at(UINT32_MAX - 500 * MS, false);
     pins_turn(100 * MS);
     pins_turn(333 * MS);
@@ -344,15 +346,15 @@ static void init_refuses_what_it_cannot_read(void **state)
 {
     const fathom_pin_t output = {NULL, NULL, NULL};
     (void)state;
-    contact.config.pin = NULL;
-    assert_int_equal(fathom_contact_init(&contact), FATHOM_ERR_ARGUMENT);
-    contact.config.pin = &output;
-    assert_int_equal(fathom_contact_init(&contact), FATHOM_ERR_ARGUMENT);
-    contact.config.pin = &pins.pin;
-    contact.config.clock = NULL;
-    assert_int_equal(fathom_contact_init(&contact), FATHOM_ERR_ARGUMENT);
-    contact.config.clock = &pins.fake.clock;
-    assert_int_equal(fathom_contact_init(&contact), FATHOM_READY);
+    contact.pin = NULL;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    contact.pin = &output;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    contact.pin = &pins.pin;
+    contact.clock = NULL;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    contact.clock = &pins.fake.clock;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
 }
 
 /* ---- everything, against a slow reference ---- */
