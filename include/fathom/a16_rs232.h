@@ -41,7 +41,8 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  *   FATHOM_ERR_EXCEPTION    refused: it is no RS232 variant?
  *   FATHOM_ERR_BUSY         another command is not finished
  *   FATHOM_ERR_PORT         the port is broken
- * An acknowledgement that is lost or damaged is no error: the frames decide.
+ * An acknowledgement that is lost or damaged is no error: the frames decide. Where the line does not know yet whether it
+ * echoes (line.h), the acknowledgement is waited for in vain for a second; on RS232 tell it that there is none.
  */
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample);
 
