@@ -19,12 +19,85 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
     base->answer.first = 1;
     base->line = config->line;
     base->probes = config->probes != 0 ? config->probes : ALL_PROBES;
+    sensor->select = config->select;
+    sensor->selecting = false;
     return fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
 }
 
-void fathom_a05_auto_deinit(fathom_a05_auto_t *sensor) { fathom_dyp_auto_deinit(&sensor->base); }
+/* ---- the RX pin in the first second ---- */
+
+static uint32_t now_us(const fathom_a05_auto_t *sensor)
+{
+    const fathom_clock_t *const clock = sensor->base.line->config->clock;
+    return clock->now_us(clock->ctx);
+}
+
+static fathom_status_t select(const fathom_a05_auto_t *sensor, bool low)
+{
+    if (sensor->select == NULL) return fathom_line_break(sensor->base.line, low);
+    sensor->select->set(sensor->select->ctx, !low);
+    return FATHOM_READY;
+}
+
+fathom_status_t fathom_a05_auto_power_on(fathom_a05_auto_t *sensor, fathom_a05_value_t value)
+{
+    fathom_dyp_auto_t *const base = &sensor->base;
+    if ((unsigned)value > FATHOM_A05_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    const bool low = value == FATHOM_A05_REAL_TIME;
+    /* A TX that nobody holds low is high anyway. */
+    const bool is_needed = low || sensor->selecting || sensor->select != NULL;
+    const fathom_status_t status = is_needed ? select(sensor, low) : FATHOM_READY;
+    if (status != FATHOM_READY) return status == FATHOM_PENDING ? FATHOM_ERR_BUSY : status;
+    sensor->selecting = low;
+    sensor->select_left_us = FATHOM_A05_SELECT_US;
+    sensor->polled_us = now_us(sensor);
+    base->answer.left = 0;
+    return fathom_stream_init(&base->stream, &base->stream_config, sensor->polled_us);
+}
+
+static void release(fathom_a05_auto_t *sensor)
+{
+    const uint32_t now = now_us(sensor);
+    const uint32_t passed_us = fathom_elapsed_us(now, sensor->polled_us);
+    sensor->polled_us = now;
+    if (!sensor->selecting || !fathom_run_down(&sensor->select_left_us, passed_us)) return;
+    (void)select(sensor, false); /* a port that has broken meanwhile holds nothing low */
+    sensor->selecting = false;
+}
+
+void fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
+{
+    if (sensor->selecting) (void)select(sensor, false);
+    sensor->selecting = false;
+    fathom_dyp_auto_deinit(&sensor->base);
+}
+
+/* ---- reading ---- */
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_a05_auto_t *const sensor = ctx;
+    const fathom_sensor_t base = fathom_dyp_auto_sensor(&sensor->base);
+    release(sensor);
+    return base.poll(base.ctx, sample);
+}
+
+static uint32_t due_us(void *ctx)
+{
+    fathom_a05_auto_t *const sensor = ctx;
+    const fathom_sensor_t base = fathom_dyp_auto_sensor(&sensor->base);
+    const uint32_t base_us = base.due_us(base.ctx);
+    if (!sensor->selecting) return base_us;
+    const uint32_t passed_us = fathom_elapsed_us(now_us(sensor), sensor->polled_us);
+    const uint32_t left_us = sensor->select_left_us > passed_us ? sensor->select_left_us - passed_us : 0;
+    return left_us < base_us ? left_us : base_us;
+}
 
 fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor)
 {
-    return fathom_dyp_auto_sensor(&sensor->base);
+    fathom_sensor_t handle;
+    handle.poll = poll;
+    handle.due_us = due_us;
+    handle.ctx = sensor;
+    return handle;
 }

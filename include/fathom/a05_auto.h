@@ -12,8 +12,8 @@ extern "C" {
  * A05 with UART automatic output (A05 1). 9600 8N1.
  * Nobody asks it: it sends FF, four distances, SUM over and over, of processed or of real-time values. Which of
  * them is decided by its RX pin in the first second after power-on, high or open for processed, low for
- * real-time; the datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no frame period. The
- * first Modbus command ends automatic output; power alone brings it back.
+ * real-time: fathom_a05_auto_power_on. The datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no
+ * frame period. The first Modbus command ends automatic output; power alone brings it back.
  *
  * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
  * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET
@@ -33,16 +33,40 @@ typedef struct {
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint8_t probes; /* bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it
                        gives no sample */
+    /* The module's RX pin, which outlives the sensor, for fathom_a05_auto_power_on; NULL: it is the line's TX. */
+    const fathom_pin_t *select;
 } fathom_a05_auto_config_t;
+
+typedef enum {
+    FATHOM_A05_PROCESSED = 0, /* steady */
+    FATHOM_A05_REAL_TIME = 1  /* faster */
+} fathom_a05_value_t;
+
+/* How long RX is held low for real-time values: the first second (A05 1(1)), and half of one for the supply to rise. */
+#define FATHOM_A05_SELECT_US 1500000ul
 
 typedef struct {
     fathom_dyp_auto_t base;
     uint16_t values[4];
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A05_LENGTH)];
+    const fathom_pin_t *select;
+    uint32_t select_left_us; /* RX is held low for so long */
+    uint32_t polled_us;
+    bool selecting;
 } fathom_a05_auto_t;
 
 /* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm, or a probe over 4. */
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config);
+
+/*
+ * To be called right before the sensor gets power: sets its RX pin for the values that it is to send. For real-time it
+ * is low for 1.5 s, by the pin or by a break of the line, and high again after that, which fathom_poll sees to; else
+ * it is high. The deadline for a frame begins anew.
+ * FATHOM_READY: do switch it on now.
+ * FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no pin, and the port cannot hold its TX low.
+ * FATHOM_ERR_BUSY: something is being sent on the line; try again. FATHOM_ERR_PORT: the port is broken.
+ */
+fathom_status_t fathom_a05_auto_power_on(fathom_a05_auto_t *sensor, fathom_a05_value_t value);
 
 /* Stops listening; the memory is the caller's again. */
 void fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
