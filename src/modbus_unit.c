@@ -126,6 +126,12 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     return FATHOM_READY;
 }
 
+/* Does a setting have the unit to itself, and this question is none of its? */
+static bool is_kept_out(const fathom_modbus_unit_t *unit)
+{
+    return unit->setting != 0 && (unit->step & FATHOM_MODBUS_UNIT_INSIDE) == 0;
+}
+
 /* Is it another question's turn first? A command waits for nothing but another command and for what is on its
  * way; the repeated question lets commands pass. */
 static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
@@ -134,8 +140,7 @@ static fathom_status_t turn(fathom_modbus_unit_t *unit, const fathom_modbus_ques
     const bool is_waiting = unit->waiting != 0 && unit->waiting != name;
     const bool is_untaken = unit->state != IDLE && unit->is_command;
     /* While a setting is carried out the device may be elsewhere. */
-    if (unit->setting != 0 && (unit->step & FATHOM_MODBUS_UNIT_INSIDE) == 0)
-        return question->is_command ? FATHOM_ERR_BUSY : FATHOM_PENDING;
+    if (is_kept_out(unit)) return question->is_command ? FATHOM_ERR_BUSY : FATHOM_PENDING;
     if (!question->is_command) return is_waiting || is_untaken ? FATHOM_PENDING : FATHOM_READY;
     if (is_waiting || is_untaken) return FATHOM_ERR_BUSY;
     unit->waiting = name;
@@ -156,7 +161,9 @@ static fathom_status_t outcome(const fathom_modbus_unit_t *unit)
 fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
 {
     const fathom_status_t carrier = advance(unit);
-    if (unit->state != IDLE && unit->asked == fathom_modbus_unit_name(question)) {
+    /* The same command asked by somebody else would take a setting's outcome away from it. */
+    const bool is_anothers = question->is_command && is_kept_out(unit);
+    if (unit->state != IDLE && unit->asked == fathom_modbus_unit_name(question) && !is_anothers) {
         if (unit->state == ASKED) return FATHOM_PENDING;
         unit->state = IDLE;
         return outcome(unit);

@@ -13,7 +13,8 @@ extern "C" {
  * drivers are built on it, and share these rules:
  *
  *  1. The device is asked for the value that it has. If that is the one, nothing is written: flash wears.
- *  2. Where the setting is its address, the new address is asked whether somebody is there; that costs a time-out.
+ *  2. Where the setting has an address (the new one, or with new line settings also the present one), it is asked there
+ *     whether somebody answers; that costs a time-out. It also shows whether the port can do the line settings.
  *  3. The value is written, once: a write is never retried.
  *  4. The driver follows the device to its new address or line settings. Requests of others that wait for the unit
  *     end with FATHOM_ERR_CANCELLED.
@@ -37,7 +38,7 @@ typedef struct {
  * To be called with the same setting until it is not FATHOM_PENDING:
  *   FATHOM_READY            it was so already, or is now, and was read back; where there is nothing to read back, it
  *                           was acknowledged
- *   FATHOM_ERR_IN_USE       somebody answers at the new address already; nothing was written
+ *   FATHOM_ERR_IN_USE       somebody answers at the new place already; nothing was written
  *   FATHOM_ERR_UNCONFIRMED  it was written, and then the device could not be read, at the new place nor at the old: it
  *                           is at one of the two. The driver goes on asking at the old one
  *   FATHOM_ERR_MALFORMED    it acknowledged the value, and says afterwards that it has another

@@ -320,6 +320,21 @@ static void measurements_rest_and_other_commands_are_refused_meanwhile(void **st
     assert_int_equal(fake.submits, 4);
 }
 
+/* The application asks for the same register as the setting does: the answer is the setting's. */
+static void the_outcome_of_a_settings_own_question_is_kept_for_it(void **state)
+{
+    (void)state;
+    answers(HERE, OLD);
+    assert_int_equal(fathom_modbus_unit_ask(&unit, &look), FATHOM_ERR_BUSY);
+    assert_null(fake.request); /* it has ended */
+    assert_int_equal(fathom_modbus_unit_ask(&unit, &look), FATHOM_ERR_BUSY);
+    acknowledges(HERE);
+    assert_int_equal(fathom_modbus_unit_ask(&unit, &look), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_modbus_unit_ask(&unit, &put), FATHOM_ERR_BUSY);
+    answers(HERE, NEW);
+    ends(FATHOM_READY, 3, HERE);
+}
+
 static void a_setting_waits_for_no_command_of_somebody_else(void **state)
 {
     (void)state;
@@ -428,6 +443,7 @@ int main(void)
         cmocka_unit_test_setup(line_settings_are_followed_without_a_look_at_the_new_ones, set_up),
         cmocka_unit_test_setup(settings_that_take_effect_later_are_read_at_the_old_ones, set_up),
         cmocka_unit_test_setup(measurements_rest_and_other_commands_are_refused_meanwhile, set_up),
+        cmocka_unit_test_setup(the_outcome_of_a_settings_own_question_is_kept_for_it, set_up),
         cmocka_unit_test_setup(a_setting_waits_for_no_command_of_somebody_else, set_up),
         cmocka_unit_test_setup(the_same_register_measured_is_another_question, set_up),
         cmocka_unit_test_setup(what_is_given_up_in_the_middle_leaves_the_driver_where_it_was, set_up),
