@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/hps167s.h"
 
-/* The commands that are reads: where, and with how many registers; the right length is part of the command. */
-enum { VERSION_FIRST = 0x0001, VERSION_COUNT = 3 };
-enum { DETAILS_FIRST = 0x0003, DETAILS_COUNT = 11, DETAILS_ACK = 0xB0 };
+#include "hps167s_inside.h"
+
 enum { MEASURE_FIRST = 0x0008, MEASURE_COUNT = 4 };
 
 /* What a distance can say (#5). Over range is 65.53 m: the note has two decimals, so from 65530 to all ones,
@@ -13,18 +12,33 @@ enum { MEASURE_FIRST = 0x0008, MEASURE_COUNT = 4 };
 #define MIN_OVER_RANGE 65530u
 #define FAILURE        65535u
 
-enum { MAX_EXPONENT = 16, FIRST_YEAR = 2000 };
+enum { MAX_EXPONENT = 16, SAME_ANSWERS = 2, MAX_SAME_ANSWERS = 8 };
 
 #define MEASURE_TIMEOUT_US 500000ul
-#define COMMAND_TIMEOUT_US 1000000ul
 
-static uint8_t high(uint16_t value) { return (uint8_t)(value >> 8); }
-static uint8_t low(uint16_t value) { return (uint8_t)value; }
+/* No answer to #2: its first byte is 00 or FF. */
+#define NEVER_TOLD 0x0101u
+
+fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_limits_t *limits,
+                                          const fathom_hps167s_limits_t *wanted)
+{
+    limits->max_mm = wanted->max_mm != 0 ? wanted->max_mm : MAX_MM;
+    limits->over_range_mm = wanted->over_range_mm != 0 ? wanted->over_range_mm : MIN_OVER_RANGE;
+    const bool is_good = limits->max_mm < limits->over_range_mm && limits->over_range_mm < FAILURE;
+    return is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+}
+
+void fathom_hps167s_expect_warm_up(fathom_hps167s_t *sensor, uint8_t warm_up_s)
+{
+    sensor->warm_us = (uint32_t)(warm_up_s * 1000000ul) + sensor->question.timeout_us;
+}
 
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
 {
     fathom_modbus_question_t *const question = &sensor->question;
-    if (config->address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
+    if (config->address > FATHOM_HPS167S_MAX_ADDRESS || config->same_answers > MAX_SAME_ANSWERS ||
+        fathom_hps167s_set_limits(&sensor->limits, &config->limits) < 0)
+        return FATHOM_ERR_ARGUMENT;
     question->timeout_us = config->timeout_us != 0 ? config->timeout_us : MEASURE_TIMEOUT_US;
     question->pace_us = FATHOM_HPS167S_MIN_PERIOD_US;
     if (config->period_us > question->pace_us) question->pace_us = config->period_us;
@@ -36,24 +50,119 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     question->settings = config->settings;
     question->is_command = false;
     question->function = 0;
+    fathom_hps167s_expect_warm_up(sensor, config->warm_up_s != 0 ? config->warm_up_s
+                                                                 : FATHOM_HPS167S_FACTORY_WARM_UP_S);
     sensor->sequence = 0;
     sensor->implausible = 0;
+    sensor->told[0] = NEVER_TOLD;
+    sensor->measured[0] = NEVER_TOLD;
+    sensor->answers = 0;
+    sensor->same_answers = config->same_answers != 0 ? config->same_answers : SAME_ANSWERS;
+    sensor->steps_per_degree = config->steps_per_degree != 0 ? config->steps_per_degree : 1;
+    sensor->unknown_baud_is_19200 = config->unknown_baud_is_19200;
+    sensor->low_word_first = config->low_word_first;
+    sensor->is_seeking = false;
+    sensor->reset_answer = FATHOM_HPS167S_NO_RESET_ANSWER;
+    sensor->next_baud = 0;
     return fathom_modbus_unit_init(&sensor->unit, config->modbus, config->clock,
                                    config->address != 0 ? config->address : 1);
 }
 
-void fathom_hps167s_deinit(fathom_hps167s_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
+void fathom_hps167s_deinit(fathom_hps167s_t *sensor) { fathom_hps167s_cancel(sensor); }
 
-void fathom_hps167s_cancel(fathom_hps167s_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
+void fathom_hps167s_cancel(fathom_hps167s_t *sensor)
+{
+    sensor->answers = 0;
+    fathom_modbus_unit_cancel(&sensor->unit);
+}
 
-fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample)
+const fathom_line_settings_t *fathom_hps167s_here(const fathom_hps167s_t *sensor)
+{
+    const fathom_modbus_unit_t *const unit = &sensor->unit;
+    const fathom_line_settings_t *const moved = unit->setting != 0 ? unit->home_settings : unit->settings;
+    return moved != NULL ? moved : sensor->question.settings;
+}
+
+const fathom_line_settings_t *fathom_hps167s_with_baud(fathom_hps167s_t *sensor, uint32_t baud)
+{
+    const fathom_line_settings_t *const here = fathom_hps167s_here(sensor);
+    fathom_line_settings_t *const there = &sensor->moved[here == &sensor->moved[0] ? 1 : 0];
+    there->baud = baud;
+    there->parity = here->parity;
+    there->stop_bits = here->stop_bits;
+    return there;
+}
+
+/* Changes over to the other place where the device may be. */
+static void change_over(fathom_hps167s_t *sensor)
+{
+    const fathom_line_settings_t *const here = sensor->unit.settings;
+    sensor->unit.settings = sensor->other;
+    sensor->other = here;
+}
+
+void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
+{
+    sensor->answers = 0;
+    fathom_modbus_unit_power_on(&sensor->unit, sensor->warm_us);
+    if (sensor->next_baud == 0) return;
+    sensor->other = fathom_hps167s_with_baud(sensor, sensor->next_baud);
+    sensor->next_baud = 0;
+    sensor->is_seeking = true;
+    change_over(sensor);
+}
+
+/* A question outside a setting has ended: does it tell where the device is? */
+static void learn(fathom_hps167s_t *sensor, fathom_status_t status)
+{
+    if (!sensor->is_seeking || sensor->unit.setting != 0) return;
+    if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.exchange.status;
+    if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED)
+        sensor->is_seeking = false;
+    else if (status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM)
+        change_over(sensor);
+}
+
+static fathom_status_t ask(fathom_hps167s_t *sensor, const fathom_modbus_question_t *question)
+{
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, question);
+    learn(sensor, status);
+    return status;
+}
+
+void fathom_hps167s_describe(const fathom_hps167s_t *sensor, uint16_t first,
+                             fathom_modbus_question_t *question)
+{
+    *question = sensor->question; /* pace, back-off and line settings are the same */
+    question->timeout_us = FATHOM_HPS167S_COMMAND_TIMEOUT_US;
+    question->first = first;
+    question->is_command = true;
+}
+
+fathom_status_t fathom_hps167s_command(fathom_hps167s_t *sensor, uint16_t first, uint8_t count)
+{
+    fathom_modbus_question_t question;
+    fathom_hps167s_describe(sensor, first, &question);
+    question.count = count;
+    return ask(sensor, &question);
+}
+
+bool fathom_hps167s_has_asked(const fathom_hps167s_t *sensor, uint16_t first)
+{
+    fathom_modbus_question_t question;
+    fathom_hps167s_describe(sensor, first, &question);
+    return sensor->unit.asked == fathom_modbus_unit_name(&question);
+}
+
+fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,
+                                             const uint16_t registers[4], fathom_sample_t *sample)
 {
     const uint16_t raw = registers[0];
     const uint8_t exponent = high(registers[2]);
-    const bool is_target = raw >= MIN_MM && raw <= MAX_MM;
+    const bool is_target = raw >= MIN_MM && raw <= limits->max_mm;
     uint32_t magnitude = 0;
     if (raw != FAILURE) {
-        if (!is_target && raw < MIN_OVER_RANGE) return FATHOM_ERR_MALFORMED;
+        if (!is_target && raw < limits->over_range_mm) return FATHOM_ERR_MALFORMED;
         if (exponent > MAX_EXPONENT) return FATHOM_ERR_MALFORMED;
         magnitude = (uint32_t)registers[1] << exponent;
     }
@@ -68,16 +177,29 @@ fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample
     return FATHOM_READY;
 }
 
+fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample)
+{
+    fathom_hps167s_limits_t limits;
+    limits.max_mm = MAX_MM;
+    limits.over_range_mm = MIN_OVER_RANGE;
+    return fathom_hps167s_decode_within(&limits, registers, sample);
+}
+
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_t *const sensor = ctx;
-    fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->question);
+    const uint16_t *const values = sensor->values;
+    fathom_status_t status = ask(sensor, &sensor->question);
     if (status != FATHOM_READY) return status;
-    status = fathom_hps167s_decode(sensor->values, sample);
+    if (values[0] == FAILURE && fathom_modbus_unit_is_warming_up(&sensor->unit)) return FATHOM_ERR_WARMING_UP;
+    status = FATHOM_ERR_MALFORMED;
+    /* The very answer to #2 again: it came late. */
+    if (!same_4(values, sensor->told)) status = fathom_hps167s_decode_within(&sensor->limits, values, sample);
     if (status != FATHOM_READY) {
         if (sensor->implausible != UINT16_MAX) sensor->implausible++;
         return status;
     }
+    copy_4(sensor->measured, values);
     sample->time_us = sensor->unit.heard_us;
     sample->sequence = ++sensor->sequence;
     sample->model = FATHOM_HPS167S;
@@ -99,47 +221,4 @@ fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor)
     handle.due_us = due_us;
     handle.ctx = sensor;
     return handle;
-}
-
-static fathom_status_t command(fathom_hps167s_t *sensor, uint16_t first, uint8_t count)
-{
-    fathom_modbus_question_t question = sensor->question;
-    question.timeout_us = COMMAND_TIMEOUT_US;
-    question.first = first;
-    question.count = count;
-    question.is_command = true;
-    return fathom_modbus_unit_ask(&sensor->unit, &question);
-}
-
-fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out)
-{
-    const uint16_t *const values = sensor->values;
-    const fathom_status_t status = command(sensor, VERSION_FIRST, VERSION_COUNT);
-    if (status != FATHOM_READY) return status;
-    out->year = (uint16_t)(FIRST_YEAR + high(values[0]));
-    out->month = low(values[0]);
-    out->day = high(values[1]);
-    out->major = low(values[1]);
-    out->minor = high(values[2]);
-    out->revision = low(values[2]);
-    return FATHOM_READY;
-}
-
-/* The answer's bytes are the ACK byte, so that what follows stands across the registers. */
-fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out)
-{
-    const uint16_t *values = sensor->values;
-    const fathom_status_t status = command(sensor, DETAILS_FIRST, DETAILS_COUNT);
-    if (status != FATHOM_READY) return status;
-    if (high(values[0]) != DETAILS_ACK) return FATHOM_ERR_MALFORMED;
-    for (uint8_t i = 0; i != FATHOM_HPS167S_UUID_LENGTH; i = (uint8_t)(i + 2)) {
-        out->uuid[i] = low(*values++);
-        out->uuid[i + 1] = high(*values);
-    }
-    out->year = (uint16_t)(FIRST_YEAR + low(values[0]));
-    out->month = high(values[1]);
-    out->day = low(values[1]);
-    out->major = high(values[2]);
-    out->minor = low(values[2]);
-    return FATHOM_READY;
 }

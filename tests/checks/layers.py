@@ -12,9 +12,11 @@ from common import files, main, read
 LAYERS = [
     ('words', 'status hal version sample'),
     ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol pulse_width'),
-    ('engines', 'line stream pulse edges debounce modbus modbus_client modbus_unit modbus_setting dyp_client'),
+    ('engines', 'line stream pulse edges debounce modbus modbus_client modbus_unit modbus_setting '
+                'dyp_client'),
     ('sensors', 'sensor wait contact dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm '
-                'a16_settings a16_rs232 a16_switch a05_auto a05_modbus a05_dyp a05_relay a05_relay_rule hps167s'),
+                'a16_settings a16_rs232 a16_switch a05_auto a05_modbus a05_dyp a05_relay a05_relay_rule '
+                'hps167s hps167s_info hps167s_settings hps167s_auto'),
     ('all', 'fathom'),
 ]
 ORDER = [(name, layer) for layer, names in LAYERS for name in names.split()]
@@ -22,7 +24,8 @@ RANK = {name: rank for rank, (name, _) in enumerate(ORDER)}
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
 HEADER_ONLY = {'status', 'hal', 'version', 'sample', 'fathom'}
 SOURCE_ONLY = {'crc16_small': 'crc16', 'line_receive': 'line'}  # the other source for a header
-INSIDE = {'src/line_inside.h': {'line', 'line_receive'}}  # what the sources of one header share
+INSIDE = {'src/line_inside.h': {'line', 'line_receive'},  # what the sources of one header, or of one sensor, share
+          'src/hps167s_inside.h': {'hps167s', 'hps167s_info', 'hps167s_settings', 'hps167s_auto'}}
 
 MAX_LINES = 400
 LONGER = {}  # path: lines, with the reason beside it

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "fake_modbus.h"
-#include "fathom/hps167s.h"
+#include "fathom/hps167s_info.h"
 
 enum { GUARD = 0xA5, PACE_US = 18519 };
 

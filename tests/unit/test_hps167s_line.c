@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "fake.h"
-#include "fathom/hps167s.h"
+#include "fathom/hps167s_info.h"
 #include "fathom/modbus_client.h"
 
 /* The driver over a real line, at 19200 8E1: a character is 573 us, t3.5 is 2006 us. */

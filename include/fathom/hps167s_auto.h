@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_HPS167S_AUTO_H
+#define FATHOM_HPS167S_AUTO_H
+
+#include "fathom/hps167s.h"
+#include "fathom/line.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * HPS-167S that sends measurements which nobody asked for. The datasheet contradicts itself: 2.2.1 says that a slave
+ * cannot, and #5 that measuring continuously is asking again and again, while table 12, #10 and #15 speak of
+ * "continuous output". Fathom asks (hps167s.h); this is for a unit that talks, or for listening to another master that
+ * asks it.
+ *
+ * It is the listener of a line and looks for frames of the shape of #5's answer from one address: id 03 08, 8 bytes,
+ * CRC. It finds its way back into step byte by byte, and the CRC decides. Asking the same device on the same line works
+ * meanwhile: an answer to a command goes to the command, a frame that nobody waits for comes here.
+ *
+ * One sample a frame, as from asking. Where several frames came between two polls, the newest; the others are counted.
+ * The errors of fathom_poll:
+ *   FATHOM_ERR_STALE      no good frame for stale_us; said once every stale_us
+ *   FATHOM_ERR_MALFORMED  a frame with figures that it cannot mean; counted
+ *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ */
+
+/* Read by init only. line and asking outlive this. Members that are 0 mean their defaults. */
+typedef struct {
+    fathom_line_t *line; /* it becomes the line's listener; its frame holds 13 bytes or more */
+    /* The driver that asks the same device on this line; NULL: nobody does. An answer to its #2 has the same shape and
+     * may come after something else was taken for it: what equals the last one is no measurement, nor, from #2 until
+     * another question is asked, is anything that could be one; both are counted as implausible. Of distances that is
+     * 255 mm alone. */
+    fathom_hps167s_t *asking;
+    uint32_t stale_us;              /* 0: 2 s */
+    uint8_t address;                /* 1..32; 0: that of asking, wherever it moves, or 1 */
+    fathom_hps167s_limits_t limits; /* as in fathom_hps167s_config_t */
+} fathom_hps167s_auto_config_t;
+
+enum { FATHOM_HPS167S_FRAME_LENGTH = 13 };
+
+typedef struct {
+    fathom_listener_t listener; /* first, so that one pointer is both */
+    fathom_line_t *line;
+    fathom_hps167s_t *asking;
+    fathom_hps167s_limits_t limits;
+    uint32_t stale_us;
+    uint32_t left_us; /* until it is stale */
+    uint32_t polled_us;
+    uint32_t time_us; /* of the frame */
+    uint16_t registers[4];
+    uint16_t sequence;
+    uint16_t implausible; /* frames that were refused for their figures; this and the next stop at 65535 */
+    uint16_t missed;      /* frames that a newer one replaced before they were polled */
+    uint8_t address;      /* 0: that of asking */
+    uint8_t unit;         /* of the frame */
+    uint8_t have;
+    bool is_new;
+    uint8_t bytes[FATHOM_HPS167S_FRAME_LENGTH];
+} fathom_hps167s_auto_t;
+
+/* Begins to listen, instead of whoever did before. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, an address over 32,
+ * or limits as in fathom_hps167s_init. */
+fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
+                                         const fathom_hps167s_auto_config_t *config);
+
+/* Stops listening; the memory is the caller's again. */
+void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor);
+
+/* For fathom_poll. */
+fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

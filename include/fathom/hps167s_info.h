@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_HPS167S_INFO_H
+#define FATHOM_HPS167S_INFO_H
+
+#include "fathom/hps167s.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * What an HPS-167S tells beside distances: commands #1 to #4. None of them changes anything.
+ *
+ * Each asks the device and returns at once, like everything here: call it, with the loop going on in between, until
+ * it does not return FATHOM_PENDING. On FATHOM_READY *out is written, and only then. A command takes its turn after
+ * a measurement that is under way, and until its outcome was taken fathom_poll is FATHOM_PENDING;
+ * fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
+ *   FATHOM_ERR_BUSY       another command or setting is not finished, or its outcome was not taken
+ *   FATHOM_ERR_CAPACITY   the line's frame buffer is too small (27 bytes for the details)
+ * An answer takes up to 1 s.
+ */
+
+enum { FATHOM_HPS167S_UUID_LENGTH = 16 };
+
+/* Command #1, table 10. */
+typedef struct {
+    uint16_t year; /* 2000..2255 */
+    uint8_t month; /* 1..12, if the device was set right */
+    uint8_t day;   /* 1..31 */
+    uint8_t major;
+    uint8_t minor;
+    uint8_t revision;
+} fathom_hps167s_version_t;
+
+/* Command #2, table 12. What takes effect at the next power-on (hps167s_settings.h) is told as it was set. */
+typedef struct {
+    uint32_t baud;              /* 19200, 57600, 115200 or 230400: the code of #9 */
+    uint32_t reconnect_time_ms; /* a multiple of 18 */
+    uint8_t warm_up_s;
+    bool termination; /* the resistor; on in every unit from the factory, and eight of them overload a line */
+    bool measures_after_power_on;
+} fathom_hps167s_configuration_t;
+
+/* Command #3, table 14. */
+typedef struct {
+    uint8_t uuid[FATHOM_HPS167S_UUID_LENGTH]; /* in the order of the wire */
+    uint16_t year;                            /* 2000..2255 */
+    uint8_t month;
+    uint8_t day;
+    uint8_t major;
+    uint8_t minor;
+} fathom_hps167s_details_t;
+
+/* Command #4, table 16: of the analog front end, not of the air. The datasheet says degrees Fahrenheit, and neither
+ * sign nor scale: read as int16_t, in whole degrees (config.steps_per_degree). */
+typedef struct {
+    int16_t fahrenheit;     /* as the device tells it */
+    int16_t temperature_dc; /* tenths of a degree Celsius, rounded to the nearest */
+} fathom_hps167s_temperature_t;
+
+/* #1 */
+fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out);
+
+/*
+ * #2. The answer has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
+ * first two bytes are 00 or FF, the baud code is 1..4 and the reconnect time a multiple of 18, if it is not what was
+ * last measured, and if two answers in succession agree (config.same_answers). Up to 8 are asked for;
+ * FATHOM_ERR_MALFORMED: they did not agree. Of what can be measured only exactly 255 mm can pass the first test.
+ */
+fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out);
+
+/* #3. FATHOM_ERR_MALFORMED also: without the byte B0 at its beginning. */
+fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out);
+
+/* #4. FATHOM_ERR_MALFORMED also: tenths of a degree Celsius would not fit an int16_t. */
+fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
+
+/* Can these four registers be an answer to #2? Of its figures alone. */
+bool fathom_hps167s_may_be_configuration(const fathom_hps167s_t *sensor, const uint16_t registers[4]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

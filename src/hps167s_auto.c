@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/hps167s_auto.h"
+
+#include "fathom/crc16.h"
+#include "fathom/hps167s_info.h"
+#include "hps167s_inside.h"
+
+enum { ADDRESS = 0, FUNCTION = 1, SIZE = 2, DATA = 3, LENGTH = FATHOM_HPS167S_FRAME_LENGTH };
+enum { DATA_SIZE = 8 };
+
+#define STALE_US 2000000ul
+
+static uint32_t now_us(const fathom_hps167s_auto_t *sensor)
+{
+    const fathom_clock_t *const clock = sensor->line->config->clock;
+    return clock->now_us(clock->ctx);
+}
+
+static void count(uint16_t *counter)
+{
+    if (*counter != UINT16_MAX) ++*counter;
+}
+
+/* Can what has come be a frame, or the beginning of one? */
+static bool fits(const fathom_hps167s_auto_t *sensor)
+{
+    const uint8_t *const bytes = sensor->bytes;
+    const uint8_t address = sensor->address != 0 ? sensor->address : sensor->asking->unit.address;
+    if (bytes[ADDRESS] != address) return false;
+    if (sensor->have > FUNCTION && bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS) return false;
+    if (sensor->have > SIZE && bytes[SIZE] != DATA_SIZE) return false;
+    return sensor->have != LENGTH || fathom_crc16(bytes, LENGTH) == 0;
+}
+
+/* The first byte begins nothing: the next may. volatile: or compilers make it a call of memmove. */
+static void slip(fathom_hps167s_auto_t *sensor)
+{
+    volatile uint8_t *to = sensor->bytes;
+    const uint8_t *from = sensor->bytes;
+    for (uint8_t left = --sensor->have; left != 0; left--) *to++ = *++from;
+}
+
+/* May this be an answer to #2 that was not waited for any more? */
+static bool is_configuration(const fathom_hps167s_t *asking, const uint16_t *registers)
+{
+    if (same_4(registers, asking->told)) return true;
+    return fathom_hps167s_has_asked(asking, FATHOM_HPS167S_CONFIGURATION) &&
+           fathom_hps167s_may_be_configuration(asking, registers);
+}
+
+static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
+{
+    const uint8_t *at = sensor->bytes + DATA;
+    uint16_t registers[4];
+    for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)(at[0] * 256u + at[1]);
+    sensor->have = 0;
+    if (sensor->asking != NULL) {
+        if (is_configuration(sensor->asking, registers)) {
+            count(&sensor->implausible);
+            return;
+        }
+        copy_4(sensor->asking->measured, registers);
+    }
+    if (sensor->is_new) count(&sensor->missed);
+    copy_4(sensor->registers, registers);
+    sensor->is_new = true;
+    sensor->unit = sensor->bytes[ADDRESS];
+    sensor->time_us = time_us;
+}
+
+static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t length, bool after_gap,
+                    uint32_t time_us)
+{
+    fathom_hps167s_auto_t *const sensor = (fathom_hps167s_auto_t *)listener;
+    (void)after_gap; /* the CRC says more */
+    if (length == 0) sensor->have = 0;
+    for (; length != 0; length--) {
+        sensor->bytes[sensor->have++] = *bytes++;
+        while (sensor->have != 0 && !fits(sensor)) slip(sensor);
+        if (sensor->have == LENGTH) take(sensor, time_us);
+    }
+}
+
+fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
+                                         const fathom_hps167s_auto_config_t *config)
+{
+    if (config->line == NULL || config->address > FATHOM_HPS167S_MAX_ADDRESS ||
+        fathom_hps167s_set_limits(&sensor->limits, &config->limits) < 0)
+        return FATHOM_ERR_ARGUMENT;
+    sensor->listener.receive = receive;
+    sensor->listener.gap_us = 0;
+    sensor->line = config->line;
+    sensor->asking = config->asking;
+    sensor->stale_us = config->stale_us != 0 ? config->stale_us : STALE_US;
+    sensor->left_us = sensor->stale_us;
+    sensor->polled_us = now_us(sensor);
+    sensor->sequence = 0;
+    sensor->implausible = 0;
+    sensor->missed = 0;
+    sensor->address = config->address;
+    if (config->address == 0 && config->asking == NULL) sensor->address = 1;
+    sensor->have = 0;
+    sensor->is_new = false;
+    fathom_line_listen(sensor->line, &sensor->listener);
+    return FATHOM_READY;
+}
+
+void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor)
+{
+    if (sensor->line->listener == &sensor->listener) fathom_line_listen(sensor->line, NULL);
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_hps167s_auto_t *const sensor = ctx;
+    const fathom_status_t port = fathom_line_poll(sensor->line);
+    const uint32_t now = now_us(sensor);
+    const bool is_stale = fathom_run_down(&sensor->left_us, fathom_elapsed_us(now, sensor->polled_us));
+    sensor->polled_us = now;
+    if (sensor->is_new) {
+        sensor->is_new = false;
+        const fathom_status_t status =
+            fathom_hps167s_decode_within(&sensor->limits, sensor->registers, sample);
+        if (status != FATHOM_READY) {
+            count(&sensor->implausible);
+            return status;
+        }
+        sensor->left_us = sensor->stale_us;
+        sample->time_us = sensor->time_us;
+        sample->sequence = ++sensor->sequence;
+        sample->model = FATHOM_HPS167S;
+        sample->unit = sensor->unit;
+        sample->probe = 1;
+        return FATHOM_READY;
+    }
+    if (port < 0) return port;
+    if (!is_stale) return FATHOM_PENDING;
+    sensor->left_us = sensor->stale_us;
+    return FATHOM_ERR_STALE;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_hps167s_auto_t *const sensor = ctx;
+    const uint32_t line_us = fathom_line_due_us(sensor->line);
+    const uint32_t passed_us = fathom_elapsed_us(now_us(sensor), sensor->polled_us);
+    uint32_t stale_us = sensor->left_us;
+    if (sensor->is_new) return 0;
+    fathom_run_down(&stale_us, passed_us);
+    return line_us < stale_us ? line_us : stale_us;
+}
+
+fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)
+{
+    fathom_sensor_t handle;
+    handle.poll = poll;
+    handle.due_us = due_us;
+    handle.ctx = sensor;
+    return handle;
+}
