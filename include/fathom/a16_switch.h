@@ -38,8 +38,8 @@ typedef struct {
     /* On the same pins; this driver polls it too. NULL: none, and nobody asks the module anything. */
     fathom_line_t *line;
     fathom_contact_timing_t timing; /* contact.h: how long a level stands, how often it is said, and so on */
-    /* Low is FATHOM_NEAR: register 0x0205 is 0. false: high is, as from the factory, where "less than 1 meter" is a high
-     * level (A16 4(2)). */
+    /* Low is FATHOM_NEAR: register 0x0205 is 0. false: high is, as from the factory, where "less than 1 meter" is a
+     * high level (A16 4(2)). */
     bool negative;
     uint8_t address; /* its Modbus address, which becomes the samples' unit; 0 where nobody asks it */
 } fathom_a16_switch_config_t;
