@@ -33,6 +33,7 @@ fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_cont
     contact->looked_us = now_us(contact);
     contact->is_high = is_high_now(contact);
     contact->is_clear = contact->line == NULL;
+    contact->is_held = false;
     contact->period_us = own->period_us;
     contact->stale_us = own->stale_us;
     contact->sequence = 0;
@@ -47,10 +48,13 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
     settle(contact);
 }
 
-/* Has the line on the same pin, if there is one, nothing to do with its level? */
+void fathom_contact_hold(fathom_contact_t *contact, bool hold) { contact->is_held = hold; }
+
+/* Does the level mean what it should, as far as the line on the same pin is concerned, if there is one? */
 static bool is_clear(const fathom_contact_t *contact)
 {
     const fathom_line_t *const line = contact->line;
+    if (contact->is_held) return false;
     return line == NULL ||
            (fathom_line_is_idle(line) &&
             fathom_elapsed_us(contact->looked_us, fathom_line_heard_us(line)) >= FATHOM_CONTACT_QUIET_US);

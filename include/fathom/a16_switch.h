@@ -27,7 +27,8 @@ extern "C" {
  * fathom_a16_modbus_t beside this driver, which need not be polled otherwise. RX is the module's ear, and TX carries
  * its answers: with `line` in the config, the level is not looked at while a request is under way there, nor until
  * 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may stand before an
- * answer and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). A UART that reports a break again
+ * answer and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They hide from it that it has no
+ * echo, so tell it (FATHOM_LINE_ECHO_OFF): there is a wire each way. A UART that reports a break again
  * and again while it lasts makes the line look busy for ever; switch its receiver off while nothing is asked.
  */
 
@@ -52,10 +53,16 @@ typedef struct {
 fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config);
 
 /*
- * The polarity has been set (fathom_a16_set_switch_polarity): from now on levels are read so, after settle_us. Call it
- * as soon as that is FATHOM_READY. There is no sample, since the level turns with the meaning; one of the wrong kind
- * can come, and the right one behind it, where the module takes longer than settle_us to obey.
+ * Sets the polarity by Modbus: as fathom_a16_set_switch_polarity of `modbus`, the driver of the same module on the same
+ * line, with the same return values; call it until it is not FATHOM_PENDING. Meanwhile the level is not looked at,
+ * since it turns somewhere on the way; after FATHOM_READY it is read by the new polarity, after anything else by the
+ * one before. FATHOM_ERR_UNCONFIRMED leaves open which it is: ask with fathom_a16_switch_polarity, and tell.
  */
+fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
+                                               fathom_a16_polarity_t polarity);
+
+/* The level is read by this polarity from now on: somebody else has set it, or said what it is; or setting it was
+ * given up (fathom_a16_cancel). */
 void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
 /* For fathom_poll. There is nothing to undo: forget the sensor when it is no longer polled. */

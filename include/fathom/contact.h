@@ -64,6 +64,7 @@ typedef struct {
     uint8_t said;  /* kind of the last sample; 0: none yet */
     bool is_high;  /* the level at the last look */
     bool is_clear; /* nothing was on the line then */
+    bool is_held;
 } fathom_contact_t;
 
 /* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read. It looks at the pin once. The timing is
@@ -74,14 +75,17 @@ fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_cont
  * no sample. */
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high);
 
+/* While it is held (true) the level is not looked at: it is about to mean something else. Then it settles anew. */
+void fathom_contact_hold(fathom_contact_t *contact, bool hold);
+
 /*
  * For fathom_poll. Each poll is one look, and one poll of the line.
  * FATHOM_READY       a sample: the first level that counts, one that says something new, or the period is over.
  *                    raw is the level, 1 for high; time_us is the look at which it was first seen to stand, or the
  *                    present one when it repeats
  * FATHOM_PENDING     nothing new; the level may be settling, or the line at work
- * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, or the line is never silent; said
- *                    once every stale_us
+ * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, the line is never silent, or it is held;
+ *                    said once every stale_us
  * FATHOM_ERR_PORT    the line's port is broken; said by every poll that has nothing else to say
  * A cut wire is no error: it reads as the level that the board pulls it to. fathom_due_us says when the next look
  * makes sense: in look_us at the latest, sooner while a level settles.
