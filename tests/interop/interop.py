@@ -66,7 +66,17 @@ class Case(e2e.Case):
         return done.out.splitlines()
 
 
-class Libmodbus:
+class AtRates:
+    """For a client. The sensor has got another rate, at which it is asked from now on."""
+
+    def at_rate(self, sim, baud):
+        client = sim.__dict__.pop('client', None)  # what is open stands at the old one
+        if client is not None:
+            client.close()
+        sim.line = (baud, sim.line[1])
+
+
+class Libmodbus(AtRates):
     """For a Case."""
     most_unit = 247  # that it takes
 
@@ -75,7 +85,7 @@ class Libmodbus:
         return self.tell('libmodbus_client', sim.port, sim.line, seconds, f'unit:{unit}', *steps)
 
 
-class Mbpoll:
+class Mbpoll(AtRates):
     """For a Case. It is a program of one step; what it has to say is on stdout and on stderr."""
     most_unit = 247
     types = {'read': '4:hex', 'input': '3:hex', 'coils': '0', 'write': '4', 'many': '4'}
@@ -118,7 +128,7 @@ def make_other(port):
         os.close(terminal)
 
 
-class Pymodbus:
+class Pymodbus(AtRates):
     """For a Case. Closes the port when the test ends."""
     most_unit = 254
 
