@@ -13,10 +13,11 @@ typedef struct {
 } command_t;
 
 extern const command_t read_command;
-extern const command_t sim_command;
 extern const command_t info_command;
 extern const command_t get_command;
 extern const command_t set_command;
+extern const command_t decode_command;
+extern const command_t sim_command;
 
 /* Exit statuses of every command. */
 enum {

@@ -8,8 +8,14 @@
 #include "command.h"
 #include "fathom/version.h"
 
-static const command_t *const commands[] = {&read_command, &info_command, &get_command, &set_command,
-                                            &sim_command};
+static const command_t *const commands[] = {
+    &read_command,
+    &info_command,
+    &get_command,
+    &set_command,
+    &decode_command,
+    &sim_command,
+};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 int usage_error(const char *command, const char *format, ...)
@@ -22,6 +28,16 @@ int usage_error(const char *command, const char *format, ...)
     va_end(arguments);
     (void)fprintf(stderr, "; try: fathom%s%s --help\n", gap, command);
     return STATUS_USAGE;
+}
+
+static int no_command(void)
+{
+    char names[80] = "";
+    for (size_t i = 0; i != COMMANDS; i++) {
+        const size_t length = strlen(names);
+        (void)snprintf(names + length, sizeof names - length, "%s%s", i != 0 ? ", " : "", commands[i]->name);
+    }
+    return usage_error("", "a command is missing: %s", names);
 }
 
 static void print_help(void)
@@ -59,7 +75,7 @@ static int check_descriptors(void)
 int main(int argc, char **argv)
 {
     if (check_descriptors() != STATUS_OK) return STATUS_FAILED;
-    if (argc < 2) return usage_error("", "a command is missing: read or sim");
+    if (argc < 2) return no_command();
     const char *const name = argv[1];
     for (size_t i = 0; i != COMMANDS; i++)
         if (strcmp(name, commands[i]->name) == 0) return commands[i]->run(argc - 1, argv + 1);

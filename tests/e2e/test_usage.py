@@ -9,7 +9,7 @@ READ = ['read', 'a16', '--port', '/nowhere']
 
 # arguments, what the line must have
 WRONG = [
-    ([], 'a command is missing'),
+    ([], 'a command is missing: read, sim, decode'),
     (['reed'], "there is no command 'reed'"),
     (['--versoin'], "there is no command '--versoin'"),
     (['read'], 'which sensor? a16, a05 or hps167s'),
