@@ -16,13 +16,16 @@
 /* A byte in this pipe ends every sleep, also one that begins just after the signal. */
 static int wake[2];
 static volatile sig_atomic_t ended;
+static volatile sig_atomic_t user;
 static bool output_gone;
 
 static void on_signal(int number)
 {
     const int saved = errno;
-    (void)number;
-    ended = 1;
+    if (number == SIGUSR1)
+        user = 1;
+    else
+        ended = 1;
     /* A full pipe wakes as well. */
     if (write(wake[1], "", 1) < 0) errno = saved;
     errno = saved;
@@ -58,6 +61,23 @@ bool events_begin(void)
 
 bool events_ended(void) { return ended != 0; }
 
+bool events_user(void)
+{
+    static bool is_handled;
+    if (!is_handled) handle(SIGUSR1);
+    is_handled = true;
+    const bool came = user != 0;
+    user = 0;
+    return came;
+}
+
+/* So that a signal that did not end the command wakes it once. One that comes meanwhile has left its mark. */
+static void drain(void)
+{
+    char bytes[16];
+    while (ended == 0 && read(wake[0], bytes, sizeof bytes) > 0) continue;
+}
+
 bool events_output_gone(void) { return output_gone; }
 
 void events_wait(int fd, short events, uint32_t max_us, bool watch_output)
@@ -66,5 +86,6 @@ void events_wait(int fd, short events, uint32_t max_us, bool watch_output)
     const struct timespec limit = {(time_t)(max_us / 1000000u), (long)(max_us % 1000000u) * 1000};
     struct pollfd entries[] = {{fd, events, 0}, {wake[0], POLLIN, 0}, {STDOUT_FILENO, 0, 0}};
     if (ppoll(entries, watch_output ? 3 : 2, max_us == FATHOM_NO_DEADLINE ? NULL : &limit, NULL) <= 0) return;
+    if ((entries[1].revents & POLLIN) != 0) drain();
     if ((entries[2].revents & (POLLERR | POLLHUP)) != 0) output_gone = true;
 }

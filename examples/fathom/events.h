@@ -17,6 +17,9 @@ bool events_begin(void);
 /* Has a signal asked to end? */
 bool events_ended(void);
 
+/* Has SIGUSR1 come since this was last called? From the first call on it does not end the program any more. */
+bool events_user(void);
+
 /* Has nobody been reading the standard output any more, as far as events_wait has seen? */
 bool events_output_gone(void);
 

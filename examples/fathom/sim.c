@@ -10,6 +10,8 @@
 #include "sim_options.h"
 #include "sim_report.h"
 
+enum { POWER_OFF_US = 1000000 };
+
 typedef struct {
     sim_options_t options;
     fathom_sim_line_t line;
@@ -65,10 +67,20 @@ static bool announce(const session_t *session)
     return true;
 }
 
+/* Of all: what hangs on one line hangs on one supply, most often. */
+static void cycle_power(session_t *session)
+{
+    const uint32_t now_us = fathom_sim_pty_now_us();
+    for (uint32_t i = 0; i != session->options.count; i++)
+        fathom_sim_power_cycle(&session->line, session->devices[i].base, POWER_OFF_US, now_us);
+    (void)fprintf(stderr, "fathom: power off for a second\n");
+}
+
 static int serve(session_t *session)
 {
     uint32_t due_us = 0;
     while (!events_ended()) {
+        if (events_user()) cycle_power(session);
         if (fathom_sim_pty_pump(&session->pty, &due_us) < 0) {
             (void)fprintf(stderr, "fathom: the simulated port has failed: %s\n", strerror(errno));
             return STATUS_FAILED;
@@ -93,6 +105,7 @@ static int run(int argc, char **argv)
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (!events_begin() || !open_line(&session)) return STATUS_FAILED;
+    (void)events_user(); /* before anybody can know whom to send it to */
     const int status = announce(&session) ? serve(&session) : STATUS_FAILED;
     if (session.options.counters) print_counters(&session);
     fathom_sim_pty_close(&session.pty);

@@ -43,6 +43,7 @@ void sim_help(FILE *to)
         "  --counters        at the end, on stderr: what each sensor has heard and done, as one JSON object "
         "a "
         "line\n\n"
+        "SIGUSR1 cuts the power of all for a second; they keep the settings that real ones keep.\n"
         "Each answers only at its own baud rate. Parity cannot be seen through a pseudo terminal: it is "
         "taken "
         "to be\n"

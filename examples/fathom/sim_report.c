@@ -81,6 +81,8 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
         {"wrong_settings", counters->wrong_settings},
         {"automatic", counters->automatic},
         {"writes", counters->writes},
+        {"writes_refused", counters->writes_refused},
+        {"flash_writes", counters->flash_writes},
         {"resets", counters->resets},
         {"resets_refused", counters->resets_refused},
         {"measurements", counters->measurements},

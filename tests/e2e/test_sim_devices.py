@@ -4,6 +4,7 @@
 Judged in raw bytes, and by `fathom read`."""
 import json
 import re
+import signal
 import time
 
 import serial
@@ -17,7 +18,7 @@ ANSWER_2083 = bytes.fromhex('01 03 08 08 23 DC B2 07 01 00 00 FD 41')
 BUS = ['a16:1:modbus', 'a05:2:modbus', 'hps167s:7']
 
 
-class Several(e2e.Case):
+class Bus(e2e.Case):
     def counters(self, sim):
         """What each device says at the end."""
         lines = sim.end().err.splitlines()
@@ -32,12 +33,15 @@ class Several(e2e.Case):
         """After the silence that ends whatever a device took for the beginning of a request: 4 ms at 9600 baud."""
         time.sleep(0.02)
         port.baudrate = baud
+        port.reset_input_buffer()
         port.write(request)
         return port.read(length)
 
     def one(self, sim, sensor, *arguments):
         return self.read_json(sensor, '--port', sim.port, '--count', '1', *arguments)[0]['distance_mm']
 
+
+class Several(Bus):
     def test_three_models_answer_each_at_its_own_address_and_rate(self):
         sim = self.sim(*BUS, '--distance', '1@754', '--distance', '2@316', '--distance', '3@2083', '--counters')
         self.assertEqual(self.one(sim, 'hps167s', '--address', '7'), 2083)
@@ -132,6 +136,46 @@ class Several(e2e.Case):
         sim = self.sim('a16:1:auto', 'hps167s:7', '--distance', '754')
         sim.expect('device 1 sends by itself, into what the others say', 'err')
         self.assertIn(bytes.fromhex('FF 02 F2 F3'), self.open(sim, baudrate=9600).read(12))  # FF + 02 + F2 = 1F3
+
+
+class Power(Bus):
+    def cut(self, sim):
+        """Power off; returns at once."""
+        sim.send(signal.SIGUSR1)
+        sim.expect('power off for a second', 'err')
+
+    def test_nothing_answers_without_power_and_what_is_kept_is_there_afterwards(self):
+        sim = self.sim('a16:1:modbus', 'hps167s:7', '--distance', '754', '--counters')
+        port = self.open(sim, baudrate=9600)
+        self.assertEqual(self.ask(port, 9600, e2e.adu(1, 6, 2, 0, 0, 5), 8), e2e.adu(1, 6, 2, 0, 0, 5))
+        self.assertEqual(self.ask(port, 19200, e2e.adu(7, 6, 0, 0x10, 0, 9), 8), e2e.adu(7, 6, 0, 0x10, 0, 9))
+        began = time.monotonic()
+        self.cut(sim)
+        port.timeout = 0.2
+        while self.ask(port, 9600, e2e.adu(5, 3, 2, 0, 0, 1), 7) != e2e.registers(5, 5):
+            self.assertLess(time.monotonic() - began, e2e.PATIENCE)
+        self.assertGreater(time.monotonic() - began, 1)
+        port.timeout = e2e.PATIENCE
+        self.assertEqual(self.ask(port, 19200, e2e.adu(9, 3, 0, 8, 0, 4), 13)[:5], bytes((9, 3, 8, 2, 0xF2)))
+        a16, hps = self.counters(sim)
+        self.assertEqual((a16['address'], a16['writes'], a16['flash_writes']), (5, 1, 1))
+        self.assertEqual((hps['address'], hps['writes'], hps['flash_writes']), (9, 1, 1))
+
+    def test_an_a05_is_automatic_again_after_it(self):
+        sim = self.sim('a05', '--distance', '700', '--counters')
+        port = self.open(sim, baudrate=9600)
+        self.assertEqual(port.read(10)[0], 0xFF)
+        self.one(sim, 'a05', '--mode', 'modbus')  # ends automatic output
+        self.cut(sim)
+        self.assertEqual(self.one(sim, 'a05'), 700)
+        self.assertEqual(self.counters(sim)[0]['requests'], 1)
+
+    def test_it_goes_on_to_run_and_ends_as_always(self):
+        sim = self.sim('hps167s', '--distance', '2083')
+        for _ in range(3):
+            self.cut(sim)
+        self.assertEqual(self.one(sim, 'hps167s', '--retries', '9'), 2083)
+        self.assertEqual(sim.end().code, 0)
 
 
 class Wrong(e2e.Case):
