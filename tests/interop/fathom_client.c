@@ -12,84 +12,9 @@
 
 #include "fathom/modbus_client.h"
 #include "fathom_posix.h"
-#include "steps.h"
+#include "seam.h"
 
 enum { BITS_OF_8N1 = 10, BITS_OF_8E1 = 11, BEHIND_AN_OS_US = 25000 };
-
-static void print_outcome(const fathom_modbus_request_t *request, const step_t *step)
-{
-    switch (request->exchange.status) {
-    case FATHOM_READY:
-        if (step->kind == STEP_READ)
-            step_print(step->values, step->count, 4);
-        else
-            (void)puts("done");
-        break;
-    case FATHOM_ERR_EXCEPTION:
-        (void)printf("exception %u\n", request->message.exception);
-        break;
-    case FATHOM_ERR_NO_ANSWER:
-        (void)puts("no answer");
-        break;
-    case FATHOM_ERR_CHECKSUM:
-        (void)puts("damaged");
-        break;
-    case FATHOM_ERR_MALFORMED:
-        (void)puts("unfit");
-        break;
-    default:
-        (void)printf("status %d\n", request->exchange.status);
-        break;
-    }
-}
-
-static bool run(fathom_line_t *line, fathom_posix_uart_t *port, step_t *step, uint8_t unit,
-                uint32_t timeout_us)
-{
-    fathom_modbus_request_t request = {.exchange = {.timeout_us = timeout_us}};
-    switch (step->kind) {
-    case STEP_READ:
-        fathom_modbus_read_holding_registers(&request.message, unit, step->first, (uint8_t)step->count,
-                                             step->values);
-        break;
-    case STEP_WRITE:
-        fathom_modbus_write_single_register(&request.message, unit, step->first, step->values[0]);
-        break;
-    case STEP_MANY:
-        fathom_modbus_write_multiple_registers(&request.message, unit, step->first, (uint8_t)step->count,
-                                               step->values);
-        break;
-    default:
-        return false;
-    }
-    const fathom_status_t status = fathom_modbus_client_submit(line, &request);
-    if (status != FATHOM_PENDING) {
-        (void)printf("not sent, status %d\n", (int)status);
-        return true;
-    }
-    for (;;) {
-        (void)fathom_line_poll(line);
-        if (request.exchange.status != FATHOM_PENDING) break;
-        fathom_posix_wait(port, fathom_line_due_us(line));
-    }
-    print_outcome(&request, step);
-    (void)fflush(stdout);
-    return true;
-}
-
-static bool run_all(fathom_line_t *line, fathom_posix_uart_t *port, uint32_t timeout_us, char **steps)
-{
-    uint8_t unit = 1;
-    for (; *steps != NULL; steps++) {
-        step_t step;
-        if (!step_parse(&step, *steps)) return false;
-        if (step.kind == STEP_UNIT)
-            unit = (uint8_t)step.first;
-        else if (!run(line, port, &step, unit, timeout_us))
-            return false;
-    }
-    return true;
-}
 
 int main(int argc, char **argv)
 {
@@ -115,7 +40,9 @@ int main(int argc, char **argv)
     };
     fathom_line_t line;
     bool is_usage = fathom_line_init(&line, &config) == FATHOM_READY;
-    is_usage = is_usage && run_all(&line, &port, (uint32_t)strtoul(argv[4], NULL, 10) * 1000u, argv + 5);
+    const fathom_modbus_t modbus = fathom_modbus_client(&line);
+    const seam_t seam = {&modbus, fathom_posix_wait, &port, (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
+    is_usage = is_usage && seam_run(&seam, argv + 5);
     fathom_posix_close(&port);
     return is_usage ? 0 : 2;
 }

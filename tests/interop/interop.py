@@ -56,9 +56,17 @@ class Case(e2e.Case):
             time.sleep(0.01)
         return ends
 
+    def served(self, line, unit, first, values):
+        """Where a client finds a server with these registers."""
+        server, client = self.ends()
+        self.serve(server, line, unit, first, values)
+        return client
+
+    client = 'fathom_client'
+
     def fathom_client(self, port, line, *steps, seconds=SOON):
         """The same steps by our own client; for the tests against servers."""
-        return self.tell('fathom_client', port, line, seconds, *steps)
+        return self.tell(self.client, port, line, seconds, *steps)
 
     def tell(self, name, port, line, seconds, *steps):
         done = self.start(program(name), port, *line, round(seconds * 1000), *steps).finish()
@@ -182,7 +190,8 @@ class LibmodbusServer:
     """For a Case."""
 
     def serve(self, port, line, unit, first, values):
-        self.start(program('libmodbus_server'), port, *line, unit, first, *values).expect('^ready$')
+        server = self.start(program('libmodbus_server'), port, *line, unit, first, *values)
+        return server.expect(r'^ready ?(\d*)$')[1]
 
 
 class PymodbusServer:
@@ -190,8 +199,17 @@ class PymodbusServer:
     a terminal does not keep it."""
 
     def serve(self, port, line, unit, first, values):
-        self.start(sys.executable, os.path.join(HERE, 'pymodbus_server.py'), port, line[0], unit, first,
-                   *values).expect('^ready$')
+        server = self.start(sys.executable, os.path.join(HERE, 'pymodbus_server.py'), port, line[0], unit, first,
+                            *values)
+        return server.expect(r'^ready ?(\d*)$')[1]
+
+
+class Tcp:
+    """For a Case with a server, before it: the same server over TCP, at a port that the system has chosen."""
+    client = 'fathom_libmodbus_client'
+
+    def served(self, line, unit, first, values):
+        return f'tcp:127.0.0.1:{self.serve("tcp", line, unit, first, values)}'
 
 
 main = e2e.main

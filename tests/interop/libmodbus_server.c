@@ -1,16 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A Modbus RTU server by libmodbus:
+ * A Modbus RTU server by libmodbus, or a Modbus TCP server of one connection after another:
  *
  *     libmodbus_server PORT BAUD none|even UNIT FIRST VALUE ...
+ *     libmodbus_server tcp BAUD none|even UNIT FIRST VALUE ...
  *
- * Says "ready" when the port is open. Registers below FIRST or past the last value are exception 02. A value
+ * Says "ready" when the port is open, over TCP "ready N" with a port N that the system has chosen on the loopback
+ * interface; there it answers for every unit, as libmodbus does. Registers below FIRST or past the last value are exception 02. A value
  * "!N" is a register whose reading and writing are exception N.
  */
 #include <errno.h>
 #include <modbus.h>
+#include <netinet/in.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
 
 enum { WRITE_SINGLE = 0x06, MAX_REGISTERS = 256 };
 
@@ -35,10 +41,10 @@ static int refusal(const refusals_t *refusals, const uint8_t *pdu)
 
 static void serve(modbus_t *server, modbus_mapping_t *mapping, const refusals_t *refusals)
 {
-    uint8_t request[MODBUS_RTU_MAX_ADU_LENGTH];
+    uint8_t request[MODBUS_TCP_MAX_ADU_LENGTH];
     for (;;) {
         const int length = modbus_receive(server, request);
-        if (length < 0 && errno == EIO) return;
+        if (length < 0 && (errno == EIO || errno == ECONNRESET)) return;
         if (length <= 0) continue; /* another unit's, or damaged */
         const int exception = refusal(refusals, request + modbus_get_header_length(server));
         if (exception != 0)
@@ -48,14 +54,31 @@ static void serve(modbus_t *server, modbus_mapping_t *mapping, const refusals_t 
     }
 }
 
+static void serve_all(modbus_t *server, modbus_mapping_t *mapping, const refusals_t *refusals, int listening)
+{
+    while (modbus_tcp_accept(server, &listening) >= 0) {
+        serve(server, mapping, refusals);
+        modbus_close(server);
+    }
+}
+
+static int port_of(int listening)
+{
+    struct sockaddr_in address;
+    socklen_t length = sizeof address;
+    return getsockname(listening, (struct sockaddr *)&address, &length) == 0 ? ntohs(address.sin_port) : 0;
+}
+
 int main(int argc, char **argv)
 {
     static refusals_t refusals;
     if (argc < 7 || argc - 6 > MAX_REGISTERS) return 2;
     refusals.first = (int)strtol(argv[5], NULL, 0);
     refusals.count = argc - 6;
+    const bool is_tcp = strcmp(argv[1], "tcp") == 0;
     modbus_t *const server =
-        modbus_new_rtu(argv[1], (int)strtol(argv[2], NULL, 10), argv[3][0] == 'e' ? 'E' : 'N', 8, 1);
+        is_tcp ? modbus_new_tcp("127.0.0.1", 0)
+               : modbus_new_rtu(argv[1], (int)strtol(argv[2], NULL, 10), argv[3][0] == 'e' ? 'E' : 'N', 8, 1);
     modbus_mapping_t *const mapping = modbus_mapping_new_start_address(0, 0, 0, 0, (unsigned)refusals.first,
                                                                        (unsigned)refusals.count, 0, 0);
     if (server == NULL || mapping == NULL) return 1;
@@ -66,12 +89,21 @@ int main(int argc, char **argv)
         else
             mapping->tab_registers[i] = (uint16_t)strtol(value, NULL, 0);
     }
-    if (modbus_set_slave(server, (int)strtol(argv[4], NULL, 10)) != 0 || modbus_connect(server) != 0) {
+    int listening = -1;
+    if (is_tcp) listening = modbus_tcp_listen(server, 1);
+    if (modbus_set_slave(server, (int)strtol(argv[4], NULL, 10)) != 0 ||
+        (is_tcp ? listening < 0 : modbus_connect(server) != 0)) {
         (void)fprintf(stderr, "%s: %s\n", argv[1], modbus_strerror(errno));
         return 1;
     }
-    (void)puts("ready");
+    if (is_tcp)
+        (void)printf("ready %d\n", port_of(listening));
+    else
+        (void)puts("ready");
     (void)fflush(stdout);
-    serve(server, mapping, &refusals);
+    if (is_tcp)
+        serve_all(server, mapping, &refusals, listening);
+    else
+        serve(server, mapping, &refusals);
     return 1;
 }

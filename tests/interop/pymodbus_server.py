@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""A Modbus RTU server that Fathom's authors did not write (pymodbus).
+"""A Modbus RTU or TCP server that Fathom's authors did not write (pymodbus).
 
-    pymodbus_server.py PORT BAUD UNIT FIRST VALUE ...
+    pymodbus_server.py PORT|tcp BAUD UNIT FIRST VALUE ...
 
-Says "ready" when the port is open. Registers below FIRST or past the last value are exception 02. A value "!4"
+Says "ready" when the port is open, over TCP "ready N" with a port N that the system has chosen on the loopback
+interface. Registers below FIRST or past the last value are exception 02. A value "!4"
 is a register that breaks, which pymodbus makes exception 04."""
 import asyncio
 import logging
 import sys
 
 from pymodbus.datastore import ModbusServerContext, ModbusSlaveContext, ModbusSparseDataBlock
-from pymodbus.server.async_io import ModbusSerialServer
+from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 
 
 class Block(ModbusSparseDataBlock):
@@ -29,13 +30,24 @@ class Block(ModbusSparseDataBlock):
             raise RuntimeError('this register is broken')
 
 
+async def serve_tcp(context):
+    server = ModbusTcpServer(context, address=('127.0.0.1', 0), ignore_missing_slaves=True, broadcast_enable=True)
+    serving = asyncio.ensure_future(server.serve_forever())
+    await server.serving  # it listens
+    print('ready', server.server.sockets[0].getsockname()[1], flush=True)
+    await serving
+
+
 async def main(port, baud, unit, first, *words):
     registers = dict(enumerate(words, int(first, 0)))
     block = Block({at: 0 if word == '!4' else int(word, 0) for at, word in registers.items()})
     block.broken = {at for at, word in registers.items() if word == '!4'}
     unit_context = ModbusSlaveContext(hr=block, zero_mode=True)
-    server = ModbusSerialServer(ModbusServerContext({int(unit): unit_context}, single=False), port=port,
-                                baudrate=int(baud), ignore_missing_slaves=True, broadcast_enable=True)
+    context = ModbusServerContext({int(unit): unit_context}, single=False)
+    if port == 'tcp':
+        await serve_tcp(context)
+    server = ModbusSerialServer(context, port=port, baudrate=int(baud), ignore_missing_slaves=True,
+                                broadcast_enable=True)
     await server.start()
     if server.transport is None:  # it keeps why to itself
         sys.exit(f'{port} does not open')

@@ -8,8 +8,7 @@ DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 72
 
 class Servers:
     def read(self, sensor, first, values, *arguments, unit=1, code=0, count=3):
-        server, client = self.ends()
-        self.serve(server, interop.LINES[sensor], unit, first, values)
+        client = self.served(interop.LINES[sensor], unit, first, values)
         done = self.run_fathom('read', sensor, *arguments, '--mode', 'modbus', '--port', client, '--count', count,
                                '--format', 'csv')
         self.assertEqual(done.code, code, done.err)

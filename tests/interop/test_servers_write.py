@@ -19,8 +19,7 @@ def text(values):
 class Servers:
     def run_steps(self, values, *steps, first=0, unit=1, seconds=interop.SOON):
         """The outcomes of the steps, on a server with these registers."""
-        server, client = self.ends()
-        self.serve(server, LINE, unit, first, values)
+        client = self.served(LINE, unit, first, values)
         return self.fathom_client(client, LINE, *steps, seconds=seconds)
 
     def test_one_register_is_read(self):

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* ppoll */
+#include "fathom_libmodbus.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+#include <time.h>
+
+#include "fathom/modbus_client.h"
+#include "internal/libmodbus_port.h"
+
+enum {
+    RTU_HEADER_LENGTH = 1,
+    RTU_GAP_US = 25000,
+    /* A TCP answer comes whole, and no silence has to be kept: as little as the line can do with. */
+    TCP_GAP_US = 1000,
+    TCP_SILENCE_US = 1,
+    /* Far from where libmodbus begins to count for the program's own requests, so that a late answer to one of those
+     * is not taken for one of ours. */
+    FIRST_TRANSACTION = 0xF000
+};
+
+int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
+{
+    if (port->error == FATHOM_LIBMODBUS_OK) port->error = (int8_t)error;
+    return -1;
+}
+
+int fathom_libmodbus_failed(fathom_libmodbus_t *port)
+{
+    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return 0;
+    if (port->error == FATHOM_LIBMODBUS_OK) port->system_error = errno;
+    return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_SYSTEM);
+}
+
+void fathom_libmodbus_works(fathom_libmodbus_t *port)
+{
+    port->error = FATHOM_LIBMODBUS_OK;
+    port->system_error = 0;
+}
+
+fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus,
+                                      const fathom_libmodbus_config_t *config)
+{
+    if (port == NULL || modbus == NULL || config == NULL || config->clock == NULL) return FATHOM_ERR_ARGUMENT;
+    memset(port, 0, sizeof *port);
+    port->modbus = modbus;
+    port->is_tcp = modbus_get_header_length(modbus) != RTU_HEADER_LENGTH;
+    if (!port->is_tcp && modbus_rtu_get_rts(modbus) != MODBUS_RTU_RTS_NONE) return FATHOM_ERR_UNSUPPORTED;
+    (void)modbus_set_error_recovery(modbus, MODBUS_ERROR_RECOVERY_NONE);
+    port->transaction = FIRST_TRANSACTION;
+    port->uart = fathom_libmodbus_uart(port);
+    port->config.uart = &port->uart;
+    port->config.clock = config->clock;
+    port->config.frame = port->frame;
+    port->config.frame_size = sizeof port->frame;
+    if (port->is_tcp) {
+        port->config.echo = FATHOM_LINE_ECHO_OFF;
+        port->config.silence_us = TCP_SILENCE_US;
+        port->config.gap_us = TCP_GAP_US;
+    } else {
+        port->config.echo = config->echo;
+        port->config.silence_us = config->silence_us;
+        port->config.gap_us = config->gap_us != 0 ? config->gap_us : RTU_GAP_US;
+    }
+    return fathom_line_init(&port->line, &port->config);
+}
+
+/* modbus_set_slave knows which units there are, and asking it changes the one that the program has set. */
+static bool takes_unit(modbus_t *modbus, uint8_t unit)
+{
+    const int before = modbus_get_slave(modbus);
+    const bool is_taken = modbus_set_slave(modbus, unit) == 0;
+    (void)modbus_set_slave(modbus, before);
+    return is_taken;
+}
+
+static fathom_status_t submit(void *line, fathom_modbus_request_t *request)
+{
+    fathom_libmodbus_t *const port = line;
+    if (!takes_unit(port->modbus, request->message.head[0])) return FATHOM_ERR_UNSUPPORTED;
+    return fathom_modbus_client_submit(&port->line, request);
+}
+
+fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port)
+{
+    return fathom_modbus_over_line(&port->line, submit);
+}
+
+fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port)
+{
+    const fathom_uart_t rtu = {.read = fathom_libmodbus_rtu_read,
+                               .write = fathom_libmodbus_rtu_write,
+                               .sent = fathom_libmodbus_rtu_sent,
+                               .ctx = port};
+    const fathom_uart_t tcp = {.read = fathom_libmodbus_tcp_read,
+                               .write = fathom_libmodbus_tcp_write,
+                               .sent = fathom_libmodbus_tcp_sent,
+                               .ctx = port};
+    return port->is_tcp ? tcp : rtu;
+}
+
+fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port)
+{
+    return (fathom_libmodbus_error_t)port->error;
+}
+
+void fathom_libmodbus_wait(void *port, uint32_t max_us)
+{
+    modbus_t *const modbus = ((const fathom_libmodbus_t *)port)->modbus;
+    const struct timespec limit = {(time_t)(max_us / 1000000u), (long)(max_us % 1000000u) * 1000};
+    struct pollfd entry = {modbus_get_socket(modbus), POLLIN, 0};
+    if (entry.fd < 0) return;
+    (void)ppoll(&entry, 1, max_us == FATHOM_NO_DEADLINE ? NULL : &limit, NULL);
+}

@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* MSG_DONTWAIT */
+#include <errno.h>
+#include <string.h>
+#include <sys/socket.h>
+
+#include "fathom/crc16.h"
+#include "fathom/modbus_rtu.h"
+#include "internal/libmodbus_port.h"
+
+/*
+ * The line speaks RTU; here a frame changes its clothes. Both are a unit and a PDU: RTU has a CRC behind them, TCP a
+ * header before them: transaction, protocol (0), and how many bytes follow (MODBUS Messaging on TCP/IP V1.0b, 3.1.3).
+ */
+enum {
+    TRANSACTION = 0,
+    PROTOCOL = 2,
+    LENGTH = 4,
+    UNIT = 6, /* where the header ends, as its length counts it */
+    FUNCTION = 7,
+    EXCEPTION = 8,
+    CRC_LENGTH = 2,
+    LEAST_LENGTH = 2, /* unit and function */
+    MOST_LENGTH = 254,
+    EXCEPTION_LENGTH = 3,
+    GATEWAY_PATH_UNAVAILABLE = 0x0A,
+    GATEWAY_TARGET_SILENT = 0x0B,
+    MAX_DROPPED = 16 /* frames in one call */
+};
+
+static uint16_t word_at(const uint8_t *bytes) { return (uint16_t)(bytes[0] << 8 | bytes[1]); }
+
+static void put_word(uint8_t *bytes, uint16_t word)
+{
+    bytes[0] = (uint8_t)(word >> 8);
+    bytes[1] = (uint8_t)(word & 0xFF);
+}
+
+static void count(uint16_t *counter)
+{
+    if (*counter != UINT16_MAX) (*counter)++;
+}
+
+/* Requests and answers are out of step. What comes from now on, or is sent, would be of no use. */
+static int out_of_step(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
+{
+    (void)shutdown(modbus_get_socket(port->modbus), SHUT_RDWR);
+    return fathom_libmodbus_broken(port, error);
+}
+
+/* Takes the next answer out of the socket if all of it is there: 1, 0, or -1: the connection is broken. */
+static int take(fathom_libmodbus_t *port)
+{
+    const int fd = modbus_get_socket(port->modbus);
+    uint8_t *const adu = port->adu;
+    if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
+    const ssize_t there = recv(fd, adu, UNIT + MOST_LENGTH, MSG_PEEK | MSG_DONTWAIT);
+    if (there < 0) return fathom_libmodbus_failed(port);
+    if (there == 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
+    if (there < UNIT) return 0;
+    const uint16_t length = word_at(adu + LENGTH);
+    if (word_at(adu + PROTOCOL) != 0 || length < LEAST_LENGTH || length > MOST_LENGTH)
+        return out_of_step(port, FATHOM_LIBMODBUS_ERR_NONSENSE);
+    if (there < UNIT + length) return 0;
+    if (recv(fd, adu, UNIT + (size_t)length, MSG_DONTWAIT) != UNIT + length)
+        return fathom_libmodbus_failed(port);
+    port->end = (uint16_t)(UNIT + length);
+    fathom_libmodbus_works(port);
+    return 1;
+}
+
+/* Is what was taken for the line? The longest frame of TCP is longer than the line's, and answers nothing that the
+ * line asks. */
+static bool is_answer(fathom_libmodbus_t *port)
+{
+    const uint8_t *const adu = port->adu;
+    if (word_at(adu + TRANSACTION) != port->transaction) {
+        count(&port->late_answers);
+        return false;
+    }
+    const uint16_t length = word_at(adu + LENGTH);
+    if (length == EXCEPTION_LENGTH && (adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) != 0 &&
+        (adu[EXCEPTION] == GATEWAY_PATH_UNAVAILABLE || adu[EXCEPTION] == GATEWAY_TARGET_SILENT)) {
+        port->gateway_exception = adu[EXCEPTION];
+        count(&port->gateway_refusals);
+        return false;
+    }
+    return length != MOST_LENGTH;
+}
+
+int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    fathom_libmodbus_t *const port = ctx;
+    (void)rx; /* nothing is known of single bytes */
+    for (uint8_t left = MAX_DROPPED; port->at == port->end; left--) {
+        const int taken = left != 0 ? take(port) : 0;
+        port->at = port->end;
+        if (taken <= 0) return taken;
+        if (!is_answer(port)) continue;
+        const uint16_t crc = fathom_crc16(port->adu + UNIT, (uint8_t)(port->end - UNIT));
+        port->adu[port->end++] = (uint8_t)(crc & 0xFF);
+        port->adu[port->end++] = (uint8_t)(crc >> 8);
+        port->at = UNIT;
+    }
+    size_t n = (size_t)port->end - port->at;
+    if (n > capacity) n = capacity;
+    memcpy(bytes, port->adu + port->at, n);
+    port->at = (uint16_t)(port->at + n);
+    return (int)n;
+}
+
+int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    fathom_libmodbus_t *const port = ctx;
+    const int fd = modbus_get_socket(port->modbus);
+    const uint16_t transaction = (uint16_t)(port->transaction + 1);
+    const uint16_t rest = (uint16_t)(length - CRC_LENGTH);
+    uint8_t adu[UNIT + FATHOM_MODBUS_MAX_FRAME];
+    if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
+    put_word(adu + TRANSACTION, transaction);
+    put_word(adu + PROTOCOL, 0);
+    put_word(adu + LENGTH, rest);
+    memcpy(adu + UNIT, bytes, rest);
+    const ssize_t n = send(fd, adu, (size_t)UNIT + rest, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (n < 0) return fathom_libmodbus_failed(port);
+    if (n != UNIT + rest) return out_of_step(port, FATHOM_LIBMODBUS_ERR_TORN);
+    port->transaction = transaction;
+    fathom_libmodbus_works(port);
+    return (int)length;
+}
+
+bool fathom_libmodbus_tcp_sent(void *ctx)
+{
+    (void)ctx;
+    return true;
+}
