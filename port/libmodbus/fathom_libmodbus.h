@@ -53,7 +53,8 @@ extern "C" {
  *    taken. An answer to an earlier one is dropped and counted (late_answers), whatever it says. A unit that did not
  *    answer in time is asked nothing until twice the time-out has passed, while others are asked; its answer still
  *    counts if it comes then and nobody else was asked meanwhile.
- *  - On TCP an answer is looked at when all of it is there (MSG_PEEK); until then it is left in the socket.
+ *  - On TCP an answer is looked at when all of it is there (MSG_PEEK); until then it is left in the socket, whose
+ *    SO_RCVLOWAT keeps poll(2) from seeing it so long.
  *  - On TCP a gateway's exceptions 0x0A (path unavailable) and 0x0B (target silent) are no answer of the unit: the
  *    request ends with FATHOM_ERR_NO_ANSWER when its time-out is over. gateway_exception has the last one. Over RTU
  *    they are exceptions like any other.

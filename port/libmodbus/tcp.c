@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* MSG_DONTWAIT */
-#include <errno.h>
+#define _GNU_SOURCE 1 /* POLLRDHUP */
+#include <poll.h>
 #include <string.h>
 #include <sys/socket.h>
 
@@ -48,22 +48,43 @@ static int out_of_step(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
     return fathom_libmodbus_broken(port, error);
 }
 
+static ssize_t peek(int fd, uint8_t *adu)
+{
+    return recv(fd, adu, UNIT + MOST_LENGTH, MSG_PEEK | MSG_DONTWAIT);
+}
+
+/* From how many bytes on poll(2) sees them: or a loop that waits for the rest of an answer would never sleep. */
+static void wake_at(int fd, int bytes)
+{
+    (void)setsockopt(fd, SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
+}
+
+/* `there` bytes of `need` have come: 0, or -1: the rest never will. */
+static int wait_for_rest(fathom_libmodbus_t *port, int fd, ssize_t there, int need)
+{
+    struct pollfd entry = {fd, POLLRDHUP, 0};
+    wake_at(fd, need);
+    if (poll(&entry, 1, 0) <= 0 || peek(fd, port->adu) != there) return 0;
+    return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
+}
+
 /* Takes the next answer out of the socket if all of it is there: 1, 0, or -1: the connection is broken. */
 static int take(fathom_libmodbus_t *port)
 {
     const int fd = modbus_get_socket(port->modbus);
     uint8_t *const adu = port->adu;
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
-    const ssize_t there = recv(fd, adu, UNIT + MOST_LENGTH, MSG_PEEK | MSG_DONTWAIT);
+    const ssize_t there = peek(fd, adu);
     if (there < 0) return fathom_libmodbus_failed(port);
     if (there == 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
-    if (there < UNIT) return 0;
+    if (there < UNIT) return wait_for_rest(port, fd, there, UNIT);
     const uint16_t length = word_at(adu + LENGTH);
     if (word_at(adu + PROTOCOL) != 0 || length < LEAST_LENGTH || length > MOST_LENGTH)
         return out_of_step(port, FATHOM_LIBMODBUS_ERR_NONSENSE);
-    if (there < UNIT + length) return 0;
+    if (there < UNIT + length) return wait_for_rest(port, fd, there, UNIT + length);
     if (recv(fd, adu, UNIT + (size_t)length, MSG_DONTWAIT) != UNIT + length)
         return fathom_libmodbus_failed(port);
+    wake_at(fd, 1);
     port->end = (uint16_t)(UNIT + length);
     fathom_libmodbus_works(port);
     return 1;

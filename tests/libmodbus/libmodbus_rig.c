@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1
+#include "libmodbus_rig.h"
+
+#include <errno.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+rig_t rig;
+
+enum { UNTOUCHED = 0x5A5A };
+
+void rig_connect(void)
+{
+    int ends[2];
+    modbus_close(rig.modbus);
+    if (rig.far >= 0) (void)close(rig.far);
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    assert_int_equal(modbus_set_socket(rig.modbus, ends[0]), 0);
+    rig.far = ends[1];
+}
+
+static int set_up(modbus_t *modbus)
+{
+    const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
+    (void)alarm(RIG_ALARM_S);
+    memset(&rig, 0, sizeof rig);
+    fake_init(&rig.fake);
+    rig.far = -1;
+    rig.modbus = modbus;
+    rig_connect();
+    memset(&rig.port, 0xA5, sizeof rig.port); /* any content will do */
+    assert_int_equal(fathom_libmodbus_init(&rig.port, modbus, &config), FATHOM_READY);
+    rig.seam = fathom_libmodbus(&rig.port);
+    return 0;
+}
+
+int rig_tcp_set_up(void **state)
+{
+    (void)state;
+    return set_up(modbus_new_tcp("127.0.0.1", 502));
+}
+
+int rig_rtu_set_up(void **state)
+{
+    (void)state;
+    return set_up(modbus_new_rtu("/nowhere", 19200, 'E', 8, 1));
+}
+
+int rig_tear_down(void **state)
+{
+    (void)state;
+    if (rig.far >= 0) (void)close(rig.far);
+    modbus_close(rig.modbus);
+    modbus_free(rig.modbus);
+    (void)alarm(0);
+    return 0;
+}
+
+void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retries)
+{
+    for (size_t i = 0; i != sizeof rig.values / sizeof rig.values[0]; i++) rig.values[i] = UNTOUCHED;
+    memset(request, 0, sizeof *request);
+    request->exchange.timeout_us = RIG_TIMEOUT_US;
+    request->exchange.retries = retries;
+    fathom_modbus_read_holding_registers(&request->message, unit, 0x0107, 3, rig.values);
+    assert_int_equal(rig.seam.submit(rig.seam.ctx, request), FATHOM_PENDING);
+}
+
+void rig_expect_three(void)
+{
+    assert_int_equal(rig.request.exchange.status, FATHOM_READY);
+    assert_int_equal(rig.values[0], 250);
+    assert_int_equal(rig.values[1], 659);
+    assert_int_equal(rig.values[2], 2426);
+    assert_int_equal(rig.values[3], UNTOUCHED);
+}
+
+void rig_expect_none(void)
+{
+    for (size_t i = 0; i != sizeof rig.values / sizeof rig.values[0]; i++)
+        assert_int_equal(rig.values[i], UNTOUCHED);
+}
+
+void rig_run(uint32_t in_us, uint32_t step_us)
+{
+    for (uint32_t us = 0; us < in_us; us += step_us) {
+        rig.fake.now_us += step_us;
+        (void)rig.seam.poll(rig.seam.ctx);
+    }
+}
+
+void rig_say(const void *bytes, size_t length)
+{
+    assert_int_equal(send(rig.far, bytes, length, MSG_NOSIGNAL), length);
+}
+
+void rig_expect_sent(const void *bytes, size_t length)
+{
+    uint8_t sent[600];
+    const ssize_t n = recv(rig.far, sent, sizeof sent, MSG_DONTWAIT);
+    if (length == 0) {
+        assert_true(n < 0 && errno == EAGAIN);
+        return;
+    }
+    assert_int_equal(n, length);
+    assert_memory_equal(sent, bytes, length);
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef LIBMODBUS_RIG_H
+#define LIBMODBUS_RIG_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fake.h"
+#include "fathom_libmodbus.h"
+
+/*
+ * A port over a modbus_t whose connection is one end of a socket pair; the test is the far end. Both ends would
+ * wait if they were asked to, which the port may not do: then the alarm ends the program. Time stands still until the
+ * test moves it.
+ */
+typedef struct {
+    fake_t fake; /* its clock */
+    int far;
+    modbus_t *modbus;
+    fathom_libmodbus_t port;
+    fathom_modbus_t seam;
+    fathom_modbus_request_t request; /* of rig_ask_three */
+    uint16_t values[125];
+} rig_t;
+
+extern rig_t rig;
+
+/*
+ * Modbus TCP (MODBUS Messaging on TCP/IP V1.0b, 3.1.3): transaction, protocol 0, how many bytes follow, unit, PDU.
+ * The PDUs are A05 3(4)1 example 3: 250, 659 and 2426 mm.
+ */
+#define REQUEST(transaction)            0xF0, (transaction), 0, 0, 0, 6, 1, 0x03, 0x01, 0x07, 0x00, 0x03
+#define ANSWER(transaction)             0xF0, (transaction), 0, 0, 0, 9, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A
+#define OTHER(transaction)              0xF0, (transaction), 0, 0, 0, 9, 1, 0x03, 6, 0, 1, 0, 2, 0, 3 /* other values */
+#define REFUSAL(transaction, exception) 0xF0, (transaction), 0, 0, 0, 3, 1, 0x83, (exception)
+
+enum { RIG_TIMEOUT_US = 100000, RIG_ALARM_S = 60 };
+
+/* cmocka's fixtures. */
+int rig_tcp_set_up(void **state);
+int rig_rtu_set_up(void **state);
+int rig_tear_down(void **state);
+
+/* A new socket pair, as a program connects again. The old one, if it is there, is closed. */
+void rig_connect(void);
+
+/* The datasheet's question (A05 3(4)1, example 3): three registers from 0x0107 of unit 1. */
+void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retries);
+
+/* Were its values delivered (250, 659, 2426), or is `values` untouched? */
+void rig_expect_three(void);
+void rig_expect_none(void);
+
+/* Moves the clock on by step_us and polls, until that makes in_us. */
+void rig_run(uint32_t in_us, uint32_t step_us);
+
+/* To the port; and what the port has sent, which has to be that and nothing else. */
+void rig_say(const void *bytes, size_t length);
+void rig_expect_sent(const void *bytes, size_t length);
+
+#define RIG_TEST_TCP(test)                                                                                   \
+    {                                                                                                        \
+#test, test, rig_tcp_set_up, rig_tear_down, NULL                                                     \
+    }
+#define RIG_TEST_RTU(test)                                                                                   \
+    {                                                                                                        \
+#test, test, rig_rtu_set_up, rig_tear_down, NULL                                                     \
+    }
+
+#endif

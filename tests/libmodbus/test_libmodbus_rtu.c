@@ -1,0 +1,290 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1
+#include "libmodbus_rig.h"
+
+#include <errno.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+/* RTU frames through a modbus_t: A05 3(4)1 example 3, and what its neighbours say. Other CRCs by the definition. */
+static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
+static const uint8_t answer[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
+
+enum { FINE_US = 100, SLOW_US = 20000, SILENCE_US = 4011, GAP_US = 25000 };
+
+static int status(void) { return rig.request.exchange.status; }
+
+static void ask(uint8_t retries)
+{
+    rig_ask_three(&rig.request, 1, retries);
+    rig_run(SILENCE_US + FINE_US, FINE_US);
+    rig_expect_sent(request, sizeof request);
+}
+
+static void a_request_has_its_crc_once_and_its_answer_is_read(void **state)
+{
+    (void)state;
+    ask(0);
+    rig_say(answer, sizeof answer);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_three();
+}
+
+static void the_silence_before_a_request_is_kept(void **state)
+{
+    (void)state;
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(SILENCE_US - 2 * FINE_US, FINE_US);
+    rig_expect_sent(NULL, 0);
+    rig_run(3 * FINE_US, FINE_US);
+    rig_expect_sent(request, sizeof request);
+}
+
+static void an_answer_a_byte_at_a_time_is_read(void **state)
+{
+    (void)state;
+    ask(0);
+    for (size_t i = 0; i != sizeof answer; i++) {
+        rig_expect_none();
+        rig_say(answer + i, 1);
+        rig_run(1000, FINE_US);
+    }
+    rig_expect_three();
+}
+
+static void an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it(void **state)
+{
+    (void)state;
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(SLOW_US, SLOW_US);
+    rig_expect_sent(request, sizeof request);
+    rig_run(2 * SLOW_US, SLOW_US);
+    rig_say(answer, sizeof answer);
+    rig_run(SLOW_US, SLOW_US);
+    rig_expect_three();
+}
+
+static void an_exception_is_complete_by_its_length(void **state)
+{
+    static const uint8_t refusal[] = {0x01, 0x83, 0x02, 0xC0, 0xF1}; /* HPS-167S, table 40's example */
+    (void)state;
+    ask(0);
+    rig_say(refusal, sizeof refusal);
+    rig_run(FINE_US, FINE_US);
+    assert_int_equal(status(), FATHOM_ERR_EXCEPTION);
+    assert_int_equal(rig.request.message.exception, 2);
+}
+
+static void noise_before_an_answer_is_dropped(void **state)
+{
+    (void)state;
+    ask(0);
+    rig_say("\xFF\x00\x55", 3);
+    rig_say(answer, sizeof answer);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_three();
+}
+
+static void a_damaged_answer_is_a_checksum_error(void **state)
+{
+    (void)state;
+    for (size_t i = 1; i != sizeof answer; i++) {
+        uint8_t damaged[sizeof answer];
+        if (i != 1) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
+        memcpy(damaged, answer, sizeof answer);
+        damaged[i] ^= 0x10;
+        ask(0);
+        rig_say(damaged, sizeof damaged);
+        rig_run(RIG_TIMEOUT_US + GAP_US, FINE_US);
+        assert_true(status() == FATHOM_ERR_CHECKSUM || status() == FATHOM_ERR_NO_ANSWER);
+        if (i > 2) assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* its beginning was an answer's */
+        rig_expect_none();
+    }
+}
+
+/* 05 03 02 12 34 and its CRC: unit 5's, which nobody asked. */
+static void another_units_answer_is_not_taken(void **state)
+{
+    static const uint8_t other[] = {0x05, 0x03, 0x02, 0x12, 0x34, 0x44, 0xF3};
+    (void)state;
+    ask(0);
+    rig_say(other, sizeof other);
+    rig_run(1000, FINE_US);
+    assert_int_equal(rig.port.line.counters[FATHOM_LINE_STRAYS], 1);
+    rig_say(answer, sizeof answer);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_three();
+}
+
+static void a_late_answer_serves_the_retry_that_waits(void **state)
+{
+    (void)state;
+    ask(1);
+    rig_run(RIG_TIMEOUT_US + SILENCE_US, FINE_US);
+    rig_expect_sent(NULL, 0); /* it owes an answer */
+    rig_say(answer, sizeof answer);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_three();
+    assert_int_equal(rig.request.exchange.attempts, 1);
+    assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
+}
+
+static void a_unit_that_owes_is_asked_after_twice_the_time_out(void **state)
+{
+    (void)state;
+    ask(1);
+    rig_run(2 * RIG_TIMEOUT_US - SILENCE_US, FINE_US);
+    rig_expect_sent(NULL, 0);
+    rig_run(2 * SILENCE_US, FINE_US);
+    rig_expect_sent(request, sizeof request);
+}
+
+/* What it says in its default, found out, is FATHOM_ERR_ECHO before the first read. */
+static void the_config_says_whether_there_is_an_echo(void **state)
+{
+    static const uint8_t write[] = {0x01, 0x06, 0x00, 0x10, 0x00, 0x07};
+    static const uint8_t outcomes[] = {FATHOM_LINE_ECHO_AUTO, FATHOM_LINE_ECHO_OFF, FATHOM_LINE_ECHO_ON};
+    static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_READY, FATHOM_ERR_NO_ANSWER};
+    (void)state;
+    for (size_t i = 0; i != sizeof outcomes; i++) {
+        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
+        const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .echo = outcomes[i]};
+        uint8_t sent[16];
+        assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
+        rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
+        fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
+        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
+        rig_run(SILENCE_US + FINE_US, FINE_US);
+        assert_int_equal(recv(rig.far, sent, sizeof sent, MSG_DONTWAIT), 8);
+        assert_memory_equal(sent, write, sizeof write);
+        rig_say(sent, 8);
+        rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+        assert_int_equal(status(), expected[i]);
+    }
+}
+
+static void the_config_has_the_silence_and_the_gap(void **state)
+{
+    const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .silence_us = 1750, .gap_us = 3000};
+    (void)state;
+    assert_int_equal(rig.port.config.gap_us, GAP_US); /* the default, behind an operating system */
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(1800, FINE_US);
+    rig_expect_sent(request, sizeof request);
+    rig_say(answer, 5);
+    rig_run(FINE_US + 2800, FINE_US);
+    assert_int_equal(status(), FATHOM_PENDING);
+    rig_run(300, FINE_US);
+    assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* it broke off */
+}
+
+static void units_over_247_are_unsupported(void **state)
+{
+    (void)state;
+    for (unsigned unit = 0; unit != 256; unit++) {
+        fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
+        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request),
+                         unit > 247 ? FATHOM_ERR_UNSUPPORTED : FATHOM_PENDING);
+        rig.seam.cancel(rig.seam.ctx, &rig.request);
+    }
+}
+
+static void line_settings_are_unsupported_and_nothing_is_sent(void **state)
+{
+    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    (void)state;
+    rig_ask_three(&rig.request, 1, 0);
+    rig.request.exchange.settings = &settings;
+    rig_run(SILENCE_US + FINE_US, FINE_US);
+    assert_int_equal(status(), FATHOM_ERR_UNSUPPORTED);
+    rig_expect_sent(NULL, 0);
+}
+
+/* It would sleep until the request has left. */
+static void a_transceiver_that_libmodbus_switches_is_unsupported(void **state)
+{
+    const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
+    (void)state;
+    assert_int_equal(modbus_rtu_set_rts(rig.modbus, MODBUS_RTU_RTS_UP), 0);
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_ERR_UNSUPPORTED);
+}
+
+static void a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back(void **state)
+{
+    (void)state;
+    ask(3);
+    assert_int_equal(close(rig.far), 0);
+    rig.far = -1;
+    rig.fake.now_us += FINE_US;
+    assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_ERR_PORT);
+    assert_int_equal(status(), FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
+    rig_connect();
+    rig_run(2 * RIG_TIMEOUT_US, FINE_US); /* what it owes */
+    ask(0);
+    rig_say(answer, sizeof answer);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_three();
+    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_OK);
+}
+
+static void a_modbus_t_that_is_not_connected_is_a_broken_port(void **state)
+{
+    (void)state;
+    modbus_close(rig.modbus);
+    rig_ask_three(&rig.request, 1, 0);
+    rig.fake.now_us += SLOW_US;
+    assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_ERR_PORT);
+    assert_int_equal(status(), FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
+    assert_true(rig.port.uart.write(rig.port.uart.ctx, request, sizeof request) < 0);
+    assert_true(rig.port.uart.sent(rig.port.uart.ctx)); /* nobody waits for it */
+}
+
+static void a_full_port_is_busy_and_nothing_waits(void **state)
+{
+    static uint8_t junk[4096];
+    size_t filled = 0;
+    ssize_t n = 0;
+    (void)state;
+    while ((n = send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT)) > 0)
+        filled += (size_t)n;
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(2 * SILENCE_US, FINE_US);
+    assert_int_equal(rig.request.exchange.attempts, 0);
+    assert_false(rig.port.uart.sent(rig.port.uart.ctx));
+    while (filled != 0) {
+        n = recv(rig.far, junk, sizeof junk, MSG_DONTWAIT);
+        assert_true(n > 0);
+        filled -= (size_t)n;
+    }
+    assert_true(rig.port.uart.sent(rig.port.uart.ctx));
+    rig_run(FINE_US, FINE_US);
+    rig_expect_sent(request, sizeof request);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        RIG_TEST_RTU(a_request_has_its_crc_once_and_its_answer_is_read),
+        RIG_TEST_RTU(the_silence_before_a_request_is_kept),
+        RIG_TEST_RTU(an_answer_a_byte_at_a_time_is_read),
+        RIG_TEST_RTU(an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it),
+        RIG_TEST_RTU(an_exception_is_complete_by_its_length),
+        RIG_TEST_RTU(noise_before_an_answer_is_dropped),
+        RIG_TEST_RTU(a_damaged_answer_is_a_checksum_error),
+        RIG_TEST_RTU(another_units_answer_is_not_taken),
+        RIG_TEST_RTU(a_late_answer_serves_the_retry_that_waits),
+        RIG_TEST_RTU(a_unit_that_owes_is_asked_after_twice_the_time_out),
+        RIG_TEST_RTU(the_config_says_whether_there_is_an_echo),
+        RIG_TEST_RTU(the_config_has_the_silence_and_the_gap),
+        RIG_TEST_RTU(units_over_247_are_unsupported),
+        RIG_TEST_RTU(line_settings_are_unsupported_and_nothing_is_sent),
+        RIG_TEST_RTU(a_transceiver_that_libmodbus_switches_is_unsupported),
+        RIG_TEST_RTU(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back),
+        RIG_TEST_RTU(a_modbus_t_that_is_not_connected_is_a_broken_port),
+        RIG_TEST_RTU(a_full_port_is_busy_and_nothing_waits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

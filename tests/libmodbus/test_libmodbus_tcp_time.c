@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT */
+#include "libmodbus_rig.h"
+
+static const uint8_t request_1[] = {REQUEST(1)};
+static const uint8_t request_2[] = {REQUEST(2)};
+static const uint8_t answer_1[] = {ANSWER(1)};
+static const uint8_t answer_2[] = {ANSWER(2)};
+static const uint8_t other_1[] = {OTHER(1)};
+
+enum { FINE_US = 100, SLOW_US = 20000 };
+
+static int status(void) { return rig.request.exchange.status; }
+
+/* The first request has left. */
+static void ask(uint8_t retries)
+{
+    rig_ask_three(&rig.request, 1, retries);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_sent(request_1, sizeof request_1);
+    assert_int_equal(status(), FATHOM_PENDING);
+}
+
+static void a_write_is_acknowledged_by_its_own_words_at_once(void **state)
+{
+    static const uint8_t write[] = {0xF0, 1, 0, 0, 0, 6, 1, 0x06, 0x00, 0x10, 0x00, 0x07}; /* HPS-167S #8 */
+    (void)state;
+    rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
+    fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
+    assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_sent(write, sizeof write);
+    rig_say(write, sizeof write);
+    rig_run(FINE_US, FINE_US);
+    assert_int_equal(status(), FATHOM_READY); /* TCP has no echo */
+}
+
+static void a_broadcast_needs_no_answer(void **state)
+{
+    static const uint8_t write[] = {0xF0, 1, 0, 0, 0, 6, 0, 0x06, 0x00, 0x10, 0x00, 0x07};
+    (void)state;
+    rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
+    fathom_modbus_write_single_register(&rig.request.message, 0, 0x0010, 7);
+    assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_sent(write, sizeof write);
+    rig_run(RIG_TIMEOUT_US - 1000, FINE_US);
+    assert_int_equal(status(), FATHOM_PENDING);
+    rig_run(2000, FINE_US);
+    assert_int_equal(status(), FATHOM_READY);
+}
+
+static void a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it(void **state)
+{
+    (void)state;
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(SLOW_US, SLOW_US);
+    rig_expect_sent(request_1, sizeof request_1);
+    rig_run(3 * SLOW_US, SLOW_US);
+    rig_say(answer_1, sizeof answer_1);
+    rig_run(SLOW_US, SLOW_US);
+    rig_expect_three();
+}
+
+static void the_wrap_of_the_clock_changes_nothing(void **state)
+{
+    (void)state;
+    rig.fake.now_us = UINT32_MAX - RIG_TIMEOUT_US / 2;
+    (void)rig.seam.poll(rig.seam.ctx);
+    ask(0);
+    rig_run(RIG_TIMEOUT_US - 1000, FINE_US);
+    assert_int_equal(status(), FATHOM_PENDING);
+    assert_int_equal(rig.seam.due_us(rig.seam.ctx), 1100); /* that it has left is seen by the poll after */
+    rig_run(1100, FINE_US);
+    assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
+}
+
+static void requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_the_others(void **state)
+{
+    static const uint8_t to_2[] = {0xF0, 2, 0, 0, 0, 6, 2, 3, 1, 7, 0, 3};
+    static const uint8_t from_2[] = {0xF0, 2, 0, 0, 0, 9, 2, 3, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
+    static const uint8_t to_1[] = {REQUEST(3)};
+    fathom_modbus_request_t second;
+    (void)state;
+    rig_ask_three(&rig.request, 1, 1);
+    rig_ask_three(&second, 2, 0);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_sent(request_1, sizeof request_1);
+    rig_run(RIG_TIMEOUT_US + FINE_US, FINE_US);
+    rig_expect_sent(to_2, sizeof to_2);
+    rig_say(from_2, sizeof from_2);
+    rig_run(FINE_US, FINE_US);
+    assert_int_equal(second.exchange.status, FATHOM_READY);
+    assert_int_equal(status(), FATHOM_PENDING);
+    rig_run(RIG_TIMEOUT_US, FINE_US);
+    rig_expect_sent(to_1, sizeof to_1);
+}
+
+static void a_cancelled_request_is_nobodys_and_its_answer_too(void **state)
+{
+    (void)state;
+    ask(0);
+    rig.seam.cancel(rig.seam.ctx, &rig.request);
+    assert_int_equal(status(), FATHOM_ERR_CANCELLED);
+    rig_ask_three(&rig.request, 1, 0);
+    rig_say(other_1, sizeof other_1);
+    rig_run(1000, FINE_US);
+    assert_int_equal(status(), FATHOM_PENDING);
+    rig_expect_none();
+    rig_expect_sent(request_2, sizeof request_2);
+    rig_say(answer_2, sizeof answer_2);
+    rig_run(FINE_US, FINE_US);
+    rig_expect_three();
+}
+
+static void what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not(void **state)
+{
+    fathom_modbus_request_t second;
+    fathom_modbus_request_t third;
+    (void)state;
+    ask(0);
+    rig_ask_three(&second, 2, 0);
+    rig_ask_three(&third, 1, 0);
+    rig.seam.cancel_unit(rig.seam.ctx, 1);
+    assert_int_equal(status(), FATHOM_ERR_CANCELLED);
+    assert_int_equal(third.exchange.status, FATHOM_ERR_CANCELLED);
+    assert_int_equal(second.exchange.status, FATHOM_PENDING);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        RIG_TEST_TCP(a_write_is_acknowledged_by_its_own_words_at_once),
+        RIG_TEST_TCP(a_broadcast_needs_no_answer),
+        RIG_TEST_TCP(a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it),
+        RIG_TEST_TCP(the_wrap_of_the_clock_changes_nothing),
+        RIG_TEST_TCP(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_the_others),
+        RIG_TEST_TCP(a_cancelled_request_is_nobodys_and_its_answer_too),
+        RIG_TEST_TCP(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

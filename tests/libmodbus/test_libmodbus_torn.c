@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1
+#include "libmodbus_rig.h"
+
+#include <errno.h>
+#include <sys/socket.h>
+
+/* A system that takes a part of a request, or refuses it for a while. */
+
+static const uint8_t request_1[] = {REQUEST(1)};
+
+enum { FINE_US = 100 };
+
+static struct {
+    size_t most; /* bytes; 0: all */
+    int error;
+} sending;
+
+ssize_t __real_send(int fd, const void *bytes, size_t length, int flags);
+ssize_t __wrap_send(int fd, const void *bytes, size_t length, int flags);
+int __real_modbus_send_raw_request(modbus_t *modbus, const uint8_t *bytes, int length);
+int __wrap_modbus_send_raw_request(modbus_t *modbus, const uint8_t *bytes, int length);
+
+ssize_t __wrap_send(int fd, const void *bytes, size_t length, int flags)
+{
+    if (sending.error != 0 && fd == modbus_get_socket(rig.modbus)) {
+        errno = sending.error;
+        return -1;
+    }
+    if (sending.most != 0 && length > sending.most) length = sending.most;
+    return __real_send(fd, bytes, length, flags);
+}
+
+/* As libmodbus 3.1.6 tells a part: EMBBADDATA. */
+int __wrap_modbus_send_raw_request(modbus_t *modbus, const uint8_t *bytes, int length)
+{
+    if (sending.error == 0) return __real_modbus_send_raw_request(modbus, bytes, length);
+    errno = sending.error;
+    return -1;
+}
+
+static void ask(void)
+{
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(5000, FINE_US);
+}
+
+static void expect_port(fathom_libmodbus_error_t error)
+{
+    assert_int_equal(rig.request.exchange.status, FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), error);
+}
+
+static void a_part_of_a_request_ends_the_connection(void **state)
+{
+    uint8_t byte = 0;
+    (void)state;
+    sending.most = 5;
+    ask();
+    sending.most = 0;
+    expect_port(FATHOM_LIBMODBUS_ERR_TORN);
+    for (int i = 0; i != 5; i++) assert_int_equal(recv(rig.far, &byte, 1, MSG_DONTWAIT), 1);
+    assert_int_equal(recv(rig.far, &byte, 1, MSG_DONTWAIT), 0); /* nothing can follow it */
+}
+
+static void what_is_refused_for_a_while_is_sent_later(void **state)
+{
+    static const int errors[] = {EAGAIN, EINTR};
+    (void)state;
+    for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
+        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
+        sending.error = errors[i];
+        ask();
+        assert_int_equal(rig.request.exchange.status, FATHOM_PENDING);
+        sending.error = 0;
+        rig_run(FINE_US, FINE_US);
+        rig_expect_sent(request_1, sizeof request_1);
+    }
+}
+
+static void what_the_system_says_else_is_kept(void **state)
+{
+    (void)state;
+    sending.error = EHOSTUNREACH;
+    ask();
+    sending.error = 0;
+    expect_port(FATHOM_LIBMODBUS_ERR_SYSTEM);
+    assert_int_equal(rig.port.system_error, EHOSTUNREACH);
+}
+
+static void a_part_of_a_request_of_rtu_is_told_too(void **state)
+{
+    (void)state;
+    sending.error = EMBBADDATA;
+    ask();
+    sending.error = 0;
+    expect_port(FATHOM_LIBMODBUS_ERR_TORN);
+}
+
+static void what_rtu_is_refused_for_a_while_is_sent_later(void **state)
+{
+    (void)state;
+    sending.error = EAGAIN;
+    ask();
+    assert_int_equal(rig.request.exchange.status, FATHOM_PENDING);
+    assert_int_equal(rig.request.exchange.attempts, 0);
+    sending.error = 0;
+    rig_run(FINE_US, FINE_US);
+    assert_int_equal(rig.request.exchange.attempts, 1);
+    sending.error = EIO;
+    rig.seam.cancel(rig.seam.ctx, &rig.request);
+    rig_run(2 * RIG_TIMEOUT_US, FINE_US);
+    ask();
+    sending.error = 0;
+    expect_port(FATHOM_LIBMODBUS_ERR_SYSTEM);
+    assert_int_equal(rig.port.system_error, EIO);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        RIG_TEST_TCP(a_part_of_a_request_ends_the_connection),
+        RIG_TEST_TCP(what_is_refused_for_a_while_is_sent_later),
+        RIG_TEST_TCP(what_the_system_says_else_is_kept),
+        RIG_TEST_RTU(a_part_of_a_request_of_rtu_is_told_too),
+        RIG_TEST_RTU(what_rtu_is_refused_for_a_while_is_sent_later),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
