@@ -87,6 +87,23 @@ static bool print_others(FILE *to, const failure_t *failure)
     return true;
 }
 
+/* Nothing was understood, over TCP. */
+static void print_tcp(FILE *to, const failure_t *failure)
+{
+    const uint8_t exception = tcp_gateway_exception(failure->channel->tcp);
+    if (exception != 0)
+        (void)fprintf(
+            to, "the gateway says exception %02u (%s); check --address, and there the line and the supply",
+            exception, exception_text(exception).name);
+    else if (failure->evidence.bytes != 0)
+        (void)fputs("an answer came that does not fit; check that the server is one of Modbus TCP", to);
+    else
+        (void)fputs("the connection stands, but nothing came back; check --address, the sensor's line and "
+                    "supply, and "
+                    "try a --timeout that is longer than the gateway's own",
+                    to);
+}
+
 static void print_no_answer(FILE *to, const failure_t *failure)
 {
     const evidence_t *const evidence = &failure->evidence;
@@ -95,6 +112,8 @@ static void print_no_answer(FILE *to, const failure_t *failure)
         print_late(to, evidence->slowest_us);
     } else if (print_others(to, failure)) {
         return;
+    } else if (failure->channel->tcp != NULL) {
+        print_tcp(to, failure);
     } else if (is_only_echo(evidence)) {
         (void)fputs("only the tool's own request came back, so the adapter works and echoes, but no sensor "
                     "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
@@ -130,7 +149,9 @@ static void print_damaged(FILE *to, const failure_t *failure)
     const tally_t *const tally = failure->tally;
     (void)fprintf(to, "the answer of address %u was damaged; ", failure->address);
     if (print_others(to, failure)) return;
-    if (tally->readings != 0)
+    if (failure->channel->tcp != NULL)
+        (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
+    else if (tally->readings != 0)
         (void)fprintf(to,
                       "other answers were good, so the settings are right and it is the line: check the "
                       "screw terminals, the cable, its termination and its ground, and keep it away from "
@@ -195,7 +216,9 @@ static void print_port(FILE *to, const failure_t *failure)
         return;
     }
     (void)fputs(fathom_posix_error_text(port), to);
-    if (!failure->waits)
+    if (!failure->waits && failure->channel->tcp != NULL)
+        (void)fputs("; start again (with --reconnect it is connected again)", to);
+    else if (!failure->waits)
         (void)fputs("; connect it again and start again (with --reconnect it is waited for)", to);
     else
         (void)fputs("; waiting until it is back", to);

@@ -4,26 +4,56 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings)
+#include "tcp_address.h"
+
+/* What the line has to know of a serial port, ... */
+static void suit_serial(channel_t *channel, const fathom_line_settings_t *settings)
 {
     const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
-    if (fathom_posix_open(&channel->port, path, settings) != FATHOM_POSIX_OK) return false;
-    channel->uart = fathom_posix_uart(&channel->port);
+    channel->config.silence_us = FATHOM_T3_5_US(settings->baud, bits);
+    channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
+    channel->config.echo = channel->echo;
+}
+
+/* ... and of a connection, where answers come whole and need no silence between them. */
+static void suit_tcp(channel_t *channel)
+{
+    channel->config.silence_us = 1;
+    channel->config.gap_us = 1000;
+    channel->config.echo = FATHOM_LINE_ECHO_OFF;
+}
+
+bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings)
+{
+    if (tcp_names(path)) {
+        channel->tcp = tcp_open(path, &channel->port, &channel->uart);
+        if (channel->tcp == NULL) return false;
+        suit_tcp(channel);
+    } else {
+        channel->tcp = NULL;
+        if (fathom_posix_open(&channel->port, path, settings) != FATHOM_POSIX_OK) return false;
+        channel->uart = fathom_posix_uart(&channel->port);
+        suit_serial(channel, settings);
+    }
     channel->clock = fathom_posix_clock();
     ear_begin(&channel->ear, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;
     channel->config.clock = &channel->clock;
     channel->config.frame = channel->frame;
     channel->config.frame_size = sizeof channel->frame;
-    channel->config.silence_us = FATHOM_T3_5_US(settings->baud, bits);
-    channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
-    channel->config.echo = channel->echo;
     (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
     channel->modbus = fathom_modbus_client(&channel->line);
     return true;
 }
 
-void channel_close(channel_t *channel) { fathom_posix_close(&channel->port); }
+void channel_close(channel_t *channel)
+{
+    if (channel->tcp == NULL)
+        fathom_posix_close(&channel->port);
+    else
+        tcp_close(channel->tcp);
+    channel->tcp = NULL;
+}
 
 const char *settings_text(const fathom_line_settings_t *settings, char text[SETTINGS_TEXT])
 {

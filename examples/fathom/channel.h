@@ -9,10 +9,13 @@
 #include "fathom/line.h"
 #include "fathom/modbus_client.h"
 #include "fathom_posix.h"
+#include "tcp.h"
 
-/* A serial port with a line and a Modbus client on it: what every command that talks to sensors needs. */
+/* A serial port, or a connection to a Modbus TCP server, with a line and a Modbus client on it: what every command
+ * that talks to sensors needs. */
 typedef struct {
     fathom_posix_uart_t port;
+    tcp_t *tcp; /* then `port` stands in for it (tcp.h); NULL: a serial port */
     fathom_uart_t uart;
     fathom_clock_t clock;
     ear_t ear; /* between uart and port */
@@ -31,7 +34,7 @@ typedef struct {
  */
 enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
 
-/* False: channel->port has the error. The channel may not be moved. One that was closed may be opened again. */
+/* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may not be moved. One that was closed may be opened again. */
 bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
 

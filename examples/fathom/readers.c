@@ -5,6 +5,12 @@
 
 static const char modbus[] = "Modbus";
 
+/* A connection has no line settings. */
+static const fathom_line_settings_t *line_of(const channel_t *channel, const reader_settings_t *settings)
+{
+    return channel->tcp == NULL ? settings->line : NULL;
+}
+
 static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
@@ -60,7 +66,7 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
-        .settings = settings->line,
+        .settings = line_of(channel, settings),
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
@@ -78,7 +84,7 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
-        .settings = settings->line,
+        .settings = line_of(channel, settings),
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
@@ -95,7 +101,7 @@ bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
-        .settings = settings->line,
+        .settings = line_of(channel, settings),
     };
     memset(reader, 0, sizeof *reader);
     return fathom_a05_dyp_init(driver, &config) == FATHOM_READY &&
@@ -113,7 +119,7 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
-        .settings = settings->line,
+        .settings = line_of(channel, settings),
     };
     memset(reader, 0, sizeof *reader);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;

@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "options.h"
+#include "tcp_address.h"
 
 static const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400};
 enum { RATES = sizeof rates / sizeof rates[0] };
@@ -120,8 +121,13 @@ bool session_options(session_options_t *options, const char *command, char **wor
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
     options->port = values[OPTION_PORT];
-    if (options->port == NULL) (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
-    return options->port != NULL;
+    if (options->port == NULL) {
+        (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
+        return false;
+    }
+    for (size_t i = 0; i != options->station_count; i++)
+        if (!tcp_suits(command, options->port, options->stations[i].mode)) return false;
+    return true;
 }
 
 static void tell_useless(const session_options_t *options, const char *name, const char *value)
@@ -141,7 +147,12 @@ void session_tell_useless(const session_options_t *options, const char *address,
 void session_options_help(FILE *to)
 {
     (void)fputs(
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`\n"
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or a Modbus TCP "
+        "server "
+        "or\n"
+        "                    gateway: tcp:HOST, tcp:HOST:PORT (502 if not given), tcp:[IPV6]:PORT, for mode "
+        "modbus;\n"
+        "                    --baud, --parity and --echo mean nothing there\n"
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"
         "  --duration S      ends after so many seconds; without it Ctrl-C does\n"

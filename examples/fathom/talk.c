@@ -165,7 +165,7 @@ void talk_explain(talk_t *talk, fathom_status_t status)
 void talk_options_help(FILE *to)
 {
     (void)fputs(
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`\n"
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or tcp:HOST[:PORT]\n"
         "  --address N       1 from the factory; also as in hps167s:7\n"
         "  --mode MODE       modbus (default), or dyp for an a05 with frames 55 AA\n"
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
