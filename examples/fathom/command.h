@@ -13,6 +13,7 @@ typedef struct {
 } command_t;
 
 extern const command_t read_command;
+extern const command_t watch_command;
 extern const command_t info_command;
 extern const command_t get_command;
 extern const command_t set_command;

@@ -13,29 +13,39 @@
 
 #include "fathom/hal.h"
 
-/* A byte in this pipe ends every sleep, also one that begins just after the signal. */
+/* A byte in this pipe ends every sleep, also one that begins just after the signal; those of signals that do not end the
+ * command are taken out again. */
 static int wake[2];
 static volatile sig_atomic_t ended;
-static volatile sig_atomic_t user;
+static volatile sig_atomic_t noted; /* the one that events_note has named */
 static bool output_gone;
 
-static void on_signal(int number)
+static void ring(void)
 {
     const int saved = errno;
-    if (number == SIGUSR1)
-        user = 1;
-    else
-        ended = 1;
     /* A full pipe wakes as well. */
     if (write(wake[1], "", 1) < 0) errno = saved;
-    errno = saved;
 }
 
-static void handle(int number)
+static void on_end(int number)
+{
+    (void)number;
+    ended = 1;
+    ring();
+}
+
+static void on_note(int number)
+{
+    (void)number;
+    noted = 1;
+    ring();
+}
+
+static void handle(int number, void (*handler)(int))
 {
     struct sigaction action;
     memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
+    action.sa_handler = handler;
     /* No SA_RESTART: a write to an output that nobody reads must end too. */
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(number, &action, NULL);
@@ -52,24 +62,25 @@ bool events_begin(void)
         (void)fcntl(wake[i], F_SETFL, O_NONBLOCK);
         (void)fcntl(wake[i], F_SETFD, FD_CLOEXEC);
     }
-    handle(SIGINT);
-    handle(SIGTERM);
-    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN) handle(SIGHUP);
+    handle(SIGINT, on_end);
+    handle(SIGTERM, on_end);
+    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN) handle(SIGHUP, on_end);
     (void)signal(SIGPIPE, SIG_IGN);
     return true;
 }
 
+void events_note(int number) { handle(number, on_note); }
+
+bool events_noted(void)
+{
+    const bool has = noted != 0;
+    noted = 0;
+    return has;
+}
+
 bool events_ended(void) { return ended != 0; }
 
-bool events_user(void)
-{
-    static bool is_handled;
-    if (!is_handled) handle(SIGUSR1);
-    is_handled = true;
-    const bool came = user != 0;
-    user = 0;
-    return came;
-}
+bool events_output_gone(void) { return output_gone; }
 
 /* So that a signal that did not end the command wakes it once. One that comes meanwhile has left its mark. */
 static void drain(void)
@@ -77,8 +88,6 @@ static void drain(void)
     char bytes[16];
     while (ended == 0 && read(wake[0], bytes, sizeof bytes) > 0) continue;
 }
-
-bool events_output_gone(void) { return output_gone; }
 
 void events_wait(int fd, short events, uint32_t max_us, bool watch_output)
 {

@@ -14,18 +14,22 @@
 /* False, after saying why, when the system has no descriptor left. */
 bool events_begin(void);
 
+/* From now on this signal (SIGUSR1, SIGWINCH) ends no more than a sleep, and is noted. One of them a command. */
+void events_note(int number);
+
+/* Has it come since this was last called? */
+bool events_noted(void);
+
 /* Has a signal asked to end? */
 bool events_ended(void);
-
-/* Has SIGUSR1 come since this was last called? From the first call on it does not end the program any more. */
-bool events_user(void);
 
 /* Has nobody been reading the standard output any more, as far as events_wait has seen? */
 bool events_output_gone(void);
 
 /*
  * Sleeps until one of `events` (poll(2)) happens on fd, max_us microseconds (FATHOM_NO_DEADLINE: no limit) have
- * passed, or the command is to end. watch_output: also until the reader of the standard output goes away.
+ * passed, a signal has come, or the command is to end. watch_output: also until the reader of the standard output goes
+ * away.
  */
 void events_wait(int fd, short events, uint32_t max_us, bool watch_output);
 

@@ -9,7 +9,7 @@
 #include "fathom/version.h"
 
 static const command_t *const commands[] = {
-    &read_command, &info_command, &get_command, &set_command, &decode_command, &sim_command,
+    &read_command, &watch_command, &info_command, &get_command, &set_command, &decode_command, &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

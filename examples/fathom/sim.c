@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): SIGUSR1 */
 #include <errno.h>
 #include <poll.h>
+#include <signal.h>
 #include <string.h>
 
 #include "command.h"
@@ -80,7 +82,7 @@ static int serve(session_t *session)
 {
     uint32_t due_us = 0;
     while (!events_ended()) {
-        if (events_user()) cycle_power(session);
+        if (events_noted()) cycle_power(session);
         if (fathom_sim_pty_pump(&session->pty, &due_us) < 0) {
             (void)fprintf(stderr, "fathom: the simulated port has failed: %s\n", strerror(errno));
             return STATUS_FAILED;
@@ -105,7 +107,7 @@ static int run(int argc, char **argv)
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (!events_begin() || !open_line(&session)) return STATUS_FAILED;
-    (void)events_user(); /* before anybody can know whom to send it to */
+    events_note(SIGUSR1); /* before anybody can know whom to send it to */
     const int status = announce(&session) ? serve(&session) : STATUS_FAILED;
     if (session.options.counters) print_counters(&session);
     fathom_sim_pty_close(&session.pty);
