@@ -12,6 +12,7 @@ typedef struct {
     int (*run)(int argc, char **argv); /* argv[0] is the command's name; returns the exit status */
 } command_t;
 
+extern const command_t scan_command;
 extern const command_t read_command;
 extern const command_t watch_command;
 extern const command_t info_command;

@@ -9,7 +9,14 @@
 #include "fathom/version.h"
 
 static const command_t *const commands[] = {
-    &read_command, &watch_command, &info_command, &get_command, &set_command, &decode_command, &sim_command,
+    &scan_command,
+    &read_command,
+    &watch_command,
+    &info_command,
+    &get_command,
+    &set_command,
+    &decode_command,
+    &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef SCAN_FINDING_H
+#define SCAN_FINDING_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/hal.h"
+#include "fathom/sample.h"
+
+/* What a scan finds. */
+typedef enum {
+    SCAN_SENSOR = 1, /* one of the three */
+    SCAN_OTHER,      /* answers in Modbus, but is none of the three */
+    SCAN_DAMAGED,    /* whatever is at this address, none of its answers was whole */
+    SCAN_NOT_MODBUS, /* answers at these line settings, but not in Modbus; no address */
+    SCAN_SENDER,     /* sends by itself, and is none of the three; no address */
+    SCAN_MASTER      /* requests of another master, which asks this address */
+} scan_kind_t;
+
+/* How a sensor is to be read. */
+typedef enum { SCAN_MODBUS = 1, SCAN_AUTO, SCAN_DYP } scan_mode_t;
+
+typedef struct {
+    fathom_line_settings_t line;
+    uint8_t kind;    /* scan_kind_t */
+    uint8_t model;   /* fathom_model_t, of a sensor */
+    uint8_t mode;    /* scan_mode_t, of a sensor */
+    uint8_t address; /* 0: none */
+    bool is_double;  /* two answers came to one question */
+
+    /* of an A16 or A05 that was asked */
+    bool has_value;
+    uint16_t value; /* of its only or its first probe, as it was sent */
+
+    /* of an HPS-167S: #1, #2 and #3 */
+    bool has_interface;
+    bool has_config;
+    bool has_details;
+    bool has_termination; /* with has_config: the resistor is on */
+    uint8_t interface[6]; /* year, month, day, major, minor, revision */
+    uint8_t details[22];  /* ACK, UUID (16), year, month, day, major, minor */
+} scan_finding_t;
+
+#endif
