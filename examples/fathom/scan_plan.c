@@ -57,9 +57,10 @@ uint32_t scan_addresses(const scan_plan_t *plan) { return (uint32_t)(plan->last 
 
 uint32_t scan_probe_us(const scan_plan_t *plan, const fathom_line_settings_t *line)
 {
-    /* An address that is asked again is left alone for as long as it may still answer. */
+    /* The silence before the next request has passed with the time-out. An address that is asked again is left alone
+     * before for as long as it may still answer. */
     const uint32_t timeout_us = scan_timeout_us(plan, line);
-    const uint32_t once_us = scan_silence_us(plan) + request_us(line) + timeout_us + LATENESS_US;
+    const uint32_t once_us = request_us(line) + timeout_us + LATENESS_US;
     return once_us + plan->repeats * (once_us + timeout_us);
 }
 

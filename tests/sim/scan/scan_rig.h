@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_SCAN_RIG_H
+#define FATHOM_TESTS_SCAN_RIG_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+/* cmocka wants the four above first */
+#include <cmocka.h>
+
+#include "scan_walk.h"
+#include "sim/a05.h"
+#include "sim/a16.h"
+#include "sim/fault.h"
+#include "sim/hps167s.h"
+#include "sim/uart.h"
+
+/* A scan of simulated devices on one pair, in simulated time; each request that leaves is looked at. */
+enum { RIG_DEVICES = 8, RIG_FINDINGS = 300 };
+
+typedef struct {
+    fathom_sim_clock_t sim_clock;
+    fathom_sim_line_t sim_line;
+    fathom_sim_uart_t sim_uart;
+    fathom_sim_a16_t a16[RIG_DEVICES];
+    fathom_sim_a05_t a05[RIG_DEVICES];
+    fathom_sim_hps167s_t hps[RIG_DEVICES];
+    uint8_t a16s, a05s, hpss;
+
+    fathom_uart_t uart; /* the ear's */
+    fathom_uart_t inner;
+    fathom_clock_t clock;
+    ear_t ear;
+    uint8_t frame[255];
+    fathom_line_config_t config;
+    fathom_line_t line;
+    scan_wire_t wire;
+
+    uint32_t coarse_us; /* not 0: a loop that comes round so often */
+    uint32_t waits_left;
+    uint32_t passed_us; /* in all waits */
+    uint32_t refused_baud;
+    bool is_broken;
+    uint32_t requests;
+    uint32_t probed[SCAN_RATES][SCAN_PARITIES]; /* first questions, by the settings of the line */
+
+    scan_plan_t plan;
+    scan_tell_t tell;
+    scan_walk_t walk;
+    scan_finding_t findings[RIG_FINDINGS];
+    uint16_t found;
+    uint32_t unsupported;
+    uint64_t progress_us;
+} rig_t;
+
+extern rig_t rig;
+
+/* An empty line; the plan is the tool's default: 1..32 at the factory's two settings. */
+void rig_begin(uint32_t start_us);
+
+void rig_a16(const fathom_sim_a16_config_t *config);
+void rig_a05(const fathom_sim_a05_config_t *config);
+void rig_hps(const fathom_sim_hps167s_config_t *config);
+void rig_attach(fathom_sim_device_t *device);
+
+/* All rates and parities, every address. */
+void rig_plan_everything(void);
+
+fathom_status_t rig_walk(void);
+
+/* The finding at an address; NULL: none. Fails when there are two. */
+const scan_finding_t *rig_find(uint8_t address);
+void rig_expect_sensor(uint8_t address, fathom_model_t model, scan_mode_t mode,
+                       const fathom_line_settings_t *line);
+
+/* No simulated device has been written to, or was met with the reset's address. */
+void rig_expect_unharmed(void);
+
+#endif
