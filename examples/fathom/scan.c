@@ -201,8 +201,9 @@ static void conclude_walk(const session_t *session)
                       heard->outside, heard->outside);
     if (session->terminations > 1)
         (void)fprintf(stderr,
-                      "fathom: %" PRIu32 " HPS-167S have their termination resistor on, as from the factory: "
-                      "more than one at each end overload the line; switch it off in all others\n",
+                      "fathom: %" PRIu32
+                      " HPS-167S have their termination resistor on, as from the factory, which "
+                      "overloads the line: switch it off in all but the last one\n",
                       session->terminations);
     if (session->sensors == 0) advise_on_nothing(session);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", session->sensors,

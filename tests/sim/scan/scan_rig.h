@@ -14,6 +14,7 @@
 #include "sim/a16.h"
 #include "sim/fault.h"
 #include "sim/hps167s.h"
+#include "sim/scene.h"
 #include "sim/uart.h"
 
 /* A scan of simulated devices on one pair, in simulated time; each request that leaves is looked at. */
