@@ -119,7 +119,7 @@ static void tell_damaged(const scan_walk_t *walk, const fathom_line_settings_t *
 /* All addresses have been asked: what do the damaged answers mean? */
 static void judge_damaged(const scan_walk_t *walk, const fathom_line_settings_t *line)
 {
-    const bool is_other_protocol = walk->garbled != 0 && 2 * walk->garbled >= walk->asked;
+    const bool is_other_protocol = 2 * walk->garbled > walk->asked;
     if (is_other_protocol) tell_damaged(walk, line, SCAN_NOT_MODBUS, 0);
     for (unsigned address = walk->plan->first; address <= walk->plan->last; address++) {
         const uint8_t state = walk->states[address];

@@ -51,9 +51,9 @@ static const fathom_sim_protocol_t speaker_protocol = {speaker_hear, speaker_ans
 
 static bool speaker_hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us)
 {
-    (void)frame;
     (void)length;
     (void)now_us;
+    if (device->unit != 0 && frame[0] != device->unit) return true;
     device->reply_settings = device->settings;
     fathom_sim_device_reply(device, &speaker_protocol, 5000);
     return true;
@@ -157,6 +157,24 @@ static void test_answers_that_are_no_modbus_are_told_once(void **state)
     assert_int_equal(rig.findings[1].line.baud, 19200);
     /* 32 addresses, most of them asked twice and not four times */
     assert_in_range(rig.probed[1][FATHOM_PARITY_EVEN], 64, 80);
+}
+
+static void test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_one_another_protocol(
+    void **state)
+{
+    static fathom_sim_device_t other;
+    (void)state;
+    for (uint8_t last = 3; last <= 4; last++) {
+        rig_begin(0);
+        begin_speaker(&other, &scan_dyp_line, 0, junk, sizeof junk);
+        other.unit = 3;
+        rig.plan.first = 3;
+        rig.plan.last = last;
+        assert_int_equal(rig_walk(), FATHOM_READY);
+        assert_int_equal(rig.found, 1);
+        assert_int_equal(rig.findings[0].kind, last == 3 ? SCAN_NOT_MODBUS : SCAN_DAMAGED);
+        assert_int_equal(rig.findings[0].address, last == 3 ? 0 : 3);
+    }
 }
 
 /* ---- devices that answer in Modbus ---- */
@@ -366,6 +384,8 @@ int main(void)
         cmocka_unit_test(test_two_answers_to_one_question_are_told),
         cmocka_unit_test(test_one_spike_on_a_dead_address_is_no_device),
         cmocka_unit_test(test_answers_that_are_no_modbus_are_told_once),
+        cmocka_unit_test(
+            test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_one_another_protocol),
         cmocka_unit_test(test_whoever_answers_everything_or_nothing_is_another_modbus_device),
         cmocka_unit_test(test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same),
         cmocka_unit_test(test_a_quiet_line_is_listened_to_for_just_that_long),
