@@ -84,11 +84,11 @@ static int print_estimate(const scan_options_t *options)
 {
     const scan_plan_t *const plan = &options->plan;
     const uint64_t all_us = scan_plan_us(plan);
-    char duration[DURATION_TEXT];
     if (options->is_json) {
         (void)printf("{\"settings\":%u,\"addresses\":%" PRIu32 ",\"seconds\":%" PRIu64 "}\n",
                      plan->setting_count, scan_addresses(plan), (all_us + 999999u) / 1000000u);
     } else {
+        char duration[DURATION_TEXT];
         print_plan(stdout, plan);
         (void)printf(": about %s, and a second for each sensor\n", duration_text(all_us, duration));
     }

@@ -57,12 +57,13 @@ static bool is_harmless(const scan_question_t *question)
 
 static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *request)
 {
-    while (request->exchange.status == FATHOM_PENDING) {
+    const fathom_exchange_t *const exchange = &request->exchange;
+    for (;;) {
         (void)fathom_line_poll(wire->line); /* a broken port ends the exchange */
-        if (request->exchange.status == FATHOM_PENDING && !wait_for_line(wire, FATHOM_NO_DEADLINE))
-            fathom_line_cancel(wire->line, &request->exchange);
+        if (exchange->status != FATHOM_PENDING) return exchange->status;
+        if (!wait_for_line(wire, FATHOM_NO_DEADLINE)) fathom_line_cancel(wire->line, &request->exchange);
+        if (exchange->status != FATHOM_PENDING) return exchange->status;
     }
-    return request->exchange.status;
 }
 
 void scan_ask(const scan_wire_t *wire, const scan_question_t *question, scan_answer_t *answer)

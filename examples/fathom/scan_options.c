@@ -140,10 +140,10 @@ static bool take_settings(scan_options_t *options, const char *baud_list, const 
 /* A or A-B. */
 static bool take_addresses(scan_plan_t *plan, const char *text)
 {
-    char first_text[ITEM_TEXT];
     uint32_t first = FIRST_ADDRESS;
     uint32_t last = LAST_ADDRESS;
     if (text != NULL) {
+        char first_text[ITEM_TEXT];
         const size_t length = strcspn(text, "-");
         const char *const last_text = text[length] == '-' ? text + length + 1 : text;
         (void)snprintf(first_text, sizeof first_text, "%.*s", (int)length, text);
@@ -202,8 +202,13 @@ bool scan_options(scan_options_t *options, int argc, char **argv)
     options->wake = values[WAKE] != NULL;
     options->estimate = values[ESTIMATE] != NULL;
     options->port = values[PORT];
-    if (options->port != NULL || options->estimate) return true;
-    (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
+    if (options->port == NULL && !options->estimate)
+        (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
+    else if (options->port != NULL && strncmp(options->port, "tcp:", 4) == 0)
+        (void)usage_error(command, "it needs a serial port; the rates behind '%s' are the gateway's",
+                          options->port);
+    else
+        return true;
     return false;
 }
 

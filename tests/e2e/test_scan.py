@@ -154,6 +154,7 @@ class Estimate(Case):
 class Usage(Case):
     WRONG = [
         ([], '--port is missing'),
+        (['--port', 'tcp:127.0.0.1'], "it needs a serial port; the rates behind 'tcp:127.0.0.1' are the gateway's"),
         (['a16'], "it takes options only, not 'a16'"),
         (['--address', '0'], "--address takes one from 1 to 254, or a range such as 1-32, not '0'"),
         (['--address', '255'], "not '255'"),
