@@ -44,7 +44,8 @@ typedef struct {
     fathom_line_t *line; /* its own; the sensor becomes the line's listener */
     /* The module's RX pin, which outlives the sensor; NULL: a break of the line triggers. */
     const fathom_pin_t *trigger;
-    /* From trigger to trigger, "must be greater than 120ms" (A16 3(2)); 0 and anything less: 121 ms. */
+    /* From trigger to trigger, at least. It "must be greater than 120ms" (A16 3(2)), also by a clock that counts in
+     * ms; 0 and anything less: 121 ms. */
     uint32_t period_us;
     uint32_t earliest_us; /* 0: 80 ms */
     uint32_t latest_us;   /* 0: 130 ms */

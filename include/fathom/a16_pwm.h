@@ -17,7 +17,7 @@ extern "C" {
  * A16 with PWM output (A16 1): each falling edge at its RX pin makes it measure and answer with one high pulse on TX,
  * whose width is the time of flight. pulse.h does the timing, and has what each width means.
  *
- * One sample a cycle of 220 ms; raw is the width of the pulse in us, time_us its end:
+ * One sample a cycle of 221 ms; raw is the width of the pulse in us, time_us its end:
  *   FATHOM_TARGET      distance_mm by the datasheet's formula, or with the temperature of the air (pulse_width.h)
  *   FATHOM_NO_TARGET   the pulse of about 94 ms
  *   FATHOM_FAULT       a longer one, or the line stays high, when raw is 0
@@ -37,7 +37,7 @@ typedef struct {
     const fathom_capture_t *capture; /* of the module's TX pin: a timer's, or of edges.h */
     const fathom_pin_t *trigger;     /* the module's RX pin; NULL: `uart` triggers */
     const fathom_uart_t *uart;       /* by a break on its TX; nobody else uses that UART meanwhile */
-    uint32_t cycle_us;               /* from trigger to trigger; 0 and anything less: 220 ms */
+    uint32_t cycle_us;               /* from trigger to trigger; 0 and anything less: 221 ms */
     uint16_t low_us;                 /* the low time of the trigger; 0: 2 ms */
     uint16_t noise_us;               /* shorter pulses are noise; 0: 2.7 ms */
     uint32_t no_target_us;           /* from here on: nothing in range; 0: 92 ms */

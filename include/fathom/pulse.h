@@ -31,7 +31,7 @@ extern "C" {
  */
 
 /* Zero-valued members of fathom_pulse_config_t mean these. */
-#define FATHOM_PULSE_DEFAULT_CYCLE_US     220000ul
+#define FATHOM_PULSE_DEFAULT_CYCLE_US     221000ul
 #define FATHOM_PULSE_DEFAULT_LOW_US       2000u
 #define FATHOM_PULSE_DEFAULT_NOISE_US     2700u
 #define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000ul
@@ -46,8 +46,8 @@ typedef struct {
     const fathom_pin_t *trigger;
     const fathom_uart_t *uart;
 
-    /* From one falling edge to the next, at least. "must be greater than 220ms" (A16 1(2)): less is not kept;
-     * 0 and anything less: 220 ms. */
+    /* From one falling edge to the next, at least. It "must be greater than 220ms" (A16 1(2)), also by a clock that
+     * counts in ms; 0 and anything less: 221 ms. */
     uint32_t cycle_us;
     /* How long the trigger is low, at least, and how long high before it falls. The datasheet wants an edge and says
      * no time; 0: 2 ms, which no input misses. */

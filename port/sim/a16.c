@@ -147,9 +147,62 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
 
 static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
-    const bool processed = a16_of(device)->data_type != REAL_TIME;
+    const fathom_sim_a16_t *const a16 = a16_of(device);
+    /* A16 2(2): the UART looks at its RX pin; RS232 at register 0x0207 */
+    const bool is_selected = a16->mode == FATHOM_SIM_A16_UART && device->rx_held != 0;
+    const bool processed = a16->data_type != REAL_TIME && !is_selected;
     const uint16_t value = fathom_sim_device_ultrasonic(device, 1, processed, now_us);
     return fathom_dyp_frame_encode(bytes, &value, 1);
+}
+
+/* ---- PWM and controlled: the pins ---- */
+
+static void power_on(fathom_sim_device_t *device, uint32_t now_us)
+{
+    fathom_sim_device_set_level(device, a16_of(device)->mode != FATHOM_SIM_A16_PWM, now_us);
+}
+
+static void edge(fathom_sim_device_t *device, bool high, uint32_t now_us)
+{
+    fathom_sim_a16_t *const a16 = a16_of(device);
+    const bool is_pwm = a16->mode == FATHOM_SIM_A16_PWM;
+    if (high || (!is_pwm && a16->mode != FATHOM_SIM_A16_CONTROLLED)) return;
+    if (device->alarms[FATHOM_SIM_ALARM_START].set || device->alarms[FATHOM_SIM_ALARM_REST].set) {
+        device->counters.unserved++;
+        return;
+    }
+    device->counters.requests++;
+    fathom_sim_device_set_alarm(device, FATHOM_SIM_ALARM_REST, now_us + a16->cycle_us + 1);
+    /* "T2 = 90~110ms" (A16 3(3)) */
+    fathom_sim_device_set_alarm(
+        device, FATHOM_SIM_ALARM_PIN,
+        now_us + (is_pwm ? a16->pulse_us : fathom_sim_device_between_us(device, 90000, 110000)));
+}
+
+/* S = T * V / 2, or S = T / 57.5 in cm (A16 1(4)); "T2 = 3~94ms" (A16 1(3)) */
+static uint32_t width_us(fathom_sim_a16_t *a16, uint32_t now_us)
+{
+    const uint32_t shortest_us = 3000;
+    const uint16_t mm = fathom_sim_device_ultrasonic(&a16->device, 1, false, now_us);
+    const uint32_t us = (mm * UINT32_C(575) + 50) / 100;
+    if (us > a16->no_target_us) return a16->no_target_us;
+    return us < shortest_us ? shortest_us : us;
+}
+
+static void alarm(fathom_sim_device_t *device, uint32_t now_us)
+{
+    fathom_sim_a16_t *const a16 = a16_of(device);
+    if (a16->mode != FATHOM_SIM_A16_PWM) {
+        uint8_t bytes[FATHOM_SIM_MAX_FRAME];
+        const uint16_t value = fathom_sim_device_ultrasonic(device, 1, false, now_us);
+        fathom_sim_device_answer(device, bytes, fathom_dyp_frame_encode(bytes, &value, 1), now_us);
+    } else if (!device->tx_high) {
+        device->counters.answered++;
+        fathom_sim_device_set_alarm(device, FATHOM_SIM_ALARM_PIN, now_us + width_us(a16, now_us));
+        fathom_sim_device_set_level(device, true, now_us);
+    } else {
+        fathom_sim_device_set_level(device, false, now_us);
+    }
 }
 
 static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
@@ -159,6 +212,9 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     static const fathom_sim_model_t model = {.request = request,
                                              .fill = fill,
                                              .automatic = automatic,
+                                             .power_on = power_on,
+                                             .edge = edge,
+                                             .alarm = alarm,
                                              .reading = {REALTIME, 1},
                                              .broadcast = 0xFF,
                                              .deaf_at_start = true};
@@ -184,16 +240,21 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->random = config->seed;
     device->unit = config->unit != 0 ? config->unit : 1;
     device->protocols[0] = &fathom_sim_modbus;
-    device->listens = config->mode != FATHOM_SIM_A16_UART;
+    device->listens =
+        config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_MODBUS || is_switch;
     device->answers_broadcast = config->answers_broadcast;
     device->answers_from_new = config->answers_from_new;
-    if (config->mode != FATHOM_SIM_A16_MODBUS && !is_switch)
+    if (config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_UART)
         device->period_us = or_else(config->period_us, 100000);
     device->linger_us = or_else(config->linger_us, 150000);
     a16->realtime_us = or_else(config->realtime_us, 120000);
     a16->processed_us = or_else(config->processed_us, 520000);
     a16->settings_us = or_else(config->settings_us, 20000);
     a16->threshold_mm = config->threshold_mm != 0 ? config->threshold_mm : 1000;
+    a16->mode = config->mode;
+    a16->cycle_us = or_else(config->cycle_us, config->mode == FATHOM_SIM_A16_PWM ? 220000 : 120000);
+    a16->pulse_us = or_else(config->pulse_us, 110000);
+    a16->no_target_us = or_else(config->no_target_us, 94000);
     a16->polarity = POSITIVE;
     a16->data_type = config->real_time ? REAL_TIME : 0;
     a16->exceptions = config->exceptions;

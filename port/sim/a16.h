@@ -35,13 +35,21 @@ extern "C" {
  * before the first decision. RX hears Modbus, and 06 of these two registers is obeyed at once; the answers leave by
  * TX. Where that rests low, the host's UART gets a break whenever it falls and before each answer: 00 with
  * FATHOM_RX_FRAMING. The line is full-duplex; pin.h has the host's end of the pin.
- * Not yet: PWM and controlled output.
+ *
+ * PWM and controlled: a falling edge at the RX pin (pin.h, or a break or byte of the host) begins a measurement, if
+ * the cycle of the one before is over; else it is ignored and counted as unserved. PWM (A16 1): TX rests low and is
+ * high once for the time of flight, never for less than 3 ms. Controlled (A16 3): one FF H L SUM, 90..110 ms after
+ * the edge.
+ * UART: RX low when a frame is sent makes it that of the real-time value, high or open of the processed one (A16 2).
  */
 typedef enum {
     FATHOM_SIM_A16_AUTO = 1,   /* RS-232: automatic, then Modbus (A16 5) */
     FATHOM_SIM_A16_MODBUS = 2, /* RS-485: Modbus only (A16 5) */
     FATHOM_SIM_A16_UART = 3,   /* automatic for ever, hears nothing (A16 2) */
-    FATHOM_SIM_A16_SWITCH = 4  /* a level on TX, and Modbus (A16 4) */
+    FATHOM_SIM_A16_SWITCH = 4, /* a level on TX, and Modbus (A16 4) */
+    /* One pulse a trigger (A16 1), one frame a trigger (UART controlled, A16 3). */
+    FATHOM_SIM_A16_PWM = 5,
+    FATHOM_SIM_A16_CONTROLLED = 6
 } fathom_sim_a16_mode_t;
 
 /* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
@@ -65,6 +73,11 @@ typedef struct {
     uint32_t realtime_us;              /* longest from the end of a request to the answer: 0x0101; 120 ms */
     uint32_t processed_us;             /* 0x0100; 520 ms (neither is in the datasheet) */
     uint32_t settings_us;              /* the other registers; 20 ms */
+    /* An edge not later than this after the one before is ignored; PWM 220 ms (A16 1(2)), controlled 120 ms (3(2)). */
+    uint32_t cycle_us;
+    uint32_t pulse_us; /* PWM: from the edge to the pulse; 110 ms (A16 1(3)) */
+    /* PWM: width of the pulse without a target, and of what would be longer; 94 ms (A16 1(2)). */
+    uint32_t no_target_us;
 } fathom_sim_a16_config_t;
 
 typedef struct {
@@ -72,6 +85,10 @@ typedef struct {
     uint32_t realtime_us;
     uint32_t processed_us;
     uint32_t settings_us;
+    uint32_t cycle_us;
+    uint32_t pulse_us;
+    uint32_t no_target_us;
+    uint8_t mode;
     uint16_t threshold_mm;
     uint8_t polarity;  /* 0x0205; 1 from the factory */
     uint8_t data_type; /* 0x0207; 0 processed, also what automatic frames of the UART say */

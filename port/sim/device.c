@@ -271,6 +271,14 @@ static void keep_silence(fathom_sim_device_t *device, uint32_t now_us)
             device->alarms[i].at_us = now_us + silence_us;
 }
 
+void fathom_sim_device_answer(fathom_sim_device_t *device, uint8_t *bytes, uint8_t length, uint32_t now_us)
+{
+    fathom_sim_frame_t frame = {
+        .bytes = bytes, .length = length, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
+    device->counters.answered++;
+    send(device, &device->settings, &frame);
+}
+
 void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
 {
     const bool idle = fathom_sim_sender_idle(&device->sender);

@@ -1,0 +1,500 @@
+/* SPDX-License-Identifier: MIT */
+#include "bench.h"
+
+#include <string.h>
+
+#include "sim/a16.h"
+#include "sim/pin.h"
+#include "sim/scene.h"
+#include "sim/uart.h"
+
+enum { MS = 1000, MAX_EDGES = 64 };
+
+/* An A16 with its pins, and every edge that the host has seen. */
+typedef struct {
+    fathom_sim_clock_t clock;
+    fathom_sim_line_t line;
+    fathom_sim_uart_t uart;
+    fathom_sim_fixed_t fixed;
+    fathom_sim_a16_t a16;
+    fathom_sim_pins_t pins;
+    unsigned edges;
+    bool high[MAX_EDGES];
+    uint32_t edge_us[MAX_EDGES];
+} desk_t;
+
+static desk_t desk;
+
+static void on_edge(void *ctx, bool high, uint32_t time_us)
+{
+    (void)ctx;
+    assert_true(desk.edges < MAX_EDGES);
+    desk.high[desk.edges] = high;
+    desk.edge_us[desk.edges++] = time_us;
+}
+
+static void set(uint8_t mode, int32_t distance, fathom_sim_a16_config_t config)
+{
+    memset(&desk, 0, sizeof desk);
+    desk.fixed.value[0] = distance;
+    config.mode = mode;
+    config.scene = fathom_sim_fixed(&desk.fixed);
+    fathom_sim_clock_init(&desk.clock, bench_start_us, 0);
+    fathom_sim_line_init(&desk.line, &bench_9600, desk.clock.now_us);
+    desk.line.full_duplex = true;
+    fathom_sim_uart_init(&desk.uart, &desk.line, &desk.clock);
+    fathom_sim_a16_init(&desk.a16, &config);
+    fathom_sim_attach(&desk.line, &desk.a16.device, desk.clock.now_us);
+    fathom_sim_pins_init(&desk.pins, &desk.a16.device, &desk.line, &desk.clock);
+    desk.pins.on_edge = on_edge;
+}
+
+#define DEFAULTS ((fathom_sim_a16_config_t){0})
+
+static void wait(uint32_t by_us) { fathom_sim_clock_advance(&desk.clock, by_us); }
+
+static void rx(bool high)
+{
+    const fathom_pin_t pin = fathom_sim_rx_pin(&desk.pins);
+    pin.set(pin.ctx, high);
+}
+
+/* Low for 2 ms. */
+static void trigger(void)
+{
+    rx(false);
+    wait(2 * MS);
+    rx(true);
+}
+
+static bool tx(void)
+{
+    const fathom_pin_t pin = fathom_sim_tx_pin(&desk.pins);
+    return pin.get(pin.ctx);
+}
+
+static void arm(void)
+{
+    const fathom_capture_t capture = fathom_sim_capture(&desk.pins);
+    capture.arm(capture.ctx);
+}
+
+static int take(fathom_pulse_t *pulse)
+{
+    const fathom_capture_t capture = fathom_sim_capture(&desk.pins);
+    return capture.take(capture.ctx, pulse);
+}
+
+static int brk(bool on)
+{
+    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
+    return uart.set_break(uart.ctx, on);
+}
+
+static size_t hear(uint8_t *bytes, fathom_rx_t *rx_of)
+{
+    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
+    *rx_of = (fathom_rx_t){0, 0};
+    return (size_t)uart.read(uart.ctx, bytes, 16, rx_of);
+}
+
+/* ---- PWM: A16 1 ---- */
+
+static void a_falling_edge_brings_one_pulse_after_110_ms(void **state)
+{
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, 1739, DEFAULTS); /* A16 1(4): 10000 us */
+    const uint32_t start_us = desk.clock.now_us;
+    wait(500 * MS);
+    assert_false(tx());
+    trigger();
+    wait(108 * MS - 1);
+    assert_int_equal(desk.edges, 0);
+    assert_false(tx());
+    wait(1);
+    assert_true(tx());
+    wait(9 * MS);
+    assert_true(tx());
+    wait(500 * MS);
+    assert_false(tx());
+    assert_int_equal(desk.edges, 2);
+    assert_true(desk.high[0]);
+    assert_false(desk.high[1]);
+    assert_int_equal(fathom_elapsed_us(desk.edge_us[0], start_us), 610 * MS);
+    /* 1739 mm * 5.75 us/mm = 9999.25 us */
+    assert_int_equal(fathom_elapsed_us(desk.edge_us[1], desk.edge_us[0]), 9999);
+    assert_int_equal(desk.a16.device.counters.measurements, 1);
+}
+
+static void the_width_follows_the_distance_from_3_to_94_ms(void **state)
+{
+    static const struct {
+        int32_t value;
+        uint32_t width_us;
+    } rows[] = {
+        {1, 3000},
+        {521, 3000},
+        {522, 3002}, /* 3001.5 */
+        {15000, 86250},
+        {16347, 93995}, /* 93995.25 */
+        {16348, 94000},
+        {16349, 94000}, /* 94001, 94006.75 */
+        {65535, 94000},
+        {FATHOM_SIM_NO_TARGET, 94000},
+        {FATHOM_SIM_INTERFERENCE, 94000},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        set(FATHOM_SIM_A16_PWM, rows[i].value, DEFAULTS);
+        trigger();
+        wait(300 * MS);
+        assert_int_equal(desk.edges, 2);
+        assert_int_equal(fathom_elapsed_us(desk.edge_us[1], desk.edge_us[0]), rows[i].width_us);
+    }
+}
+
+static void edges_during_a_cycle_are_ignored_and_counted(void **state)
+{
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
+    trigger();
+    for (int i = 0; i < 10; i++) {
+        wait(18 * MS);
+        trigger();
+    } /* 202 ms */
+    wait(18 * MS);
+    rx(false); /* at 220 ms: "must be greater than 220ms" */
+    assert_int_equal(desk.a16.device.counters.unserved, 11);
+    assert_int_equal(desk.a16.device.counters.requests, 1);
+    rx(true);
+    wait(1);
+    rx(false);
+    assert_int_equal(desk.a16.device.counters.requests, 2);
+    wait(500 * MS);
+    assert_int_equal(desk.edges, 4);
+}
+
+static void times_of_the_pulse_are_options(void **state)
+{
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, FATHOM_SIM_NO_TARGET,
+        (fathom_sim_a16_config_t){
+            .cycle_us = 150 * MS, .pulse_us = 20 * MS, .no_target_us = 93 * MS, .start_us = 900 * MS});
+    trigger();
+    wait(800 * MS);
+    assert_int_equal(desk.edges, 0); /* it was starting */
+    wait(98 * MS);
+    const uint32_t edge_us = desk.clock.now_us;
+    trigger();
+    wait(149 * MS);
+    trigger();
+    wait(300 * MS);
+    assert_int_equal(desk.edges, 4);
+    assert_int_equal(fathom_elapsed_us(desk.edge_us[0], edge_us), 20 * MS);
+    assert_int_equal(fathom_elapsed_us(desk.edge_us[1], edge_us), 113 * MS);
+}
+
+/* ---- the host's side of the pins ---- */
+
+static void the_capture_takes_pulses_that_begin_after_arm_in_their_order(void **state)
+{
+    fathom_pulse_t pulse = {7, 7, false};
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
+    trigger();
+    wait(110 * MS);
+    assert_true(tx());
+    arm(); /* within the pulse */
+    wait(200 * MS);
+    assert_int_equal(take(&pulse), 0);
+    assert_false(pulse.is_high);
+    assert_int_equal(pulse.width_us, 7);
+    for (int i = 0; i < 6; i++) { /* one more than there is room for, and one that comes after taking */
+        desk.fixed.value[0] = 1000 * (i + 1);
+        if (i == 5) assert_int_equal(take(&pulse), 1);
+        trigger();
+        wait(300 * MS);
+    }
+    assert_int_equal(desk.pins.lost, 1);
+    assert_int_equal(pulse.width_us, 5750);
+    for (int i = 2; i <= 4; i++) {
+        assert_int_equal(take(&pulse), 1);
+        assert_int_equal(pulse.width_us, 5750 * i);
+    }
+    assert_int_equal(take(&pulse), 1);
+    assert_int_equal(pulse.width_us, 5750 * 6);
+    /* 110 ms + 34.5 ms after its trigger, which was 302 ms ago */
+    assert_int_equal(fathom_elapsed_us(desk.clock.now_us, pulse.end_us), 302 * MS - 144500);
+    assert_int_equal(take(&pulse), 0);
+}
+
+static void a_wire_can_break_stick_and_make_noise(void **state)
+{
+    fathom_pulse_t pulse;
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
+    arm();
+    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_HIGH);
+    wait(500);
+    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_WHOLE);
+    assert_int_equal(take(&pulse), 1);
+    assert_int_equal(pulse.width_us, 500);
+    trigger();
+    wait(109 * MS);
+    assert_true(tx());
+    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_LOW); /* 1 ms into the pulse */
+    assert_false(tx());
+    assert_int_equal(take(&pulse), 1);
+    assert_int_equal(pulse.width_us, 1 * MS);
+    wait(300 * MS);
+    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_HIGH);
+    wait(300 * MS);
+    trigger();
+    wait(300 * MS);
+    assert_int_equal(take(&pulse), 0);
+    assert_true(pulse.is_high);
+    assert_int_equal(desk.edges, 5);
+}
+
+static void without_power_tx_is_low_and_no_edge_is_noticed(void **state)
+{
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
+    trigger();
+    wait(109 * MS);
+    assert_true(tx());
+    fathom_sim_device_power_on(&desk.a16.device, desk.line.now_us); /* off and on in no time */
+    assert_false(tx());
+    wait(300 * MS);
+    assert_int_equal(desk.edges, 2);
+    set(FATHOM_SIM_A16_UART, 1000, DEFAULTS);
+    assert_true(tx());
+}
+
+static void a_break_a_pin_and_a_byte_are_one_wire(void **state)
+{
+    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
+    const uint8_t byte = 0xFF;
+    (void)state;
+    set(FATHOM_SIM_A16_PWM, 1000, (fathom_sim_a16_config_t){.cycle_us = 1});
+    assert_int_equal(brk(true), 1);
+    assert_int_equal(brk(true), 1);
+    assert_int_equal(desk.a16.device.counters.requests, 1);
+    wait(10);
+    rx(false); /* it is low already */
+    assert_int_equal(brk(false), 1);
+    wait(10);
+    assert_int_equal(brk(true), 1);
+    rx(true);
+    wait(10);
+    assert_int_equal(desk.a16.device.counters.requests, 1);
+    assert_int_equal(uart.write(uart.ctx, &byte, 1), 0); /* not in a break */
+    assert_int_equal(brk(false), 1);
+    assert_int_equal(uart.write(uart.ctx, &byte, 1), 1);
+    assert_int_equal(brk(true), 0); /* it is leaving */
+    wait(2 * MS);
+    assert_int_equal(desk.a16.device.counters.requests, 2); /* the start bit */
+    assert_int_equal(brk(true), 1);
+    assert_int_equal(desk.a16.device.counters.requests, 3);
+    assert_int_equal(desk.a16.device.counters.unserved, 0);
+}
+
+/* ---- a TX pin that is a UART's as well ---- */
+
+static void the_bits_of_a_byte_can_be_seen_at_the_pin(void **state)
+{
+    static const char bits[] = "0111111111"  /* FF */
+                               "0111000001"  /* 07 */
+                               "0100001011"  /* A1 */
+                               "0111001011"; /* A7 */
+    (void)state;
+    set(FATHOM_SIM_A16_UART, 1953, DEFAULTS); /* A16 2(4) */
+    wait(100 * MS);
+    /* in the middle of each bit of 104.17 us; characters are rounded up to 1042, 2084, 3125, 4167 us */
+    uint32_t at_us = 0;
+    for (uint32_t i = 0; i < 40; i++) {
+        const uint32_t middle_us = (uint32_t)((2 * i + 1) * 1000000 / 19200);
+        wait(middle_us - at_us);
+        at_us = middle_us;
+        assert_true(tx() == (bits[i] == '1'));
+    }
+    wait(5 * MS);
+    assert_true(tx());
+    assert_int_equal(desk.edges, 0);
+}
+
+static void parity_and_two_stop_bits_can_be_seen_too(void **state)
+{
+    static const struct {
+        fathom_line_settings_t settings;
+        uint8_t byte;
+        const char *bits;
+    } rows[] = {
+        {{9600, FATHOM_PARITY_EVEN, 1}, 0x07, "01110000011"},
+        {{9600, FATHOM_PARITY_EVEN, 1}, 0x03, "01100000001"},
+        {{9600, FATHOM_PARITY_ODD, 1}, 0x07, "01110000001"},
+        {{9600, FATHOM_PARITY_ODD, 2}, 0x03, "011000000111"},
+        {{9600, FATHOM_PARITY_NONE, 2}, 0x80, "00000000111"},
+    };
+    (void)state;
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
+        fathom_sim_sender_t sender;
+        memset(&sender, 0, sizeof sender);
+        fathom_sim_sender_put(&sender, &rows[row].settings, &rows[row].byte, 1, bench_start_us);
+        sender.on_wire = true;
+        for (uint32_t i = 0; i < strlen(rows[row].bits); i++) {
+            const uint32_t at_us = (uint32_t)((2 * i + 1) * 1000000 / 19200);
+            assert_true(fathom_sim_sender_level(&sender, bench_start_us + at_us) ==
+                        (rows[row].bits[i] == '1'));
+        }
+    }
+}
+
+static void a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host(void **state)
+{
+    uint8_t bytes[16];
+    fathom_rx_t rx_of;
+    (void)state;
+    set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
+    desk.a16.device.tx_is_uart = true;
+    fathom_sim_device_set_level(&desk.a16.device, false, desk.line.now_us);
+    wait(20);
+    assert_false(tx());
+    wait(1021);
+    assert_int_equal(hear(bytes, &rx_of), 0);
+    wait(1);
+    assert_int_equal(hear(bytes, &rx_of), 1);
+    assert_true((rx_of.flags & FATHOM_RX_FRAMING) != 0);
+    assert_int_equal(bytes[0], 0);
+    fathom_sim_device_set_level(&desk.a16.device, true, desk.line.now_us);
+    wait(10 * MS);
+    assert_int_equal(hear(bytes, &rx_of), 0);
+    desk.a16.device.tx_is_uart = false;
+    fathom_sim_device_set_level(&desk.a16.device, false, desk.line.now_us);
+    wait(10 * MS);
+    assert_int_equal(hear(bytes, &rx_of), 0);
+    assert_int_equal(desk.edges, 3);
+}
+
+static void a_break_spoils_the_frame_that_a_device_hears(void **state)
+{
+    static const uint8_t request[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}; /* A16 6(4) */
+    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
+    (void)state;
+    set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
+    for (int with_break = 0; with_break < 2; with_break++) {
+        assert_int_equal(uart.write(uart.ctx, request, 8), 8);
+        wait(8334);
+        assert_int_equal(brk(with_break != 0), 1);
+        wait(2 * MS);
+        assert_int_equal(brk(false), 1);
+        wait(500 * MS);
+        assert_int_equal(desk.a16.device.counters.answered, 1);
+        assert_int_equal(desk.a16.device.counters.torn, with_break);
+    }
+}
+
+/* ---- controlled: A16 3 ---- */
+
+static void each_edge_brings_one_frame_90_to_110_ms_later(void **state)
+{
+    static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 3(5) */
+    uint32_t least_us = UINT32_MAX;
+    uint32_t most_us = 0;
+    (void)state;
+    set(FATHOM_SIM_A16_CONTROLLED, 1953, DEFAULTS);
+    wait(500 * MS);
+    for (int i = 0; i < 50; i++) {
+        uint8_t bytes[16];
+        fathom_rx_t rx_of;
+        const uint32_t edge_us = desk.clock.now_us;
+        assert_int_equal(brk(true), 1);
+        wait(2 * MS);
+        assert_int_equal(brk(false), 1);
+        wait(118 * MS + 1);
+        assert_int_equal(hear(bytes, &rx_of), 4);
+        assert_memory_equal(bytes, mm_1953, 4);
+        const uint32_t begin_us = fathom_elapsed_us(rx_of.last_us, edge_us) - 4167;
+        assert_in_range(begin_us, 90 * MS, 110 * MS);
+        if (begin_us < least_us) least_us = begin_us;
+        if (begin_us > most_us) most_us = begin_us;
+    }
+    assert_in_range(least_us, 90 * MS, 92 * MS);
+    assert_in_range(most_us, 108 * MS, 110 * MS);
+    assert_int_equal(desk.a16.device.counters.answered, 50);
+    assert_int_equal(desk.a16.device.counters.unserved, 0);
+    wait(500 * MS);
+    trigger();
+    wait(118 * MS);
+    trigger(); /* after 120 ms: "must be greater than 120ms" */
+    wait(300 * MS);
+    assert_int_equal(desk.a16.device.counters.unserved, 1);
+    assert_int_equal(desk.a16.device.counters.answered, 51);
+}
+
+static void drop(void *ctx, fathom_sim_frame_t *frame)
+{
+    (void)ctx;
+    assert_false(frame->automatic);
+    assert_int_equal(frame->protocol, FATHOM_SIM_STREAM);
+    frame->length = 0;
+}
+
+static void faults_reach_the_frame_that_was_triggered(void **state)
+{
+    static const fathom_sim_faults_t faults = {.outgoing = drop};
+    uint8_t bytes[16];
+    fathom_rx_t rx_of;
+    (void)state;
+    set(FATHOM_SIM_A16_CONTROLLED, 1953, (fathom_sim_a16_config_t){.faults = &faults});
+    trigger();
+    wait(300 * MS);
+    assert_int_equal(hear(bytes, &rx_of), 0);
+    assert_int_equal(desk.a16.device.counters.answered, 1);
+}
+
+/* ---- UART: the select pin, A16 2(2) ---- */
+
+static uint16_t next_value(void)
+{
+    uint8_t bytes[16];
+    fathom_rx_t rx_of;
+    wait(100 * MS);
+    assert_int_equal(hear(bytes, &rx_of), 4);
+    return (uint16_t)(bytes[1] * 256 + bytes[2]);
+}
+
+static void rx_low_sends_the_real_time_value_and_rx_high_the_processed_one(void **state)
+{
+    (void)state;
+    fathom_sim_fixed_t processed = {{1000}};
+    set(FATHOM_SIM_A16_UART, 2000, (fathom_sim_a16_config_t){.processed = fathom_sim_fixed(&processed)});
+    wait(50 * MS);
+    assert_int_equal(next_value(), 1000);
+    rx(false);
+    assert_int_equal(next_value(), 2000);
+    rx(true);
+    assert_int_equal(next_value(), 1000);
+    assert_int_equal(brk(true), 1);
+    assert_int_equal(next_value(), 2000);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_falling_edge_brings_one_pulse_after_110_ms),
+    cmocka_unit_test(the_width_follows_the_distance_from_3_to_94_ms),
+    cmocka_unit_test(edges_during_a_cycle_are_ignored_and_counted),
+    cmocka_unit_test(times_of_the_pulse_are_options),
+    cmocka_unit_test(the_capture_takes_pulses_that_begin_after_arm_in_their_order),
+    cmocka_unit_test(a_wire_can_break_stick_and_make_noise),
+    cmocka_unit_test(without_power_tx_is_low_and_no_edge_is_noticed),
+    cmocka_unit_test(a_break_a_pin_and_a_byte_are_one_wire),
+    cmocka_unit_test(the_bits_of_a_byte_can_be_seen_at_the_pin),
+    cmocka_unit_test(parity_and_two_stop_bits_can_be_seen_too),
+    cmocka_unit_test(a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host),
+    cmocka_unit_test(a_break_spoils_the_frame_that_a_device_hears),
+    cmocka_unit_test(each_edge_brings_one_frame_90_to_110_ms_later),
+    cmocka_unit_test(faults_reach_the_frame_that_was_triggered),
+    cmocka_unit_test(rx_low_sends_the_real_time_value_and_rx_high_the_processed_one),
+};
+
+BENCH_MAIN(tests)
