@@ -92,6 +92,11 @@ fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t addr
 
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
+    if (sensor->unit.setting == 0) {
+        uint8_t own;
+        const fathom_status_t status = fathom_dyp_modbus_address(sensor, &own);
+        if (status != FATHOM_READY) return status;
+    }
     return set(sensor, address, value, 0, false);
 }
 

@@ -112,7 +112,7 @@ static void help(FILE *to, bool is_info)
     talk_options_help(to);
     (void)fputs(
         "\nThe first question ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
-        "until\npower-off, for an A16 `fathom set a16 operating-mode automatic` brings it back.\n"
+        "until\npower-off, for an A16 `fathom set a16 automatic-output on` brings it back.\n"
         "Exit status: 0 when it was told, 1 when the device or the port failed, 2 for wrong usage.\n\n"
         "examples:\n",
         to);

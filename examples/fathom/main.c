@@ -9,14 +9,8 @@
 #include "fathom/version.h"
 
 static const command_t *const commands[] = {
-    &scan_command,
-    &read_command,
-    &watch_command,
-    &info_command,
-    &get_command,
-    &set_command,
-    &decode_command,
-    &sim_command,
+    &scan_command, &read_command,  &watch_command,  &info_command, &get_command,
+    &set_command,  &reset_command, &decode_command, &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

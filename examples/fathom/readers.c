@@ -11,6 +11,12 @@ static const fathom_line_settings_t *line_of(const channel_t *channel, const rea
     return channel->tcp == NULL ? settings->line : NULL;
 }
 
+static void begin(reader_t *reader, channel_t *channel)
+{
+    memset(reader, 0, sizeof *reader);
+    reader->line = &channel->line;
+}
+
 static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
@@ -40,7 +46,7 @@ bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     const fathom_a16_auto_config_t config = {
         .line = &channel->line, .stale_us = settings->timeout_us, .gap_us = CHANNEL_STREAM_GAP_US};
-    memset(reader, 0, sizeof *reader);
+    begin(reader, channel);
     return fathom_a16_auto_init(driver, &config) == FATHOM_READY &&
            begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
@@ -50,7 +56,7 @@ bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {
         .line = &channel->line, .stale_us = settings->timeout_us, .gap_us = CHANNEL_STREAM_GAP_US};
-    memset(reader, 0, sizeof *reader);
+    begin(reader, channel);
     return fathom_a05_auto_init(driver, &config) == FATHOM_READY &&
            begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
 }
@@ -68,7 +74,7 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .backoff_us = settings->backoff_us,
         .settings = line_of(channel, settings),
     };
-    memset(reader, 0, sizeof *reader);
+    begin(reader, channel);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
            begin_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver), modbus);
 }
@@ -86,7 +92,7 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .backoff_us = settings->backoff_us,
         .settings = line_of(channel, settings),
     };
-    memset(reader, 0, sizeof *reader);
+    begin(reader, channel);
     return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
            begin_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver), modbus);
 }
@@ -103,7 +109,7 @@ bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_
         .backoff_us = settings->backoff_us,
         .settings = line_of(channel, settings),
     };
-    memset(reader, 0, sizeof *reader);
+    begin(reader, channel);
     return fathom_a05_dyp_init(driver, &config) == FATHOM_READY &&
            begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
 }
@@ -121,7 +127,7 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
         .backoff_us = settings->backoff_us,
         .settings = line_of(channel, settings),
     };
-    memset(reader, 0, sizeof *reader);
+    begin(reader, channel);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
     reader->protocol = modbus;

@@ -38,6 +38,7 @@ typedef struct {
     fathom_modbus_unit_t *unit; /* NULL: it sends by itself */
     fathom_stream_t *stream;    /* NULL: it is asked */
     const char *protocol;       /* with which it is asked */
+    fathom_line_t *line;
     union {
         fathom_a16_auto_t a16_auto;
         fathom_a16_modbus_t a16_modbus;

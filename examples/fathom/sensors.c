@@ -37,6 +37,7 @@ static const sensor_t sensors[] = {
         "infrared time of flight",
         {19200, FATHOM_PARITY_EVEN, 1},
         {{"modbus", true, reader_hps167s, device_hps167s}},
+        .settings = settings_hps167s,
         .other_settings = "--baud 57600, 115200 or 230400, to which it can be set",
         .max_address = FATHOM_HPS167S_MAX_ADDRESS,
         .probes = 1,

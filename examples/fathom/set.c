@@ -30,6 +30,11 @@ static void print_next(const setting_t *setting)
     (void)puts("");
 }
 
+static bool is_later(const setting_t *setting)
+{
+    return setting->is_later != NULL && setting->is_later(&talk.station->reader);
+}
+
 static void print_done(const setting_t *setting, const char *was, const char *is)
 {
     const station_t *const station = talk.station;
@@ -44,18 +49,23 @@ static void print_done(const setting_t *setting, const char *was, const char *is
         else
             (void)fputs("null", stdout);
         (void)printf(", \"written\": %s, \"confirmed\": %s, \"address\": %u}\n", was_so ? "false" : "true",
-                     setting->get != NULL || setting->moves ? "true" : "false",
+                     setting->get != NULL || setting->moves || setting->confirmed != NULL ? "true" : "false",
                      station->reader.unit->address);
         return;
     }
     (void)printf("%s: %s is ", station->name, setting->name);
     print_value(setting, is);
-    if (was_so)
+    if (is_later(setting))
+        (void)printf(" from the next power-on (%s until then)\n", was);
+    else if (was_so)
         (void)puts(" already; nothing was written");
     else if (setting->get != NULL)
         (void)printf(" (was %s)\n", was);
+    else if (setting->moves || setting->confirmed != NULL)
+        (void)printf("%s%s\n", setting->confirmed != NULL ? ": " : "",
+                     setting->confirmed != NULL ? setting->confirmed : "");
     else
-        (void)puts(setting->moves ? "" : " as far as the device has acknowledged it; it cannot be read back");
+        (void)puts(" as far as the device has acknowledged it; it cannot be read back");
     if (!was_so) print_next(setting);
 }
 
@@ -65,8 +75,11 @@ static void print_places(const setting_t *setting, const char *was, const char *
     const station_t *const station = talk.station;
     char line[SETTINGS_TEXT];
     if (!setting->moves) {
-        (void)fputs("it was sent, and could not be read back: it may hold or not; ask for it with fathom get",
-                    stderr);
+        (void)fputs(
+            setting->unconfirmed != NULL
+                ? setting->unconfirmed
+                : "it was sent, and could not be read back: it may hold or not; ask for it with fathom get",
+            stderr);
         return;
     }
     (void)fprintf(stderr, "it was sent, and then the device could not be read: ");

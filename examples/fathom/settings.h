@@ -26,16 +26,22 @@ typedef struct {
     int32_t step;             /* a multiple of this */
     bool moves;               /* from then on the device is elsewhere: its address, ... */
     bool is_baud;             /* ... or its line settings */
+    const char
+        *confirmed; /* where it cannot be read: what shows that it holds; NULL: its acknowledgement alone */
+    const char *unconfirmed; /* the same for what does not */
     /* Called until they are not FATHOM_PENDING. get leaves the value in `text`; NULL: it cannot be read. set takes a
      * number or the number of a word. */
     fathom_status_t (*get)(reader_t *reader, char text[SETTING_TEXT]);
     fathom_status_t (*set)(reader_t *reader, int32_t value);
+    /* After a set: does it hold from the next power-on only? NULL: it holds now, or as `effect` says. */
+    bool (*is_later)(const reader_t *reader);
     void (*remark)(FILE *to, const char *text); /* what to know of this value; NULL: nothing */
 } setting_t;
 
 /* Ended by a row without a name. */
 extern const setting_t settings_a16[];
 extern const setting_t settings_a05[];
+extern const setting_t settings_hps167s[];
 
 /* By name; NULL after a usage error that lists what there is. */
 const setting_t *setting_find(const char *command, const char *sensor, const setting_t *settings,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
-#include "fathom/a16_settings.h"
+#include "fathom/a16_rs232.h"
 #include "settings.h"
 
 /* The settings of A16 (A16 6(3)) and A05 (A05 2(3)5, 3(3)). */
@@ -9,6 +9,7 @@
 #define KEPT_UNSAID "at once; whether it is kept over power-off is not in the datasheet"
 
 static const char *const off_words[] = {"controlled", "automatic", NULL};
+static const char *const on_only[] = {"on", NULL};
 static const char *const polarities[] = {"negative", "positive", NULL};
 static const char *const values[] = {"processed", "real-time", NULL};
 
@@ -51,6 +52,23 @@ static fathom_status_t a16_set_address(reader_t *reader, int32_t value)
 static fathom_status_t a16_set_mode(reader_t *reader, int32_t value)
 {
     return fathom_a16_set_operating_mode(&reader->driver.a16_modbus, (fathom_a16_operating_mode_t)value);
+}
+
+/* Back to frames that come by themselves; with the first one it is done. */
+static fathom_status_t a16_send_again(reader_t *reader, int32_t value)
+{
+    static fathom_a16_auto_t automatic;
+    static fathom_a16_rs232_t rs232;
+    static bool is_begun;
+    fathom_sample_t sample;
+    (void)value;
+    if (!is_begun) {
+        const fathom_a16_auto_config_t config = {.line = reader->line, .gap_us = CHANNEL_STREAM_GAP_US};
+        if (fathom_a16_auto_init(&automatic, &config) != FATHOM_READY) return FATHOM_ERR_ARGUMENT;
+        fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
+        is_begun = true;
+    }
+    return fathom_a16_rs232_return_to_automatic(&rs232, &sample);
 }
 
 static fathom_status_t a16_polarity(reader_t *reader, char text[SETTING_TEXT])
@@ -121,11 +139,19 @@ const setting_t settings_a16[] = {
      .get = a16_address,
      .set = a16_set_address},
     {.name = "operating-mode",
-     .what = "RS232 variant: automatic takes up again the output that a Modbus command has ended (0x0202)",
+     .what = "the register by itself (0x0202); to have automatic output back: automatic-output",
      .mode = "modbus",
      .effect = "at once; not kept over power-off. Any further command ends automatic output again",
      .words = off_words,
      .set = a16_set_mode},
+    {.name = "automatic-output",
+     .what = "RS232 variant: takes up again the output that a Modbus command has ended (0x0202)",
+     .mode = "modbus",
+     .effect = "at once; any further Modbus command ends it again",
+     .words = on_only,
+     .confirmed = "frames are heard",
+     .unconfirmed = "it was sent, and no frame was heard in 2 s; only the RS232 variant sends by itself",
+     .set = a16_send_again},
     {.name = "switch-polarity",
      .what = "switch variant: the level when something is nearer than the threshold (0x0205)",
      .mode = "modbus",

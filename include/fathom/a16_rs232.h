@@ -33,7 +33,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
                            fathom_a16_auto_t *automatic);
 
 /*
- * Writes 1 to 0x0202 and waits for a frame, since a read would end automatic output again. Call it, with the loop going
+ * Reads the address, writes 1 to 0x0202 and waits for a frame, since a read would end automatic output again. Call it, with the loop going
  * on in between, until it is not FATHOM_PENDING; leave fathom_poll of both drivers alone meanwhile.
  *   FATHOM_READY            *sample is the first reading that the sensor has sent by itself. From now on poll the
  *                           automatic driver only
@@ -41,8 +41,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  *   FATHOM_ERR_EXCEPTION    refused: it is no RS232 variant?
  *   FATHOM_ERR_BUSY         another command is not finished
  *   FATHOM_ERR_PORT         the port is broken
- * An acknowledgement that is lost or damaged is no error: the frames decide. Where the line does not know yet whether it
- * echoes (line.h), the acknowledgement is waited for in vain for a second; on RS232 tell it that there is none.
+ * An acknowledgement that is lost or damaged is no error: the frames decide.
  */
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample);
 

@@ -43,7 +43,8 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
  * Commands, to be called until they are not FATHOM_PENDING. get: FATHOM_READY with *value, or the errors of
  * fathom_modbus_unit_ask; address: also FATHOM_ERR_MALFORMED, where the register says more than 255. set: as
  * fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT.
- * write: where nothing can be read back; FATHOM_READY is the acknowledgement.
+ * write: where nothing can be read back; FATHOM_READY is the acknowledgement. The address is read first, from which
+ * the line learns whether it echoes, without which an acknowledgement says nothing (line.h).
  */
 fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
 fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);

@@ -253,10 +253,22 @@ static void the_operating_mode_is_write_only_and_its_acknowledgement_all_there_i
     static const uint8_t write[] = {0x01, 0x06, 0x02, 0x02, 0x00, 0x01};
     (void)state;
     ASKS(set_mode(1));
+    assert_reads(1, 0x0200); /* is it there, and does the line echo? */
+    answer(1);
+    ASKS(set_mode(1));
     assert_head(write);
     fake_modbus_acknowledge(&fake);
     pass();
     assert_int_equal(set_mode(1), FATHOM_READY);
+    assert_int_equal(fake.submits, 2);
+}
+
+static void the_operating_mode_of_one_that_does_not_answer_is_not_written(void **state)
+{
+    (void)state;
+    ASKS(set_mode(1));
+    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(set_mode(1), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(fake.submits, 1);
 }
 
@@ -334,6 +346,7 @@ int main(void)
         cmocka_unit_test_setup(the_address_is_read_and_followed_when_it_is_set, set_up),
         cmocka_unit_test_setup(an_address_over_255_is_none, set_up),
         cmocka_unit_test_setup(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is, set_up),
+        cmocka_unit_test_setup(the_operating_mode_of_one_that_does_not_answer_is_not_written, set_up),
         cmocka_unit_test_setup(either_distance_can_be_asked_once, set_up),
         cmocka_unit_test_setup(a_distance_asked_once_is_refused_like_any_other, set_up),
         cmocka_unit_test_setup(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one, set_up),
