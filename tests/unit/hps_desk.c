@@ -73,6 +73,38 @@ fathom_status_t desk_poll(void)
     return fathom_poll(&desk.sensor, &desk.sample);
 }
 
+void desk_start_at(uint8_t address, const fathom_line_settings_t *settings)
+{
+    desk_set_up(NULL);
+    desk.config.address = address;
+    desk.config.settings = settings;
+    desk_start();
+}
+
+void desk_asks(uint8_t unit, uint32_t baud)
+{
+    desk.fake.now_us += 3000000;
+    assert_int_equal(desk_poll(), FATHOM_PENDING);
+    assert_non_null(desk.fake.request);
+    fake_modbus_assert_asked(&desk.fake, desk.fake.submits, unit, 0x0008, 4);
+    const fathom_line_settings_t *const settings = desk.fake.request->exchange.settings;
+    assert_int_equal(settings != NULL ? settings->baud : 0, baud);
+}
+
+void desk_answers(void)
+{
+    static const uint16_t measured[4] = {0x0823, 0xDCB2, 0x0701, 0x0000};
+    fake_modbus_answer(&desk.fake, measured, 4);
+    assert_int_equal(desk_poll(), FATHOM_READY);
+    assert_int_equal(desk.sample.distance_mm, 2083);
+}
+
+void desk_is_silent(fathom_status_t as)
+{
+    fake_modbus_fail(&desk.fake, FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(desk_poll(), as);
+}
+
 void desk_assert_guard(const void *object, size_t size)
 {
     for (size_t i = 0; i != size; i++) assert_int_equal(((const uint8_t *)object)[i], DESK_GUARD);

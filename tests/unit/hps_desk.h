@@ -47,6 +47,15 @@ fathom_status_t desk_play(fathom_status_t (*command)(void), const row_t *rows, u
 /* fathom_poll, the sample filled with DESK_GUARD before. */
 fathom_status_t desk_poll(void);
 
+/* A driver of its own, at this address and with these settings in its config. */
+void desk_start_at(uint8_t address, const fathom_line_settings_t *settings);
+
+/* The next measurement is asked of this unit at this rate, 3 s later; 0: no settings are named. Then it is answered with
+ * the example of command #5, or not at all, which fathom_poll tells like this. */
+void desk_asks(uint8_t unit, uint32_t baud);
+void desk_answers(void);
+void desk_is_silent(fathom_status_t as);
+
 void desk_assert_guard(const void *object, size_t size);
 
 #define ROWS(...) (const row_t[]){__VA_ARGS__}, sizeof((const row_t[]){__VA_ARGS__}) / sizeof(row_t)
