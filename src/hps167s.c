@@ -112,10 +112,10 @@ void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
     change_over(sensor);
 }
 
-/* A question outside a setting has ended: does it tell where the device is? */
+/* A question has ended: does it tell where the device is? No setting begins before that is known. */
 static void learn(fathom_hps167s_t *sensor, fathom_status_t status)
 {
-    if (!sensor->is_seeking || sensor->unit.setting != 0) return;
+    if (!sensor->is_seeking) return;
     if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.exchange.status;
     if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED)
         sensor->is_seeking = false;

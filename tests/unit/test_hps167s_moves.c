@@ -218,6 +218,16 @@ static void a_reset_without_an_answer_shows_in_where_the_device_is(void **state)
     desk_asks(7, 0);
 }
 
+static void a_reset_without_an_answer_shows_in_its_rate_too(void **state)
+{
+    (void)state;
+    desk_start_at(1, &fast);
+    assert_int_equal(desk_play(reset, ROWS(IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200),
+                                           RESET(1, NOBODY, 0, 115200), IS(1, 1, 19200))),
+                     FATHOM_READY);
+    desk_asks(1, 19200);
+}
+
 /* It is where it was, which shows nothing. */
 static void a_reset_without_an_answer_at_address_1_is_unconfirmed(void **state)
 {
@@ -284,6 +294,7 @@ static int group(void)
         FRESH(the_devices_own_error_code_is_kept),
         FRESH(a_modbus_exception_is_told_from_that),
         FRESH(a_reset_without_an_answer_shows_in_where_the_device_is),
+        FRESH(a_reset_without_an_answer_shows_in_its_rate_too),
         FRESH(a_reset_without_an_answer_at_address_1_is_unconfirmed),
         FRESH(a_device_that_is_not_there_is_not_reset),
         FRESH(a_reset_is_never_retried_and_can_be_done_again),
