@@ -1,0 +1,308 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/edges.h"
+
+static fathom_edges_t edges;
+static fathom_capture_t capture;
+static fathom_pulse_t pulse;
+static bool level;
+
+static bool get(void *ctx) { return *(const bool *)ctx; }
+
+static const fathom_pin_t pin = {NULL, get, &level};
+
+static int set_up(void **state)
+{
+    (void)state;
+    memset(&edges, 0x5A, sizeof edges);
+    fathom_edges_init(&edges, NULL);
+    capture = fathom_edges_capture(&edges);
+    capture.arm(capture.ctx);
+    return 0;
+}
+
+static void rise(uint32_t at_us) { fathom_edges_feed(&edges, true, at_us); }
+static void fall(uint32_t at_us) { fathom_edges_feed(&edges, false, at_us); }
+static int take(void) { return capture.take(capture.ctx, &pulse); }
+static void arm(void) { capture.arm(capture.ctx); }
+
+static void assert_pulse(uint32_t width_us, uint32_t end_us)
+{
+    assert_int_equal(take(), 1);
+    assert_int_equal(pulse.width_us, width_us);
+    assert_int_equal(pulse.end_us, end_us);
+}
+
+static void a_rise_and_a_fall_are_a_pulse(void **state)
+{
+    (void)state;
+    assert_int_equal(take(), 0);
+    assert_false(pulse.is_high);
+    rise(1000);
+    assert_int_equal(take(), 0);
+    assert_true(pulse.is_high);
+    fall(11000);
+    assert_pulse(10000, 11000);
+    assert_false(pulse.is_high);
+    assert_int_equal(take(), 0);
+}
+
+static void nothing_but_the_level_is_written_without_a_pulse(void **state)
+{
+    (void)state;
+    rise(100);
+    fall(200);
+    pulse = (fathom_pulse_t){7, 8, true};
+    arm();
+    assert_int_equal(take(), 0);
+    assert_int_equal(pulse.width_us, 7);
+    assert_int_equal(pulse.end_us, 8);
+    assert_false(pulse.is_high);
+}
+
+static void pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted(void **state)
+{
+    (void)state;
+    for (uint32_t i = 1; i <= 6; i++) {
+        rise(i * 1000);
+        fall(i * 1000 + i);
+    }
+    assert_int_equal(edges.lost, 2);
+    for (uint32_t i = 1; i <= 4; i++) assert_pulse(i, i * 1000 + i);
+    assert_int_equal(take(), 0);
+    rise(9000);
+    fall(9009);
+    assert_pulse(9, 9009);
+}
+
+static void widths_are_right_across_the_wrap_and_up_to_71_minutes(void **state)
+{
+    (void)state;
+    rise(UINT32_MAX - 4999);
+    fall(5000);
+    assert_pulse(10000, 5000);
+    rise(6000);
+    fall(5999);
+    assert_pulse(UINT32_MAX, 5999);
+}
+
+static void many_pulses_go_through_as_the_counts_wrap(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i != 1000; i++) {
+        if (i % 50 == 0) arm();
+        rise(i * 100);
+        fall(i * 100 + i % 90);
+        assert_pulse(i % 90, i * 100 + i % 90);
+    }
+    assert_int_equal(edges.lost, 0);
+    assert_int_equal(edges.missed, 0);
+}
+
+/* ---- arm ---- */
+
+static void arm_forgets_what_was_captured(void **state)
+{
+    (void)state;
+    rise(100);
+    fall(200);
+    rise(300);
+    fall(400);
+    arm();
+    assert_int_equal(take(), 0);
+    rise(500);
+    fall(600);
+    assert_pulse(100, 600);
+}
+
+static void a_pulse_that_began_before_arm_does_not_count(void **state)
+{
+    (void)state;
+    rise(100);
+    arm();
+    fall(20100);
+    assert_int_equal(take(), 0);
+    rise(30000);
+    fall(30010);
+    assert_pulse(10, 30010);
+}
+
+/* A line that is stuck high for long sees arm more often than a byte can count. */
+static void a_pulse_that_began_before_257_arms_does_not_count(void **state)
+{
+    (void)state;
+    for (unsigned arms = 255; arms <= 257; arms++) {
+        rise(100);
+        for (unsigned i = 0; i != arms; i++) arm();
+        fall(20100);
+        assert_int_equal(take(), 0);
+    }
+}
+
+/* 128 rises after arm cannot be told from what was before it: they are lost, never wrong. */
+static void after_127_rises_without_arm_pulses_are_lost(void **state)
+{
+    (void)state;
+    for (uint32_t i = 1; i <= 300; i++) {
+        rise(i * 100);
+        fall(i * 100 + 50);
+        assert_int_equal(take(), i % 256 >= 1 && i % 256 <= 127);
+    }
+}
+
+/* ---- doubled and missed edges ---- */
+
+static void a_rise_seen_twice_within_50_us_is_one_and_the_first_counts(void **state)
+{
+    (void)state;
+    rise(UINT32_MAX - 20);
+    rise(10);
+    rise(29); /* 50 us after the first */
+    fall(9979);
+    assert_pulse(10000, 9979);
+    assert_int_equal(edges.missed, 0);
+}
+
+static void a_fall_seen_twice_is_one_and_the_first_counts(void **state)
+{
+    (void)state;
+    rise(1000);
+    fall(11000);
+    fall(11010);
+    fall(15000);
+    assert_pulse(10000, 11000);
+    assert_int_equal(take(), 0);
+}
+
+/* The level was high at 1000 and again at 5000: when it was low in between nobody knows, so neither 10000 nor 6000 us
+ * may be said. */
+static void a_fall_that_was_missed_makes_no_pulse_of_two(void **state)
+{
+    (void)state;
+    rise(1000);
+    rise(5000);
+    fall(11000);
+    assert_int_equal(take(), 0);
+    assert_int_equal(edges.missed, 1);
+    rise(20000);
+    fall(20100);
+    assert_pulse(100, 20100);
+}
+
+static void rises_without_a_fall_are_counted_once(void **state)
+{
+    (void)state;
+    rise(1000);
+    rise(1051);
+    rise(1052);
+    rise(9000);
+    fall(11000);
+    assert_int_equal(take(), 0);
+    assert_int_equal(edges.missed, 1);
+}
+
+static void a_rise_that_was_missed_loses_its_pulse_and_no_other(void **state)
+{
+    (void)state;
+    fall(1000);
+    rise(2000);
+    fall(2500);
+    fall(4000);
+    rise(5000);
+    fall(5600);
+    assert_pulse(500, 2500);
+    assert_pulse(600, 5600);
+    assert_int_equal(take(), 0);
+}
+
+static void the_time_within_which_edges_are_the_same_is_the_users(void **state)
+{
+    (void)state;
+    edges.same_us = 10;
+    rise(1000);
+    rise(1010);
+    fall(2000);
+    assert_pulse(1000, 2000);
+    rise(3000);
+    rise(3011);
+    fall(4000);
+    assert_int_equal(take(), 0);
+}
+
+static void the_counts_of_what_went_wrong_stop_at_255(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i != 300; i++) {
+        rise(i * 1000);
+        rise(i * 1000 + 100);
+        fall(i * 1000 + 200);
+        rise(i * 1000 + 300);
+        fall(i * 1000 + 400);
+    }
+    assert_int_equal(edges.missed, 255);
+    assert_int_equal(edges.lost, 255);
+}
+
+/* ---- the level ---- */
+
+static void with_a_pin_the_level_is_its_and_not_that_of_the_last_edge(void **state)
+{
+    (void)state;
+    level = false;
+    fathom_edges_init(&edges, &pin);
+    arm();
+    rise(1000); /* the fall is missed */
+    assert_int_equal(take(), 0);
+    assert_false(pulse.is_high);
+    level = true;
+    assert_int_equal(take(), 0);
+    assert_true(pulse.is_high);
+}
+
+static void a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen(void **state)
+{
+    (void)state;
+    level = true;
+    fathom_edges_init(&edges, &pin);
+    arm();
+    rise(500); /* doubled, of a rise before init */
+    fall(1000);
+    assert_int_equal(take(), 0);
+    assert_int_equal(edges.missed, 0);
+    rise(2000);
+    fall(3000);
+    assert_pulse(1000, 3000);
+}
+
+#define FRESH(test) cmocka_unit_test_setup(test, set_up)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        FRESH(a_rise_and_a_fall_are_a_pulse),
+        FRESH(nothing_but_the_level_is_written_without_a_pulse),
+        FRESH(pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted),
+        FRESH(widths_are_right_across_the_wrap_and_up_to_71_minutes),
+        FRESH(many_pulses_go_through_as_the_counts_wrap),
+        FRESH(arm_forgets_what_was_captured),
+        FRESH(a_pulse_that_began_before_arm_does_not_count),
+        FRESH(a_pulse_that_began_before_257_arms_does_not_count),
+        FRESH(after_127_rises_without_arm_pulses_are_lost),
+        FRESH(a_rise_seen_twice_within_50_us_is_one_and_the_first_counts),
+        FRESH(a_fall_seen_twice_is_one_and_the_first_counts),
+        FRESH(a_fall_that_was_missed_makes_no_pulse_of_two),
+        FRESH(rises_without_a_fall_are_counted_once),
+        FRESH(a_rise_that_was_missed_loses_its_pulse_and_no_other),
+        FRESH(the_time_within_which_edges_are_the_same_is_the_users),
+        FRESH(the_counts_of_what_went_wrong_stop_at_255),
+        FRESH(with_a_pin_the_level_is_its_and_not_that_of_the_last_edge),
+        FRESH(a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
