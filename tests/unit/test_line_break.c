@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* A break of the line: TX as the trigger or the mode select of a module. */
+
+static void a_break_holds_tx_low_until_it_is_ended(void **state)
+{
+    (void)state;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    assert_true(bench.fake.in_break);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    run(100000);
+    assert_true(bench.fake.in_break);
+    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+    assert_false(bench.fake.in_break);
+}
+
+static void nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it(void **state)
+{
+    (void)state;
+    run(100000);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    ask(&bench.request, 1, &bench.value, 0);
+    run(2000000); /* longer than a port may refuse */
+    assert_int_equal(bench.fake.written, 0);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
+    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+    assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US);
+    run(T3_5_US - 100);
+    assert_int_equal(bench.fake.written, 0);
+    run(200);
+    assert_int_equal(bench.fake.written, 1);
+    run(8 * BYTE_US);
+    receive_answer(1, 111);
+    run(100);
+    assert_int_equal(bench.value, 111);
+}
+
+static void with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes(void **state)
+{
+    (void)state;
+    ask(&bench.request, 1, &bench.value, 0);
+    run(T3_5_US + 100);
+    assert_int_equal(bench.fake.written, 1);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_BUSY); /* it is leaving */
+    run(8 * BYTE_US);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_BUSY); /* the answer may come */
+    assert_int_equal(bench.fake.breaks, 0);
+    receive_answer(1, 111);
+    run(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    assert_int_equal(bench.fake.breaks, 1);
+}
+
+static void while_bytes_of_the_port_leave_it_is_pending(void **state)
+{
+    (void)state;
+    bench.fake.never_sent = true;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_PENDING);
+    assert_false(bench.fake.in_break);
+    ask(&bench.request, 1, &bench.value, 0);
+    run(T3_5_US + 100);
+    assert_int_equal(bench.fake.written, 1); /* so there was no break */
+}
+
+/* The port was busy with a request; after the break it gets its time anew. */
+static void a_request_that_the_port_refused_waits_for_the_end_of_the_break(void **state)
+{
+    (void)state;
+    bench.fake.write_busy = true;
+    ask(&bench.request, 1, &bench.value, 0);
+    run(T3_5_US + 900000);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    run(500000);
+    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+    run(T3_5_US + 500000);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    bench.fake.write_busy = false;
+    run(1000);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+static int broken(void *ctx, bool on)
+{
+    (void)ctx;
+    (void)on;
+    return -1;
+}
+
+static void a_port_that_cannot_or_is_broken_says_so(void **state)
+{
+    (void)state;
+    bench.fake.uart.set_break = broken;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_PORT);
+    bench.fake.uart.set_break = NULL;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_UNSUPPORTED);
+    ask(&bench.request, 1, &bench.value, 0);
+    run(T3_5_US + 100);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+static void a_port_that_breaks_in_a_break_comes_back_without_it(void **state)
+{
+    (void)state;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    bench.fake.read_fails = true;
+    bench.fake.now_us += 100;
+    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
+    bench.fake.read_fails = false;
+    ask(&bench.request, 1, &bench.value, 0);
+    run(T3_5_US + 200);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(a_break_holds_tx_low_until_it_is_ended),
+        TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it),
+        TEST(with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes),
+        TEST(while_bytes_of_the_port_leave_it_is_pending),
+        TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break),
+        TEST(a_port_that_cannot_or_is_broken_says_so),
+        TEST(a_port_that_breaks_in_a_break_comes_back_without_it),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
