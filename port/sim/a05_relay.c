@@ -89,4 +89,5 @@ void fathom_sim_a05_relay_init(fathom_sim_a05_t *a05, const fathom_sim_a05_confi
     a05->probes = config->probes != 0 ? config->probes : 0x0F;
     a05->bounces = config->bounces;
     a05->normally_closed = config->normally_closed;
+    device->off_high = is_high(a05); /* it drops */
 }

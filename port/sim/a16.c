@@ -111,7 +111,7 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
     return fathom_sim_device_delay_us(device, most_us);
 }
 
-/* "Only valid for switch output" (A16 6(3)). */
+/* Where there is a switch output it obeys at once. */
 static uint32_t switch_request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
     const uint32_t delay_us = request(device, message);

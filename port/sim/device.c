@@ -128,8 +128,9 @@ void fathom_sim_device_power_off(fathom_sim_device_t *device, uint32_t for_us, u
 {
     stop(device);
     fathom_sim_device_set_alarm(device, POWER, now_us + for_us);
-    if (device->tx_high && device->watch != NULL) device->watch(device->watch_ctx, false, now_us);
-    device->tx_high = false;
+    if (device->tx_high == device->off_high) return;
+    device->tx_high = device->off_high;
+    if (device->watch != NULL) device->watch(device->watch_ctx, device->off_high, now_us);
 }
 
 /* ---- hearing ---- */

@@ -214,6 +214,7 @@ struct fathom_sim_device {
     bool leaving;
     bool tx_high;    /* the level of its TX pin where no byte is leaving */
     bool tx_is_uart; /* the model's: a TX pin that falls is a break to the host's UART, which is on it too */
+    bool off_high;   /* the model's: the level of its TX pin without power */
     bool in_break;   /* that is what it is sending */
     bool is_raised;  /* the answer that is due may begin, on a TX pin that rests low */
     uint8_t rx_held; /* FATHOM_SIM_HELD_BY_..., a set */

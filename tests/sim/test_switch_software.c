@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include "bench.h"
+#include "fathom/a05_auto.h"
+#include "fathom/a05_relay_rule.h"
+#include "fathom/a16_auto.h"
+#include "fathom/debounce.h"
+#include "switch_stage.h"
+
+/* The switches in software beside the modules whose rules they are. */
+
+static uint32_t random_state;
+static int32_t any_distance(void)
+{
+    static const int32_t choice[] = {400, 999, 1000, 1001, 3000, FATHOM_SIM_NO_TARGET};
+    random_state = random_state * UINT32_C(1664525) + UINT32_C(1013904223);
+    return choice[(random_state >> 16) % 6];
+}
+
+static void forget_old_samples(void)
+{
+    if (s.samples <= LOG / 2) return;
+    s.kinds[0] = s.kinds[s.samples - 1];
+    s.samples = 1;
+}
+
+/* An A16 that sends by itself every 500 ms sees what the switch sees: its frames, debounced, are that switch. */
+static void a_debounced_a16_is_the_switch_of_one(void **state)
+{
+    fathom_a16_auto_t automatic;
+    fathom_debounce_t gate;
+    (void)state;
+    random_state = 1;
+    set_a16(2000);
+    const fathom_sim_a16_config_t config = {
+        .mode = FATHOM_SIM_A16_UART, .scene = fathom_sim_fixed(&s.fixed), .period_us = 500 * MS};
+    fathom_sim_a16_init(&s.sim_a16[1], &config);
+    set_up_port(&s.port[1], &s.sim_a16[1].device);
+    const fathom_a16_auto_config_t own = {.line = &s.port[1].line};
+    assert_int_equal(fathom_a16_auto_init(&automatic, &own), FATHOM_READY);
+    assert_int_equal(fathom_debounce_init(&gate, &(fathom_debounce_config_t){0}), FATHOM_READY);
+    const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
+    unsigned changes = 0;
+    run(100 * MS, 20 * MS); /* from here the scene changes between the measurements */
+    for (unsigned n = 0; n != 1000; n++) {
+        fathom_sample_t sample;
+        if (n % 6 == 0) s.fixed.value[0] = any_distance();
+        for (unsigned step = 0; step != 25; step++) {
+            run(20 * MS, 20 * MS);
+            while (fathom_poll(&sensor, &sample) == FATHOM_READY)
+                changes += fathom_debounce_sample(&gate, &sample);
+        }
+        if (gate.level != 0) assert_int_equal(gate.level, s.kinds[s.samples - 1]);
+        forget_old_samples();
+    }
+    assert_in_range(changes, 30, 600);
+    assert_int_equal(s.errors, 0);
+}
+
+/* An A05 that sends by itself measures with the relay, every 300 ms. */
+static void the_rule_over_an_a05_is_the_relay_of_one(void **state)
+{
+    fathom_a05_auto_t automatic;
+    fathom_a05_relay_rule_t rule;
+    (void)state;
+    random_state = 2;
+    set_a05(3000, (fathom_sim_a05_config_t){.probes = 0x0B}, 0);
+    const fathom_sim_a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&s.fixed)};
+    fathom_sim_a05_init(&s.sim_a05[1], &config);
+    set_up_port(&s.port[1], &s.sim_a05[1].device);
+    const fathom_a05_auto_config_t own = {.line = &s.port[1].line, .probes = 0x0B};
+    assert_int_equal(fathom_a05_auto_init(&automatic, &own), FATHOM_READY);
+    const fathom_a05_relay_rule_config_t same = {.probes = 0x0B};
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &same), FATHOM_READY);
+    const fathom_sensor_t sensor = fathom_a05_auto_sensor(&automatic);
+    unsigned changes = 0;
+    run(100 * MS, 20 * MS); /* from here the scene changes between the measurements */
+    for (unsigned n = 0; n != 1000; n++) {
+        fathom_sample_t sample;
+        for (unsigned i = 0; i != 4; i++)
+            if (n % 2 == 0) s.fixed.value[i] = n % 8 < 4 ? any_distance() : 3000;
+        for (unsigned step = 0; step != 15; step++) {
+            run(20 * MS, 20 * MS);
+            while (fathom_poll(&sensor, &sample) == FATHOM_READY)
+                changes += fathom_a05_relay_rule_sample(&rule, &sample);
+        }
+        assert_int_equal(rule.debounce.level, s.kinds[s.samples - 1]);
+        forget_old_samples();
+    }
+    assert_in_range(changes, 100, 1000);
+    assert_int_equal(s.errors, 0);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_debounced_a16_is_the_switch_of_one),
+    cmocka_unit_test(the_rule_over_an_a05_is_the_relay_of_one),
+};
+
+BENCH_MAIN(tests)
