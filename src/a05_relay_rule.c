@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/a05_relay_rule.h"
 
-enum { ALL_PROBES = 0x0F, NOTHING = UINT8_MAX };
+enum { ALL_PROBES = 0x0F };
 
 fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
                                            const fathom_a05_relay_rule_config_t *config)
@@ -23,11 +23,11 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
     return fathom_debounce_init(&rule->debounce, &own);
 }
 
-/* What one probe says; NOTHING: as if it had not been seen. */
+/* What one probe says; 0: neither, the level holds. */
 static uint8_t verdict_of(const fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
 {
     if (sample->kind == FATHOM_TARGET) return fathom_debounce_compare(&rule->debounce, sample->distance_mm);
-    return sample->kind == FATHOM_NO_TARGET ? (uint8_t)FATHOM_FAR : (uint8_t)NOTHING;
+    return sample->kind == FATHOM_NO_TARGET ? (uint8_t)FATHOM_FAR : (uint8_t)0;
 }
 
 bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
@@ -39,7 +39,7 @@ bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sa
         rule->missing = rule->probes;
         rule->verdict = FATHOM_FAR;
     }
-    if ((rule->missing & bit) == 0 || verdict == NOTHING) return false;
+    if ((rule->missing & bit) == 0) return false;
     rule->missing &= (uint8_t)~bit;
     if (verdict != FATHOM_FAR) rule->verdict = verdict;
     if (verdict == FATHOM_NEAR) rule->missing = 0; /* the others cannot change that */

@@ -18,8 +18,7 @@ extern "C" {
  * All samples of one sequence number are one measurement:
  *  - it is nearer as soon as one fitted probe is, without waiting for the others;
  *  - it is farther when every fitted probe has given a sample and all of them are;
- *  - it is equal, and the level holds, when every fitted probe has given one, none is nearer and some stand at the
- *    threshold;
+ *  - it is equal, and the level holds, when none is nearer and some stand at the threshold, or gave a fault;
  *  - it is nothing, and the level holds, when a probe's sample is missing (refused as implausible, not read) and
  *    none of the others is nearer: nobody knows what stands before that one.
  * Probes that are not fitted count for nothing: their values are not defined. What else counts as what stands in

@@ -245,6 +245,49 @@ static void a_config_without_sense_is_refused(void **state)
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
 }
 
+/* ---- everything, against a slow reference ---- */
+
+/* What a probe can say: nearer, farther, equal, nothing at all. Two bits a probe. */
+enum { NEARER, FARTHER, EQUAL, MISSING, MEASUREMENTS = 256 };
+
+/* The level after a measurement of all probes. */
+static uint8_t refer(uint8_t before, uint8_t probes, unsigned said)
+{
+    unsigned count[4] = {0, 0, 0, 0};
+    for (unsigned i = 0; i != 4; i++) count[said >> 2 * i & 3] += probes >> i & 1;
+    if (count[NEARER] != 0) return FATHOM_NEAR;
+    if (count[MISSING] != 0 || count[EQUAL] != 0) return before;
+    return FATHOM_FAR;
+}
+
+static void measure_all(unsigned said)
+{
+    static const uint16_t mm[] = {999, 1001, 1000};
+    now_us += HALF_S;
+    sequence++;
+    for (unsigned i = 0; i != 4; i++)
+        if ((said >> 2 * i & 3) != MISSING) give((uint8_t)(i + 1), FATHOM_TARGET, mm[said >> 2 * i & 3]);
+}
+
+static void every_two_measurements_with_every_mask_are_right(void **state)
+{
+    (void)state;
+    config.hold_us = 1;
+    for (uint8_t probes = 1; probes != 16; probes++) {
+        config.probes = probes;
+        for (unsigned one = 0; one != MEASUREMENTS; one++) {
+            for (unsigned two = 0; two != MEASUREMENTS; two++) {
+                fathom_a05_relay_rule_init(&rule, &config);
+                measure_all(one);
+                const uint8_t level = refer(0, probes, one);
+                if (rule.debounce.level != level) fail();
+                measure_all(two);
+                if (rule.debounce.level != refer(level, probes, two)) fail();
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +304,7 @@ int main(void)
         cmocka_unit_test_setup(the_threshold_goes_from_250_to_4500_mm, set_up),
         cmocka_unit_test_setup(equality_holds_the_state_unless_it_is_told_otherwise, set_up),
         cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
+        cmocka_unit_test_setup(every_two_measurements_with_every_mask_are_right, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -194,6 +194,19 @@ static void a_level_that_turns_during_an_exchange_is_a_sample_after_it(void **st
     assert_in_range(fathom_elapsed_us(pins.sample.time_us, ended_us), 5000, 5300);
 }
 
+static void a_level_that_has_all_but_settled_when_a_request_leaves_waits(void **state)
+{
+    (void)state;
+    pins_run(60 * MS, 1000);
+    pins_turn(1 * MS);
+    pins_run(20 * MS, 1000); /* seen for 19 ms */
+    set_register(0x0206, 2000);
+    pins_run(1 * MS, 1000);
+    assert_int_equal(pins.fake.written, 1);
+    pins_run(100 * MS, 1000);
+    pins_expect(1, FATHOM_FAR);
+}
+
 /* To the host's UART a low level is a break: 00 without a stop bit, before the answer and after it. */
 static void garbage_with_framing_errors_around_an_answer_is_dropped_and_counted(void **state)
 {
@@ -335,6 +348,7 @@ int main(void)
         cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
         cmocka_unit_test_setup(an_answer_on_the_pin_is_no_change_in_any_loop, set_up),
         cmocka_unit_test_setup(a_level_that_turns_during_an_exchange_is_a_sample_after_it, set_up),
+        cmocka_unit_test_setup(a_level_that_has_all_but_settled_when_a_request_leaves_waits, set_up),
         cmocka_unit_test_setup(garbage_with_framing_errors_around_an_answer_is_dropped_and_counted, set_up),
         cmocka_unit_test_setup(unmarked_garbage_before_an_answer_is_dropped_too, set_up),
         cmocka_unit_test_setup(an_answer_after_its_time_out_is_no_change_either, set_up),

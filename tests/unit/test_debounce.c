@@ -160,6 +160,15 @@ static void what_is_held_back_comes_only_if_its_row_is_unbroken(void **state)
     assert_true(fathom_debounce_distance(&gate, 1001, now_us + 1500000));
 }
 
+static void a_row_that_is_held_back_for_long_is_not_forgotten(void **state)
+{
+    (void)state;
+    config = (fathom_debounce_config_t){.hold_us = 258 * HALF_S, .near_count = 1, .far_count = 5};
+    start();
+    assert_true(distance(999));
+    for (int i = 1; i <= 258; i++) assert_int_equal(distance(1001), i == 258);
+}
+
 /* 71.58 minutes are one turn of the clock: 2 * 2147.48 s and a little would look like a little. */
 static void a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again(void **state)
 {
@@ -305,6 +314,7 @@ int main(void)
         cmocka_unit_test_setup(a_level_lasts_at_least_hold_us, set_up),
         cmocka_unit_test_setup(the_first_level_need_not_wait, set_up),
         cmocka_unit_test_setup(what_is_held_back_comes_only_if_its_row_is_unbroken, set_up),
+        cmocka_unit_test_setup(a_row_that_is_held_back_for_long_is_not_forgotten, set_up),
         cmocka_unit_test_setup(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again, set_up),
         cmocka_unit_test_setup(samples_of_every_kind_count_as_the_header_says, set_up),
         cmocka_unit_test_setup(interference_counts_as_farther, set_up),
