@@ -57,8 +57,7 @@ uint8_t fathom_sim_fault_protocols(uint8_t kind) { return exists(kind) ? kinds[k
 
 bool fathom_sim_fault_applies(uint8_t kind, const fathom_sim_device_t *device)
 {
-    const bool streams = device->period_us != 0 && device->model->automatic != NULL;
-    uint8_t spoken = streams ? FATHOM_SIM_STREAM : 0;
+    uint8_t spoken = device->period_us != 0 ? FATHOM_SIM_STREAM : 0;
     for (uint8_t i = 0; i < FATHOM_SIM_PROTOCOLS && device->listens && device->protocols[i] != NULL; i++)
         spoken |= device->protocols[i]->id;
     if (kind == FATHOM_SIM_FAULT_INTERFERENCE && device->model->optical) return false;

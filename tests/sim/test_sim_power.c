@@ -146,6 +146,24 @@ static void a_wire_each_way_is_cut_off_as_well(void **state)
     assert_int_equal(a16.device.carriers, 0);
 }
 
+static void a_neighbour_with_wires_of_its_own_never_heard_it(void **state)
+{
+    fathom_sim_a16_t a16, other;
+    bench_t bench;
+    (void)state;
+    bench_init(&bench, &bench_9600);
+    bench.line.full_duplex = true;
+    fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO});
+    fathom_sim_a16_init(&other, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .unit = 5});
+    bench_attach(&bench, &a16.device);
+    bench_attach(&bench, &other.device);
+    bench_wait(&bench, 102 * MS);
+    fathom_sim_power_cycle(&bench.line, &a16.device, 1000 * MS, bench.now_us);
+    bench_forget(&bench);
+    ASK(&bench, 200 * MS, OTHER);
+    EXPECT(&bench, OTHERS);
+}
+
 static void half_an_hour_is_the_longest(void **state)
 {
     stage_t s;
@@ -166,6 +184,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_is_cut_off_at_any_moment_of_an_answer),
     cmocka_unit_test(it_hears_nothing_of_a_request_that_it_woke_up_in),
     cmocka_unit_test(a_wire_each_way_is_cut_off_as_well),
+    cmocka_unit_test(a_neighbour_with_wires_of_its_own_never_heard_it),
     cmocka_unit_test(half_an_hour_is_the_longest),
 };
 
