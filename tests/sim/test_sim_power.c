@@ -4,6 +4,7 @@
 #include "bench.h"
 #include "sim/a05.h"
 #include "sim/a16.h"
+#include "sim/fault.h"
 #include "sim/hps167s.h"
 #include "sim/scene.h"
 
@@ -177,6 +178,70 @@ static void half_an_hour_is_the_longest(void **state)
     expect_both_work(&s);
 }
 
+static void an_accident_in_an_acknowledgement_keeps_what_was_set(void **state)
+{
+    const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
+    fathom_sim_fault_t fault;
+    fathom_sim_hps167s_t hps;
+    bench_t bench;
+    (void)state;
+    bench_init(&bench, &bench_19200);
+    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){0});
+    fathom_sim_fault_init(&fault, 1);
+    assert_non_null(
+        fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_POWER_CYCLE, FATHOM_SIM_FAULT_ALWAYS_PPM, 1));
+    fathom_sim_fault_attach(&fault, &bench.line, &hps.device);
+    bench_attach(&bench, &hps.device);
+    ASK(&bench, 2100 * MS, 0x01, 0x06, 0x00, 0x11, 0x00, 0x03, 0x99, 0xCE); /* it is off for 2 s */
+    assert_true(bench.heard < 8);
+    assert_int_equal(fault.counters[FATHOM_SIM_FAULT_POWER_CYCLE], 1);
+    bench_forget(&bench);
+    fathom_sim_set_line(&bench.line, &fast, bench.now_us);
+    ASK(&bench, 50 * MS, 0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9);
+    EXPECT(&bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00, 0xB4, 0x03, 0xE2, 0xDD);
+}
+
+/* ---- how often the line is looked at ---- */
+
+static void in_steps(bench_t *bench, uint32_t us, uint32_t step_us)
+{
+    for (; us > step_us; us -= step_us) bench_wait(bench, step_us);
+    bench_wait(bench, us);
+}
+
+/* Asked, set, cut off in its third unasked frame, asked again. */
+static void play(bench_t *bench, uint32_t step_us)
+{
+    fathom_sim_hps167s_t hps;
+    bench_init(bench, &bench_19200);
+    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.unasked_us = 50 * MS});
+    bench_attach(bench, &hps.device);
+    SAY(bench, 0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9);
+    in_steps(bench, 60 * MS, step_us);
+    SAY(bench, 0x01, 0x06, 0x00, 0x10, 0x00, 0x05, 0x48, 0x0C);
+    in_steps(bench, 93100, step_us);
+    fathom_sim_power_cycle(&bench->line, &hps.device, 30 * MS, bench->now_us);
+    in_steps(bench, 40 * MS, step_us);
+    SAY(bench, 0x05, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC4, 0x4F);
+    in_steps(bench, 100 * MS, step_us);
+    assert_int_equal(hps.device.counters.answered, 3);
+    assert_int_equal(hps.device.counters.automatic, 5);
+}
+
+static void how_often_it_is_looked_at_changes_nothing(void **state)
+{
+    static bench_t once, often;
+    static const uint32_t steps_us[] = {1, 7, 333, 20 * MS};
+    (void)state;
+    play(&once, 200 * MS);
+    for (size_t i = 0; i < sizeof steps_us / sizeof steps_us[0]; i++) {
+        play(&often, steps_us[i]);
+        assert_int_equal(often.heard, once.heard);
+        assert_memory_equal(often.bytes, once.bytes, once.heard);
+        assert_memory_equal(often.end_us, once.end_us, once.heard * sizeof once.end_us[0]);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(without_power_it_hears_and_says_nothing),
     cmocka_unit_test(it_starts_anew_when_power_is_back),
@@ -186,6 +251,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_wire_each_way_is_cut_off_as_well),
     cmocka_unit_test(a_neighbour_with_wires_of_its_own_never_heard_it),
     cmocka_unit_test(half_an_hour_is_the_longest),
+    cmocka_unit_test(an_accident_in_an_acknowledgement_keeps_what_was_set),
+    cmocka_unit_test(how_often_it_is_looked_at_changes_nothing),
 };
 
 BENCH_MAIN(tests)
