@@ -108,7 +108,8 @@ static void guess(const decode_input_t *input, const decode_piece_t *piece, uint
                   char why[WHY_TEXT])
 {
     const uint8_t *const bytes = input->bytes + piece->offset;
-    const uint8_t have = (uint8_t)(piece->length < 255 ? piece->length : 255);
+    uint8_t have = 255;
+    if (piece->length < have) have = (uint8_t)piece->length;
     const bool has_function = have >= 3 && (bytes[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS ||
                                             bytes[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER ||
                                             bytes[1] == FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS);

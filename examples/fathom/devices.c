@@ -3,16 +3,30 @@
 
 static void make_a16(device_t *device, const device_settings_t *settings, uint8_t mode)
 {
-    const fathom_sim_a16_config_t config = {
-        .unit = settings->address, .mode = mode, .seed = settings->seed, .scene = settings->scene};
+    const uint32_t *const traits = settings->traits;
+    const fathom_sim_a16_config_t config = {.unit = settings->address,
+                                            .mode = mode,
+                                            .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
+                                            .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
+                                            .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
+                                            .real_time = traits[DEVICE_REAL_TIME] != 0,
+                                            .seed = settings->seed,
+                                            .scene = settings->scene};
     fathom_sim_a16_init(&device->model.a16, &config);
     device->base = &device->model.a16.device;
 }
 
 static void make_a05(device_t *device, const device_settings_t *settings, uint8_t mode)
 {
-    const fathom_sim_a05_config_t config = {
-        .unit = settings->address, .mode = mode, .seed = settings->seed, .scene = settings->scene};
+    const uint32_t *const traits = settings->traits;
+    const fathom_sim_a05_config_t config = {.unit = settings->address,
+                                            .mode = mode,
+                                            .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
+                                            .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
+                                            .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
+                                            .real_time = traits[DEVICE_REAL_TIME] != 0,
+                                            .seed = settings->seed,
+                                            .scene = settings->scene};
     fathom_sim_a05_init(&device->model.a05, &config);
     device->base = &device->model.a05.device;
 }
@@ -51,12 +65,29 @@ static uint8_t baud_code(uint32_t baud)
     return 0;
 }
 
+static uint8_t warm_up_says(const uint32_t *traits)
+{
+    if (traits[DEVICE_WARM_UP_ABNORMAL] != 0) return FATHOM_SIM_HPS167S_ABNORMAL;
+    return traits[DEVICE_WARM_UP_REFUSES] != 0 ? FATHOM_SIM_HPS167S_EXCEPTION : FATHOM_SIM_HPS167S_SILENCE;
+}
+
 void device_hps167s(device_t *device, const device_settings_t *settings)
 {
-    const fathom_sim_hps167s_config_t config = {.unit = settings->address,
-                                                .baud_code = baud_code(settings->baud),
-                                                .seed = settings->seed,
-                                                .scene = settings->scene};
+    const uint32_t *const traits = settings->traits;
+    const fathom_sim_hps167s_config_t config = {
+        .unit = settings->address,
+        .baud_code = baud_code(settings->baud),
+        .warm_up_s = (uint8_t)traits[DEVICE_WARM_UP],
+        .warm_up_says = warm_up_says(traits),
+        .wrong_length = traits[DEVICE_COUNT_EXCEPTION] != 0 ? FATHOM_MODBUS_ILLEGAL_DATA_VALUE : 0,
+        .no_termination = traits[DEVICE_NO_TERMINATION] != 0,
+        .no_auto_output = traits[DEVICE_NO_OUTPUT] != 0,
+        .baud_at_power_on = traits[DEVICE_BAUD_LATER] != 0,
+        .offset_adds = traits[DEVICE_OFFSET_ADDS] != 0,
+        .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
+        .unasked_us = traits[DEVICE_UNASKED] * 1000,
+        .seed = settings->seed,
+        .scene = settings->scene};
     fathom_sim_hps167s_init(&device->model.hps167s, &config);
     device->base = &device->model.hps167s.device;
 }

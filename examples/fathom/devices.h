@@ -6,10 +6,29 @@
 #include "sim/a16.h"
 #include "sim/hps167s.h"
 
+/* What a device may have besides; 0: it has not. sim_traits.c says what each is. */
+typedef enum {
+    DEVICE_EXCEPTIONS,
+    DEVICE_ANSWERS_BROADCAST,
+    DEVICE_REAL_TIME,
+    DEVICE_ANSWERS_FROM_NEW,
+    DEVICE_WARM_UP, /* seconds */
+    DEVICE_WARM_UP_REFUSES,
+    DEVICE_WARM_UP_ABNORMAL,
+    DEVICE_UNASKED, /* milliseconds */
+    DEVICE_NO_OUTPUT,
+    DEVICE_NO_TERMINATION,
+    DEVICE_BAUD_LATER,
+    DEVICE_OFFSET_ADDS,
+    DEVICE_COUNT_EXCEPTION,
+    DEVICE_TRAITS
+} device_trait_t;
+
 typedef struct {
     uint8_t address;
     uint32_t baud; /* 0: the factory's; only a sensor that can be set to another rate looks at it */
     uint32_t seed;
+    uint32_t traits[DEVICE_TRAITS];
     fathom_sim_scene_t scene;
 } device_settings_t;
 

@@ -25,11 +25,12 @@ typedef struct {
 static void hang_device(session_t *session, uint32_t i, uint32_t now_us)
 {
     const sim_device_t *const asked = &session->options.devices[i];
-    const device_settings_t settings = {.address = asked->address,
-                                        .baud = asked->line.baud,
-                                        .seed = asked->seed,
-                                        .scene = asked->scene.scene};
+    device_settings_t settings = {.address = asked->address,
+                                  .baud = asked->line.baud,
+                                  .seed = asked->seed,
+                                  .scene = asked->scene.scene};
     device_t *const device = &session->devices[i];
+    memcpy(settings.traits, asked->traits, sizeof settings.traits);
     asked->mode->simulate(device, &settings);
     sim_faults_begin(&asked->faults, &session->faults[i], asked->seed);
     fathom_sim_fault_attach(&session->faults[i], &session->line, device->base);

@@ -3,6 +3,7 @@
 
 #include "sensors.h"
 #include "sim_faults.h"
+#include "sim_traits.h"
 
 void sim_help(FILE *to)
 {
@@ -18,32 +19,35 @@ void sim_help(FILE *to)
         "line, as on an RS485 pair; one of them at most may send by itself (mode auto). Two with the same\n"
         "address answer into each other, as real ones do.\n\n"
         "  --link PATH       makes a link to the port, for a name that stays; removed at the end\n"
+        "  --echo            the host hears itself, as behind an RS485 adapter with local echo\n"
+        "  --counters        at the end, on stderr: what each sensor has heard and done, as one JSON object "
+        "a "
+        "line\n"
+        "  --seed N          where the movement begins, the small differences of the answer times, and the "
+        "faults;\n"
+        "                    default 0\n\n"
+        "Of several sensors, the rest are for all, or with N@ before the value for the N-th:\n"
+        "--distance 2@1500 --fault 3@silence=10%.\n\n"
         "  --distance MM     what it measures, 0..65535, which is sent as it is; or no-target, interference "
         "(a16,\n"
         "                    a05) or fault (hps167s). An a05 takes up to four, separated by commas; the last "
         "one\n"
         "                    holds for the probes that are left. Default: something that moves to and fro\n"
         "  --baud RATE       the rate that an hps167s was set to: 19200 (default), 57600, 115200 or 230400\n"
-        "  --fault KIND[=P[@N]]\n"
-        "                    damages what it sends: each frame with the chance P, such as 0.05 or 5% "
-        "(default "
-        "1), or\n"
-        "                    only the N-th, counted from 1. May be given several times, such as\n"
-        "                    --fault silence=10% --fault flip-bit=0.01. The kinds:\n",
+        "  --with NAME       gives it what was set before, or one of the ways that the datasheets leave "
+        "open:\n",
         to);
+    sim_traits_print(to);
+    (void)fputs("  --fault KIND[=P[@N]]\n"
+                "                    damages what it sends: each frame with the chance P, such as 0.05 or 5% "
+                "(default "
+                "1), or\n"
+                "                    only the N-th, counted from 1. May be given several times, such as\n"
+                "                    --fault silence=10% --fault flip-bit=0.01. The kinds:\n",
+                to);
     sim_faults_print(to);
     (void)fputs(
-        "  Of several sensors, --distance, --baud and --fault are for all, or for the N-th when N@ stands "
-        "before\n"
-        "  the value: --distance 2@1500 --fault 3@silence=10%.\n\n"
-        "  --seed N          where the movement begins, the small differences of the answer times, and the "
-        "faults;\n"
-        "                    default 0\n"
-        "  --echo            the host hears itself, as behind an RS485 adapter with local echo\n"
-        "  --counters        at the end, on stderr: what each sensor has heard and done, as one JSON object "
-        "a "
-        "line\n\n"
-        "SIGUSR1 cuts the power of all for a second; they keep the settings that real ones keep.\n"
+        "\nSIGUSR1 cuts the power of all for a second; they keep the settings that real ones keep.\n"
         "Each answers only at its own baud rate. Parity cannot be seen through a pseudo terminal: it is "
         "taken "
         "to be\n"

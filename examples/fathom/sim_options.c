@@ -7,19 +7,18 @@
 #include "command.h"
 #include "options.h"
 #include "sim/pty.h"
+#include "sim_traits.h"
 
 static const char command[] = "sim";
 
-enum { LINK, DISTANCE, SEED, FAULT, BAUD, ECHO_ON, COUNTERS, HELP, OPTIONS };
+enum { LINK, DISTANCE, SEED, FAULT, BAUD, WITH, ECHO_ON, COUNTERS, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    [LINK] = {"link", required_argument, NULL, 256},
-    [DISTANCE] = {"distance", required_argument, NULL, 256},
-    [SEED] = {"seed", required_argument, NULL, 256},
-    [FAULT] = {"fault", required_argument, NULL, 256},
-    [BAUD] = {"baud", required_argument, NULL, 256},
-    [ECHO_ON] = {"echo", no_argument, NULL, 256},
-    [COUNTERS] = {"counters", no_argument, NULL, 256},
+    [LINK] = {"link", required_argument, NULL, 256}, [DISTANCE] = {"distance", required_argument, NULL, 256},
+    [SEED] = {"seed", required_argument, NULL, 256}, [FAULT] = {"fault", required_argument, NULL, 256},
+    [BAUD] = {"baud", required_argument, NULL, 256}, [WITH] = {"with", required_argument, NULL, 256},
+
+    [ECHO_ON] = {"echo", no_argument, NULL, 256},    [COUNTERS] = {"counters", no_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -45,7 +44,7 @@ static void each(void *ctx, int row, const char *value)
     givens_t *const givens = ctx;
     given_t given = {value, value, 0, row};
     const size_t digits = strspn(value, "0123456789");
-    if (row != DISTANCE && row != FAULT && row != BAUD) return;
+    if (row != DISTANCE && row != FAULT && row != BAUD && row != WITH) return;
     if (digits != 0 && digits < 9 && value[digits] == '@') {
         for (size_t i = 0; i != digits; i++) given.device = given.device * 10 + (uint32_t)(value[i] - '0');
         if (given.device == 0) given.device = UINT32_MAX; /* there is no such device either */
@@ -167,6 +166,22 @@ static bool take_baud(sim_device_t *device, const char *text)
     return false;
 }
 
+/* What is for all is meant for those that can have it; there must be one. */
+static bool take_traits(sim_options_t *options, const givens_t *givens, uint32_t number)
+{
+    sim_device_t *const device = &options->devices[number - 1];
+    for (uint32_t i = 0; i != givens->count; i++) {
+        const given_t *const given = &givens->list[i];
+        if (given->row != WITH || (given->device != 0 && given->device != number)) continue;
+        bool others_can = false;
+        for (uint32_t other = 0; other != options->count && given->device == 0; other++)
+            others_can = others_can || sim_trait_fits(given->value, options->devices[other].sensor);
+        if (others_can && !sim_trait_fits(given->value, device->sensor)) continue;
+        if (!sim_trait_take(device->traits, command, device->sensor, given->value)) return false;
+    }
+    return true;
+}
+
 /* Everything that may differ from device to device; number: from 1. A rate for all is meant for those that can
  * have it, if there are any. */
 static bool equip(sim_device_t *device, const givens_t *givens, uint32_t number, uint32_t seed,
@@ -208,6 +223,8 @@ bool sim_options(sim_options_t *options, int argc, char **argv)
     bool any_rates = false;
     for (uint32_t i = 0; i != options->count; i++) any_rates = any_rates || has_rates(&options->devices[i]);
     for (uint32_t i = 0; i != options->count; i++)
-        if (!equip(&options->devices[i], &givens, i + 1, seed, any_rates)) return false;
+        if (!take_traits(options, &givens, i + 1) ||
+            !equip(&options->devices[i], &givens, i + 1, seed, any_rates))
+            return false;
     return true;
 }

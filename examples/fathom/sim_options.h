@@ -14,6 +14,7 @@ typedef struct {
     fathom_line_settings_t line; /* its own */
     uint32_t seed;
     uint8_t address;
+    uint32_t traits[DEVICE_TRAITS];
     scenery_t scene;
     sim_faults_t faults;
 } sim_device_t;

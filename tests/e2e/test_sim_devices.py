@@ -178,6 +178,98 @@ class Power(Bus):
         self.assertEqual(sim.end().code, 0)
 
 
+class With(Bus):
+    """What the datasheets leave open, byte for byte; without the option first where that differs."""
+
+    def told(self, sensor, request, length, *more):
+        """So many bytes of what comes back; 0: what comes in 0.5 s, which is far more than the sensors need."""
+        sim = self.sim(sensor, '--distance', '754', *more)
+        port = self.open(sim, baudrate=19200 if sensor == 'hps167s' else 9600)
+        if length == 0:
+            port.timeout = 0.5
+        return self.ask(port, port.baudrate, request, length or 1)
+
+    def check(self, sensor, request, answer, *more):
+        self.assertEqual(self.told(sensor, request, len(answer), *more), answer)
+
+    def measures(self, sensor, request, *more):
+        """A measurement of 754 mm."""
+        self.check(sensor, request, e2e.registers(1, 754, 0xDCB2, 0x0701, 0), *more)
+
+    def test_refusals_of_an_a16(self):
+        request = e2e.adu(1, 3, 3, 0, 0, 1)
+        self.check('a16::modbus', request, b'')
+        self.check('a16::modbus', request, e2e.adu(1, 0x83, 2), '--with', 'exceptions')
+
+    def test_answers_to_ff(self):
+        request = e2e.adu(255, 3, 2, 0, 0, 1)
+        self.check('a05:9:modbus', request, b'')
+        self.check('a05:9:modbus', request, e2e.registers(9, 9), '--with', 'broadcast')
+
+    def test_real_time_output_of_an_a16(self):
+        request = e2e.adu(1, 3, 2, 7, 0, 1)
+        self.check('a16::modbus', request, e2e.registers(1, 0))
+        self.check('a16::modbus', request, e2e.registers(1, 1), '--with', 'real-time')
+
+    def test_a_new_address_is_acknowledged_by_the_old_or_the_new(self):
+        for sensor, address in (('a16::modbus', (2, 0)), ('a05::modbus', (2, 0)), ('hps167s', (0, 0x10))):
+            request = e2e.adu(1, 6, *address, 0, 5)
+            self.check(sensor, request, request)
+            self.check(sensor, request, e2e.adu(5, 6, *address, 0, 5), '--with', 'new-address')
+
+    def test_the_warm_up_of_an_hps167s(self):
+        """255 s: longer than anything here takes."""
+        warm = ('--with', 'warm-up=255')
+        self.measures('hps167s', ASK_HPS)
+        self.check('hps167s', ASK_HPS, b'', *warm)
+        self.check('hps167s', ASK_HPS, e2e.adu(1, 0x83, 4), *warm, '--with', 'warm-up-04')
+        self.check('hps167s', ASK_HPS, e2e.registers(1, 0xFFFF, 0, 0xFF, 0xFFFF), *warm, '--with', 'warm-up-ff')
+
+    def test_what_the_configuration_says(self):
+        request = e2e.adu(1, 3, 0, 2, 0, 4)  # termination, output; warm-up, 180 ms in 32 bits, baud code
+        self.check('hps167s', request, e2e.registers(1, 0xFFFF, 0, 0, 0xB401))
+        self.check('hps167s', request, e2e.registers(1, 0xFF00, 0, 0, 0xB401), '--with', 'output-off')
+        self.check('hps167s', request, e2e.registers(1, 0x00FF, 0x0700, 0, 0xB401), '--with', 'termination-off', '--with', 'warm-up=7')
+
+    def test_unasked_measurements(self):
+        self.check('hps167s', b'', b'')
+        self.measures('hps167s', b'', '--with', 'unasked=100')
+
+    def test_a_wrong_length_is_refused_by_02_or_03(self):
+        request = e2e.adu(1, 3, 0, 8, 0, 3)
+        self.check('hps167s', request, e2e.adu(1, 0x83, 2))
+        self.check('hps167s', request, e2e.adu(1, 0x83, 3), '--with', 'count-03')
+
+    def test_an_offset_replaces_or_adds(self):
+        for words, distance in (((), 764), (('--with', 'offset-adds'), 774)):
+            sim = self.sim('hps167s', '--distance', '754', *words)
+            port = self.open(sim, baudrate=19200)
+            for _ in range(2):
+                self.ask(port, 19200, e2e.adu(1, 6, 0, 0x14, 0, 10), 8)
+            self.assertEqual(self.ask(port, 19200, ASK_HPS, 13)[3:5], distance.to_bytes(2, 'big'))
+
+    def test_a_new_rate_acts_at_once_or_after_the_next_power_on(self):
+        request = e2e.adu(1, 6, 0, 0x11, 0, 3)
+        for words, rate in (((), 115200), (('--with', 'baud-later'), 19200)):
+            sim = self.sim('hps167s', *words)
+            port = self.open(sim, baudrate=19200)
+            self.assertEqual(self.ask(port, 19200, request, 8), request)
+            self.assertEqual(len(self.ask(port, rate, ASK_HPS, 13)), 13)
+            sim.send(signal.SIGUSR1)
+            sim.expect('power off', 'err')
+            port.timeout = 0.2
+            began = time.monotonic()
+            while len(self.ask(port, 115200, ASK_HPS, 13)) != 13:
+                self.assertLess(time.monotonic() - began, e2e.PATIENCE)
+
+    def test_for_all_means_those_that_can_and_n_means_one(self):
+        sim = self.sim(*BUS, '--with', 'exceptions', '--with', '3@count-03')
+        port = self.open(sim, baudrate=9600)
+        self.assertEqual(self.ask(port, 9600, e2e.adu(1, 3, 3, 0, 0, 1), 5), e2e.adu(1, 0x83, 2))
+        self.assertEqual(self.ask(port, 9600, e2e.adu(2, 3, 3, 0, 0, 1), 5), e2e.adu(2, 0x83, 2))
+        self.assertEqual(self.ask(port, 19200, e2e.adu(7, 3, 0, 8, 0, 3), 5), e2e.adu(7, 0x83, 3))
+
+
 class Wrong(e2e.Case):
     def wrong(self, words, *arguments):
         done = self.run_fathom('sim', *arguments)
@@ -208,9 +300,17 @@ class Wrong(e2e.Case):
         for rate in ('9600', '38400', '19200x', '', '0'):
             self.wrong(f"--baud of hps167s takes 19200, 57600, 115200 or 230400, not '{rate}'", 'hps167s', '--baud', rate)
 
+    def test_what_none_of_them_has_is_refused(self):
+        self.wrong("there is no 'unasked' for a16, only exceptions, broadcast, real-time, new-address", 'a16', '--with', 'unasked=5')
+        self.wrong("there is no 'count-03' for a16", *BUS, '--with', '1@count-03')
+        self.wrong("there is no 'x' for a16", *BUS, '--with', 'x')
+        for value in ('warm-up', 'warm-up=', 'warm-up=0', 'warm-up=256', 'warm-up=1s'):
+            self.wrong(f"--with takes warm-up=S, a whole number from 1 to 255, not '{value}'", 'hps167s', '--with', value)
+        self.wrong("--with count-03 takes no value, so not 'count-03=1'", 'hps167s', '--with', 'count-03=1')
+
     def test_the_help_names_it_all(self):
         text = self.run_fathom('sim', '--help').out
-        for word in ('SENSOR[:ADDRESS[:MODE]]...', '--baud', '--echo', '--counters', 'N@', '64'):
+        for word in ('SENSOR[:ADDRESS[:MODE]]...', '--baud', '--echo', '--counters', '--with', 'warm-up=S', 'N@', '64', 'SIGUSR1'):
             self.assertIn(word, text)
         self.assertEqual([line for line in text.splitlines() if re.search('.{125}', line)], [])
 
