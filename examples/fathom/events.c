@@ -82,11 +82,11 @@ bool events_ended(void) { return ended != 0; }
 
 bool events_output_gone(void) { return output_gone; }
 
-/* So that a signal that did not end the command wakes it once. One that comes meanwhile has left its mark. */
+/* So that a signal that did not end the command wakes it once; one that did goes on to end every sleep. */
 static void drain(void)
 {
     char bytes[16];
-    while (ended == 0 && read(wake[0], bytes, sizeof bytes) > 0) continue;
+    if (read(wake[0], bytes, sizeof bytes) > 0 && ended != 0 && write(wake[1], "", 1) < 0) return;
 }
 
 void events_wait(int fd, short events, uint32_t max_us, bool watch_output)

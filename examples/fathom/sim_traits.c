@@ -50,23 +50,25 @@ static bool has(const sensor_t *sensor, const trait_t *trait)
 
 bool sim_trait_fits(const char *text, const sensor_t *sensor) { return has(sensor, find(text)); }
 
+static bool unknown(const char *command, const sensor_t *sensor, const char *text)
+{
+    char known[NAMES_TEXT] = "";
+    for (size_t i = 0; i != DEVICE_TRAITS; i++) {
+        const size_t used = strlen(known);
+        if (has(sensor, &traits[i]))
+            (void)snprintf(known + used, sizeof known - used, "%s%s", used != 0 ? ", " : "", traits[i].name);
+    }
+    (void)usage_error(command, "there is no '%.*s' for %s, only %s", (int)strcspn(text, "="), text,
+                      sensor->name, known);
+    return false;
+}
+
 bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const sensor_t *sensor,
                     const char *text)
 {
     const trait_t *const trait = find(text);
     const size_t length = strcspn(text, "=");
-    char known[NAMES_TEXT] = "";
-    if (!has(sensor, trait)) {
-        for (size_t i = 0; i != DEVICE_TRAITS; i++) {
-            const size_t used = strlen(known);
-            if (has(sensor, &traits[i]))
-                (void)snprintf(known + used, sizeof known - used, "%s%s", used != 0 ? ", " : "",
-                               traits[i].name);
-        }
-        (void)usage_error(command, "there is no '%.*s' for %s, only %s", (int)length, text, sensor->name,
-                          known);
-        return false;
-    }
+    if (!has(sensor, trait)) return unknown(command, sensor, text);
     uint32_t value = 1;
     const bool has_value = text[length] == '=';
     const bool is_right = trait->unit == NULL

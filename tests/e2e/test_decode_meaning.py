@@ -144,6 +144,50 @@ class Hps167s(decoding.Case):
         self.assertIn('hps167s: #5 has 4 registers, not 3; it refuses this', self.one(e2e.adu(1, 3, 0, 8, 0, 3).hex())['notes'])
 
 
+def dyp(*data):
+    """55 AA, then these, then the low byte of the sum."""
+    frame = bytes((0x55, 0xAA, *data))
+    return (frame + bytes([sum(frame) & 0xFF])).hex()
+
+
+class Ultrasonic(decoding.Case):
+    def test_each_probe_of_the_55_aa_protocol(self):
+        for probe in (1, 2, 3, 4):
+            asked, told = self.decode(dyp(9, 0x0F + probe), dyp(9, 0x0F + probe, 3, 0xE8))
+            self.assertEqual((asked['meanings'][0]['what'], asked['address']), (f'measure with probe {probe}', 9))
+            self.assertEqual(told['meanings'][0]['fields'], {f'probe_{probe}_mm': 1000})
+
+    def test_what_the_55_aa_protocol_does_not_have_is_told(self):
+        found = self.one(dyp(1, 0x14))
+        self.assertEqual((found['command'], found['meanings'][0]['what']), (0x14, 'no command of it'))
+        self.assertEqual(self.one(dyp(0xFF, 3))['meanings'][0]['notes'], {'new_address': 'not from 1 to 254'})
+        self.assertIn('FF is the broadcast address', self.one(dyp(0xFF, 1))['notes'][0])
+        self.assertIn('every a05 on the line obeys', self.one(dyp(5, 3))['notes'][0])
+
+    def test_distances_that_are_none_are_told(self):
+        for value, note in ((0, 'no target, as older firmware says it'), (0xFFFD, 'no target'),
+                            (0xFFFE, 'no target: interference by another unit')):
+            for frame in (e2e.frame(value).hex(), dyp(1, 0x10, *divmod(value, 256))):
+                self.assertEqual(list(self.one(frame)['meanings'][0]['notes'].values()), [note])
+
+    def test_reads_that_an_a05_does_not_have_are_told(self):
+        told = self.one('--sensor', 'a05', e2e.adu(1, 3, 1, 8, 0, 3).hex())['meanings'][0]
+        self.assertEqual(told['what'], '0x0108 is probe 3, and a read may not go past the last one')
+
+    def test_registers_of_an_a16_that_go_one_way_are_told(self):
+        self.assertIn('a16: 0x0202 can be written only', self.one(e2e.adu(1, 3, 2, 2, 0, 1).hex())['notes'])
+        self.assertEqual(self.one(e2e.adu(1, 6, 1, 0, 0, 1).hex())['meanings'][0]['what'],
+                         '0x0100 processed distance, which can be read only')
+        self.assertEqual(self.one(e2e.adu(1, 6, 2, 5, 0, 2).hex())['meanings'][0]['notes'], {'polarity': 'not 0 or 1'})
+        self.assertEqual(self.one(e2e.adu(1, 6, 2, 0, 0, 255).hex())['meanings'][0]['notes'], {'address': 'not from 0 to 254'})
+        self.assertIn('a16: a read of several registers is not in its datasheet', self.one(e2e.adu(1, 3, 1, 0, 0, 2).hex())['notes'])
+
+    def test_what_no_sensor_has_is_told(self):
+        told = self.one(e2e.adu(1, 3, 0x12, 0x34, 0, 2).hex())['meanings']
+        self.assertEqual([one['what'] for one in told], ['none of these sensors knows this'])
+        self.assertEqual(told[0]['fields'], {'address': '0x1234', 'registers': 2})
+
+
 class Damage(decoding.Case):
     def test_no_flipped_bit_is_called_right(self):
         """Every single-bit error of the Modbus frames, a line each; the CRC finds them all."""
