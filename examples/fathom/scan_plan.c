@@ -64,12 +64,17 @@ uint32_t scan_probe_us(const scan_plan_t *plan, const fathom_line_settings_t *li
     return once_us + plan->repeats * (once_us + timeout_us);
 }
 
+uint32_t scan_any_us(const scan_plan_t *plan)
+{
+    return scan_timeout_us(plan, &scan_dyp_line) + 2 * SCAN_ANY_TIMEOUT_US + LATENESS_US;
+}
+
 uint64_t scan_plan_us(const scan_plan_t *plan)
 {
     uint64_t sum_us = plan->listen_us;
     for (uint8_t i = 0; i != plan->setting_count; i++) {
         sum_us += (uint64_t)scan_probe_us(plan, &plan->settings[i]) * scan_addresses(plan);
-        if (scan_is_dyp_line(&plan->settings[i])) sum_us += SCAN_ANY_TIMEOUT_US;
+        if (scan_is_dyp_line(&plan->settings[i])) sum_us += scan_any_us(plan);
     }
     return sum_us;
 }

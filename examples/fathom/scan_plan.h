@@ -56,7 +56,9 @@ uint64_t scan_plan_us(const scan_plan_t *plan);
 /* How many addresses the plan has. */
 uint32_t scan_addresses(const scan_plan_t *plan);
 
-/* The question to any A05 by 55 AA, which the line of A16 and A05 gets besides. */
+/* The question to any A05 by 55 AA, which the line of A16 and A05 gets besides. It waits until nobody owes an answer,
+ * and after it anybody may owe one: so it takes three time-outs. */
 enum { SCAN_ANY_TIMEOUT_US = 300000 };
+uint32_t scan_any_us(const scan_plan_t *plan);
 
 #endif

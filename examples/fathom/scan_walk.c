@@ -168,7 +168,7 @@ static fathom_status_t walk_line(scan_walk_t *walk, const fathom_line_settings_t
     judge_damaged(walk, line);
     if (!scan_is_dyp_line(line)) return FATHOM_READY;
     if (!walk->has_a05) status = ask_any_a05(walk);
-    walk->done_us += SCAN_ANY_TIMEOUT_US;
+    walk->done_us += scan_any_us(plan);
     return status;
 }
 
