@@ -98,6 +98,20 @@ static void test_an_hps167s_that_sends_unasked_is_found_at_its_rate(void **state
     assert_int_equal(talk.finding.line.baud, 115200);
 }
 
+static void test_a_rate_that_the_port_cannot_do_does_not_end_the_listening(void **state)
+{
+    static const uint8_t answer[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
+                                     0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
+    const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
+    (void)state;
+    rig_begin(0);
+    rig.refused_baud = 57600;
+    begin_speaker(&fast, 180000, answer, sizeof answer);
+    listen_for_3_s();
+    assert_int_equal(talk.finding.model, FATHOM_HPS167S);
+    assert_int_equal(talk.finding.line.baud, 115200);
+}
+
 static void test_another_master_is_told(void **state)
 {
     /* A16 6, the first example: it asks address 1 for 0100 */
@@ -164,6 +178,7 @@ int main(void)
         cmocka_unit_test(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent),
         cmocka_unit_test(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devices),
         cmocka_unit_test(test_an_hps167s_that_sends_unasked_is_found_at_its_rate),
+        cmocka_unit_test(test_a_rate_that_the_port_cannot_do_does_not_end_the_listening),
         cmocka_unit_test(test_another_master_is_told),
         cmocka_unit_test(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise),
         cmocka_unit_test(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count),

@@ -141,15 +141,51 @@ static void test_whoever_has_another_address_in_0200_than_its_own_is_no_a16(void
 
 static void test_whoever_has_no_date_in_0001_is_no_hps167s(void **state)
 {
-    /* #3 begins with the right byte; #1 is a date of 2020 but for month and day */
-    const uint16_t versions[] = {0x1400, 0x140D, 0x0020};
+    /* #3 begins with the right byte; in #1 the month is 0, 13 or 32, or the day is 0 */
+    const uint16_t versions[] = {0x1400, 0x140D, 0x0020, 0x0009};
     (void)state;
-    for (unsigned i = 0; i != 3; i++) {
+    for (unsigned i = 0; i != 4; i++) {
         rig_begin(0);
         stranger = (stranger_t){.value = 0xB000, .version = versions[i]};
         begin_stranger(9, &scan_hps167s_line);
         expect_other(9);
     }
+}
+
+static void test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s(void **state)
+{
+    /* #2 is in its ranges but for the baud rate's code, 0 */
+    (void)state;
+    rig_begin(0);
+    stranger = (stranger_t){.version = 0x0909};
+    begin_stranger(9, &scan_hps167s_line);
+    expect_other(9);
+}
+
+static void test_an_a16_that_answers_0100_alone_is_known(void **state)
+{
+    (void)state;
+    rig_begin(0);
+    stranger = (stranger_t){.value = 754, .address = 9, .only = {0x0200, 0x0100}};
+    begin_stranger(9, &scan_dyp_line);
+    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_expect_sensor(9, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
+    assert_int_equal(rig_find(9)->value, 754);
+}
+
+static void test_an_a05_whose_measurement_is_lost_once_is_known(void **state)
+{
+    static fathom_sim_fault_t fault;
+    (void)state;
+    rig_begin(0);
+    rig_a05(&(fathom_sim_a05_config_t){.unit = 9, .mode = FATHOM_SIM_A05_MODBUS});
+    fathom_sim_fault_init(&fault, 1);
+    /* its first answer is that of 0200 */
+    assert_non_null(fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
+    fathom_sim_fault_attach(&fault, &rig.sim_line, &rig.a05[0].device);
+    assert_int_equal(rig_walk(), FATHOM_READY);
+    assert_int_equal(fault.frames_hit, 1);
+    rig_expect_sensor(9, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
 }
 
 static void test_a_frame_of_an_address_that_was_not_asked_is_noted(void **state)
@@ -220,6 +256,9 @@ int main(void)
         cmocka_unit_test(test_whoever_answers_everything_or_nothing_is_another_modbus_device),
         cmocka_unit_test(test_whoever_has_another_address_in_0200_than_its_own_is_no_a16),
         cmocka_unit_test(test_whoever_has_no_date_in_0001_is_no_hps167s),
+        cmocka_unit_test(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s),
+        cmocka_unit_test(test_an_a16_that_answers_0100_alone_is_known),
+        cmocka_unit_test(test_an_a05_whose_measurement_is_lost_once_is_known),
         cmocka_unit_test(test_a_frame_of_an_address_that_was_not_asked_is_noted),
         cmocka_unit_test(test_another_master_that_begins_later_is_noted),
         cmocka_unit_test(test_measurements_may_take_longer_than_the_first_answer),
