@@ -14,6 +14,8 @@ CXX_WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conver
                 '-Wmissing-declarations', '-Wcast-align', '-Wvla', '-Werror']
 WARNINGS = [*CXX_WARNINGS, '-Wstrict-prototypes']
 
+LIBMODBUS = '-isystem/usr/include/modbus'  # what the port over libmodbus includes
+
 COPIED = ('include', 'src', 'port', 'examples', '.clang-tidy', '.clang-format')
 
 

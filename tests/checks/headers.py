@@ -6,7 +6,7 @@ import os
 import re
 import tempfile
 
-from common import CXX_WARNINGS, WARNINGS, code_of, files, main, read, run
+from common import CXX_WARNINGS, LIBMODBUS, WARNINGS, code_of, files, main, read, run
 
 COMPILERS = [
     (['gcc', '-std=c99', *WARNINGS], '.c'),
@@ -23,7 +23,7 @@ def check(root, only):
             if only and path not in only:
                 continue
             folder = os.path.join(root, 'port', path.split(os.sep)[1]) if path.startswith('port') else ''
-            include = ['-I' + os.path.join(root, 'include')] + (['-I' + folder] if folder else [])
+            include = [LIBMODBUS, '-I' + os.path.join(root, 'include')] + (['-I' + folder] if folder else [])
             name = os.path.relpath(os.path.join(root, path), folder or os.path.join(root, 'include'))
             for compiler, ending in COMPILERS:
                 source = os.path.join(work, 'alone' + ending)

@@ -6,15 +6,15 @@ import os
 import re
 from concurrent.futures import ThreadPoolExecutor
 
-from common import WARNINGS, files, main, run
+from common import LIBMODBUS, WARNINGS, files, main, run
 
-INCLUDE = ['-Iinclude', '-Iport', '-Iport/sim', '-Iport/posix']
+INCLUDE = ['-Iinclude', '-Iport', '-Iport/sim', '-Iport/posix', '-Iport/libmodbus']
 # They need another compiler's headers.
-FOREIGN = re.compile(r'^port/(?!sim/|posix/)')
+FOREIGN = re.compile(r'^port/(?!sim/|posix/|libmodbus/)')
 
 
 def tidy(root, path):
-    good, said = run(['clang-tidy-14', '--quiet', path, '--', '-std=c99', *WARNINGS, *INCLUDE], root)
+    good, said = run(['clang-tidy-14', '--quiet', path, '--', '-std=c99', *WARNINGS, *INCLUDE, LIBMODBUS], root)
     found = sorted(set(re.findall(r'^(\S+ (?:error|warning): .*)$', said, re.M)))
     return found or ([] if good else [f'{path}: clang-tidy failed: {said}'])
 

@@ -4,6 +4,7 @@
 
     package.py find_package BUILD    installed, moved elsewhere, and found by CMake
     package.py pkg_config BUILD      installed, moved elsewhere, and found by pkg-config
+    package.py libmodbus BUILD       the port over libmodbus, in both ways, and without libmodbus the rest of it
     package.py subproject BUILD      by add_subdirectory, which builds the library and nothing else
     package.py version BUILD         the version comes from one place
 
@@ -83,6 +84,50 @@ def pkg_config(build, work):
     expect(run(program), f'{version} works\n')
 
 
+def libmodbus(build, work):
+    prefix = installed(build, work)
+    works = 'over libmodbus it works\n'
+    folder = os.path.join(work, 'build')
+    options = ['-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=' + project(build, 'CMAKE_PROJECT_VERSION')]
+    configure(build, folder, *options)
+    run('cmake', '--build', folder)
+    expect(run(os.path.join(folder, 'over_libmodbus')), works)
+
+    folders = [os.path.dirname(os.path.join(prefix, path)) for path in files(prefix, '.', ends='.pc')]
+    environment = dict(os.environ, PKG_CONFIG_PATH=os.pathsep.join(folders))
+    flags = run('pkg-config', '--cflags', '--libs', 'fathom_libmodbus', env=environment).split()
+    program = os.path.join(work, 'over_libmodbus')
+    run(project(build, 'CMAKE_C_COMPILER'), '-std=c99', os.path.join(CONSUMER, 'over_libmodbus.c'), *flags, '-o',
+        program)
+    expect(run(program), works)
+
+    # A consumer that has no libmodbus: everything but that port.
+    without = ['-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON']
+    folder = os.path.join(work, 'consumer_without')
+    configure(build, folder, *options, *without)
+    run('cmake', '--build', folder)
+    run(os.path.join(folder, 'ports'))
+    expect(os.path.exists(os.path.join(folder, 'over_libmodbus')), False)
+
+    # A build that had none says so, and so does its tool; what it installs is whole without it.
+    folder = os.path.join(work, 'built_without')
+    said = run('cmake', '-S', ROOT, '-B', folder, '-DCMAKE_C_COMPILER=' + project(build, 'CMAKE_C_COMPILER'),
+               '-DFATHOM_TESTS=OFF', *without)
+    expect('pkg-config did not find libmodbus: the port libmodbus is not built' in said, True)
+    run('cmake', '--build', folder)
+    done = subprocess.run([os.path.join(folder, 'fathom'), 'read', 'hps167s', '--port', 'tcp:127.0.0.1'],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    expect((done.returncode, done.stdout), (1, ''))
+    expect('tcp:127.0.0.1: this fathom was built without libmodbus, which tcp: needs' in done.stderr, True)
+    prefix = os.path.join(work, 'installed_without')
+    run('cmake', '--install', folder, '--prefix', prefix)
+    expect([path for path in files(prefix, '.', ends=('.h', '.a', '.pc', '.cmake')) if 'libmodbus' in path], [])
+    folder = os.path.join(work, 'consumer_of_without')
+    configure(build, folder, '-DCMAKE_PREFIX_PATH=' + prefix, options[1])
+    run('cmake', '--build', folder)
+    run(os.path.join(folder, 'ports'))
+
+
 def subproject(build, work):
     folder = os.path.join(work, 'build')
     for crc in ('256', '16'):
@@ -120,6 +165,6 @@ def version(build, work):
 
 if __name__ == '__main__':
     with tempfile.TemporaryDirectory() as folder_of_all:
-        {'find_package': find_package, 'pkg_config': pkg_config, 'subproject': subproject,
+        {'find_package': find_package, 'pkg_config': pkg_config, 'libmodbus': libmodbus, 'subproject': subproject,
          'version': version}[sys.argv[1]](os.path.abspath(sys.argv[2]), folder_of_all)
     print(sys.argv[1], 'works')
