@@ -90,8 +90,7 @@ static int take(fathom_libmodbus_t *port)
     return 1;
 }
 
-/* Is what was taken for the line? The longest frame of TCP is longer than the line's, and answers nothing that the
- * line asks. */
+/* Is what was taken for the line? */
 static bool is_answer(fathom_libmodbus_t *port)
 {
     const uint8_t *const adu = port->adu;
@@ -99,14 +98,13 @@ static bool is_answer(fathom_libmodbus_t *port)
         count(&port->late_answers);
         return false;
     }
-    const uint16_t length = word_at(adu + LENGTH);
-    if (length == EXCEPTION_LENGTH && (adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) != 0 &&
+    if (word_at(adu + LENGTH) == EXCEPTION_LENGTH && (adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) != 0 &&
         (adu[EXCEPTION] == GATEWAY_PATH_UNAVAILABLE || adu[EXCEPTION] == GATEWAY_TARGET_SILENT)) {
         port->gateway_exception = adu[EXCEPTION];
         count(&port->gateway_refusals);
         return false;
     }
-    return length != MOST_LENGTH;
+    return true;
 }
 
 int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)

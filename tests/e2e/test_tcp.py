@@ -156,6 +156,19 @@ class Answers(Case):
         done = reader.finish()
         self.assertEqual((done.code, self.distances(done)), (0, ['2083']), done.err)
 
+    def test_after_an_answer_in_pieces_a_short_one_is_seen_at_once(self):
+        """Meanwhile the system woke the tool for a whole answer only."""
+        server = self.server()
+        reader = self.reader(server, '--count', '2', '--timeout', '60000')
+        answer = registers(self.asked(server), 1, *SAID)
+        server.say(answer[:10])
+        time.sleep(0.2)  # until the tool has seen the half; if it has not, this test shows less
+        server.say(answer[10:])
+        server.say(adu(self.asked(server), 1, 0x83, 2))
+        done = reader.finish()
+        self.assertEqual((done.code, self.distances(done)), (1, ['2083']), done.err)
+        self.assertIn('attempt 2: address 1 refused: exception 02', done.err)
+
     def test_half_an_answer_is_none_and_costs_no_time_of_the_processor(self):
         server = self.server()
         reader = self.reader(server, '--count', '1', '--timeout', '1500')

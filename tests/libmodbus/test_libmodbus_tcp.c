@@ -223,6 +223,28 @@ static void a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_o
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_CHECKSUM_ERRORS], 1);
 }
 
+static void a_damaged_answer_is_given_up_at_once(void **state)
+{
+    static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
+    (void)state;
+    ask(0);
+    rig_say(wrong, sizeof wrong);
+    rig_run(2000, FINE_US);
+    assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
+}
+
+/* An exception is three bytes behind the header. */
+static void what_only_begins_like_a_gateways_exception_is_none(void **state)
+{
+    static const uint8_t longer[] = {0xF0, 1, 0, 0, 0, 4, 1, 0x83, 0x0B, 0x55};
+    (void)state;
+    ask(0);
+    rig_say(longer, sizeof longer);
+    rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+    assert_int_equal(rig.port.gateway_exception, 0);
+    assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
+}
+
 static void exceptions_have_their_numbers(void **state)
 {
     (void)state;
@@ -319,6 +341,8 @@ int main(void)
         RIG_TEST_TCP(another_units_answer_is_not_taken),
         RIG_TEST_TCP(another_function_is_malformed),
         RIG_TEST_TCP(a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_out_of_step),
+        RIG_TEST_TCP(a_damaged_answer_is_given_up_at_once),
+        RIG_TEST_TCP(what_only_begins_like_a_gateways_exception_is_none),
         RIG_TEST_TCP(exceptions_have_their_numbers),
         RIG_TEST_TCP(a_gateways_exceptions_are_no_answer),
         RIG_TEST_TCP(a_late_gateways_exception_is_late),
