@@ -164,7 +164,9 @@ class Answers(Case):
         server.say(answer[:10])
         time.sleep(0.2)  # until the tool has seen the half; if it has not, this test shows less
         server.say(answer[10:])
-        server.say(adu(self.asked(server), 1, 0x83, 2))
+        transaction = self.asked(server)
+        time.sleep(0.2)  # until it sleeps
+        server.say(adu(transaction, 1, 0x83, 2))
         done = reader.finish()
         self.assertEqual((done.code, self.distances(done)), (1, ['2083']), done.err)
         self.assertIn('attempt 2: address 1 refused: exception 02', done.err)
