@@ -140,6 +140,16 @@ static void draw_legend(picture_t *picture, uint16_t row)
     }
 }
 
+/* How many lanes have no room, at the right end of the title. */
+static void draw_hidden(picture_t *picture, size_t count)
+{
+    char text[32];
+    if (count == 0) return;
+    const int length = snprintf(text, sizeof text, " %zu more: enlarge", count);
+    if (length < picture->columns)
+        (void)put_text(picture, 0, (uint16_t)(picture->columns - length), text, COLOUR_LOSS);
+}
+
 /* In as many rows as there are, the last of which is cut. */
 static void draw_message(picture_t *picture, const char *message, uint16_t row)
 {
@@ -166,6 +176,7 @@ void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lan
         for (uint16_t column = 0; column != picture->columns; column++)
             picture->cells[row][column] = (cell_t){' ', COLOUR_PLAIN};
     (void)put_text(picture, 0, 0, title, COLOUR_BOLD);
+    if (picture->rows < 2) return;
     const bool has_footer = picture->rows >= LEAST_FOR_FOOTER;
     const uint16_t footer = (uint16_t)(picture->rows >= LEAST_FOR_TWO ? 4 : 3);
     const uint16_t end = (uint16_t)(picture->rows - (has_footer ? footer : 0));
@@ -177,14 +188,11 @@ void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lan
         draw_lane(picture, lanes, &lanes->lane[i], row, height);
         row = (uint16_t)(row + height);
     }
+    draw_hidden(picture, lanes->count - shown);
     if (!has_footer) return;
     draw_axis(picture, lanes, end, room / shown == 1 && room % shown == 0 ? NARROW : GUTTER);
     draw_legend(picture, (uint16_t)(end + 1));
     draw_message(picture, message, (uint16_t)(end + 2));
-    if (shown == lanes->count || message[0] != '\0') return;
-    char text[64];
-    (void)snprintf(text, sizeof text, "%zu more; make the window higher", lanes->count - shown);
-    (void)put_text(picture, (uint16_t)(end + 2), 0, text, COLOUR_BOLD);
 }
 
 /* ---- for the terminal ---- */

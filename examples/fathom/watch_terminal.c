@@ -11,6 +11,8 @@
 
 #include "events.h"
 
+enum { OUTPUT = 65536, MARGIN = 64 };
+
 static struct {
     struct termios before;
     bool is_taken;
@@ -99,22 +101,28 @@ static bool is_same_row(const picture_t *one, const picture_t *other, uint16_t r
     return memcmp(one->cells[row], other->cells[row], one->columns * sizeof one->cells[row][0]) == 0;
 }
 
+/* In one write as a rule, so that nobody sees half a picture. */
 int terminal_show(const picture_t *picture, bool all)
 {
+    static char text[OUTPUT];
     const bool has_colours = terminal_has_colours();
     const bool is_utf8 = terminal_is_utf8();
+    size_t at = 0;
     int error = 0;
     if (picture->rows != terminal.shown.rows || picture->columns != terminal.shown.columns) all = true;
-    if (all) error = write_all("\x1B[0m\x1B[2J");
+    if (all) at += (size_t)snprintf(text, sizeof text, "\x1B[0m\x1B[2J");
     for (uint16_t row = 0; row != picture->rows && error == 0; row++) {
-        char text[PICTURE_ROW_TEXT + 32];
         if (!all && is_same_row(picture, &terminal.shown, row)) continue;
-        const int start = snprintf(text, sizeof text, "\x1B[%u;1H", row + 1u);
-        const uint16_t columns = picture_row(picture, row, has_colours, is_utf8, text + start);
+        at += (size_t)snprintf(text + at, sizeof text - at, "\x1B[%u;1H", row + 1u);
+        const uint16_t columns = picture_row(picture, row, has_colours, is_utf8, text + at);
+        at += strlen(text + at);
         /* At the right edge it could take the last character. */
-        if (columns != picture->columns) (void)strcat(text, "\x1B[K");
+        if (columns != picture->columns) at += (size_t)snprintf(text + at, sizeof text - at, "\x1B[K");
+        if (sizeof text - at > PICTURE_ROW_TEXT + MARGIN) continue;
         error = write_all(text);
+        at = 0;
     }
+    if (at != 0 && error == 0) error = write_all(text);
     terminal.shown = *picture;
     return error;
 }
