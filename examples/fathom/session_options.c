@@ -114,13 +114,15 @@ static bool take_lines(session_options_t *options, const char *command, const ch
 bool session_options(session_options_t *options, const char *command, char **words, int word_count,
                      const char *const *values, const char *address, const char *mode)
 {
+    const char *const port = values[OPTION_PORT];
+    const bool has_settings = port == NULL || !tcp_names(port);
     if (!take_stations(options, command, words, (size_t)word_count, address, mode) ||
         !take_lines(options, command, values) ||
-        !stations_check(options->stations, options->station_count, command) ||
+        !stations_check(options->stations, options->station_count, command, has_settings) ||
         !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
-    options->port = values[OPTION_PORT];
+    options->port = port;
     if (options->port == NULL) {
         (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
         return false;

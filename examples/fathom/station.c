@@ -65,9 +65,9 @@ static bool is_same_line(const station_t *one, const station_t *other)
 
 static bool is_a05_dyp(const station_t *station) { return strcmp(station->mode->name, "dyp") == 0; }
 
-static bool check_two(const station_t *one, const station_t *other, const char *command)
+static bool check_two(const station_t *one, const station_t *other, const char *command, bool has_settings)
 {
-    if (one->address == other->address && is_same_line(one, other)) {
+    if (one->address == other->address && (!has_settings || is_same_line(one, other))) {
         (void)usage_error(command, "%s and %s have the same address, so both would answer at once", one->name,
                           other->name);
         return false;
@@ -84,7 +84,7 @@ static bool check_two(const station_t *one, const station_t *other, const char *
     return true;
 }
 
-bool stations_check(const station_t *stations, size_t count, const char *command)
+bool stations_check(const station_t *stations, size_t count, const char *command, bool has_settings)
 {
     for (size_t i = 0; i != count && count > 1; i++) {
         const station_t *const one = &stations[i];
@@ -97,7 +97,7 @@ bool stations_check(const station_t *stations, size_t count, const char *command
             return false;
         }
         for (size_t j = 0; j != i; j++)
-            if (!check_two(&stations[j], one, command)) return false;
+            if (!check_two(&stations[j], one, command, has_settings)) return false;
     }
     return true;
 }

@@ -10,6 +10,7 @@ import signal
 import threading
 
 import e2e
+import tcp_server
 
 BUILD = os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM)
 BUS = ['a16:1:modbus', 'a05:2:modbus', 'hps167s:7']
@@ -190,6 +191,33 @@ class Dead(e2e.Case):
         self.assertTrue(any('a16:2: attempt 2: no answer from address 2: it answers, but too late' in line for line in told), errors)
         self.assertTrue(any(re.search('a16:3: attempt 2: no answer from address 3: (?!it answers)', line) for line in told), errors)
         self.assertFalse(any('address 2 that was heard' in line for line in errors), errors)
+
+
+class Gateway(e2e.Case):
+    """Over TCP: the line and its settings are the gateway's."""
+
+    def test_several_sensors_behind_a_gateway_are_read_in_one_loop(self):
+        server = tcp_server.Server()
+        self.addCleanup(server.close)
+        reader = self.fathom('read', 'a16:1', 'hps167s:7', '--port', server.path, '--count', 2, '--timeout', 5000, '--format',
+                             'json')
+        server.accept()
+        asked = []
+        for _ in range(4):
+            request = server.request()
+            asked.append((request[6], request[8:].hex()))  # unit, first register and count
+            values = (754,) if request[6] == 1 else (0x0823, 0xDCB2, 0x0701, 0)  # HPS-167S table 18
+            server.say(tcp_server.registers(int.from_bytes(request[:2], 'big'), request[6], *values))
+        done = reader.finish()
+        self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(sorted(asked), [(1, '01000001')] * 2 + [(7, '00080004')] * 2)
+        self.assertEqual(sorted((o['sensor'], o['address'], o['distance_mm']) for o in objects(done.out)),
+                         [('a16', 1, 754)] * 2 + [('hps167s', 7, 2083)] * 2)
+
+    def test_one_address_is_one_sensor_there(self):
+        done = self.run_fathom('read', 'a16:1', 'hps167s:1', '--port', 'tcp:127.0.0.1:1')
+        self.assertEqual(done.code, 2)
+        self.assertIn('a16:1 and hps167s:1 have the same address', done.err)
 
 
 class Port(e2e.Case):

@@ -9,7 +9,7 @@ READ = ['read', 'a16', '--port', '/nowhere']
 
 # arguments, what the line must have
 WRONG = [
-    ([], 'a command is missing: read, sim, decode'),
+    ([], 'a command is missing: scan, read, watch, '),
     (['reed'], "there is no command 'reed'"),
     (['--versoin'], "there is no command '--versoin'"),
     (['read'], 'which sensor? a16, a05 or hps167s'),
@@ -114,7 +114,7 @@ class Help(e2e.Case):
 
     def test_help_names_every_command(self):
         for word in ('--help', '-h'):
-            self.assertRegex(self.told(word), r'(?s)\n  read .*\n  sim .*Exit status')
+            self.assertRegex(self.told(word), r'(?s)\n  read .*\n  watch .*\n  sim .*Exit status')
 
     def test_help_of_read_names_sensors_options_and_examples(self):
         text = self.told('read', '--help')
@@ -134,7 +134,7 @@ class Help(e2e.Case):
         """Each is run with the port replaced by one that is not there: then 1, not 2, is the exit status."""
         examples = re.findall(r'(fathom read (?:(?! {2}|\||>).)*)', self.told('read', '--help').split('examples:')[1] +
                               self.told('sim', '--help').split('examples')[1])
-        self.assertEqual(len(examples), 8)
+        self.assertEqual(len(examples), 9)
         for example in examples:
             with self.subTest(example):
                 words = re.sub(r'--port \S+', '--port /nowhere', example).split()[1:]
