@@ -118,7 +118,7 @@ static int finish(reading_run_t *run)
     return account.sum.failed != 0 || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
-static int run(int argc, char **argv)
+static int run_read(int argc, char **argv)
 {
     static const session_user_t user = {write_reading, write_failure, write_port, tick, is_over};
     static reading_run_t run; /* all zero, and too large for a small stack */
@@ -140,4 +140,4 @@ static int run(int argc, char **argv)
     return status;
 }
 
-const command_t read_command = {"read", "reads sensors on a serial port", read_help, run};
+const command_t read_command = {"read", "reads sensors on a serial port", read_help, run_read};

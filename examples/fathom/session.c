@@ -222,8 +222,8 @@ static uint32_t due_us(session_t *session)
     uint32_t soonest_us = FATHOM_NO_DEADLINE;
     for (station_t *station = session->options.stations; station != end_of(session); station++) {
         if (is_done(session, station)) continue;
-        const uint32_t due_us = fathom_due_us(&station->reader.sensor, 1);
-        if (due_us < soonest_us) soonest_us = due_us;
+        const uint32_t this_us = fathom_due_us(&station->reader.sensor, 1);
+        if (this_us < soonest_us) soonest_us = this_us;
     }
     return soonest_us;
 }

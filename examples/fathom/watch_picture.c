@@ -55,15 +55,15 @@ static void draw_step(picture_t *picture, const step_t *step, uint16_t column, u
 {
     const uint8_t mark = (uint8_t)mark_character((mark_t)step->mark);
     const colour_t colour = colour_of((mark_t)step->mark);
-    uint32_t eighths = ((uint32_t)step->distance_mm * height * EIGHTHS + top_mm - 1) / top_mm;
+    const uint32_t eighths = ((uint32_t)step->distance_mm * height * EIGHTHS + top_mm - 1) / top_mm;
     for (uint16_t n = 0; n != height; n++) {
         const uint16_t row = (uint16_t)(first_row + height - 1 - n);
-        const uint32_t filled = eighths < EIGHTHS ? eighths : EIGHTHS;
+        const uint32_t below = (uint32_t)n * EIGHTHS; /* this row */
         if (step->mark != MARK_NONE && (n == 0 || !step->has_distance))
             put(picture, row, column, mark, colour);
-        else if (step->has_distance && filled != 0)
-            put(picture, row, column, (uint8_t)(GLYPH_BLOCK + filled), COLOUR_BAR);
-        eighths -= filled;
+        else if (step->has_distance && eighths > below)
+            put(picture, row, column,
+                (uint8_t)(GLYPH_BLOCK + (eighths - below < EIGHTHS ? eighths - below : EIGHTHS)), COLOUR_BAR);
     }
 }
 
@@ -190,7 +190,7 @@ void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lan
     }
     draw_hidden(picture, lanes->count - shown);
     if (!has_footer) return;
-    draw_axis(picture, lanes, end, room / shown == 1 && room % shown == 0 ? NARROW : GUTTER);
+    draw_axis(picture, lanes, end, room == shown ? NARROW : GUTTER);
     draw_legend(picture, (uint16_t)(end + 1));
     draw_message(picture, message, (uint16_t)(end + 2));
 }
