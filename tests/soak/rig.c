@@ -203,7 +203,8 @@ static void judge(rig_unit_t *unit, const fathom_sample_t *sample)
     truth_verdict_t verdict = truth_judge(&unit->truth, sample, now_us, since_us, !is_asked);
     if (sample->unit != (is_asked ? unit->address : 0)) verdict = TRUTH_DAMAGED;
     for (uint8_t i = 0; verdict == TRUTH_DAMAGED && i < rig->count; i++)
-        if (&rig->units[i] != unit && truth_said(&rig->units[i].truth, (uint16_t)sample->raw)) verdict = TRUTH_FOREIGN;
+        if (&rig->units[i] != unit && truth_said(&rig->units[i].truth, (uint16_t)sample->raw))
+            verdict = TRUTH_FOREIGN;
     unit->totals.verdicts[verdict]++;
     if (verdict == TRUTH_RIGHT) unit->right_us = now_us;
     /* A frame that passes by chance may have an old value in it; nothing else brings one to a stream. */
