@@ -83,17 +83,28 @@ static bool is_ours(uint8_t function)
            function == FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS;
 }
 
-/* With a wrong CRC only what is right in itself passes for a request. */
+/* With a wrong CRC only what these sensors could send passes for a frame; else noise would be full of them. */
+enum {
+    MOST_REGISTERS = 11, /* HPS-167S #3 */
+    LAST_PAGE = 0x02     /* no register is beyond 0x0207 */
+};
+
+static bool is_likely_answer(const uint8_t *bytes)
+{
+    enum { LAST_EXCEPTION = 11 };
+    if ((bytes[1] & FATHOM_MODBUS_EXCEPTION) != 0) return bytes[2] != 0 && bytes[2] <= LAST_EXCEPTION;
+    return bytes[2] <= (bytes[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS ? 2 * MOST_REGISTERS : LAST_PAGE);
+}
+
 static bool is_likely_request(const uint8_t *bytes)
 {
-    enum { LAST_PAGE = 0x02 }; /* no register of these sensors is beyond 0x0207 */
     const uint8_t count = bytes[5];
     if (bytes[2] > LAST_PAGE) return false;
     switch (bytes[1]) {
     case FATHOM_MODBUS_READ_HOLDING_REGISTERS:
-        return bytes[4] == 0 && count != 0 && count <= FATHOM_MODBUS_MAX_READ;
+        return bytes[4] == 0 && count != 0 && count <= MOST_REGISTERS;
     case FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS:
-        return bytes[4] == 0 && count != 0 && count <= FATHOM_MODBUS_MAX_WRITE && bytes[6] == 2 * count;
+        return bytes[4] == 0 && count != 0 && count <= MOST_REGISTERS && bytes[6] == 2 * count;
     default:
         return bytes[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
     }
@@ -102,9 +113,8 @@ static bool is_likely_request(const uint8_t *bytes)
 static void offer_modbus(view_t *view)
 {
     const uint8_t *const bytes = view->bytes;
-    enum { SHORTEST = 5, LAST_EXCEPTION = 11 };
+    enum { SHORTEST = 5 };
     if (view->have < SHORTEST) return;
-    const uint8_t function = bytes[1] & (uint8_t)~FATHOM_MODBUS_EXCEPTION;
     const bool is_write = bytes[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
     const uint8_t request = fathom_modbus_rtu_request_length(bytes, view->have);
     const uint8_t answer = fathom_modbus_rtu_response_length(bytes, view->have);
@@ -112,8 +122,7 @@ static void offer_modbus(view_t *view)
     if (answer != 0 && answer <= view->have) {
         const bool is_good = fathom_crc16(bytes, answer) == 0;
         is_answer = is_good;
-        const bool is_likely = bytes[1] == function || (bytes[2] != 0 && bytes[2] <= LAST_EXCEPTION);
-        if (is_good || is_likely)
+        if (is_good || is_likely_answer(bytes))
             offer(view, answer, DECODE_MODBUS, is_write ? DECODE_BOTH : DECODE_ANSWER, is_good,
                   is_good ? COST_MODBUS : COST_DAMAGED);
     }

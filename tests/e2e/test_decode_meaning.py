@@ -219,6 +219,11 @@ class Damage(decoding.Case):
         self.assertEqual(len(self.decode(answer.hex())), 1)
         self.assertEqual(len(self.decode((answer[:-1] + bytes([answer[-1] ^ 1])).hex(), code=1)), 1)
 
+    def test_noise_is_not_taken_for_frames_that_no_sensor_sends(self):
+        for noise in ('01 03 18' + ' 00' * 26, '01 83 0C 00 00', '01 03 01 00 00 0C 85 F6'):
+            with self.subTest(noise):
+                self.assertEqual(self.one(noise, code=1)['protocol'], None)
+
     def test_what_ends_early_is_told(self):
         for text, why in (('01 03 02 02', 'request of 8 or an answer of 7 bytes, but ends early'),
                           ('01 03 16 B0 00 39 00 25 42 34', 'begins like a Modbus answer of 27 bytes, but ends early'),
