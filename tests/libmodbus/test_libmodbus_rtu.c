@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1
+#define _GNU_SOURCE 1
 #include "libmodbus_rig.h"
 
-#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -229,6 +230,30 @@ static void a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back(void 
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_OK);
 }
 
+/* As libmodbus opens it, and as it looks when the far end of a pseudo terminal closes. */
+static void a_terminal_that_hangs_up_is_broken(void **state)
+{
+    const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
+    const int far = posix_openpt(O_RDWR | O_NOCTTY);
+    (void)state;
+    assert_true(far >= 0 && grantpt(far) == 0 && unlockpt(far) == 0);
+    assert_int_equal(rig_tear_down(NULL), 0);
+    rig.modbus = modbus_new_rtu(ptsname(far), 19200, 'N', 8, 1);
+    rig.far = -1;
+    (void)alarm(RIG_ALARM_S);
+    assert_int_equal(modbus_connect(rig.modbus), 0);
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
+    rig.seam = fathom_libmodbus(&rig.port);
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run(SILENCE_US + FINE_US, FINE_US);
+    assert_int_equal(rig.request.exchange.attempts, 1);
+    assert_int_equal(close(far), 0);
+    rig.fake.now_us += FINE_US;
+    assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_ERR_PORT);
+    assert_int_equal(status(), FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
+}
+
 static void a_modbus_t_that_is_not_connected_is_a_broken_port(void **state)
 {
     (void)state;
@@ -283,6 +308,7 @@ int main(void)
         RIG_TEST_RTU(line_settings_are_unsupported_and_nothing_is_sent),
         RIG_TEST_RTU(a_transceiver_that_libmodbus_switches_is_unsupported),
         RIG_TEST_RTU(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back),
+        RIG_TEST_RTU(a_terminal_that_hangs_up_is_broken),
         RIG_TEST_RTU(a_modbus_t_that_is_not_connected_is_a_broken_port),
         RIG_TEST_RTU(a_full_port_is_busy_and_nothing_waits),
     };

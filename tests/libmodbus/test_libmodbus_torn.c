@@ -107,13 +107,19 @@ static void what_rtu_is_refused_for_a_while_is_sent_later(void **state)
     sending.error = 0;
     rig_run(FINE_US, FINE_US);
     assert_int_equal(rig.request.exchange.attempts, 1);
-    sending.error = EIO;
-    rig.seam.cancel(rig.seam.ctx, &rig.request);
-    rig_run(2 * RIG_TIMEOUT_US, FINE_US);
-    ask();
-    sending.error = 0;
-    expect_port(FATHOM_LIBMODBUS_ERR_SYSTEM);
-    assert_int_equal(rig.port.system_error, EIO);
+}
+
+static void an_adapter_that_was_unplugged_has_hung_up(void **state)
+{
+    static const int errors[] = {EIO, ENXIO, ENODEV};
+    (void)state;
+    for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
+        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
+        sending.error = errors[i];
+        ask();
+        sending.error = 0;
+        expect_port(FATHOM_LIBMODBUS_ERR_HUNG_UP);
+    }
 }
 
 int main(void)
@@ -124,6 +130,7 @@ int main(void)
         RIG_TEST_TCP(what_the_system_says_else_is_kept),
         RIG_TEST_RTU(a_part_of_a_request_of_rtu_is_told_too),
         RIG_TEST_RTU(what_rtu_is_refused_for_a_while_is_sent_later),
+        RIG_TEST_RTU(an_adapter_that_was_unplugged_has_hung_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom get and fathom set over TCP, with Modbus servers that others wrote in the place of an A16."""
+import interop
+
+FACTORY = (1, 0, 0, 0, 0, 1, 1000, 0)  # 0x0200..0x0207: address 1, polarity 1, threshold 1 m, processed (A16 6)
+NAME = 'switch-threshold'
+
+
+class Servers:
+    def tell_a16(self, port, *words, code=0):
+        done = self.run_fathom(words[0], 'a16', '--port', port, *words[1:])
+        self.assertEqual(done.code, code, done.err)
+        return done
+
+    def test_a_setting_is_set_and_read_back(self):
+        port = self.served((9600, 'none'), 1, 0x0200, FACTORY)
+        self.assertRegex(self.tell_a16(port, 'get', NAME).out, rf'{NAME} +1000')
+        self.assertRegex(self.tell_a16(port, 'set', NAME, '1200').out, r'is 1200 mm \(was 1000\)')
+        self.assertRegex(self.tell_a16(port, 'get', NAME).out, rf'{NAME} +1200')
+
+    def test_nobody_there_is_exit_status_1(self):
+        done = self.tell_a16('tcp:127.0.0.1:1', 'set', NAME, '1200', code=1)
+        self.assertIn('tcp:127.0.0.1:1: Connection refused: nothing serves this port', done.err)
+        self.assertEqual(done.out, '')
+
+
+class Pymodbus(interop.Tcp, interop.PymodbusServer, Servers, interop.Case):
+    pass
+
+
+class Libmodbus(interop.Tcp, interop.LibmodbusServer, Servers, interop.Case):
+    pass
+
+
+if __name__ == '__main__':
+    interop.main()
