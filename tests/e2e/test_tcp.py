@@ -291,6 +291,28 @@ class Answers(Case):
         self.assertEqual(self.distances(reader.finish()), ['1000', '2000', '1953', '3562'])
 
 
+    def test_sensors_behind_one_gateway_and_one_that_is_dead(self):
+        server = self.server()
+        reader = self.fathom('read', 'hps167s:1', 'hps167s:2', 'a16:250:modbus', '--port', server.path, '--count', '2',
+                             '--timeout', '1000', '--format', 'csv')
+        server.accept()
+        asked = []
+        while asked.count(1) < 2 or asked.count(250) < 2:
+            request = server.request()
+            asked.append(request[6])
+            transaction = int.from_bytes(request[:2], 'big')
+            if request[6] == 1:
+                server.say(registers(transaction, 1, *SAID))
+            elif request[6] == 250:
+                self.assertEqual(request[7:], bytes((3, 1, 0, 0, 1)))  # A16: the processed distance
+                server.say(registers(transaction, 250, 754))
+        done = reader.finish()
+        self.assertEqual(done.code, 1, done.err)
+        self.assertEqual(sorted(self.distances(done)), ['2083', '2083', '754', '754'])
+        self.assertEqual(done.err.count('hps167s:2: attempt '), 2, done.err)
+        self.assertIn('no answer from address 2: the connection stands, but nothing came back', done.err)
+
+
 class Broken(Case):
     def ends(self, server, reader, words):
         done = reader.finish()
