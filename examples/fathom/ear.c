@@ -29,13 +29,14 @@ static int ear_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 static int ear_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     ear_t *const tap = ctx;
+    const uint32_t asked_us = now_us(tap); /* an answer may be there before the write returns */
     const int n = tap->inner.write(tap->inner.ctx, bytes, length);
     if (n <= 0 || length > sizeof tap->request) return n;
     if (tap->whose != NULL) tap->now = tap->whose(tap->ctx);
     ear_t *const ear = tap->now != NULL ? tap->now : tap;
     memcpy(ear->request, bytes, length);
     ear->request_length = (uint8_t)length;
-    ear->asked_us = now_us(tap);
+    ear->asked_us = asked_us;
     ear->requests++;
     return n;
 }

@@ -24,14 +24,14 @@ void scan_progress_show(scan_progress_t *progress, uint64_t now_us, uint64_t don
         (progress->is_shown && now_us - progress->shown_us < EVERY_US))
         return;
     if (done_us > total_us) done_us = total_us;
-    const unsigned filled = (unsigned)(done_us * BAR / total_us);
+    const unsigned percent = (unsigned)(done_us * 100 / total_us);
+    const unsigned filled = percent * BAR / 100;
     char bar[BAR + 1];
     for (unsigned i = 0; i != BAR; i++) bar[i] = i < filled ? '#' : '.';
     bar[BAR] = '\0';
     const uint64_t left_s = (total_us - done_us + 999999u) / 1000000u;
     /* ESC [ K: nothing is left of a longer line before */
-    (void)fprintf(progress->to, "\r[%s] %3u %%  %s, %" PRIu64 " s left\033[K", bar,
-                  (unsigned)(done_us * 100 / total_us), what, left_s);
+    (void)fprintf(progress->to, "\r[%s] %3u %%  %s, %" PRIu64 " s left\033[K", bar, percent, what, left_s);
     (void)fflush(progress->to);
     progress->is_shown = true;
     progress->shown_us = now_us;

@@ -279,7 +279,7 @@ class Lines(Case):
     def test_a_terminal_that_can_do_nothing_gets_lines_too(self):
         sim = self.sim('hps167s', '--distance', '2500')
         for kind in ('dumb', ''):
-            it = self.watch('hps167s', '--port', sim.port, environment={'TERM': kind})
+            it = self.watch('hps167s', '--port', sim.port, '--timeout', '10000', environment={'TERM': kind})
             it.wait(lambda screen: 'hps167s:1 2.500 m' in screen.main)
             it.type(b'\x03')
             self.assertEqual(it.finish(), 0)
