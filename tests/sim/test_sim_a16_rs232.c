@@ -215,7 +215,42 @@ static void damaged_malformed_and_unclear_acknowledgements_leave_it_to_the_frame
     }
 }
 
+static void another_commands_outcome_comes_first(void **state)
+{
+    stage_t s;
+    fathom_sample_t sample;
+    uint16_t threshold_mm = 0;
+    fathom_status_t status;
+    (void)state;
+    set_up(&s, FATHOM_SIM_A16_AUTO, 0);
+    assert_int_equal(fathom_a16_switch_threshold_mm(&s.asked, &threshold_mm), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_rs232_return_to_automatic(&s.rs232, &sample), FATHOM_ERR_BUSY);
+    while ((status = fathom_a16_switch_threshold_mm(&s.asked, &threshold_mm)) == FATHOM_PENDING)
+        fathom_sim_clock_advance(&s.clock, 1 * MS);
+    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(go_back(&s, &sample), FATHOM_READY);
+}
+
+static void due_is_never_later_than_the_end_of_the_wait(void **state)
+{
+    stage_t s;
+    fathom_sample_t sample;
+    (void)state;
+    set_up(&s, FATHOM_SIM_A16_MODBUS, 0);
+    while (!s.rs232.is_listening) {
+        assert_int_equal(fathom_a16_rs232_return_to_automatic(&s.rs232, &sample), FATHOM_PENDING);
+        pass(&s, fathom_a16_rs232_due_us(&s.rs232));
+    }
+    fathom_sim_clock_advance(&s.clock, 1999 * MS);
+    assert_true(fathom_a16_rs232_due_us(&s.rs232) <= 1 * MS);
+    fathom_sim_clock_advance(&s.clock, 1 * MS);
+    assert_int_equal(fathom_a16_rs232_due_us(&s.rs232), 0);
+    assert_int_equal(fathom_a16_rs232_return_to_automatic(&s.rs232, &sample), FATHOM_ERR_UNCONFIRMED);
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(another_commands_outcome_comes_first),
+    cmocka_unit_test(due_is_never_later_than_the_end_of_the_wait),
     cmocka_unit_test(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back),
     cmocka_unit_test(a_frame_from_before_the_command_confirms_nothing),
     cmocka_unit_test(one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds),
