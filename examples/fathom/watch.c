@@ -26,6 +26,8 @@ typedef struct {
     session_t session;
     lanes_t lanes;
     picture_t picture;
+    uint16_t rows; /* of the window */
+    uint16_t columns;
     uint64_t next_us;      /* when the next picture or line is due */
     char message[MESSAGE]; /* the last failure, or what has happened to the port */
     uint64_t message_end_us;
@@ -87,13 +89,10 @@ static void draw(watch_t *watch, uint64_t now_us)
 {
     const uint32_t seconds = (uint32_t)(now_us / 1000000u);
     char title[MESSAGE];
-    uint16_t rows = 0;
-    uint16_t columns = 0;
-    terminal_size(&rows, &columns);
     (void)snprintf(title, sizeof title,
                    "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   Ctrl-C ends",
                    watch->session.options.port, seconds / 3600, seconds / 60 % 60, seconds % 60);
-    picture_draw(&watch->picture, rows, columns, &watch->lanes, title,
+    picture_draw(&watch->picture, watch->rows, watch->columns, &watch->lanes, title,
                  now_us < watch->message_end_us ? watch->message : "");
     watch->output_error = terminal_show(&watch->picture, watch->wants_all);
     /* While a port is waited for, others may write to the terminal. */
@@ -124,6 +123,7 @@ static uint32_t tick(void *ctx)
     const uint64_t now_us = session_time_us(&watch->session);
     const uint32_t every_us = watch->draws ? PICTURE_US : LINE_US;
     if (events_noted()) {
+        terminal_size(&watch->rows, &watch->columns);
         watch->wants_all = true;
         watch->next_us = now_us;
     }
@@ -219,6 +219,7 @@ static int run(int argc, char **argv)
     lanes_begin(&watch.lanes, &session->options);
     watch.draws = terminal_can_draw();
     if (watch.draws) terminal_take();
+    terminal_size(&watch.rows, &watch.columns);
     if (!session_open(session)) {
         if (session->is_lost) return finish(&watch);
         terminal_give_back();
