@@ -16,10 +16,19 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
     rs232->is_listening = false;
 }
 
+/* Was the register written, as far as its acknowledgement tells? */
 static bool may_hold(fathom_status_t status)
 {
-    return status == FATHOM_READY || status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM ||
-           status == FATHOM_ERR_MALFORMED || status == FATHOM_ERR_ECHO;
+    switch (status) {
+    case FATHOM_READY:
+    case FATHOM_ERR_NO_ANSWER:
+    case FATHOM_ERR_CHECKSUM:
+    case FATHOM_ERR_MALFORMED:
+    case FATHOM_ERR_ECHO:
+        return true;
+    default:
+        return false;
+    }
 }
 
 static bool is_since(const fathom_a16_rs232_t *rs232, uint32_t time_us)
