@@ -250,6 +250,8 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     if (on) {
         line->known |= IN_BREAK;
     } else {
+        /* the silence before a request begins here; that of what comes in has been as long as it has */
+        if (line->have == 0 && is_listeners_gap(line)) line->known |= AFTER_GAP;
         line->known &= (uint8_t)~IN_BREAK;
         line->silent_us = 0;
     }

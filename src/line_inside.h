@@ -51,6 +51,12 @@ static inline void set_silent(fathom_line_t *line, uint32_t us)
     line->silent_us = us > UINT16_MAX ? UINT16_MAX : (uint16_t)us;
 }
 
+/* Has the line been silent for as long as the listener wants to know of? */
+static inline bool is_listeners_gap(const fathom_line_t *line)
+{
+    return line->listener != NULL && line->silent_us >= line->listener->gap_us;
+}
+
 /* The bits of `owing` for a unit; all of them for any unit. */
 uint16_t fathom_line_owing_bits(uint8_t unit);
 

@@ -160,8 +160,7 @@ int fathom_line_read(fathom_line_t *line, uint32_t passed_us)
         set_silent(line, line->silent_us + passed_us);
         return n;
     }
-    if (line->have == 0 && ((rx.flags & FATHOM_RX_SILENCE) != 0 ||
-                            (line->listener != NULL && line->silent_us >= line->listener->gap_us)))
+    if (line->have == 0 && ((rx.flags & FATHOM_RX_SILENCE) != 0 || is_listeners_gap(line)))
         line->known |= AFTER_GAP;
     set_silent(line, (rx.flags & FATHOM_RX_TIMED) != 0 ? fathom_elapsed_us(line->polled_us, rx.last_us) : 0);
     if ((rx.flags & FATHOM_RX_OVERRUN) != 0) n |= LOST;

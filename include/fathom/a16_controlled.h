@@ -30,7 +30,7 @@ extern "C" {
  * A frame answers if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on either
  * side some for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come at any time
  * since the poll before, and both ends are stretched by that much. All other frames are counted in `late` and dropped.
- * What cannot be told apart: the answer to the trigger before, if it is 200 ms late.
+ * What cannot be told apart: the answer to the trigger before, if it comes 200 ms or more after that.
  */
 
 /* Zero-valued members of fathom_a16_controlled_config_t mean these. */

@@ -82,6 +82,61 @@ static void a_request_that_the_port_refused_waits_for_the_end_of_the_break(void 
     assert_int_equal(bench.fake.written, 1);
 }
 
+static unsigned heard;
+static unsigned gaps;
+
+static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
+                 uint32_t time_us)
+{
+    (void)listener;
+    (void)bytes;
+    (void)time_us;
+    heard += count;
+    gaps += after_gap;
+}
+
+/* A module that is triggered by the break answers in frames that begin after a silence. */
+static void the_end_of_a_break_does_not_hide_a_silence_from_the_listener(void **state)
+{
+    fathom_listener_t listener = {hear, 5000};
+    (void)state;
+    for (unsigned silent_us = 4900; silent_us <= 5000; silent_us += 100) {
+        set_up(state);
+        fathom_line_listen(&bench.line, &listener);
+        assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+        run(silent_us);
+        assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+        heard = gaps = 0;
+        receive(answer_1_754, 7);
+        run(100);
+        assert_int_equal(heard, 7);
+        assert_int_equal(gaps, silent_us == 5000);
+    }
+}
+
+/* Unit 1 still owes; of its late answer a part has come, right behind a byte of noise. */
+static void the_end_of_a_break_is_no_gap_within_what_has_come(void **state)
+{
+    static const uint8_t noise_and_part[] = {0x55, 0x01, 0x03, 0x02};
+    fathom_listener_t listener = {hear, 500};
+    (void)state;
+    fathom_line_listen(&bench.line, &listener);
+    ask_1_and_send(0);
+    run(TIMEOUT_US + 1000);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
+    heard = gaps = 0;
+    receive(noise_and_part, 4);
+    run(1000);
+    assert_int_equal(bench.line.have, 3);
+    assert_int_equal(heard, 1);
+    assert_int_equal(gaps, 1);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+    run(GAP_US + 1000);
+    assert_int_equal(heard, 4);
+    assert_int_equal(gaps, 1);
+}
+
 static int broken(void *ctx, bool on)
 {
     (void)ctx;
@@ -122,6 +177,8 @@ int main(void)
         TEST(with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes),
         TEST(while_bytes_of_the_port_leave_it_is_pending),
         TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break),
+        TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener),
+        TEST(the_end_of_a_break_is_no_gap_within_what_has_come),
         TEST(a_port_that_cannot_or_is_broken_says_so),
         TEST(a_port_that_breaks_in_a_break_comes_back_without_it),
     };
