@@ -146,8 +146,7 @@ fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_read
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us(meter), meter->polled_us);
-    uint32_t due_us = meter->left_us;
-    if (meter->low && meter->low_left_us < due_us) due_us = meter->low_left_us;
+    uint32_t due_us = meter->low ? meter->low_left_us : meter->left_us;
     /* it could not be done when it was due: the port was busy */
     if (due_us == 0) due_us = AGAIN_US;
     return due_us > passed_us ? due_us - passed_us : 0;

@@ -170,6 +170,21 @@ static void who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle(void **state)
     assert_int_equal(stand.no_answers, 0);
 }
 
+/* A module that answers at once. */
+static void a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept(void **state)
+{
+    (void)state;
+    stand.config.low_us = 30 * MS;
+    pulse_rig_start(1000);
+    stand.pin.answer_after_us = 500;
+    stand.pin.answer_width_us = 3000;
+    pulse_rig_run(2000 * MS, 100);
+    assert_int_equal(stand.pin.falls, 9); /* 30 ms, 8 * 221 ms */
+    assert_int_equal(stand.readings, 9);
+    assert_int_equal(stand.pin.low_us, 30 * MS);
+    assert_int_equal(stand.pin.least_us, 221 * MS);
+}
+
 /* ---- the break ---- */
 
 static void without_a_pin_a_break_of_the_uart_triggers(void **state)
@@ -299,6 +314,7 @@ int main(void)
         FRESH(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wrap),
         FRESH(what_is_over_stays_over_however_late_the_poll),
         FRESH(who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle),
+        FRESH(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept),
         FRESH(without_a_pin_a_break_of_the_uart_triggers),
         FRESH(a_break_that_fails_is_said_by_every_poll_until_it_works_again),
         FRESH(a_capture_that_fails_is_said_by_every_poll_until_it_works_again),
