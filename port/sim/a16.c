@@ -193,7 +193,7 @@ static void alarm(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_a16_t *const a16 = a16_of(device);
     if (a16->mode != FATHOM_SIM_A16_PWM) {
-        uint8_t bytes[FATHOM_SIM_MAX_FRAME];
+        uint8_t bytes[FATHOM_DYP_MAX_LENGTH];
         const uint16_t value = fathom_sim_device_ultrasonic(device, 1, false, now_us);
         fathom_sim_device_answer(device, bytes, fathom_dyp_frame_encode(bytes, &value, 1), now_us);
     } else if (!device->tx_high) {

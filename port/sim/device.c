@@ -272,10 +272,13 @@ static void keep_silence(fathom_sim_device_t *device, uint32_t now_us)
             device->alarms[i].at_us = now_us + silence_us;
 }
 
-void fathom_sim_device_answer(fathom_sim_device_t *device, uint8_t *bytes, uint8_t length, uint32_t now_us)
+void fathom_sim_device_answer(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
+                              uint32_t now_us)
 {
+    uint8_t room[FATHOM_SIM_MAX_FRAME]; /* a hook may alter them */
+    memcpy(room, bytes, length);
     fathom_sim_frame_t frame = {
-        .bytes = bytes, .length = length, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
+        .bytes = room, .length = length, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
     device->counters.answered++;
     send(device, &device->settings, &frame);
 }

@@ -258,7 +258,8 @@ bool fathom_sim_device_level(const fathom_sim_device_t *device, uint32_t now_us)
 uint32_t fathom_sim_device_between_us(fathom_sim_device_t *device, uint32_t least_us, uint32_t most_us);
 
 /* What a trigger has asked for leaves now, as an answer. */
-void fathom_sim_device_answer(fathom_sim_device_t *device, uint8_t *bytes, uint8_t length, uint32_t now_us);
+void fathom_sim_device_answer(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
+                              uint32_t now_us);
 
 /* What the protocols call: the request is to be answered so long after its end. */
 void fathom_sim_device_reply(fathom_sim_device_t *device, const fathom_sim_protocol_t *protocol,

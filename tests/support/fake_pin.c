@@ -12,6 +12,8 @@ static bool is_past(const fake_pin_t *pin, uint32_t at_us)
 static void set(void *ctx, bool high)
 {
     fake_pin_t *const pin = ctx;
+    if (!high) pin->fake->now_us += pin->delay_us;
+    if (!high) pin->delay_us = 0;
     const uint32_t now_us = pin->fake->now_us;
     pin->sets++;
     if (high == pin->level) return;

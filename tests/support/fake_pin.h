@@ -28,6 +28,7 @@ typedef struct {
     uint32_t fall_us; /* the last one */
     uint32_t low_us;  /* how long the last low lasted */
     bool has_fallen;
+    uint32_t delay_us; /* the next fall comes so much later than set is called; once */
     uint32_t least_us; /* between two falls */
     uint32_t least_high_us;
     uint32_t rise_us;

@@ -150,6 +150,7 @@ static void every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_acros
         for (unsigned n = 0; n != sizeof starts_us / sizeof *starts_us; n++) {
             unsigned triggers = 0;
             controlled_start_at(starts_us[n]);
+            rig.fake.step_us = n % 2 * 7; /* a clock that goes on within a poll */
             while (rig.samples != 6) {
                 rig.fake.now_us += steps_us[s];
                 const fathom_status_t status = rig_poll();
@@ -204,6 +205,7 @@ static void hours_without_an_answer_are_one_no_answer_a_trigger(void **state)
     }
     assert_true(no_answers > 15000);
     assert_int_equal(rig.stales, 0);
+    assert_int_equal(controlled.a16.late, 0);
 }
 
 #define FRESH(test) cmocka_unit_test_setup(test, controlled_set_up)

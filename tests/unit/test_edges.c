@@ -121,6 +121,20 @@ static void arm_forgets_what_was_captured(void **state)
     assert_pulse(100, 600);
 }
 
+static void arm_makes_room(void **state)
+{
+    (void)state;
+    for (uint32_t i = 1; i <= 4; i++) {
+        rise(i * 1000);
+        fall(i * 1000 + i);
+    }
+    arm();
+    rise(9000);
+    fall(9009);
+    assert_pulse(9, 9009);
+    assert_int_equal(edges.lost, 0);
+}
+
 static void a_pulse_that_began_before_arm_does_not_count(void **state)
 {
     (void)state;
@@ -291,6 +305,7 @@ int main(void)
         FRESH(widths_are_right_across_the_wrap_and_up_to_71_minutes),
         FRESH(many_pulses_go_through_as_the_counts_wrap),
         FRESH(arm_forgets_what_was_captured),
+        FRESH(arm_makes_room),
         FRESH(a_pulse_that_began_before_arm_does_not_count),
         FRESH(a_pulse_that_began_before_257_arms_does_not_count),
         FRESH(after_127_rises_without_arm_pulses_are_lost),
