@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* A program that sleeps for as long as fathom_line_due_us says makes progress with every sleep. */
+
+/* Of an answer that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
+static void an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    run(TIMEOUT_US - 2000);
+    receive(answer_1_754, 4);
+    run_in_steps(3000, 1000);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    assert_in_range(fathom_line_due_us(&bench.line), 1, GAP_US);
+    receive(answer_1_754 + 4, 3);
+    run_in_steps(100, 100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+static void one_that_breaks_off_ends_with_the_gap(void **state)
+{
+    (void)state;
+    ask_1_and_send(0);
+    run(TIMEOUT_US - 2000);
+    receive(answer_1_754, 4);
+    run_in_steps(3000, 1000);
+    unsigned sleeps = 0;
+    while (status_of(&bench.request) == FATHOM_PENDING) {
+        const uint32_t due_us = fathom_line_due_us(&bench.line);
+        assert_in_range(due_us, 1, GAP_US);
+        run_in_steps(due_us, due_us);
+        sleeps++;
+    }
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
+    assert_int_equal(sleeps, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap),
+        TEST(one_that_breaks_off_ends_with_the_gap),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
