@@ -53,13 +53,14 @@ bool fathom_hps167s_may_be_configuration(const fathom_hps167s_t *sensor, const u
            reconnect_time_ms(sensor, registers) % RECONNECT_STEP_MS == 0;
 }
 
-/* An answer of the right shape has come: is it enough now? */
+/* A frame of the right shape has come: is it enough now? One that is a measurement counts neither way. */
 static bool is_believed(fathom_hps167s_t *sensor)
 {
     const uint16_t *const values = sensor->values;
     if (sensor->answers++ == 0) sensor->agreed = 0;
     if (!fathom_hps167s_may_be_configuration(sensor, values) || same_4(values, sensor->measured)) {
-        sensor->agreed = 0;
+        /* Whoever asks in step with what the device sends by itself gets that each time. */
+        sensor->unit.pause_us = (uint32_t)(sensor->answers * FATHOM_HPS167S_MIN_PERIOD_US);
         return false;
     }
     if (!same_4(values, sensor->told)) sensor->agreed = 0;

@@ -64,8 +64,8 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
 /*
  * #2. The answer has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
  * first two bytes are 00 or FF, the baud code is 1..4 and the reconnect time a multiple of 18, if it is not what was
- * last measured, and if two answers in succession agree (config.same_answers). Up to 8 are asked for;
- * FATHOM_ERR_MALFORMED: they did not agree. Of what can be measured only exactly 255 mm can pass the first test.
+ * last measured, and if two such in succession agree (config.same_answers). It is asked up to 8 times;
+ * FATHOM_ERR_MALFORMED: that was not enough. Of what can be measured only exactly 255 mm can pass the first test.
  */
 fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out);
 

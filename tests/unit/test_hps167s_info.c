@@ -84,11 +84,13 @@ static void a_measurement_in_its_place_is_passed_over(void **state)
     (void)state;
     desk_start();
     assert_int_equal(
-        desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {MEASURES}, 0}, {ASK_2, FATHOM_READY, {TELLS}, 0},
-                                      {ASK_2, FATHOM_READY, {MEASURES}, 0}, {ASK_2, FATHOM_READY, {TELLS}, 0},
-                                      {ASK_2, FATHOM_READY, {TELLS}, 0})),
+        desk_play(configuration,
+                  ROWS({ASK_2, FATHOM_READY, {MEASURES}, 0}, {ASK_2, FATHOM_READY, {TELLS}, 0},
+                       {ASK_2, FATHOM_READY, {MEASURES}, 0}, {ASK_2, FATHOM_READY, {TELLS_2}, 0},
+                       {ASK_2, FATHOM_READY, {MEASURES}, 0}, {ASK_2, FATHOM_READY, {MEASURES}, 0},
+                       {ASK_2, FATHOM_READY, {TELLS_2}, 0})),
         FATHOM_READY);
-    assert_int_equal(is.baud, 19200);
+    assert_int_equal(is.baud, 57600);
 }
 
 static void two_answers_that_differ_are_not_enough(void **state)
