@@ -37,8 +37,10 @@ static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t hav
         fathom_modbus_message_t *const message = message_of(exchange);
         if (exchange->unit == FATHOM_LINE_ANY_UNIT) match->unit = FATHOM_LINE_ANY_UNIT;
         match->status = (int8_t)fathom_modbus_rtu_parse_response(message, bytes);
-        /* Whoever acknowledges a write of one register sends it back. */
-        if (match->status == FATHOM_READY && message->head[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER)
+        /* Whoever acknowledges a write of one register sends it back. And the echo of a read of 0200 begins with a
+         * whole answer, CRC and all, if the unit is 83 or 147. */
+        if (match->status == FATHOM_READY && message->head[1] != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS &&
+            fathom_modbus_rtu_begun_request(message, bytes, length) != 0)
             match->request = length;
     } else if (exchange != NULL && (length <= have || have >= LEAST_REQUEST)) {
         look_for_request(message_of(exchange), bytes, have, match);

@@ -73,6 +73,29 @@ static void test_eight_are_found_behind_an_adapter_that_echoes(void **state)
     assert_false(rig.walk.heard.has_master);
 }
 
+static void test_an_echo_alone_is_no_device_at_any_address(void **state)
+{
+    /* Nor is that of units 83 and 147, which looks like an answer. */
+    (void)state;
+    rig_begin(0);
+    rig.sim_line.echo = true;
+    rig.plan.last = 254;
+    assert_int_equal(rig_walk(), FATHOM_READY);
+    assert_int_equal(rig.found, 0);
+    assert_int_equal(rig.walk.heard.echoes, 2 * 254);
+    assert_int_equal(rig.walk.heard.bytes, 0);
+
+    rig_begin(0);
+    rig.sim_line.echo = true;
+    rig.plan.last = 254;
+    rig_a16(&(fathom_sim_a16_config_t){.unit = 83, .mode = FATHOM_SIM_A16_MODBUS});
+    rig_a05(&(fathom_sim_a05_config_t){.unit = 147, .mode = FATHOM_SIM_A05_MODBUS});
+    assert_int_equal(rig_walk(), FATHOM_READY);
+    assert_int_equal(rig.found, 2);
+    rig_expect_sensor(83, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
+    rig_expect_sensor(147, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
+}
+
 static void test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers(void **state)
 {
     static fathom_sim_fault_t noise;
@@ -251,6 +274,7 @@ int main(void)
         cmocka_unit_test(test_eight_sensors_of_three_models_are_found_and_none_is_harmed),
         cmocka_unit_test(test_eight_are_found_by_a_loop_of_20_ms),
         cmocka_unit_test(test_eight_are_found_behind_an_adapter_that_echoes),
+        cmocka_unit_test(test_an_echo_alone_is_no_device_at_any_address),
         cmocka_unit_test(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers),
         cmocka_unit_test(
             test_every_address_at_every_rate_and_parity_takes_less_than_10_minutes_and_what_was_said),
