@@ -160,10 +160,15 @@ static void conclude_talk(session_t *session)
                     "2020-09 speaks another protocol; another rate, A and B swapped and noise look like this "
                     "too; --wake asks all the same\n",
                     stderr);
-    else if (!session->options.wake)
+    else if (!session->options.wake && finding->mode == SCAN_AUTO)
         (void)fputs("fathom: nothing was sent, because even a read ends what an A16 or A05 sends by itself "
                     "(of an A05 until power-off); --wake asks all the same\n",
                     stderr);
+    else if (!session->options.wake)
+        (void)fputs(
+            "fathom: nothing was sent, because questions would go into what it sends; --wake asks all the "
+            "same\n",
+            stderr);
 }
 
 static void advise_on_nothing(const session_t *session)
@@ -203,8 +208,9 @@ static void conclude_walk(const session_t *session)
         (void)fprintf(stderr,
                       "fathom: %" PRIu32
                       " HPS-167S have their termination resistor on, as from the factory, which "
-                      "overloads the line: switch it off in all but the last one\n",
-                      session->terminations);
+                      "overloads the line: switch it off in all but the last one, as fathom set "
+                      "hps167s:ADDRESS --port %s termination off does\n",
+                      session->terminations, session->options.port);
     if (session->sensors == 0) advise_on_nothing(session);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", session->sensors,
                   duration_text(took_us, duration));

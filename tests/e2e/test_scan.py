@@ -35,6 +35,7 @@ class Eight(Case):
         self.assertTrue(all(device['requests'] >= 3 for device in counters), counters)
         self.assertIn('3 HPS-167S have their termination resistor on, as from the factory, which overloads the line',
                       done.err)
+        self.assertIn(f'as fathom set hps167s:ADDRESS --port {sim.port} termination off does', done.err)
         self.assertIn('fathom: sensors found: 8, after ', done.err)
 
     def test_eight_sensors_of_three_models_are_found_and_none_is_harmed(self):

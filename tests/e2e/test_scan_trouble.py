@@ -32,6 +32,15 @@ class Automatic(Case):
     def test_an_a05_that_sends_is_named_and_nothing_is_sent_to_it(self):
         self.check('a05', 'a05')
 
+    def test_an_hps167s_that_sends_unasked_is_named_at_its_rate(self):
+        sim = self.sim('hps167s:3', '--with', 'unasked=180', '--baud', '57600', '--counters')
+        done = self.scan(sim.port, '--listen', 2)
+        self.assertIn('nothing was sent, because questions would go into what it sends; --wake', done.err)
+        self.assertEqual([(one['model'], one['address'], one['baud'], one['next']) for one in self.found],
+                         [('hps167s', 3, 57600, f'fathom read hps167s --address 3 --baud 57600 --port {sim.port}')])
+        counters = self.counters(sim)[0]
+        self.assertEqual((counters['requests'], counters['crc_errors'], counters['others']), (0, 0, 0))
+
     def test_with_wake_it_is_asked_and_how_it_sends_again_is_told(self):
         sim = self.sim('a16:2', '--counters')
         done = self.scan(sim.port, '--wake', '--address', '1-3', '--baud', '9600', '--listen', 2, '--timeout', 500)
