@@ -214,6 +214,7 @@ void fathom_sim_power_cycle(fathom_sim_line_t *line, fathom_sim_device_t *device
     fathom_sim_run(line, now_us);
     cut_off(line, device);
     fathom_sim_device_power_off(device, off_us, line->now_us);
+    fathom_sim_run(line, now_us); /* power that is back at once is there now */
 }
 
 void fathom_sim_detach(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t now_us)
