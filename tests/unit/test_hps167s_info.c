@@ -185,12 +185,13 @@ static void what_was_measured_last_is_no_configuration(void **state)
 /* An unasked frame was taken for the answer, and the answer comes when a measurement is being waited for. */
 static void what_was_told_last_is_no_measurement(void **state)
 {
-    static const uint16_t told[4] = {TELLS};
-    static const uint16_t told_off[4] = {0x00FF, 0x0500, 0x0000, 0xB401};
+    static const uint16_t told[4] = {0x00FF, 0x0500, 0x0000, 0xB401}; /* termination off; or 255 mm */
+    static const uint16_t other[4] = {0x00FF, 0x0500, 0x0000, 0xB402};
     (void)state;
     desk_start();
     assert_int_equal(
-        desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {TELLS}, 0}, {ASK_2, FATHOM_READY, {TELLS}, 0})),
+        desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {0x00FF, 0x0500, 0x0000, 0xB401}, 0},
+                                      {ASK_2, FATHOM_READY, {0x00FF, 0x0500, 0x0000, 0xB401}, 0})),
         FATHOM_READY);
     desk.fake.now_us += 20000;
     assert_int_equal(desk_poll(), FATHOM_PENDING);
@@ -200,7 +201,7 @@ static void what_was_told_last_is_no_measurement(void **state)
     assert_int_equal(desk.hps.implausible, 1);
     desk.fake.now_us += 20000;
     assert_int_equal(desk_poll(), FATHOM_PENDING);
-    fake_modbus_answer(&desk.fake, told_off, 4); /* not that */
+    fake_modbus_answer(&desk.fake, other, 4);
     assert_int_equal(desk_poll(), FATHOM_READY);
     assert_int_equal(desk.sample.distance_mm, 255);
 }
