@@ -112,10 +112,11 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
         return FATHOM_ERR_BUSY;
     }
     do {
+        const bool is_write = setting->read == NULL || unit->step == WRITE;
         uint32_t value = 0;
         unit->step |= INSIDE;
-        status = unit->step == (WRITE | INSIDE) ? fathom_modbus_unit_ask(unit, setting->write)
-                                                : setting->read(setting->driver, &value);
+        status =
+            is_write ? fathom_modbus_unit_ask(unit, setting->write) : setting->read(setting->driver, &value);
         unit->step &= STEP;
         if (status == FATHOM_PENDING) return status;
         status = go_on(unit, setting, status, value);

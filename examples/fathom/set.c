@@ -69,29 +69,29 @@ static void print_done(const setting_t *setting, const char *was, const char *is
     if (!was_so) print_next(setting);
 }
 
-/* The two places at which the device may be. */
-static void print_places(const setting_t *setting, const char *was, const char *wanted)
+/* The two places at which the device may be, or what else is not known. */
+static void print_unknown(const setting_t *setting, const char *was, const char *wanted)
 {
     const station_t *const station = talk.station;
-    char line[SETTINGS_TEXT];
-    if (!setting->moves) {
-        (void)fputs(
-            setting->unconfirmed != NULL
-                ? setting->unconfirmed
-                : "it was sent, and could not be read back: it may hold or not; ask for it with fathom get",
-            stderr);
-        return;
-    }
-    (void)fprintf(stderr, "it was sent, and then the device could not be read: ");
-    if (setting->is_baud)
+    if (setting->is_baud) {
         (void)fprintf(
             stderr,
-            "it is at %s or at %s baud, perhaps from the next power-on; try fathom scan --port %s --baud "
-            "%s,%s",
+            "it was sent, and then the device could not be read: it is at %s or at %s baud, perhaps "
+            "from the next power-on; try fathom scan --port %s --baud %s,%s",
             was, wanted, talk.options.port, was, wanted);
-    else
-        (void)fprintf(stderr, "it is at address %u or at address %s, %s; try fathom read with either",
-                      station->address, wanted, settings_text(&station->line, line));
+    } else if (setting->moves) {
+        char line[SETTINGS_TEXT];
+        (void)fprintf(
+            stderr,
+            "it was sent, and then the device could not be read: it is at address %u or at address %s, "
+            "%s; try fathom read with either",
+            station->address, wanted, settings_text(&station->line, line));
+    } else if (setting->unconfirmed != NULL) {
+        (void)fputs(setting->unconfirmed, stderr);
+    } else {
+        (void)fputs("it was sent, and could not be read back: it may hold or not; ask for it with fathom get",
+                    stderr);
+    }
 }
 
 static void explain(fathom_status_t status)
@@ -105,7 +105,7 @@ static int fail(const setting_t *setting, fathom_status_t status, const char *wa
     (void)fprintf(stderr, "fathom: %s: %s %s: ", talk.station->name, setting->name, wanted);
     switch (status) {
     case FATHOM_ERR_UNCONFIRMED:
-        print_places(setting, was, wanted);
+        print_unknown(setting, was, wanted);
         break;
     case FATHOM_ERR_IN_USE:
         (void)fprintf(

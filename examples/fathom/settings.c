@@ -81,15 +81,16 @@ void setting_print_value(const setting_t *setting, int32_t value, char text[SETT
 void settings_print(FILE *to, const setting_t *settings)
 {
     for (const setting_t *setting = settings; setting->name != NULL; setting++) {
-        char values[LIST];
         (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->get == NULL ? " (write-only)" : "",
                       setting->what);
-        if (setting->effect == NULL)
+        if (setting->effect == NULL) {
             (void)fputs("; cannot be set", to);
-        else
+        } else {
+            char values[LIST];
             (void)fprintf(to, ": %s%s%s\n      %s", values_text(setting, values),
                           setting->unit != NULL ? " " : "", setting->unit != NULL ? setting->unit : "",
                           setting->effect);
+        }
         (void)fputs("\n", to);
     }
 }

@@ -36,11 +36,32 @@ static void one_that_breaks_off_ends_with_the_gap(void **state)
     assert_int_equal(sleeps, 1);
 }
 
+/* A request that does not wait: between the poll that sees it leave and the next one it is due at once. */
+static void without_a_time_out_it_is_due_at_once(void **state)
+{
+    uint16_t value = 0;
+    fathom_modbus_request_t request = {.exchange = {.timeout_us = 0}};
+    (void)state;
+    fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &value);
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &request), FATHOM_PENDING);
+    for (unsigned i = 0; request.exchange.status == FATHOM_PENDING && fathom_line_due_us(&bench.line) != 0;
+         i++) {
+        assert_true(i < 100);
+        const uint32_t due_us = fathom_line_due_us(&bench.line);
+        run_in_steps(due_us, due_us);
+    }
+    assert_int_equal(request.exchange.status, FATHOM_PENDING);
+    assert_int_equal(request.exchange.attempts, 1);
+    run_in_steps(1, 1);
+    assert_int_equal(request.exchange.status, FATHOM_ERR_NO_ANSWER);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap),
         TEST(one_that_breaks_off_ends_with_the_gap),
+        TEST(without_a_time_out_it_is_due_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
