@@ -104,6 +104,22 @@ static void print_tcp(FILE *to, const failure_t *failure)
                     to);
 }
 
+/* Of a sensor without an address: a break on our TX is its trigger. */
+static void print_untriggered(FILE *to, const failure_t *failure)
+{
+    if (failure->status == FATHOM_ERR_CHECKSUM) {
+        (void)fputs("what came after the trigger is no frame; ", to);
+        print_settings(to, failure);
+        (void)fputs(", and for noise", to);
+    } else {
+        (void)fputs(
+            "no answer to the trigger; check the supply, the wires from the adapter's TX to the module's RX "
+            "and back, that the adapter can send a break, and that the module is a UART-controlled one (if "
+            "not: --mode auto or modbus)",
+            to);
+    }
+}
+
 static void print_no_answer(FILE *to, const failure_t *failure)
 {
     const evidence_t *const evidence = &failure->evidence;
@@ -226,6 +242,11 @@ static void print_port(FILE *to, const failure_t *failure)
 
 void advice_print(FILE *to, const failure_t *failure)
 {
+    const bool is_triggered = failure->reader->protocol == NULL && failure->reader->is_paced;
+    if (is_triggered && (failure->status == FATHOM_ERR_NO_ANSWER || failure->status == FATHOM_ERR_CHECKSUM)) {
+        print_untriggered(to, failure);
+        return;
+    }
     switch (failure->status) {
     case FATHOM_ERR_CHECKSUM:
         if (is_only_echo(&failure->evidence))

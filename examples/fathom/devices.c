@@ -36,6 +36,11 @@ void device_a16_auto(device_t *device, const device_settings_t *settings)
     make_a16(device, settings, FATHOM_SIM_A16_AUTO);
 }
 
+void device_a16_controlled(device_t *device, const device_settings_t *settings)
+{
+    make_a16(device, settings, FATHOM_SIM_A16_CONTROLLED);
+}
+
 void device_a16_modbus(device_t *device, const device_settings_t *settings)
 {
     make_a16(device, settings, FATHOM_SIM_A16_MODBUS);

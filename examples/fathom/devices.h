@@ -45,6 +45,7 @@ typedef struct {
 typedef void (*device_init_t)(device_t *device, const device_settings_t *settings);
 
 void device_a16_auto(device_t *device, const device_settings_t *settings);
+void device_a16_controlled(device_t *device, const device_settings_t *settings);
 void device_a16_modbus(device_t *device, const device_settings_t *settings);
 void device_a05_auto(device_t *device, const device_settings_t *settings);
 void device_a05_modbus(device_t *device, const device_settings_t *settings);

@@ -59,7 +59,9 @@ void read_help(FILE *to)
     (void)fputs(
         "\nThe first mode is the default, or with an address or several sensors the first in which it is "
         "asked: auto\n"
-        "listens to a sensor that sends by itself, modbus and dyp (frames 55 AA) ask it.\n"
+        "listens to a sensor that sends by itself, modbus and dyp (frames 55 AA) ask it, controlled triggers "
+        "it by "
+        "a break.\n"
         "A single Modbus request ends the automatic output of an A16 or A05; for an A05 until power-off.\n\n"
         "Several sensors that are asked may share a line, also with different settings: each is asked at its "
         "own.\n"

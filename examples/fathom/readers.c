@@ -33,6 +33,7 @@ static bool begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sens
 {
     reader->sensor = sensor;
     reader->protocol = protocol;
+    reader->is_paced = true;
     reader->unit = &base->unit;
     reader->values = base->answer.values;
     reader->value_count = base->question.count;
@@ -59,6 +60,24 @@ bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings
     begin(reader, channel);
     return fathom_a05_auto_init(driver, &config) == FATHOM_READY &&
            begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
+}
+
+/* Triggered by a break of the port, whose TX is the module's RX. */
+bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
+    const fathom_a16_controlled_config_t config = {
+        .line = &channel->line, .period_us = settings->period_us, .gap_us = CHANNEL_STREAM_GAP_US};
+    begin(reader, channel);
+    if (fathom_a16_controlled_init(driver, &config) != FATHOM_READY) return false;
+    reader->sensor = fathom_a16_controlled_sensor(driver);
+    reader->stream = &driver->stream;
+    reader->values = driver->values;
+    reader->value_count = 1;
+    reader->left = &driver->answer.left;
+    reader->sequence = &driver->answer.sequence;
+    reader->is_paced = true;
+    return true;
 }
 
 bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
@@ -131,6 +150,7 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
     reader->protocol = modbus;
+    reader->is_paced = true;
     reader->unit = &driver->unit;
     reader->sequence = &driver->sequence;
     reader->values = driver->values;

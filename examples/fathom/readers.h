@@ -10,6 +10,7 @@
 #include "fathom/a05_dyp.h"
 #include "fathom/a05_modbus.h"
 #include "fathom/a16_auto.h"
+#include "fathom/a16_controlled.h"
 #include "fathom/a16_modbus.h"
 #include "fathom/hps167s.h"
 
@@ -38,10 +39,12 @@ typedef struct {
     fathom_modbus_unit_t *unit; /* NULL: it sends by itself */
     fathom_stream_t *stream;    /* NULL: it is asked */
     const char *protocol;       /* with which it is asked */
+    bool is_paced;              /* it keeps the user's interval by itself */
     fathom_line_t *line;
     union {
         fathom_a16_auto_t a16_auto;
         fathom_a16_modbus_t a16_modbus;
+        fathom_a16_controlled_t a16_controlled;
         fathom_a05_auto_t a05_auto;
         fathom_a05_modbus_t a05_modbus;
         fathom_a05_dyp_t a05_dyp;
@@ -53,6 +56,7 @@ typedef struct {
 typedef bool (*reader_init_t)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 
 bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);

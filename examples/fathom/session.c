@@ -147,7 +147,7 @@ static void end_attempt(const session_t *session, station_t *station)
  */
 static bool is_early(station_t *station, fathom_status_t status)
 {
-    if (station->reader.stream == NULL || station->answering) return false;
+    if (station->reader.is_paced || station->answering) return false;
     const bool is_first = !station->skipping;
     if (is_first) station->skipping = fathom_posix_now_us() < station->next_us;
     if (!station->skipping) return false;

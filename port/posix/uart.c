@@ -120,6 +120,9 @@ static int uart_set_break(void *ctx, bool on)
     fathom_posix_uart_t *const port = ctx;
     if (fathom_posix_usable(port) != FATHOM_POSIX_OK) return -1;
     if (!fathom_posix_sent(port)) return 0;
+    /* A pseudo terminal has no wire to hold low. A break that arrives is read as a 0 (termios(3), without BRKINT and
+     * PARMRK), so that stands for it. */
+    if (port->is_pty) return on ? uart_write(ctx, (const uint8_t[]){0}, 1) : 1;
     if (ioctl(port->fd, on ? TIOCSBRK : TIOCCBRK) == 0) return 1;
     (void)fathom_posix_fail_lost(port, errno);
     return -1;

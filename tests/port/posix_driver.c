@@ -93,6 +93,12 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
         driver.exclusive += request == TIOCEXCL ? 1 : -1;
         driver.exclusive_calls++;
         return driver.exclusive_error != 0 ? give(driver.exclusive_error) : 0;
+    case TIOCSBRK:
+    case TIOCCBRK:
+        driver.break_calls++;
+        if (driver.break_error != 0) return give(driver.break_error);
+        driver.breaks += request == TIOCSBRK ? 1 : -1;
+        return 0;
     case TIOCOUTQ:
         if (driver.queue_error != 0) return give(driver.queue_error);
         *(int *)out = driver.queued;

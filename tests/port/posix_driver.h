@@ -30,6 +30,9 @@ typedef struct {
     int exclusive; /* TIOCEXCL minus TIOCNXCL */
     int exclusive_calls;
     int exclusive_error;
+    int breaks; /* TIOCSBRK minus TIOCCBRK */
+    int break_calls;
+    int break_error;
     int read_error;
     int read_interrupts;
     int write_most; /* bytes that one write takes; 0: all */

@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+#include <errno.h>
+
+#include "posix_driver.h"
+#include "posix_rig.h"
+
+/* set_break: the trigger of modules whose RX pin is our TX. The driver is posix_driver.h's. */
+
+static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
+
+static fathom_uart_t open_wire(port_rig_t *rig)
+{
+    driver.is_8250 = true;
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &usual), FATHOM_POSIX_OK);
+    return fathom_posix_uart(&rig->port);
+}
+
+static void a_break_begins_and_ends_when_it_is_told_to(void **state)
+{
+    const fathom_uart_t uart = open_wire(*state);
+    assert_int_equal(uart.set_break(uart.ctx, true), 1);
+    assert_int_equal(driver.breaks, 1);
+    assert_int_equal(uart.set_break(uart.ctx, false), 1);
+    assert_int_equal(driver.breaks, 0);
+}
+
+static void bytes_that_are_leaving_come_first(void **state)
+{
+    const fathom_uart_t uart = open_wire(*state);
+    driver.queued = 3;
+    assert_int_equal(uart.set_break(uart.ctx, true), 0);
+    assert_int_equal(driver.break_calls, 0);
+    driver.queued = 0;
+    assert_int_equal(uart.set_break(uart.ctx, true), 1);
+}
+
+static void a_device_that_has_gone_is_a_broken_port(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_uart_t uart = open_wire(rig);
+    driver.break_error = EIO;
+    assert_int_equal(uart.set_break(uart.ctx, true), -1);
+    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
+    driver.break_error = 0;
+    assert_int_equal(uart.set_break(uart.ctx, true), -1); /* until it is opened again */
+    assert_int_equal(driver.break_calls, 1);
+}
+
+static void a_port_that_is_closed_is_broken_too(void **state)
+{
+    port_rig_t *const rig = *state;
+    const fathom_uart_t uart = open_wire(rig);
+    fathom_posix_close(&rig->port);
+    assert_int_equal(uart.set_break(uart.ctx, true), -1);
+}
+
+static void on_a_pseudo_terminal_a_zero_stands_for_it(void **state)
+{
+    port_rig_t *const rig = *state;
+    uint8_t bytes[4] = {0xA5, 0xA5, 0xA5, 0xA5};
+    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &usual), FATHOM_POSIX_OK);
+    const fathom_uart_t uart = fathom_posix_uart(&rig->port);
+    assert_int_equal(uart.set_break(uart.ctx, true), 1);
+    assert_int_equal(posix_pty_receive(&rig->pty, bytes, sizeof bytes), 1);
+    assert_int_equal(bytes[0], 0);
+    while (!uart.sent(uart.ctx)) continue;
+    assert_int_equal(uart.set_break(uart.ctx, false), 1);
+    assert_int_equal(driver.break_calls, 0);
+}
+
+static int set_up(void **state)
+{
+    posix_driver_reset();
+    return port_rig_set_up(state);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, port_rig_tear_down)
+    const struct CMUnitTest tests[] = {
+        TEST(a_break_begins_and_ends_when_it_is_told_to), TEST(bytes_that_are_leaving_come_first),
+        TEST(a_device_that_has_gone_is_a_broken_port),    TEST(a_port_that_is_closed_is_broken_too),
+        TEST(on_a_pseudo_terminal_a_zero_stands_for_it),
+    };
+    posix_start_watchdog();
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
