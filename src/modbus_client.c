@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/modbus_client.h"
 
+#include <stdbool.h>
+
 #include "fathom/crc16.h"
 
 enum { LEAST_REQUEST = 8 };
@@ -24,6 +26,14 @@ static fathom_modbus_message_t *message_of(fathom_exchange_t *exchange)
     return &((fathom_modbus_request_t *)exchange)->message;
 }
 
+/* An answer whose unit and function are right: does it begin as its request does? Whoever acknowledges a write of one
+ * register sends it back. And the echo of a read of 0200 begins with a whole answer, CRC and all, if the unit is 83 or
+ * 147. */
+static bool begins_alike(const uint8_t *head, const uint8_t *bytes)
+{
+    return bytes[2] == head[2] && bytes[3] == head[3] && bytes[4] == head[4] && bytes[5] == head[5];
+}
+
 static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t have, fathom_match_t *match)
 {
     const uint8_t length = fathom_modbus_rtu_response_length(bytes, have);
@@ -37,10 +47,8 @@ static void judge(fathom_exchange_t *exchange, const uint8_t *bytes, uint8_t hav
         fathom_modbus_message_t *const message = message_of(exchange);
         if (exchange->unit == FATHOM_LINE_ANY_UNIT) match->unit = FATHOM_LINE_ANY_UNIT;
         match->status = (int8_t)fathom_modbus_rtu_parse_response(message, bytes);
-        /* Whoever acknowledges a write of one register sends it back. And the echo of a read of 0200 begins with a
-         * whole answer, CRC and all, if the unit is 83 or 147. */
         if (match->status == FATHOM_READY && message->head[1] != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS &&
-            fathom_modbus_rtu_begun_request(message, bytes, length) != 0)
+            begins_alike(message->head, bytes))
             match->request = length;
     } else if (exchange != NULL && (length <= have || have >= LEAST_REQUEST)) {
         look_for_request(message_of(exchange), bytes, have, match);

@@ -65,6 +65,7 @@ INDIRECT = {
     'clock->now_us': None,
     'listener->receive': None,
     'uart->set_line': None,
+    'uart->set_break': None,
     'x->protocol': 'modbus_client.c:protocol',
     'line->protocol': 'modbus_client.c:protocol',
     'exchange->protocol': 'modbus_client.c:protocol',
