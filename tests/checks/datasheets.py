@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The README's table of the datasheets: a row for each section of tests/golden/sections.csv, and what a row names is
-there: functions and headers, commands of the tool, tests."""
+there: functions and headers, commands of the tool, tests. The headers that the README names elsewhere are there too."""
 import os
 import re
 
@@ -41,10 +41,12 @@ class Tree:
         self.names = set(re.findall(r'\b[A-Za-z_]\w*\b', code))
         self.commands = set(re.findall(r'&(\w+)_command\b', read(root, 'examples/fathom/main.c')))
 
+    def has_header(self, name):
+        return any(os.path.exists(os.path.join(self.root, folder, name))
+                   for folder in ('include/fathom', 'include', ''))
+
     def has_api(self, name):
-        if name.endswith('.h'):
-            return os.path.exists(os.path.join(self.root, 'include/fathom', name))
-        return name in self.names
+        return self.has_header(name) if name.endswith('.h') else name in self.names
 
     def has_test(self, name):
         path, _, case = name.partition(':')
@@ -61,9 +63,11 @@ class Tree:
 def check(root, only):
     tree = Tree(root)
     wanted = sections(read(root, LIST))
-    found = rows(read(root, 'README.md'))
+    readme = read(root, 'README.md')
+    prose = re.sub(r'^```.*?^```', '', readme, flags=re.S | re.M)
+    found = rows(readme)
     names = [row[0] for row in found]
-    problems = [f'README.md: no row for {name}' for name in wanted if name not in names]
+    problems = [f'README.md: no row for {name} of {LIST}' for name in wanted if name not in names]
     problems += [f'README.md: {name} is no section of {LIST}' for name in names if name not in wanted]
     problems += [f'README.md: {name} stands there twice' for name in set(names) if names.count(name) > 1]
     for name, api, tool, tests in found:
@@ -78,6 +82,8 @@ def check(root, only):
             problems.append(f'README.md: {name}: no test')
         problems += [f'README.md: {name}: there is no test {word}' for word in quoted(tests)
                      if not tree.has_test(word)]
+    problems += [f'README.md: {word} is not in include/fathom' for word in set(quoted(prose))
+                 if re.fullmatch(r'[\w/]+\.h', word) and not tree.has_header(word)]
     return [problem for problem in problems if only is None or any(path in problem for path in only)]
 
 
