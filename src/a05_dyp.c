@@ -33,8 +33,9 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_d
     question->backoff_us = config->backoff_us;
     question->settings = config->settings;
     base->answer.values = sensor->values;
-    base->answer.window.min_mm = config->window.min_mm;
-    base->answer.window.max_mm = config->window.max_mm;
+    base->command_timeout_us = config->command_timeout_us;
+    base->start_us = config->start_us;
+    fathom_dyp_window_copy(&base->answer.window, &config->window);
     base->answer.model = FATHOM_A05;
     base->answer.first = (uint8_t)(first + 1);
     base->probes = probes;

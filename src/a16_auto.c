@@ -9,8 +9,7 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
     base->stream_config.gap_us = config->gap_us;
     base->stream_config.length = FATHOM_DYP_A16_LENGTH;
     base->answer.values = sensor->values;
-    base->answer.window.min_mm = config->window.min_mm;
-    base->answer.window.max_mm = config->window.max_mm;
+    fathom_dyp_window_copy(&base->answer.window, &config->window);
     base->answer.model = FATHOM_A16;
     base->answer.unit = 0;
     base->answer.first = 1;

@@ -145,8 +145,7 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
     sensor->latest_us = or_else(config->latest_us, FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US);
     sensor->low_us = (uint16_t)or_else(config->low_us, FATHOM_A16_CONTROLLED_DEFAULT_LOW_US);
     answer->values = sensor->values;
-    answer->window.min_mm = config->window.min_mm;
-    answer->window.max_mm = config->window.max_mm;
+    fathom_dyp_window_copy(&answer->window, &config->window);
     answer->model = FATHOM_A16;
     answer->unit = 0;
     answer->first = 1;

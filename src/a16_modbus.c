@@ -22,8 +22,9 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
     question->backoff_us = config->backoff_us;
     question->settings = config->settings;
     base->answer.values = sensor->values;
-    base->answer.window.min_mm = config->window.min_mm;
-    base->answer.window.max_mm = config->window.max_mm;
+    base->command_timeout_us = config->command_timeout_us;
+    base->start_us = config->start_us;
+    fathom_dyp_window_copy(&base->answer.window, &config->window);
     base->answer.model = FATHOM_A16;
     base->answer.first = 1;
     base->probes = 1;

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/dyp.h"
 
-static bool is_no_object(uint16_t value)
+static bool is_no_object(const fathom_dyp_window_t *window, uint16_t value)
 {
+    if (window->no_codes) return false;
     return value == FATHOM_DYP_NO_OBJECT || value == FATHOM_DYP_NO_OBJECT_OLD ||
            value == FATHOM_DYP_INTERFERENCE;
 }
 
 bool fathom_dyp_plausible(const fathom_dyp_window_t *window, uint16_t value)
 {
-    return is_no_object(value) || (value >= window->min_mm && value <= window->max_mm);
+    return is_no_object(window, value) || (value >= window->min_mm && value <= window->max_mm);
 }
 
 fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sample)
@@ -24,7 +25,7 @@ fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sa
         if (answer->implausible != UINT16_MAX) answer->implausible++;
         return FATHOM_ERR_MALFORMED;
     }
-    const bool is_target = !is_no_object(value);
+    const bool is_target = !is_no_object(&answer->window, value);
     sample->time_us = answer->time_us;
     sample->magnitude = 0;
     sample->sequence = answer->sequence;
@@ -36,7 +37,7 @@ fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sa
     sample->unit = answer->unit;
     sample->probe = probe;
     sample->ambient = 0;
-    sample->interference = value == FATHOM_DYP_INTERFERENCE;
+    sample->interference = !is_target && value == FATHOM_DYP_INTERFERENCE;
     return FATHOM_READY;
 }
 

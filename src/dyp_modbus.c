@@ -6,6 +6,8 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
 {
     const fathom_status_t status = fathom_dyp_answer_init(&sensor->answer, default_max_mm);
     sensor->question.values = sensor->answer.values;
+    if (sensor->command_timeout_us == 0) sensor->command_timeout_us = FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US;
+    if (sensor->start_us == 0) sensor->start_us = FATHOM_DYP_DEFAULT_START_US;
     sensor->question.is_command = false;
     sensor->question.function = 0;
     sensor->answer.unit = address;
@@ -17,7 +19,7 @@ void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor) { fathom_modbus_unit_
 void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor)
 {
     sensor->answer.left = 0;
-    fathom_modbus_unit_power_on(&sensor->unit, FATHOM_DYP_START_US);
+    fathom_modbus_unit_power_on(&sensor->unit, sensor->start_us);
 }
 
 /* ---- commands ---- */
@@ -26,7 +28,7 @@ static void describe(const fathom_dyp_modbus_t *sensor, uint16_t address, uint16
                      fathom_modbus_question_t *question)
 {
     *question = sensor->question; /* pace, back-off and line settings are the same */
-    question->timeout_us = FATHOM_DYP_COMMAND_TIMEOUT_US;
+    question->timeout_us = sensor->command_timeout_us;
     question->values = value;
     question->first = address;
     question->count = 1;

@@ -40,6 +40,9 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
         fathom_hps167s_set_limits(&sensor->limits, &config->limits) < 0)
         return FATHOM_ERR_ARGUMENT;
     question->timeout_us = config->timeout_us != 0 ? config->timeout_us : MEASURE_TIMEOUT_US;
+    sensor->command_timeout_us = config->command_timeout_us;
+    if (sensor->command_timeout_us == 0)
+        sensor->command_timeout_us = FATHOM_HPS167S_DEFAULT_COMMAND_TIMEOUT_US;
     question->pace_us = FATHOM_HPS167S_MIN_PERIOD_US;
     if (config->period_us > question->pace_us) question->pace_us = config->period_us;
     question->values = sensor->values;
@@ -134,7 +137,7 @@ void fathom_hps167s_describe(const fathom_hps167s_t *sensor, uint16_t first,
                              fathom_modbus_question_t *question)
 {
     *question = sensor->question; /* pace, back-off and line settings are the same */
-    question->timeout_us = FATHOM_HPS167S_COMMAND_TIMEOUT_US;
+    question->timeout_us = sensor->command_timeout_us;
     question->first = first;
     question->is_command = true;
 }

@@ -8,7 +8,7 @@
 
 enum { FATHOM_HPS167S_CONFIGURATION = 0x0002, FATHOM_HPS167S_FACTORY_WARM_UP_S = 5 };
 
-#define FATHOM_HPS167S_COMMAND_TIMEOUT_US 1000000ul
+#define FATHOM_HPS167S_DEFAULT_COMMAND_TIMEOUT_US 1000000ul
 
 static inline uint8_t high(uint16_t value) { return (uint8_t)(value >> 8); }
 static inline uint8_t low(uint16_t value) { return (uint8_t)value; }

@@ -27,7 +27,7 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    uint32_t stale_us;   /* 0: 2 s */
+    uint32_t stale_us;   /* 0: 2 s; the datasheet prints no period: 6 frames of one that was assumed */
     uint16_t gap_us;     /* a silence of so much starts and ends a frame (stream.h); behind an operating
                             system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */

@@ -37,7 +37,9 @@ typedef struct {
     const fathom_line_settings_t *settings; /* where those on one line differ (line.h); NULL: as they are */
     uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
     uint32_t period_us;  /* from one command to the next; 0 and anything less: the two above */
-    uint32_t timeout_us; /* 0: 500 ms for all probes, 200 ms for one */
+    uint32_t timeout_us; /* 0: 500 ms for all probes, 200 ms for one: twice the datasheet's and more */
+    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s */
+    uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint8_t address;            /* 1..254; 0: 1, the factory's */
     uint8_t retries;            /* after a failed attempt; 0: none */
@@ -61,7 +63,7 @@ void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor);
 /* For fathom_poll. */
 fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor);
 
-/* To be called when the sensor gets power: for 1.5 s its silence is FATHOM_ERR_WARMING_UP (not in the datasheet). */
+/* To be called when the sensor gets power: for start_us its silence is FATHOM_ERR_WARMING_UP. */
 void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
 
 /*

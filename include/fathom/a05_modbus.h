@@ -38,6 +38,8 @@ typedef struct {
     uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
     uint32_t period_us;  /* from one request to the next; 0 and anything less: 100 ms a probe */
     uint32_t timeout_us; /* 0: 200 ms, and 100 ms a probe */
+    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s */
+    uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
     uint8_t address;            /* 1..254; 0: 1, the factory's */
@@ -58,12 +60,12 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor);
 
-/* To be called when the sensor gets power: for 1.5 s its silence is FATHOM_ERR_WARMING_UP (not in the datasheet). */
+/* To be called when the sensor gets power: for start_us its silence is FATHOM_ERR_WARMING_UP. */
 void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
 
 /*
  * The address, register 0x0200 (A05 3(3)), read and set. Each asks the device and returns at once: call it, with the
- * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. An answer takes up to 1 s, a
+ * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. An answer takes command_timeout_us (1 s) at most, a
  * change some 3 s, since the new address is asked first whether somebody is there.
  *
  * address: FATHOM_READY with *address, or an error of fathom_poll.

@@ -29,7 +29,7 @@ typedef struct {
     /* The module's RX pin, which outlives the sensor; NULL: it is open, or the TX of the line's port, whose break
      * then selects. */
     const fathom_pin_t *select;
-    uint32_t stale_us; /* 0: 2 s */
+    uint32_t stale_us; /* 0: 2 s; the datasheet prints no period: 20 frames of one that was assumed */
     uint16_t gap_us;   /* a silence of so much starts and ends a frame (stream.h); behind an operating
                             system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */

@@ -42,6 +42,8 @@ typedef struct {
     uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
     uint32_t period_us;  /* from one request to the next; 0 and anything less: 120 ms */
     uint32_t timeout_us; /* 0: 1 s for the processed value, 300 ms for the real-time one */
+    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s */
+    uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
     uint8_t address;            /* 1..254; 0: 1, the factory's */
     uint8_t retries;            /* after a failed attempt; 0: none */
@@ -59,7 +61,7 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor);
 
-/* To be called when the sensor gets power: for 1.5 s its silence is FATHOM_ERR_WARMING_UP (not in the datasheet). */
+/* To be called when the sensor gets power: for start_us its silence is FATHOM_ERR_WARMING_UP. */
 void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor);
 
 /* For fathom_poll. */

@@ -15,7 +15,7 @@ extern "C" {
  *
  * Each function asks the device and returns at once: call it with the same arguments, with the loop going on in
  * between, until it is not FATHOM_PENDING. One at a time; fathom_poll rests as long as a setting is being changed.
- * An answer takes up to 1 s.
+ * An answer takes command_timeout_us (1 s) at most.
  *
  * Reading: FATHOM_READY with *out written, or
  *   FATHOM_ERR_NO_ANSWER, _CHECKSUM, _EXCEPTION, _PORT   as fathom_poll (a16_modbus.h). Where a register is not for

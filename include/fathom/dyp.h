@@ -28,7 +28,18 @@ extern "C" {
 typedef struct {
     uint16_t min_mm;
     uint16_t max_mm;
+    /* False: 0, 0xFFFD and 0xFFFE are read as above, since sister models send them. True, for modules of which it is
+     * known that they do not: they are refused like any other value outside the window. */
+    bool no_codes;
 } fathom_dyp_window_t;
+
+/* Member by member: of a whole struct of this size compilers make a call of memcpy. */
+static inline void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
+{
+    to->min_mm = from->min_mm;
+    to->max_mm = from->max_mm;
+    to->no_codes = from->no_codes;
+}
 
 /* The default windows. 16350 mm is the longest pulse of A16 1(3), 94 ms; 6000 mm leaves the A05 a third beyond
  * its range of 4.5 m. The near end is 1 mm. */

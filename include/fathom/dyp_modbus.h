@@ -18,17 +18,20 @@ typedef struct {
     fathom_dyp_answer_t answer;
     uint8_t probes;   /* bit probe - 1: wanted of those that are read */
     uint16_t setting; /* a register that a command reads */
+    uint32_t command_timeout_us;
+    uint32_t start_us;
 } fathom_dyp_modbus_t;
 
 /* Both sensors have their address here (A05 3(3), A16 6(3)). */
 enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
 
-/* Time-out of a command, and how long after power-on silence is no error: data comes after some 900 ms, as is known
- * of sister models; not in the datasheets. */
-#define FATHOM_DYP_COMMAND_TIMEOUT_US 1000000ul
-#define FATHOM_DYP_START_US           1500000ul
+/* Zero-valued members of the drivers' configs mean these: the time-out of a command, and how long after power-on silence
+ * is no error. Data comes after some 900 ms, as is known of sister models; neither is in the datasheets. */
+#define FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US 1000000ul
+#define FATHOM_DYP_DEFAULT_START_US           1500000ul
 
-/* The caller has set the question and the probes, and values, window, model and first of the answer.
+/* The caller has set the question, the probes, command_timeout_us and start_us (0: their defaults), and values, window,
+ * model and first of the answer.
  * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or a window that is upside down. */
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *modbus,
                                        const fathom_clock_t *clock, uint8_t address, uint16_t default_max_mm);
@@ -36,7 +39,7 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
 /* Cancels what is under way. */
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor);
 
-/* The sensor gets power now: for 1.5 s its silence is FATHOM_ERR_WARMING_UP. */
+/* The sensor gets power now: for start_us its silence is FATHOM_ERR_WARMING_UP. */
 void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 
 /*

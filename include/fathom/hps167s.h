@@ -52,9 +52,10 @@ typedef struct {
     uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
     uint32_t period_us;  /* from one request to the next; 0 and anything less: 18519 us */
     uint32_t timeout_us; /* of a measurement; the slowest rate is 6 a second. 0: 500 ms */
-    uint8_t address;     /* 1..32; 0: 1, the factory's */
-    uint8_t retries;     /* after a failed attempt, of commands that only read too; 0: none */
-    uint8_t warm_up_s;   /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
+    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s. The datasheet gives no times */
+    uint8_t address;             /* 1..32; 0: 1, the factory's */
+    uint8_t retries;             /* after a failed attempt, of commands that only read too; 0: none */
+    uint8_t warm_up_s;           /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
     fathom_hps167s_limits_t limits;
 
     /* How to read what the datasheet leaves open, beside the limits. */
@@ -75,6 +76,7 @@ enum { FATHOM_HPS167S_MAX_ADDRESS = 32, FATHOM_HPS167S_MAX_REGISTERS = 11 };
 
 typedef struct {
     fathom_modbus_unit_t unit;
+    uint32_t command_timeout_us;
     fathom_modbus_question_t question; /* the repeated one */
     fathom_hps167s_limits_t limits;
     uint32_t warm_us;

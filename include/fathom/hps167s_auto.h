@@ -34,7 +34,7 @@ typedef struct {
      * another question is asked, is anything that could be one; both are counted as implausible. Of distances that is
      * 255 mm alone. */
     fathom_hps167s_t *asking;
-    uint32_t stale_us;              /* 0: 2 s */
+    uint32_t stale_us;              /* 0: 2 s; the slowest rate is 6 a second */
     uint8_t address;                /* 1..32; 0: that of asking, wherever it moves, or 1 */
     fathom_hps167s_limits_t limits; /* as in fathom_hps167s_config_t */
 } fathom_hps167s_auto_config_t;

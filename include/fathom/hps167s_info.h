@@ -17,7 +17,7 @@ extern "C" {
  * fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
  *   FATHOM_ERR_BUSY       another command or setting is not finished, or its outcome was not taken
  *   FATHOM_ERR_CAPACITY   the line's frame buffer is too small (27 bytes for the details)
- * An answer takes up to 1 s.
+ * An answer takes command_timeout_us (1 s) at most.
  */
 
 enum { FATHOM_HPS167S_UUID_LENGTH = 16 };
