@@ -96,7 +96,6 @@ fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8
     sensor->client.submit = submit_either;
     const fathom_status_t status = fathom_modbus_set(&sensor->base.unit, &setting);
     sensor->client = fathom_dyp_client(sensor->client.ctx);
-    sensor->base.answer.unit = sensor->base.unit.address;
     return status;
 }
 

@@ -11,6 +11,7 @@ fathom_status_t fathom_a16_measure(fathom_a16_modbus_t *sensor, fathom_a16_value
         value == FATHOM_A16_REAL_TIME ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
     const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, sensor->values);
     if (status != FATHOM_READY) return status;
+    sensor->base.answer.unit = sensor->base.unit.address;
     fathom_dyp_answer(&sensor->base.answer, 1, sensor->base.unit.heard_us);
     return fathom_dyp_next(&sensor->base.answer, sample);
 }

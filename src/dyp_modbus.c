@@ -10,7 +10,6 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
     if (sensor->start_us == 0) sensor->start_us = FATHOM_DYP_DEFAULT_START_US;
     sensor->question.is_command = false;
     sensor->question.function = 0;
-    sensor->answer.unit = address;
     return status < 0 ? status : fathom_modbus_unit_init(&sensor->unit, modbus, clock, address);
 }
 
@@ -105,9 +104,7 @@ fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t ad
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address)
 {
     if (address == FATHOM_MODBUS_BROADCAST || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
-    const fathom_status_t status = set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address, address, true);
-    sensor->answer.unit = sensor->unit.address;
-    return status;
+    return set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address, address, true);
 }
 
 /* ---- measuring ---- */
@@ -119,6 +116,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     if (next != FATHOM_PENDING) return next;
     const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->question);
     if (status != FATHOM_READY) return status;
+    sensor->answer.unit = sensor->unit.address; /* it may have moved, and a move may have been given up */
     fathom_dyp_answer(&sensor->answer, sensor->probes, sensor->unit.heard_us);
     return fathom_dyp_next(&sensor->answer, sample);
 }
