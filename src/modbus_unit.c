@@ -168,7 +168,10 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_
         unit->state = IDLE;
         return outcome(unit);
     }
-    if (carrier < 0) return carrier; /* nothing could be asked; not to say so would let a caller wait */
+    if (carrier < 0) { /* nothing could be asked; not to say so would let a caller wait */
+        if (unit->waiting == fathom_modbus_unit_name(question)) unit->waiting = 0; /* that was its outcome */
+        return carrier;
+    }
     const fathom_status_t status = turn(unit, question);
     if (status != FATHOM_READY) return status;
     unit->state = IDLE; /* an outcome of the repeated question that nobody took gives way */
