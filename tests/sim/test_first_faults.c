@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT */
+#include "first_stage.h"
+
+/* Every command and setting, with every kind of fault at each of its frames in turn. Afterwards the device has to be
+ * where the outcome says, it was told at most once, and the driver works. */
+
+#ifndef RUNS
+enum { RUNS = 600 };
+#endif
+static unsigned problems;
+#define problem(...) (print_error(__VA_ARGS__), print_error("\n"), problems++)
+
+#define BIT(kind) FATHOM_SIM_FAULT_BIT(FATHOM_SIM_FAULT_##kind)
+/* What can look like an answer at an address where nobody is, or talk into the question there. */
+#define WHAT_TALKS                                                                                           \
+    (BIT(UNASKED) | BIT(NOISE) | BIT(DUPLICATE) | BIT(BREAK) | BIT(LATE) | BIT(DELAY) | BIT(TRAILING) |      \
+     BIT(UNIT) | BIT(ECHO))
+
+static const uint32_t loops_us[] = {0, 1 * MS, 20 * MS, 300 * MS};
+
+static bool probe_frame(uint8_t kind)
+{
+    return kind == FATHOM_SIM_FAULT_STUCK || kind == FATHOM_SIM_FAULT_INTERFERENCE ||
+           kind == FATHOM_SIM_FAULT_FAULT || kind == FATHOM_SIM_FAULT_NO_TARGET;
+}
+
+/*
+ * Is this what the headers say of the outcome? kinds: of the faults. What cannot be told apart on a wire is excepted:
+ * an exception instead of an acknowledgement; an unasked Modbus frame of the shape that is waited for, which no A16
+ * sends; a line that begins to echo between the reading and a writing that has no read-back.
+ */
+static void judge(first_t *s, const job_t *job, fathom_status_t status, uint32_t kinds, const char *what)
+{
+    const uint32_t has = job->has(s);
+    const uint32_t writes = told(s);
+    if (writes > 1) problem("%s, %s: told %u times", job->name, what, (unsigned)writes);
+    if (has != job->before && has != job->wanted) problem("%s, %s: has %u", job->name, what, (unsigned)has);
+    switch (status) {
+    case FATHOM_READY:
+        if (has != job->wanted && (job->kind != WRITE_ONLY || (kinds & BIT(ECHO)) == 0))
+            problem("%s, %s: READY, but it is not so", job->name, what);
+        break;
+    case FATHOM_ERR_UNCONFIRMED:
+        if (job->kind == READS || job->kind == WRITE_ONLY) problem("%s, %s: unconfirmed", job->name, what);
+        break;
+    case FATHOM_ERR_IN_USE:
+        if (job->kind != MOVES || writes != 0 || (kinds & WHAT_TALKS) == 0)
+            problem("%s, %s: in use", job->name, what);
+        break;
+    case FATHOM_ERR_NO_ANSWER:
+    case FATHOM_ERR_CHECKSUM:
+    case FATHOM_ERR_MALFORMED:
+    case FATHOM_ERR_EXCEPTION:
+    case FATHOM_ERR_ECHO:
+    case FATHOM_ERR_PORT:
+    case FATHOM_ERR_CANCELLED:
+        /* Of what is write-only, when the writing failed: it may hold or not. */
+        if (has != job->before && job->kind != WRITE_ONLY && (kinds & BIT(EXCEPTION)) == 0 &&
+            !(s->model == A16 && (kinds & BIT(UNASKED)) != 0))
+            problem("%s, %s: %d, but it was changed", job->name, what, (int)status);
+        break;
+    default:
+        problem("%s, %s: says %d", job->name, what, (int)status);
+    }
+}
+
+/* With no more faults: it measures where driver and device are at one place, and can be set. */
+static void expect_works(first_t *s, const job_t *job, fathom_status_t status, const char *what)
+{
+    rest(s, 3 * SECOND);
+    const bool seeks = s->model == HPS && s->driver.hps.is_seeking;
+    if (!same_place(s) && !seeks) {
+        if (status != FATHOM_ERR_UNCONFIRMED) problem("%s, %s: device and driver apart", job->name, what);
+        return;
+    }
+    if (!recovers(s)) problem("%s, %s: does not work afterwards", job->name, what);
+    const fathom_status_t again = run(s, job);
+    if (again != FATHOM_READY) problem("%s, %s: then %d", job->name, what, (int)again);
+    if (job->has(s) != job->wanted && job->has != jobs[0].has && job->kind != WRITE_ONLY && job->before != 0)
+        problem("%s, %s: set again, but it is not so", job->name, what);
+    if (!recovers(s)) problem("%s, %s: set again, then it does not work", job->name, what);
+}
+
+static void with_fault(const job_t *job, uint8_t kind, uint32_t frame, uint32_t loop_us, uint8_t echo,
+                       uint32_t us)
+{
+    static first_t s;
+    char what[80];
+    set_up(&s, job->model, job->unit, loop_us, echo);
+    if (echo == FATHOM_LINE_ECHO_AUTO) s.wire.echo = (frame & 1) != 0;
+    if (!fathom_sim_fault_applies(kind, device_of(&s, 0)) || probe_frame(kind)) return;
+    fathom_sim_fault_rule_t *const rule =
+        fathom_sim_fault_add(&s.fault, kind, FATHOM_SIM_FAULT_ALWAYS_PPM, frame);
+    assert_non_null(rule);
+    rule->us = us;
+    snprintf(what, sizeof what, "%s at frame %u, loop %u us, echo %u, us %u", fathom_sim_fault_name(kind),
+             (unsigned)frame, (unsigned)loop_us, echo, (unsigned)us);
+    const fathom_status_t status = run(&s, job);
+    judge(&s, job, status, FATHOM_SIM_FAULT_BIT(kind), what);
+    fathom_sim_fault_enable(&s.fault, false);
+    if (kind == FATHOM_SIM_FAULT_EXCEPTION && !same_place(&s)) return;
+    expect_works(&s, job, status, what);
+}
+
+static void no_fault_at_any_frame_makes_an_outcome_untrue(void **state)
+{
+    (void)state;
+    for (unsigned j = 0; j != jobs_count; j++)
+        for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
+            for (uint32_t frame = 1; frame <= 6; frame++)
+                for (unsigned l = 0; l != 4; l++)
+                    with_fault(&jobs[j], kind, frame, loops_us[l], (uint8_t)(l % 3), 0);
+    assert_int_equal(problems, 0);
+}
+
+static uint32_t random_state;
+static uint32_t any(uint32_t below)
+{
+    random_state = random_state * UINT32_C(1664525) + UINT32_C(1013904223);
+    return (random_state >> 8) % below;
+}
+
+/* Four kinds at once, each of them at a third of the frames, on a port that knows this or that, with or without a
+ * measurement before. */
+static void many_faults_at_once_make_no_outcome_untrue(void **state)
+{
+    static first_t s;
+    char what[80];
+    (void)state;
+    random_state = bench_start_us;
+    for (unsigned round = 0; round != RUNS; round++) {
+        const job_t *const job = &jobs[round % jobs_count];
+        const uint32_t seed = random_state;
+        set_up(&s, job->model, job->unit, loops_us[any(4)], (uint8_t)any(3));
+        if (s.config.echo == FATHOM_LINE_ECHO_AUTO) s.wire.echo = any(2) != 0;
+        s.port.knows = (uint8_t)any(32);
+        snprintf(what, sizeof what, "seed %lu", (unsigned long)seed);
+        fathom_sim_fault_init(&s.fault, seed);
+        s.fault.clock = &s.clock;
+        fathom_sim_fault_attach(&s.fault, &s.wire, device_of(&s, 0));
+        uint32_t kinds = 0;
+        while (kinds == 0 || any(4) != 0) {
+            const uint8_t kind = (uint8_t)(1 + any(FATHOM_SIM_FAULT_END - 1));
+            if (!fathom_sim_fault_applies(kind, device_of(&s, 0)) || probe_frame(kind)) continue;
+            fathom_sim_fault_rule_t *const rule = fathom_sim_fault_add(&s.fault, kind, 300000, 0);
+            if (rule != NULL && any(2) != 0) rule->us = 1 + any(3 * SECOND);
+            kinds |= FATHOM_SIM_FAULT_BIT(kind);
+        }
+        fathom_sample_t sample;
+        const fathom_sensor_t sensor = sensor_of(&s);
+        for (uint32_t i = any(4); i != 0; i--) (void)measure(&s, &sample);
+        for (uint32_t i = any(3); i != 0; i--) {
+            (void)fathom_poll(&sensor, &sample);
+            pass(&s);
+        }
+        const fathom_status_t status = run(&s, job);
+        judge(&s, job, status, kinds, what);
+        fathom_sim_fault_enable(&s.fault, false);
+        if ((kinds & BIT(EXCEPTION)) != 0 && !same_place(&s)) continue;
+        expect_works(&s, job, status, what);
+    }
+    assert_int_equal(problems, 0);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(many_faults_at_once_make_no_outcome_untrue),
+    cmocka_unit_test(no_fault_at_any_frame_makes_an_outcome_untrue),
+};
+
+BENCH_MAIN(tests)

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+#include "first_stage.h"
+
+/* Every command and setting, interrupted after each of its steps: given up, by power-on, by somebody who cancels all
+ * requests to the unit, by a port that breaks for a while, by a device that loses its power. */
+
+static unsigned problems;
+#define problem(...) (print_error(__VA_ARGS__), print_error("\n"), problems++)
+
+typedef enum { GIVE_UP, POWER_ON, CANCEL_UNIT, BREAK_PORT, UNPLUG, CUT_POWER, ACTS } act_t;
+static const char *const act_names[] = {"given up",    "power-on",         "cancel_unit",
+                                        "port broken", "port broken long", "power cut"};
+
+/* READY, or an error, after which the device has what the outcome says. */
+static void judge(first_t *s, const job_t *job, fathom_status_t status, const char *what)
+{
+    const uint32_t has = job->has(s);
+    if (told(s) > 1) problem("%s, %s: told %u times", job->name, what, (unsigned)told(s));
+    if (has != job->before && has != job->wanted) problem("%s, %s: has %u", job->name, what, (unsigned)has);
+    if (status == FATHOM_READY && has != job->wanted)
+        problem("%s, %s: READY, but it is not so", job->name, what);
+    if (status == FATHOM_READY || status == FATHOM_ERR_UNCONFIRMED) return;
+    if (status == FATHOM_ERR_BUSY || status == FATHOM_ERR_IN_USE || status == FATHOM_ERR_ARGUMENT)
+        problem("%s, %s: says %d", job->name, what, (int)status);
+    if (has != job->before && job->kind != WRITE_ONLY)
+        problem("%s, %s: %d, but it was changed", job->name, what, (int)status);
+}
+
+/* The job until its end, with a port that may be broken for the first `broken` rounds. */
+static fathom_status_t go_on(first_t *s, const job_t *job, unsigned broken)
+{
+    const fathom_sensor_t sensor = sensor_of(s);
+    const uint32_t start_us = s->clock.now_us;
+    fathom_sample_t sample;
+    for (unsigned round = 0;; round++) {
+        s->broken = round < broken ? -1 : 0;
+        const fathom_status_t status = job->call(s);
+        if (status != FATHOM_PENDING) return status;
+        (void)fathom_poll(&sensor, &sample);
+        if (s->broken != 0)
+            fathom_sim_clock_advance(&s->clock, 1 * MS);
+        else
+            pass(s);
+        if (fathom_elapsed_us(s->clock.now_us, start_us) > 60 * SECOND) fail_msg("%s never ends", job->name);
+    }
+}
+
+static void expect_works(first_t *s, const job_t *job, bool may_move, const char *what)
+{
+    s->broken = 0;
+    rest(
+        s,
+        8 * SECOND); /* the warm-up too: so long silence at a new place does not prove that nobody is there */
+    if (!same_place(s) && !(s->model == HPS && s->driver.hps.is_seeking)) {
+        if (job->kind != MOVES || !may_move || told(s) == 0)
+            problem("%s, %s: driver and device apart", job->name, what);
+        return;
+    }
+    if (!recovers(s)) problem("%s, %s: does not work afterwards", job->name, what);
+    const fathom_status_t again = run(s, job);
+    if (again != FATHOM_READY) problem("%s, %s: then %d", job->name, what, (int)again);
+    if (job->kind == KEPT && job->has(s) != job->wanted) problem("%s, %s: then not so", job->name, what);
+    if (told(s) > (job->kind == KEPT ? 1u : 2u))
+        problem("%s, %s: told %u times", job->name, what, (unsigned)told(s));
+    if (!recovers(s)) problem("%s, %s: set again, then it does not work", job->name, what);
+}
+
+/* False: the job had ended before that step. */
+static bool interrupted(const job_t *job, unsigned act, unsigned step, uint32_t loop_us, uint8_t echo)
+{
+    static first_t s;
+    char what[80];
+    set_up(&s, job->model, job->unit, loop_us, echo);
+    snprintf(what, sizeof what, "%s after %u steps of %u us", act_names[act], step, (unsigned)loop_us);
+    for (unsigned i = 0; i != step; i++)
+        if (round_of(&s, job) != FATHOM_PENDING) return false;
+    switch (act) {
+    case GIVE_UP:
+    case POWER_ON:
+        if (act == GIVE_UP)
+            cancel(&s);
+        else
+            power_on(&s);
+        if (unit_of(&s)->address != job->unit) problem("%s, %s: not where it was", job->name, what);
+        expect_works(&s, job, true, what);
+        return true;
+    case CANCEL_UNIT:
+        fathom_line_cancel_unit(&s.line, unit_of(&s)->address);
+        break;
+    case CUT_POWER:
+        fathom_sim_power_cycle(&s.wire, device_of(&s, 0), 300 * MS, s.clock.now_us);
+        break;
+    default:
+        break;
+    }
+    const fathom_status_t status = go_on(&s, job, act == BREAK_PORT ? 1 : act == UNPLUG ? 3000 : 0);
+    judge(&s, job, status, what);
+    expect_works(&s, job, status == FATHOM_ERR_UNCONFIRMED, what);
+    return true;
+}
+
+static void whatever_interrupts_a_command_it_ends_as_it_says_and_works_again(void **state)
+{
+    (void)state;
+    for (unsigned j = 0; j != jobs_count; j++)
+        for (unsigned act = 0; act != ACTS; act++)
+            for (unsigned l = 0; l != 2; l++)
+                for (unsigned step = 0;
+                     interrupted(&jobs[j], act, step, l == 0 ? 0 : 20 * MS, (uint8_t)(step % 3)); step++)
+                    continue;
+    assert_int_equal(problems, 0);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(whatever_interrupts_a_command_it_ends_as_it_says_and_works_again),
+};
+
+BENCH_MAIN(tests)
