@@ -309,9 +309,12 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
         due_us = queue_due_us(line);
     else if (phase(line) != LISTENING)
         due_us = SEND_POLL_US;
-    else if (line->left_us == 0 && line->have != 0)
-        due_us = FATHOM_NO_DEADLINE; /* what began in time may end: only the gap after it counts */
-    if (line->have != 0 || is_spoilt(line)) due_us = least(due_us, still_to_be_silent(line, gap_us(line)));
+    if (line->have != 0 || is_spoilt(line)) {
+        /* With part of a frame there neither a time-out nor the next request comes before the end of it. */
+        const bool is_held = line->have != 0 && (line->state == IDLE || phase(line) == LISTENING);
+        const uint32_t rest_us = still_to_be_silent(line, gap_us(line));
+        due_us = is_held ? rest_us : least(due_us, rest_us);
+    }
     if (line->listener != NULL && line->silent_us < line->listener->gap_us)
         due_us = least(due_us, still_to_be_silent(line, line->listener->gap_us));
     if (due_us == FATHOM_NO_DEADLINE) return due_us;
