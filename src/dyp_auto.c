@@ -31,6 +31,12 @@ static bool all_plausible(const fathom_dyp_auto_t *sensor)
     return true;
 }
 
+/* An exchange that is open makes the line hold bytes back. They are newer than the frame: no silence has ended it. */
+static bool is_followed(const fathom_dyp_auto_t *sensor)
+{
+    return sensor->stream.candidate && sensor->line->have != 0;
+}
+
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_dyp_auto_t *const sensor = ctx;
@@ -39,6 +45,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const fathom_status_t next = fathom_dyp_next(answer, sample);
     if (next != FATHOM_PENDING) return next;
     if (port < 0) return port;
+    if (is_followed(sensor)) return FATHOM_PENDING;
 
     const uint8_t *frame;
     const fathom_status_t status = fathom_stream_poll(&sensor->stream, now_us(sensor), &frame);
@@ -57,6 +64,7 @@ static uint32_t due_us(void *ctx)
     const fathom_dyp_auto_t *const sensor = ctx;
     if (sensor->answer.left != 0) return 0;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
+    if (is_followed(sensor)) return line_us;
     const uint32_t stream_us = fathom_stream_due_us(&sensor->stream, now_us(sensor));
     return line_us < stream_us ? line_us : stream_us;
 }
