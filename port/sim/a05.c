@@ -101,12 +101,13 @@ static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t n
     return fathom_dyp_frame_encode(bytes, values, PROBES);
 }
 
-/* "The level of the RX input pin will be read and recorded within one second of power-on" (A05 1(1)). */
+/* "The level of the RX input pin will be read and recorded within one second of power-on" (A05 1(1)): here at once. */
 static void power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_a05_t *const a05 = a05_of(device);
     fathom_sim_device_set_level(device, true, now_us);
-    a05->selected = a05->real_time;
+    a05->selected =
+        a05->real_time || (device->rx_held & (FATHOM_SIM_HELD_BY_PIN | FATHOM_SIM_HELD_BY_BREAK)) != 0;
 }
 
 static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
