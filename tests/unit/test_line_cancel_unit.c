@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* A device has another address from now on: what was asked of the old one ends, and nothing else. */
+
+static fathom_modbus_request_t requests[4];
+static uint16_t values[4];
+
+/* Submits one request a unit, in this order. */
+static void ask_all(const uint8_t units[4])
+{
+    memset(requests, 0, sizeof requests);
+    for (unsigned i = 0; i != 4; i++) ask(&requests[i], units[i], &values[i], 0);
+}
+
+static void assert_statuses(fathom_status_t first, fathom_status_t second, fathom_status_t third,
+                            fathom_status_t fourth)
+{
+    assert_int_equal(status_of(&requests[0]), first);
+    assert_int_equal(status_of(&requests[1]), second);
+    assert_int_equal(status_of(&requests[2]), third);
+    assert_int_equal(status_of(&requests[3]), fourth);
+}
+
+static void all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order(void **state)
+{
+    static const uint8_t units[4] = {3, 2, 3, 4};
+    (void)state;
+    ask_all(units);
+    fathom_line_cancel_unit(&bench.line, 3);
+    assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
+    run(T3_5_US + 8 * BYTE_US + 400);
+    receive_answer(2, 222);
+    run(T3_5_US + 8 * BYTE_US + 400);
+    receive_answer(4, 444);
+    run(400);
+    assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_READY, FATHOM_ERR_CANCELLED, FATHOM_READY);
+    assert_int_equal(values[1], 222);
+    assert_int_equal(values[3], 444);
+    assert_int_equal(bench.fake.written, 2);
+    assert_int_equal(bench.fake.writes[0].bytes[0], 2);
+    assert_int_equal(bench.fake.writes[1].bytes[0], 4);
+}
+
+static void one_on_its_way_ends_too_and_its_answer_is_late(void **state)
+{
+    static const uint8_t units[4] = {1, 1, 2, 1};
+    (void)state;
+    ask_all(units);
+    run(T3_5_US + 8 * BYTE_US + 400);
+    assert_int_equal(bench.fake.written, 1);
+    fathom_line_cancel_unit(&bench.line, 1);
+    assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED);
+    receive(answer_1_754, sizeof answer_1_754);
+    run(T3_5_US + 8 * BYTE_US + 400);
+    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    assert_int_equal(bench.fake.written, 2);
+    receive_answer(2, 222);
+    run(400);
+    assert_int_equal(status_of(&requests[2]), FATHOM_READY);
+    assert_int_equal(values[0], 0xDEAD);
+}
+
+static void one_on_its_way_to_another_is_answered(void **state)
+{
+    static const uint8_t units[4] = {1, 2, 2, 2};
+    (void)state;
+    ask_all(units);
+    run(T3_5_US + 8 * BYTE_US + 400);
+    fathom_line_cancel_unit(&bench.line, 2);
+    assert_statuses(FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED);
+    receive(answer_1_754, sizeof answer_1_754);
+    run(400);
+    assert_int_equal(status_of(&requests[0]), FATHOM_READY);
+    assert_int_equal(values[0], 754);
+    assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
+}
+
+static void a_question_to_everybody_or_to_anybody_is_no_units_own(void **state)
+{
+    static const uint8_t units[4] = {5, 6, 7, 8};
+    (void)state;
+    ask_all(units);
+    requests[0].exchange.unit = FATHOM_LINE_ANY_UNIT;
+    requests[1].exchange.unit = FATHOM_LINE_ALL_UNITS;
+    fathom_line_cancel_unit(&bench.line, 7);
+    assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
+}
+
+static void a_unit_of_which_nothing_was_asked_changes_nothing(void **state)
+{
+    static const uint8_t units[4] = {2, 3, 5, 8};
+    (void)state;
+    fathom_line_cancel_unit(&bench.line, 4);
+    ask_all(units);
+    fathom_line_cancel_unit(&bench.line, 4);
+    fathom_line_cancel_unit(&bench.line, 18); /* 2, but for a bit that the debts of units do not tell */
+    assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING);
+}
+
+static const struct CMUnitTest tests[] = {
+    TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order),
+    TEST(one_on_its_way_ends_too_and_its_answer_is_late),
+    TEST(one_on_its_way_to_another_is_answered),
+    TEST(a_question_to_everybody_or_to_anybody_is_no_units_own),
+    TEST(a_unit_of_which_nothing_was_asked_changes_nothing),
+};
+
+int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }
