@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* FIONREAD */
+#include "libmodbus_rig.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+/* Half an answer stands in the socket until the rest has come. A program that sleeps in poll(2) is not to be woken by
+ * that half again and again. Over TCP itself: other sockets know nothing of it. */
+
+static const uint8_t first[] = {ANSWER(1)};
+static const uint8_t second[] = {ANSWER(2)};
+
+static int set_up(void **state)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}};
+    socklen_t length = sizeof address;
+    assert_int_equal(rig_tcp_set_up(state), 0);
+    (void)close(modbus_get_socket(rig.modbus));
+    (void)close(rig.far);
+    const int listener = socket(AF_INET, SOCK_STREAM, 0);
+    const int near = socket(AF_INET, SOCK_STREAM, 0);
+    assert_int_equal(bind(listener, (const struct sockaddr *)&address, sizeof address), 0);
+    assert_int_equal(listen(listener, 1), 0);
+    assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &length), 0);
+    assert_int_equal(connect(near, (const struct sockaddr *)&address, sizeof address), 0);
+    rig.far = accept(listener, NULL, NULL);
+    assert_true(rig.far >= 0);
+    (void)close(listener);
+    return modbus_set_socket(rig.modbus, near);
+}
+
+static fathom_status_t poll_once(void)
+{
+    rig.fake.now_us += 1000;
+    (void)rig.seam.poll(rig.seam.ctx);
+    return (fathom_status_t)rig.request.exchange.status;
+}
+
+/* Sends, and waits until so many bytes in all stand in the port's socket: if they do not, the alarm ends it. */
+static void say_and_arrive(const uint8_t *bytes, size_t length, int in_all)
+{
+    int there = 0;
+    rig_say(bytes, length);
+    while (there != in_all) assert_int_equal(ioctl(modbus_get_socket(rig.modbus), FIONREAD, &there), 0);
+}
+
+/* Would a program that waits for bytes be woken now? */
+static bool wakes(void)
+{
+    struct pollfd entry = {modbus_get_socket(rig.modbus), POLLIN, 0};
+    const int n = poll(&entry, 1, 0);
+    assert_true(n >= 0);
+    return n != 0;
+}
+
+static void half_an_answer_wakes_nobody_a_second_time_and_the_rest_does(void **state)
+{
+    (void)state;
+    for (size_t cut = 1; cut != sizeof first; cut++) {
+        if (cut != 1) assert_int_equal(rig_tear_down(NULL) + set_up(NULL), 0);
+        rig_ask_three(&rig.request, 1, 0);
+        assert_int_equal(poll_once(), FATHOM_PENDING);
+        assert_false(wakes());
+        say_and_arrive(first, cut, (int)cut);
+        assert_true(wakes()); /* it may be all there is of a connection that ends */
+        assert_int_equal(poll_once(), FATHOM_PENDING);
+        assert_false(wakes());
+        assert_int_equal(poll_once(), FATHOM_PENDING);
+        assert_false(wakes());
+        say_and_arrive(first + cut, sizeof first - cut, sizeof first);
+        assert_true(wakes());
+        assert_int_equal(poll_once(), FATHOM_READY);
+        rig_expect_three();
+        assert_false(wakes());
+    }
+}
+
+static void after_a_header_alone_it_waits_for_all_that_the_header_tells(void **state)
+{
+    enum { HEADER = 6 };
+    (void)state;
+    rig_ask_three(&rig.request, 1, 0);
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+    say_and_arrive(first, 3, 3);
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+    say_and_arrive(first + 3, HEADER - 3, HEADER);
+    assert_true(wakes()); /* until then nobody knew how long it is */
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+    say_and_arrive(first + HEADER, sizeof first - HEADER - 1, sizeof first - 1);
+    assert_false(wakes());
+    say_and_arrive(first + sizeof first - 1, 1, sizeof first);
+    assert_true(wakes());
+    assert_int_equal(poll_once(), FATHOM_READY);
+    rig_expect_three();
+}
+
+static void the_first_byte_of_the_next_answer_wakes_again(void **state)
+{
+    (void)state;
+    rig_ask_three(&rig.request, 1, 0);
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+    say_and_arrive(first, 8, 8);
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+    say_and_arrive(first + 8, sizeof first - 8, sizeof first);
+    assert_int_equal(poll_once(), FATHOM_READY);
+    rig_ask_three(&rig.request, 1, 0);
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+    say_and_arrive(second, 1, 1);
+    assert_true(wakes());
+    say_and_arrive(second + 1, sizeof second - 1, sizeof second);
+    assert_int_equal(poll_once(), FATHOM_READY);
+    rig_expect_three();
+}
+
+#define OVER_TCP(test) cmocka_unit_test_setup_teardown(test, set_up, rig_tear_down)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        OVER_TCP(half_an_answer_wakes_nobody_a_second_time_and_the_rest_does),
+        OVER_TCP(after_a_header_alone_it_waits_for_all_that_the_header_tells),
+        OVER_TCP(the_first_byte_of_the_next_answer_wakes_again),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
