@@ -65,6 +65,12 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     return status;
 }
 
+void fathom_a16_rs232_cancel(fathom_a16_rs232_t *rs232)
+{
+    rs232->is_listening = false;
+    fathom_a16_cancel(rs232->modbus);
+}
+
 uint32_t fathom_a16_rs232_due_us(const fathom_a16_rs232_t *rs232)
 {
     if (!rs232->is_listening) return fathom_modbus_unit_due_us(&rs232->modbus->base.unit);

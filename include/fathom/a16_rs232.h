@@ -33,17 +33,22 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
                            fathom_a16_auto_t *automatic);
 
 /*
- * Reads the address, writes 1 to 0x0202 and waits for a frame, since a read would end automatic output again. Call it, with the loop going
- * on in between, until it is not FATHOM_PENDING; leave fathom_poll of both drivers alone meanwhile.
+ * Reads the address, writes 1 to 0x0202 and waits for a frame, since a read would end automatic output again. Call
+ * it, with the loop going on in between, until it is not FATHOM_PENDING; leave fathom_poll of both drivers alone
+ * meanwhile.
  *   FATHOM_READY            *sample is the first reading that the sensor has sent by itself. From now on poll the
  *                           automatic driver only
  *   FATHOM_ERR_UNCONFIRMED  no frame in 2 s
  *   FATHOM_ERR_EXCEPTION    refused: it is no RS232 variant?
  *   FATHOM_ERR_BUSY         another command is not finished
  *   FATHOM_ERR_PORT         the port is broken
+ *   others                  of fathom_a16_set_operating_mode, but for silence and damage
  * An acknowledgement that is lost or damaged is no error: the frames decide.
  */
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample);
+
+/* Gives that up, whatever it has come to; the next call begins anew. */
+void fathom_a16_rs232_cancel(fathom_a16_rs232_t *rs232);
 
 /* How long until that function has something to do if no byte comes. */
 uint32_t fathom_a16_rs232_due_us(const fathom_a16_rs232_t *rs232);
