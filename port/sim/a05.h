@@ -48,8 +48,8 @@ typedef struct {
     bool answers_broadcast;            /* answers 0xFF in Modbus, from its own address */
     bool answers_from_new;             /* acknowledges a new address from itself; default: from the old. In 55
                                           AA it does so anyway (A05 2(3)5) */
-    bool real_time;                    /* RX is low when power comes (A05 1(1)), as if by a wire; pin.h and a
-                                          break of the host do the same */
+    bool real_time;                    /* RX is low in the first second after power-on (A05 1(1)), also where
+                                          neither its pin (pin.h) nor a break of the host holds it */
     bool dyp_silent_broadcast;         /* obeys 0xFF in 55 AA, but does not answer it */
     uint32_t seed;                     /* of the spread of the answer times; any */
     fathom_sim_scene_t scene;          /* probes 1..4; no target when empty */

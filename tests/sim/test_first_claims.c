@@ -84,7 +84,8 @@ static void the_clock_may_wrap_at_any_step(void **state)
     for (unsigned j = 0; j != jobs_count; j++)
         for (uint32_t before_us = 0; before_us < 3 * SECOND; before_us += 61 * MS + 7) {
             bench_start_us = (uint32_t)(0u - before_us);
-            set_up(&s, jobs[j].model, jobs[j].unit, (before_us & 1) != 0 ? 0 : 20 * MS, FATHOM_LINE_ECHO_AUTO);
+            set_up(&s, jobs[j].model, jobs[j].unit, (before_us & 1) != 0 ? 0 : 20 * MS,
+                   FATHOM_LINE_ECHO_AUTO);
             assert_int_equal(run(&s, &jobs[j]), FATHOM_READY);
             assert_int_equal(jobs[j].has(&s), jobs[j].wanted);
             assert_true(recovers(&s));
