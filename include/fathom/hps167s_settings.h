@@ -41,6 +41,7 @@ fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t w
  * time-out of 1 s. After FATHOM_READY the driver asks at the new address; requests of others that wait for the old one
  * end with FATHOM_ERR_CANCELLED.
  *   FATHOM_ERR_IN_USE       somebody answers at the new address; nothing was written
+ *   FATHOM_ERR_WARMING_UP   nobody does, so soon after fathom_hps167s_power_on, which proves nothing: try again
  *   FATHOM_ERR_UNCONFIRMED  the device answers at neither: it is at one of the two. The driver asks at the old one
  */
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address);

@@ -130,7 +130,8 @@ struct fathom_listener {
     /*
      * `count` bytes in the order in which they came; 0: here bytes were lost, as the port has said. after_gap:
      * the line was seen to be silent for at least gap_us before the first of them. time_us: the clock when the
-     * last of them came, as well as the port or the polling can tell. Called within fathom_line_poll; it may not
+     * last of them came, as well as the port or the polling can tell; of bytes that were held back, since they could
+     * have been the beginning of an answer, when the last byte of all came. Called within fathom_line_poll; it may not
      * call the line.
      */
     void (*receive)(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
@@ -238,6 +239,8 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
 /*
  * Does all that can be done without waiting: reads what has come (at most 16 reads of the port), ends and
  * begins exchanges. Call it often; at the latest every 71 minutes. Several users of one line may each call it.
+ * Where a device sends by itself and every call comes right after one of its frames, in step with it, no silence is
+ * ever seen and so nothing is sent: sleep by due_us, or by another period.
  * FATHOM_PENDING, or FATHOM_ERR_PORT: the port is broken; every queued exchange has ended with that. Go on
  * polling and it works again when the port does.
  */

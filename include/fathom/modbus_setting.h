@@ -38,9 +38,13 @@ typedef struct {
  * To be called with the same setting until it is not FATHOM_PENDING:
  *   FATHOM_READY            it was so already, or is now, and was read back; where there is nothing to read back, it
  *                           was acknowledged
- *   FATHOM_ERR_IN_USE       somebody answers at the new place already; nothing was written
- *   FATHOM_ERR_UNCONFIRMED  it was written, and then the device could not be read, at the new place nor at the old: it
- *                           is at one of the two. The driver goes on asking at the old one
+ *   FATHOM_ERR_IN_USE       somebody answers at the new place already, be it damaged (so noise in that time is taken
+ *                           for somebody, to be safe); nothing was written
+ *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke when it was to be, and then the device could not be
+ *                           read, at the new place nor at the old: it is at one of the two. The driver goes on asking
+ *                           at the old one
+ *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that nobody is at the new place; nothing was
+ *                           written
  *   FATHOM_ERR_MALFORMED    it acknowledged the value, and says afterwards that it has another
  *   FATHOM_ERR_BUSY         another command or setting is not finished
  *   any other               of fathom_modbus_unit_ask: nothing was written, or the device refused it (exception), or

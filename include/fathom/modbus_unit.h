@@ -78,7 +78,8 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
 
 /*
  * Asks the question, or goes on with it: call it with the same question until it is not FATHOM_PENDING.
- * FATHOM_READY or the error with which the request ended (fathom_exchange_t), each outcome once.
+ * FATHOM_READY or the error with which the request ended (fathom_exchange_t), each outcome once: where two callers ask
+ * the same question, also as the first one of a setting, the one that calls next has it, and the other asks anew.
  * FATHOM_ERR_BUSY: another command or setting is not finished, or nobody has taken its outcome.
  * FATHOM_ERR_WARMING_UP: so soon after power-on the unit was silent, was not understood or refused.
  * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: as fathom_modbus_t.poll,
