@@ -176,10 +176,27 @@ static void what_was_given_up_is_begun_anew(void **state)
     }
 }
 
+static void a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came(void **state)
+{
+    static serial_t t;
+    fathom_sample_t sample;
+    (void)state;
+    set_up_serial(&t, 1 * MS);
+    assert_int_equal(set_threshold(&t, 750), FATHOM_READY);
+    while (!t.rs232.is_listening) {
+        assert_int_equal(fathom_a16_rs232_return_to_automatic(&t.rs232, &sample), FATHOM_PENDING);
+        fathom_sim_clock_advance(&t.s.clock, 1 * MS);
+    }
+    fathom_sim_clock_advance(&t.s.clock, 3 * SECOND); /* over FATHOM_A16_RS232_RETURN_US */
+    assert_int_equal(fathom_a16_rs232_due_us(&t.rs232), 0);
+    assert_int_equal(return_to_automatic(&t), FATHOM_READY);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(settings_are_changed_while_it_sends_and_it_sends_again_afterwards),
     cmocka_unit_test(no_fault_shows_a_wrong_reading_or_a_return_that_was_none),
     cmocka_unit_test(what_was_given_up_is_begun_anew),
+    cmocka_unit_test(a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came),
 };
 
 BENCH_MAIN(tests)
