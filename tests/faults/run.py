@@ -26,7 +26,8 @@ COPIED = ('CMakeLists.txt', 'README.md', 'examples', 'include', 'port', 'src', '
 HAS_LIBMODBUS = shutil.which('pkg-config') is not None and \
     subprocess.run(['pkg-config', '--exists', 'libmodbus'], check=False).returncode == 0
 KINDS = ('unit', 'golden', 'property', 'port', 'sim') + (('libmodbus',) if HAS_LIBMODBUS else ())
-LIMIT_S = 20  # for one test program
+LIMIT_S = 20  # for one test program that a fault names
+LONG_LIMIT_S = 90  # for one of all the others
 CONFIGURE = ['-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_C_FLAGS_DEBUG=-O1', '-DFATHOM_STRICT=OFF', '-DFATHOM_CHECKS=OFF',
              '-DFATHOM_EXAMPLES=OFF', '-DFATHOM_INSTALL=OFF', '-DCMAKE_C_COMPILER=' + os.environ.get('CC', 'gcc')]
 
@@ -81,14 +82,14 @@ class Copy:
     def build(self, programs):
         self.command(['cmake', '--build', self.build_root, '--target', *programs], 'it does not compile')
 
-    def seen_by(self, program):
+    def seen_by(self, program, limit_s):
         """What the test program says against the sources as they are; None when it passes."""
         path = os.path.join(self.build_root, 'tests', program)
         with tempfile.TemporaryFile('w+', errors='replace') as output:
             test = subprocess.Popen([path], cwd=self.build_root, stdin=subprocess.DEVNULL, stdout=output,
                                     stderr=subprocess.STDOUT, start_new_session=True)
             try:
-                status = test.wait(LIMIT_S)
+                status = test.wait(limit_s)
             except subprocess.TimeoutExpired:
                 status = None
             finally:
@@ -104,8 +105,8 @@ class Copy:
         how = ', which hangs' if status is None else ', which crashes' if status < 0 else ''
         return f'{program}: {failed[1]}{how}' if failed else f'{program}{how or ", before its first case"}'
 
-    def first_seen_by(self, programs):
-        return next(filter(None, map(self.seen_by, programs)), None)
+    def first_seen_by(self, programs, limit_s=LONG_LIMIT_S):
+        return next(filter(None, (self.seen_by(program, limit_s) for program in programs)), None)
 
     def plant(self, fault):
         """Who sees the fault; the sources are as before afterwards."""
@@ -120,7 +121,7 @@ class Copy:
             self.command(['patch', '-p1', '--fuzz=0', '--no-backup-if-mismatch', '--reject-file=-', '-i', fault.path],
                          'the patch does not apply any more')
             self.build(fault.programs)
-            seen = self.first_seen_by(fault.programs)
+            seen = self.first_seen_by(fault.programs, LIMIT_S)
             if seen is None:
                 self.build(self.programs)
                 seen = self.first_seen_by(p for p in self.programs if p not in fault.programs)
