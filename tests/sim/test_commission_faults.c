@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* Every command and setting, with every kind of fault at each of its frames in turn. Afterwards the device has to be
  * where the outcome says, it was told at most once, and the driver works. */
@@ -22,7 +22,7 @@ static const uint32_t loops_us[] = {0, 1 * MS, 20 * MS, 300 * MS};
  * Is it a fault to be tried here? What is measured is no setting. An A16 sends no Modbus frame that nobody asked for,
  * and one with a distance cannot be told from one with a setting: each has one register.
  */
-static bool is_fit(uint8_t kind, first_t *s)
+static bool is_fit(uint8_t kind, commission_t *s)
 {
     if (s->model == A16 && kind == FATHOM_SIM_FAULT_UNASKED) return false;
     if (!fathom_sim_fault_applies(kind, device_of(s, 0))) return false;
@@ -35,7 +35,7 @@ static bool is_fit(uint8_t kind, first_t *s)
  * an exception instead of an acknowledgement; a line that begins to echo between the reading and a writing that has no
  * read-back.
  */
-static void judge(first_t *s, const job_t *job, fathom_status_t status, uint32_t kinds, const char *what)
+static void judge(commission_t *s, const job_t *job, fathom_status_t status, uint32_t kinds, const char *what)
 {
     const uint32_t has = job->has(s);
     const uint32_t writes = told(s);
@@ -70,7 +70,7 @@ static void judge(first_t *s, const job_t *job, fathom_status_t status, uint32_t
 }
 
 /* With no more faults: it measures where driver and device are at one place, and can be set. */
-static void expect_works(first_t *s, const job_t *job, fathom_status_t status, const char *what)
+static void expect_works(commission_t *s, const job_t *job, fathom_status_t status, const char *what)
 {
     rest(s, 8 * SECOND); /* what is late or without power comes back in that time */
     const bool seeks = s->model == HPS && s->driver.hps.is_seeking;
@@ -89,7 +89,7 @@ static void expect_works(first_t *s, const job_t *job, fathom_status_t status, c
 static void with_fault(const job_t *job, uint8_t kind, uint32_t frame, uint32_t loop_us, uint8_t echo,
                        uint32_t us)
 {
-    static first_t s;
+    static commission_t s;
     char what[80];
     set_up(&s, job->model, job->unit, loop_us, echo);
     if (echo == FATHOM_LINE_ECHO_AUTO) s.wire.echo = (frame & 1) != 0;
@@ -130,7 +130,7 @@ static uint32_t any(uint32_t below)
  * measurement before. */
 static void many_faults_at_once_make_no_outcome_untrue(void **state)
 {
-    static first_t s;
+    static commission_t s;
     char what[80];
     (void)state;
     random_state = bench_start_us;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* Every command and setting in company: another driver asks the same unit, others fill the queue, 55 AA and Modbus are
  * on one line, an HPS-167S sends what nobody asked for. */
@@ -16,8 +16,8 @@ static bool is_fair(fathom_status_t status, bool moves)
 
 static void beside_another_driver(const job_t *job, uint32_t loop_us, uint8_t echo)
 {
-    static first_t s;
-    static first_t other; /* its driver alone is used, on the first one's line */
+    static commission_t s;
+    static commission_t other; /* its driver alone is used, on the first one's line */
     fathom_sample_t sample;
     unsigned readings = 0;
     set_up(&s, job->model, job->unit, loop_us, echo);
@@ -70,7 +70,7 @@ enum { OTHERS = 10 };
 
 static void behind_others(const job_t *job, uint32_t loop_us)
 {
-    static first_t s;
+    static commission_t s;
     fathom_modbus_request_t others[OTHERS];
     uint16_t values[OTHERS];
     set_up(&s, job->model, job->unit, loop_us, FATHOM_LINE_ECHO_AUTO);
@@ -108,7 +108,7 @@ static void a_queue_that_is_never_empty_delays_and_no_more(void **state)
 
 static void both_protocols(bool dyp_sets, uint32_t loop_us)
 {
-    static first_t s;
+    static commission_t s;
     fathom_a05_modbus_t second;
     fathom_sample_t sample;
     unsigned readings = 0;
@@ -157,7 +157,7 @@ static void an_address_is_set_in_one_protocol_while_the_other_measures(void **st
 /* True: READY. */
 static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_us)
 {
-    static first_t s;
+    static commission_t s;
     fathom_hps167s_auto_t listener;
     fathom_sample_t sample;
     set_up(&s, HPS, job->unit, loop_us, FATHOM_LINE_ECHO_AUTO);
@@ -197,7 +197,7 @@ static void unasked_measurements_are_no_answers(void **state)
 
 static void a_rate_for_the_next_power_on_is_followed_then(void **state)
 {
-    static first_t s;
+    static commission_t s;
     fathom_sample_t sample;
     (void)state;
     for (unsigned l = 0; l != 4; l++)

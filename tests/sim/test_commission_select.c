@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* An A05 with automatic output gets power (A05 1(1)): the choice of its values by a break of the line, in loops of any
  * length, with Modbus on the same line. */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* An A16 with RS232 (A16 5): it sends by itself while its settings are changed by Modbus on the same line, and is led
  * back to sending, with every fault at each frame. */
 
 typedef struct {
-    first_t s;
+    commission_t s;
     fathom_a16_auto_t automatic;
     fathom_a16_rs232_t rs232;
     fathom_sensor_t stream;
@@ -17,7 +17,7 @@ static const uint32_t loops_us[] = {0, 1 * MS, 20 * MS, 301 * MS};
 
 static void set_up_serial(serial_t *t, uint32_t loop_us)
 {
-    first_t *const s = &t->s;
+    commission_t *const s = &t->s;
     memset(t, 0, sizeof *t);
     set_up(s, A16, 1, loop_us, FATHOM_LINE_ECHO_AUTO);
     fathom_sim_detach(&s->wire, device_of(s, 0), s->clock.now_us);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef FATHOM_TESTS_SIM_FIRST_STAGE_H
-#define FATHOM_TESTS_SIM_FIRST_STAGE_H
+#ifndef FATHOM_TESTS_SIM_COMMISSION_STAGE_H
+#define FATHOM_TESTS_SIM_COMMISSION_STAGE_H
 
-/* What the tests test_first_*.c share: one driver, one simulated line and up to two devices, and everything that can
+/* What the tests test_commission_*.c share: one driver, one simulated line and up to two devices, and everything that can
  * be set or asked as one list of jobs, so that whatever befalls one of them befalls all. */
 
 #include "bench.h"
@@ -49,14 +49,14 @@ typedef struct {
     } driver;
     uint8_t model;
     uint32_t loop_us; /* 0: it sleeps as long as it may */
-} first_t;
+} commission_t;
 
 /* One thing to set or to ask. */
 typedef enum { KEPT, WRITE_ONLY, MOVES, READS } kind_t;
 typedef struct {
     const char *name;
-    fathom_status_t (*call)(first_t *s);
-    uint32_t (*has)(const first_t *s); /* what the device has */
+    fathom_status_t (*call)(commission_t *s);
+    uint32_t (*has)(const commission_t *s); /* what the device has */
     uint32_t before;
     uint32_t wanted;
     uint8_t model;
@@ -64,27 +64,27 @@ typedef struct {
     uint8_t unit; /* of the device, at first */
 } job_t;
 
-static inline fathom_sim_device_t *device_of(first_t *s, unsigned which)
+static inline fathom_sim_device_t *device_of(commission_t *s, unsigned which)
 {
     if (s->model == HPS) return &s->device[which].hps.device;
     return s->model == A16 ? &s->device[which].a16.device : &s->device[which].a05.device;
 }
 
-static inline fathom_modbus_unit_t *unit_of(first_t *s)
+static inline fathom_modbus_unit_t *unit_of(commission_t *s)
 {
     if (s->model == HPS) return &s->driver.hps.unit;
     if (s->model == A16) return &s->driver.a16.base.unit;
     return s->model == A05 ? &s->driver.a05.base.unit : &s->driver.dyp.base.unit;
 }
 
-static inline fathom_sensor_t sensor_of(first_t *s)
+static inline fathom_sensor_t sensor_of(commission_t *s)
 {
     if (s->model == HPS) return fathom_hps167s_sensor(&s->driver.hps);
     if (s->model == A16) return fathom_a16_modbus_sensor(&s->driver.a16);
     return s->model == A05 ? fathom_a05_modbus_sensor(&s->driver.a05) : fathom_a05_dyp_sensor(&s->driver.dyp);
 }
 
-static inline void cancel(first_t *s)
+static inline void cancel(commission_t *s)
 {
     if (s->model == HPS) fathom_hps167s_cancel(&s->driver.hps);
     if (s->model == A16) fathom_a16_cancel(&s->driver.a16);
@@ -92,7 +92,7 @@ static inline void cancel(first_t *s)
     if (s->model == A05_DYP) fathom_a05_dyp_cancel(&s->driver.dyp);
 }
 
-static inline void power_on(first_t *s)
+static inline void power_on(commission_t *s)
 {
     if (s->model == HPS) fathom_hps167s_power_on(&s->driver.hps);
     if (s->model == A16) fathom_a16_modbus_power_on(&s->driver.a16);
@@ -104,31 +104,31 @@ static inline void power_on(first_t *s)
 
 static inline int port_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
-    const first_t *const s = ctx;
+    const commission_t *const s = ctx;
     return s->broken != 0 ? s->broken : s->inner.read(s->inner.ctx, bytes, capacity, rx);
 }
 
 static inline int port_write(void *ctx, const uint8_t *bytes, size_t length)
 {
-    const first_t *const s = ctx;
+    const commission_t *const s = ctx;
     return s->broken != 0 ? s->broken : s->inner.write(s->inner.ctx, bytes, length);
 }
 
 static inline bool port_sent(void *ctx)
 {
-    const first_t *const s = ctx;
+    const commission_t *const s = ctx;
     return s->inner.sent(s->inner.ctx);
 }
 
 static inline int port_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
-    const first_t *const s = ctx;
+    const commission_t *const s = ctx;
     return s->inner.set_line(s->inner.ctx, settings);
 }
 
 /* ---- the stage ---- */
 
-static inline void add_device(first_t *s, unsigned which, uint8_t unit)
+static inline void add_device(commission_t *s, unsigned which, uint8_t unit)
 {
     const fathom_sim_scene_t scene = fathom_sim_fixed(&s->fixed);
     const fathom_sim_a16_config_t a16 = {.mode = FATHOM_SIM_A16_MODBUS, .unit = unit, .scene = scene};
@@ -149,7 +149,7 @@ static inline void add_device(first_t *s, unsigned which, uint8_t unit)
     fathom_sim_attach(&s->wire, device_of(s, which), s->clock.now_us);
 }
 
-static inline void init_driver(first_t *s, uint8_t unit)
+static inline void init_driver(commission_t *s, uint8_t unit)
 {
     const fathom_a16_modbus_config_t a16 = {
         .modbus = &s->modbus, .clock = &s->hal_clock, .address = unit, .settings = &s->settings};
@@ -166,7 +166,7 @@ static inline void init_driver(first_t *s, uint8_t unit)
     assert_int_equal(status, FATHOM_READY);
 }
 
-static inline void set_up(first_t *s, uint8_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
+static inline void set_up(commission_t *s, uint8_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
 {
     memset(s, 0, sizeof *s);
     s->model = model;
@@ -192,7 +192,7 @@ static inline void set_up(first_t *s, uint8_t model, uint8_t unit, uint32_t loop
     add_device(s, 0, unit);
 }
 
-static inline void pass(first_t *s)
+static inline void pass(commission_t *s)
 {
     const fathom_sensor_t sensor = sensor_of(s);
     const uint32_t due_us = fathom_due_us(&sensor, 1);
@@ -203,7 +203,7 @@ static inline void pass(first_t *s)
 }
 
 /* One round of an application's loop: the job, and the measurement beside it. */
-static inline fathom_status_t round_of(first_t *s, const job_t *job)
+static inline fathom_status_t round_of(commission_t *s, const job_t *job)
 {
     const fathom_sensor_t sensor = sensor_of(s);
     fathom_sample_t sample;
@@ -215,7 +215,7 @@ static inline fathom_status_t round_of(first_t *s, const job_t *job)
     return FATHOM_PENDING;
 }
 
-static inline fathom_status_t run(first_t *s, const job_t *job)
+static inline fathom_status_t run(commission_t *s, const job_t *job)
 {
     const uint32_t start_us = s->clock.now_us;
     for (;;) {
@@ -225,7 +225,7 @@ static inline fathom_status_t run(first_t *s, const job_t *job)
     }
 }
 
-static inline fathom_status_t measure(first_t *s, fathom_sample_t *sample)
+static inline fathom_status_t measure(commission_t *s, fathom_sample_t *sample)
 {
     const fathom_sensor_t sensor = sensor_of(s);
     const uint32_t start_us = s->clock.now_us;
@@ -238,7 +238,7 @@ static inline fathom_status_t measure(first_t *s, fathom_sample_t *sample)
 }
 
 /* Until it measures again; false: it did not in a minute. */
-static inline bool recovers(first_t *s)
+static inline bool recovers(commission_t *s)
 {
     const uint32_t start_us = s->clock.now_us;
     fathom_sample_t sample;
@@ -250,7 +250,7 @@ static inline bool recovers(first_t *s)
 }
 
 /* Lets late answers and dead times pass, with nothing asked. */
-static inline void rest(first_t *s, uint32_t by_us)
+static inline void rest(commission_t *s, uint32_t by_us)
 {
     for (uint32_t passed_us = 0; passed_us < by_us; passed_us += 5 * MS) {
         (void)fathom_line_poll(&s->line);
@@ -258,7 +258,7 @@ static inline void rest(first_t *s, uint32_t by_us)
     }
 }
 
-static inline bool same_place(first_t *s)
+static inline bool same_place(commission_t *s)
 {
     const fathom_modbus_unit_t *const unit = unit_of(s);
     const fathom_line_settings_t *const settings = unit->settings != NULL ? unit->settings : &s->settings;
@@ -266,7 +266,7 @@ static inline bool same_place(first_t *s)
 }
 
 /* How often the device was told something that it keeps, or was reset (by #6, which is a read; #13 is both). */
-static inline uint32_t told(first_t *s)
+static inline uint32_t told(commission_t *s)
 {
     const fathom_sim_counters_t *const counters = &device_of(s, 0)->counters;
     return counters->resets > counters->writes ? counters->resets : counters->writes;

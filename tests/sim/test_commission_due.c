@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* What is due while the line holds part of a frame: a program that sleeps as long as it may does not spin, and a
  * stream is not told of a silence that there was not. Bytes come when the test says so. */

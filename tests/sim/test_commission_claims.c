@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* What the headers say of every command: one at a time, across the wrap of the clock at any step, left alone less and
  * less often, and back at once. */
@@ -8,7 +8,7 @@
 
 static void with_a_second(const job_t *first, const job_t *second)
 {
-    static first_t s;
+    static commission_t s;
     set_up(&s, first->model, first->unit, 20 * MS, FATHOM_LINE_ECHO_AUTO);
     const uint32_t start_us = s.clock.now_us;
     unsigned refused = 0;
@@ -37,7 +37,7 @@ static void with_a_second(const job_t *first, const job_t *second)
  */
 static void one_of_the_two(const job_t *first, const job_t *second)
 {
-    static first_t s;
+    static commission_t s;
     set_up(&s, first->model, first->unit, 20 * MS, FATHOM_LINE_ECHO_AUTO);
     const job_t *const both[] = {first, second};
     const uint32_t start_us = s.clock.now_us;
@@ -78,7 +78,7 @@ static void a_command_is_busy_for_as_long_as_another_is_not_finished(void **stat
 
 static void the_clock_may_wrap_at_any_step(void **state)
 {
-    static first_t s;
+    static commission_t s;
     const uint32_t start_us = bench_start_us;
     (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
@@ -95,7 +95,7 @@ static void the_clock_may_wrap_at_any_step(void **state)
 
 /* ---- a unit that does not answer ---- */
 
-static uint32_t time_of_next_outcome_us(first_t *s, fathom_status_t expected)
+static uint32_t time_of_next_outcome_us(commission_t *s, fathom_status_t expected)
 {
     fathom_sample_t sample;
     const uint32_t start_us = s->clock.now_us;
@@ -109,7 +109,7 @@ static void a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands(voi
     static const uint32_t timeouts_us[] = {1 * SECOND, 600 * MS, 500 * MS, 500 * MS};
     (void)state;
     for (unsigned j = 0; j != jobs_count; j++) {
-        static first_t s;
+        static commission_t s;
         const job_t *const job = &jobs[j];
         const uint32_t timeout_us = timeouts_us[job->model];
         set_up(&s, job->model, job->unit, 0, FATHOM_LINE_ECHO_AUTO);
@@ -139,7 +139,7 @@ static void a_broken_port_is_said_by_every_poll_until_it_works_again(void **stat
 {
     (void)state;
     for (unsigned j = 0; j != jobs_count; j++) {
-        static first_t s;
+        static commission_t s;
         fathom_sample_t sample;
         set_up(&s, jobs[j].model, jobs[j].unit, 1 * MS, FATHOM_LINE_ECHO_AUTO);
         const fathom_sensor_t sensor = sensor_of(&s);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "first_stage.h"
+#include "commission_stage.h"
 
 /* Every command and setting, interrupted after each of its steps: given up, by power-on, by somebody who cancels all
  * requests to the unit, by a port that breaks for a while, by a device that loses its power. */
@@ -12,7 +12,7 @@ static const char *const act_names[] = {"given up",    "power-on",         "canc
                                         "port broken", "port broken long", "power cut"};
 
 /* READY, or an error, after which the device has what the outcome says. */
-static void judge(first_t *s, const job_t *job, fathom_status_t status, const char *what)
+static void judge(commission_t *s, const job_t *job, fathom_status_t status, const char *what)
 {
     const uint32_t has = job->has(s);
     if (told(s) > 1) problem("%s, %s: told %u times", job->name, what, (unsigned)told(s));
@@ -27,7 +27,7 @@ static void judge(first_t *s, const job_t *job, fathom_status_t status, const ch
 }
 
 /* The job until its end, with a port that may be broken for the first `broken` rounds. */
-static fathom_status_t go_on(first_t *s, const job_t *job, unsigned broken)
+static fathom_status_t go_on(commission_t *s, const job_t *job, unsigned broken)
 {
     const fathom_sensor_t sensor = sensor_of(s);
     const uint32_t start_us = s->clock.now_us;
@@ -45,7 +45,7 @@ static fathom_status_t go_on(first_t *s, const job_t *job, unsigned broken)
     }
 }
 
-static void expect_works(first_t *s, const job_t *job, bool may_move, const char *what)
+static void expect_works(commission_t *s, const job_t *job, bool may_move, const char *what)
 {
     s->broken = 0;
     rest(
@@ -68,7 +68,7 @@ static void expect_works(first_t *s, const job_t *job, bool may_move, const char
 /* False: the job had ended before that step. */
 static bool interrupted(const job_t *job, unsigned act, unsigned step, uint32_t loop_us, uint8_t echo)
 {
-    static first_t s;
+    static commission_t s;
     char what[80];
     set_up(&s, job->model, job->unit, loop_us, echo);
     snprintf(what, sizeof what, "%s after %u steps of %u us", act_names[act], step, (unsigned)loop_us);
