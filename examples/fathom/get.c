@@ -44,7 +44,7 @@ static void begin(void)
 {
     const station_t *const station = talk.station;
     char line[SETTINGS_TEXT];
-    (void)settings_text(&station->line, line);
+    (void)talk_line_text(&talk, line);
     if (talk.is_json)
         (void)printf("{\"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",
                      station->sensor->name, station->address, station->mode->name, line);

@@ -85,7 +85,7 @@ static void print_unknown(const setting_t *setting, const char *was, const char 
             stderr,
             "it was sent, and then the device could not be read: it is at address %u or at address %s, "
             "%s; try fathom read with either",
-            station->address, wanted, settings_text(&station->line, line));
+            station->address, wanted, talk_line_text(&talk, line));
     } else if (setting->unconfirmed != NULL) {
         (void)fputs(setting->unconfirmed, stderr);
     } else {
@@ -106,6 +106,11 @@ static int fail(const setting_t *setting, fathom_status_t status, const char *wa
     switch (status) {
     case FATHOM_ERR_UNCONFIRMED:
         print_unknown(setting, was, wanted);
+        break;
+    case FATHOM_ERR_ARGUMENT: /* the value was in range: the driver does not know the line's settings */
+    case FATHOM_ERR_UNSUPPORTED:
+        (void)fputs("not over this port, whose line settings nobody here can change; nothing was changed",
+                    stderr);
         break;
     case FATHOM_ERR_IN_USE:
         (void)fprintf(
@@ -179,12 +184,30 @@ static void help(FILE *to)
         "  fathom set hps167s:7 --port /dev/ttyUSB0 termination off\n"
         "  fathom set hps167s --port /dev/ttyUSB0 baud 115200\n"
         "  fathom set a16 --port /dev/ttyUSB0 switch-threshold 2000\n"
-        "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -- -15      a negative value\n",
+        "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -15\n",
         to);
+}
+
+enum { MAX_WORDS = 64 };
+
+/* A negative value at the end is no option: "--" says so. The words are copied to `copy`, ended by NULL. */
+static char **mark_negative(int *argc, char **argv, char *copy[MAX_WORDS])
+{
+    static char dashes[] = "--";
+    const char *const last = argv[*argc - 1];
+    bool is_marked = *argc + 2 > MAX_WORDS || last[0] != '-' || last[1] < '0' || last[1] > '9';
+    for (int i = 0; i != *argc && !is_marked; i++) is_marked = strcmp(argv[i], dashes) == 0;
+    if (is_marked) return argv;
+    for (int i = 0; i != *argc; i++) copy[i < *argc - 1 ? i : i + 1] = argv[i];
+    copy[*argc - 1] = dashes;
+    copy[++*argc] = NULL;
+    return copy;
 }
 
 static int run(int argc, char **argv)
 {
+    char *copy[MAX_WORDS];
+    argv = mark_negative(&argc, argv, copy);
     const char *values[TALK_OPTIONS] = {NULL};
     char **words = NULL;
     int count = 0;

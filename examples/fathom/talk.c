@@ -144,6 +144,13 @@ fathom_status_t talk_set(talk_t *talk, const setting_t *setting, int32_t value)
     return talk_call(talk, call_set, &what);
 }
 
+const char *talk_line_text(const talk_t *talk, char text[SETTINGS_TEXT])
+{
+    if (talk->channel.tcp == NULL) return settings_text(&talk->station->line, text);
+    (void)snprintf(text, SETTINGS_TEXT, "Modbus TCP");
+    return text;
+}
+
 void talk_explain(talk_t *talk, fathom_status_t status)
 {
     station_t *const station = talk->station;

@@ -42,6 +42,9 @@ fathom_status_t talk_call(talk_t *talk, talk_call_t call, void *ctx);
 fathom_status_t talk_get(talk_t *talk, const setting_t *setting, char text[SETTING_TEXT]);
 fathom_status_t talk_set(talk_t *talk, const setting_t *setting, int32_t value);
 
+/* "9600 8N1", at which the sensor is asked; of a connection "Modbus TCP". */
+const char *talk_line_text(const talk_t *talk, char text[SETTINGS_TEXT]);
+
 /* What has gone wrong with the last call, and what to try, without a line feed. */
 void talk_explain(talk_t *talk, fathom_status_t status);
 

@@ -151,7 +151,7 @@ class Change(Settings):
     def test_what_cannot_be_read_back_is_said_to_be_acknowledged(self):
         sim = self.sim('hps167s', '--distance', '1000')
         for setting, value in (('distance-offset', '-15'), ('filter-sensitivity', '50'), ('load-settings', 'user')):
-            out = self.told('set', 'hps167s', '--port', sim.port, setting, '--', value)
+            out = self.told('set', 'hps167s', '--port', sim.port, setting, value)
             self.assertIn('cannot be read back', out)
         self.assertEqual(self.read_json('hps167s', '--port', sim.port, '--count', '1')[0]['distance_mm'], 985)
 

@@ -19,6 +19,15 @@ class Servers:
         self.assertRegex(self.tell_a16(port, 'set', NAME, '1200').out, r'is 1200 mm \(was 1000\)')
         self.assertRegex(self.tell_a16(port, 'get', NAME).out, rf'{NAME} +1200')
 
+    def test_no_line_settings_are_told_and_none_are_changed(self):
+        port = self.served((9600, 'none'), 1, 0x0200, FACTORY)
+        self.assertIn('asked at address 1, Modbus TCP', self.tell_a16(port, 'get', NAME).out)
+        # Its four registers of #2: termination and measuring on, warm-up 5 s, reconnect time 180 ms, 19200 baud.
+        port = self.served((19200, 'even'), 1, 0x0002, (0xFFFF, 0x0500, 0x0000, 0xB401))
+        done = self.run_fathom('set', 'hps167s', '--port', port, 'baud', '115200')
+        self.assertEqual(done.code, 1, done.out)
+        self.assertIn('not over this port, whose line settings nobody here can change', done.err)
+
     def test_nobody_there_is_exit_status_1(self):
         done = self.tell_a16('tcp:127.0.0.1:1', 'set', NAME, '1200', code=1)
         self.assertIn('tcp:127.0.0.1:1: Connection refused: nothing serves this port', done.err)
