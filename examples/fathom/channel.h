@@ -34,7 +34,8 @@ typedef struct {
  */
 enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
 
-/* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may not be moved. One that was closed may be opened again. */
+/* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may
+ * not be moved. One that was closed may be opened again. */
 bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
 

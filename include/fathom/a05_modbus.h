@@ -65,8 +65,8 @@ void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
 
 /*
  * The address, register 0x0200 (A05 3(3)), read and set. Each asks the device and returns at once: call it, with the
- * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. An answer takes command_timeout_us (1 s) at most, a
- * change some 3 s, since the new address is asked first whether somebody is there.
+ * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. An answer takes
+ * command_timeout_us (1 s) at most, a change some 3 s, since the new address is asked first whether somebody is there.
  *
  * address: FATHOM_READY with *address, or an error of fathom_poll.
  * set_address: 1..254. The driver then asks at the new address. FATHOM_READY: the device was read there. Else, with

@@ -64,8 +64,8 @@ typedef enum {
 
 /*
  * The operating mode, 0x0202; WRITE-ONLY, not kept over power-off. The address is read before. It means something only
- * where a Modbus command has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more: whether frames come is heard, not
- * read, since a read would end them again: a16_rs232.h.
+ * where a Modbus command has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more: whether
+ * frames come is heard, not read, since a read would end them again: a16_rs232.h.
  */
 fathom_status_t fathom_a16_set_operating_mode(fathom_a16_modbus_t *sensor, fathom_a16_operating_mode_t mode);
 

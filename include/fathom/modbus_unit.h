@@ -49,8 +49,8 @@ typedef struct {
     uint32_t alone_us; /* until a unit that does not answer is asked the repeated question again */
     uint32_t warm_us;  /* after power-on: until silence is an error */
     uint32_t heard_us; /* the clock when the last answer came */
-    const fathom_line_settings_t
-        *settings;    /* not NULL: instead of a question's, since the device has changed its */
+    /* Not NULL: instead of a question's, since the device has changed its. */
+    const fathom_line_settings_t *settings;
     uint16_t answers; /* counters; each stops at 65535. The other outcomes: */
     uint16_t failures;
     uint8_t address; /* 1..254 */
