@@ -61,8 +61,8 @@ fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 /* #10: whether it measures by itself after power-on; from the next power-on. On from the factory. */
 fathom_status_t fathom_hps167s_set_measures_after_power_on(fathom_hps167s_t *sensor, bool measures);
 
-/* #11: the terminating resistor; from the next power-on. On from the factory in every unit: leave it on in those at
- * the two ends of the line only. */
+/* #11: the terminating resistor; from the next power-on. On from the factory in every unit: leave it on in the last one
+ * of a line only, at the end that is not the host's. */
 fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool termination);
 
 /* #12: is added to what it measures; real 200 and measured 215 mm make -15. WRITE-ONLY; whether it replaces the offset
