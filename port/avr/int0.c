@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+#include "inside.h"
+
+static fathom_edges_t *seen;
+
+ISR(INT0_vect)
+{
+    const uint16_t ticks = TCNT1; /* first of all */
+    fathom_edges_feed(seen, (PIND & _BV(PIND2)) != 0, fathom_avr_stamp_us(ticks));
+    fathom_avr_happened = 1;
+}
+
+void fathom_avr_int0_begin(fathom_edges_t *edges)
+{
+    seen = edges;
+    DDRD &= (uint8_t)~_BV(DDD2);
+    EICRA = (uint8_t)((EICRA & ~(_BV(ISC01) | _BV(ISC00))) | _BV(ISC00)); /* both edges */
+    EIFR = _BV(INTF0);
+    EIMSK |= _BV(INT0);
+}

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT */
+#include "inside.h"
+
+/*
+ * Bytes that wait for the main loop, each followed by UCSR0A as it was when it came. One writer, the interrupt, and
+ * one reader; the indices fathom_avr_rx_in and fathom_avr_rx_out count by two and are one byte each, which nobody
+ * reads in halves. One place stays free.
+ */
+#define RING  (2 * FATHOM_AVR_RX_RING)
+#define ERROR (_BV(FE0) | _BV(DOR0) | _BV(UPE0))
+
+static volatile uint8_t ring[RING];
+static volatile uint8_t
+    dropped; /* DOR0, of a byte for which there was no place; the next one that gets in tells it */
+
+static const fathom_avr_usart_config_t *config;
+static const uint8_t *volatile next; /* of the request */
+static volatile uint8_t left;        /* of its bytes, those that UDR0 has not got */
+static volatile bool sending;        /* up to its last stop bit */
+static bool in_break;
+
+fathom_avr_usart_counters_t fathom_avr_usart0_counters;
+
+/*
+ * The one interrupt that comes with every byte, so written by hand: 58 cycles with the jump to it, 59 when there is
+ * no place, where avr-gcc 5.4 needs 77. In C it would be
+ *     ring[in] = UDR0, ring[in + 1] = UCSR0A | dropped;      (UCSR0A is read first: ATmega328P, 20.7.3)
+ *     after = (in + 2) % RING;
+ *     if (after == out) dropped = DOR0; else in = after, dropped = 0;
+ */
+ISR(USART_RX_vect, ISR_NAKED)
+{
+    __asm__ volatile(
+        "push r24\n\t"
+        "in   r24, %[sreg]\n\t"
+        "push r24\n\t"
+        "push r25\n\t"
+        "push r30\n\t"
+        "push r31\n\t"
+        "lds  r24, %[state]\n\t"
+        "lds  r25, %[dropped]\n\t"
+        "or   r24, r25\n\t"
+        "lds  r25, %[data]\n\t"
+        "lds  r30, %[in]\n\t"
+        "ldi  r31, 0\n\t"
+        "subi r30, lo8(-(%[ring]))\n\t"
+        "sbci r31, hi8(-(%[ring]))\n\t"
+        "st   Z+, r25\n\t"
+        "st   Z, r24\n\t"
+        "lds  r24, %[in]\n\t"
+        "subi r24, -2\n\t"
+        "andi r24, %[mask]\n\t"
+        "lds  r25, %[out]\n\t"
+        "cp   r24, r25\n\t"
+        "breq 2f\n\t"
+        "sts  %[in], r24\n\t"
+        "ldi  r24, 0\n\t"
+        "1:\n\t"
+        "sts  %[dropped], r24\n\t"
+        "pop  r31\n\t"
+        "pop  r30\n\t"
+        "pop  r25\n\t"
+        "pop  r24\n\t"
+        "out  %[sreg], r24\n\t"
+        "pop  r24\n\t"
+        "reti\n\t"
+        "2:\n\t"
+        "ldi  r24, %[lost]\n\t"
+        "rjmp 1b\n\t"
+        :
+        : [sreg] "I"(_SFR_IO_ADDR(SREG)), [state] "n"(_SFR_MEM_ADDR(UCSR0A)), [data] "n"(_SFR_MEM_ADDR(UDR0)),
+          [ring] "i"(ring), [dropped] "i"(&dropped), [in] "i"(&fathom_avr_rx_in),
+          [out] "i"(&fathom_avr_rx_out), [mask] "n"(RING - 1), [lost] "n"(_BV(DOR0)));
+}
+
+static void drive(bool on)
+{
+    volatile uint8_t *port = config->driver.port;
+    if (port != NULL) *port = (uint8_t)(on ? *port | config->driver.mask : *port & ~config->driver.mask);
+}
+
+/* There is room for a byte. */
+ISR(USART_UDRE_vect)
+{
+    /* A transmit complete that is still pending would be from before this byte: it came too late to be without a gap,
+     * and the driver has to stay on. Written as 0, the errors of the receiver stay. */
+    UCSR0A = (uint8_t)((UCSR0A & _BV(U2X0)) | _BV(TXC0));
+    UDR0 = *next;
+    next++;
+    if (--left == 0) UCSR0B &= (uint8_t)~_BV(UDRIE0);
+}
+
+/* The last stop bit has left, and nothing more is there to send. */
+ISR(USART_TX_vect)
+{
+    if (left != 0) return;
+    drive(false);
+    sending = false;
+    fathom_avr_happened = 1;
+}
+
+static void count(uint8_t state, uint8_t bit, uint16_t *counter)
+{
+    if ((state & bit) != 0 && *counter != UINT16_MAX) ++*counter;
+}
+
+static uint8_t flags_of(uint8_t state)
+{
+    count(state, _BV(UPE0), &fathom_avr_usart0_counters.parity);
+    count(state, _BV(FE0), &fathom_avr_usart0_counters.framing);
+    count(state, _BV(DOR0), &fathom_avr_usart0_counters.overruns);
+    return (uint8_t)(((state & _BV(UPE0)) != 0 ? FATHOM_RX_PARITY : 0) |
+                     ((state & _BV(FE0)) != 0 ? FATHOM_RX_FRAMING : 0) |
+                     ((state & _BV(DOR0)) != 0 ? FATHOM_RX_OVERRUN : 0));
+}
+
+static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    (void)ctx;
+    size_t count = 0;
+    uint8_t out = fathom_avr_rx_out;
+    while (count != capacity && out != fathom_avr_rx_in) {
+        const uint8_t state = ring[out + 1] & ERROR;
+        if (state != 0 && count != 0) break; /* for the next call */
+        bytes[count++] = ring[out];
+        out = (uint8_t)(out + 2) & (RING - 1);
+        if (state == 0) continue;
+        rx->flags |= flags_of(state);
+        break;
+    }
+    fathom_avr_rx_out = out;
+    return (int)count;
+}
+
+static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    (void)ctx;
+    if (length > config->request_size) return -1;
+    if (sending || in_break) return 0;
+    for (size_t i = 0; i != length; i++) config->request[i] = bytes[i];
+    next = config->request;
+    left = (uint8_t)length;
+    sending = true;
+    const uint8_t sreg = SREG;
+    cli();
+    drive(true);
+    UCSR0B |= _BV(UDRIE0);
+    SREG = sreg;
+    return (int)length;
+}
+
+static bool usart_sent(void *ctx)
+{
+    (void)ctx;
+    return !sending;
+}
+
+/* What UBRR0 + 1 is with U2X0 set, or 0 where it cannot be within 2.5 %. */
+static uint16_t divisor_of(uint32_t baud)
+{
+    const uint32_t eighth = F_CPU / 8;
+    if (baud == 0 || baud > eighth) return 0;
+    const uint32_t divisor = (eighth + baud / 2) / baud;
+    if (divisor > 4096) return 0;
+    const uint32_t product = divisor * baud;
+    const uint32_t off = product > eighth ? product - eighth : eighth - product;
+    return off * 40 > product ? 0 : (uint16_t)divisor; /* F_CPU / 8 / divisor against baud */
+}
+
+static bool set(const fathom_line_settings_t *line)
+{
+    const uint16_t divisor = divisor_of(line->baud);
+    if (divisor == 0 || line->parity > FATHOM_PARITY_ODD || line->stop_bits < 1 || line->stop_bits > 2)
+        return false;
+    /* Where the same rate is there without U2X0, the receiver looks at each bit twice as often. */
+    const bool twice = divisor % 2 != 0;
+    UBRR0 = (uint16_t)((twice ? divisor : divisor / 2) - 1);
+    UCSR0A = twice ? _BV(U2X0) : 0;
+    UCSR0C = (uint8_t)(_BV(UCSZ01) | _BV(UCSZ00) | (line->stop_bits == 2 ? _BV(USBS0) : 0) |
+                       (line->parity == FATHOM_PARITY_NONE   ? 0
+                        : line->parity == FATHOM_PARITY_EVEN ? _BV(UPM01)
+                                                             : _BV(UPM01) | _BV(UPM00)));
+    return true;
+}
+
+static int usart_set_line(void *ctx, const fathom_line_settings_t *line)
+{
+    (void)ctx;
+    if (sending) return divisor_of(line->baud) == 0 ? -1 : 0;
+    return set(line) ? 1 : -1;
+}
+
+static int usart_set_break(void *ctx, bool on)
+{
+    (void)ctx;
+    if (sending) return 0;
+    const uint8_t sreg = SREG;
+    cli();
+    drive(on);
+    if (on) {
+        PORTD &= (uint8_t)~_BV(PORTD1);
+        DDRD |= _BV(DDD1);
+        UCSR0B &= (uint8_t)~_BV(TXEN0);
+    } else {
+        UCSR0B |= _BV(TXEN0);
+        PORTD |= _BV(PORTD1);
+    }
+    SREG = sreg;
+    in_break = on;
+    return 1;
+}
+
+const fathom_uart_t fathom_avr_usart0 = {
+    .read = usart_read,
+    .write = usart_write,
+    .sent = usart_sent,
+    .set_line = usart_set_line,
+    .set_break = usart_set_break,
+};
+
+bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *new_config)
+{
+    if (new_config->request == NULL || new_config->request_size == 0 || !set(&new_config->line)) return false;
+    UCSR0B = 0;
+    config = new_config;
+    if (config->driver.port != NULL) {
+        drive(false);
+        config->driver.port[-1] |= config->driver.mask; /* DDRx stands before PORTx */
+    }
+    left = 0;
+    sending = in_break = false;
+    dropped = 0;
+    fathom_avr_rx_out = fathom_avr_rx_in = 0;
+    PORTD |= _BV(PORTD0); /* a pull-up for RXD: of a transceiver whose receiver is off nobody drives it */
+    UCSR0B = _BV(RXCIE0) | _BV(TXCIE0) | _BV(RXEN0) | _BV(TXEN0);
+    return true;
+}
