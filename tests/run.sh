@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # Everything that has to pass, on Debian 12: installs what is missing, builds with gcc and clang, runs all
-# tests in both and under the sanitizers, measures the coverage of src/, runs the checks of the sources, and
-# prints the number of test cases by kind. The last line is "N passed, 0 failed", and the exit status 0, when
-# all is well. With the packages in place it needs neither root nor the network.
+# tests in both and under the sanitizers, builds the firmware of every machine and runs it on simulators, measures the
+# coverage of src/, runs the checks of the sources, and prints the number of test cases by kind. The last line is "N passed, 0 failed", and the exit status 0, when
+# all is well. With the packages in place it needs no root, and of the network only
+# the one npm package that tests/firmware/rp2040 names.
 #
 # It takes some minutes on two cores; one preset alone: cmake --preset gcc, then build and test the same way.
 set -eu
@@ -13,8 +14,13 @@ export LC_ALL=C.UTF-8
 
 packages='gcc g++ libc6-dev make patch cmake pkg-config python3 libcmocka-dev gcovr
 clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
-gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc simavr libsimavr-dev
+gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
+gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
+simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
 libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'
+
+# Any node and npm will do.
+command -v node >/dev/null && command -v npm >/dev/null || packages="$packages nodejs npm"
 
 missing=
 for package in $packages; do

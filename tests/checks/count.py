@@ -17,7 +17,7 @@ import tempfile
 import xml.etree.ElementTree as ET
 
 KEPT = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'counts.txt')
-ONCE = ('check', 'faults')  # kinds that the first build alone runs
+ONCE = ('check', 'faults', 'firmware')  # kinds that the first build alone runs
 TWICE = ('e2e', 'interop')  # and these the last one too: they wait for serial lines, whatever the compiler
 
 

@@ -6,11 +6,12 @@ import os
 import re
 from concurrent.futures import ThreadPoolExecutor
 
-from common import LIBMODBUS, WARNINGS, files, main, run
+from common import LIBMODBUS, ROOT, WARNINGS, files, main, run
 
-INCLUDE = ['-Iinclude', '-Iport', '-Iport/sim', '-Iport/posix', '-Iport/libmodbus']
+PORTS = sorted(entry.name for entry in os.scandir(os.path.join(ROOT, 'port')) if entry.is_dir())
+INCLUDE = ['-Iinclude', '-Iport', *(f'-Iport/{port}' for port in PORTS)]
 # They need another compiler's headers.
-FOREIGN = re.compile(r'^port/(?!sim/|posix/|libmodbus/)')
+FOREIGN = re.compile(r'^(port|examples)/(avr|arduino)/')
 
 
 def tidy(root, path):
