@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # Everything that has to pass, on Debian 12: installs what is missing, builds with gcc and clang, runs all
-# tests in both and under the sanitizers, builds the firmware of every machine and runs it on simulators, measures the
-# coverage of src/, runs the checks of the sources, and prints the number of test cases by kind. The last line is "N passed, 0 failed", and the exit status 0, when
-# all is well. With the packages in place it needs no root, and of the network only
-# the one npm package that tests/firmware/rp2040 names.
+# tests in both and under the sanitizers, builds the firmware of every machine and runs it on simulators,
+# measures the coverage of src/, runs the checks of the sources, and prints the number of test cases by kind.
+# The last line is "N passed, 0 failed", and the exit status 0, when all is well. With the packages in place it
+# needs no root, and of the network only the one npm package that tests/firmware/rp2040 names.
 #
 # It takes some minutes on two cores; one preset alone: cmake --preset gcc, then build and test the same way.
 set -eu

@@ -25,11 +25,12 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 COPIED = ('CMakeLists.txt', 'README.md', 'examples', 'include', 'port', 'src', 'tests')
 HAS_LIBMODBUS = shutil.which('pkg-config') is not None and \
     subprocess.run(['pkg-config', '--exists', 'libmodbus'], check=False).returncode == 0
+FIRMWARE = 'firmware/'
 KINDS = ('unit', 'golden', 'property', 'port', 'sim') + (('libmodbus',) if HAS_LIBMODBUS else ())
 LIMIT_S = 20  # for one test program that a fault names
 LONG_LIMIT_S = 90  # for one of all the others
 CONFIGURE = ['-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_C_FLAGS_DEBUG=-O1', '-DFATHOM_STRICT=OFF', '-DFATHOM_CHECKS=OFF',
-             '-DFATHOM_EXAMPLES=OFF', '-DFATHOM_INSTALL=OFF', '-DCMAKE_C_COMPILER=' + os.environ.get('CC', 'gcc')]
+             '-DFATHOM_INSTALL=OFF', '-DCMAKE_C_COMPILER=' + os.environ.get('CC', 'gcc')]
 
 
 class Broken(Exception):
@@ -46,7 +47,9 @@ class Fault:
         if not found or not diff:
             raise SystemExit(f'{file_name}: not the form that run.py --help tells')
         self.what, self.promise = found[1], found[2]
-        self.programs = found[3].split()
+        seen_by = found[3].split()
+        self.firmware = [name for name in seen_by if name.startswith(FIRMWARE)]
+        self.programs = [name for name in seen_by if name not in self.firmware]
         self.files = re.findall(r'^--- a/(\S+)', '\n--- a/' + diff, re.M)
 
     def can_be_built(self):
@@ -56,7 +59,7 @@ class Fault:
 class Copy:
     """A copy of the sources with a build folder."""
 
-    def __init__(self, root):
+    def __init__(self, root, with_firmware):
         self.root = root
         self.build_root = os.path.join(root, 'build')
         os.makedirs(root)
@@ -69,7 +72,9 @@ class Copy:
         folders = {kind: os.path.join(root, 'tests', kind) for kind in KINDS}
         self.programs = [name[:-2] for kind in KINDS for name in sorted(os.listdir(folders[kind]))
                          if name.startswith('test_') and name.endswith('.c')]
-        self.command(['cmake', '-S', root, '-B', self.build_root, *CONFIGURE], 'not configured')
+        switch = 'ON' if with_firmware else 'OFF'  # the tool is the far end of some
+        self.command(['cmake', '-S', root, '-B', self.build_root, *CONFIGURE, f'-DFATHOM_FIRMWARE={switch}',
+                      f'-DFATHOM_EXAMPLES={switch}'], 'not configured')
         self.build(self.programs)
 
     def command(self, command, words):
@@ -84,9 +89,12 @@ class Copy:
 
     def seen_by(self, program, limit_s):
         """What the test program says against the sources as they are; None when it passes."""
-        path = os.path.join(self.build_root, 'tests', program)
+        command = [os.path.join(self.build_root, 'tests', program)]
+        if program.startswith(FIRMWARE):
+            name = program.removeprefix(FIRMWARE)
+            command = ['ctest', '--output-on-failure', '--no-tests=error', '-R', rf'^firmware\.{name}$']
         with tempfile.TemporaryFile('w+', errors='replace') as output:
-            test = subprocess.Popen([path], cwd=self.build_root, stdin=subprocess.DEVNULL, stdout=output,
+            test = subprocess.Popen(command, cwd=self.build_root, stdin=subprocess.DEVNULL, stdout=output,
                                     stderr=subprocess.STDOUT, start_new_session=True)
             try:
                 status = test.wait(limit_s)
@@ -120,9 +128,9 @@ class Copy:
         try:
             self.command(['patch', '-p1', '--fuzz=0', '--no-backup-if-mismatch', '--reject-file=-', '-i', fault.path],
                          'the patch does not apply any more')
-            self.build(fault.programs)
-            seen = self.first_seen_by(fault.programs, LIMIT_S)
-            if seen is None:
+            self.build([name.removeprefix(FIRMWARE) for name in fault.programs + fault.firmware])
+            seen = self.first_seen_by(fault.programs + fault.firmware, LIMIT_S)
+            if seen is None and not fault.firmware:
                 self.build(self.programs)
                 seen = self.first_seen_by(p for p in self.programs if p not in fault.programs)
                 seen = seen and f'{seen} (not by {" ".join(fault.programs)})'
@@ -172,17 +180,20 @@ def main():
         print(f'without libmodbus: {len(missing)} faults of the port over it are left out')
     if options.list:
         for fault in faults:
-            print(f'{fault.name}: {fault.what}\n    breaks: {fault.promise}\n    seen by: {" ".join(fault.programs)}')
+            print(f'{fault.name}: {fault.what}\n    breaks: {fault.promise}\n    seen by: {" ".join(fault.programs + fault.firmware)}')
         return 0
     jobs = max(1, min(options.jobs, len(faults)))
     with tempfile.TemporaryDirectory(prefix='fathom-faults.') as folder:
         try:
             with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-                copies = list(pool.map(Copy, [os.path.join(folder, str(number)) for number in range(jobs)]))
+                firmware = sorted({name for fault in faults for name in fault.firmware})
+                roots = [os.path.join(folder, str(number)) for number in range(jobs)]
+                copies = list(pool.map(lambda root: Copy(root, bool(firmware)), roots))
+                copies[0].build([name.removeprefix(FIRMWARE) for name in firmware] or ['help'])
         except Broken as error:
             print(f'without a fault: {error}\n0 passed, 1 failed')
             return 1
-        seen = copies[0].first_seen_by(copies[0].programs)
+        seen = copies[0].first_seen_by(copies[0].programs + firmware)
         if seen:
             print(f'without a fault: {seen} fails\n0 passed, 1 failed')
             return 1
