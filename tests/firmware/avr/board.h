@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TEST_AVR_BOARD_H
+#define FATHOM_TEST_AVR_BOARD_H
+
+#include <simavr/sim_avr.h>
+#include <simavr/sim_elf.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "sim/pin.h"
+#include "sim/uart.h"
+#include "usart.h"
+
+/*
+ * An ATmega328P at 16 MHz that runs an image on simavr, wired to simulated sensors (port/sim): the UART to a line,
+ * pins to the pins of a device. One time for both: the simulation's clock is the processor's cycles divided by 16.
+ * What a device does happens at the first instruction after its time, so up to 3 cycles late, as in the hardware.
+ *
+ *     board_start(&board, "auto");                       image of that name
+ *     fathom_sim_line_init(&line, &settings, board.clock.now_us);
+ *     fathom_sim_attach(...);
+ *     board_join_line(&board, &line);
+ *     while (board_run(&board, condition, ctx, most_us)) ...
+ *     board_end(&board);
+ *
+ * The image speaks to the test by three registers that have no other use: a byte written to GPIOR0 is one more of a
+ * record, GPIOR1 ends the record and says its kind, GPIOR2 ends the program with an exit code (0 is good).
+ *
+ * Where simavr 1.6 is not the chip: usart.h is in the place of its USART; the 4 cycles of interrupt entry, which it
+ * leaves out (ATmega328P 7.7.1), are added here. Left as they are: 4 more cycles out of sleep; external inputs
+ * without their synchroniser (2 cycles) and the noise canceller.
+ */
+enum { BOARD_HZ = 16000000, BOARD_CYCLES_PER_US = 16, BOARD_ENTRY_CYCLES = 4 };
+enum { BOARD_RECORD = 32, BOARD_RECORDS = 64, BOARD_BYTES = 2048, BOARD_EDGES = 256, BOARD_WATCHES = 8 };
+
+/* What the image has reported. */
+typedef struct {
+    uint8_t kind;
+    uint8_t length;
+    uint8_t bytes[BOARD_RECORD];
+    uint64_t cycle;
+} board_record_t;
+
+/* A byte on the wire. */
+typedef struct {
+    uint64_t begin_cycle; /* start bit */
+    uint64_t end_cycle;   /* end of the stop bit */
+    uint8_t byte;
+    uint8_t flags;  /* FATHOM_RX_..., of one that came */
+    bool from_here; /* the processor's */
+} board_byte_t;
+
+typedef struct {
+    uint64_t cycle;
+    bool high;
+} board_edge_t;
+
+typedef struct board board_t;
+
+/* An output pin that is looked at. */
+typedef struct {
+    board_t *board;
+    void (*changed)(void *ctx, bool high);
+    void *ctx;
+    char port;
+    uint8_t bit;
+    bool idle_high; /* what a resistor makes of it while it is an input */
+    bool high;
+} board_watch_t;
+
+/* One who follows each instruction; see profile.h. */
+typedef struct {
+    void (*before)(void *ctx);
+    void (*after)(void *ctx);
+    void (*interrupt)(void *ctx, uint8_t vector); /* has been entered, at its vector */
+    void *ctx;
+} board_observer_t;
+
+struct board {
+    avr_t *avr;
+    elf_firmware_t image;
+    usart_t usart;
+    fathom_sim_clock_t clock; /* for the devices' lines and pins; moved by the board alone */
+
+    bool finished; /* by GPIOR2 or by sleeping without interrupts */
+    bool crashed;
+    uint8_t exit_code;
+
+    /* Read and reset by the test. Beyond their room the last ones are kept. */
+    board_record_t records[BOARD_RECORDS];
+    uint32_t recorded; /* in all; number n stands at n % BOARD_RECORDS */
+    uint32_t taken;
+    board_byte_t bytes[BOARD_BYTES];
+    uint32_t bytes_seen;
+    board_edge_t driver_edges[BOARD_EDGES];
+    uint32_t driver_edges_seen;
+    uint32_t cut_bytes;     /* sent while the driver was off, at the beginning or before the end */
+    uint32_t talked_over;   /* came while the driver was on */
+    uint64_t asleep_cycles; /* of all */
+
+    /* inside */
+    fathom_sim_line_t *line;
+    fathom_line_settings_t settings;
+    board_record_t record;
+    board_watch_t watches[BOARD_WATCHES];
+    uint8_t watching;
+    uint8_t driven[3]; /* inputs that the bench drives, ports B to D */
+    uint8_t levels[3];
+    const board_observer_t *observer;
+    bool has_driver;
+    bool driver_on;
+    uint64_t driver_off_cycle;
+    bool in_break;
+    struct {
+        const uint8_t *bytes;
+        const uint8_t *marks;
+        uint16_t left;
+        uint32_t cycles;
+    } fed;
+    struct {
+        fathom_sim_pins_t *pins;
+        char port[2];
+        uint8_t bit[2];
+        uint8_t inputs;
+    } joined;
+};
+
+/* FATHOM_IMAGES (a compile definition) is the folder of images. false, with a message: no such image. */
+bool board_start(board_t *board, const char *name);
+void board_end(board_t *board);
+
+/* Runs until done(ctx), and says whether that came about: false when most_us are over, or when the program has ended
+ * or crashed (with a message) before. done: NULL for never. */
+typedef bool (*board_condition_t)(void *ctx);
+bool board_run(board_t *board, board_condition_t done, void *ctx, uint64_t most_us);
+
+/* Runs so long, sleep included; false: it ended before. */
+bool board_run_us(board_t *board, uint32_t us);
+
+/* The next record, running until there is one; NULL: none came within most_us. Valid until the next call. */
+const board_record_t *board_next_record(board_t *board, uint64_t most_us);
+
+/* ---- wires ---- */
+
+/* The UART to `line`, which is put on the board's clock. Its settings are the USART's registers' from here on; a
+ * break on TXD is one. The line is half or full duplex, with or without echo, as the test has set it. */
+void board_join_line(board_t *board, fathom_sim_line_t *line);
+
+/* Driver-enable of an RS-485 transceiver, pulled down: bytes that leave while it is low, or whose end it cuts off,
+ * do not reach the line; what comes while it is high is garbage. */
+void board_join_driver(board_t *board, char port, uint8_t bit);
+
+/* A device's RX to an output pin (pulled up until it is one), and its TX to input pins: up to two, as "B0" and "D2";
+ * NULL: none. Once a board. `pins` is initialised with board->clock. */
+void board_join_pins(board_t *board, fathom_sim_pins_t *pins, const char *trigger, const char *input,
+                     const char *input_too);
+
+/* Puts bytes on RXD without a device or a line, back to back from at_cycle on, each for `cycles` (0: as long as the
+ * USART's registers have it). marks: FATHOM_RX_... of each, or NULL. Both arrays outlive the last byte; what was fed
+ * before and has not come yet does not come any more. */
+void board_feed(board_t *board, const uint8_t *bytes, const uint8_t *marks, uint16_t count, uint64_t at_cycle,
+                uint32_t cycles);
+
+/* Drives an input from outside, now. */
+void board_drive(board_t *board, char port, uint8_t bit, bool high);
+
+/* Calls `changed` when an output pin changes. */
+board_watch_t *board_watch(board_t *board, char port, uint8_t bit, bool idle_high,
+                           void (*changed)(void *ctx, bool high), void *ctx);
+
+/* ---- the image's memory ---- */
+
+/* The address of a symbol; of data without the 0x800000 that the linker adds. Ends the test program with a message
+ * if there is none. */
+uint32_t board_address(const board_t *board, const char *symbol);
+uint8_t *board_data(board_t *board, const char *symbol);
+
+/* Brings the simulation to the processor's time, as the test's own calls into it need. */
+void board_sync(board_t *board);
+/* To be called after the test has done something to a line or a device. */
+void board_plan(board_t *board);
+
+#endif

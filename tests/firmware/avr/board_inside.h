@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TEST_AVR_BOARD_INSIDE_H
+#define FATHOM_TEST_AVR_BOARD_INSIDE_H
+
+#include "board.h"
+
+/* What board.c and board_wires.c want of each other. */
+
+/* Once the processor is there: the USART's ends. */
+void board_wire(board_t *board);
+
+/* The line has a byte for the UART, which ended ago_us ago. */
+void board_arrived(board_t *board, uint8_t byte, uint8_t flags, uint32_t ago_us);
+
+#endif

@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: MIT */
+
+/* What port/avr sends: its bits, its driver-enable pin, `sent`, refusals, breaks. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "remote.h"
+
+/* The driver-enable pin falls in an interrupt, which has to be over within a bit of 115200 baud, 138 cycles, whatever
+ * else the processor does; the next talker waits for 28 of them. A receive interrupt before it has its 60, and its entry. */
+enum { MOST_AFTER_STOP_BIT = 80, MOST_OF_RECEIVE = 64 };
+
+static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
+static const uint8_t request[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* HPS-167S #5 */
+
+static board_t board;
+
+static int start(void **state)
+{
+    (void)state;
+    remote_start(&board);
+    board_join_driver(&board, 'D', 3);
+    assert_true(remote_begin(&board, &at_19200, true, REMOTE_REQUEST));
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+static bool all_out(void *ctx)
+{
+    (void)ctx;
+    return !board.usart.shifting && !board.driver_on && board.bytes_seen != 0;
+}
+
+static void wait_until_out(void) { assert_true(board_run(&board, all_out, NULL, 1000000)); }
+
+static void assert_sent(const uint8_t *bytes, uint8_t length, uint32_t character_cycles)
+{
+    assert_int_equal(board.bytes_seen, length);
+    for (uint8_t i = 0; i < length; i++) {
+        assert_true(board.bytes[i].from_here);
+        assert_int_equal(board.bytes[i].byte, bytes[i]);
+        assert_int_equal(board.bytes[i].end_cycle - board.bytes[i].begin_cycle, character_cycles);
+        if (i != 0) assert_int_equal(board.bytes[i].begin_cycle, board.bytes[i - 1].end_cycle);
+    }
+}
+
+static void assert_driver_around(uint8_t length)
+{
+    assert_int_equal(board.driver_edges_seen, 2);
+    assert_int_equal(board.cut_bytes, 0);
+    assert_true(board.driver_edges[0].high);
+    assert_false(board.driver_edges[1].high);
+    assert_true(board.driver_edges[0].cycle < board.bytes[0].begin_cycle);
+    const uint64_t end_cycle = board.bytes[length - 1].end_cycle;
+    assert_in_range(board.driver_edges[1].cycle, end_cycle, end_cycle + MOST_AFTER_STOP_BIT);
+}
+
+static void forget(void)
+{
+    board.bytes_seen = 0;
+    board.driver_edges_seen = 0;
+}
+
+static void a_request_leaves_without_a_gap_and_the_driver_is_on_around_it(void **state)
+{
+    (void)state;
+    assert_false(board.driver_on);
+    assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
+    wait_until_out();
+    assert_sent(request, sizeof request, 11 * 52 * 16); /* start, 8, parity, stop; UBRR 51 */
+    assert_driver_around(sizeof request);
+}
+
+static void the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length(void **state)
+{
+    (void)state;
+    static const struct {
+        fathom_line_settings_t line;
+        uint32_t character_cycles;
+    } rates[] = {
+        {{9600, FATHOM_PARITY_NONE, 1}, 10 * 104 * 16},
+        {{19200, FATHOM_PARITY_EVEN, 1}, 11 * 52 * 16},
+        {{57600, FATHOM_PARITY_ODD, 2}, 12 * 35 * 8},
+        {{115200, FATHOM_PARITY_EVEN, 1}, 11 * 17 * 8},
+    };
+    uint8_t bytes[REMOTE_REQUEST];
+    for (uint8_t i = 0; i < REMOTE_REQUEST; i++) bytes[i] = (uint8_t)(0xF1 * i);
+    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        assert_int_equal(remote_set_line(&board, &rates[i].line), 1);
+        for (uint8_t length = 1; length <= REMOTE_REQUEST; length++) {
+            forget();
+            assert_int_equal(remote_write(&board, bytes, length), length);
+            wait_until_out();
+            assert_sent(bytes, length, rates[i].character_cycles);
+            assert_driver_around(length);
+        }
+    }
+}
+
+/* A byte that is received while the last one leaves has its interrupt first. */
+static void a_receive_interrupt_delays_the_driver_by_no_more_than_itself(void **state)
+{
+    (void)state;
+    static const uint8_t noise = 0x55;
+    const uint32_t length_cycles = 11 * 52 * 16;
+    for (int phase = -80; phase <= 20; phase++) {
+        forget();
+        remote_write(&board, request, 1);
+        assert_int_equal(board.bytes_seen, 1);
+        const uint64_t end_cycle = board.bytes[0].end_cycle;
+        board_feed(&board, &noise, NULL, 1, (uint64_t)((int64_t)end_cycle + phase) - length_cycles,
+                   length_cycles);
+        wait_until_out();
+        assert_in_range(board.driver_edges[1].cycle, end_cycle,
+                        end_cycle + MOST_AFTER_STOP_BIT + MOST_OF_RECEIVE);
+        uint8_t byte = 0, flags;
+        board_run_us(&board, 20);
+        assert_int_equal(remote_read(&board, &byte, 1, &flags), 1);
+        assert_int_equal(byte, noise);
+    }
+}
+
+static void sent_is_exact_to_the_stop_bit(void **state)
+{
+    (void)state;
+    assert_true(remote_sent(&board));
+    remote_write(&board, request, sizeof request);
+    uint64_t last_false_cycle = 0, first_true_cycle = 0;
+    while (first_true_cycle == 0) {
+        const uint64_t begin_cycle = board.avr->cycle;
+        if (remote_sent(&board))
+            first_true_cycle = board.avr->cycle;
+        else
+            last_false_cycle = begin_cycle;
+        board_run(&board, NULL, NULL, 0);
+    }
+    assert_int_equal(board.bytes_seen, sizeof request);
+    const uint64_t end_cycle = board.bytes[sizeof request - 1].end_cycle;
+    assert_true(first_true_cycle >= end_cycle);
+    assert_true(last_false_cycle < end_cycle + MOST_AFTER_STOP_BIT);
+    assert_true(first_true_cycle - last_false_cycle < 1000); /* so near did we look */
+}
+
+static void a_write_is_refused_while_bytes_leave_and_does_not_touch_them(void **state)
+{
+    (void)state;
+    static const uint8_t other[] = {0xAA, 0xAA, 0xAA, 0xAA};
+    assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
+    while (!remote_sent(&board)) assert_int_equal(remote_write(&board, other, sizeof other), 0);
+    wait_until_out();
+    assert_sent(request, sizeof request, 11 * 52 * 16);
+    assert_driver_around(sizeof request);
+}
+
+static void a_write_longer_than_its_memory_is_an_error_and_nothing_leaves(void **state)
+{
+    (void)state;
+    const uint8_t bytes[REMOTE_REQUEST + 1] = {0};
+    assert_true(remote_write(&board, bytes, REMOTE_REQUEST + 1) < 0);
+    assert_true(remote_begin(&board, &at_19200, true, 8));
+    assert_true(remote_write(&board, bytes, 9) < 0);
+    board_run_us(&board, 10000);
+    assert_int_equal(board.bytes_seen, 0);
+    assert_int_equal(board.driver_edges_seen, 0);
+    assert_int_equal(remote_write(&board, request, 8), 8);
+    wait_until_out();
+    assert_sent(request, 8, 11 * 52 * 16);
+}
+
+static void without_a_driver_pin_none_is_driven(void **state)
+{
+    (void)state;
+    assert_true(remote_begin(&board, &at_19200, false, 8));
+    board.has_driver = false;
+    remote_write(&board, request, sizeof request);
+    board_run_us(&board, 20000);
+    assert_sent(request, sizeof request, 11 * 52 * 16);
+    assert_int_equal(board.driver_edges_seen, 0);
+}
+
+static void begin_refuses_what_it_cannot_do(void **state)
+{
+    (void)state;
+    static const fathom_line_settings_t too_fast = {230400, FATHOM_PARITY_EVEN, 1};
+    const uint8_t ubrr = board.avr->data[0xC4];
+    assert_false(remote_begin(&board, &too_fast, true, 8));
+    assert_false(remote_begin(&board, &at_19200, true, 0));
+    assert_int_equal(board.avr->data[0xC4], ubrr);
+    remote_write(&board, request, sizeof request);
+    wait_until_out();
+    assert_sent(request, sizeof request, 11 * 52 * 16);
+}
+
+/* ---- breaks ---- */
+
+static void a_break_holds_txd_low_for_its_time_with_the_driver_on(void **state)
+{
+    (void)state;
+    fathom_sim_line_t line;
+    fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
+    board_join_line(&board, &line);
+    assert_false(line.in_break);
+    assert_int_equal(remote_set_break(&board, true), 1);
+    assert_true(line.in_break);
+    assert_true(board.driver_on);
+    board_run_us(&board, 5000);
+    assert_true(line.in_break);
+    assert_int_equal(remote_write(&board, request, sizeof request), 0);
+    assert_int_equal(remote_set_break(&board, false), 1);
+    assert_false(line.in_break);
+    assert_false(board.driver_on);
+    assert_int_equal(board.bytes_seen, 0);
+    forget();
+    assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
+    wait_until_out();
+    assert_sent(request, sizeof request, 11 * 52 * 16);
+    assert_driver_around(sizeof request);
+}
+
+static void a_break_waits_for_the_last_stop_bit(void **state)
+{
+    (void)state;
+    fathom_sim_line_t line;
+    fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
+    board_join_line(&board, &line);
+    remote_write(&board, request, sizeof request);
+    int refused = 0;
+    while (remote_set_break(&board, true) == 0) {
+        assert_false(line.in_break);
+        refused++;
+    }
+    assert_true(refused > 10);
+    assert_true(line.in_break);
+    assert_int_equal(board.cut_bytes, 0);
+    assert_int_equal(board.bytes_seen, sizeof request);
+    assert_true(board.avr->cycle > board.bytes[sizeof request - 1].end_cycle);
+    assert_int_equal(remote_set_break(&board, false), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_request_leaves_without_a_gap_and_the_driver_is_on_around_it, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length,
+                                        start, stop),
+        cmocka_unit_test_setup_teardown(a_receive_interrupt_delays_the_driver_by_no_more_than_itself, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(sent_is_exact_to_the_stop_bit, start, stop),
+        cmocka_unit_test_setup_teardown(a_write_is_refused_while_bytes_leave_and_does_not_touch_them, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(a_write_longer_than_its_memory_is_an_error_and_nothing_leaves, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(without_a_driver_pin_none_is_driven, start, stop),
+        cmocka_unit_test_setup_teardown(begin_refuses_what_it_cannot_do, start, stop),
+        cmocka_unit_test_setup_teardown(a_break_holds_txd_low_for_its_time_with_the_driver_on, start, stop),
+        cmocka_unit_test_setup_teardown(a_break_waits_for_the_last_stop_bit, start, stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
