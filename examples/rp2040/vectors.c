@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+#include "vectors.h"
+#include "cortex_m.h"
+#include "rp2040.h"
+
+#define WEAK __attribute__((weak))
+
+WEAK void timer_irq_0(void) { start_fault(); }
+WEAK void timer_irq_1(void) { start_fault(); }
+WEAK void timer_irq_2(void) { start_fault(); }
+WEAK void timer_irq_3(void) { start_fault(); }
+WEAK void io_irq_bank0(void) { start_fault(); }
+WEAK void dma_irq_0(void) { start_fault(); }
+WEAK void uart0_irq(void) { start_fault(); }
+WEAK void uart1_irq(void) { start_fault(); }
+
+enum { CORE = 15, INTERRUPTS = 26 }; /* vectors after the stack's: the core's own, and the chip's */
+
+typedef struct {
+    uint32_t *stack;
+    start_vector_t of[CORE + INTERRUPTS];
+} vectors_t;
+
+#define CHIP(interrupt) (CORE + (interrupt))
+
+__attribute__((section(".vectors"), used)) static const vectors_t vectors = {
+    start_stack,
+    {[0] = start_reset,
+     [1] = start_fault,  /* NMI */
+     [2] = start_fault,  /* HardFault */
+     [10] = start_fault, /* SVCall */
+     [13] = start_fault, /* PendSV */
+     [14] = start_fault, /* SysTick */
+     [CHIP(RP2040_IRQ_TIMER_0)] = timer_irq_0,
+     [CHIP(RP2040_IRQ_TIMER_0 + 1)] = timer_irq_1,
+     [CHIP(RP2040_IRQ_TIMER_0 + 2)] = timer_irq_2,
+     [CHIP(RP2040_IRQ_TIMER_0 + 3)] = timer_irq_3,
+     [CHIP(RP2040_IRQ_DMA_0)] = dma_irq_0,
+     [CHIP(RP2040_IRQ_IO_BANK0)] = io_irq_bank0,
+     [CHIP(RP2040_IRQ_UART0)] = uart0_irq,
+     [CHIP(RP2040_IRQ_UART0 + 1)] = uart1_irq},
+};

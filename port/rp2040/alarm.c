@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+#include "internal/alarm.h"
+
+#include <stdbool.h>
+
+#include "rp2040.h"
+
+void fathom_rp2040_alarm_set(unsigned alarm, uint32_t in_us)
+{
+    const uint32_t bit = UINT32_C(1) << alarm;
+    const uint32_t at_us = RP2040_TIMER_RAWL + in_us;
+    RP2040_TIMER_ALARM(alarm) = at_us;
+    const bool is_over = (uint32_t)(RP2040_TIMER_RAWL - at_us) <= INT32_MAX;
+    if (is_over && (RP2040_TIMER_ARMED & bit) != 0) rp2040_set(&RP2040_TIMER_INTF, bit);
+}
+
+void fathom_rp2040_alarm_clear(unsigned alarm)
+{
+    const uint32_t bit = UINT32_C(1) << alarm;
+    RP2040_TIMER_ARMED = bit; /* a 1 disarms */
+    RP2040_TIMER_INTR = bit;
+    rp2040_clear(&RP2040_TIMER_INTF, bit);
+}
+
+void fathom_rp2040_alarm_enable(unsigned alarm)
+{
+    fathom_rp2040_alarm_clear(alarm);
+    rp2040_set(&RP2040_TIMER_INTE, UINT32_C(1) << alarm);
+    RP2040_NVIC_ISER = UINT32_C(1) << (RP2040_IRQ_TIMER_0 + alarm);
+}

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom_rp2040.h"
+#include "rp2040.h"
+
+void fathom_rp2040_edges_begin(fathom_rp2040_edges_t *pin, fathom_edges_t *edges, unsigned gpio,
+                               fathom_rp2040_idle_t *idle)
+{
+    pin->edges = edges;
+    pin->idle = idle;
+    pin->gpio = (uint8_t)gpio;
+    RP2040_IO_INTR(gpio) = RP2040_IO_EDGES(gpio); /* what came before; a 1 clears */
+    rp2040_set(&RP2040_IO_PROC0_INTE(gpio), RP2040_IO_EDGES(gpio));
+    RP2040_NVIC_ISER = UINT32_C(1) << RP2040_IRQ_IO_BANK0;
+}
+
+void fathom_rp2040_edges_interrupt(fathom_rp2040_edges_t *pin)
+{
+    const uint32_t now_us = RP2040_TIMER_RAWL; /* first of all */
+    const unsigned gpio = pin->gpio;
+    if ((RP2040_IO_PROC0_INTS(gpio) & RP2040_IO_EDGES(gpio)) == 0) return;
+    /* Cleared before the level is read: an edge in between is seen in the level, and interrupts once more; the other
+     * way round it would be lost. */
+    RP2040_IO_INTR(gpio) = RP2040_IO_EDGES(gpio);
+    fathom_edges_feed(pin->edges, (RP2040_SIO_GPIO_IN >> gpio & 1u) != 0, now_us);
+    if (pin->idle != NULL) pin->idle->has_news = true;
+}

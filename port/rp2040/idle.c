@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom_rp2040.h"
+#include "internal/alarm.h"
+
+void fathom_rp2040_idle_begin(fathom_rp2040_idle_t *idle)
+{
+    idle->has_news = true;
+    fathom_rp2040_alarm_enable(idle->alarm);
+}
+
+void fathom_rp2040_idle(void *ctx, uint32_t max_us)
+{
+    fathom_rp2040_idle_t *const idle = ctx;
+    __asm__ volatile("cpsid i" ::: "memory");
+    if (!idle->has_news && max_us != 0) {
+        const bool has_deadline = max_us != FATHOM_NO_DEADLINE;
+        if (has_deadline) fathom_rp2040_alarm_set(idle->alarm, max_us < INT32_MAX ? max_us : INT32_MAX);
+        __asm__ volatile("dsb\n\twfi" ::: "memory");
+        if (has_deadline) fathom_rp2040_alarm_clear(idle->alarm);
+    }
+    __asm__ volatile("cpsie i\n\tisb" ::: "memory"); /* whatever waits runs here */
+    /* The caller polls next, so what has come up to now is not news any more. */
+    idle->has_news = false;
+}
+
+void fathom_rp2040_idle_alarm(fathom_rp2040_idle_t *idle) { fathom_rp2040_alarm_clear(idle->alarm); }

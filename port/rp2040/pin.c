@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom_rp2040.h"
+#include "rp2040.h"
+
+/* ctx is the pin's bit itself. */
+static uint32_t mask_of(void *ctx) { return (uint32_t)(uintptr_t)ctx; }
+
+static void set(void *ctx, bool high)
+{
+    if (high)
+        RP2040_SIO_GPIO_OUT_SET = mask_of(ctx);
+    else
+        RP2040_SIO_GPIO_OUT_CLR = mask_of(ctx);
+}
+
+static bool get(void *ctx) { return (RP2040_SIO_GPIO_IN & mask_of(ctx)) != 0; }
+
+static void *begin(unsigned gpio)
+{
+    const uint32_t blocks = RP2040_RESETS_IO_BANK0 | RP2040_RESETS_PADS_BANK0;
+    rp2040_clear(&RP2040_RESETS_RESET, blocks);
+    while ((RP2040_RESETS_RESET_DONE & blocks) != blocks) { /* some cycles of clk_sys */
+    }
+    return (void *)(uintptr_t)(UINT32_C(1) << gpio);
+}
+
+fathom_pin_t fathom_rp2040_output(unsigned gpio, bool high)
+{
+    fathom_pin_t pin;
+    pin.ctx = begin(gpio);
+    pin.set = set;
+    pin.get = NULL;
+    set(pin.ctx, high); /* before SIO drives the pin */
+    RP2040_SIO_GPIO_OE_SET = mask_of(pin.ctx);
+    RP2040_PADS(gpio) = RP2040_PADS_IE | RP2040_PADS_DRIVE_4MA | RP2040_PADS_SCHMITT;
+    RP2040_IO_CTRL(gpio) = RP2040_IO_FUNCSEL_SIO;
+    return pin;
+}
+
+fathom_pin_t fathom_rp2040_input(unsigned gpio, bool pull_up)
+{
+    fathom_pin_t pin;
+    pin.ctx = begin(gpio);
+    pin.set = NULL;
+    pin.get = get;
+    RP2040_SIO_GPIO_OE_CLR = mask_of(pin.ctx);
+    RP2040_PADS(gpio) = RP2040_PADS_IE | RP2040_PADS_SCHMITT | (pull_up ? RP2040_PADS_PUE : 0u);
+    RP2040_IO_CTRL(gpio) = RP2040_IO_FUNCSEL_SIO;
+    return pin;
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// examples/rp2040/a16_pulse.c: the whole PWM cycle of an A16 (A16 1).
+'use strict';
+const assert = require('assert');
+const {test, figure} = require('./runner.js');
+const {Machine} = require('./machine.js');
+const {A16, Terminal, US, MS} = require('./devices.js');
+
+const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_a16_pulse.elf`;
+const TRIGGER = 2, ECHO = 3, IO_IRQ_BANK0 = 13;
+const CYCLE_MS = 221; // the datasheet: more than 220
+
+function start(pulses, options, image = IMAGE) {
+  const machine = new Machine(image, options);
+  const a16 = new A16(machine, {rx: TRIGGER, tx: ECHO, pulses, ...options});
+  const terminal = new Terminal(machine.uart[0]);
+  return {machine, a16, terminal};
+}
+
+// Runs until so many lines of text have come, and returns them.
+function lines({machine, terminal}, count) {
+  machine.until(() => terminal.lines.length >= count || machine.ended, (count + 2) * CYCLE_MS);
+  assert.deepStrictEqual(machine.complaints, []);
+  return terminal.lines;
+}
+
+const mm = (us) => Math.round(us * 4 / 23); // S[cm] = T[us] / 57.5
+const measured = (line) => Number(/raw (\d+)$/.exec(line)[1]);
+
+function assertTarget(line, us) {
+  assert.ok(Math.abs(measured(line) - us) <= 1, `${line}, but the pulse had ${us} us`);
+  assert.match(line, /^target \d+ mm, raw \d+$/);
+  assert.strictEqual(Number(/\d+/.exec(line)[0]), mm(measured(line)));
+}
+
+test('the pulses of the datasheet are readings, each within 1 us of its width', () => {
+  const run = start([0, 3000, 10100, 86250, 94000]);
+  const said = lines(run, 5);
+  assert.strictEqual(said[0], 'error -3'); // FATHOM_ERR_NO_ANSWER: no pulse, a cut wire
+  assertTarget(said[1], 3000);
+  assertTarget(said[2], 10100);
+  assertTarget(said[3], 86250);
+  assert.match(said[4], /^no target, raw (94000|94001|93999)$/);
+  figure('rp2040_edge_interrupt', run.machine.interrupts.get(IO_IRQ_BANK0), 'cycles');
+  figure('rp2040_pulse_deepest_stack', run.machine.deepestStack, 'bytes');
+});
+
+test('the trigger is low for 2 ms, once every 221 ms', () => {
+  const run = start([3000, 3000, 3000, 3000]);
+  lines(run, 4);
+  const {triggers} = run.a16;
+  assert.ok(triggers.length >= 4);
+  for (const {low} of triggers) assert.ok(low >= 2 * MS && low < 2.05 * MS, `low for ${low} ns`);
+  for (let i = 1; i < triggers.length; i++) {
+    const cycle = triggers[i].at - triggers[i - 1].at;
+    assert.ok(cycle >= CYCLE_MS * MS && cycle < (CYCLE_MS + 0.1) * MS, `a cycle of ${cycle} ns`);
+  }
+});
+
+test('a pulse of 1 ms, out of the blind zone, is noise', () => {
+  const run = start([1000, 3000]);
+  const said = lines(run, 2);
+  assert.strictEqual(said[0], 'error -3');
+  assertTarget(said[1], 3000);
+});
+
+test('noise before the pulse does not become the reading', () => {
+  const run = start([10100]);
+  run.machine.pin(TRIGGER).addListener((state) => {
+    if (state !== 1) return;
+    run.machine.after(50000, () => run.machine.pin(ECHO).setInputValue(true));
+    run.machine.after(51000, () => run.machine.pin(ECHO).setInputValue(false));
+  });
+  assertTarget(lines(run, 1)[0], 10100);
+});
+
+const WRAP_NS = 2 ** 32 * US;
+const FIRST_US = 112000; // about when the first pulse begins, after reset
+
+test('a pulse during which the clock wraps is right, also between whole microseconds', () => {
+  for (const width of [2999.6, 3000.4, 50000.5, 91000.9]) {
+    const run = start([width], {startUs: 2 ** 32 - FIRST_US - Math.floor(width / 2)});
+    assertTarget(lines(run, 1)[0], width);
+    assert.ok(run.a16.edges[0] < WRAP_NS && run.a16.edges[1] > WRAP_NS);
+  }
+});
+
+test('a cycle whose time-out is beyond the wrap ends in time', () => {
+  const run = start([0, 3000], {startUs: 2 ** 32 - FIRST_US});
+  const said = lines(run, 2);
+  assert.strictEqual(said[0], 'error -3');
+  assertTarget(said[1], 3000);
+  const cycle = run.a16.triggers[1].at - run.a16.triggers[0].at;
+  assert.ok(run.a16.triggers[0].at < WRAP_NS && run.a16.triggers[1].at > WRAP_NS);
+  assert.ok(cycle >= CYCLE_MS * MS && cycle < (CYCLE_MS + 0.1) * MS, `a cycle of ${cycle} ns`);
+});
+
+test('a line that never falls is a fault', () => {
+  const run = start([2000000]);
+  const said = lines(run, 1);
+  assert.strictEqual(said[0], 'fault, raw 0');
+});
+
+test('edges that both wait when the interrupt runs give no width, and the next pulse counts', () => {
+  const run = start([10100, 10100]);
+  const {machine} = run;
+  const flicker = () => { // low and high again between two instructions
+    machine.pin(ECHO).setInputValue(false);
+    machine.pin(ECHO).setInputValue(true);
+  };
+  machine.pin(TRIGGER).addListener((state) => {
+    if (state === 1 && run.a16.triggers.length === 1) machine.after(115000, flicker);
+  });
+  const said = lines(run, 2);
+  assert.strictEqual(said[0], 'error -3');
+  assertTarget(said[1], 10100);
+});
+
+test('pins are set up: SIO, input enabled, the text at UART0 with 115200 8N1', () => {
+  const run = start([3000]);
+  const {machine} = run;
+  lines(run, 1);
+  assert.strictEqual(machine.pin(TRIGGER).functionSelect, 5);
+  assert.strictEqual(machine.pin(ECHO).functionSelect, 5);
+  assert.ok(machine.pin(ECHO).inputEnable && !machine.pin(ECHO).outputEnable);
+  assert.ok(!machine.pin(ECHO).pullupEnabled && !machine.pin(ECHO).pulldownEnabled);
+  assert.strictEqual(machine.pin(0).functionSelect, 2);
+  assert.strictEqual(machine.uart[0].format, '8N1');
+  // 125 MHz / 16 / 115200 = 67.817: 67 and 52 / 64
+  assert.strictEqual(machine.uart[0].divider, 67 * 64 + 52);
+});
+
+test('it sleeps between the edges', () => {
+  const run = start([3000, 3000]);
+  lines(run, 2);
+  const share = run.machine.core.cycles / (run.machine.us * 125);
+  figure('rp2040_pulse_cpu_share', (share * 100).toFixed(3), '%');
+  assert.ok(share < 0.001, `awake for ${share} of the time`);
+});
