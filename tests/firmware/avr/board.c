@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
 
+#include <simavr/avr_extint.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,21 +120,29 @@ static bool step(board_t *board)
     return !board->finished;
 }
 
+/* A processor that sleeps wakes at the next timer, if only to see that it is to go on. */
+static avr_cycle_count_t nothing(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)avr, (void)when, (void)param;
+    return 0;
+}
+
 bool board_run(board_t *board, board_condition_t done, void *ctx, uint64_t most_us)
 {
-    const uint64_t end_cycle = board->avr->cycle + most_us * BOARD_CYCLES_PER_US;
-    while (done == NULL || !done(ctx)) {
-        if (board->finished || board->avr->cycle >= end_cycle) return false;
+    bool is_done = false;
+    const uint64_t left_cycles = most_us * BOARD_CYCLES_PER_US;
+    const uint64_t end_cycle = board->avr->cycle + left_cycles;
+    avr_cycle_timer_register(board->avr, left_cycles, nothing, board);
+    while (!(is_done = done != NULL && done(ctx)) && !board->finished && board->avr->cycle < end_cycle)
         step(board);
-    }
+    avr_cycle_timer_cancel(board->avr, nothing, board);
     board_sync(board);
-    return true;
+    return is_done;
 }
 
 bool board_run_us(board_t *board, uint32_t us)
 {
     board_run(board, NULL, NULL, us);
-    board_sync(board);
     return !board->finished;
 }
 
@@ -183,6 +192,9 @@ bool board_start(board_t *board, const char *name)
         fprintf(stderr, "this simavr has no USART0 as expected\n");
         return false;
     }
+    /* A pin that was low once before its interrupt was set to edges would interrupt for ever. */
+    avr_extint_set_strict_lvl_trig(avr, 0, 0);
+    avr_extint_set_strict_lvl_trig(avr, 1, 0);
     board_wire(board);
     avr_register_io_write(avr, GPIOR0, report_byte, board);
     avr_register_io_write(avr, GPIOR1, report_end, board);

@@ -31,7 +31,14 @@
  * without their synchroniser (2 cycles) and the noise canceller.
  */
 enum { BOARD_HZ = 16000000, BOARD_CYCLES_PER_US = 16, BOARD_ENTRY_CYCLES = 4 };
-enum { BOARD_RECORD = 32, BOARD_RECORDS = 64, BOARD_BYTES = 2048, BOARD_EDGES = 256, BOARD_WATCHES = 8 };
+enum {
+    BOARD_RECORD = 32,
+    BOARD_RECORDS = 64,
+    BOARD_BYTES = 2048,
+    BOARD_EDGES = 256,
+    BOARD_WATCHES = 8,
+    BOARD_PLANNED = 16
+};
 
 /* What the image has reported. */
 typedef struct {
@@ -68,6 +75,15 @@ typedef struct {
     bool high;
 } board_watch_t;
 
+/* An edge to come at an input. */
+typedef struct {
+    board_t *board;
+    char port;
+    uint8_t bit;
+    bool high;
+    bool waits;
+} board_planned_t;
+
 /* One who follows each instruction; see profile.h. */
 typedef struct {
     void (*before)(void *ctx);
@@ -103,6 +119,7 @@ struct board {
     fathom_line_settings_t settings;
     board_record_t record;
     board_watch_t watches[BOARD_WATCHES];
+    board_planned_t planned[BOARD_PLANNED];
     uint8_t watching;
     uint8_t driven[3]; /* inputs that the bench drives, ports B to D */
     uint8_t levels[3];
@@ -161,8 +178,9 @@ void board_join_pins(board_t *board, fathom_sim_pins_t *pins, const char *trigge
 void board_feed(board_t *board, const uint8_t *bytes, const uint8_t *marks, uint16_t count, uint64_t at_cycle,
                 uint32_t cycles);
 
-/* Drives an input from outside, now. */
+/* Drives an input from outside, now, or at a cycle to come (up to BOARD_PLANNED at a time). */
 void board_drive(board_t *board, char port, uint8_t bit, bool high);
+void board_drive_at(board_t *board, char port, uint8_t bit, bool high, uint64_t cycle);
 
 /* Calls `changed` when an output pin changes. */
 board_watch_t *board_watch(board_t *board, char port, uint8_t bit, bool idle_high,

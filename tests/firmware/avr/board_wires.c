@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <simavr/avr_ioport.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "board_inside.h"
 
@@ -61,6 +63,28 @@ void board_drive(board_t *board, char port, uint8_t bit, bool high)
     avr_ioport_external_t external = {.mask = board->driven[at], .value = board->levels[at]};
     avr_ioctl(board->avr, (uint32_t)AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &external);
     avr_raise_irq(avr_io_getirq(board->avr, (uint32_t)AVR_IOCTL_IOPORT_GETIRQ(port), bit), high);
+}
+
+static avr_cycle_count_t drive_planned(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    (void)avr, (void)when;
+    board_planned_t *const planned = (board_planned_t *)param;
+    planned->waits = false;
+    board_drive(planned->board, planned->port, planned->bit, planned->high);
+    return 0;
+}
+
+void board_drive_at(board_t *board, char port, uint8_t bit, bool high, uint64_t cycle)
+{
+    board_planned_t *planned = board->planned;
+    while (planned->waits)
+        if (++planned == board->planned + BOARD_PLANNED) {
+            fprintf(stderr, "more edges are planned than there is room for\n");
+            exit(EXIT_FAILURE);
+        }
+    const board_planned_t fresh = {board, port, bit, high, true};
+    *planned = fresh;
+    avr_cycle_timer_register(board->avr, cycle - board->avr->cycle, drive_planned, planned);
 }
 
 /* ---- the pins of a device ---- */

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT */
+
+/* The bench against the ATmega328P's datasheet, with an image of which every cycle is known (images/bench.c). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "profile.h"
+#include "sim/a16.h"
+#include "sim/scene.h"
+
+static board_t board;
+static profile_t profile;
+
+static int start(void **state)
+{
+    (void)state;
+    assert_true(board_start(&board, "bench"));
+    board_drive(&board, 'D', 2, false);
+    board_drive(&board, 'D', 3, false);
+    board_drive(&board, 'D', 4, false);
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+/* Runs until it reports a record of that kind. */
+static board_record_t reported(char kind)
+{
+    for (;;) {
+        const board_record_t *const record = board_next_record(&board, 1000000);
+        assert_non_null(record);
+        if (record->kind == kind) return *record;
+    }
+}
+
+static void functions_cost_what_the_instruction_set_says(void **state)
+{
+    (void)state;
+    profile_begin(&profile, &board);
+    const profile_cost_t *const forty = profile_function(&profile, "forty_cycles");
+    const profile_cost_t *const pushes = profile_function(&profile, "three_pushes");
+    reported('2');
+    assert_int_equal(forty->calls, 10);
+    assert_int_equal(forty->longest_cycles, 40);
+    assert_int_equal(forty->shortest_cycles, 40);
+    assert_int_equal(forty->total_cycles, 400);
+    assert_int_equal(forty->stack, 2);
+    assert_int_equal(pushes->calls, 5);
+    assert_int_equal(pushes->longest_cycles, 59);
+    assert_int_equal(pushes->stack, 7);
+    assert_int_equal(profile_awake_cycles(&profile), board.avr->cycle);
+    assert_int_equal(profile.asleep_cycles, 0);
+    assert_true(profile_deepest_stack(&profile) >= 2 + 7); /* main's return address */
+    assert_true(profile_deepest_stack(&profile) < 30);
+    profile_end(&profile);
+}
+
+/* Between the reports 1 and 2 the functions run, after 2 come 400 nops. */
+static void interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt(void **state)
+{
+    (void)state;
+    reported('1');
+    profile_begin(&profile, &board);
+    const profile_cost_t *const forty = profile_function(&profile, "forty_cycles");
+    for (int i = 0; i < 8; i++)
+        board_drive_at(&board, 'D', 2, i % 2 == 0, board.avr->cycle + 20 + 53 * (uint64_t)i);
+    reported('2');
+    assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 8);
+    assert_int_equal(forty->calls, 10);
+    assert_int_equal(forty->longest_cycles, 40);
+    assert_int_equal(forty->shortest_cycles, 40);
+    assert_int_equal(forty->stack, 2);
+    assert_int_equal(profile_deepest_stack(&profile),
+                     2 + 7 + 2); /* main's return address, three_pushes, the interrupt's */
+    profile_end(&profile);
+}
+
+static uint64_t cycles_to_the_first_byte(void)
+{
+    const uint64_t cycle = reported('2').cycle;
+    return reported('d').cycle - cycle;
+}
+
+static void an_interrupt_costs_its_cycles_and_four_of_entry(void **state)
+{
+    const uint64_t without = cycles_to_the_first_byte();
+    stop(state);
+    start(state);
+    reported('2');
+    const uint64_t begin_cycle = board.avr->cycle;
+    profile_begin(&profile, &board);
+    board_drive_at(&board, 'D', 2, true, begin_cycle + 30);
+    board_drive_at(&board, 'D', 2, false, begin_cycle + 100);
+    assert_int_equal(reported('d').cycle - begin_cycle + 1, without + 2 * (18 + 4));
+    assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 2);
+    assert_int_equal(profile.interrupts[PROFILE_INT0].shortest_cycles, 18);
+    assert_int_equal(profile.interrupts[PROFILE_INT0].longest_cycles, 18);
+    assert_int_equal(profile.interrupts[PROFILE_INT0].stack, 2);
+    assert_int_equal(profile.entries, 2);
+    profile_end(&profile);
+}
+
+static void an_interrupt_that_is_interrupted_is_charged_its_own_cycles(void **state)
+{
+    (void)state;
+    reported('2');
+    const uint64_t begin_cycle = board.avr->cycle;
+    profile_begin(&profile, &board);
+    board_drive_at(&board, 'D', 3, true, begin_cycle + 30);
+    board_drive_at(&board, 'D', 2, true, begin_cycle + 60);
+    reported('d');
+    assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 1);
+    assert_int_equal(profile.interrupts[PROFILE_INT0].longest_cycles, 18);
+    assert_int_equal(profile.interrupts[2].calls, 1);
+    assert_int_equal(profile.interrupts[2].longest_cycles, 48);
+    assert_int_equal(profile.main_cycles + 18 + 48 + 8, board.avr->cycle - begin_cycle);
+    profile_end(&profile);
+}
+
+/* ATmega328P 20.6: the second byte is taken while the first leaves, the third one character later, and transmit
+ * complete comes once, behind the third. */
+static void the_transmitter_has_a_second_buffer(void **state)
+{
+    (void)state;
+    const uint32_t character = 10 * 104 * 16; /* UBRR 103, 8N1 */
+    const uint64_t first = reported('d').cycle;
+    const uint64_t second = reported('d').cycle;
+    const uint64_t third = reported('d').cycle;
+    const uint64_t complete = reported('t').cycle;
+    assert_true(second - first < 30);
+    assert_in_range(third, first + character - 20, first + character + 20);
+    assert_int_equal(board.bytes_seen, 3);
+    for (uint32_t i = 0; i < 3; i++) {
+        assert_int_equal(board.bytes[i].byte, 0x41 + i);
+        assert_int_equal(board.bytes[i].end_cycle - board.bytes[i].begin_cycle, character);
+        if (i != 0) assert_int_equal(board.bytes[i].begin_cycle, board.bytes[i - 1].end_cycle);
+    }
+    assert_in_range(complete, board.bytes[2].end_cycle, board.bytes[2].end_cycle + 20);
+}
+
+/* 20.7.3 and 20.7.4: two are buffered, one waits in the shift register; the next one's start bit throws that out, and
+ * the first that is buffered after the loss has DOR0. */
+static void the_receiver_keeps_three_bytes_and_tells_what_was_lost(void **state)
+{
+    (void)state;
+    static const uint8_t bytes[] = {1, 2, 3, 4, 5};
+    static const uint8_t marks[] = {0, FATHOM_RX_FRAMING, 0, 0, FATHOM_RX_FRAMING | FATHOM_RX_PARITY};
+    reported('3');
+    board_feed(&board, bytes, marks, sizeof bytes, board.avr->cycle, 0);
+    board_run_us(&board, 6000);
+    board_drive(&board, 'D', 4, true);
+    const board_record_t record = reported('b');
+    /* RXC0 0x80, TXC0 0x40, UDRE0 0x20, FE0 0x10, DOR0 0x08; no UPE0, as there is no parity in 8N1 */
+    static const uint8_t expected[] = {0xE0, 1, 0xF0, 2, 0xF8, 5};
+    assert_int_equal(record.length, sizeof expected);
+    assert_memory_equal(record.bytes, expected, sizeof expected);
+    assert_int_equal(board.usart.overruns, 2);
+}
+
+static void receive_complete_interrupts_as_long_as_a_byte_waits(void **state)
+{
+    (void)state;
+    static const uint8_t byte = 0x77;
+    reported('3');
+    board_drive(&board, 'D', 4, true);
+    reported('b');
+    board_run_us(&board, 10);
+    profile_begin(&profile, &board);
+    board_feed(&board, &byte, NULL, 1, board.avr->cycle, 0);
+    const board_record_t record = reported('r');
+    static const uint8_t expected[] = {0xE0, 0x77};
+    assert_memory_equal(record.bytes, expected, sizeof expected);
+    board_run_us(&board, 1000);
+    assert_int_equal(profile.interrupts[PROFILE_USART_RECEIVE].calls, 3);
+    profile_end(&profile);
+}
+
+/* A16 1: S[cm] = T[us] / 57.5, so 1739 mm are 9999 us. The loop of the image sees an edge within 40 cycles. */
+static void a_device_on_the_pins_answers_the_trigger_with_its_pulse(void **state)
+{
+    (void)state;
+    fathom_sim_a16_t a16;
+    fathom_sim_line_t line;
+    fathom_sim_pins_t pins;
+    fathom_sim_fixed_t target = {{1739, 0, 0, 0}};
+    const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    const fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_PWM, .scene = fathom_sim_fixed(&target)};
+    fathom_sim_a16_init(&a16, &config);
+    fathom_sim_line_init(&line, &settings, board.clock.now_us);
+    line.full_duplex = true;
+    fathom_sim_attach(&line, &a16.device, board.clock.now_us);
+    fathom_sim_pins_init(&pins, &a16.device, &line, &board.clock);
+    board_join_pins(&board, &pins, "B1", "B0", "D2");
+    board_drive(&board, 'D', 4, true);
+    reported('b');
+    assert_int_equal(reported('p').bytes[0], 0);
+    const board_record_t high = reported('p');
+    const board_record_t low = reported('p');
+    assert_int_equal(high.bytes[0], 0x05); /* B0 and D2 */
+    assert_int_equal(low.bytes[0], 0);
+    const uint64_t width = low.cycle - high.cycle;
+    assert_in_range(width, 9999 * BOARD_CYCLES_PER_US - 40, 9999 * BOARD_CYCLES_PER_US + 40);
+    assert_int_equal(a16.device.counters.measurements, 1);
+}
+
+static void a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code(void **state)
+{
+    (void)state;
+    board_drive(&board, 'D', 4, true);
+    reported('b');
+    board_run_us(&board, 3000);
+    board_drive(&board, 'D', 4, false);
+    board_run_us(&board, 10);
+    assert_int_equal(board.avr->state, cpu_Sleeping);
+    profile_begin(&profile, &board);
+    const uint64_t begin_cycle = board.avr->cycle;
+    board_run_us(&board, 1000000);
+    assert_in_range(profile.asleep_cycles, 1000000 * BOARD_CYCLES_PER_US - 2000,
+                    1000000 * BOARD_CYCLES_PER_US + 2000);
+    assert_int_equal(profile_awake_cycles(&profile), 0);
+    assert_false(board.finished);
+    board_drive(&board, 'D', 2, true);
+    board_run_us(&board, 10);
+    assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 1);
+    assert_int_equal(profile_awake_cycles(&profile) + profile.asleep_cycles, board.avr->cycle - begin_cycle);
+    assert_true(board.finished);
+    assert_int_equal(board.exit_code, 7);
+    profile_end(&profile);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(functions_cost_what_the_instruction_set_says, start, stop),
+        cmocka_unit_test_setup_teardown(
+            interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt, start, stop),
+        cmocka_unit_test_setup_teardown(an_interrupt_costs_its_cycles_and_four_of_entry, start, stop),
+        cmocka_unit_test_setup_teardown(an_interrupt_that_is_interrupted_is_charged_its_own_cycles, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(the_transmitter_has_a_second_buffer, start, stop),
+        cmocka_unit_test_setup_teardown(the_receiver_keeps_three_bytes_and_tells_what_was_lost, start, stop),
+        cmocka_unit_test_setup_teardown(receive_complete_interrupts_as_long_as_a_byte_waits, start, stop),
+        cmocka_unit_test_setup_teardown(a_device_on_the_pins_answers_the_trigger_with_its_pulse, start, stop),
+        cmocka_unit_test_setup_teardown(a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code,
+                                        start, stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
