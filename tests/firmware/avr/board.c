@@ -146,6 +146,8 @@ bool board_run_us(board_t *board, uint32_t us)
     return !board->finished;
 }
 
+void board_stall(board_t *board, uint64_t cycles) { board->avr->cycle += cycles; }
+
 static bool has_record(void *ctx)
 {
     const board_t *const board = (const board_t *)ctx;

@@ -154,6 +154,9 @@ bool board_run(board_t *board, board_condition_t done, void *ctx, uint64_t most_
 /* Runs so long, sleep included; false: it ended before. */
 bool board_run_us(board_t *board, uint32_t us);
 
+/* Time passes and the processor does nothing: moves what it does next against its timers, cycle by cycle. */
+void board_stall(board_t *board, uint64_t cycles);
+
 /* The next record, running until there is one; NULL: none came within most_us. Valid until the next call. */
 const board_record_t *board_next_record(board_t *board, uint64_t most_us);
 

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT */
+
+/* The clock of port/avr against the cycles of the processor. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "remote.h"
+
+enum { PERIOD_CYCLES = 65536 * 8 }; /* of Timer1: 32768 us */
+
+static board_t board;
+
+static int start(void **state)
+{
+    (void)state;
+    remote_start(&board);
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+typedef struct {
+    uint64_t cycle; /* just before it */
+    uint32_t us;
+} reading_t;
+
+/* The next reading of those that remote_watch_clock makes; after its mark, `stall` cycles pass at once. */
+static reading_t next_reading(uint64_t (*stall)(uint64_t cycle))
+{
+    reading_t reading = {0, 0};
+    for (;;) {
+        const board_record_t *const record = board_next_record(&board, 100000);
+        assert_non_null(record);
+        if (record->kind == REMOTE_MARK) {
+            if (stall != NULL) board_stall(&board, stall(record->cycle));
+            reading.cycle = board.avr->cycle;
+        }
+        if (record->kind != REMOTE_CLOCK || reading.cycle == 0) continue;
+        assert_int_equal(record->length, 4);
+        for (int i = 3; i >= 0; i--) reading.us = reading.us << 8 | record->bytes[i];
+        return reading;
+    }
+}
+
+static void watch(uint8_t masked)
+{
+    board.taken = board.recorded;
+    remote_watch_clock(&board, true, masked);
+}
+
+/* When the clock was 0, by this reading: the same for all of them but for the us that is cut off and for the way from
+ * the mark to the timer, which is a few cycles longer when an overflow has to be added. */
+static int64_t zero_cycle(reading_t reading)
+{
+    return (int64_t)reading.cycle - (int64_t)reading.us * BOARD_CYCLES_PER_US;
+}
+
+static void assert_right(reading_t reading, int64_t zero, uint64_t wraps)
+{
+    const int64_t off = zero_cycle(reading) - zero - (int64_t)(wraps * BOARD_CYCLES_PER_US << 32);
+    assert_true(off > -BOARD_CYCLES_PER_US - 4 && off < BOARD_CYCLES_PER_US + 4);
+}
+
+/* Takes a few readings away from any overflow, which has all later ones compared with them. */
+static int64_t set_off(void)
+{
+    watch(0);
+    const int64_t zero = zero_cycle(next_reading(NULL));
+    for (int i = 0; i < 100; i++) assert_right(next_reading(NULL), zero, 0);
+    remote_watch_clock(&board, false, 0);
+    board_run_us(&board, 100);
+    return zero;
+}
+
+/* The main loop sleeps as a device on a battery does, to the next overflow at most. */
+static void it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap(void **state)
+{
+    (void)state;
+    const int64_t zero = set_off();
+    const uint64_t wrap_cycle = (uint64_t)BOARD_CYCLES_PER_US << 32; /* 71.6 minutes */
+    uint32_t readings = 0;
+    for (uint32_t slept = 0; board.avr->cycle < (uint64_t)72 * 60 * BOARD_HZ; slept++) {
+        remote_idle(&board, 32000);
+        if (slept % 500 != 0) continue;
+        watch(0);
+        const reading_t reading = next_reading(NULL);
+        const uint64_t since = reading.cycle - (uint64_t)zero;
+        remote_watch_clock(&board, false, 0);
+        board_run_us(&board, 100);
+        assert_right(reading, zero, since >= wrap_cycle ? 1 : 0);
+        readings++;
+    }
+    assert_true(board.avr->cycle > wrap_cycle);
+    assert_true(readings > 250);
+    assert_true(board.asleep_cycles > board.avr->cycle / 100 * 99);
+}
+
+/* ---- an overflow that no interrupt has counted yet ---- */
+
+static int64_t zero_of_stall;
+static int phase_of_stall;
+
+/* To so many cycles from the next overflow, if it is near; else not at all. */
+static uint64_t to_the_overflow(uint64_t cycle)
+{
+    const uint64_t left = PERIOD_CYCLES - (cycle - (uint64_t)zero_of_stall) % PERIOD_CYCLES;
+    return left < 1000 && left > 100 ? left + (uint64_t)(phase_of_stall + 60) - 120 : 0;
+}
+
+/* The timer overflows at every cycle of the reading, with interrupts off, as in the longest interrupt. */
+static void an_overflow_at_any_cycle_of_a_reading_is_counted_once(void **state)
+{
+    (void)state;
+    zero_of_stall = set_off();
+    watch(0);
+    for (phase_of_stall = 0; phase_of_stall < 120; phase_of_stall++) {
+        reading_t reading, before = next_reading(NULL);
+        uint64_t stalled_cycle = 0;
+        while (stalled_cycle == 0) {
+            reading = next_reading(to_the_overflow);
+            assert_right(reading, zero_of_stall, 0);
+            if (reading.cycle - before.cycle > 400) stalled_cycle = reading.cycle;
+            before = reading;
+        }
+        const uint64_t from = (stalled_cycle - (uint64_t)zero_of_stall + 80) % PERIOD_CYCLES;
+        assert_true(from < 160); /* it was near */
+        for (int i = 0; i < 20; i++) assert_right(next_reading(NULL), zero_of_stall, 0);
+    }
+}
+
+/* With interrupts off for 16 ms at a time, most overflows are counted late; each reading looks at them itself. */
+static void overflows_that_wait_for_16_ms_are_in_each_reading(void **state)
+{
+    (void)state;
+    const int64_t zero = set_off();
+    uint32_t last_us = 0, pending = 0;
+    watch(255); /* 261120 cycles */
+    for (int i = 0; i < 400; i++) {
+        const reading_t reading = next_reading(NULL);
+        assert_right(reading, zero, 0);
+        assert_true(reading.us > last_us);
+        if ((reading.cycle - (uint64_t)zero) % PERIOD_CYCLES < 261120) pending++;
+        last_us = reading.us;
+    }
+    assert_in_range(pending, 150, 250);
+}
+
+/* ---- sleep ---- */
+
+static void idle_returns_when_its_time_is_up(void **state)
+{
+    (void)state;
+    static const uint32_t most_us[] = {100, 1000, 5000, 20000, 32000};
+    for (size_t i = 0; i < sizeof most_us / sizeof most_us[0]; i++) {
+        const uint64_t begin_cycle = board.avr->cycle, asleep_cycles = board.asleep_cycles;
+        remote_idle(&board, most_us[i]);
+        assert_in_range(board.avr->cycle - begin_cycle, most_us[i] * BOARD_CYCLES_PER_US,
+                        (most_us[i] + 40) * BOARD_CYCLES_PER_US);
+        assert_true(board.asleep_cycles - asleep_cycles > (most_us[i] - 40) * BOARD_CYCLES_PER_US);
+    }
+}
+
+static void idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time(void **state)
+{
+    (void)state;
+    uint64_t begin_cycle = board.avr->cycle;
+    remote_idle(&board, UINT32_MAX);
+    assert_in_range(board.avr->cycle - begin_cycle, 32000 * BOARD_CYCLES_PER_US, 32768 * BOARD_CYCLES_PER_US);
+    for (uint32_t most_us = 0; most_us < 30; most_us++) {
+        begin_cycle = board.avr->cycle;
+        remote_idle(&board, most_us);
+        assert_in_range(board.avr->cycle - begin_cycle, 0, (most_us + 40) * BOARD_CYCLES_PER_US);
+    }
+}
+
+static void a_byte_ends_the_sleep_and_one_that_waits_prevents_it(void **state)
+{
+    (void)state;
+    static const uint8_t byte = 0x5A;
+    static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
+    uint8_t got, flags;
+    assert_true(remote_begin(&board, &line, false, 8));
+    remote_idle(&board, 0);
+    /* at every cycle of going to sleep */
+    for (uint16_t phase = 0; phase < 400; phase++) {
+        const uint64_t begin_cycle = board.avr->cycle;
+        board_feed(&board, &byte, NULL, 1, begin_cycle + phase, 1);
+        remote_idle(&board, 20000);
+        assert_true(board.avr->cycle - begin_cycle < 1200);
+        const uint64_t again_cycle = board.avr->cycle;
+        remote_idle(&board, 20000);
+        assert_true(board.avr->cycle - again_cycle < 1200);
+        assert_int_equal(remote_read(&board, &got, 1, &flags), 1);
+        assert_int_equal(got, byte);
+    }
+}
+
+static void the_last_stop_bit_ends_the_sleep(void **state)
+{
+    (void)state;
+    static const uint8_t request[] = {1, 2, 3};
+    static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
+    assert_true(remote_begin(&board, &line, false, 8));
+    remote_idle(&board, 0);
+    remote_write(&board, request, sizeof request);
+    remote_idle(&board, 20000);
+    assert_int_equal(board.bytes_seen, 3);
+    assert_in_range(board.avr->cycle, board.bytes[2].end_cycle, board.bytes[2].end_cycle + 400);
+    assert_true(remote_sent(&board));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(an_overflow_at_any_cycle_of_a_reading_is_counted_once, start, stop),
+        cmocka_unit_test_setup_teardown(overflows_that_wait_for_16_ms_are_in_each_reading, start, stop),
+        cmocka_unit_test_setup_teardown(idle_returns_when_its_time_is_up, start, stop),
+        cmocka_unit_test_setup_teardown(
+            idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time, start, stop),
+        cmocka_unit_test_setup_teardown(a_byte_ends_the_sleep_and_one_that_waits_prevents_it, start, stop),
+        cmocka_unit_test_setup_teardown(the_last_stop_bit_ends_the_sleep, start, stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

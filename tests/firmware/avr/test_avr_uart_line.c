@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+
+/* The rates and formats of port/avr: ATmega328P 20.10 at 16 MHz, by hand. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "remote.h"
+
+enum { UCSR0A = 0xC0, UCSR0C = 0xC2, UBRR0L = 0xC4, UBRR0H = 0xC5, U2X = 0x02 };
+
+static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
+
+static board_t board;
+
+static int start(void **state)
+{
+    (void)state;
+    remote_start(&board);
+    assert_true(remote_begin(&board, &at_19200, false, 8));
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+static uint16_t ubrr(void) { return (uint16_t)(board.avr->data[UBRR0L] | board.avr->data[UBRR0H] << 8); }
+
+static bool u2x(void) { return (board.avr->data[UCSR0A] & U2X) != 0; }
+
+/* 2000000 / baud, to the nearest, is what divides with U2X0; half of that, where it is even, does without, and that is
+ * to be preferred, as the receiver looks at a bit 16 times then. */
+static void every_rate_has_the_divisor_that_the_arithmetic_says(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t baud;
+        uint16_t ubrr;
+        bool u2x;
+    } rates[] = {
+        {1200, 1666, true},  /* 1666.7: 1667 */
+        {2400, 832, true},   /* 833.3: 833 */
+        {4800, 416, true},   /* 416.7: 417 */
+        {9600, 103, false},  /* 208.3: 208 */
+        {14400, 138, true},  /* 138.9: 139 */
+        {19200, 51, false},  /* 104.2: 104 */
+        {28800, 68, true},   /* 69.4: 69 */
+        {38400, 25, false},  /* 52.1: 52 */
+        {57600, 34, true},   /* 34.7: 35, off by 0.8 % */
+        {76800, 12, false},  /* 26.04: 26 */
+        {115200, 16, true},  /* 17.4: 17, off by 2.1 % */
+        {250000, 3, false},  /* 8 */
+        {500000, 1, false},  /* 4 */
+        {1000000, 0, false}, /* 2 */
+        {2000000, 0, true},  /* 1 */
+        {128000, 7, false},  /* 15.6: 16, off by 2.3 % */
+    };
+    for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+        const fathom_line_settings_t line = {rates[i].baud, FATHOM_PARITY_NONE, 1};
+        assert_int_equal(remote_set_line(&board, &line), 1);
+        assert_int_equal(ubrr(), rates[i].ubrr);
+        assert_int_equal(u2x(), rates[i].u2x);
+        const uint64_t cycle = board.avr->cycle;
+        assert_int_equal(remote_set_line(&board, &line), 1); /* again: they hold */
+        assert_true(board.avr->cycle > cycle);
+        assert_int_equal(ubrr(), rates[i].ubrr);
+    }
+}
+
+static void rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing(void **state)
+{
+    (void)state;
+    /* 230400: 8.7, 3.5 % off; 300000: 6.7, 4.8 %; 3000000: 0.7; 100: 20000, more than 4096 */
+    static const uint32_t bauds[] = {230400, 300000, 3000000, UINT32_MAX, 100, 0};
+    for (size_t i = 0; i < sizeof bauds / sizeof bauds[0]; i++) {
+        const fathom_line_settings_t line = {bauds[i], FATHOM_PARITY_NONE, 2};
+        assert_true(remote_set_line(&board, &line) < 0);
+        assert_int_equal(ubrr(), 51);
+        assert_false(u2x());
+        assert_int_equal(board.avr->data[UCSR0C], 0x26);
+    }
+}
+
+/* ATmega328P 20.11.4: UPM01 0x20, UPM00 0x10, USBS0 0x08, UCSZ01 and UCSZ00 0x06. */
+static void every_format_has_its_bits(void **state)
+{
+    (void)state;
+    static const uint8_t parities[] = {0x00, 0x20, 0x30};
+    for (uint8_t parity = 0; parity < 3; parity++) {
+        for (uint8_t stop_bits = 1; stop_bits <= 2; stop_bits++) {
+            const fathom_line_settings_t line = {9600, parity, stop_bits};
+            assert_int_equal(remote_set_line(&board, &line), 1);
+            assert_int_equal(board.avr->data[UCSR0C], 0x06 | parities[parity] | (stop_bits == 2 ? 0x08 : 0));
+        }
+    }
+    static const fathom_line_settings_t wrong[] = {{9600, 3, 1}, {9600, 0, 0}, {9600, 0, 3}};
+    for (size_t i = 0; i < 3; i++) {
+        assert_true(remote_set_line(&board, &wrong[i]) < 0);
+        assert_int_equal(board.avr->data[UCSR0C], 0x3E);
+    }
+}
+
+static void settings_wait_until_all_bytes_have_left(void **state)
+{
+    (void)state;
+    static const uint8_t request[] = {1, 2, 3};
+    const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
+    const fathom_line_settings_t never = {230400, FATHOM_PARITY_NONE, 1};
+    remote_write(&board, request, sizeof request);
+    int refused = 0;
+    for (;;) {
+        const uint64_t begin_cycle = board.avr->cycle;
+        const int done = remote_set_line(&board, &at_9600);
+        if (done == 1) break;
+        assert_int_equal(done, 0);
+        assert_int_equal(ubrr(), 51);
+        refused++;
+        assert_true(board.bytes_seen < 3 || begin_cycle < board.bytes[2].end_cycle + 100);
+    }
+    assert_true(refused > 10);
+    assert_int_equal(board.bytes_seen, 3);
+    assert_true(board.avr->cycle >= board.bytes[2].end_cycle);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(board.bytes[i].end_cycle - board.bytes[i].begin_cycle, 11 * 52 * 16);
+    remote_write(&board, request, 1);
+    assert_true(remote_set_line(&board, &never) < 0);
+    board_run_us(&board, 2000);
+    assert_int_equal(board.bytes[3].end_cycle - board.bytes[3].begin_cycle, 10 * 104 * 16);
+}
+
+static void what_was_received_before_is_kept(void **state)
+{
+    (void)state;
+    static const uint8_t bytes[] = {5, 6, 7};
+    const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
+    uint8_t got[8], flags;
+    board_feed(&board, bytes, NULL, 3, board.avr->cycle, 0);
+    board_run_us(&board, 3000);
+    assert_int_equal(remote_set_line(&board, &at_9600), 1);
+    assert_int_equal(remote_read(&board, got, 8, &flags), 3);
+    assert_int_equal(flags, 0);
+    assert_memory_equal(got, bytes, 3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(every_rate_has_the_divisor_that_the_arithmetic_says, start, stop),
+        cmocka_unit_test_setup_teardown(rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing,
+                                        start, stop),
+        cmocka_unit_test_setup_teardown(every_format_has_its_bits, start, stop),
+        cmocka_unit_test_setup_teardown(settings_wait_until_all_bytes_have_left, start, stop),
+        cmocka_unit_test_setup_teardown(what_was_received_before_is_kept, start, stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
