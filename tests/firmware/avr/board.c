@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
 
-#include <simavr/avr_extint.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,12 +95,6 @@ static void on_interrupt(avr_irq_t *irq, uint32_t vector, void *param)
     if (board->observer != NULL) board->observer->interrupt(board->observer->ctx, (uint8_t)vector);
 }
 
-static void sleep_at_once(avr_t *avr, avr_cycle_count_t cycles)
-{
-    (void)avr;
-    (void)cycles;
-}
-
 static bool step(board_t *board)
 {
     avr_t *const avr = board->avr;
@@ -188,15 +181,12 @@ bool board_start(board_t *board, const char *name)
     avr_init(avr);
     board->image.frequency = BOARD_HZ;
     avr_load_firmware(avr, &board->image);
-    avr->sleep = sleep_at_once;
     fathom_sim_clock_init(&board->clock, 0, 0);
     if (!usart_begin(&board->usart, avr)) {
         fprintf(stderr, "this simavr has no USART0 as expected\n");
         return false;
     }
-    /* A pin that was low once before its interrupt was set to edges would interrupt for ever. */
-    avr_extint_set_strict_lvl_trig(avr, 0, 0);
-    avr_extint_set_strict_lvl_trig(avr, 1, 0);
+    board_mend(avr);
     board_wire(board);
     avr_register_io_write(avr, GPIOR0, report_byte, board);
     avr_register_io_write(avr, GPIOR1, report_end, board);

@@ -26,9 +26,11 @@
  * The image speaks to the test by three registers that have no other use: a byte written to GPIOR0 is one more of a
  * record, GPIOR1 ends the record and says its kind, GPIOR2 ends the program with an exit code (0 is good).
  *
- * Where simavr 1.6 is not the chip: usart.h is in the place of its USART; the 4 cycles of interrupt entry, which it
- * leaves out (ATmega328P 7.7.1), are added here. Left as they are: 4 more cycles out of sleep; external inputs
- * without their synchroniser (2 cycles) and the noise canceller.
+ * Where simavr 1.6 is not the chip it is mended here: usart.h is in the place of its USART; the 4 cycles of interrupt
+ * entry, which it leaves out (ATmega328P 7.7.1), are added; of several interrupts that wait none is lost; writing a one
+ * to a flag of Timer1 clears that flag alone; a flag that stands interrupts when it is enabled; sei holds interrupts back
+ * for one instruction, not two. Left as they are: 4 more cycles out of sleep; external inputs without their synchroniser
+ * (2 cycles) and the noise canceller.
  */
 enum { BOARD_HZ = 16000000, BOARD_CYCLES_PER_US = 16, BOARD_ENTRY_CYCLES = 4 };
 enum {

@@ -4,7 +4,10 @@
 
 #include "board.h"
 
-/* What board.c and board_wires.c want of each other. */
+/* What board.c, board_core.c and board_wires.c want of each other. */
+
+/* Puts what is wrong in simavr's processor right. */
+void board_mend(avr_t *avr);
 
 /* Once the processor is there: the USART's ends. */
 void board_wire(board_t *board);
