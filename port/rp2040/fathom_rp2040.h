@@ -116,8 +116,11 @@ typedef struct {
     volatile uint16_t ring[FATHOM_RP2040_RX_RING]; /* a byte, and above it DR's error bits */
     volatile uint8_t written;                      /* to the ring, so far; wraps */
     volatile uint8_t taken;                        /* from the ring, so far; wraps */
-    volatile uint8_t length;                       /* of the request */
-    volatile uint8_t given;                        /* of it, to the hardware */
+    uint8_t silent_at;  /* with is_silent: after so many bytes the receive time-out came */
+    uint32_t silent_us; /* and this is when the last of them had ended */
+    bool is_silent;
+    volatile uint8_t length; /* of the request */
+    volatile uint8_t given;  /* of it, to the hardware */
     volatile bool is_break;
 } fathom_rp2040_uart_t;
 
@@ -129,10 +132,12 @@ typedef struct {
 bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config);
 
 /*
- * The HAL's view of it. Errors are told of single bytes: a read ends before and after such a byte. No FATHOM_RX_TIMED,
- * no FATHOM_RX_SILENCE.
+ * The HAL's view of it. Errors are told of single bytes: a read ends before and after such a byte. No
+ * FATHOM_RX_SILENCE.
  * read        looks into the hardware's FIFO too, so that a loop that polls sees each byte when it has come. Who sleeps
  *             is woken by every fourth, and by the last one 32 bits later (1.7 ms at 19200 baud): the receive time-out.
+ *             That byte's time is told, FATHOM_RX_TIMED, so that the silence before the next request is no longer for
+ *             it; late by what else interrupts.
  * write       takes up to request_size bytes; of more it says < 0. The first byte begins at once; an interrupt keeps
  *             the FIFO filled, if the request is longer than its 32 bytes. The driver is high from before that until
  *             BUSY has ended. PL011 has no interrupt for that end, so the alarm is set to when it is due and looks;

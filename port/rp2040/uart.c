@@ -7,6 +7,7 @@ enum {
     RECEIVE = RP2040_UART_INT_RX | RP2040_UART_INT_RT,
     FRAMING = RP2040_UART_DR_FE | RP2040_UART_DR_BE, /* a break has both */
     ERRORS = FRAMING | RP2040_UART_DR_PE | RP2040_UART_DR_OE,
+    TIME_OUT_BITS = 32, /* 4.2.6.3 */
     US_PER_S = 1000000
 };
 
@@ -51,6 +52,14 @@ static bool gather(fathom_rp2040_uart_t *uart)
     return (uint8_t)(written - taken) != FATHOM_RP2040_RX_RING;
 }
 
+/* The receive time-out: the byte that was the last one ended so long ago. */
+static void note_silence(fathom_rp2040_uart_t *uart)
+{
+    uart->silent_at = uart->written;
+    uart->is_silent = uart->silent_at != uart->taken; /* else the main loop was faster */
+    uart->silent_us = RP2040_TIMER_RAWL - time_us(uart, TIME_OUT_BITS);
+}
+
 static void count(uint16_t *counter, bool is_so)
 {
     if (is_so && *counter != UINT16_MAX) (*counter)++;
@@ -73,14 +82,11 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
 {
     fathom_rp2040_uart_t *const uart = ctx;
     rp2040_uart_t *const hardware = hardware_of(uart);
-    if ((hardware->fr & RP2040_UART_FR_RXFE) == 0) {
-        rp2040_clear(&hardware->imsc, RECEIVE);
-        (void)gather(uart);
-    }
-
     uint8_t taken = uart->taken;
+    if (taken == uart->written && (hardware->fr & RP2040_UART_FR_RXFE) != 0) return 0;
+    rp2040_clear(&hardware->imsc, RECEIVE);
+    (void)gather(uart);
     const uint8_t end = uart->written;
-    if (taken == end) return 0;
     int n = 0;
     while (taken != end && (size_t)n < capacity) {
         const unsigned entry = uart->ring[taken % FATHOM_RP2040_RX_RING];
@@ -88,10 +94,14 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
         if (errors != 0 && n != 0) break;
         bytes[n++] = (uint8_t)entry;
         taken++;
-        if (errors != 0) {
-            rx->flags = flags_of(uart, errors);
+        rx->flags = flags_of(uart, errors);
+        if (uart->is_silent && taken == uart->silent_at) {
+            rx->flags |= FATHOM_RX_TIMED;
+            rx->last_us = uart->silent_us;
+            uart->is_silent = false;
             break;
         }
+        if (errors != 0) break;
     }
     uart->taken = taken;
     rp2040_set(&hardware->imsc, RECEIVE);
@@ -187,7 +197,9 @@ void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
     if ((pending & RECEIVE) != 0) {
         hardware->icr = RP2040_UART_INT_RT; /* which need not end when the main loop has emptied the FIFO */
         /* With no room the bytes wait in the hardware, and read lets the interrupt through again. */
-        if (!gather(uart)) rp2040_clear(&hardware->imsc, RECEIVE);
+        const bool has_room = gather(uart);
+        if (!has_room) rp2040_clear(&hardware->imsc, RECEIVE);
+        if (has_room && (pending & RP2040_UART_INT_RT) != 0) note_silence(uart);
         tell(uart);
     }
     if ((pending & RP2040_UART_INT_TX) != 0) feed(uart);
@@ -201,6 +213,7 @@ bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_ua
     uart->parity = uart->framing = uart->overruns = 0;
     uart->written = uart->taken = 0;
     uart->length = uart->given = 0;
+    uart->is_silent = false;
     uart->is_break = false;
     if (!fathom_rp2040_uart_setup(&config->wiring, &config->line)) return false;
     if (config->wiring.has_driver) fathom_rp2040_alarm_enable(config->wiring.alarm);

@@ -133,8 +133,9 @@ class Machine {
   }
 
   run(ms) {
-    const end = this.clock.nanos + ms * MS;
-    this.until(() => this.clock.nanos >= end || this.ended, ms + 1000);
+    let isOver = false;
+    this.after(ms * MS / US, () => { isOver = true; });
+    this.until(() => isOver || this.ended, ms + 1);
   }
 
   // What the firmware did that the manuals forbid, or the simulator does not know.
@@ -142,6 +143,8 @@ class Machine {
     const ended = this.ended ? [`the firmware ended with ${this.status}`] : [];
     return [...ended, ...this.warnings, ...this.uart.flatMap((uart) => uart.violations)];
   }
+
+  halfword(name, offset) { return this.mcu.sramView.getUint16(this.symbols.get(name) - RAM + offset, true); }
 
   pin(gpio) { return this.mcu.gpio[gpio]; }
 

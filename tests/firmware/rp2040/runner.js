@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The tests of one file, in their order. The last line is "N passed, 0 failed".
+// The tests of one file, in their order; its last statement is run(). The last line is "N passed, 0 failed".
 'use strict';
 
 const tests = [];
 
-function test(name, run) {
-  tests.push({name, run});
+function test(name, body) {
+  tests.push({name, body});
 }
 
 // A measured value that somebody may want to keep.
@@ -13,11 +13,11 @@ function figure(name, value, unit) {
   console.log(`figure ${name} ${value} ${unit}`);
 }
 
-process.on('exit', () => {
+function run() {
   let failed = 0;
-  for (const {name, run} of tests) {
+  for (const {name, body} of tests) {
     try {
-      run();
+      body();
       console.log(`passed  ${name}`);
     } catch (error) {
       failed++;
@@ -26,6 +26,6 @@ process.on('exit', () => {
   }
   console.log(`${tests.length - failed} passed, ${failed} failed`);
   process.exitCode = failed === 0 && tests.length > 0 ? 0 : 1;
-});
+}
 
-module.exports = {test, figure};
+module.exports = {test, figure, run};
