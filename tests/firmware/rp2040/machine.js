@@ -138,6 +138,8 @@ class Machine {
     this.until(() => isOver || this.ended, ms + 1);
   }
 
+  runTo(us) { this.run((us - this.us) * US / MS); }
+
   // What the firmware did that the manuals forbid, or the simulator does not know.
   get complaints() {
     const ended = this.ended ? [`the firmware ended with ${this.status}`] : [];
