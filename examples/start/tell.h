@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef START_TELL_H
+#define START_TELL_H
+
+#include "fathom/sample.h"
+#include "fathom/status.h"
+
+/*
+ * By semihosting, one line each:
+ *   NAME probe 1 754 mm
+ *   NAME probe 1 no target        (or: fault)
+ *   NAME error 3                  FATHOM_ERR_NO_ANSWER is -3
+ */
+void tell_sample(const char *name, const fathom_sample_t *sample);
+void tell_error(const char *name, fathom_status_t status);
+
+#endif

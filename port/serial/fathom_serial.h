@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_SERIAL_H
+#define FATHOM_SERIAL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "fathom/hal.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * What the ports of 32-bit machines share between a UART's interrupt and the main loop: a ring of bytes that came,
+ * each with its FATHOM_RX_ flags, and the one request that leaves. No registers here.
+ *
+ * One core, one writer and one reader of each member; what both look at is a single volatile byte, and a byte of the
+ * ring is in place before `put` tells of it. So nothing has to be locked. The indices run freely through all 256
+ * values of a byte and are taken modulo the size of the ring, which has to divide 256 and be less than it: else a
+ * full ring and an empty one would look the same.
+ */
+enum {
+    FATHOM_SERIAL_RING = 128 /* bytes that wait for the main loop: 11 ms of them at 115200 baud */
+};
+
+typedef struct {
+    /* The interrupt's. */
+    volatile uint8_t bytes[FATHOM_SERIAL_RING];
+    volatile uint8_t flags[FATHOM_SERIAL_RING];
+    volatile uint8_t put; /* bytes so far; wraps */
+    volatile uint8_t at;  /* bytes of the request that have been handed to the UART */
+    bool lost;            /* bytes were, since the last one that found room */
+
+    /* Since init; each stops at 65535, and the caller may set it to 0. */
+    volatile uint16_t parity;   /* bytes with wrong parity */
+    volatile uint16_t framing;  /* bytes without a stop bit: breaks, noise, another rate */
+    volatile uint16_t overruns; /* losses that the UART told of, and bytes that found the ring full */
+
+    /* The main loop's, but for the end of `leaving`, which the interrupt sets to false. */
+    volatile uint8_t got; /* bytes so far; wraps */
+    volatile uint8_t length;
+    volatile bool leaving;
+    uint8_t *request;
+    uint8_t size;
+} fathom_serial_t;
+
+/* request: memory for the longest request, which is kept there while it leaves. Before the interrupt is enabled. */
+static inline void fathom_serial_init(fathom_serial_t *serial, uint8_t *request, uint8_t size)
+{
+    serial->put = serial->got = serial->at = serial->length = 0;
+    serial->parity = serial->framing = serial->overruns = 0;
+    serial->lost = serial->leaving = false;
+    serial->request = request;
+    serial->size = size;
+}
+
+static inline void fathom_serial_count(volatile uint16_t *counter)
+{
+    if (*counter != UINT16_MAX) (*counter)++;
+}
+
+/* ---- for the interrupt ---- */
+
+/* Bytes were lost, and none has come with that news: the next one is told of it. */
+static inline void fathom_serial_lose(fathom_serial_t *serial)
+{
+    fathom_serial_count(&serial->overruns);
+    serial->lost = true;
+}
+
+/* A byte, with FATHOM_RX_PARITY and FATHOM_RX_FRAMING of its own, and FATHOM_RX_OVERRUN where others were lost just
+ * before it. */
+static inline void fathom_serial_put(fathom_serial_t *serial, uint8_t byte, uint8_t flags)
+{
+    const uint8_t put = serial->put;
+    if ((flags & FATHOM_RX_PARITY) != 0) fathom_serial_count(&serial->parity);
+    if ((flags & FATHOM_RX_FRAMING) != 0) fathom_serial_count(&serial->framing);
+    if ((flags & FATHOM_RX_OVERRUN) != 0) fathom_serial_lose(serial);
+    if ((uint8_t)(put - serial->got) == FATHOM_SERIAL_RING) {
+        fathom_serial_lose(serial);
+        return;
+    }
+    if (serial->lost) flags |= FATHOM_RX_OVERRUN;
+    serial->lost = false;
+    serial->bytes[put % FATHOM_SERIAL_RING] = byte;
+    serial->flags[put % FATHOM_SERIAL_RING] = flags;
+    serial->put = (uint8_t)(put + 1);
+}
+
+/* The next byte of the request, which the UART has room for. False: all have been taken. */
+static inline bool fathom_serial_next(fathom_serial_t *serial, uint8_t *byte)
+{
+    const uint8_t at = serial->at;
+    if (at == serial->length) return false;
+    *byte = serial->request[at];
+    serial->at = (uint8_t)(at + 1);
+    return true;
+}
+
+/* ---- for the main loop ---- */
+
+static inline bool fathom_serial_waits(const fathom_serial_t *serial) { return serial->put != serial->got; }
+
+/* As `read` of fathom_uart_t. A byte with a flag comes alone: a read ends before it and after it. */
+static inline int fathom_serial_read(fathom_serial_t *serial, uint8_t *bytes, size_t capacity,
+                                     fathom_rx_t *rx)
+{
+    const uint8_t put = serial->put;
+    uint8_t got = serial->got;
+    size_t count = 0;
+    while (got != put && count < capacity) {
+        const uint8_t flags = serial->flags[got % FATHOM_SERIAL_RING];
+        if (flags != 0 && count != 0) break;
+        bytes[count++] = serial->bytes[got % FATHOM_SERIAL_RING];
+        got++;
+        rx->flags |= flags;
+        if (flags != 0) break;
+    }
+    serial->got = got;
+    return (int)count;
+}
+
+/* As `write` of fathom_uart_t, but that the caller begins to hand out the bytes when the result is > 0. From then on
+ * `leaving` is true until the interrupt ends it. */
+static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *bytes, size_t length)
+{
+    if (length == 0 || length > serial->size) return -1;
+    if (serial->leaving) return 0;
+    for (size_t i = 0; i != length; i++) serial->request[i] = bytes[i];
+    serial->length = (uint8_t)length;
+    serial->at = 0;
+    serial->leaving = true;
+    return (int)length;
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* Never run: no simulator here has a timer with captures. */
+#include <stddef.h>
+
+#include "internal/stm32f4_port.h"
+
+/* RM0090 18.3.6, PWM input mode, without the reset of the counter: both captures look at TI1, the first at its rise,
+ * the second at its fall. */
+enum { CCMR1_IC1_TI1 = 1, CCMR1_IC2_TI1 = 2 << 8 };
+enum { CCER_CC1E = 1 << 0, CCER_CC2E = 1 << 4, CCER_CC2P = 1 << 5 };
+enum { CC1 = 1 << 1, CC2 = 1 << 2, CC1OF = 1 << 9, CC2OF = 1 << 10 }; /* in SR; the first two in DIER too */
+enum { TIM2_INTERRUPT = 28, TIM2_ALTERNATE = 1 };
+
+static fathom_edges_t *captured; /* TIM2 exists once */
+
+void fathom_stm32f4_tim2_interrupt(void)
+{
+    const uint32_t why = TIM2[TIM_SR];
+    uint32_t rise_us = 0;
+    uint32_t fall_us = 0;
+    if ((why & CC1) != 0) rise_us = TIM2[TIM_CCR1]; /* which clears CC1 */
+    if ((why & CC2) != 0) fall_us = TIM2[TIM_CCR2];
+    TIM2[TIM_SR] = ~(why & (CC1OF | CC2OF)); /* an overtaken edge is one that edges.h finds missing */
+    if (captured == NULL) return;
+    const bool fall_first = (why & (CC1 | CC2)) == (CC1 | CC2) && rise_us - fall_us < UINT32_MAX / 2;
+    if (fall_first) fathom_edges_feed(captured, false, fall_us);
+    if ((why & CC1) != 0) fathom_edges_feed(captured, true, rise_us);
+    if ((why & CC2) != 0 && !fall_first) fathom_edges_feed(captured, false, fall_us);
+}
+
+bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges)
+{
+    if (pin->port != 'A' || (pin->number != 0 && pin->number != 5 && pin->number != 15)) return false;
+    TIM2[TIM_DIER] = 0;
+    captured = edges;
+    (void)fathom_stm32f4_pin_begin(pin, GPIO_ALTERNATE, FATHOM_STM32F4_DOWN, TIM2_ALTERNATE);
+    TIM2[TIM_CCER] = 0; /* the selection can be written while it is off */
+    TIM2[TIM_CCMR1] = CCMR1_IC1_TI1 | CCMR1_IC2_TI1;
+    TIM2[TIM_CCER] = CCER_CC1E | CCER_CC2E | CCER_CC2P;
+    TIM2[TIM_SR] = 0;
+    TIM2[TIM_DIER] = CC1 | CC2;
+    fathom_stm32f4_enable_interrupt(TIM2_INTERRUPT);
+    return true;
+}

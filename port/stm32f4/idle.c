@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+#include "internal/stm32f4_port.h"
+
+enum { DIER_UIE = 1, TIM5_INTERRUPT = 50 };
+
+void fathom_stm32f4_tim5_interrupt(void)
+{
+    TIM5[TIM_CR1] = TIM_CR1_URS;
+    TIM5[TIM_DIER] = 0;
+    TIM5[TIM_SR] = 0;
+}
+
+static bool byte_waits(const fathom_stm32f4_idle_t *idle)
+{
+    for (uint8_t i = 0; i != idle->count; i++)
+        if (fathom_serial_waits(&idle->usarts[i].serial)) return true;
+    return false;
+}
+
+void fathom_stm32f4_idle(void *ctx, uint32_t max_us)
+{
+    if (max_us == 0) return;
+    TIM5[TIM_CR1] = TIM_CR1_URS;
+    TIM5[TIM_CNT] = 0;
+    TIM5[TIM_ARR] = max_us;
+    TIM5[TIM_SR] = 0;
+    TIM5[TIM_DIER] = DIER_UIE;
+    fathom_stm32f4_enable_interrupt(TIM5_INTERRUPT);
+    TIM5[TIM_CR1] = TIM_CR1_CEN | TIM_CR1_URS | TIM_CR1_OPM;
+    /* Masked, an interrupt still ends WFI, and runs afterwards: none is lost between the question and the sleep. */
+    __asm__ volatile("cpsid i" ::: "memory");
+    if (!byte_waits(ctx)) __asm__ volatile("dsb\n\twfi" ::: "memory");
+    __asm__ volatile("cpsie i\n\tisb" ::: "memory");
+    fathom_stm32f4_tim5_interrupt();
+}
