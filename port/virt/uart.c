@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+#include <stddef.h>
+
+#include "fathom_virt.h"
+#include "internal/virt.h"
+
+/* PC16550D, table II: registers of one byte. With DLAB the first two are the divisor. */
+#define UART ((volatile uint8_t *)VIRT_UART)
+enum { RBR = 0, THR = 0, DLL = 0, IER = 1, DLM = 1, FCR = 2, LCR = 3, LSR = 5 };
+enum { IER_RECEIVED = 1, IER_EMPTY = 2, IER_ERROR = 4 };
+enum { FCR_ON = 1, FCR_CLEAR = 6 }; /* interrupt from the first byte on: an answer's last one must not wait */
+enum { LCR_8_BITS = 3, LCR_2_STOPS = 4, LCR_PARITY = 8, LCR_EVEN = 0x10, LCR_BREAK = 0x40, LCR_DLAB = 0x80 };
+enum { LSR_READY = 1, LSR_OVERRUN = 2, LSR_PARITY = 4, LSR_FRAMING = 8, LSR_EMPTY = 0x20, LSR_SENT = 0x40 };
+enum { FIFO = 16, SAMPLES = 16 };
+
+/* 0: not within 2.5 %. */
+static uint32_t divider(uint32_t clock_hz, const fathom_line_settings_t *line)
+{
+    const uint32_t highest = clock_hz / SAMPLES;
+    if (line->baud == 0 || line->baud > highest + highest / 40 || line->parity > FATHOM_PARITY_ODD ||
+        line->stop_bits < 1 || line->stop_bits > 2)
+        return 0;
+    const uint32_t by = (highest + line->baud / 2) / line->baud;
+    const uint32_t real = highest / by;
+    const uint32_t off = real > line->baud ? real - line->baud : line->baud - real;
+    return by > UINT16_MAX || off > line->baud / 40 ? 0 : by;
+}
+
+static void set_up(fathom_virt_uart_t *uart, const fathom_line_settings_t *line, uint32_t by)
+{
+    unsigned control = LCR_8_BITS;
+    if (line->parity != FATHOM_PARITY_NONE) control |= LCR_PARITY;
+    if (line->parity == FATHOM_PARITY_EVEN) control |= LCR_EVEN;
+    if (line->stop_bits == 2) control |= LCR_2_STOPS;
+    UART[IER] = 0; /* with DLAB the interrupt would not find its registers */
+    UART[LCR] = LCR_DLAB;
+    UART[DLL] = (uint8_t)by;
+    UART[DLM] = (uint8_t)(by >> 8);
+    UART[LCR] = (uint8_t)control;
+    UART[IER] = IER_RECEIVED | IER_ERROR;
+    uart->line = *line;
+}
+
+static void receive(fathom_serial_t *serial)
+{
+    for (;;) {
+        const uint8_t why = UART[LSR]; /* of the byte that is next; reading it clears what it tells */
+        uint8_t flags = 0;
+        if ((why & LSR_PARITY) != 0) flags |= FATHOM_RX_PARITY;
+        if ((why & LSR_FRAMING) != 0) flags |= FATHOM_RX_FRAMING;
+        if ((why & LSR_READY) != 0) fathom_serial_put(serial, UART[RBR], flags);
+        /* The FIFO keeps what it has: the loss is behind it, and where exactly, nobody can tell. */
+        if ((why & LSR_OVERRUN) != 0) fathom_serial_lose(serial);
+        if ((why & LSR_READY) == 0) return;
+    }
+}
+
+/* There is room for a FIFO of bytes. */
+static void send(fathom_virt_uart_t *uart)
+{
+    uint8_t byte;
+    for (int room = FIFO; room != 0; room--) {
+        if (!fathom_serial_next(&uart->serial, &byte)) {
+            UART[IER] = IER_RECEIVED | IER_ERROR;
+            uart->serial.leaving = false;
+            return;
+        }
+        UART[THR] = byte;
+    }
+}
+
+void fathom_virt_external_interrupt(fathom_virt_uart_t *uart)
+{
+    for (uint32_t source = VIRT_PLIC_CLAIM; source != 0; source = VIRT_PLIC_CLAIM) {
+        if (source == VIRT_UART_SOURCE) {
+            receive(&uart->serial);
+            if (uart->serial.leaving && (UART[LSR] & LSR_EMPTY) != 0) send(uart);
+        }
+        VIRT_PLIC_CLAIM = source; /* complete */
+    }
+}
+
+static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    return fathom_serial_read(&((fathom_virt_uart_t *)ctx)->serial, bytes, capacity, rx);
+}
+
+static bool uart_sent(void *ctx)
+{
+    const fathom_virt_uart_t *const uart = ctx;
+    return !uart->serial.leaving && (UART[LSR] & LSR_SENT) != 0;
+}
+
+static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    fathom_virt_uart_t *const uart = ctx;
+    if (uart->is_break || !uart_sent(uart)) return 0;
+    const int loaded = fathom_serial_load(&uart->serial, bytes, length);
+    if (loaded > 0)
+        UART[IER] = IER_RECEIVED | IER_ERROR | IER_EMPTY; /* it is empty, which interrupts at once */
+    return loaded;
+}
+
+static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    fathom_virt_uart_t *const uart = ctx;
+    const fathom_line_settings_t *const line = &uart->line;
+    if (settings->baud == line->baud && settings->parity == line->parity &&
+        settings->stop_bits == line->stop_bits)
+        return 1;
+    const uint32_t by = divider(uart->clock_hz, settings);
+    if (by == 0) return -1;
+    if (!uart_sent(uart)) return 0;
+    set_up(uart, settings, by);
+    return 1;
+}
+
+static int uart_set_break(void *ctx, bool on)
+{
+    fathom_virt_uart_t *const uart = ctx;
+    if (!uart_sent(uart)) return 0;
+    const unsigned control = UART[LCR];
+    UART[LCR] = (uint8_t)(on ? control | LCR_BREAK : control & ~(unsigned)LCR_BREAK);
+    uart->is_break = on;
+    return 1;
+}
+
+bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_config_t *config)
+{
+    const uint32_t by = divider(config->clock_hz, &config->line);
+    if (by == 0 || config->request == NULL || config->request_size == 0) return false;
+    fathom_serial_init(&uart->serial, config->request, config->request_size);
+    uart->clock_hz = config->clock_hz;
+    uart->is_break = false;
+    UART[FCR] = FCR_ON | FCR_CLEAR;
+    set_up(uart, &config->line, by);
+    VIRT_PLIC_PRIORITY[VIRT_UART_SOURCE] = 1;
+    VIRT_PLIC_ENABLE[VIRT_UART_SOURCE / 32] |= 1u << VIRT_UART_SOURCE % 32;
+    VIRT_PLIC_THRESHOLD = 0;
+    __asm__ volatile("csrs mie, %0" ::"r"(VIRT_MIE_MEIE) : "memory");
+    return true;
+}
+
+fathom_uart_t fathom_virt_uart(fathom_virt_uart_t *uart)
+{
+    const fathom_uart_t hal = {uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, uart};
+    return hal;
+}
