@@ -47,6 +47,7 @@ typedef struct {
     volatile uint32_t *registers;
     uint32_t baud;
     volatile uint32_t taken_us; /* the last byte went from the buffer to the wire */
+    bool is_sending;            /* as `sent` has seen it */
 } fathom_mps2_uart_t;
 
 /*

@@ -60,9 +60,12 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
 
 static bool uart_sent(void *ctx)
 {
-    const fathom_mps2_uart_t *const uart = ctx;
-    return !uart->serial.leaving && fathom_elapsed_us(fathom_mps2_clock.now_us(NULL), uart->taken_us) >
-                                        CHARACTER_BITS * 1000000u / uart->baud;
+    fathom_mps2_uart_t *const uart = ctx;
+    if (uart->is_sending && !uart->serial.leaving &&
+        fathom_elapsed_us(fathom_mps2_clock.now_us(NULL), uart->taken_us) >
+            CHARACTER_BITS * 1000000u / uart->baud)
+        uart->is_sending = false;
+    return !uart->is_sending;
 }
 
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
@@ -70,8 +73,10 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     fathom_mps2_uart_t *const uart = ctx;
     const int loaded = fathom_serial_load(&uart->serial, bytes, length);
     uint8_t byte;
+    if (loaded <= 0) return loaded;
+    uart->is_sending = true;
     /* The buffer is free: the last request's last byte has left it. */
-    if (loaded > 0 && fathom_serial_next(&uart->serial, &byte)) uart->registers[DATA] = byte;
+    if (fathom_serial_next(&uart->serial, &byte)) uart->registers[DATA] = byte;
     return loaded;
 }
 
@@ -98,7 +103,7 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
     fathom_serial_init(&uart->serial, config->request, config->request_size);
     uart->registers = (volatile uint32_t *)place->base;
     uart->baud = config->line.baud;
-    uart->taken_us = 0;
+    uart->is_sending = false;
     uart->registers[CTRL] = 0;
     uart->registers[BAUDDIV] = by;
     uart->registers[INTSTATUS] = INTSTATUS_TX | INTSTATUS_RX;

@@ -53,6 +53,7 @@ typedef struct {
     fathom_serial_t serial;
     uint32_t clock_hz;
     fathom_line_settings_t line;
+    uint8_t told; /* errors of the byte that is next */
     bool is_break;
 } fathom_virt_uart_t;
 

@@ -11,6 +11,7 @@ enum { IER_RECEIVED = 1, IER_EMPTY = 2, IER_ERROR = 4 };
 enum { FCR_ON = 1, FCR_CLEAR = 6 }; /* interrupt from the first byte on: an answer's last one must not wait */
 enum { LCR_8_BITS = 3, LCR_2_STOPS = 4, LCR_PARITY = 8, LCR_EVEN = 0x10, LCR_BREAK = 0x40, LCR_DLAB = 0x80 };
 enum { LSR_READY = 1, LSR_OVERRUN = 2, LSR_PARITY = 4, LSR_FRAMING = 8, LSR_EMPTY = 0x20, LSR_SENT = 0x40 };
+enum { LSR_ERRORS = LSR_OVERRUN | LSR_PARITY | LSR_FRAMING };
 enum { FIFO = 16, SAMPLES = 16 };
 
 /* 0: not within 2.5 %. */
@@ -41,11 +42,21 @@ static void set_up(fathom_virt_uart_t *uart, const fathom_line_settings_t *line,
     uart->line = *line;
 }
 
-static void receive(fathom_serial_t *serial)
+/* LSR; what it tells of the byte that is next is cleared by this, and kept for whoever reads that byte. */
+static unsigned status(fathom_virt_uart_t *uart)
 {
+    const unsigned now = UART[LSR];
+    uart->told = (uint8_t)(uart->told | (now & LSR_ERRORS));
+    return now;
+}
+
+static void receive(fathom_virt_uart_t *uart)
+{
+    fathom_serial_t *const serial = &uart->serial;
     for (;;) {
-        const uint8_t why = UART[LSR]; /* of the byte that is next; reading it clears what it tells */
+        const unsigned why = status(uart) | uart->told;
         uint8_t flags = 0;
+        uart->told = 0;
         if ((why & LSR_PARITY) != 0) flags |= FATHOM_RX_PARITY;
         if ((why & LSR_FRAMING) != 0) flags |= FATHOM_RX_FRAMING;
         if ((why & LSR_READY) != 0) fathom_serial_put(serial, UART[RBR], flags);
@@ -73,8 +84,8 @@ void fathom_virt_external_interrupt(fathom_virt_uart_t *uart)
 {
     for (uint32_t source = VIRT_PLIC_CLAIM; source != 0; source = VIRT_PLIC_CLAIM) {
         if (source == VIRT_UART_SOURCE) {
-            receive(&uart->serial);
-            if (uart->serial.leaving && (UART[LSR] & LSR_EMPTY) != 0) send(uart);
+            receive(uart);
+            if (uart->serial.leaving && (status(uart) & LSR_EMPTY) != 0) send(uart);
         }
         VIRT_PLIC_CLAIM = source; /* complete */
     }
@@ -87,8 +98,13 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
 
 static bool uart_sent(void *ctx)
 {
-    const fathom_virt_uart_t *const uart = ctx;
-    return !uart->serial.leaving && (UART[LSR] & LSR_SENT) != 0;
+    fathom_virt_uart_t *const uart = ctx;
+    uint32_t before;
+    if (uart->serial.leaving) return false;
+    __asm__ volatile("csrrc %0, mstatus, %1" : "=r"(before) : "r"(VIRT_MSTATUS_MIE) : "memory");
+    const bool is_sent = (status(uart) & LSR_SENT) != 0;
+    __asm__ volatile("csrs mstatus, %0" ::"r"(before & VIRT_MSTATUS_MIE) : "memory");
+    return is_sent;
 }
 
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
@@ -132,6 +148,7 @@ bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_con
     fathom_serial_init(&uart->serial, config->request, config->request_size);
     uart->clock_hz = config->clock_hz;
     uart->is_break = false;
+    uart->told = 0;
     UART[FCR] = FCR_ON | FCR_CLEAR;
     set_up(uart, &config->line, by);
     VIRT_PLIC_PRIORITY[VIRT_UART_SOURCE] = 1;

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""What the tests with QEMU share: an image is booted with programs, or the test itself, at the far ends of its UARTs,
+and ends by itself with an exit status. What it says by semihosting is the program's stdout, traces are its stderr.
+
+QEMU has no bits on its wires, and its time is the time of this machine: on a busy one the far ends answer late. So
+nothing here is judged by how long it takes, and an attempt may fail for that; what must not be is a wrong reading."""
+import os
+import re
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+TESTS = os.path.dirname(os.path.dirname(HERE))
+sys.path.insert(0, os.path.join(TESTS, 'interop'))
+
+import interop  # noqa: E402
+from interop import e2e  # noqa: E402
+
+IMAGES = os.environ.get('FATHOM_IMAGES', '')
+PATIENCE = 60  # seconds; an image takes up to 5
+MACHINES = {'mps2': ('qemu-system-arm', '-M', 'mps2-an385'),
+            'stm32f4': ('qemu-system-arm', '-M', 'netduinoplus2'),
+            'virt': ('qemu-system-riscv32', '-M', 'virt', '-bios', 'none')}
+LATE = {'3', '4', '7'}  # no answer, one that broke off, stale: what a slow far end may cause
+
+DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 723.1744
+
+
+class Case(interop.Case):
+    machine = os.path.basename(os.path.dirname(os.path.abspath(sys.argv[0])))
+
+    def boot(self, image, *ports, words=(), traces=(), exact=False):
+        """Starts an image. ports: what its UARTs are connected to, in QEMU's order; None: nothing. words: for the
+        image. exact: simulated time, 32 ns an instruction, the same on every run."""
+        path = os.path.join(IMAGES, image + '.elf')
+        self.assertTrue(os.access(path, os.R_OK), f'{path} is not there: FATHOM_IMAGES says where it is built')
+        arguments = ''.join(f',arg={word}' for word in (image, *words))
+        options = ['-kernel', path, '-display', 'none', '-monitor', 'none', '-chardev', 'stdio,id=say,signal=off',
+                   '-semihosting-config', f'enable=on,target=native,chardev=say{arguments}']
+        for number, port in enumerate(ports):
+            if port is None:
+                options += ['-serial', 'null']
+            else:
+                options += ['-chardev', f'serial,id=uart{number},path={port}', '-serial', f'chardev:uart{number}']
+        for trace in traces:
+            options += ['-trace', trace]
+        if exact:
+            options += ['-serial', 'null', '-icount', 'shift=5,sleep=off', '-rtc', 'clock=vm']
+        return self.start(*MACHINES[self.machine], *options)
+
+    def end_well(self, program):
+        done = program.finish(PATIENCE)
+        self.assertEqual(done.code, 0, done)
+        return done
+
+    def self_test(self, image, count):
+        """Runs an image that checks itself, in simulated time. count: of its checks, so that none can be left out."""
+        done = self.boot(image, exact=True).finish(PATIENCE)
+        self.assertEqual(re.findall(r'^FAILED .*\n.*', done.out, re.M), [])
+        self.assertEqual(len(re.findall(r'^ok ', done.out, re.M)), count, done.out)
+        self.assertEqual(done.code, 0, done)
+
+    def readings(self, out, name):
+        """What the image has told of a line, without its errors, of which there have to be fewer."""
+        told = re.findall(rf'^{name} (.*)$', out, re.M)
+        errors = [words.split()[1] for words in told if words.startswith('error ')]
+        self.assertLessEqual(set(errors), LATE, out)
+        readings = [words for words in told if not words.startswith('error ')]
+        self.assertLess(len(errors), len(readings), out)
+        return readings
+
+
+def main():
+    e2e.main()

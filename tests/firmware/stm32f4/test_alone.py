@@ -1,0 +1,21 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Images of port/stm32f4 that check themselves, in simulated time."""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
+
+import qemu  # noqa: E402
+
+
+class Alone(qemu.Case):
+    def test_the_clock_is_right_across_its_wrap_and_a_sleep_ends(self):
+        self.self_test('clock', 6)
+
+    def test_every_usart_is_where_it_is_and_is_set_as_it_was_told(self):
+        self.self_test('settings', 42)
+
+
+if __name__ == '__main__':
+    qemu.main()

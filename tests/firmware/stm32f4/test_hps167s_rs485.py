@@ -1,0 +1,28 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""examples/stm32f4/hps167s_rs485.c on QEMU's netduinoplus2. Its USARTs do not tell their rate, so that the far ends
+are at 115200 baud, QEMU's own."""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
+
+import qemu  # noqa: E402
+
+
+class Exchange(qemu.Case):
+    def check(self, port):
+        done = self.end_well(self.boot('hps167s_rs485_qemu', None, port))  # USART2
+        self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 10)
+
+    def test_a_simulated_sensor_is_read(self):
+        self.check(self.sim('hps167s', '--baud', '115200', '--distance', '2083').port)
+
+    def test_a_server_by_libmodbus_is_read(self):
+        self.check(self.served((115200, 'even'), 1, 8, qemu.DATASHEET))
+
+    serve = qemu.interop.LibmodbusServer.serve
+
+
+if __name__ == '__main__':
+    qemu.main()

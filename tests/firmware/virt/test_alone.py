@@ -1,0 +1,21 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Images of port/virt that check themselves, in simulated time."""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
+
+import qemu  # noqa: E402
+
+
+class Alone(qemu.Case):
+    def test_the_clock_is_right_across_its_wrap_and_so_is_the_sleep(self):
+        self.self_test('clock', 15)
+
+    def test_the_uart_takes_what_it_can_be_set_to(self):
+        self.self_test('settings', 27)
+
+
+if __name__ == '__main__':
+    qemu.main()

@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""examples/virt/hps167s.c on QEMU's virt."""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
+
+import qemu  # noqa: E402
+
+
+class Exchange(qemu.Case):
+    def check(self, port):
+        """30 answers of 13 bytes are more than an index of the ring can count."""
+        done = self.end_well(self.boot('hps167s', port, traces=('serial_update_parameters',)))
+        self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 30)
+        # QEMU's UART has 399193 baud to divide, of which 19009 is next to 19200. Each register that is written makes a
+        # line; the last one is what holds.
+        self.assertEqual(done.err.splitlines()[-1],
+                         "serial_update_parameters baudrate=19009 parity='E' data=8 stop=1")
+
+    def test_a_simulated_sensor_is_read(self):
+        self.check(self.sim('hps167s', '--distance', '2083').port)
+
+    def test_a_server_by_libmodbus_is_read(self):
+        self.check(self.served((19200, 'even'), 1, 8, qemu.DATASHEET))
+
+    serve = qemu.interop.LibmodbusServer.serve
+
+
+if __name__ == '__main__':
+    qemu.main()
