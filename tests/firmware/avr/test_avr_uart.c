@@ -131,6 +131,28 @@ static void a_receive_interrupt_delays_the_driver_by_no_more_than_itself(void **
     }
 }
 
+/* With interrupts off for 5 ms at a time the bytes have pauses, and transmit complete comes before the last of them. */
+static void the_driver_stays_on_through_a_pause_that_other_interrupts_make(void **state)
+{
+    (void)state;
+    remote_write(&board, request, sizeof request);
+    remote_watch_clock(&board, true, 80);
+    wait_until_out();
+    remote_watch_clock(&board, false, 0);
+    assert_int_equal(board.bytes_seen, sizeof request);
+    uint32_t pauses = 0;
+    for (uint8_t i = 0; i < sizeof request; i++) {
+        assert_int_equal(board.bytes[i].byte, request[i]);
+        if (i != 0 && board.bytes[i].begin_cycle != board.bytes[i - 1].end_cycle) pauses++;
+    }
+    assert_true(pauses >= 2);
+    assert_int_equal(board.driver_edges_seen, 2);
+    assert_int_equal(board.cut_bytes, 0);
+    assert_true(board.driver_edges[1].cycle >= board.bytes[sizeof request - 1].end_cycle);
+    board_run_us(&board, 10000);
+    assert_true(remote_sent(&board));
+}
+
 static void sent_is_exact_to_the_stop_bit(void **state)
 {
     (void)state;
@@ -256,6 +278,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length,
                                         start, stop),
         cmocka_unit_test_setup_teardown(a_receive_interrupt_delays_the_driver_by_no_more_than_itself, start,
+                                        stop),
+        cmocka_unit_test_setup_teardown(the_driver_stays_on_through_a_pause_that_other_interrupts_make, start,
                                         stop),
         cmocka_unit_test_setup_teardown(sent_is_exact_to_the_stop_bit, start, stop),
         cmocka_unit_test_setup_teardown(a_write_is_refused_while_bytes_leave_and_does_not_touch_them, start,
