@@ -28,12 +28,9 @@ void semihosting_write(const char *text) { (void)call(SYS_WRITE0, text); }
 
 void semihosting_words(char *text, size_t size)
 {
-    struct {
-        char *text;
-        size_t length;
-    } block = {text, size};
+    uintptr_t block[2] = {(uintptr_t)text, size};
     text[0] = '\0';
-    if (call(SYS_GET_CMDLINE, &block) != 0) text[0] = '\0';
+    if (call(SYS_GET_CMDLINE, block) != 0) text[0] = '\0';
 }
 
 void semihosting_exit(int status)

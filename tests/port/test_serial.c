@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+/* What the UART ports of 32-bit machines share, port/serial: the ring between interrupt and main loop, and the
+ * request that leaves. The test is both sides. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "../../port/serial/fathom_serial.h"
+
+enum { RING = 128, SIZE = 8 }; /* the ring as its header has it */
+
+static fathom_serial_t serial;
+static uint8_t request[SIZE];
+static uint8_t got[256];
+static fathom_rx_t rx;
+
+static int set_up(void **state)
+{
+    (void)state;
+    fathom_serial_init(&serial, request, SIZE);
+    return 0;
+}
+
+static int read_all(size_t capacity)
+{
+    rx = (fathom_rx_t){0, 0};
+    return fathom_serial_read(&serial, got, capacity, &rx);
+}
+
+static void put(unsigned from, unsigned count)
+{
+    for (unsigned i = 0; i != count; i++) fathom_serial_put(&serial, (uint8_t)(from + i), 0);
+}
+
+static void bytes_come_out_as_they_went_in_through_many_rounds(void **state)
+{
+    (void)state;
+    unsigned in = 0;
+    unsigned out = 0;
+    /* Chunks of 1..128 bytes from every place in the ring; 8256 bytes, so that the indices wrap 32 times. */
+    for (unsigned chunk = 1; chunk <= RING; chunk++) {
+        put(in, chunk);
+        in += chunk;
+        assert_true(fathom_serial_waits(&serial));
+        assert_int_equal(read_all(sizeof got), chunk);
+        assert_int_equal(rx.flags, 0);
+        for (unsigned i = 0; i != chunk; i++, out++) assert_int_equal(got[i], (uint8_t)out);
+        assert_false(fathom_serial_waits(&serial));
+    }
+    assert_int_equal(serial.overruns, 0);
+}
+
+static void a_read_takes_no_more_than_its_capacity(void **state)
+{
+    (void)state;
+    put(10, 5);
+    assert_int_equal(read_all(0), 0);
+    assert_int_equal(read_all(2), 2);
+    assert_int_equal(got[1], 11);
+    assert_int_equal(read_all(sizeof got), 3);
+    assert_int_equal(got[0], 12);
+    assert_int_equal(read_all(sizeof got), 0);
+}
+
+static void the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it(void **state)
+{
+    (void)state;
+    put(0, 77); /* so that it does not stand at its beginning */
+    assert_int_equal(read_all(sizeof got), 77);
+    put(0, RING);
+    assert_int_equal(serial.overruns, 0);
+    put(200, 3); /* find no room */
+    assert_int_equal(serial.overruns, 3);
+    assert_int_equal(read_all(sizeof got), RING);
+    assert_int_equal(got[0], 0);
+    assert_int_equal(got[RING - 1], 127);
+    assert_int_equal(rx.flags, 0);
+    put(50, 2);
+    assert_int_equal(read_all(sizeof got), 1);
+    assert_int_equal(got[0], 50);
+    assert_int_equal(rx.flags, FATHOM_RX_OVERRUN);
+    assert_int_equal(read_all(sizeof got), 1);
+    assert_int_equal(got[0], 51);
+    assert_int_equal(rx.flags, 0);
+}
+
+static void a_byte_with_a_flag_comes_alone(void **state)
+{
+    (void)state;
+    put(1, 2);
+    fathom_serial_put(&serial, 3, FATHOM_RX_PARITY);
+    fathom_serial_put(&serial, 4, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
+    put(5, 2);
+    assert_int_equal(read_all(sizeof got), 2);
+    assert_int_equal(rx.flags, 0);
+    assert_int_equal(read_all(sizeof got), 1);
+    assert_int_equal(got[0], 3);
+    assert_int_equal(rx.flags, FATHOM_RX_PARITY);
+    assert_int_equal(read_all(sizeof got), 1);
+    assert_int_equal(got[0], 4);
+    assert_int_equal(rx.flags, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
+    assert_int_equal(read_all(sizeof got), 2);
+    assert_int_equal(got[0], 5);
+    assert_int_equal(rx.flags, 0);
+    assert_int_equal(serial.parity, 2);
+    assert_int_equal(serial.framing, 1);
+}
+
+static void a_loss_that_the_uart_tells_of_is_before_this_byte_or_before_the_next(void **state)
+{
+    (void)state;
+    put(1, 1);
+    fathom_serial_put(&serial, 2, FATHOM_RX_OVERRUN);
+    fathom_serial_lose(&serial);
+    put(3, 2);
+    static const uint8_t flags[4] = {0, FATHOM_RX_OVERRUN, FATHOM_RX_OVERRUN, 0};
+    for (uint8_t i = 0; i != 4; i++) {
+        assert_int_equal(read_all(1), 1);
+        assert_int_equal(got[0], i + 1);
+        assert_int_equal(rx.flags, flags[i]);
+    }
+    assert_int_equal(serial.overruns, 2);
+}
+
+static void counters_stop_at_65535(void **state)
+{
+    (void)state;
+    serial.parity = serial.framing = serial.overruns = 65534;
+    for (int i = 0; i != 3; i++)
+        fathom_serial_put(&serial, 0, FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN);
+    assert_int_equal(serial.parity, 65535);
+    assert_int_equal(serial.framing, 65535);
+    assert_int_equal(serial.overruns, 65535);
+}
+
+static void a_request_is_kept_and_handed_out_byte_by_byte(void **state)
+{
+    (void)state;
+    uint8_t bytes[SIZE] = {1, 2, 3, 4, 5, 6, 7, 8};
+    uint8_t byte = 99;
+    assert_false(fathom_serial_next(&serial, &byte));
+    assert_int_equal(byte, 99);
+    for (int round = 0; round != 2; round++) {
+        assert_int_equal(fathom_serial_load(&serial, bytes, SIZE), SIZE);
+        assert_true(serial.leaving);
+        bytes[0] = 0; /* the caller's again */
+        for (uint8_t i = 0; i != SIZE; i++) {
+            assert_true(fathom_serial_next(&serial, &byte));
+            assert_int_equal(byte, i + 1);
+        }
+        assert_false(fathom_serial_next(&serial, &byte));
+        serial.leaving = false;
+        bytes[0] = 1;
+    }
+}
+
+static void a_request_waits_for_the_one_before_and_has_to_fit(void **state)
+{
+    (void)state;
+    static const uint8_t bytes[SIZE + 1] = {1, 2, 3};
+    assert_true(fathom_serial_load(&serial, bytes, 0) < 0);
+    assert_true(fathom_serial_load(&serial, bytes, SIZE + 1) < 0);
+    assert_false(serial.leaving);
+    assert_int_equal(fathom_serial_load(&serial, bytes, 2), 2);
+    assert_int_equal(fathom_serial_load(&serial, bytes + 1, 2), 0);
+    assert_true(fathom_serial_load(&serial, bytes, SIZE + 1) < 0);
+    assert_int_equal(request[0], 1);
+    assert_int_equal(request[1], 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(bytes_come_out_as_they_went_in_through_many_rounds, set_up),
+        cmocka_unit_test_setup(a_read_takes_no_more_than_its_capacity, set_up),
+        cmocka_unit_test_setup(the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it, set_up),
+        cmocka_unit_test_setup(a_byte_with_a_flag_comes_alone, set_up),
+        cmocka_unit_test_setup(a_loss_that_the_uart_tells_of_is_before_this_byte_or_before_the_next, set_up),
+        cmocka_unit_test_setup(counters_stop_at_65535, set_up),
+        cmocka_unit_test_setup(a_request_is_kept_and_handed_out_byte_by_byte, set_up),
+        cmocka_unit_test_setup(a_request_waits_for_the_one_before_and_has_to_fit, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
