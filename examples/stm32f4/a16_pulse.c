@@ -4,7 +4,7 @@
  * pin of the A16 is high at 3 V, and PA0 wants 2 V for a high level.
  *
  * Never run: no simulator here has TIM2's captures. It is compiled, and the parts of it are tested apart: the driver
- * and edges.h everywhere, the clock and the sleep on QEMU.
+ * and edges.h everywhere, the clock and the sleep on QEMU, the capture on memory in place of its registers.
  */
 #include "board.h"
 #include "fathom/fathom.h"

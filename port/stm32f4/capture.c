@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Never run: no simulator here has a timer with captures. */
+/* Never run but on memory in place of the registers: no simulator here has a timer with captures. */
 #include <stddef.h>
 
 #include "internal/stm32f4_port.h"

@@ -26,8 +26,9 @@ extern "C" {
  * What has run, on QEMU's netduinoplus2, where the tests run it: the USART's reception by interrupts, its transmission
  * by the same code (QEMU 7.2 raises no interrupt for it, so that the test has to), TIM2 as the clock, the sleep (whose end QEMU
  * 7.2 delays).
- * What has NEVER run, since no simulator here has it: the capture, all pins and with them the driver-enable and the
- * break, the line settings on a wire, parity, framing and overrun errors. Not seen on a board.
+ * What has NEVER run but on a test's memory in place of the registers, since no simulator here has it: the capture, all
+ * pins and with them the driver-enable and the break, parity, framing and overrun errors, and the line settings on a
+ * wire. Not seen on a board.
  *
  * Registers and sections: RM0090. The bits in RCC that these peripherals and pins need are set by the begin functions;
  * the clocks themselves are the application's. All functions but the interrupts belong to the main loop.
@@ -108,7 +109,7 @@ fathom_uart_t fathom_stm32f4_usart(fathom_stm32f4_usart_t *usart);
  * counter of the clock at the rise in CCR1 and at the fall in CCR2, whatever else runs. 1 us. A pulse is lost, and
  * none is wrong, where the next one of the same direction comes before the interrupt has run.
  * pin: one of TIM2_CH1: PA0, PA5 or PA15; false: it is none of them. There is one capture: a second begin replaces it.
- * NEVER RUN: no simulator here has TIM2's captures.
+ * NEVER RUN but on memory: no simulator here has TIM2's captures.
  */
 bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges);
 

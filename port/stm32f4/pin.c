@@ -8,7 +8,7 @@ enum { MODER = 0x00 / 4, PUPDR = 0x0C / 4, IDR = 0x10 / 4, BSRR = 0x18 / 4, AFRL
 
 static volatile uint32_t *registers_of(const fathom_stm32f4_pin_t *pin)
 {
-    return (volatile uint32_t *)(0x40020000u + 0x400u * (uint32_t)(pin->port - 'A'));
+    return (volatile uint32_t *)(0x40020000u + 0x400u * (uintptr_t)(pin->port - 'A'));
 }
 
 bool fathom_stm32f4_is_pin(const fathom_stm32f4_pin_t *pin)

@@ -22,7 +22,7 @@ enum { MIN_BRR = 16, MAX_BRR = 0xFFFF };
 
 /* RM0090 2.3, 7.3 and table 62; the datasheet's table of alternate functions. */
 typedef struct {
-    uint32_t base;
+    uintptr_t base;
     volatile uint32_t *enable;
     uint8_t enable_bit;
     uint8_t interrupt;

@@ -9,7 +9,6 @@
 #define RCC_AHB1ENR (*(volatile uint32_t *)0x40023830u)
 #define RCC_APB1ENR (*(volatile uint32_t *)0x40023840u)
 #define RCC_APB2ENR (*(volatile uint32_t *)0x40023844u)
-#define NVIC_ISER   ((volatile uint32_t *)0xE000E100u)
 
 /* General-purpose timers (RM0090 18.4). */
 #define TIM2 ((volatile uint32_t *)0x40000000u)
@@ -30,10 +29,7 @@ enum {
 enum { TIM_CR1_CEN = 1, TIM_CR1_URS = 4, TIM_CR1_OPM = 8, TIM_EGR_UG = 1 };
 enum { RCC_TIM2 = 1, RCC_TIM5 = 8 };
 
-static inline void fathom_stm32f4_enable_interrupt(uint8_t number)
-{
-    NVIC_ISER[number / 32] = 1u << number % 32;
-}
+void fathom_stm32f4_enable_interrupt(uint8_t number);
 
 enum { GPIO_INPUT = 0, GPIO_OUTPUT = 1, GPIO_ALTERNATE = 2 };
 

@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: MIT */
+#include "internal/stm32f4_port.h"
+
+#define NVIC_ISER ((volatile uint32_t *)0xE000E100u)
+
+void fathom_stm32f4_enable_interrupt(uint8_t number) { NVIC_ISER[number / 32] = 1u << number % 32; }

@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT */
+/* What port/stm32f4 does to the registers that no simulator here has: captures, pins, the errors of a USART. Memory
+ * lies in their place, at their addresses (RM0090 2.3), which the test reads and sets. It has no side effects: a
+ * register keeps what was written to it last. */
+#define _GNU_SOURCE 1 /* MAP_FIXED_NOREPLACE */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include <cmocka.h>
+
+#include "internal/stm32f4_port.h"
+
+#define PERIPHERALS ((void *)0x40000000)
+enum { LENGTH = 0x24000 };
+
+#define REGISTER(address) (*(volatile uint32_t *)(uintptr_t)(address))
+#define TIM2_AT(offset)   REGISTER(0x40000000 + (offset))
+#define USART2_AT(offset) REGISTER(0x40004400 + (offset))
+#define GPIOA_AT(offset)  REGISTER(0x40020000 + (offset))
+#define GPIOB_AT(offset)  REGISTER(0x40020400 + (offset))
+enum { SR = 0x00, DR = 0x04, CR1 = 0x0C };                                                /* of a USART */
+enum { MODER = 0x00, PUPDR = 0x0C, IDR = 0x10, BSRR = 0x18, AFRL = 0x20 };                /* of a port */
+enum { PE = 0x01, FE = 0x02, NE = 0x04, ORE = 0x08, RXNE = 0x20, TC = 0x40, TXE = 0x80 }; /* in SR */
+enum { CC1IF = 2, CC2IF = 4 }; /* in SR of a timer */
+
+static uint8_t enabled; /* the interrupt */
+void fathom_stm32f4_enable_interrupt(uint8_t number) { enabled = number; }
+
+static int map(void **state)
+{
+    (void)state;
+    return mmap(PERIPHERALS, LENGTH, PROT_READ | PROT_WRITE,
+                MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0) == PERIPHERALS
+               ? 0
+               : -1;
+}
+
+static int unmap(void **state)
+{
+    (void)state;
+    return munmap(PERIPHERALS, LENGTH);
+}
+
+/* ---- the capture ---- */
+
+static fathom_edges_t edges;
+static fathom_capture_t capture;
+static fathom_pulse_t pulse;
+
+static int begin_capture(void **state)
+{
+    (void)state;
+    static const fathom_stm32f4_pin_t pa0 = {'A', 0};
+    memset(PERIPHERALS, 0, LENGTH);
+    fathom_edges_init(&edges, NULL);
+    capture = fathom_edges_capture(&edges);
+    if (!fathom_stm32f4_capture_begin(&pa0, &edges)) return -1;
+    capture.arm(capture.ctx);
+    return 0;
+}
+
+static void captured(uint32_t flags, uint32_t rise_us, uint32_t fall_us)
+{
+    TIM2_AT(0x10) = flags;
+    TIM2_AT(0x34) = rise_us;
+    TIM2_AT(0x38) = fall_us;
+    fathom_stm32f4_tim2_interrupt();
+}
+
+static void assert_pulse(uint32_t width_us, uint32_t end_us)
+{
+    assert_int_equal(capture.take(capture.ctx, &pulse), 1);
+    assert_int_equal(pulse.width_us, width_us);
+    assert_int_equal(pulse.end_us, end_us);
+}
+
+static void the_captures_are_set_up_for_both_edges_of_ti1(void **state)
+{
+    (void)state;
+    assert_int_equal(TIM2_AT(0x18), 0x0201); /* CCMR1: CC1S 01, CC2S 10 (RM0090 18.4.7) */
+    assert_int_equal(TIM2_AT(0x20), 0x0031); /* CCER: CC1E, CC2E, CC2P (18.4.9) */
+    assert_int_equal(TIM2_AT(0x0C), 0x0006); /* DIER: CC1IE, CC2IE (18.4.4) */
+    assert_int_equal(enabled, 28);
+    assert_int_equal(GPIOA_AT(MODER) & 3, 2);
+    assert_int_equal(GPIOA_AT(AFRL) & 15, 1);
+    assert_int_equal(REGISTER(0x40023830) & 1, 1); /* AHB1ENR: GPIOA */
+}
+
+static void only_the_pins_of_tim2_ch1_are_taken(void **state)
+{
+    (void)state;
+    static const fathom_stm32f4_pin_t others[] = {{'A', 1}, {'B', 0}, {'A', 16}, {0, 0}};
+    static const fathom_stm32f4_pin_t pa5 = {'A', 5};
+    static const fathom_stm32f4_pin_t pa15 = {'A', 15};
+    for (size_t i = 0; i != sizeof others / sizeof others[0]; i++)
+        assert_false(fathom_stm32f4_capture_begin(&others[i], &edges));
+    assert_true(fathom_stm32f4_capture_begin(&pa5, &edges));
+    assert_true(fathom_stm32f4_capture_begin(&pa15, &edges));
+    assert_int_equal(GPIOA_AT(AFRL + 4) >> 28, 1);
+}
+
+static void a_rise_and_a_fall_are_a_pulse(void **state)
+{
+    (void)state;
+    captured(CC1IF, 1000, 0);
+    assert_int_equal(capture.take(capture.ctx, &pulse), 0);
+    captured(CC2IF, 1000, 4000);
+    assert_pulse(3000, 4000);
+}
+
+static void both_in_one_interrupt_are_a_pulse_also_across_the_wrap_of_the_clock(void **state)
+{
+    (void)state;
+    captured(CC1IF | CC2IF, 1000, 4000);
+    assert_pulse(3000, 4000);
+    captured(CC1IF | CC2IF, 0xFFFFFFF0, 90000);
+    assert_pulse(90016, 90000);
+}
+
+static void a_fall_before_the_rise_ends_the_pulse_before(void **state)
+{
+    (void)state;
+    captured(CC1IF, 1000, 0);
+    captured(CC1IF | CC2IF, 5000, 4000);
+    assert_pulse(3000, 4000);
+    captured(CC2IF, 5000, 0x7000);
+    assert_pulse(0x7000 - 5000, 0x7000);
+}
+
+static void an_interrupt_without_a_capture_is_nothing(void **state)
+{
+    (void)state;
+    captured(0, 1000, 4000);
+    captured(1, 1000, 4000); /* UIF */
+    assert_int_equal(capture.take(capture.ctx, &pulse), 0);
+    assert_false(pulse.is_high);
+}
+
+/* ---- pins and clock ---- */
+
+static void an_output_is_high_before_it_is_driven_and_an_input_has_its_pull(void **state)
+{
+    (void)state;
+    static const fathom_stm32f4_pin_t pb1 = {'B', 1};
+    static const fathom_stm32f4_pin_t pb2 = {'B', 2};
+    const fathom_pin_t output = fathom_stm32f4_output(&pb1);
+    assert_int_equal(GPIOB_AT(BSRR), 1 << 1);
+    assert_int_equal(GPIOB_AT(MODER), 1 << 2);
+    assert_int_equal(REGISTER(0x40023830), 2); /* AHB1ENR: GPIOB */
+    output.set(output.ctx, false);
+    assert_int_equal(GPIOB_AT(BSRR), 1 << 17);
+    output.set(output.ctx, true);
+    assert_int_equal(GPIOB_AT(BSRR), 1 << 1);
+    const fathom_pin_t input = fathom_stm32f4_input(&pb2, FATHOM_STM32F4_DOWN);
+    assert_int_equal(GPIOB_AT(PUPDR), 2 << 4);
+    assert_int_equal(GPIOB_AT(MODER), 1 << 2);
+    assert_false(input.get(input.ctx));
+    GPIOB_AT(IDR) = 1 << 2;
+    assert_true(input.get(input.ctx));
+    assert_null(output.get);
+    assert_null(input.set);
+}
+
+static void the_clock_is_tim2_divided_to_1_mhz(void **state)
+{
+    (void)state;
+    fathom_stm32f4_clock_begin(84000000);
+    assert_int_equal(TIM2_AT(0x28), 83);         /* PSC */
+    assert_int_equal(TIM2_AT(0x2C), 0xFFFFFFFF); /* ARR */
+    assert_int_equal(TIM2_AT(0x00) & 1, 1);      /* CR1: CEN */
+    assert_int_equal(REGISTER(0x40023840), 9);   /* APB1ENR: TIM2, TIM5 */
+    TIM2_AT(0x24) = 0xFEDCBA98;
+    assert_int_equal(fathom_stm32f4_clock.now_us(fathom_stm32f4_clock.ctx), 0xFEDCBA98);
+}
+
+static int clear(void **state)
+{
+    (void)state;
+    memset(PERIPHERALS, 0, LENGTH);
+    return 0;
+}
+
+/* ---- USART2 with TX on PA2, RX on PA3, the driver on PA1 ---- */
+
+static fathom_stm32f4_usart_t usart;
+static fathom_uart_t uart;
+static uint8_t request[8];
+
+static int begin_usart(void **state)
+{
+    (void)clear(state);
+    const fathom_stm32f4_usart_config_t config = {.request = request,
+                                                  .request_size = sizeof request,
+                                                  .number = 2,
+                                                  .bus_hz = 42000000,
+                                                  .line = {19200, FATHOM_PARITY_EVEN, 1},
+                                                  .tx = {'A', 2},
+                                                  .rx = {'A', 3},
+                                                  .driver = {'A', 1}};
+    if (!fathom_stm32f4_usart_begin(&usart, &config)) return -1;
+    uart = fathom_stm32f4_usart(&usart);
+    return 0;
+}
+
+static void interrupt(uint32_t why)
+{
+    USART2_AT(SR) = why;
+    fathom_stm32f4_usart_interrupt(&usart);
+}
+
+static void its_pins_are_its_own_and_the_driver_is_off(void **state)
+{
+    (void)state;
+    assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 2 << 4 | 2 << 6);
+    assert_int_equal(GPIOA_AT(AFRL), 7 << 8 | 7 << 12);
+    assert_int_equal(GPIOA_AT(PUPDR), 2 << 2 | 1 << 4 | 1 << 6);
+    assert_int_equal(GPIOA_AT(BSRR), 1 << 17);
+    assert_int_equal(REGISTER(0x40023840), 1 << 17); /* APB1ENR: USART2 */
+    assert_int_equal(enabled, 38);
+}
+
+static void the_driver_is_on_from_before_the_first_byte_until_the_last_stop_bit_has_left(void **state)
+{
+    (void)state;
+    static const uint8_t bytes[] = {0x11, 0x22, 0x33};
+    assert_int_equal(uart.write(uart.ctx, bytes, 3), 3);
+    assert_int_equal(GPIOA_AT(BSRR), 1 << 1);
+    assert_int_equal(USART2_AT(DR), 0);
+    GPIOA_AT(BSRR) = 0;
+    for (int i = 0; i != 3; i++) {
+        interrupt(TXE | TC);
+        assert_int_equal(USART2_AT(DR), bytes[i]);
+    }
+    interrupt(TXE); /* the last one has gone to the wire */
+    assert_int_equal(USART2_AT(CR1) & 0xC0, TC);
+    interrupt(TXE); /* something else interrupts */
+    assert_false(uart.sent(uart.ctx));
+    assert_int_equal(GPIOA_AT(BSRR), 0);
+    interrupt(TXE | TC);
+    assert_true(uart.sent(uart.ctx));
+    assert_int_equal(GPIOA_AT(BSRR), 1 << 17);
+    assert_int_equal(USART2_AT(CR1) & 0xC0, 0);
+    assert_int_equal(USART2_AT(DR), 0x33);
+}
+
+static void received(uint32_t why, uint32_t data)
+{
+    USART2_AT(DR) = data;
+    interrupt(why | TXE);
+}
+
+static void assert_read(uint8_t byte, uint8_t flags)
+{
+    fathom_rx_t rx = {0, 0};
+    uint8_t got[4];
+    assert_int_equal(uart.read(uart.ctx, got, sizeof got, &rx), 1);
+    assert_int_equal(got[0], byte);
+    assert_int_equal(rx.flags, flags);
+}
+
+static void a_byte_is_read_without_its_parity_and_with_its_errors(void **state)
+{
+    (void)state;
+    received(RXNE, 0x1AA); /* with 9 bits a word, DR has the parity above the byte */
+    assert_read(0xAA, 0);
+    received(RXNE | PE, 0x55);
+    assert_read(0x55, FATHOM_RX_PARITY);
+    received(RXNE | FE, 0x00);
+    assert_read(0x00, FATHOM_RX_FRAMING);
+    received(RXNE | PE | FE, 0x0F);
+    assert_read(0x0F, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
+    received(RXNE | NE, 0x77); /* noise alone: the checksum will tell */
+    assert_read(0x77, 0);
+    assert_int_equal(usart.noise, 1);
+    assert_int_equal(usart.serial.parity, 2);
+    assert_int_equal(usart.serial.framing, 2);
+}
+
+static void an_overrun_is_told_of_the_byte_behind_the_loss(void **state)
+{
+    (void)state;
+    received(RXNE | ORE, 1);
+    assert_read(1, 0);
+    received(RXNE, 2);
+    assert_read(2, FATHOM_RX_OVERRUN);
+    received(ORE, 3); /* DR has been read: nothing is in it, but reading it clears ORE */
+    received(RXNE, 4);
+    assert_read(4, FATHOM_RX_OVERRUN);
+    assert_int_equal(usart.serial.overruns, 2);
+}
+
+static void a_break_holds_the_pin_low_with_the_driver_on(void **state)
+{
+    (void)state;
+    static const uint8_t byte = 1;
+    assert_int_equal(uart.set_break(uart.ctx, true), 1);
+    assert_int_equal(GPIOA_AT(BSRR), 1 << 18);
+    assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 1 << 4 | 2 << 6);
+    assert_int_equal(uart.write(uart.ctx, &byte, 1), 0);
+    assert_int_equal(uart.set_break(uart.ctx, false), 1);
+    assert_int_equal(GPIOA_AT(BSRR), 1 << 17);
+    assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 2 << 4 | 2 << 6);
+    assert_int_equal(uart.write(uart.ctx, &byte, 1), 1);
+    assert_int_equal(uart.set_break(uart.ctx, true), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(the_captures_are_set_up_for_both_edges_of_ti1, begin_capture),
+        cmocka_unit_test_setup(only_the_pins_of_tim2_ch1_are_taken, begin_capture),
+        cmocka_unit_test_setup(a_rise_and_a_fall_are_a_pulse, begin_capture),
+        cmocka_unit_test_setup(both_in_one_interrupt_are_a_pulse_also_across_the_wrap_of_the_clock,
+                               begin_capture),
+        cmocka_unit_test_setup(a_fall_before_the_rise_ends_the_pulse_before, begin_capture),
+        cmocka_unit_test_setup(an_interrupt_without_a_capture_is_nothing, begin_capture),
+        cmocka_unit_test_setup(an_output_is_high_before_it_is_driven_and_an_input_has_its_pull, clear),
+        cmocka_unit_test_setup(the_clock_is_tim2_divided_to_1_mhz, clear),
+        cmocka_unit_test_setup(its_pins_are_its_own_and_the_driver_is_off, begin_usart),
+        cmocka_unit_test_setup(the_driver_is_on_from_before_the_first_byte_until_the_last_stop_bit_has_left,
+                               begin_usart),
+        cmocka_unit_test_setup(a_byte_is_read_without_its_parity_and_with_its_errors, begin_usart),
+        cmocka_unit_test_setup(an_overrun_is_told_of_the_byte_behind_the_loss, begin_usart),
+        cmocka_unit_test_setup(a_break_holds_the_pin_low_with_the_driver_on, begin_usart),
+    };
+    return cmocka_run_group_tests(tests, map, unmap);
+}
