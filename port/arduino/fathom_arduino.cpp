@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom_arduino.h"
+
+namespace fathom
+{
+namespace arduino
+{
+
+namespace
+{
+
+uint32_t now_us(void *) { return micros(); }
+
+/* The number of a pin is all that it needs, and ctx has room for it. */
+void *ctx_of(uint8_t pin) { return reinterpret_cast<void *>(static_cast<uintptr_t>(pin)); }
+uint8_t pin_of(void *ctx) { return static_cast<uint8_t>(reinterpret_cast<uintptr_t>(ctx)); }
+
+void set_pin(void *ctx, bool high) { digitalWrite(pin_of(ctx), high ? HIGH : LOW); }
+bool get_pin(void *ctx) { return digitalRead(pin_of(ctx)) == HIGH; }
+
+int read_from(Stream &stream, uint8_t *bytes, size_t capacity)
+{
+    size_t count = 0;
+    for (int byte; count < capacity && (byte = stream.read()) >= 0; count++)
+        bytes[count] = static_cast<uint8_t>(byte);
+    return static_cast<int>(count);
+}
+
+uint8_t bits_of(const fathom_line_settings_t &line)
+{
+    const uint8_t parity_bits = line.parity == FATHOM_PARITY_NONE ? 0 : 1;
+    return static_cast<uint8_t>(1 + 8 + parity_bits + line.stop_bits);
+}
+
+/* How long `length` characters may take to leave: 2.5 % for a slow baud generator, one bit until it has its next
+ * tick, one for the interrupts between the bytes, and two steps of an AVR's micros(). 255 characters of 12 bits at
+ * 1 us a bit still fit 32 bits. */
+uint32_t span_us_of(size_t length, uint8_t bits, uint32_t baud)
+{
+    const uint32_t frame_bits = static_cast<uint32_t>(length) * bits;
+    return (frame_bits + (frame_bits + 39) / 40 + 2) * 1000000ul / baud + 9;
+}
+
+bool is_over(uint32_t since_us, uint32_t span_us)
+{
+    return fathom_elapsed_us(static_cast<uint32_t>(micros()), since_us) >= span_us;
+}
+
+bool can_reach(uint32_t baud)
+{
+    if (baud == 0) return false;
+#if defined(UBRRH) || defined(UBRR0H) || defined(UBRR1H)
+    /* A classic AVR divides F_CPU / 8 by a whole number, 1..4096. */
+    const uint32_t eighth = F_CPU / 8;
+    const uint32_t divider = (eighth + baud / 2) / baud;
+    if (divider == 0) return false;
+    const uint32_t real = eighth / divider;
+    return (real > baud ? real - baud : baud - real) <= baud / 40;
+#else
+    return true;
+#endif
+}
+
+} // namespace
+
+extern const fathom_clock_t clock = {now_us, NULL};
+
+fathom_pin_t output(uint8_t pin)
+{
+    /* First, so that an AVR's pin never is an output and low; some cores take no level before the mode. */
+    digitalWrite(pin, HIGH);
+    pinMode(pin, OUTPUT);
+    digitalWrite(pin, HIGH);
+    const fathom_pin_t made = {set_pin, NULL, ctx_of(pin)};
+    return made;
+}
+
+fathom_pin_t input(uint8_t pin, bool pull_up)
+{
+    pinMode(pin, pull_up ? INPUT_PULLUP : INPUT);
+    const fathom_pin_t made = {NULL, get_pin, ctx_of(pin)};
+    return made;
+}
+
+void pulse_input::begin(uint8_t pin)
+{
+    pin_ = pin;
+    level_ = input(pin);
+    fathom_edges_init(&edges, &level_);
+}
+
+void pulse_input::changed()
+{
+    const uint32_t time_us = micros();
+    fathom_edges_feed(&edges, digitalRead(pin_) == HIGH, time_us);
+}
+
+fathom_capture_t pulse_input::capture() { return fathom_edges_capture(&edges); }
+
+serial_uart::serial_uart(HardwareSerial &serial, uint8_t driver_enable)
+    : serial_(serial), driver_enable_(driver_enable), leaving_(false), since_us_(0), span_us_(0), room_(0),
+      line_()
+{
+}
+
+bool serial_uart::begin(uint32_t baud, fathom_parity_t parity, uint8_t stop_bits)
+{
+    const fathom_line_settings_t line = {baud, static_cast<uint8_t>(parity), stop_bits};
+    if (driver_enable_ != no_pin) {
+        digitalWrite(driver_enable_, LOW);
+        pinMode(driver_enable_, OUTPUT);
+    }
+    if (!set(line)) return false;
+    leaving_ = false;
+    room_ = serial_.availableForWrite();
+    return true;
+}
+
+fathom_uart_t serial_uart::hal()
+{
+    const fathom_uart_t made = {read, write, sent, set_line, NULL, this};
+    return made;
+}
+
+bool serial_uart::set(const fathom_line_settings_t &line)
+{
+    if (!can_reach(line.baud)) return false;
+    /* The constants are of another type in each core. */
+    switch (line.parity << 4 | line.stop_bits) {
+    case FATHOM_PARITY_NONE << 4 | 1:
+        serial_.begin(line.baud, SERIAL_8N1);
+        break;
+    case FATHOM_PARITY_NONE << 4 | 2:
+        serial_.begin(line.baud, SERIAL_8N2);
+        break;
+    case FATHOM_PARITY_EVEN << 4 | 1:
+        serial_.begin(line.baud, SERIAL_8E1);
+        break;
+    case FATHOM_PARITY_EVEN << 4 | 2:
+        serial_.begin(line.baud, SERIAL_8E2);
+        break;
+    case FATHOM_PARITY_ODD << 4 | 1:
+        serial_.begin(line.baud, SERIAL_8O1);
+        break;
+    case FATHOM_PARITY_ODD << 4 | 2:
+        serial_.begin(line.baud, SERIAL_8O2);
+        break;
+    default:
+        return false;
+    }
+    line_ = line;
+    return true;
+}
+
+bool serial_uart::release()
+{
+    if (!leaving_) return true;
+    if (!is_over(since_us_, span_us_) || serial_.availableForWrite() < room_) return false;
+    if (driver_enable_ != no_pin) digitalWrite(driver_enable_, LOW);
+    leaving_ = false;
+    return true;
+}
+
+int serial_uart::read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *)
+{
+    serial_uart &self = *static_cast<serial_uart *>(ctx);
+    self.release();
+    return read_from(self.serial_, bytes, capacity);
+}
+
+int serial_uart::write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    serial_uart &self = *static_cast<serial_uart *>(ctx);
+    if (static_cast<int>(length) > self.room_) return -1;
+    if (!self.release() || self.serial_.availableForWrite() < static_cast<int>(length)) return 0;
+    self.span_us_ = span_us_of(length, bits_of(self.line_), self.line_.baud);
+    if (self.driver_enable_ != no_pin) digitalWrite(self.driver_enable_, HIGH);
+    const int taken = static_cast<int>(self.serial_.write(bytes, length));
+    self.since_us_ = micros(); /* behind it: the first byte may begin as late as that */
+    self.leaving_ = true;
+    return taken;
+}
+
+bool serial_uart::sent(void *ctx) { return static_cast<serial_uart *>(ctx)->release(); }
+
+int serial_uart::set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    serial_uart &self = *static_cast<serial_uart *>(ctx);
+    if (settings->baud == self.line_.baud && settings->parity == self.line_.parity &&
+        settings->stop_bits == self.line_.stop_bits)
+        return 1;
+    if (!self.release()) return 0;
+    return self.set(*settings) ? 1 : -1;
+}
+
+stream_uart::stream_uart(Stream &stream, uint32_t baud, uint8_t bits)
+    : stream_(stream), baud_(baud), bits_(bits), leaving_(false), since_us_(0), span_us_(0)
+{
+}
+
+fathom_uart_t stream_uart::hal()
+{
+    const fathom_uart_t made = {read, write, sent, NULL, NULL, this};
+    return made;
+}
+
+int stream_uart::read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *)
+{
+    return read_from(static_cast<stream_uart *>(ctx)->stream_, bytes, capacity);
+}
+
+int stream_uart::write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    stream_uart &self = *static_cast<stream_uart *>(ctx);
+    if (!sent(ctx)) return 0;
+    self.span_us_ = span_us_of(length, self.bits_, self.baud_);
+    self.since_us_ = micros();
+    self.leaving_ = true;
+    return self.stream_.write(bytes, length) == length ? static_cast<int>(length) : -1;
+}
+
+bool stream_uart::sent(void *ctx)
+{
+    stream_uart &self = *static_cast<stream_uart *>(ctx);
+    if (self.leaving_ && is_over(self.since_us_, self.span_us_)) self.leaving_ = false;
+    return !self.leaving_;
+}
+
+} // namespace arduino
+} // namespace fathom
