@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// An A05 that sends by itself (UART automatic), its TX to pin 10. The distances of its four probes are printed at
+// 115200 baud.
+//
+// An Uno has one hardware serial, which prints, so the sensor is heard by SoftwareSerial; at 9600 baud, and with nobody
+// who writes to it, that loses nothing. A board with Serial1 uses that: the sensor's TX to its RX.
+#include <fathom_arduino.h>
+
+#if defined(ARDUINO_ARCH_AVR) && !defined(HAVE_HWSERIAL1)
+#include <SoftwareSerial.h>
+static SoftwareSerial soft_serial(10, 11); // RX, TX
+static fathom::arduino::stream_uart port(soft_serial, 9600);
+static void begin_port() { soft_serial.begin(9600); }
+#else
+static fathom::arduino::serial_uart port(Serial1);
+static void begin_port() { port.begin(9600); }
+#endif
+
+static fathom_uart_t uart;
+static uint8_t frame[16];
+static fathom_line_config_t line_config;
+static fathom_line_t line;
+static fathom_a05_auto_t bumper;
+static fathom_sensor_t sensor;
+
+void setup()
+{
+    Serial.begin(115200);
+    begin_port();
+    uart = port.hal();
+
+    line_config.uart = &uart;
+    line_config.clock = &fathom::arduino::clock;
+    line_config.frame = frame;
+    line_config.frame_size = sizeof frame;
+    fathom_line_init(&line, &line_config);
+
+    fathom_a05_auto_config_t config = {};
+    config.line = &line;
+    if (fathom_a05_auto_init(&bumper, &config) != FATHOM_READY) Serial.println(F("wrong config"));
+    sensor = fathom_a05_auto_sensor(&bumper);
+}
+
+void loop()
+{
+    fathom_sample_t sample;
+    const fathom_status_t status = fathom_poll(&sensor, &sample);
+    if (status == FATHOM_READY) {
+        Serial.print(sample.probe);
+        Serial.print(F(": "));
+        if (sample.kind == FATHOM_TARGET)
+            Serial.println(sample.distance_mm);
+        else
+            Serial.println(F("nothing in range"));
+    } else if (status < 0) {
+        Serial.print(F("error ")); // -7 is "stale": no good frame for 2 s; status.h has them all
+        Serial.println(status);
+    }
+    // Other work goes here: fathom_poll never waits. Within 60 ms, or the core's buffer is full and bytes are lost.
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// An HPS-167S behind an RS-485 transceiver: DI to TX, RO to RX, DE and /RE together to pin 2, A and B to white and
+// green. 19200 8E1, as it comes from the factory. The LED is lit while something is nearer than 1 m, and blinks while
+// the sensor does not answer.
+//
+// On a board with a second hardware serial (Mega, Leonardo, Zero) the sensor has Serial1, and Serial prints. An Uno has
+// one, and the sensor takes it: so there is nothing to print to, and while the board is programmed the transceiver has
+// to be off pin 0. SoftwareSerial as a printer is no way out: it keeps interrupts off while it sends a byte, for longer
+// than the sensor's bytes last, and some of those would be lost.
+#include <fathom_arduino.h>
+
+#if defined(ARDUINO_ARCH_AVR) && !defined(HAVE_HWSERIAL1)
+#define BUS Serial
+#else
+#define BUS      Serial1
+#define PRINT_TO Serial
+#endif
+
+static const uint8_t driver_enable_pin = 2;
+static const uint16_t near_mm = 1000;
+
+static fathom::arduino::serial_uart port(BUS, driver_enable_pin);
+static fathom_uart_t uart;
+static uint8_t frame[32];
+static fathom_line_config_t line_config;
+static fathom_line_t line;
+static fathom_modbus_t modbus;
+static fathom_hps167s_t gate;
+static fathom_sensor_t sensor;
+
+void setup()
+{
+#ifdef PRINT_TO
+    PRINT_TO.begin(115200);
+#endif
+    pinMode(LED_BUILTIN, OUTPUT);
+    port.begin(19200, FATHOM_PARITY_EVEN);
+    uart = port.hal();
+
+    line_config.uart = &uart;
+    line_config.clock = &fathom::arduino::clock;
+    line_config.frame = frame;
+    line_config.frame_size = sizeof frame;
+    line_config.silence_us = FATHOM_T3_5_US(19200, 11); // 8E1: 11 bits a character
+    fathom_line_init(&line, &line_config);
+    modbus = fathom_modbus_client(&line);
+
+    fathom_hps167s_config_t config = {};
+    config.modbus = &modbus;
+    config.clock = &fathom::arduino::clock;
+    fathom_hps167s_init(&gate, &config);
+    sensor = fathom_hps167s_sensor(&gate);
+}
+
+void loop()
+{
+    fathom_sample_t sample;
+    const fathom_status_t status = fathom_poll(&sensor, &sample);
+    if (status == FATHOM_READY) {
+        digitalWrite(LED_BUILTIN, sample.kind == FATHOM_TARGET && sample.distance_mm < near_mm ? HIGH : LOW);
+#ifdef PRINT_TO
+        PRINT_TO.println(sample.kind == FATHOM_TARGET ? static_cast<long>(sample.distance_mm) : -1L);
+#endif
+    } else if (status < 0) {
+        digitalWrite(LED_BUILTIN, digitalRead(LED_BUILTIN) == HIGH ? LOW : HIGH);
+#ifdef PRINT_TO
+        PRINT_TO.print(F("error ")); // -3 is "no answer"; status.h has them all
+        PRINT_TO.println(static_cast<long>(status));
+#endif
+    }
+    // Other work goes here, of 1.6 ms a round at most: the loop drops driver-enable (fathom_arduino.h).
+}
