@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// The example a16_pulse in a loop that comes round every 20 ms.
+#define loop loop_of_example
+#include "a16_pulse/a16_pulse.ino"
+#undef loop
+
+void loop()
+{
+    loop_of_example();
+    delay(20);
+}

@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""test_library.py OUT: the Arduino library that build.py has laid out and compiled in OUT."""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+import build
+
+OUT = sys.argv[1]
+LIBRARY = os.path.join(OUT, 'Fathom')
+WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
+            '-Wmissing-declarations']
+
+
+def read(*path):
+    with open(os.path.join(*path), encoding='utf-8') as file:
+        return file.read()
+
+
+def properties():
+    lines = read(LIBRARY, 'library.properties').splitlines()
+    return dict(line.split('=', 1) for line in lines)
+
+
+def below(folder):
+    return sorted(os.path.relpath(os.path.join(where, name), folder)
+                  for where, _, names in os.walk(folder) for name in names)
+
+
+def test_the_manifest_has_the_fields_that_a_registry_wants():
+    said = properties()
+    for key in ('name', 'version', 'author', 'maintainer', 'sentence', 'paragraph', 'category', 'url', 'architectures',
+                'includes'):
+        assert key in said, key
+        assert said[key] or key == 'url', key  # there is no home page to name
+    assert said['name'] == 'Fathom' == os.path.basename(LIBRARY)
+    assert said['category'] == 'Sensors'  # one of the nine that the specification has
+    assert said['architectures'] == '*'
+    assert len(said['sentence']) <= 100 and not said['paragraph'].startswith(said['sentence'])
+
+
+def test_the_manifest_has_the_version_of_the_header():
+    version = re.search(r'FATHOM_VERSION_STRING "(.*)"', read(build.ROOT, 'include/fathom/version.h'))[1]
+    assert properties()['version'] == version
+    assert re.search(r'FATHOM_VERSION_STRING "(.*)"', read(LIBRARY, 'src/fathom/version.h'))[1] == version
+
+
+def test_another_version_in_the_manifest_is_refused_by_the_layout():
+    with tempfile.TemporaryDirectory() as copy:
+        subprocess.run(['cp', '-r', *(os.path.join(build.ROOT, name) for name in
+                                      ('src', 'include', 'port', 'examples', 'LICENSE')), copy], check=True)
+        path = os.path.join(copy, 'port/arduino/library.properties')
+        text = re.sub(r'^version=.*$', 'version=9.9.9', read(path), flags=re.M)
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+        done = subprocess.run(['cmake', '-DTO=' + os.path.join(copy, 'Fathom'), '-P',
+                               os.path.join(copy, 'port/arduino/layout.cmake')],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        assert done.returncode != 0 and '9.9.9' in done.stdout, done.stdout
+
+
+def test_the_header_that_the_ide_includes_stands_right_in_src():
+    for name in properties()['includes'].split(','):
+        assert os.path.exists(os.path.join(LIBRARY, 'src', name)), name
+    # All that is on the include path: nothing there may shadow what is not ours.
+    assert sorted(os.listdir(os.path.join(LIBRARY, 'src'))) == ['core', 'fathom', 'fathom_arduino.cpp',
+                                                                'fathom_arduino.h']
+
+
+def test_all_of_the_core_is_there_and_the_crc_once():
+    core = set(os.listdir(os.path.join(build.ROOT, 'src')))
+    assert core - set(os.listdir(os.path.join(LIBRARY, 'src/core'))) == {'crc16.c'}
+    assert set(os.listdir(os.path.join(LIBRARY, 'src/fathom'))) == \
+        set(os.listdir(os.path.join(build.ROOT, 'include/fathom')))
+
+
+def test_the_examples_are_there_each_in_a_folder_of_its_name():
+    names = sorted(os.listdir(os.path.join(LIBRARY, 'examples')))
+    assert names == ['a05_auto', 'a16_pulse', 'hps167s_rs485']
+    for name in names:
+        assert below(os.path.join(LIBRARY, 'examples', name)) == [name + '.ino'], name
+
+
+def test_there_is_no_link_in_it_which_a_registry_refuses():
+    for path in below(LIBRARY):
+        assert not os.path.islink(os.path.join(LIBRARY, path)), path
+
+
+def test_the_zip_has_the_same_files_below_one_folder():
+    with zipfile.ZipFile(LIBRARY + '.zip') as archive:
+        names = sorted(name for name in archive.namelist() if not name.endswith('/'))
+    assert names == ['Fathom/' + path for path in below(LIBRARY)]
+
+
+def test_the_top_of_the_repository_is_not_taken_for_a_library():
+    # Its src/ alone does not compile, so no tool may find a manifest there.
+    assert not os.path.exists(os.path.join(build.ROOT, 'library.properties'))
+
+
+def test_the_port_compiles_without_a_warning():
+    # The core's headers have some, and as system headers avr-gcc takes them for C.
+    command = ['avr-g++', '-std=c++11', '-Os', *WARNINGS, *build.BOARD, '-DDECIMAL_DIG=__DECIMAL_DIG__',
+               *build.INCLUDE, '-I' + os.path.join(LIBRARY, 'src'), '-c',
+               os.path.join(LIBRARY, 'src/fathom_arduino.cpp'), '-o', '/dev/null']
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    found = [line for line in done.stdout.splitlines()
+             if re.search(r': (warning|error):', line) and not line.startswith(build.AVR)]
+    assert not found, '\n'.join(found)
+
+
+def test_the_header_compiles_alone_and_twice_and_on_a_mega_and_a_leonardo():
+    with tempfile.TemporaryDirectory() as work:
+        source = os.path.join(work, 'alone.cpp')
+        with open(source, 'w', encoding='utf-8') as file:
+            file.write('#include <fathom_arduino.h>\n#include <fathom_arduino.h>\n'
+                       'fathom::arduino::serial_uart port(Serial1);\n')
+        for chip, board, variant in (('atmega2560', 'MEGA2560', 'mega'), ('atmega32u4', 'LEONARDO', 'leonardo')):
+            usb = ['-DUSB_VID=0x2341', '-DUSB_PID=0x8036'] if variant == 'leonardo' else []
+            for path in [source, os.path.join(LIBRARY, 'src/fathom_arduino.cpp'),
+                         *(os.path.join(LIBRARY, 'examples', name, name + '.ino')
+                           for name in os.listdir(os.path.join(LIBRARY, 'examples')))]:
+                sketch = ['-include', 'Arduino.h', '-x', 'c++'] if path.endswith('.ino') else []
+                build.run(['avr-g++', '-c', '-Os', '-w', '-std=gnu++11', '-fpermissive', '-fno-exceptions', '-mmcu=' + chip,
+                           '-DF_CPU=16000000L', '-DARDUINO=10819', '-DARDUINO_AVR_' + board, '-DARDUINO_ARCH_AVR',
+                           *usb, '-DDECIMAL_DIG=__DECIMAL_DIG__', '-I' + build.CORE,
+                           '-I' + build.AVR + '/variants/' + variant, '-I' + os.path.join(LIBRARY, 'src'), *sketch,
+                           path, '-o', '/dev/null'])
+
+
+def test_no_sketch_links_the_table_of_256_entries_or_floating_point():
+    images = os.path.join(OUT, 'images')
+    for name in ('a16_pulse', 'a05_auto', 'hps167s_rs485'):
+        text = read(images, name + '.sym')
+        assert 'pulseIn' not in text and '__addsf3' not in text, name
+        size = build.run(['avr-size', os.path.join(images, name + '.elf')]).split('\n')[1].split()
+        ram = int(size[1]) + int(size[2])
+        print(f'figure arduino_{name}_flash {int(size[0]) + int(size[1])} B')
+        print(f'figure arduino_{name}_ram {ram} B')
+        assert ram < 1024, name  # half of the chip's
+
+
+failed = 0
+tests = [(name, test) for name, test in list(globals().items()) if name.startswith('test_')]
+for name, test in tests:
+    try:
+        test()
+        print('ok', name)
+    except (AssertionError, SystemExit) as error:
+        failed += 1
+        print('FAILED', name, error)
+print(f'{len(tests) - failed} passed, {failed} failed')
+sys.exit(1 if failed else 0)
