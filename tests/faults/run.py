@@ -22,7 +22,7 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-COPIED = ('CMakeLists.txt', 'README.md', 'examples', 'include', 'port', 'src', 'tests')
+COPIED = ('CMakeLists.txt', 'LICENSE', 'README.md', 'examples', 'include', 'port', 'src', 'tests')
 HAS_LIBMODBUS = shutil.which('pkg-config') is not None and \
     subprocess.run(['pkg-config', '--exists', 'libmodbus'], check=False).returncode == 0
 FIRMWARE = 'firmware/'

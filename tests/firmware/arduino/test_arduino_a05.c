@@ -43,10 +43,10 @@ static void send(bench_t *bench, size_t changed, uint8_t by)
     avr_cycle_timer_register(bench->board.avr, BIT_CYCLES, next_bit, bench);
 }
 
-static void begin(bench_t *bench)
+static void begin(bench_t *bench, const char *image)
 {
     memset(bench, 0, sizeof *bench);
-    assert_true(board_start(&bench->board, "a05_auto"));
+    assert_true(board_start(&bench->board, image));
     board_drive(&bench->board, 'B', 2, true);
     printed_begin(&bench->printed, &bench->board);
     assert_true(board_run_us(&bench->board, 50000));
@@ -54,16 +54,15 @@ static void begin(bench_t *bench)
 
 static void expect_line(bench_t *bench, const char *expected)
 {
-    const char *const text = printed_line(&bench->printed, 100000);
+    const char *const text = printed_line(&bench->printed, 150000);
     if (text == NULL) fail_msg("nothing was printed for %s", expected);
     assert_string_equal(text, expected);
 }
 
-static void four_distances_are_printed_a_frame(void **state)
+static void expect_frames(const char *image)
 {
-    (void)state;
     bench_t bench;
-    begin(&bench);
+    begin(&bench, image);
     for (int n = 0; n < 20; n++) {
         send(&bench, 0, 0);
         expect_line(&bench, "1: 1000");
@@ -75,11 +74,23 @@ static void four_distances_are_printed_a_frame(void **state)
     board_end(&bench.board);
 }
 
+static void four_distances_are_printed_a_frame(void **state)
+{
+    (void)state;
+    expect_frames("a05_auto");
+}
+
+static void four_distances_are_printed_a_frame_in_a_loop_of_20_ms(void **state)
+{
+    (void)state;
+    expect_frames("a05_slow");
+}
+
 static void a_damaged_frame_is_not_printed(void **state)
 {
     (void)state;
     bench_t bench;
-    begin(&bench);
+    begin(&bench, "a05_auto");
     for (size_t i = 0; i < sizeof frame; i++) {
         send(&bench, i, 0x10);
         assert_null(printed_line(&bench.printed, 100000));
@@ -93,7 +104,7 @@ static void silence_is_stale_after_two_seconds(void **state)
 {
     (void)state;
     bench_t bench;
-    begin(&bench);
+    begin(&bench, "a05_auto");
     send(&bench, 0, 0);
     for (int n = 0; n < 4; n++) assert_non_null(printed_line(&bench.printed, 100000));
     assert_null(printed_line(&bench.printed, 1900000));
@@ -107,6 +118,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(four_distances_are_printed_a_frame),
+        cmocka_unit_test(four_distances_are_printed_a_frame_in_a_loop_of_20_ms),
         cmocka_unit_test(a_damaged_frame_is_not_printed),
         cmocka_unit_test(silence_is_stale_after_two_seconds),
     };

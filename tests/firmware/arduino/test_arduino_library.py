@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""test_library.py OUT: the Arduino library that build.py has laid out and compiled in OUT."""
+"""test_arduino_library.py OUT: the Arduino library that build.py has laid out and compiled in OUT."""
 import os
 import re
 import subprocess

@@ -22,7 +22,7 @@ static void the_adapter_keeps_what_its_header_says(void **state)
     }
     assert_true(board.finished);
     assert_int_equal(board.exit_code, 0);
-    assert_int_equal(held, 42);
+    assert_int_equal(held, 45);
     assert_int_equal(board.usart.overruns, 0);
     board_end(&board);
 }
