@@ -119,14 +119,14 @@ class serial_uart
     explicit serial_uart(HardwareSerial &serial, uint8_t driver_enable = no_pin);
 
     /* begin() of the core, in setup() and before anything is written; sets the driver-enable pin low. false: these
-     * settings cannot be reached; nothing has changed. */
+     * settings cannot be reached; nothing but that pin has changed. */
     bool begin(uint32_t baud, fathom_parity_t parity = FATHOM_PARITY_NONE, uint8_t stop_bits = 1);
 
     /* For a fathom_line_config_t. */
     fathom_uart_t hal();
 
     /* Drops driver-enable if it is time. true: nothing is leaving. Also for an interrupt, whatever the loop is doing
-     * then; 10 us on an AVR while a request leaves, 1 us else. */
+     * then; 10 us or so on an AVR while a request leaves, 1 us else. */
     bool release();
 
   private:
