@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * ATmega328P at 16 MHz with an A16 of PWM output. Prints each reading, four and a half a second, and sleeps in between.
+ *
+ *   A16 pin 3 (RX)   PB1, Arduino 9: the trigger. It takes 5 V
+ *   A16 pin 4 (TX)   ICP1 = PB0, Arduino 8: the pulse, high for the time of flight. Its 3 V are a high level for an
+ *                    ATmega at 5 V, which wants 0.6 VCC, by a hair: with other chips or long wires use a buffer
+ *   PD1 (TXD)        text, 115200 8N1: "1234 mm", "nothing in range", "error -3: no answer"
+ *
+ * The width is taken by Timer1's input capture, to half a microsecond whatever else runs: 0.09 mm.
+ */
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <avr/pgmspace.h>
+
+#include "fathom/a16_pwm.h"
+#include "fathom/edges.h"
+#include "fathom/wait.h"
+#include "fathom_avr.h"
+#include "text.h"
+
+static const fathom_avr_pin_t trigger_at = {&PORTB, _BV(PB1)};
+static const fathom_avr_pin_t pulse_at = {&PORTB, _BV(PB0)};
+
+static uint8_t sending[TEXT_SIZE];
+static const fathom_avr_usart_config_t usart = {
+    .request = sending, .request_size = sizeof sending, .line = {115200, FATHOM_PARITY_NONE, 1}};
+
+static fathom_pin_t trigger;
+static fathom_pin_t pulse;
+static fathom_edges_t edges;
+static fathom_capture_t capture;
+static fathom_a16_pwm_t tank;
+
+static bool begin(void)
+{
+    fathom_avr_clock_begin();
+    trigger = fathom_avr_output(&trigger_at);
+    pulse = fathom_avr_input(&pulse_at, false);
+    fathom_edges_init(&edges, &pulse);
+    capture = fathom_edges_capture(&edges);
+    fathom_avr_icp1_begin(&edges);
+    const bool is_ready = fathom_avr_usart0_begin(&usart);
+    sei();
+    return is_ready &&
+           fathom_a16_pwm_init(&tank, &(fathom_a16_pwm_config_t){.clock = &fathom_avr_clock,
+                                                                 .capture = &capture,
+                                                                 .trigger = &trigger}) == FATHOM_READY;
+}
+
+int main(void)
+{
+    if (!begin()) return 1;
+    const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&tank);
+    text_t text = {0};
+    for (;;) {
+        fathom_sample_t sample;
+        const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, NULL);
+        if (status == FATHOM_READY)
+            text_sample(&text, &sample);
+        else
+            text_error(&text, status);
+        text_say(&text, PSTR("\r\n"));
+        text_send(&text, &fathom_avr_usart0); /* a line is out in 3 ms, a cycle is 221 ms: it is never busy */
+    }
+}

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Figures that are measured on real images in simulators: cycles, bus time, stack, CPU share. All of them are kept in
+figures.csv, with their bounds, and none may get worse. The simulators are deterministic, so a figure is the same each
+time for one version of the compiler, which the file names.
+
+    figures.py MACHINE COMPILER PROGRAM [ARGUMENT ...]
+                                 runs PROGRAM, which prints lines "figure NAME VALUE UNIT", and shows them
+    figures.py --check ...       also fails when one is worse than the kept one or over its bound, missing or new
+    figures.py --update ...      also keeps them; bounds stay, and are written into the file by hand
+    figures.py --self-test       shows that the comparison works
+
+Less is better in all of them. A figure's name begins with its machine.
+"""
+import argparse
+import csv
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+FIGURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'figures.csv')
+LINE = re.compile(r'^figure (\w+) (-?\d+(?:\.\d+)?) (\S+)$', re.M)
+
+
+def printed_figures(text, machine):
+    """{name: (figure, unit)} of what a program has printed"""
+    found = {}
+    for name, figure, unit in LINE.findall(text):
+        if not name.startswith(machine + '_'):
+            raise ValueError(f'{name} is no figure of {machine}: its name begins with {machine}_')
+        if name in found:
+            raise ValueError(f'{name} was printed twice')
+        found[name] = (figure, unit)
+    if not found:
+        raise ValueError('no figure was printed')
+    return found
+
+
+def read(path):
+    """({machine: compiler}, {name: row})"""
+    compilers, rows = {}, {}
+    if os.path.exists(path):
+        with open(path, encoding='utf-8') as file:
+            lines = file.read().splitlines()
+        compilers = dict(line[2:].split(': ', 1) for line in lines if line.startswith('# '))
+        rows = {row['name']: row for row in csv.DictReader(line for line in lines if not line.startswith('#'))}
+    return compilers, rows
+
+
+def write(path, compilers, rows):
+    with open(path, 'w', encoding='utf-8', newline='') as file:
+        for machine, compiler in sorted(compilers.items()):
+            print(f'# {machine}: {compiler}', file=file)
+        out = csv.DictWriter(file, ['name', 'unit', 'figure', 'bound'], lineterminator='\n')
+        out.writeheader()
+        out.writerows(rows.values())
+
+
+def is_over(figure, limit):
+    return limit != '' and float(figure) > float(limit)
+
+
+def problems(found, machine, compiler, compilers, rows):
+    """What is worse than it was, or than it may be, as lines; what is better is only printed."""
+    if compilers.get(machine) != compiler:
+        return [f'{machine} was measured with {compilers.get(machine)}; here is {compiler}: nothing to compare']
+    lines = []
+    for name, (figure, unit) in found.items():
+        row = rows.get(name)
+        if row is None:
+            lines.append(f'{name}: {figure} {unit} is not in figures.csv: keep it with --update')
+        elif row['unit'] != unit:
+            lines.append(f'{name}: in {unit}, was in {row["unit"]}')
+        elif is_over(figure, row['figure']):
+            lines.append(f'WORSE: {name}: {figure} {unit}, was {row["figure"]}')
+        elif float(figure) < float(row['figure']):
+            print(f'better: {name}: {figure} {unit}, was {row["figure"]}; keep it with --update')
+        if row is not None and is_over(figure, row['bound']):
+            lines.append(f'OVER: {name}: {figure} {unit}, its bound is {row["bound"]}')
+    for name in rows:
+        if name.startswith(machine + '_') and name not in found:
+            lines.append(f'{name} was not measured')
+    return lines
+
+
+def update(found, machine, compiler, compilers, rows):
+    compilers[machine] = compiler
+    for name in [name for name in rows if name.startswith(machine + '_') and name not in found]:
+        del rows[name]
+    for name, (figure, unit) in found.items():
+        bound = rows[name]['bound'] if name in rows else ''
+        rows[name] = {'name': name, 'unit': unit, 'figure': figure, 'bound': bound}
+
+
+def self_test():
+    text = 'x\nfigure chip_isr 50 cycles\nfigure chip_bus 0.25 %\nfigures of the day\n'
+    found = printed_figures(text, 'chip')
+    assert found == {'chip_isr': ('50', 'cycles'), 'chip_bus': ('0.25', '%')}
+    for wrong in ('figure other_isr 1 cycles\n', text + 'figure chip_isr 49 cycles\n', 'nothing\n'):
+        try:
+            printed_figures(wrong, 'chip')
+        except ValueError:
+            continue
+        raise AssertionError(wrong)
+    other = {'name': 'core_isr', 'unit': 'cycles', 'figure': '1', 'bound': '2'}
+    compilers, rows = {'core': 'cc 2'}, {'core_isr': other}
+    update(found, 'chip', 'cc 1', compilers, rows)
+    rows['chip_isr']['bound'] = '60'
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, 'figures.csv')
+        write(path, compilers, rows)
+        assert read(path) == (compilers, rows)
+
+    def count(change, compiler='cc 1', kept=None):
+        return len(problems({**found, **change}, 'chip', compiler, compilers, rows if kept is None else kept))
+    assert count({}) == 0
+    assert count({'chip_isr': ('49', 'cycles'), 'chip_bus': ('0.24', '%')}) == 0
+    assert count({'chip_isr': ('51', 'cycles')}) == 1
+    assert count({'chip_isr': ('61', 'cycles')}) == 2
+    assert count({'chip_bus': ('0.26', '%')}) == 1
+    assert count({'chip_bus': ('0.25', 'us')}) == 1
+    assert count({'chip_new': ('1', 'B')}) == 1
+    assert count({}, compiler='cc 2') == 1
+    assert count({}, kept={**rows, 'chip_gone': {**other, 'name': 'chip_gone'}}) == 1
+    loose = {**rows, 'chip_isr': {**rows['chip_isr'], 'figure': '70'}}
+    assert count({'chip_isr': ('61', 'cycles')}, kept=loose) == 1
+    update({'chip_isr': ('40', 'cycles')}, 'chip', 'cc 3', compilers, rows)
+    assert list(rows) == ['core_isr', 'chip_isr'] and rows['chip_isr']['bound'] == '60'
+    assert compilers == {'core': 'cc 2', 'chip': 'cc 3'}
+    print('self-test passed')
+    return 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--check', action='store_true', help='fail when a figure is worse than the kept one')
+    parser.add_argument('--update', action='store_true', help='keep the figures in figures.csv')
+    parser.add_argument('--self-test', action='store_true', help='show that the comparison works')
+    parser.add_argument('machine', nargs='?')
+    parser.add_argument('compiler', nargs='?')
+    parser.add_argument('program', nargs=argparse.REMAINDER)
+    options = parser.parse_args()
+    if options.self_test:
+        return self_test()
+    if not options.program:
+        parser.error('which program measures?')
+
+    done = subprocess.run(options.program, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        print(done.stdout + done.stderr, end='')
+        print(f'{options.program[0]} ended with {done.returncode}')
+        return 1
+    found = printed_figures(done.stdout, options.machine)
+    version = subprocess.run([options.compiler, '-dumpversion'], capture_output=True, text=True, check=True)
+    compiler = f'{os.path.basename(options.compiler)} {version.stdout.strip()}'
+    compilers, rows = read(FIGURES)
+    print(f'{"":40} {"measured":>10} {"kept":>10} {"bound":>10}')
+    for name, (figure, unit) in found.items():
+        row = rows.get(name, {'figure': '', 'bound': ''})
+        print(f'{name:40} {figure:>10} {row["figure"]:>10} {row["bound"]:>10} {unit}')
+    if options.update:
+        update(found, options.machine, compiler, compilers, rows)
+        write(FIGURES, compilers, rows)
+    lines = problems(found, options.machine, compiler, compilers, rows) if options.check else []
+    print('\n'.join([*lines, f'{len(found)} figures, {len(lines)} problems']))
+    return 1 if lines else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
