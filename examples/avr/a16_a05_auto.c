@@ -28,7 +28,7 @@
 #define STALE_US  4000000ul
 #define BUSY_US   1000u
 
-enum { A16 = 0, A05 = 1, SENSORS = 2 };
+enum { A16 = 0, A05 = 1, SENSORS = 2, PROBES = 4 };
 
 static const fathom_avr_pin_t select_at = {&PORTD, _BV(PD4)};
 
@@ -90,12 +90,14 @@ static bool begin(void)
     return true;
 }
 
-/* One line of text, if this sensor has something to say. */
-static bool say(text_t *text, uint8_t which)
+typedef enum { NOTHING, MORE, ALL } said_t;
+
+/* One line of text, if this sensor has something to say; ALL: this was the last one of its answer. */
+static said_t say(text_t *text, uint8_t which)
 {
     fathom_sample_t sample;
     const fathom_status_t status = fathom_poll(&sensors[which], &sample);
-    if (status == FATHOM_PENDING) return false;
+    if (status == FATHOM_PENDING) return NOTHING;
     text_say(text, which == A16 ? PSTR("A16 ") : PSTR("A05 "));
     if (status == FATHOM_READY) {
         if (which == A05) {
@@ -107,7 +109,7 @@ static bool say(text_t *text, uint8_t which)
         text_error(text, status);
     }
     text_say(text, PSTR("\r\n"));
-    return true;
+    return status == FATHOM_READY && which == A05 && sample.probe != PROBES ? MORE : ALL;
 }
 
 /* How long nothing but a byte can bring anything. */
@@ -123,21 +125,19 @@ int main(void)
 {
     if (!begin()) return 1;
     text_t text = {0};
-    bool is_heard = false; /* the selected one has said something */
     for (;;) {
         if (!text_send(&text, &fathom_avr_usart0)) {
             /* The line of text before is still leaving; what there is to say waits, an A05 has four at a time. */
             fathom_line_poll(&ears[selected].line);
             fathom_avr_idle(NULL, BUSY_US);
-        } else if (say(&text, selected)) {
-            is_heard = true;
-        } else if (say(&text, (uint8_t)(1 - selected))) {
-            continue; /* that it is silent */
-        } else if (is_heard || fathom_elapsed_us(now_us(), turned_us) >= LISTEN_US) {
-            is_heard = false;
-            turn_to((uint8_t)(1 - selected));
-        } else {
-            fathom_avr_idle(NULL, idle_us());
+            continue;
         }
+        const uint8_t other = (uint8_t)(1 - selected);
+        const said_t said = say(&text, selected);
+        const bool is_long = fathom_elapsed_us(now_us(), turned_us) >= LISTEN_US;
+        if (said == ALL || (said == NOTHING && is_long))
+            turn_to(other);
+        else if (said == NOTHING && say(&text, other) == NOTHING) /* that it is silent, or a frame more */
+            fathom_avr_idle(NULL, idle_us());
     }
 }

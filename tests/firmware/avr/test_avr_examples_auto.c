@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "board.h"
+#include "console.h"
+#include "sim/a05.h"
+#include "sim/a16.h"
+#include "sim/scene.h"
+
+/* The image of examples/avr/a16_a05_auto.c: an A16 and an A05 that send by themselves, each on a line of its own; a
+ * multiplexer gives one of them to RXD, chosen by PD4. */
+enum { PATIENCE_US = 6000000 };
+
+static board_t board;
+static console_t console;
+static fathom_sim_line_t a16_line;
+static fathom_sim_line_t a05_line;
+static fathom_sim_a16_t a16;
+static fathom_sim_a05_t a05;
+static fathom_sim_fixed_t a16_scene;
+static fathom_sim_fixed_t a05_scene;
+static unsigned turns;
+
+/* What the line has brought while nobody listened is gone. */
+static void forget(fathom_sim_line_t *line)
+{
+    uint8_t bytes[16];
+    while (fathom_sim_transmit(line, board.clock.now_us, bytes, sizeof bytes) != 0) continue;
+    line->lost = false; /* no UART was there to lose them */
+}
+
+static void on_select(void *ctx, bool high)
+{
+    (void)ctx;
+    fathom_sim_line_t *const line = high ? &a05_line : &a16_line;
+    turns++;
+    board_sync(&board);
+    forget(line);
+    board_join_line(&board, line);
+}
+
+static void start(uint32_t a16_period_us, uint32_t a05_period_us)
+{
+    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    assert_true(board_start(&board, "a16_a05_auto"));
+    fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_UART,
+                                                         .scene = fathom_sim_fixed(&a16_scene),
+                                                         .period_us = a16_period_us});
+    fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO,
+                                                         .scene = fathom_sim_fixed(&a05_scene),
+                                                         .period_us = a05_period_us});
+    fathom_sim_line_init(&a16_line, &settings, board.clock.now_us);
+    fathom_sim_line_init(&a05_line, &settings, board.clock.now_us);
+    a16_line.full_duplex = a05_line.full_duplex = true;
+    fathom_sim_attach(&a16_line, &a16.device, board.clock.now_us);
+    fathom_sim_attach(&a05_line, &a05.device, board.clock.now_us);
+    board_join_line(&board, &a16_line);
+    board_join_line(&board, &a05_line);
+    turns = 0;
+    assert_non_null(board_watch(&board, 'D', 4, true, on_select, NULL));
+    console_begin(&console, &board);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    a16_scene.value[0] = 1234;
+    memcpy(a05_scene.value, (const int32_t[4]){1000, 2000, 2047, 1339}, sizeof a05_scene.value);
+    start(0, 0);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+static void assert_says(const char *expected)
+{
+    assert_string_equal(console_line(&console, PATIENCE_US), expected);
+}
+
+static void both_are_printed_in_turn(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        assert_says("A16 1234 mm");
+        assert_says("A05 1 1000 mm");
+        assert_says("A05 2 2000 mm");
+        assert_says("A05 3 2047 mm");
+        assert_says("A05 4 1339 mm");
+    }
+    assert_true(turns >= 39);
+    /* A round ends with a frame of the A05; it may miss the one before that, while the A16 has its turn. */
+    assert_true(board.avr->cycle < 21ull * 600000 * BOARD_CYCLES_PER_US);
+}
+
+/* 511 mm held still is FF 01 FF FF, which reads 65281 mm out of step; and these four permuted are four good ones. With
+ * each phase of the two periods against each other a turn comes somewhere in the other's frame. */
+static void a_turn_in_the_middle_of_a_frame_gives_no_wrong_value(void **state)
+{
+    (void)state;
+    static const uint32_t periods_us[][2] = {
+        {13000, 29000}, {17100, 21700}, {33333, 27001}, {100000, 300000}};
+    a16_scene.value[0] = 511;
+    for (size_t i = 0; i < sizeof periods_us / sizeof *periods_us; i++) {
+        board_end(&board);
+        start(periods_us[i][0], periods_us[i][1]);
+        unsigned of_a16 = 0;
+        unsigned of_a05 = 0;
+        for (int lines = 0; lines < 200; lines++) {
+            static const char *const good[] = {"A16 511 mm", "A05 1 1000 mm", "A05 2 2000 mm",
+                                               "A05 3 2047 mm", "A05 4 1339 mm"};
+            const char *const text = console_line(&console, PATIENCE_US);
+            size_t which = 0;
+            while (which < 5 && strcmp(text, good[which]) != 0) which++;
+            if (which == 5) print_message("\"%s\"\n", text);
+            assert_in_range(which, 0, 4);
+            if (which == 0) of_a16++;
+            if (which == 4) of_a05++;
+        }
+        /* One line of the A16 to four of the A05, or to eight where another frame of it came while they left. */
+        assert_in_range(of_a16, 200 / 9, 200 / 5 + 1);
+        assert_in_range(of_a05, 200 / 5 - 1, 200 / 9 * 2 + 1);
+    }
+}
+
+/* Where frames follow each other without a pause, those of the A05 read 1339 2047 1000 2000 out of step by six, with a
+ * right sum. A turn in their midst is not the silence that would tell one from the other. */
+static void sensors_that_never_pause_are_silent_rather_than_wrong(void **state)
+{
+    (void)state;
+    board_end(&board);
+    a16_scene.value[0] = 511;
+    start(4167, 10417); /* 4 and 10 characters of 10 bits at 9600 baud, rounded up */
+    for (int lines = 0; lines < 8; lines++) {
+        const char *const text = console_line(&console, PATIENCE_US);
+        if (strcmp(text, "A16 error -7: silent") != 0) assert_string_equal(text, "A05 error -7: silent");
+    }
+}
+
+static void what_is_not_in_range_is_said_for_each_probe(void **state)
+{
+    (void)state;
+    a16_scene.value[0] = FATHOM_SIM_NO_TARGET;
+    a05_scene.value[2] = FATHOM_SIM_INTERFERENCE;
+    assert_says("A16 nothing in range");
+    assert_says("A05 1 1000 mm");
+    assert_says("A05 2 2000 mm");
+    assert_says("A05 3 disturbed");
+}
+
+static void power_off(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t us)
+{
+    board_sync(&board);
+    fathom_sim_power_cycle(line, device, us, board.clock.now_us);
+    board_plan(&board);
+}
+
+static void a_dead_one_is_said_to_be_silent_and_the_other_goes_on(void **state)
+{
+    (void)state;
+    assert_says("A16 1234 mm");
+    power_off(&a05_line, &a05.device, 20000000);
+    unsigned of_a16 = 0;
+    unsigned silent = 0;
+    const uint64_t begin_cycle = board.avr->cycle;
+    while (board.avr->cycle < begin_cycle + 18000000ull * BOARD_CYCLES_PER_US) {
+        const char *const text = console_line(&console, PATIENCE_US);
+        if (strcmp(text, "A16 1234 mm") == 0)
+            of_a16++;
+        else if (strcmp(text, "A05 error -7: silent") == 0)
+            silent++;
+        else
+            assert_string_equal(text, "A05 1 1000 mm"); /* no wrong one, and none that is old */
+    }
+    assert_in_range(of_a16, 15, 18); /* once in a second and a frame */
+    assert_in_range(silent, 4, 4);   /* each 4 s */
+    /* And when it lives again. */
+    unsigned lines = 0;
+    while (strcmp(console_line(&console, PATIENCE_US), "A05 4 1339 mm") != 0) assert_true(++lines < 12);
+}
+
+static void both_dead_are_both_said_to_be_silent(void **state)
+{
+    (void)state;
+    power_off(&a16_line, &a16.device, 60000000);
+    power_off(&a05_line, &a05.device, 60000000);
+    for (int i = 0; i < 3; i++) {
+        char first[CONSOLE_LINE];
+        strcpy(first, console_line(&console, PATIENCE_US));
+        const char *const second = console_line(&console, PATIENCE_US);
+        const bool is_a16_first = strcmp(first, "A16 error -7: silent") == 0;
+        assert_string_equal(is_a16_first ? first : second, "A16 error -7: silent");
+        assert_string_equal(is_a16_first ? second : first, "A05 error -7: silent");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(both_are_printed_in_turn, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_turn_in_the_middle_of_a_frame_gives_no_wrong_value, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(sensors_that_never_pause_are_silent_rather_than_wrong, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(what_is_not_in_range_is_said_for_each_probe, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_dead_one_is_said_to_be_silent_and_the_other_goes_on, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(both_dead_are_both_said_to_be_silent, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

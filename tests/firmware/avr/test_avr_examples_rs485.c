@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "board.h"
+#include "sim/hps167s.h"
+#include "sim/scene.h"
+
+/* The image of examples/avr/hps167s_rs485.c: three LEDs, each lit by a low pin, of what an HPS-167S sees. */
+enum { NEAR = 0, FAR = 1, ERROR = 2, LEDS = 3 };
+enum { PERIOD_US = 18519 }; /* 54 Hz */
+
+static board_t board;
+static fathom_sim_line_t line;
+static fathom_sim_hps167s_t hps;
+static fathom_sim_fixed_t scene;
+static bool lit[LEDS];
+static uint64_t changed_cycle;
+
+static void near_changed(void *ctx, bool high)
+{
+    (void)ctx;
+    lit[NEAR] = !high;
+    changed_cycle = board.avr->cycle;
+}
+
+static void far_changed(void *ctx, bool high)
+{
+    (void)ctx;
+    lit[FAR] = !high;
+    changed_cycle = board.avr->cycle;
+}
+
+static void error_changed(void *ctx, bool high)
+{
+    (void)ctx;
+    lit[ERROR] = !high;
+    changed_cycle = board.avr->cycle;
+}
+
+static void start(uint8_t warm_up_s)
+{
+    static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
+    memset(lit, 0, sizeof lit);
+    scene.value[0] = 3000;
+    assert_true(board_start(&board, "hps167s_rs485"));
+    fathom_sim_hps167s_init(
+        &hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene), .warm_up_s = warm_up_s});
+    fathom_sim_line_init(&line, &settings, board.clock.now_us);
+    fathom_sim_attach(&line, &hps.device, board.clock.now_us);
+    board_join_line(&board, &line);
+    board_join_driver(&board, 'D', 2);
+    board_watch(&board, 'B', 0, true, near_changed, NULL);
+    board_watch(&board, 'B', 1, true, far_changed, NULL);
+    board_watch(&board, 'B', 2, true, error_changed, NULL);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    start(0);
+    assert_true(board_run_us(&board, 200000));
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    assert_int_equal(board.cut_bytes, 0);
+    assert_int_equal(board.talked_over, 0);
+    board_end(&board);
+    return 0;
+}
+
+static void assert_lit(bool near, bool far, bool error)
+{
+    assert_int_equal(lit[NEAR], near);
+    assert_int_equal(lit[FAR], far);
+    assert_int_equal(lit[ERROR], error);
+}
+
+static void far_is_lit_while_nothing_is_near(void **state)
+{
+    (void)state;
+    assert_lit(false, true, false);
+    scene.value[0] = FATHOM_SIM_NO_TARGET;
+    assert_true(board_run_us(&board, 1000000));
+    assert_lit(false, true, false);
+}
+
+/* How long until an LED changes, in periods of the sensor, rounded to the nearest. */
+static unsigned periods_until_change(void)
+{
+    const uint64_t begin_cycle = board.avr->cycle;
+    changed_cycle = 0;
+    for (unsigned ms = 0; changed_cycle == 0 && ms < 1000; ms++) assert_true(board_run_us(&board, 1000));
+    assert_true(changed_cycle != 0);
+    return (unsigned)((changed_cycle - begin_cycle) / (BOARD_CYCLES_PER_US * PERIOD_US));
+}
+
+static void near_is_lit_after_three_nearer_ones_and_far_after_five_farther_ones(void **state)
+{
+    (void)state;
+    scene.value[0] = 1499;
+    assert_in_range(periods_until_change(), 2, 3);
+    assert_lit(true, false, false);
+    scene.value[0] = 1501;
+    assert_in_range(periods_until_change(), 4, 5);
+    assert_lit(false, true, false);
+}
+
+static void two_nearer_ones_light_nothing(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 20; i++) {
+        scene.value[0] = i % 3 == 2 ? 3000 : 100;
+        assert_true(board_run_us(&board, PERIOD_US));
+        assert_lit(false, true, false);
+    }
+}
+
+static void it_asks_54_times_a_second(void **state)
+{
+    (void)state;
+    const uint32_t before = hps.device.counters.answered;
+    assert_true(board_run_us(&board, 1000000));
+    assert_in_range(hps.device.counters.answered - before, 53, 54);
+    assert_int_equal(hps.device.counters.torn, 0);
+    assert_int_equal(hps.device.counters.crc_errors, 0);
+    assert_int_equal(hps.device.counters.unserved, 0);
+}
+
+static void a_dead_sensor_lights_the_error_alone_until_it_answers_again(void **state)
+{
+    (void)state;
+    /* Beyond its warm-up, 5 s and a time-out, in which silence is no error. */
+    assert_true(board_run_us(&board, 6000000));
+    assert_lit(false, true, false);
+    board_sync(&board);
+    fathom_sim_power_cycle(&line, &hps.device, 10000000, board.clock.now_us);
+    board_plan(&board);
+    assert_true(board_run_us(&board, 2000000)); /* two attempts of 500 ms each */
+    assert_lit(false, false, true);
+    assert_true(board_run_us(&board, 20000000));
+    assert_lit(false, true, false);
+}
+
+static void a_sensor_that_says_it_is_broken_lights_the_error(void **state)
+{
+    (void)state;
+    assert_true(board_run_us(&board, 6000000));
+    scene.value[0] = FATHOM_SIM_FAULT;
+    assert_true(board_run_us(&board, 100000));
+    assert_lit(false, false, true);
+    scene.value[0] = 1000;
+    assert_true(board_run_us(&board, 100000));
+    assert_lit(true, false, false);
+}
+
+static void while_it_warms_up_nothing_is_lit(void **state)
+{
+    (void)state;
+    board_end(&board);
+    start(5);
+    for (int i = 0; i < 49; i++) {
+        assert_true(board_run_us(&board, 100000));
+        assert_lit(false, false, false);
+    }
+    assert_true(board_run_us(&board, 2000000));
+    assert_lit(false, true, false);
+}
+
+static void a_single_damaged_answer_is_no_error(void **state)
+{
+    (void)state;
+    assert_true(board_run_us(&board, 6000000));
+    for (int i = 0; i < 10; i++) {
+        /* A byte that nobody sent, somewhere in the cycle. */
+        usart_arrive(&board.usart, 0x55, FATHOM_RX_PARITY);
+        changed_cycle = 0;
+        assert_true(board_run_us(&board, 101000));
+        assert_lit(false, true, false);
+        assert_int_equal(changed_cycle, 0);
+    }
+}
+
+static void it_sleeps_most_of_the_time(void **state)
+{
+    (void)state;
+    const uint64_t asleep_cycles = board.asleep_cycles;
+    const uint64_t begin_cycle = board.avr->cycle;
+    assert_true(board_run_us(&board, 1000000));
+    assert_true((board.asleep_cycles - asleep_cycles) * 10 > (board.avr->cycle - begin_cycle) * 8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(far_is_lit_while_nothing_is_near, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(near_is_lit_after_three_nearer_ones_and_far_after_five_farther_ones,
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(two_nearer_ones_light_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_asks_54_times_a_second, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_dead_sensor_lights_the_error_alone_until_it_answers_again, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_sensor_that_says_it_is_broken_lights_the_error, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(while_it_warms_up_nothing_is_lit, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_single_damaged_answer_is_no_error, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_sleeps_most_of_the_time, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
