@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "board.h"
+#include "profile.h"
+#include "sim/a05.h"
+#include "sim/a16.h"
+#include "sim/hps167s.h"
+#include "sim/scene.h"
+
+/*
+ * What the port and the library cost on an ATmega328P at 16 MHz, as lines "figure NAME VALUE UNIT" for figures.py.
+ * Cycles of interrupts go from the vector to the end of reti, without the 4 of their entry.
+ */
+enum { GPIOR0 = 0x3E, READINGS = 200 };
+
+static board_t board;
+static profile_t profile;
+static fathom_sim_line_t line;
+static fathom_sim_fixed_t scene = {{1000, 1000, 1000, 1000}};
+
+static void give_up(const char *what)
+{
+    fprintf(stderr, "%s\n", what);
+    exit(EXIT_FAILURE);
+}
+
+static void figure(const char *name, double value, const char *unit)
+{
+    printf(strcmp(unit, "%") == 0 ? "figure avr_%s %.2f %s\n" : "figure avr_%s %.0f %s\n", name, value, unit);
+}
+
+/* `option`: what the image finds in GPIOR0. */
+static void start(const char *image, uint8_t option)
+{
+    if (!board_start(&board, image)) give_up(image);
+    board.avr->data[GPIOR0] = option;
+}
+
+/* A device, as `settings` have it, behind a transceiver. */
+static void join(fathom_sim_device_t *device, const fathom_line_settings_t *settings)
+{
+    fathom_sim_line_init(&line, settings, board.clock.now_us);
+    fathom_sim_attach(&line, device, board.clock.now_us);
+    device->settings = *settings; /* also one that it cannot be set to */
+    board_join_line(&board, &line);
+    board_join_driver(&board, 'D', 3);
+}
+
+/* So many records of kind 1, and none of any other. */
+static void run_readings(int count)
+{
+    while (count-- != 0) {
+        const board_record_t *const record = board_next_record(&board, 1000000);
+        if (record == NULL || record->kind != 1) give_up("a reading failed");
+    }
+}
+
+/* ---- interrupts ---- */
+
+static uint32_t longest[PROFILE_VECTORS];
+
+static void note_interrupts(void)
+{
+    for (int i = 0; i < PROFILE_VECTORS; i++)
+        if (profile.interrupts[i].longest_cycles > longest[i])
+            longest[i] = profile.interrupts[i].longest_cycles;
+}
+
+static void show_interrupts(void)
+{
+    figure("receive_interrupt", longest[PROFILE_USART_RECEIVE], "cycles");
+    figure("empty_interrupt", longest[PROFILE_USART_EMPTY], "cycles");
+    figure("transmit_interrupt", longest[PROFILE_USART_TRANSMIT], "cycles");
+    figure("overflow_interrupt", longest[PROFILE_TIMER1_OVERFLOW], "cycles");
+    figure("sleep_interrupt", longest[PROFILE_TIMER1_COMPARE_B], "cycles");
+    figure("capture_interrupt", longest[PROFILE_TIMER1_CAPTURE], "cycles");
+    figure("int0_interrupt", longest[PROFILE_INT0], "cycles");
+}
+
+/* Pulses by both ways at once, with an edge just before the overflow of the timer, and glitches. */
+static void measure_pulses(void)
+{
+    enum { US = BOARD_CYCLES_PER_US, PERIOD = 65536 * 8 };
+    start("pulses", 0);
+    profile_begin(&profile, &board);
+    board_run_us(&board, 1000);
+    for (uint64_t i = 1; i < 200; i++) {
+        const uint64_t from = board.avr->cycle / PERIOD * PERIOD + 2 * PERIOD + 1000 + 10 * i;
+        const uint64_t width = i % 2 != 0 ? 3000 * US : i * US / 2;
+        for (int pin = 0; pin < 2; pin++) {
+            board_drive_at(&board, pin == 0 ? 'B' : 'D', pin == 0 ? 0 : 2, true, from);
+            board_drive_at(&board, pin == 0 ? 'B' : 'D', pin == 0 ? 0 : 2, false, from + width);
+        }
+        board_run_us(&board, 80000);
+        usart_arrive(&board.usart, 0x55, 0);
+    }
+    note_interrupts();
+    board_end(&board);
+}
+
+/* ---- polling an HPS-167S at its pace ---- */
+
+static void measure_share(uint8_t is_fast)
+{
+    static fathom_sim_hps167s_t hps;
+    const fathom_line_settings_t settings = {is_fast ? 115200 : 9600, FATHOM_PARITY_EVEN, 1};
+    start("measure_hps167s", is_fast);
+    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
+    join(&hps.device, &settings);
+    run_readings(2);
+    profile_begin(&profile, &board);
+    const profile_cost_t *const poll = profile_function(&profile, "fathom_line_poll");
+    const uint64_t begin_cycle = board.avr->cycle;
+    run_readings(READINGS);
+    const double cycles = (double)(board.avr->cycle - begin_cycle);
+    const double awake = (double)profile_awake_cycles(&profile);
+    if (awake + (double)profile.asleep_cycles != cycles) give_up("cycles were lost");
+    figure(is_fast ? "share_115200" : "share_9600", 100 * awake / cycles, "%");
+    if (is_fast) {
+        printf("%.1f readings a second, %.0f cycles awake for each\n", (double)READINGS * BOARD_HZ / cycles,
+               awake / READINGS);
+        figure("poll_shortest", poll->shortest_cycles, "cycles");
+        figure("poll_longest", poll->longest_cycles, "cycles");
+    }
+    note_interrupts();
+    board_end(&board);
+}
+
+/* ---- bus time ---- */
+
+static double character_us(const fathom_line_settings_t *settings)
+{
+    return (settings->parity == FATHOM_PARITY_NONE ? 10 : 11) * 1e6 / settings->baud;
+}
+
+/* t3.5 as the specification has it (MODBUS over Serial Line 2.5.1.1). */
+static double silence_us(const fathom_line_settings_t *settings)
+{
+    return settings->baud > 19200 ? 1750 : 3.5 * character_us(settings);
+}
+
+/*
+ * From the first start bit of a request to that of the next, against what the line allows. That is the request at
+ * this chip's rate; t3.5, in which the device learns that it has ended, and the device's own time; the answer; and
+ * t3.5. The worst of them, in us and in percent.
+ */
+typedef struct {
+    double over_us;
+    double over_percent;
+} bus_t;
+
+static bus_t bus_time(const fathom_line_settings_t *settings, uint8_t answer)
+{
+    enum { REQUEST = 8 };
+    const double us = BOARD_CYCLES_PER_US;
+    const uint32_t per_exchange = REQUEST + answer;
+    bus_t worst = {-1000, -100};
+    fathom_line_settings_t chip = *settings;
+    chip.baud = usart_settings(&board.usart).baud;
+    if (board.bytes_seen > BOARD_BYTES) give_up("more bytes on the wire than are kept");
+    /* The first request finds a measurement that has waited for it: the pace begins with the third. */
+    for (uint32_t n = 2 * per_exchange; n + per_exchange < board.bytes_seen; n += per_exchange) {
+        const board_byte_t *const b = &board.bytes[n];
+        if (!b[0].from_here || !b[REQUEST - 1].from_here || b[REQUEST].from_here ||
+            b[per_exchange - 1].from_here || !b[per_exchange].from_here)
+            give_up("the bytes on the wire are not as expected");
+        const double device = (double)(b[REQUEST].begin_cycle - b[REQUEST - 1].end_cycle) / us;
+        const double answered = (double)(b[per_exchange - 1].end_cycle - b[REQUEST].begin_cycle) / us;
+        const double silent = (double)(b[per_exchange].begin_cycle - b[per_exchange - 1].end_cycle) / us;
+        const double allowed = REQUEST * character_us(&chip) + device + answered + silence_us(settings);
+        const double over = (double)(b[per_exchange].begin_cycle - b[0].begin_cycle) / us - allowed;
+        if (silent < silence_us(settings)) give_up("t3.5 was not kept");
+        if (over > worst.over_us) worst.over_us = over;
+        if (100 * over / allowed > worst.over_percent) worst.over_percent = 100 * over / allowed;
+    }
+    return worst;
+}
+
+/* The device's own time is its datasheet's: an HPS-167S has a measurement 54 times a second, a probe of an A05 takes
+ * about 100 ms. The image is a bare modbus_client that asks again at once, with no driver and no pace of one. */
+static bus_t measure_bus(uint8_t rate, bool is_a05)
+{
+    static const uint32_t rates[] = {9600, 19200, 57600, 115200};
+    static fathom_sim_hps167s_t hps;
+    static fathom_sim_a05_t a05;
+    const fathom_line_settings_t settings = {rates[rate], is_a05 ? FATHOM_PARITY_NONE : FATHOM_PARITY_EVEN,
+                                             1};
+    start("measure_client", (uint8_t)(rate | (is_a05 ? 4 : 0)));
+    if (is_a05) {
+        fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_MODBUS,
+                                                             .scene = fathom_sim_fixed(&scene)});
+        join(&a05.device, &settings);
+    } else {
+        fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
+        join(&hps.device, &settings);
+    }
+    profile_begin(&profile, &board);
+    const profile_cost_t *const crc = profile_function(&profile, "fathom_crc16");
+    run_readings(60);
+    const bus_t bus = bus_time(&settings, is_a05 ? 7 : 13);
+    char name[32];
+    snprintf(name, sizeof name, "bus_%s_%lu", is_a05 ? "a05" : "hps167s", (unsigned long)rates[rate]);
+    figure(name, bus.over_percent, "%");
+    /* Of 6 bytes of a request, and of 11 of an answer. */
+    if (rate == 3 && !is_a05)
+        figure("crc_byte", (crc->longest_cycles - crc->shortest_cycles) / 5.0, "cycles");
+    note_interrupts();
+    board_end(&board);
+    return bus;
+}
+
+static void measure_all_buses(void)
+{
+    double over_us = 0;
+    for (uint8_t i = 0; i < 8; i++) {
+        const bus_t bus = measure_bus(i % 4, i >= 4);
+        if (bus.over_us > over_us) over_us = bus.over_us;
+    }
+    figure("bus_over", over_us, "us");
+}
+
+/* ---- stack ---- */
+
+static void show_stack(const char *image)
+{
+    char name[32];
+    snprintf(name, sizeof name, "stack_%s", image);
+    figure(name, profile_deepest_stack(&profile), "B");
+    board_end(&board);
+}
+
+static void measure_stacks(void)
+{
+    static fathom_sim_hps167s_t hps;
+    const fathom_line_settings_t rs485 = {19200, FATHOM_PARITY_EVEN, 1};
+    start("hps167s_rs485", 0);
+    profile_begin(&profile, &board);
+    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
+    fathom_sim_line_init(&line, &rs485, board.clock.now_us);
+    fathom_sim_attach(&line, &hps.device, board.clock.now_us);
+    board_join_line(&board, &line);
+    board_join_driver(&board, 'D', 2);
+    board_run_us(&board, 2000000);
+    show_stack("hps167s_rs485");
+
+    static fathom_sim_a16_t a16;
+    static fathom_sim_pins_t pins;
+    const fathom_line_settings_t ttl = {9600, FATHOM_PARITY_NONE, 1};
+    start("a16_pulse", 0);
+    profile_begin(&profile, &board);
+    fathom_sim_a16_init(
+        &a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_PWM, .scene = fathom_sim_fixed(&scene)});
+    fathom_sim_line_init(&line, &ttl, board.clock.now_us);
+    fathom_sim_attach(&line, &a16.device, board.clock.now_us);
+    fathom_sim_pins_init(&pins, &a16.device, &line, &board.clock);
+    board_join_pins(&board, &pins, "B1", "B0", NULL);
+    board_run_us(&board, 3000000);
+    show_stack("a16_pulse");
+
+    static fathom_sim_a05_t a05;
+    start("a16_a05_auto", 0);
+    profile_begin(&profile, &board);
+    fathom_sim_a05_init(
+        &a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&scene)});
+    fathom_sim_line_init(&line, &ttl, board.clock.now_us);
+    line.full_duplex = true;
+    fathom_sim_attach(&line, &a05.device, board.clock.now_us);
+    board_join_line(&board, &line);
+    board_run_us(&board, 9000000);
+    show_stack("a16_a05_auto");
+}
+
+int main(void)
+{
+    measure_pulses();
+    measure_share(0);
+    measure_share(1);
+    measure_all_buses();
+    show_interrupts();
+    measure_stacks();
+    return EXIT_SUCCESS;
+}

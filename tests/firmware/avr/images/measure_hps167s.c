@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * An HPS-167S, asked by its driver as fast as it measures, 54 times a second, at 9600 baud, or at 115200 where GPIOR0
+ * is 1 when it starts; 8E1, DE is PD3. It sleeps in between. For the share of its time that the chip is awake. Each
+ * reading is a record without bytes, of kind 1, and each error one of kind 2.
+ */
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
+#include "fathom/hps167s.h"
+#include "fathom/modbus_client.h"
+#include "fathom/wait.h"
+#include "fathom_avr.h"
+
+static uint8_t sending[8];
+static fathom_avr_usart_config_t usart = {.request = sending,
+                                          .request_size = sizeof sending,
+                                          .driver = {&PORTD, _BV(PD3)},
+                                          .line = {9600, FATHOM_PARITY_EVEN, 1}};
+static uint8_t frame[13];
+static fathom_line_config_t line_config = {
+    .uart = &fathom_avr_usart0, .clock = &fathom_avr_clock, .frame = frame, .frame_size = sizeof frame};
+static fathom_line_t line;
+static fathom_modbus_t modbus;
+static fathom_hps167s_t gate;
+
+int main(void)
+{
+    if (GPIOR0 == 1) usart.line.baud = 115200;
+    line_config.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
+    fathom_avr_clock_begin();
+    if (!fathom_avr_usart0_begin(&usart)) return 1;
+    if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 1;
+    modbus = fathom_modbus_client(&line);
+    const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &fathom_avr_clock};
+    if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) return 1;
+    sei();
+    const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
+    for (;;) {
+        fathom_sample_t sample;
+        const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, NULL);
+        GPIOR1 = status == FATHOM_READY ? 1 : 2;
+    }
+}
