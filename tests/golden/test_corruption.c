@@ -66,7 +66,7 @@ static void every_single_bit_error_in_a_modbus_frame_is_refused(void **state)
 
 static void every_single_byte_error_in_a_modbus_frame_is_refused(void **state)
 {
-    unsigned tried = 0;
+    uint32_t tried = 0;
     (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
@@ -80,7 +80,7 @@ static void every_single_byte_error_in_a_modbus_frame_is_refused(void **state)
             bytes[at] = row->bytes[at];
         }
     }
-    assert_int_equal(tried, 255 * ALL_BYTES);
+    assert_int_equal(tried, (uint32_t)255 * ALL_BYTES);
 }
 
 /* Whoever looks for requests on the line sees answers too, and one of their damaged beginnings in 65536 has a
@@ -117,7 +117,7 @@ static void every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused(v
         uint8_t bytes[VECTOR_BYTES];
         for (unsigned at = 0; at + 1u != row->length; at++) {
             memcpy(bytes, row->bytes, sizeof bytes);
-            for (unsigned change = 1; change != 65536; change += 257) {
+            for (uint32_t change = 1; change != 65536; change += 257) {
                 bytes[at] = (uint8_t)(row->bytes[at] ^ change >> 8);
                 bytes[at + 1] = (uint8_t)(row->bytes[at + 1] ^ (change & 0xFF));
                 assert_int_not_equal(fathom_crc16(bytes, row->length), 0);

@@ -172,7 +172,7 @@ static void the_appendix_has_197_entries_of_256_in_auchcrchi(void **state)
 static void our_crc_is_that_of_the_polynomial_for_every_pair_of_bytes(void **state)
 {
     (void)state;
-    for (unsigned i = 0; i != 65536; i++) {
+    for (uint32_t i = 0; i != 65536; i++) {
         const uint8_t pair[] = {(uint8_t)(i >> 8), (uint8_t)(i & 0xFF)};
         assert_int_equal(fathom_crc16(pair, 2), bitwise(pair, 2));
     }

@@ -53,7 +53,7 @@ static void of_all_distances_only_255_mm_can_look_like_a_configuration(void **st
     unsigned distances = 0;
     (void)state;
     start(0);
-    for (unsigned raw = 0; raw != 65536; raw++) {
+    for (uint32_t raw = 0; raw != 65536; raw++) {
         bool may_be = false;
         for (unsigned code = 0; code != 256; code++) {
             const uint16_t registers[4] = {(uint16_t)raw, 0x0500, 0x0000, (uint16_t)(0xB400 + code)};
@@ -78,7 +78,7 @@ static void the_reconnect_time_lets_one_frame_in_18_through(void **state)
     unsigned passed = 0;
     (void)state;
     start(0);
-    for (unsigned ms = 0; ms != 65536; ms++) {
+    for (uint32_t ms = 0; ms != 65536; ms++) {
         const uint16_t registers[4] = {0x00FF, 0x0500, (uint16_t)(ms >> 8), (uint16_t)((ms & 0xFF) << 8 | 1)};
         const bool may_be = fathom_hps167s_may_be_configuration(&hps, registers);
         assert_int_equal(may_be, ms % 18 == 0);

@@ -31,8 +31,11 @@ static int fake_write(void *ctx, const uint8_t *bytes, size_t length)
     if (fake->write_busy) return 0;
     if (fake->write_torn) return (int)length - 1;
     assert(length >= 1 && length <= 255 && fake->written < FAKE_WRITES);
+    const fake_write_t *const before = fake->written != 0 ? &fake->writes[fake->written - 1] : NULL;
+    const size_t used = before != NULL ? (size_t)(before->bytes - fake->write_bytes) + before->length : 0;
+    assert(length <= FAKE_WRITE_BYTES - used);
     fake_write_t *const write = &fake->writes[fake->written++];
-    memcpy(write->bytes, bytes, length);
+    write->bytes = memcpy(fake->write_bytes + used, bytes, length);
     write->length = length;
     write->at_us = fake->now_us;
     write->baud = fake->settings.baud;
@@ -83,10 +86,12 @@ void fake_init(fake_t *fake)
 
 void fake_receive_rx(fake_t *fake, uint32_t in_us, const uint8_t *bytes, size_t length, fathom_rx_t rx)
 {
-    assert(fake->last < FAKE_CHUNKS && length <= FAKE_CHUNK);
+    const fake_chunk_t *const before = fake->last != 0 ? &fake->chunks[fake->last - 1] : NULL;
+    const size_t used = before != NULL ? (size_t)(before->bytes - fake->chunk_bytes) + before->length : 0;
+    assert(fake->last < FAKE_CHUNKS && length <= FAKE_CHUNK_BYTES - used);
     fake_chunk_t *const chunk = &fake->chunks[fake->last++];
     chunk->at_us = fake->now_us + in_us;
-    memcpy(chunk->bytes, bytes, length);
+    chunk->bytes = memcpy(fake->chunk_bytes + used, bytes, length);
     chunk->length = length;
     chunk->taken = 0;
     chunk->rx = rx;

@@ -13,18 +13,21 @@
  * scheduled for a time and handed over by the first read at or after it, one scheduled chunk a read; what is
  * written is kept, and leaves at byte_us a byte.
  */
-enum { FAKE_CHUNKS = 256, FAKE_CHUNK = 256, FAKE_WRITES = 64 };
+enum { FAKE_CHUNKS = 128, FAKE_WRITES = 64 };
+
+/* The bytes of all of them together: few are long, and a microcontroller runs these tests too. */
+enum { FAKE_CHUNK_BYTES = 1024, FAKE_WRITE_BYTES = 1024 };
 
 typedef struct {
     uint32_t at_us; /* may be read from then on */
-    uint8_t bytes[FAKE_CHUNK];
+    const uint8_t *bytes;
     size_t length;
     size_t taken;
     fathom_rx_t rx; /* handed over with the chunk */
 } fake_chunk_t;
 
 typedef struct {
-    uint8_t bytes[FAKE_CHUNK];
+    const uint8_t *bytes;
     size_t length;
     uint32_t at_us;
     uint32_t baud; /* that was set then */
@@ -39,8 +42,10 @@ typedef struct {
     fake_chunk_t chunks[FAKE_CHUNKS];
     size_t first;
     size_t last;
+    uint8_t chunk_bytes[FAKE_CHUNK_BYTES];
     fake_write_t writes[FAKE_WRITES];
-    size_t written;
+    size_t written; /* a test may set it to 0 */
+    uint8_t write_bytes[FAKE_WRITE_BYTES];
     unsigned reads;
     unsigned set_lines;
     unsigned breaks; /* begun so far */

@@ -7,7 +7,8 @@
 #include "fathom/a16_controlled.h"
 
 /* auto_rig.h with an A16 that is triggered, by the fake UART's break unless the config names the pin. */
-enum { MS = 1000, FRAME_US = 4 * RIG_BYTE_US };
+#define MS ((int32_t)1000) /* an int may have 16 bits */
+enum { FRAME_US = 4 * RIG_BYTE_US };
 
 typedef struct {
     fathom_a16_controlled_config_t config; /* the test's to change before it starts anew */

@@ -51,7 +51,7 @@ static void answer(const row_t *row)
 fathom_status_t desk_play(fathom_status_t (*command)(void), const row_t *rows, unsigned count)
 {
     unsigned asked = 0;
-    for (unsigned i = 0; i != PATIENCE; i++) {
+    for (uint32_t i = 0; i != PATIENCE; i++) {
         desk.fake.now_us += desk.step_us;
         const fathom_status_t status = command();
         if (status != FATHOM_PENDING) {

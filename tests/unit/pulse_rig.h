@@ -6,7 +6,7 @@
 #include "fathom/pulse.h"
 
 /* A meter on fake pins, with what its polls said. */
-enum { MS = 1000 };
+#define MS ((int32_t)1000) /* an int may have 16 bits */
 
 typedef struct {
     fake_t fake;

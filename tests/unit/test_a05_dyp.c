@@ -52,7 +52,7 @@ static void assert_nothing_for(uint32_t us)
 /* Goes on until the request after `written` others is on its way; returns when that was. */
 static uint32_t until_written(size_t written)
 {
-    for (unsigned i = 0; bench.fake.written <= written; i++) {
+    for (uint32_t i = 0; bench.fake.written <= written; i++) {
         assert_true(i < 100000);
         assert_nothing_for(STEP_US);
     }

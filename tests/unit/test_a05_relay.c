@@ -2,7 +2,8 @@
 #include "contact_rig.h"
 #include "fathom/a05_relay.h"
 
-enum { MS = 1000, START_US = 1000 };
+#define MS ((int32_t)1000) /* an int may have 16 bits */
+enum { START_US = 1000 };
 
 static fathom_a05_relay_config_t config;
 static fathom_a05_relay_t relay;

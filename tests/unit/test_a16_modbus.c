@@ -250,7 +250,7 @@ static void the_sequence_counts_answers_and_wraps(void **state)
 {
     (void)state;
     start();
-    for (unsigned i = 1; i <= 65537; i++) {
+    for (uint32_t i = 1; i <= 65537; i++) {
         assert_int_equal(ask_and_answer(754), FATHOM_READY);
         assert_int_equal(sample.sequence, i & 0xFFFF);
         fake.submits = 0;

@@ -9,7 +9,8 @@
 #include "fake_pin.h"
 #include "fathom/a16_pwm.h"
 
-enum { MS = 1000, GUARD = 0xA5 };
+#define MS ((int32_t)1000) /* an int may have 16 bits */
+enum { GUARD = 0xA5 };
 
 static fake_t fake;
 static fake_pin_t pin;

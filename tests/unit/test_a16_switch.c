@@ -3,7 +3,8 @@
 #include "fathom/a16_switch.h"
 #include "fathom/modbus_client.h"
 
-enum { MS = 1000, START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000, SETTLE_US = 20000 };
+#define MS ((int32_t)1000) /* an int may have 16 bits */
+enum { START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000, SETTLE_US = 20000 };
 
 /* A16 6(4), the last two examples: threshold to 2000 mm, polarity to negative. The answers equal the requests. */
 static const uint8_t threshold_2000[8] = {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF};

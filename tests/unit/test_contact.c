@@ -2,7 +2,8 @@
 #include "contact_rig.h"
 #include "fathom/contact.h"
 
-enum { MS = 1000, START_US = 1000, SETTLE_US = 20000 };
+#define MS ((int32_t)1000) /* an int may have 16 bits */
+enum { START_US = 1000, SETTLE_US = 20000 };
 
 /* A fine loop, one of 20 ms, and what lies between and beyond. */
 static const uint32_t steps_us[] = {50, 1000, 7000, 20000, 33000};

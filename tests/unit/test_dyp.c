@@ -39,7 +39,7 @@ static void assert_sample_untouched(void)
  * everything else cannot be. */
 typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE } meaning_t;
 
-static meaning_t meaning_of(unsigned value, unsigned min_mm, unsigned max_mm)
+static meaning_t meaning_of(uint32_t value, unsigned min_mm, unsigned max_mm)
 {
     switch (value) {
     case 0:
@@ -53,7 +53,7 @@ static meaning_t meaning_of(unsigned value, unsigned min_mm, unsigned max_mm)
     }
 }
 
-static void assert_next_means(unsigned value, meaning_t meaning)
+static void assert_next_means(uint32_t value, meaning_t meaning)
 {
     memset(&sample, GUARD, sizeof sample);
     values[0] = (uint16_t)value;
@@ -105,7 +105,7 @@ static void every_value_means_what_the_rule_says(void **state)
         answer.window.min_mm = w->min_mm;
         answer.window.max_mm = w->max_mm;
         assert_int_equal(fathom_dyp_answer_init(&answer, w->default_max_mm), FATHOM_READY);
-        for (unsigned value = 0; value != 65536; value++) {
+        for (uint32_t value = 0; value != 65536; value++) {
             const meaning_t meaning = meaning_of(value, w->rule_min_mm, w->rule_max_mm);
             assert_true(fathom_dyp_plausible(&answer.window, (uint16_t)value) == (meaning != CANNOT_BE));
             assert_next_means(value, meaning);

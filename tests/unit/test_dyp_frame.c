@@ -45,7 +45,7 @@ static void the_examples_of_the_datasheets_go_both_ways(void **state)
 static void every_value_of_an_A16_goes_both_ways(void **state)
 {
     (void)state;
-    for (unsigned mm = 0; mm != 65536; mm++) {
+    for (uint32_t mm = 0; mm != 65536; mm++) {
         const uint8_t expected[] = {0xFF, (uint8_t)(mm / 256), (uint8_t)(mm % 256),
                                     (uint8_t)((255 + mm / 256 + mm % 256) % 256)};
         const uint16_t value = (uint16_t)mm;
@@ -63,7 +63,7 @@ static void every_value_of_every_probe_of_an_A05_goes_both_ways(void **state)
 {
     (void)state;
     for (unsigned probe = 0; probe != 4; probe++) {
-        for (unsigned mm = 0; mm < 65536; mm += 7) {
+        for (uint32_t mm = 0; mm < 65536; mm += 7) {
             uint16_t values[4] = {0, 0, 0, 0};
             uint16_t decoded[4] = {1, 1, 1, 1};
             uint8_t expected[10] = {0xFF};

@@ -251,7 +251,7 @@ static void every_command_from_every_address_goes_both_ways(void **state)
 static void every_value_of_one_probe_goes_both_ways(void **state)
 {
     (void)state;
-    for (unsigned mm = 0; mm != 65536; mm++) {
+    for (uint32_t mm = 0; mm != 65536; mm++) {
         const uint8_t high = (uint8_t)(mm / 256);
         const uint8_t low = (uint8_t)(mm % 256);
         const uint8_t expected[] = {0x55, 0xAA, 0x01, 0x10, high, low, (uint8_t)(0x10 + high + low)};

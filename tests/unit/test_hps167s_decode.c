@@ -21,7 +21,7 @@ static void assert_guard(const void *object, size_t size)
 }
 
 /* The rule, stated apart: 1..30000 a distance, 65530..65534 nothing in range, 65535 a fault, else it cannot be. */
-static int kind_of(unsigned raw)
+static int kind_of(uint32_t raw)
 {
     if (raw == 65535) return FATHOM_FAULT;
     if (raw / 10 == 6553) return FATHOM_NO_TARGET; /* 65530..65534, 65535 is gone */
@@ -33,7 +33,7 @@ static void every_distance_is_what_the_rule_says(void **state)
 {
     unsigned counted[4] = {0, 0, 0, 0};
     (void)state;
-    for (unsigned raw = 0; raw != 65536; raw++) {
+    for (uint32_t raw = 0; raw != 65536; raw++) {
         const uint16_t registers[4] = {(uint16_t)raw, 0xDCB2, 0x0742, 0x1234};
         const int kind = kind_of(raw);
         memset(&sample, GUARD, sizeof sample);

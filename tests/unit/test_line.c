@@ -257,7 +257,7 @@ static void a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clo
 static void a_single_poll_across_the_wrap_sees_all_the_time_that_passed(void **state)
 {
     (void)state;
-    with_clock_at(0u - 20000);
+    with_clock_at((uint32_t)0 - 20000);
     ask_1_and_send(0);
     assert_true(bench.fake.now_us > 0x80000000u);
     run_in_steps(TIMEOUT_US, TIMEOUT_US);

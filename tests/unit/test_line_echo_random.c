@@ -102,7 +102,7 @@ static void exchange(bool echoes, uint32_t step_us)
     size_t seen = bench.fake.written;
     bool is_answered = false;
     submit(kind, value);
-    for (unsigned i = 0; status_of(&bench.request) == FATHOM_PENDING; i++) {
+    for (uint32_t i = 0; status_of(&bench.request) == FATHOM_PENDING; i++) {
         assert_true(i < 100000);
         run_in_steps(step_us, step_us);
         if (bench.fake.written == seen) continue;

@@ -61,7 +61,7 @@ static void ask_and_send(const fathom_modbus_question_t *question)
     pending_after(0, question);
 }
 
-static unsigned due(void) { return fathom_modbus_unit_due_us(&unit); }
+static uint32_t due(void) { return fathom_modbus_unit_due_us(&unit); }
 
 /* ---- setting up ---- */
 

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+#include <cmocka.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "console.h"
+
+static jmp_buf failed;
+static int is_running; /* a test, its set-up or what comes after it: there is somewhere to go */
+
+void print_message(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+}
+
+void print_error(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+}
+
+static void stop(const char *file, int line)
+{
+    printf("[   LINE   ] --- %s:%d: error: Failure!\n", file, line);
+    if (is_running) longjmp(failed, 1);
+}
+
+void stand_in_true(int holds, const char *what, const char *file, int line)
+{
+    if (holds) return;
+    printf("[  ERROR   ] --- %s\n", what);
+    stop(file, line);
+}
+
+/* Numbers in hexadecimal, by halves: not every printf knows 64 bits. */
+static void print_number(uintmax_t number)
+{
+    const unsigned long high = (unsigned long)((number >> 32) & 0xFFFFFFFF);
+    const unsigned long low = (unsigned long)(number & 0xFFFFFFFF);
+    if (high != 0)
+        printf("0x%lx%08lx", high, low);
+    else
+        printf("0x%lx", low);
+}
+
+void stand_in_equal(uintmax_t a, uintmax_t b, int wanted, const char *what, const char *file, int line)
+{
+    if ((a == b) == wanted) return;
+    printf("[  ERROR   ] --- %s: ", what);
+    print_number(a);
+    printf(", ");
+    print_number(b);
+    printf("\n");
+    stop(file, line);
+}
+
+void stand_in_range(uintmax_t a, uintmax_t least, uintmax_t most, const char *what, const char *file, int line)
+{
+    if (a >= least && a <= most) return;
+    printf("[  ERROR   ] --- %s: ", what);
+    print_number(a);
+    printf(" is not within ");
+    print_number(least);
+    printf(" and ");
+    print_number(most);
+    printf("\n");
+    stop(file, line);
+}
+
+void stand_in_memory(const void *a, const void *b, size_t size, int wanted, const char *file, int line)
+{
+    const unsigned char *const left = a;
+    const unsigned char *const right = b;
+    size_t at = 0;
+    while (at != size && left[at] == right[at]) at++;
+    if ((at == size) == wanted) return;
+    if (at == size)
+        printf("[  ERROR   ] --- %u bytes are the same\n", (unsigned)size);
+    else
+        printf("[  ERROR   ] --- byte %u: 0x%02x, 0x%02x\n", (unsigned)at, left[at], right[at]);
+    stop(file, line);
+}
+
+void stand_in_string(const char *a, const char *b, const char *file, int line)
+{
+    if (strcmp(a, b) == 0) return;
+    printf("[  ERROR   ] --- \"%s\" is not \"%s\"\n", a, b);
+    stop(file, line);
+}
+
+/* True when it passed. volatile: changed after setjmp, read after longjmp. */
+static int passes(const CMUnitTest *test)
+{
+    void *volatile state = test->initial_state;
+    volatile int is_set_up = 0;
+    volatile int good = 0;
+    is_running = 1;
+    if (setjmp(failed) == 0) {
+        void *now = state;
+        is_set_up = test->setup_func == NULL || test->setup_func(&now) == 0;
+        state = now;
+        if (is_set_up) test->test_func(&now);
+        state = now;
+        good = is_set_up;
+    }
+    if (is_set_up && test->teardown_func != NULL) {
+        if (setjmp(failed) == 0) {
+            void *now = state;
+            if (test->teardown_func(&now) != 0) good = 0;
+        } else {
+            good = 0;
+        }
+    }
+    is_running = 0;
+    return good;
+}
+
+int stand_in_run(const CMUnitTest *tests, size_t count)
+{
+    unsigned passed = 0;
+    console_open();
+    printf("[==========] Running %u test(s).\n", (unsigned)count);
+    for (size_t i = 0; i != count; i++) {
+        printf("[ RUN      ] %s\n", tests[i].name);
+        const int good = passes(&tests[i]);
+        printf("[  %s ] %s\n", good ? "     OK" : "FAILED ", tests[i].name);
+        passed += good != 0;
+    }
+    printf("[==========] %u test(s) run.\n", (unsigned)count);
+    printf("[  PASSED  ] %u test(s).\n", passed);
+    if (passed != count) printf("[  FAILED  ] %u test(s).\n", (unsigned)count - passed);
+    return (int)(count - passed);
+}
