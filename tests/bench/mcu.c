@@ -41,13 +41,3 @@ static uint32_t stub_now_us(void *ctx)
 
 const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL, NULL};
 const fathom_clock_t clock = {stub_now_us, NULL};
-
-int main(void)
-{
-    job_begin();
-    for (;;) {
-        job_read();
-        job_write_one();
-        job_write_many();
-    }
-}

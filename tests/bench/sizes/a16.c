@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+#include "programs.h"
+
+static fathom_a16_auto_t a16_auto;
+static fathom_a16_controlled_t a16_controlled;
+static fathom_a16_modbus_t a16_modbus;
+static fathom_a16_pwm_t a16_pwm;
+static fathom_a16_rs232_t a16_rs232;
+static fathom_a16_switch_t a16_switch;
+static fathom_edges_t edges;
+static fathom_capture_t edges_capture;
+
+fathom_sensor_t a16_auto_begin(void)
+{
+    static const fathom_a16_auto_config_t config = {.line = &line, .select = &pin};
+    line_begin();
+    fathom_a16_auto_init(&a16_auto, &config);
+    return fathom_a16_auto_sensor(&a16_auto);
+}
+
+void a16_auto_use(const fathom_sample_t *sample)
+{
+    outcome = sample->distance_mm;
+    outcome = (uint16_t)fathom_a16_auto_select(&a16_auto, argument != 0);
+}
+
+fathom_sensor_t a16_controlled_begin(void)
+{
+    static const fathom_a16_controlled_config_t config = {.line = &line, .trigger = &pin};
+    line_begin();
+    fathom_a16_controlled_init(&a16_controlled, &config);
+    return fathom_a16_controlled_sensor(&a16_controlled);
+}
+
+void a16_controlled_use(const fathom_sample_t *sample) { outcome = sample->distance_mm; }
+
+fathom_sensor_t a16_modbus_begin(void)
+{
+    static const fathom_a16_modbus_config_t config = {.modbus = &modbus, .clock = &clock};
+    modbus_begin();
+    fathom_a16_modbus_init(&a16_modbus, &config);
+    return fathom_a16_modbus_sensor(&a16_modbus);
+}
+
+void a16_modbus_use(const fathom_sample_t *sample)
+{
+    outcome = sample->distance_mm;
+    fathom_a16_modbus_power_on(&a16_modbus);
+}
+
+fathom_sensor_t a16_settings_begin(void) { return a16_modbus_begin(); }
+
+void a16_settings_use(const fathom_sample_t *sample)
+{
+    uint8_t address;
+    uint16_t threshold_mm;
+    fathom_a16_polarity_t polarity;
+    fathom_a16_value_t value;
+    fathom_sample_t once;
+    a16_modbus_use(sample);
+    outcome = (uint16_t)fathom_a16_measure(&a16_modbus, (fathom_a16_value_t)argument, &once);
+    outcome = once.distance_mm;
+    outcome = (uint16_t)fathom_a16_address(&a16_modbus, &address);
+    outcome = (uint16_t)fathom_a16_set_address(&a16_modbus, (uint8_t)argument);
+    outcome = (uint16_t)fathom_a16_set_operating_mode(&a16_modbus, (fathom_a16_operating_mode_t)argument);
+    outcome = (uint16_t)fathom_a16_switch_polarity(&a16_modbus, &polarity);
+    outcome = (uint16_t)fathom_a16_set_switch_polarity(&a16_modbus, (fathom_a16_polarity_t)argument);
+    outcome = (uint16_t)fathom_a16_switch_threshold_mm(&a16_modbus, &threshold_mm);
+    outcome = (uint16_t)fathom_a16_set_switch_threshold_mm(&a16_modbus, argument);
+    outcome = (uint16_t)fathom_a16_automatic_value(&a16_modbus, &value);
+    outcome = (uint16_t)fathom_a16_set_automatic_value(&a16_modbus, (fathom_a16_value_t)argument);
+}
+
+fathom_sensor_t a16_pwm_begin(void)
+{
+    static const fathom_a16_pwm_config_t config = {.clock = &clock, .capture = &capture, .trigger = &pin};
+    fathom_a16_pwm_init(&a16_pwm, &config);
+    return fathom_a16_pwm_sensor(&a16_pwm);
+}
+
+void a16_pwm_use(const fathom_sample_t *sample) { outcome = sample->distance_mm; }
+
+fathom_sensor_t a16_pwm_edges_begin(void)
+{
+    static const fathom_a16_pwm_config_t config = {
+        .clock = &clock, .capture = &edges_capture, .trigger = &pin};
+    fathom_edges_init(&edges, &pin);
+    edges_capture = fathom_edges_capture(&edges);
+    fathom_a16_pwm_init(&a16_pwm, &config);
+    return fathom_a16_pwm_sensor(&a16_pwm);
+}
+
+void a16_pwm_edges_use(const fathom_sample_t *sample)
+{
+    outcome = sample->distance_mm;
+    fathom_edges_feed(&edges, level != 0, argument);
+}
+
+fathom_sensor_t a16_rs232_begin(void)
+{
+    static const fathom_a16_auto_config_t config = {.line = &line};
+    const fathom_sensor_t sensor = a16_modbus_begin();
+    fathom_a16_auto_init(&a16_auto, &config);
+    fathom_a16_rs232_init(&a16_rs232, &a16_modbus, &a16_auto);
+    return argument != 0 ? fathom_a16_auto_sensor(&a16_auto) : sensor;
+}
+
+void a16_rs232_use(const fathom_sample_t *sample)
+{
+    fathom_sample_t first;
+    a16_modbus_use(sample);
+    outcome = (uint16_t)fathom_a16_rs232_return_to_automatic(&a16_rs232, &first);
+    outcome = first.distance_mm;
+    outcome = (uint16_t)fathom_a16_rs232_due_us(&a16_rs232);
+}
+
+fathom_sensor_t a16_switch_begin(void)
+{
+    static const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock};
+    fathom_a16_switch_init(&a16_switch, &config);
+    return fathom_a16_switch_sensor(&a16_switch);
+}
+
+void a16_switch_use(const fathom_sample_t *sample) { outcome = sample->kind; }
+
+fathom_sensor_t a16_switch_set_begin(void)
+{
+    static const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock, .line = &line};
+    a16_modbus_begin();
+    fathom_a16_switch_init(&a16_switch, &config);
+    return fathom_a16_switch_sensor(&a16_switch);
+}
+
+void a16_switch_set_use(const fathom_sample_t *sample)
+{
+    outcome = sample->kind;
+    outcome =
+        (uint16_t)fathom_a16_switch_set_polarity(&a16_switch, &a16_modbus, (fathom_a16_polarity_t)argument);
+    outcome = (uint16_t)fathom_a16_set_switch_threshold_mm(&a16_modbus, argument);
+}

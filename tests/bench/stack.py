@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: MIT
+"""The deepest stack below a function, out of the disassembly of a linked image.
+
+Every path through a function is walked with the depth of the stack at each instruction: push and pop, the pointer's
+own arithmetic, and calls, on AVR with the return address that they push. It is exact but for two things: at the jump
+table of a switch any instruction behind it may come next; and a call through a pointer leads wherever INDIRECT says,
+of what is linked. What it does not know makes it fail. Nothing of the user or the HAL is counted.
+"""
+import os
+import re
+
+from tools import ROOT, Failed, run
+
+# Where the indirect calls of src/ lead, by the text of the call: file:function of the library.
+SENSORS = ('a05_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_auto', 'dyp_modbus', 'hps167s', 'hps167s_auto')
+INDIRECT = {
+    'modbus->submit': ('modbus_client.c:seam_submit', 'dyp_client.c:seam_submit'),
+    'modbus->cancel': ('modbus.c:cancel',),
+    'modbus->cancel_unit': ('modbus.c:cancel_unit',),
+    'modbus->poll': ('modbus.c:poll',),
+    'modbus->due_us': ('modbus.c:due_us',),
+    'setting->read': ('a05_dyp.c:read_address', 'dyp_modbus.c:read', 'hps167s_settings.c:look'),
+    'base.poll': ('dyp_auto.c:poll',),
+    'base.due_us': ('dyp_auto.c:due_us',),
+}
+# The same for those that may also lead to the user's code, or nowhere; then nothing is added.
+PERHAPS = {
+    **dict.fromkeys(('x->protocol', 'line->protocol', 'exchange->protocol'),
+                    ('modbus_client.c:protocol', 'dyp_client.c:protocol')),
+    'sensor->poll': tuple(f'{name}.c:poll' for name in SENSORS),
+    'sensors->due_us': tuple(f'{name}.c:due_us' for name in SENSORS),
+    'listener->receive': ('stream.c:listen', 'a16_controlled.c:receive', 'hps167s_auto.c:receive'),
+    'capture->arm': ('edges.c:arm',),
+    'capture->take': ('edges.c:take',),
+    **dict.fromkeys(('uart->read', 'uart->write', 'uart->sent', 'uart->set_line', 'uart->set_break',
+                     'clock->now_us', 'pin->get', 'select->set', 'trigger->set'), ()),
+}
+CALL = re.compile(r'\w+(?:->|\.)\w+(?=\()')
+MOST = 4096  # deeper is a loop that pushes
+
+
+class Instruction:
+    """What an instruction does to the stack, and where it goes on."""
+
+    def __init__(self, text):
+        self.text = text
+        self.grow = 0         # of the stack, in bytes
+        self.target = None    # address that it jumps to or calls
+        self.calls = False    # and comes back
+        self.indirect = False
+        self.goes_on = True   # with the next one
+        self.skips = False    # or with the one after it
+        self.frame = None     # AVR: how it moves Y, or takes it for the stack pointer
+
+
+def arm(op, args):
+    it = Instruction(f'{op} {args}')
+    op = re.sub(r'\.[nw]$', '', op)
+    registers = 0
+    if '{' in args:
+        for part in args[args.index('{') + 1:args.index('}')].split(','):
+            first, _, last = part.strip().partition('-')
+            registers += 1 if not last else int(last[1:]) - int(first[1:]) + 1
+    if op in ('push', 'stmdb') and (op == 'push' or args.startswith('sp!')):
+        it.grow = 4 * registers
+    elif op in ('pop', 'ldmia') and (op == 'pop' or args.startswith('sp!')):
+        it.grow, it.goes_on = -4 * registers, 'pc' not in args
+    elif re.match(r'(sub|subw|add|addw)$', op) and re.match(r'sp, (sp, )?#\d+', args):
+        size = int(re.search(r'#(\d+)', args)[1])
+        it.grow = size if op.startswith('sub') else -size
+    elif re.search(r'\[sp, #-?\d+\]!|\[sp\], #-?\d+', args):
+        moved = int(re.search(r'#(-?\d+)', args)[1])
+        it.grow, it.goes_on = -moved, not args.startswith('pc')
+    elif op == 'bl':
+        it.target, it.calls = int(args.split()[0], 16), True
+    elif op == 'blx':
+        it.indirect = it.calls = True
+    elif re.match(r'bx', op):
+        it.goes_on = op != 'bx'
+        it.indirect = args.strip() != 'lr'
+    elif op in ('tbb', 'tbh') or (op == 'mov' and args.startswith('pc')):
+        it.goes_on, it.indirect = False, True
+    elif re.match(r'b(|eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)$|cbn?z$', op):
+        it.target, it.goes_on = int(re.search(r'([0-9a-f]+) <', args)[1], 16), op != 'b'
+    elif re.match(r'(sp\b|\[sp\]!)', args) and op not in ('cmp', 'str', 'tst'):
+        raise Failed(f'what does this do to the stack? {it.text}')
+    return it
+
+
+def riscv(op, args):
+    it = Instruction(f'{op} {args}')
+    address = re.search(r'([0-9a-f]+) <', args)
+    if op in ('add', 'addi') and args.startswith('sp,sp,'):
+        it.grow = -int(args.split(',')[2].split()[0])
+    elif op in ('jal', 'j') or (op in ('jalr', 'jr') and address):
+        it.target, it.calls = int(address[1], 16), op.startswith('jal')
+        it.goes_on = it.calls
+    elif op in ('jalr', 'jr'):
+        it.indirect, it.calls = True, op == 'jalr'
+        it.goes_on = it.calls
+    elif op == 'ret':
+        it.goes_on = False
+    elif re.match(r'b(eq|ne|lt|ge|gt|le)u?z?$', op):
+        it.target = int(address[1], 16)
+    elif re.match(r'sp,', args) and not op.startswith('s'):
+        raise Failed(f'what does this do to the stack? {it.text}')
+    return it
+
+
+def avr(op, args, address, size):
+    it = Instruction(f'{op} {args}')
+    target = re.search(r'; 0x([0-9a-f]+)', args)
+    plain = args.split(';')[0].strip()
+    if op == 'push':
+        it.grow = 1
+    elif op == 'pop':
+        it.grow = -1
+    elif op == 'rcall' and int(target[1], 16) == address + size:
+        it.grow = 2  # makes room, as "rcall .+0"
+    elif op in ('call', 'rcall', 'icall'):
+        it.calls, it.indirect = True, op == 'icall'
+        it.target = int(target[1], 16) if target else None
+    elif op == 'ijmp':
+        it.indirect, it.goes_on = True, False
+    elif op in ('jmp', 'rjmp') or op.startswith('br'):
+        it.target, it.goes_on = int(target[1], 16), op.startswith('br')
+    elif op in ('ret', 'reti'):
+        it.goes_on = False
+    elif op in ('sbrc', 'sbrs', 'sbic', 'sbis', 'cpse'):
+        it.skips = True
+    elif plain.replace(' ', '') in ('r28,0x3d', '0x3d,r28'):  # SPL
+        it.frame = (op, 0)
+    elif op in ('sbiw', 'adiw', 'subi', 'sbci') and plain.startswith(('r28', 'r29')):
+        it.frame = (op, int(plain.split(',')[1], 16))
+    elif op == 'out' and plain.startswith('0x3d'):
+        raise Failed(f'what does this do to the stack? {it.text}')
+    return it
+
+
+DECODERS = {'arm': arm, 'riscv': riscv, 'avr': avr}
+
+
+class Image:
+    """The functions of an ELF file, and how deep each of them goes."""
+
+    def __init__(self, prefix, elf):
+        self.kind = next(kind for kind in DECODERS if prefix.startswith(kind))
+        self.returns = 2 if self.kind == 'avr' else 0  # bytes that a call pushes
+        self.instructions, self.next, self.where = {}, {}, {}
+        self.owner = {}  # address of an instruction: that of its function
+        self.names = {}  # address of a function: file:function, or the function's name alone
+        self.depths = {}
+        self.prefix = prefix
+        self.read(self.list(elf))
+        self.by_name = {name: address for address, name in self.names.items()}
+
+    def list(self, elf):
+        return run(self.prefix + 'objdump', '-dl', elf)
+
+    def read(self, text):
+        function = where = before = None
+        for line in text.splitlines():
+            label = re.match(r'([0-9a-f]+) <([^>]+)>:$', line)
+            code = re.match(r' *([0-9a-f]+):\t([0-9a-f ]+)\t(\S+)\s*(.*)', line)
+            source = re.match(r'(/\S+):(\d+)', line)
+            if label and not label[2].startswith('.L'):
+                function, where = int(label[1], 16), None
+                self.names[function] = label[2]
+            elif source:
+                where = (source[1], int(source[2]))
+                if function is not None and function not in self.owner:
+                    self.names[function] = f'{self.file(where)}:{self.names[function]}'
+            elif code:
+                address, size = int(code[1], 16), len(code[2].replace(' ', '')) // 2
+                if before is not None:
+                    self.next[before] = address
+                self.instructions[address] = (code[3], code[4], size)
+                self.where[address], self.owner[address], before = where, function, address
+
+    @staticmethod
+    def file(where):
+        """Sources of the library by their name, all others by their path."""
+        folder, name = os.path.split(os.path.normpath(where[0]))
+        return name if folder == os.path.join(ROOT, 'src') else os.path.relpath(where[0], ROOT)
+
+    def decode(self, address):
+        op, args, size = self.instructions[address]
+        if self.kind == 'avr':
+            return avr(op, args, address, size)
+        return DECODERS[self.kind](op, args)
+
+    def lead_to(self, address):
+        """Where the indirect call or jump there may go to."""
+        if self.where[address] is None:
+            raise Failed(f'an indirect call without a source: {self.names[self.owner[address]]}')
+        path, number = self.where[address]
+        with open(path, encoding='utf-8') as file:
+            lines = file.read().splitlines()[number - 1:]
+        line = ' '.join(lines[:1 + next(i for i, end in enumerate(lines) if re.search('[;{}]', end))])
+        known = [call for call in CALL.findall(line) if call in INDIRECT or call in PERHAPS]
+        if len(known) == 1:
+            targets = INDIRECT.get(known[0]) or PERHAPS[known[0]]
+            found = [self.by_name[name] for name in targets if name in self.by_name]
+            if not found and known[0] in INDIRECT:
+                raise Failed(f'{known[0]} leads to none of {", ".join(targets)}')
+            return found
+        if 'switch' in line and not known:
+            return [a for a in self.owner if a > address and self.owner[a] == self.owner[address]]
+        raise Failed(f'{path}:{number}: where does this indirect call lead? {line.strip()}')
+
+    def deepest(self, function, path=()):
+        """Bytes below the call of the function at this address; its return address, where it is pushed, included."""
+        if function in path:
+            names = [self.names[f] for f in (*path, function)]
+            raise Failed('recursion: ' + ' > '.join(names))
+        if function not in self.depths:
+            self.depths[function] = self.walk(function, (*path, function))
+        return self.depths[function]
+
+    def walk(self, function, path):
+        deepest, seen = self.returns, set()
+        todo = [(function, self.returns, None)]  # address, depth, and on AVR the depth that Y stands for
+        while todo:
+            state = todo.pop()
+            if state in seen:
+                continue
+            seen.add(state)
+            address, depth, y = state
+            it = self.decode(address)
+            if it.frame is not None:
+                depth, y = self.move(it.frame, depth, y)
+            depth += it.grow
+            deepest = max(deepest, depth)
+            if depth > MOST:
+                raise Failed(f'{self.names[function]}: the stack grows for ever')
+            goals = [] if it.target is None else [it.target]
+            if it.indirect:
+                goals = self.lead_to(address)
+            onward = []
+            if it.calls:
+                deepest = max([deepest, *(depth + self.deepest(goal, path) for goal in goals)])
+            else:  # a jump: within the function, or a tail call, which comes back to our caller
+                onward = goals
+            if it.goes_on:
+                onward.append(self.next[address])
+                if it.skips:
+                    onward.append(self.next[self.next[address]])
+            todo += [(a, depth, y) for a in onward]
+        return deepest
+
+    @staticmethod
+    def move(frame, depth, y):
+        """Y as the frame pointer of avr-gcc: taken from SP, moved, given back to it."""
+        op, value = frame
+        if op == 'in':
+            return depth, depth
+        if y is None:
+            return depth, None  # Y is any other register
+        if op == 'out':
+            return (y + 0x8000) % 0x10000 - 0x8000, y
+        if op in ('sbiw', 'adiw'):
+            return depth, y + (value if op == 'sbiw' else -value)
+        return depth, (y + (value if op == 'subi' else value << 8)) % 0x10000
+
+    def below_users(self, is_user):
+        """The deepest of all calls that lead from the user's functions into the library."""
+        depths = [0]
+        for address, function in self.owner.items():
+            if not is_user(self.names[function]):
+                continue
+            it = self.decode(address)
+            if it.target is None or self.owner.get(it.target) == function:
+                continue
+            if not is_user(self.names[self.owner[it.target]]):
+                depths.append(self.deepest(it.target))
+        return max(depths)
+
+    def address_of(self, function):
+        """Of a function by its name alone."""
+        found = [address for address, name in self.names.items() if name.split(':')[-1] == function]
+        if len(found) != 1:
+            raise Failed(f'{function} stands in the image {len(found)} times')
+        return found[0]
