@@ -78,11 +78,11 @@ void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
 
 /*
  * One read of the port, to the end of the frame: how many bytes, with LOST where some were lost before them and BAD
- * where they are wrong; 0, or < 0 when the port is broken. A silence is known only where a read found nothing: what
- * a read brings may have come at any time since the one before, passed_us ago.
+ * where they are wrong; 0, or < 0 when the port is broken. A silence is known only where a read found nothing: then it
+ * is the caller's to count. What a read brings may have come at any time since the one before.
  */
 enum { COUNT_READ = 0x0FF, LOST = 0x100, BAD = 0x200 };
-int fathom_line_read(fathom_line_t *line, uint32_t passed_us);
+int fathom_line_read(fathom_line_t *line);
 
 /*
  * Takes frames from the front of what was received, and drops what cannot begin one; `over`: nothing more will

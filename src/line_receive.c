@@ -150,16 +150,13 @@ void fathom_line_scan(fathom_line_t *line, bool over)
     }
 }
 
-int fathom_line_read(fathom_line_t *line, uint32_t passed_us)
+int fathom_line_read(fathom_line_t *line)
 {
     const fathom_line_config_t *const config = line->config;
     const fathom_uart_t *const uart = config->uart;
     fathom_rx_t rx = {0, 0};
     int n = uart->read(uart->ctx, config->frame + line->have, (size_t)(config->frame_size - line->have), &rx);
-    if (n <= 0) {
-        set_silent(line, line->silent_us + passed_us);
-        return n;
-    }
+    if (n <= 0) return n;
     if (line->have == 0 && ((rx.flags & FATHOM_RX_SILENCE) != 0 || is_listeners_gap(line)))
         line->known |= AFTER_GAP;
     set_silent(line, (rx.flags & FATHOM_RX_TIMED) != 0 ? fathom_elapsed_us(line->polled_us, rx.last_us) : 0);
