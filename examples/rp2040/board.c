@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
-#include "cortex_m.h"
+#include "../start/cortex_m.h"
 #include "rp2040.h"
 
 /* A debugger, or a simulator, finds there how it ended. */

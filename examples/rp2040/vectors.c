@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "vectors.h"
-#include "cortex_m.h"
+#include "../start/cortex_m.h"
 #include "rp2040.h"
 
 #define WEAK __attribute__((weak))
@@ -17,6 +17,7 @@ WEAK void uart1_irq(void) { start_fault(); }
 enum { CORE = 15, INTERRUPTS = 26 }; /* vectors after the stack's: the core's own, and the chip's */
 
 typedef struct {
+    // cppcheck-suppress unusedStructMember ; the core loads it
     uint32_t *stack;
     start_vector_t of[CORE + INTERRUPTS];
 } vectors_t;

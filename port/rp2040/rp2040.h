@@ -13,16 +13,16 @@
  * single bits, so that an interrupt and the main loop may both change one. */
 enum { RP2040_SET = 0x2000, RP2040_CLEAR = 0x3000 };
 
-#define RP2040_REGISTER(address) (*(volatile uint32_t *)(uintptr_t)(address))
+/* Registers from an address on, and one alone. */
+#define RP2040_AT(address)        ((void *)(uintptr_t)(address)) // NOLINT(performance-no-int-to-ptr)
+#define RP2040_REGISTERS(address) ((volatile uint32_t *)RP2040_AT(address))
+#define RP2040_REGISTER(address)  (*RP2040_REGISTERS(address))
 
-static inline void rp2040_set(volatile uint32_t *reg, uint32_t bits)
-{
-    *(volatile uint32_t *)((uintptr_t)reg + RP2040_SET) = bits;
-}
+static inline void rp2040_set(volatile uint32_t *reg, uint32_t bits) { reg[RP2040_SET / sizeof *reg] = bits; }
 
 static inline void rp2040_clear(volatile uint32_t *reg, uint32_t bits)
 {
-    *(volatile uint32_t *)((uintptr_t)reg + RP2040_CLEAR) = bits;
+    reg[RP2040_CLEAR / sizeof *reg] = bits;
 }
 
 /* 2.14 resets */
@@ -36,11 +36,11 @@ enum {
 };
 
 /* 2.19.6.1 IO_BANK0: what drives a pin, and its interrupts, which are four bits for each of eight pins a register */
-#define RP2040_IO_CTRL(gpio)       RP2040_REGISTER(0x40014004u + 8u * (gpio))
-#define RP2040_IO_INTR(gpio)       RP2040_REGISTER(0x400140F0u + 4u * ((gpio) / 8u))
-#define RP2040_IO_PROC0_INTE(gpio) RP2040_REGISTER(0x40014100u + 4u * ((gpio) / 8u))
-#define RP2040_IO_PROC0_INTS(gpio) RP2040_REGISTER(0x40014120u + 4u * ((gpio) / 8u))
-#define RP2040_IO_EDGES(gpio)      ((uint32_t)(RP2040_IO_EDGE_LOW | RP2040_IO_EDGE_HIGH) << (4u * ((gpio) % 8u)))
+#define RP2040_IO_CTRL(gpio)       RP2040_REGISTERS(0x40014004)[2 * (gpio)]
+#define RP2040_IO_INTR(gpio)       RP2040_REGISTERS(0x400140F0)[(gpio) / 8]
+#define RP2040_IO_PROC0_INTE(gpio) RP2040_REGISTERS(0x40014100)[(gpio) / 8]
+#define RP2040_IO_PROC0_INTS(gpio) RP2040_REGISTERS(0x40014120)[(gpio) / 8]
+#define RP2040_IO_EDGES(gpio)      ((uint32_t)(RP2040_IO_EDGE_LOW | RP2040_IO_EDGE_HIGH) << (4 * ((gpio) % 8)))
 enum {
     RP2040_IO_FUNCSEL_UART = 2,
     RP2040_IO_FUNCSEL_SIO = 5,
@@ -49,7 +49,7 @@ enum {
 };
 
 /* 2.19.6.3 PADS_BANK0 */
-#define RP2040_PADS(gpio) RP2040_REGISTER(0x4001C004u + 4u * (gpio))
+#define RP2040_PADS(gpio) RP2040_REGISTERS(0x4001C004)[gpio]
 enum {
     RP2040_PADS_SCHMITT = 1 << 1,
     RP2040_PADS_PDE = 1 << 2,
@@ -68,10 +68,10 @@ enum {
 /* 4.2.8 UART, ARM's PL011 */
 typedef struct {
     volatile uint32_t dr, rsr, reserved_08[4], fr, reserved_1c, ilpr, ibrd, fbrd, lcr_h, cr, ifls, imsc, ris,
-        mis, icr, dmacr;
+        mis, icr, dmacr, reserved_4c[0xFED];
 } rp2040_uart_t;
 
-#define RP2040_UART(number) ((rp2040_uart_t *)(uintptr_t)(0x40034000u + 0x4000u * (number)))
+#define RP2040_UART(number) (&((rp2040_uart_t *)RP2040_AT(0x40034000))[number])
 enum {
     RP2040_UART_DR_FE = 1 << 8,
     RP2040_UART_DR_PE = 1 << 9,
@@ -95,7 +95,7 @@ enum {
 };
 
 /* 4.6.5 TIMER */
-#define RP2040_TIMER_ALARM(number) RP2040_REGISTER(0x40054010u + 4u * (number))
+#define RP2040_TIMER_ALARM(number) RP2040_REGISTERS(0x40054010)[number]
 #define RP2040_TIMER_ARMED         RP2040_REGISTER(0x40054020)
 #define RP2040_TIMER_RAWL          RP2040_REGISTER(0x40054028)
 #define RP2040_TIMER_INTR          RP2040_REGISTER(0x40054034)
@@ -103,7 +103,7 @@ enum {
 #define RP2040_TIMER_INTF          RP2040_REGISTER(0x4005403C)
 
 /* 4.7.6 WATCHDOG, which makes the microseconds of TIMER out of clk_ref */
-#define RP2040_WATCHDOG_SCRATCH(number) RP2040_REGISTER(0x4005800Cu + 4u * (number))
+#define RP2040_WATCHDOG_SCRATCH(number) RP2040_REGISTERS(0x4005800C)[number]
 #define RP2040_WATCHDOG_TICK            RP2040_REGISTER(0x4005802C)
 enum { RP2040_WATCHDOG_TICK_ENABLE = 1 << 9 };
 
@@ -115,6 +115,6 @@ enum {
     RP2040_IRQ_UART0 = 20 /* and UART1 */
 };
 #define RP2040_NVIC_ISER        RP2040_REGISTER(0xE000E100)
-#define RP2040_NVIC_IPR(number) RP2040_REGISTER(0xE000E400u + 4u * (number))
+#define RP2040_NVIC_IPR(number) RP2040_REGISTERS(0xE000E400)[number]
 
 #endif
