@@ -117,6 +117,29 @@ test('edges that both wait when the interrupt runs give no width, and the next p
   assertTarget(said[1], 10100);
 });
 
+test('a spike that ends at any instruction of the interrupt is noise, and the pulse after it is read', () => {
+  for (let instructions = 1; instructions < 90; instructions += 2) {
+    const bench = start([10100], {before: 20000});
+    const {core} = bench.machine;
+    const echo = bench.machine.pin(ECHO);
+    const step = core.executeInstruction.bind(core);
+    let left = 0;
+    core.executeInstruction = () => {
+      if (left > 0 && --left === 0) echo.setInputValue(false);
+      return step();
+    };
+    bench.machine.pin(TRIGGER).addListener((state) => {
+      if (state !== 1) return;
+      bench.machine.after(5000, () => {
+        left = instructions;
+        echo.setInputValue(true);
+      });
+      bench.machine.after(5100, () => echo.setInputValue(false)); // if it sleeps again before that
+    });
+    assertTarget(lines(bench, 1)[0], 10100);
+  }
+});
+
 test('pins are set up: SIO, input enabled, the text at UART0 with 115200 8N1', () => {
   const bench = start([3000]);
   const {machine} = bench;
