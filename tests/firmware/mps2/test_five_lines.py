@@ -3,6 +3,7 @@
 """examples/mps2/five_lines.c on QEMU: five UARTs, five sensors, one loop."""
 import os
 import re
+import select
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
@@ -12,6 +13,7 @@ from qemu import e2e, interop  # noqa: E402
 
 TANK, BUMPER, GATE, SILO, REAR = 1, 2, 4, 8, 16
 ALL = 31
+MANY = 1000  # errors: nine programs on a machine that has other work too
 SAID = {'tank': {'probe 1 754 mm'},
         'bumper': {'probe 1 1000 mm', 'probe 2 2000 mm', 'probe 3 1953 mm', 'probe 4 no target'},
         'gate': {'probe 1 2083 mm'}, 'silo': {'probe 1 511 mm'}, 'rear': {'probe 1 3562 mm'}}
@@ -43,7 +45,7 @@ class FiveLines(qemu.Case):
 
     def check_said(self, out, names, count):
         for name in names:
-            readings = self.readings(out, name)
+            readings = self.readings(out, name, MANY)
             self.assertEqual(set(readings), SAID[name], name)
             self.assertGreaterEqual(sum(words.startswith('probe 1 ') for words in readings), count, name)
 
@@ -59,7 +61,7 @@ class FiveLines(qemu.Case):
         """60 answers of 13 bytes."""
         ports = {'gate': self.libmodbus((19200, 'none'), 8, qemu.DATASHEET)}
         done = self.end_well(self.five_lines(ports, 60, GATE))
-        self.check_said(done.out, ['gate'], 60)
+        self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 60)
 
     def nobody_answers(self, name, error, count):
         """On that line. The others go on after it was noticed; the image ends when three of them have `count`."""
@@ -79,6 +81,20 @@ class FiveLines(qemu.Case):
 
     def test_four_go_on_beside_an_a16_that_does_not_send(self):
         self.nobody_answers('silo', 7, 24)
+
+    def answer_to_the_end(self, image, device, request, answer):
+        """The last request may be cut off by the end of the image."""
+        got = b''
+        while True:
+            ready = select.select([device.master, image.pidfd], [], [], qemu.PATIENCE)[0]
+            self.assertNotEqual(ready, [], f'the image does not end, and asks nothing: {got.hex(" ")}')
+            if device.master not in ready:
+                return
+            got += os.read(device.master, len(request) - len(got))
+            self.assertTrue(request.startswith(got), got.hex(' '))
+            if got == request:
+                device.write(answer)
+                got = b''
 
     def test_four_go_on_beside_a_line_with_noise_damage_strangers_and_late_answers(self):
         ports = self.far_ends()
@@ -114,8 +130,7 @@ class FiveLines(qemu.Case):
         asked()
         failed(3)
         tank.write(right)  # late
-        for _ in range(2):
-            answered()
+        self.answer_to_the_end(image, tank, request, right)
         done = self.end_well(image)
         self.check_said(done.out, SAID, 6)
         self.assertEqual(tank.baud(), e2e.termios.B9600)

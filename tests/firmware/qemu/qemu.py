@@ -20,7 +20,9 @@ PATIENCE = 60  # seconds; an image takes up to 5
 MACHINES = {'mps2': ('qemu-system-arm', '-M', 'mps2-an385'),
             'stm32f4': ('qemu-system-arm', '-M', 'netduinoplus2'),
             'virt': ('qemu-system-riscv32', '-M', 'virt', '-bios', 'none')}
-LATE = {'3', '4', '7'}  # no answer, one that broke off, stale: what a slow far end may cause
+# What a slow far end may cause: no answer, one that broke off, a stream that was read out of step and refused, a stale
+# one.
+LATE = {'3', '4', '6', '7'}
 
 DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 723.1744
 
@@ -59,13 +61,13 @@ class Case(interop.Case):
         self.assertEqual(len(re.findall(r'^ok ', done.out, re.M)), count, done.out)
         self.assertEqual(done.code, 0, done)
 
-    def readings(self, out, name):
-        """What the image has told of a line, without its errors, of which there have to be fewer."""
+    def readings(self, out, name, most_errors=None):
+        """What the image has told of a line, without its errors, of which there are fewer, or as many as is said."""
         told = re.findall(rf'^{name} (.*)$', out, re.M)
         errors = [words.split()[1] for words in told if words.startswith('error ')]
         self.assertLessEqual(set(errors), LATE, out)
         readings = [words for words in told if not words.startswith('error ')]
-        self.assertLess(len(errors), len(readings), out)
+        self.assertLessEqual(len(errors), len(readings) if most_errors is None else most_errors, out)
         return readings
 
 
