@@ -5,7 +5,6 @@ set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR avr)
 set(CMAKE_C_COMPILER avr-gcc)
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
-# Warnings tell of an int that is too narrow, but for two: -Wpedantic minds an enumerator of 100000, which becomes a
-# long as it should, and assert.h is to print what it found.
+# __ASSERT_USE_STDERR: avr-libc's assert prints what it found.
 set(CMAKE_C_FLAGS_INIT "-mmcu=atmega2560 -Os -ffunction-sections -fdata-sections -D__ASSERT_USE_STDERR")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-mmcu=atmega2560 -Wl,--gc-sections -Wl,--defsym=__stack=0xFFFF,--defsym=__DATA_REGION_LENGTH__=0xFE00")

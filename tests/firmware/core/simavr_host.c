@@ -13,7 +13,7 @@ enum {
     GPIOR0 = 0x3E,
     SPL = 0x5D,
     SPH = 0x5E,
-    R24 = 24,            /* the low byte of what a function returns */
+    R24 = 24,                /* the low byte of what a function returns */
     RJMP_TO_ITSELF = 0xCFFF, /* with interrupts off the end of avr-libc's exit and abort */
     RAM_BEGIN = 0x200,
     RAM_END = 0xFFFF
