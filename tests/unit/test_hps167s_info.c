@@ -62,9 +62,11 @@ static void every_member_of_the_configuration_is_its_own_bytes(void **state)
         {{0xFF00, 0x0500, 0x0000, 0xB403}, true, false, 5, 180, 115200},
         /* 01020307 hexadecimal = 16909063 = 18 * 939392 + 7, so 01020300 */
         {{0xFFFF, 0x0501, 0x0203, 0x0004}, true, true, 5, 0x01020300, 230400},
+        /* The highest bit of each byte set: FEDCBA98 = 4275878552 = 18 * 237548808 + 8, so FEDCBA90 */
+        {{0x00FF, 0x05FE, 0xDCBA, 0x9001}, false, true, 5, 0xFEDCBA90, 19200},
     };
     (void)state;
-    for (unsigned i = 0; i != 4; i++) {
+    for (unsigned i = 0; i != 5; i++) {
         const uint16_t *const r = rows[i].registers;
         desk_set_up(NULL);
         desk_start();

@@ -25,7 +25,7 @@ KINDS = {'avr': ('unit', 'golden', 'property'),
 # Lines of left_out.txt. Whoever makes one longer changes this too.
 LEFT_OUT = {'avr': 55, 'powerpc': 13, 's390x': 16}
 # A target with fewer cases than this has lost some.
-AT_LEAST = {'avr': 0, 'powerpc': 0, 's390x': 0}
+AT_LEAST = {'avr': 1107, 'powerpc': 2867, 's390x': 2842}
 SECONDS = 500  # for one program; a busy machine is slow, not wrong
 
 
