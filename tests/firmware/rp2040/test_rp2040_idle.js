@@ -93,6 +93,25 @@ test('a byte that comes at any instruction of idle ends it', () => {
   }
 });
 
+test('idle ends in time although something holds it up at any of its instructions', () => {
+  for (let instructions = 1; instructions < 120; instructions++) {
+    const desk = new Desk();
+    const {core, clock} = desk.machine;
+    const step = core.executeInstruction.bind(core);
+    desk.call('idle', 0);
+    let left = instructions;
+    core.executeInstruction = () => {
+      if (left > 0 && --left === 0) clock.tick(10000); // a debugger, or the other core at the bus: 10 us
+      return step();
+    };
+    const from = desk.machine.us;
+    desk.ask('idle', 3);
+    desk.machine.until(() => desk.isDone, 1);
+    assert.ok(desk.machine.us - from < 25);
+    end(desk);
+  }
+});
+
 test('the clock counts microseconds and wraps', () => {
   const desk = new Desk({startUs: 2 ** 32 - 500});
   for (let i = 0; i < 20; i++) {
