@@ -161,6 +161,30 @@ test('the driver stays on if a request follows at once', () => {
   end(bench);
 });
 
+test('the alarm of the request before leaves the driver on, at whichever instruction of write it comes', () => {
+  const TIMER = 0x40054, DE_ALARM = 1;
+  for (let instructions = 1; instructions < 200; instructions++) {
+    const bench = begin('115200 8N1', {driver: 6});
+    const {core, mcu} = bench.machine;
+    const levels = bench.machine.record(6);
+    bench.desk.write([1]);
+    bench.machine.until(() => bench.uart.sent.length === 1);
+    const step = core.executeInstruction.bind(core);
+    let left = instructions;
+    core.executeInstruction = () => {
+      if (left > 0 && --left === 0) mcu.peripherals[TIMER].fireAlarm(DE_ALARM);
+      return step();
+    };
+    bench.desk.write([2]);
+    bench.machine.until(() => bench.uart.sent.length === 2);
+    const {start, end: over} = bench.uart.sent[1];
+    const before = levels.filter(({at}) => at <= start);
+    assert.ok(before[before.length - 1].high, `off when alarm came at instruction ${instructions}`);
+    assert.ok(!levels.some(({at}) => at > start && at < over));
+    end(bench);
+  }
+});
+
 test('the driver is let go in time when the clock wraps while bytes leave', () => {
   for (let early = 0; early < 8; early++) {
     const bench = begin('19200 8E1', {driver: 6}, {startUs: 2 ** 32 - 1000});
