@@ -22,8 +22,8 @@ int remote_set_break(board_t *board, bool on);
 uint32_t remote_now_us(board_t *board);
 void remote_idle(board_t *board, uint32_t max_us);
 
-/* Begins or ends to read the clock over and over, each time after `masked` * 1024 cycles with interrupts off. A
- * REMOTE_MARK record comes just before each reading, and a REMOTE_CLOCK record with its 4 bytes after it. */
+/* Begins or ends to read the clock over and over, each time after `masked` * 1024 cycles with interrupts off (0: they
+ * stay on). A REMOTE_MARK record comes just before each reading, and a REMOTE_CLOCK record with its 4 bytes after it. */
 void remote_watch_clock(board_t *board, bool on, uint8_t masked);
 
 /* Begins a call and does not wait for its end. */

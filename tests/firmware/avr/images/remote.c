@@ -82,12 +82,14 @@ static int16_t call(uint8_t what)
     return -100;
 }
 
-/* The clock, over and over, with interrupts off for `length` loops of 4 cycles and on in between. */
+/* The clock, over and over, each time after `length` * 1024 cycles with interrupts off; 0: they stay on. */
 static void watch_clock(void)
 {
     while (remote.call == REMOTE_CLOCK) {
-        cli();
-        if (remote.length != 0) _delay_loop_2(remote.length * 256U);
+        if (remote.length != 0) {
+            cli();
+            _delay_loop_2(remote.length * 256U);
+        }
         GPIOR1 = REMOTE_MARK;
         const uint32_t us = fathom_avr_clock.now_us(NULL);
         sei();
