@@ -103,7 +103,10 @@ void fathom_avr_int0_begin(fathom_edges_t *edges);
 /*
  * For fathom_wait, or a main loop that has nothing to do: sleeps (idle mode) until a byte has been received or an
  * edge fed, a request has left, or max_us have passed, and returns; at once if a byte waits already. At most one
- * period of Timer1, 32 ms at 16 MHz, in one call. ctx: NULL. Interrupts are enabled afterwards.
+ * period of Timer1, 32 ms at 16 MHz, in one call. Interrupts are enabled afterwards.
+ * ctx: NULL, or a const uint16_t, us: for so long bytes do not wake it, so that the main loop finds several at once.
+ * 1000 halves what an HPS-167S at 115200 baud takes of the processor, and an answer is known up to so much later. Not
+ * more than FATHOM_AVR_RX_RING bytes take to come.
  */
 void fathom_avr_idle(void *ctx, uint32_t max_us);
 

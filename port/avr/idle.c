@@ -11,14 +11,15 @@ static volatile uint8_t time_is_up;
 
 ISR(TIMER1_COMPB_vect) { time_is_up = 1; }
 
-static bool is_to_sleep(void)
+static bool is_to_sleep(bool bytes_wake)
 {
-    return fathom_avr_happened == 0 && time_is_up == 0 && fathom_avr_rx_in == fathom_avr_rx_out;
+    return fathom_avr_happened == 0 && time_is_up == 0 &&
+           (!bytes_wake || fathom_avr_rx_in == fathom_avr_rx_out);
 }
 
-void fathom_avr_idle(void *ctx, uint32_t max_us)
+/* Until the time is up, which is true, or something else has ended it. */
+static bool doze(uint32_t max_us, bool bytes_wake)
 {
-    (void)ctx;
     const uint16_t ticks =
         max_us < MOST / FATHOM_AVR_TICKS_PER_US ? (uint16_t)(max_us * FATHOM_AVR_TICKS_PER_US) : MOST;
     cli();
@@ -27,13 +28,26 @@ void fathom_avr_idle(void *ctx, uint32_t max_us)
     TIFR1 = _BV(OCF1B);
     TIMSK1 |= _BV(OCIE1B);
     SMCR = _BV(SE); /* idle mode: the timers and the USART go on */
-    while (is_to_sleep()) {
+    while (is_to_sleep(bytes_wake)) {
         sei(); /* the instruction after it is carried out before any interrupt, so none is slept through */
         sleep_cpu();
         cli();
     }
     SMCR = 0;
     TIMSK1 &= (uint8_t)~_BV(OCIE1B);
+    const bool has_happened = fathom_avr_happened != 0;
     fathom_avr_happened = 0;
     sei();
+    return !has_happened;
+}
+
+void fathom_avr_idle(void *ctx, uint32_t max_us)
+{
+    const uint16_t *const gather_us = ctx;
+    if (gather_us != NULL && *gather_us != 0) {
+        const uint32_t first_us = *gather_us < max_us ? *gather_us : max_us;
+        if (!doze(first_us, false)) return;
+        max_us -= first_us;
+    }
+    doze(max_us, true);
 }

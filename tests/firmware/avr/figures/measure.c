@@ -103,11 +103,11 @@ static void measure_pulses(void)
 
 /* ---- polling an HPS-167S at its pace ---- */
 
-static void measure_share(uint8_t is_fast)
+static void measure_share(bool is_fast, bool gathers)
 {
     static fathom_sim_hps167s_t hps;
     const fathom_line_settings_t settings = {is_fast ? 115200 : 9600, FATHOM_PARITY_EVEN, 1};
-    start("measure_hps167s", is_fast);
+    start("measure_hps167s", (uint8_t)((is_fast ? 1 : 0) | (gathers ? 2 : 0)));
     fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
     join(&hps.device, &settings);
     run_readings(2);
@@ -118,10 +118,12 @@ static void measure_share(uint8_t is_fast)
     const double cycles = (double)(board.avr->cycle - begin_cycle);
     const double awake = (double)profile_awake_cycles(&profile);
     if (awake + (double)profile.asleep_cycles != cycles) give_up("cycles were lost");
-    figure(is_fast ? "share_115200" : "share_9600", 100 * awake / cycles, "%");
-    if (is_fast) {
-        printf("%.1f readings a second, %.0f cycles awake for each\n", (double)READINGS * BOARD_HZ / cycles,
-               awake / READINGS);
+    char name[32];
+    snprintf(name, sizeof name, "share%s_%lu", gathers ? "_gathering" : "", (unsigned long)settings.baud);
+    figure(name, 100 * awake / cycles, "%");
+    printf("%.1f readings a second, %.0f cycles awake for each\n", (double)READINGS * BOARD_HZ / cycles,
+           awake / READINGS);
+    if (is_fast && !gathers) {
         figure("poll_shortest", poll->shortest_cycles, "cycles");
         figure("poll_longest", poll->longest_cycles, "cycles");
     }
@@ -276,8 +278,9 @@ static void measure_stacks(void)
 int main(void)
 {
     measure_pulses();
-    measure_share(0);
-    measure_share(1);
+    measure_share(false, false);
+    measure_share(true, false);
+    measure_share(true, true);
     measure_all_buses();
     show_interrupts();
     measure_stacks();

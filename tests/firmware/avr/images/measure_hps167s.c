@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An HPS-167S, asked by its driver as fast as it measures, 54 times a second, at 9600 baud, or at 115200 where GPIOR0
- * is 1 when it starts; 8E1, DE is PD3. It sleeps in between. For the share of its time that the chip is awake. Each
- * reading is a record without bytes, of kind 1, and each error one of kind 2.
+ * An HPS-167S, asked by its driver as fast as it measures, 54 times a second; 8E1, DE is PD3. It sleeps in between. For
+ * the share of its time that the chip is awake. GPIOR0, when it starts: bit 0 for 115200 baud, else 9600; bit 1 for a
+ * sleep that lets bytes gather for 1 ms. Each reading is a record without bytes, of kind 1, and each error one of kind
+ * 2.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -24,9 +25,13 @@ static fathom_line_t line;
 static fathom_modbus_t modbus;
 static fathom_hps167s_t gate;
 
+static uint16_t gather_us; /* fathom_avr_idle: bytes wake it at once, or after so long */
+
 int main(void)
 {
-    if (GPIOR0 == 1) usart.line.baud = 115200;
+    const uint8_t option = GPIOR0;
+    if ((option & 1) != 0) usart.line.baud = 115200;
+    if ((option & 2) != 0) gather_us = 1000;
     line_config.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
     fathom_avr_clock_begin();
     if (!fathom_avr_usart0_begin(&usart)) return 1;
@@ -38,7 +43,7 @@ int main(void)
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     for (;;) {
         fathom_sample_t sample;
-        const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, NULL);
+        const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, &gather_us);
         GPIOR1 = status == FATHOM_READY ? 1 : 2;
     }
 }
