@@ -12,6 +12,7 @@
 #include <simavr/sim_interrupts.h>
 
 enum { BY_ICP1 = 1, BY_INT0 = 2, TOLD_BYTES = 9 };
+enum { TCCR1B = 0x81, ICES1 = 0x40 }; /* ATmega328P 36, 16.11.2 */
 enum { READY_US = 1000, PATIENCE_US = 40000 };
 
 static void drive(pulse_rig_t *rig, bool high)
@@ -59,6 +60,19 @@ static void overflow(struct avr_irq_t *irq, uint32_t value, void *param)
     if (value != 0) rig->overflow_cycle = rig->board.avr->cycle;
 }
 
+/* The capture's flag may rise when its edge is changed (ATmega328P 16.6.3): here it always does. */
+static void control_written(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
+{
+    pulse_rig_t *const rig = param;
+    (void)address;
+    const bool was_rising = rig->is_rising;
+    rig->is_rising = (value & ICES1) != 0;
+    if (rig->is_rising == was_rising) return;
+    for (uint8_t i = 0; i < avr->interrupts.vector_count; i++)
+        if (avr->interrupts.vector[i]->vector == PROFILE_TIMER1_CAPTURE)
+            avr_raise_interrupt(avr, avr->interrupts.vector[i]);
+}
+
 void pulse_rig_start(pulse_rig_t *rig)
 {
     assert_true(board_start(&rig->board, "pulses"));
@@ -66,6 +80,8 @@ void pulse_rig_start(pulse_rig_t *rig)
     avr_irq_t *const irq = avr_get_interrupt_irq(rig->board.avr, PROFILE_TIMER1_OVERFLOW);
     assert_non_null(irq);
     avr_irq_register_notify(irq + AVR_INT_IRQ_PENDING, overflow, rig);
+    rig->is_rising = false;
+    avr_register_io_write(rig->board.avr, TCCR1B, control_written, rig);
     board_drive(&rig->board, 'B', 0, false);
     board_drive(&rig->board, 'D', 2, false);
     assert_true(board_run_us(&rig->board, READY_US));

@@ -27,6 +27,7 @@ typedef struct {
     uint32_t passed_over_us;
     uint32_t byte_cycles; /* of the traffic; 0: none */
     uint8_t byte;
+    bool is_rising; /* the edge that is captured next */
 } pulse_rig_t;
 
 /* What the image says of one pulse. */
