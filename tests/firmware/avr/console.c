@@ -31,9 +31,3 @@ const char *console_line(console_t *console, uint64_t most_us)
     console->text[console->length] = '\0';
     return console->text;
 }
-
-void console_skip(console_t *console)
-{
-    console->seen = console->board->bytes_seen;
-    console->length = 0;
-}

@@ -21,7 +21,4 @@ void console_begin(console_t *console, board_t *board);
  * call. */
 const char *console_line(console_t *console, uint64_t most_us);
 
-/* Forgets what has been sent until now. */
-void console_skip(console_t *console);
-
 #endif
