@@ -28,14 +28,17 @@ void fathom_mps2_idle(void *ctx, uint32_t max_us)
 {
     if (max_us == 0) return;
     if (max_us > LONGEST_US) max_us = LONGEST_US;
-    TIMER0[CTRL] = 0;
-    TIMER0[RELOAD] = 0; /* once */
-    TIMER0[VALUE] = max_us * (FATHOM_MPS2_HZ / 1000000u);
-    NVIC_ISER[0] = 1u << TIMER0_INTERRUPT;
-    TIMER0[CTRL] = CTRL_ENABLE | CTRL_INTERRUPT;
-    /* Masked, an interrupt still ends WFI, and runs afterwards: none is lost between the question and the sleep. */
+    /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
+     * end it. An interrupt that is pending ends WFI, and runs afterwards. */
     __asm__ volatile("cpsid i" ::: "memory");
-    if (!byte_waits(ctx)) __asm__ volatile("dsb\n\twfi" ::: "memory");
+    if (!byte_waits(ctx)) {
+        TIMER0[CTRL] = 0;
+        TIMER0[RELOAD] = 0; /* once */
+        TIMER0[VALUE] = max_us * (FATHOM_MPS2_HZ / 1000000u);
+        NVIC_ISER[0] = 1u << TIMER0_INTERRUPT;
+        TIMER0[CTRL] = CTRL_ENABLE | CTRL_INTERRUPT;
+        __asm__ volatile("dsb\n\twfi" ::: "memory");
+        fathom_mps2_timer0_interrupt();
+    }
     __asm__ volatile("cpsie i\n\tisb" ::: "memory");
-    fathom_mps2_timer0_interrupt();
 }

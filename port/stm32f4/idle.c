@@ -20,16 +20,19 @@ static bool byte_waits(const fathom_stm32f4_idle_t *idle)
 void fathom_stm32f4_idle(void *ctx, uint32_t max_us)
 {
     if (max_us == 0) return;
-    TIM5[TIM_CR1] = TIM_CR1_URS;
-    TIM5[TIM_CNT] = 0;
-    TIM5[TIM_ARR] = max_us;
-    TIM5[TIM_SR] = 0;
-    TIM5[TIM_DIER] = DIER_UIE;
-    fathom_stm32f4_enable_interrupt(TIM5_INTERRUPT);
-    TIM5[TIM_CR1] = TIM_CR1_CEN | TIM_CR1_URS | TIM_CR1_OPM;
-    /* Masked, an interrupt still ends WFI, and runs afterwards: none is lost between the question and the sleep. */
+    /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
+     * end it. An interrupt that is pending ends WFI, and runs afterwards. */
     __asm__ volatile("cpsid i" ::: "memory");
-    if (!byte_waits(ctx)) __asm__ volatile("dsb\n\twfi" ::: "memory");
+    if (!byte_waits(ctx)) {
+        TIM5[TIM_CR1] = TIM_CR1_URS;
+        TIM5[TIM_CNT] = 0;
+        TIM5[TIM_ARR] = max_us;
+        TIM5[TIM_SR] = 0;
+        TIM5[TIM_DIER] = DIER_UIE;
+        fathom_stm32f4_enable_interrupt(TIM5_INTERRUPT);
+        TIM5[TIM_CR1] = TIM_CR1_CEN | TIM_CR1_URS | TIM_CR1_OPM;
+        __asm__ volatile("dsb\n\twfi" ::: "memory");
+        fathom_stm32f4_tim5_interrupt();
+    }
     __asm__ volatile("cpsie i\n\tisb" ::: "memory");
-    fathom_stm32f4_tim5_interrupt();
 }

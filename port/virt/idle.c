@@ -19,11 +19,14 @@ void fathom_virt_idle(void *ctx, uint32_t max_us)
 {
     const fathom_virt_uart_t *const uart = ctx;
     if (max_us == 0) return;
-    set_alarm(fathom_virt_ticks() + (uint64_t)max_us * (FATHOM_VIRT_TIMER_HZ / 1000000u));
-    __asm__ volatile("csrs mie, %0" ::"r"(VIRT_MIE_MTIE) : "memory");
-    /* Masked, an interrupt still ends WFI, and runs afterwards: none is lost between the question and the sleep. */
+    /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
+     * end it. An interrupt that is pending ends WFI, and runs afterwards. */
     __asm__ volatile("csrc mstatus, %0" ::"r"(VIRT_MSTATUS_MIE) : "memory");
-    if (uart == NULL || !fathom_serial_waits(&uart->serial)) __asm__ volatile("wfi" ::: "memory");
+    if (uart == NULL || !fathom_serial_waits(&uart->serial)) {
+        set_alarm(fathom_virt_ticks() + (uint64_t)max_us * (FATHOM_VIRT_TIMER_HZ / 1000000u));
+        __asm__ volatile("csrs mie, %0" ::"r"(VIRT_MIE_MTIE) : "memory");
+        __asm__ volatile("wfi" ::: "memory");
+        fathom_virt_timer_interrupt();
+    }
     __asm__ volatile("csrs mstatus, %0" ::"r"(VIRT_MSTATUS_MIE) : "memory");
-    fathom_virt_timer_interrupt();
 }

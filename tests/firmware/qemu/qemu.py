@@ -30,9 +30,9 @@ DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 72
 class Case(interop.Case):
     machine = os.path.basename(os.path.dirname(os.path.abspath(sys.argv[0])))
 
-    def boot(self, image, *ports, words=(), traces=(), exact=False):
+    def boot(self, image, *ports, words=(), traces=(), shift=None):
         """Starts an image. ports: what its UARTs are connected to, in QEMU's order; None: nothing. words: for the
-        image. exact: simulated time, 32 ns an instruction, the same on every run."""
+        image. shift: simulated time, 2^shift ns an instruction, the same on every run."""
         path = os.path.join(IMAGES, image + '.elf')
         self.assertTrue(os.access(path, os.R_OK), f'{path} is not there: FATHOM_IMAGES says where it is built')
         arguments = ''.join(f',arg={word}' for word in (image, *words))
@@ -45,8 +45,8 @@ class Case(interop.Case):
                 options += ['-chardev', f'serial,id=uart{number},path={port}', '-serial', f'chardev:uart{number}']
         for trace in traces:
             options += ['-trace', trace]
-        if exact:
-            options += ['-serial', 'null', '-icount', 'shift=5,sleep=off', '-rtc', 'clock=vm']
+        if shift is not None:
+            options += ['-serial', 'null', '-icount', f'shift={shift},sleep=off', '-rtc', 'clock=vm']
         return self.start(*MACHINES[self.machine], *options)
 
     def end_well(self, program):
@@ -54,9 +54,9 @@ class Case(interop.Case):
         self.assertEqual(done.code, 0, done)
         return done
 
-    def self_test(self, image, count):
+    def self_test(self, image, count, shift=5):
         """Runs an image that checks itself, in simulated time. count: of its checks, so that none can be left out."""
-        done = self.boot(image, exact=True).finish(PATIENCE)
+        done = self.boot(image, shift=shift).finish(PATIENCE)
         self.assertEqual(re.findall(r'^FAILED .*\n.*', done.out, re.M), [])
         self.assertEqual(len(re.findall(r'^ok ', done.out, re.M)), count, done.out)
         self.assertEqual(done.code, 0, done)
