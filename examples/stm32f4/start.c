@@ -22,6 +22,7 @@ enum { EXCEPTIONS = 16 }; /* before interrupt 0 */
 
 extern const start_vector_t start_vectors[];
 __attribute__((section(".vectors"), used)) const start_vector_t start_vectors[EXCEPTIONS + 82] = {
+    /* NOLINTNEXTLINE(performance-no-int-to-ptr): the first one is no function */
     (start_vector_t)(uintptr_t)start_stack,
     start_reset,
     [2] = start_fault,

@@ -15,11 +15,14 @@ enum { CHARACTER_BITS = 10 };
 
 /* AN385 3.2 and 3.7: where they are, and the first of the two interrupts. */
 typedef struct {
-    uint32_t base;
+    volatile uint32_t *registers;
     uint32_t interrupt;
 } place_t;
-static const place_t places[] = {
-    {0x40004000u, 0}, {0x40005000u, 2}, {0x40006000u, 4}, {0x40007000u, 18}, {0x40009000u, 20}};
+static const place_t places[] = {{(volatile uint32_t *)0x40004000u, 0},
+                                 {(volatile uint32_t *)0x40005000u, 2},
+                                 {(volatile uint32_t *)0x40006000u, 4},
+                                 {(volatile uint32_t *)0x40007000u, 18},
+                                 {(volatile uint32_t *)0x40009000u, 20}};
 
 /* 0: not within 2.5 %. */
 static uint32_t divider(const fathom_line_settings_t *line)
@@ -101,7 +104,7 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
     if (by == 0) return false;
     const place_t *const place = &places[config->number];
     fathom_serial_init(&uart->serial, config->request, config->request_size);
-    uart->registers = (volatile uint32_t *)place->base;
+    uart->registers = place->registers;
     uart->baud = config->line.baud;
     uart->is_sending = false;
     uart->registers[CTRL] = 0;

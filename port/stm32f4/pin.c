@@ -8,7 +8,7 @@ enum { MODER = 0x00 / 4, PUPDR = 0x0C / 4, IDR = 0x10 / 4, BSRR = 0x18 / 4, AFRL
 
 static volatile uint32_t *registers_of(const fathom_stm32f4_pin_t *pin)
 {
-    return (volatile uint32_t *)(0x40020000u + 0x400u * (uintptr_t)(pin->port - 'A'));
+    return (volatile uint32_t *)0x40020000u + 0x100 * (pin->port - 'A');
 }
 
 bool fathom_stm32f4_is_pin(const fathom_stm32f4_pin_t *pin)
@@ -56,7 +56,7 @@ static bool pin_get(void *ctx)
 
 fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin)
 {
-    const fathom_pin_t hal = {pin_set, NULL, (void *)(uintptr_t)pin};
+    const fathom_pin_t hal = {pin_set, NULL, (void *)pin};
     if (fathom_stm32f4_is_pin(pin)) {
         RCC_AHB1ENR |= 1u << (pin->port - 'A');
         (void)RCC_AHB1ENR;
@@ -68,7 +68,7 @@ fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin)
 
 fathom_pin_t fathom_stm32f4_input(const fathom_stm32f4_pin_t *pin, fathom_stm32f4_pull_t pull)
 {
-    const fathom_pin_t hal = {NULL, pin_get, (void *)(uintptr_t)pin};
+    const fathom_pin_t hal = {NULL, pin_get, (void *)pin};
     (void)fathom_stm32f4_pin_begin(pin, GPIO_INPUT, pull, 0);
     return hal;
 }

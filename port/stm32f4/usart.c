@@ -22,16 +22,19 @@ enum { MIN_BRR = 16, MAX_BRR = 0xFFFF };
 
 /* RM0090 2.3, 7.3 and table 62; the datasheet's table of alternate functions. */
 typedef struct {
-    uintptr_t base;
+    volatile uint32_t *registers;
     volatile uint32_t *enable;
     uint8_t enable_bit;
     uint8_t interrupt;
     uint8_t alternate;
 } place_t;
 static const place_t places[] = {
-    {0x40011000u, &RCC_APB2ENR, 4, 37, 7},  {0x40004400u, &RCC_APB1ENR, 17, 38, 7},
-    {0x40004800u, &RCC_APB1ENR, 18, 39, 7}, {0x40004C00u, &RCC_APB1ENR, 19, 52, 8},
-    {0x40005000u, &RCC_APB1ENR, 20, 53, 8}, {0x40011400u, &RCC_APB2ENR, 5, 71, 8},
+    {(volatile uint32_t *)0x40011000u, &RCC_APB2ENR, 4, 37, 7},
+    {(volatile uint32_t *)0x40004400u, &RCC_APB1ENR, 17, 38, 7},
+    {(volatile uint32_t *)0x40004800u, &RCC_APB1ENR, 18, 39, 7},
+    {(volatile uint32_t *)0x40004C00u, &RCC_APB1ENR, 19, 52, 8},
+    {(volatile uint32_t *)0x40005000u, &RCC_APB1ENR, 20, 53, 8},
+    {(volatile uint32_t *)0x40011400u, &RCC_APB2ENR, 5, 71, 8},
 };
 
 /* With 16 samples a bit BRR is the divider itself, its sixteenths below the point. 0: not within 2.5 %. */
@@ -152,7 +155,7 @@ bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm3
     *place->enable |= 1u << place->enable_bit;
     (void)*place->enable;
     fathom_serial_init(&usart->serial, config->request, config->request_size);
-    usart->registers = (volatile uint32_t *)place->base;
+    usart->registers = place->registers;
     usart->bus_hz = config->bus_hz;
     usart->tx = config->tx;
     usart->driver = config->driver;

@@ -5,7 +5,7 @@
 #include "internal/virt.h"
 
 /* PC16550D, table II: registers of one byte. With DLAB the first two are the divisor. */
-#define UART ((volatile uint8_t *)VIRT_UART)
+#define UART VIRT_UART
 enum { RBR = 0, THR = 0, DLL = 0, IER = 1, DLM = 1, FCR = 2, LCR = 3, LSR = 5 };
 enum { IER_RECEIVED = 1, IER_EMPTY = 2, IER_ERROR = 4 };
 enum { FCR_ON = 1, FCR_CLEAR = 6 }; /* interrupt from the first byte on: an answer's last one must not wait */

@@ -11,7 +11,7 @@ from common import LIBMODBUS, ROOT, WARNINGS, files, main, run
 PORTS = sorted(entry.name for entry in os.scandir(os.path.join(ROOT, 'port')) if entry.is_dir())
 INCLUDE = ['-Iinclude', '-Iport', *(f'-Iport/{port}' for port in PORTS), '-Iexamples/start']
 # They need another compiler's headers.
-FOREIGN = re.compile(r'^(port|examples)/(avr|arduino)/')
+FOREIGN = re.compile(r'^(port|examples)/(avr|arduino)/|^examples/virt/start\.c$')
 
 
 def tidy(root, path):

@@ -5,18 +5,16 @@
 #include <stdint.h>
 
 /* Where things are on this board: QEMU, hw/riscv/virt.c. */
-#define VIRT_CLINT 0x02000000u
-#define VIRT_PLIC  0x0C000000u
-#define VIRT_UART  0x10000000u
+#define VIRT_UART ((volatile uint8_t *)0x10000000u)
 enum { VIRT_UART_SOURCE = 10 };
 
-#define VIRT_MTIMECMP ((volatile uint32_t *)(VIRT_CLINT + 0x4000)) /* low, high */
-#define VIRT_MTIME    ((volatile uint32_t *)(VIRT_CLINT + 0xBFF8))
+#define VIRT_MTIMECMP ((volatile uint32_t *)0x02004000u) /* low, high */
+#define VIRT_MTIME    ((volatile uint32_t *)0x0200BFF8u)
 
-#define VIRT_PLIC_PRIORITY  ((volatile uint32_t *)VIRT_PLIC)
-#define VIRT_PLIC_ENABLE    ((volatile uint32_t *)(VIRT_PLIC + 0x2000)) /* hart 0, machine mode */
-#define VIRT_PLIC_THRESHOLD (*(volatile uint32_t *)(VIRT_PLIC + 0x200000))
-#define VIRT_PLIC_CLAIM     (*(volatile uint32_t *)(VIRT_PLIC + 0x200004))
+#define VIRT_PLIC_PRIORITY  ((volatile uint32_t *)0x0C000000u)
+#define VIRT_PLIC_ENABLE    ((volatile uint32_t *)0x0C002000u) /* hart 0, machine mode */
+#define VIRT_PLIC_THRESHOLD (*(volatile uint32_t *)0x0C200000u)
+#define VIRT_PLIC_CLAIM     (*(volatile uint32_t *)0x0C200004u)
 
 /* Bits of mstatus and mie (Privileged Architecture 3.1.6 and 3.1.9). */
 enum { VIRT_MSTATUS_MIE = 1 << 3, VIRT_MIE_MTIE = 1 << 7, VIRT_MIE_MEIE = 1 << 11 };
