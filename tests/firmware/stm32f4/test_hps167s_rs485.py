@@ -13,7 +13,8 @@ import qemu  # noqa: E402
 class Exchange(qemu.Case):
     def check(self, port):
         done = self.end_well(self.boot('hps167s_rs485_qemu', None, port))  # USART2
-        self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 10)
+        # A board's 5 ms of silence end a frame here, which a far end on a busy machine pauses now and then.
+        self.assertEqual(self.readings(done.out, 'gate', most_errors=1000), ['probe 1 2083 mm'] * 10)
 
     def test_a_simulated_sensor_is_read(self):
         self.check(self.sim('hps167s', '--baud', '115200', '--distance', '2083').port)
