@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// examples/rp2040/tasks.c: a task for each of two lines, and one that blinks.
+'use strict';
+const assert = require('assert');
+const {test, figure} = require('./runner.js');
+const {Machine} = require('./machine.js');
+const {Answering, A16_REAL_TIME} = require('./answering.js');
+const {Hps167s, MS} = require('./devices.js');
+
+const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_tasks.elf`;
+const DE = 6, NEAR = 15, LAMP = 25;
+const WRAP_NS = 2 ** 32 * 1000;
+const TANK_MM = 751, GATE_MM = 2083, NONE = 65535; // of the datasheets' examples
+const MEASURING = {after: 3000}, NEVER = {after: undefined};
+const UNUSED = 0x5afe5afe, STACK_WORDS = 320;
+
+function start({tank = 50000, gate = [MEASURING], ...options} = {}) {
+  const machine = new Machine(IMAGE, options);
+  return {
+    machine,
+    tank: new Answering(machine, machine.uart[0], A16_REAL_TIME, tank),
+    gate: new Hps167s(machine, {uart: machine.uart[1], driver: DE, answers: gate}),
+    lamp: machine.record(LAMP),
+    near: machine.record(NEAR),
+  };
+}
+
+function go({machine}, ms) {
+  machine.run(ms);
+  assert.deepStrictEqual(machine.complaints, []);
+}
+
+// tasks_reading_t
+function reading({machine}, name) {
+  const at = machine.symbols.get(name);
+  const [readings, errors, mm, status] = [0, 4, 8, 12].map((offset) => machine.mcu.readUint32(at + offset));
+  return {readings, errors, mm, status: status | 0};
+}
+
+// From now on: the lamp changes every 250 ms, as if nobody else were there.
+function assertBlinks({lamp}, ms) {
+  const changes = lamp.filter(({at}, i) => i > 0 && lamp[i - 1].high !== lamp[i].high);
+  assert.ok(changes.length >= Math.floor(ms / 250) - 1, `${changes.length} changes`);
+  for (let i = 1; i < changes.length; i++) {
+    const off = (changes[i].at - changes[0].at) / MS - i * 250;
+    assert.ok(Math.abs(off) < 0.5, `${off} ms off`);
+  }
+}
+
+test('each task reads its own sensor at its own pace, while the lamp blinks', () => {
+  const bench = start();
+  go(bench, 3000);
+  const tank = reading(bench, 'tank');
+  const gate = reading(bench, 'gate');
+  assert.deepStrictEqual([tank.mm, tank.status, tank.errors], [TANK_MM, 1, 0]);
+  assert.deepStrictEqual([gate.mm, gate.status, gate.errors], [GATE_MM, 1, 0]);
+  // One in 120 ms and one in 18.519 ms: 25 and 162 in 3 s, less one that is under way.
+  assert.ok(tank.readings === 24 || tank.readings === 25, `${tank.readings} readings of the A16`);
+  assert.ok(gate.readings >= 160 && gate.readings <= 162, `${gate.readings} readings of the HPS-167S`);
+  assert.deepStrictEqual(bench.tank.strays, []);
+  assertBlinks(bench, 3000);
+});
+
+test('a line that is dead holds up neither the other one nor the lamp', () => {
+  const bench = start({gate: [NEVER]});
+  go(bench, 3000);
+  const tank = reading(bench, 'tank');
+  const gate = reading(bench, 'gate');
+  assert.ok(tank.readings === 24 || tank.readings === 25, `${tank.readings} readings of the A16`);
+  assert.strictEqual(tank.errors, 0);
+  assert.deepStrictEqual([gate.readings, gate.mm, gate.status], [0, NONE, -3]); // FATHOM_ERR_NO_ANSWER
+  assert.ok(gate.errors >= 2);
+  assertBlinks(bench, 3000);
+});
+
+test('what one task has read another one acts on within a millisecond', () => {
+  const bench = start();
+  bench.machine.until(() => reading(bench, 'tank').readings === 1, 500);
+  const read = bench.machine.clock.nanos;
+  go(bench, 2);
+  const near = bench.near[bench.near.length - 1];
+  assert.ok(near.high && near.at - read < MS, `high after ${near.at - read} ns`); // 751 mm
+  bench.tank.after = undefined;
+  go(bench, 1500);
+  assert.strictEqual(reading(bench, 'tank').mm, NONE);
+  assert.strictEqual(bench.near[bench.near.length - 1].high, false); // 2083 mm are not near
+});
+
+test('every register that a function has to keep comes back with its task', () => {
+  const bench = start();
+  const {machine} = bench;
+  const {core} = machine;
+  const KEPT = [4, 5, 6, 7, 8, 9, 10, 11];
+  const away = new Map(); // stack pointer of a task that is not running: its registers, and what stood in for them
+  let pattern = 1, came = 0;
+  const comeBack = () => {
+    const mine = away.get(core.SP);
+    if (!mine) return;
+    away.delete(core.SP);
+    came++;
+    assert.deepStrictEqual(KEPT.map((r) => core.registers[r]), mine.stood);
+    KEPT.forEach((r, i) => { core.registers[r] = mine.held[i]; });
+  };
+  machine.watched.set(machine.address('task_switch'), () => {
+    const stood = KEPT.map(() => (pattern = Math.imul(pattern, 1664525) + 1013904223 | 0) >>> 0);
+    away.set(core.SP, {held: KEPT.map((r) => core.registers[r]), stood});
+    KEPT.forEach((r, i) => { core.registers[r] = stood[i]; });
+    machine.watched.set(core.LR & ~1, comeBack);
+    assert.strictEqual(core.SP % 8, 0, 'the stack is aligned where a function is called');
+  });
+  go(bench, 1000);
+  assert.ok(came > 100, `${came} switches`);
+  assert.ok(reading(bench, 'tank').readings > 5 && reading(bench, 'gate').readings > 40);
+});
+
+test('an interrupt that comes while a task changes places does no harm', () => {
+  const bench = start();
+  const {machine} = bench;
+  const from = machine.address('task_switch');
+  // Before each of its 15 instructions in turns, once in each pass.
+  let turn = 0, isDue = true;
+  for (let i = 0; i < 15; i++)
+    machine.watched.set(from + 2 * i, () => {
+      if (isDue && turn % 15 === i) machine.mcu.setInterrupt(20, true);
+      if (turn % 15 === i) isDue = false;
+      if (i < 14 || isDue) return;
+      isDue = true;
+      turn++;
+    });
+  let taken = 0;
+  const {core} = machine;
+  const enter = core.exceptionEntry.bind(core);
+  core.exceptionEntry = (number) => {
+    if (number === 36 && core.PC >= from && core.PC < from + 40) taken++;
+    enter(number);
+    if (number === 36) machine.uart[0].update(); // as it really is
+  };
+  go(bench, 2000);
+  assert.ok(turn > 100 && taken > 100, `${taken} interrupts in ${turn} passes`);
+  assert.ok(reading(bench, 'tank').readings >= 15 && reading(bench, 'gate').readings >= 100);
+  assert.strictEqual(reading(bench, 'tank').errors + reading(bench, 'gate').errors, 0);
+});
+
+test('each stack has room to spare', () => {
+  const bench = start({gate: [MEASURING, NEVER, MEASURING]});
+  go(bench, 3000);
+  for (const name of ['tank_task', 'gate_task', 'lamp_task']) {
+    const [symbol] = [...bench.machine.symbols.keys()].filter((each) => each.split('.')[0] === name);
+    const words = bench.machine.symbols.get(symbol) + 20;
+    let left = 0;
+    while (bench.machine.mcu.readUint32(words + 4 * left) === UNUSED) left++;
+    figure(`rp2040_${name}_deepest_stack`, 4 * (STACK_WORDS - left), 'bytes');
+    assert.ok(left >= STACK_WORDS / 4, `${name}: ${left} words left`);
+  }
+});
+
+test('all of them wait across the wrap of the clock', () => {
+  for (let early = 100; early < 1000; early += 270) { // ms from reset to the wrap
+    const bench = start({startUs: 2 ** 32 - early * 1000});
+    go(bench, 2000);
+    assert.ok(bench.machine.clock.nanos > WRAP_NS);
+    const tank = reading(bench, 'tank');
+    const gate = reading(bench, 'gate');
+    assert.ok(tank.readings >= 15 && tank.readings <= 17, `${tank.readings} readings of the A16`);
+    assert.ok(gate.readings >= 106 && gate.readings <= 108, `${gate.readings} readings of the HPS-167S`);
+    assertBlinks(bench, 2000);
+  }
+});
+
+test('the core sleeps when all tasks wait', () => {
+  const bench = start();
+  go(bench, 2000);
+  const share = bench.machine.core.cycles / (bench.machine.us * 125);
+  figure('rp2040_tasks_cpu_share', (share * 100).toFixed(3), '%');
+  assert.ok(share < 0.02, `awake for ${share} of the time`);
+});
+
