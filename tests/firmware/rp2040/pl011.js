@@ -6,11 +6,13 @@
 
 const R = {
   DR: 0x00, FR: 0x18, IBRD: 0x24, FBRD: 0x28, LCR_H: 0x2c, CR: 0x30, IFLS: 0x34, IMSC: 0x38, RIS: 0x3c, MIS: 0x40,
-  ICR: 0x44,
+  ICR: 0x44, DMACR: 0x48,
 };
 const FE = 1 << 8, PE = 1 << 9, BE = 1 << 10, OE = 1 << 11; // DR
 const UARTEN = 1, TXE = 1 << 8, RXE = 1 << 9; // CR
 const BRK = 1, PEN = 2, EPS = 4, STP2 = 8, FEN = 16; // LCR_H
+const RXDMAE = 1; // DMACR
+const DREQ_UART0_RX = 21; // the datasheet's 2.5.3.1; UART1's is two further
 const INT_RX = 1 << 4, INT_TX = 1 << 5, INT_RT = 1 << 6;
 const DEPTH = 32;
 const RX_LEVELS = [4, 8, 16, 24, 28]; // of IFLS: so many or more
@@ -31,7 +33,8 @@ class Pl011 {
   }
 
   reset() {
-    this.registers = {[R.IBRD]: 0, [R.FBRD]: 0, [R.LCR_H]: 0, [R.CR]: TXE | RXE, [R.IFLS]: 0x12, [R.IMSC]: 0};
+    this.registers = {[R.IBRD]: 0, [R.FBRD]: 0, [R.LCR_H]: 0, [R.CR]: TXE | RXE, [R.IFLS]: 0x12, [R.IMSC]: 0,
+      [R.DMACR]: 0};
     this.divider = 0; // as LCR_H's write has taken it over, in 64ths
     this.status = 0; // RIS
     this.tx = [];
@@ -41,6 +44,7 @@ class Pl011 {
     this.shift.cancel();
     this.timeOut.cancel();
     this.update();
+    this.request();
   }
 
   get lcr() { return this.registers[R.LCR_H]; }
@@ -63,6 +67,14 @@ class Pl011 {
   violation(what) { this.violations.push(`UART${this.number} at ${this.clock.nanos} ns: ${what}`); }
 
   update() { this.mcu.setInterrupt(20 + this.number, (this.status & this.registers[R.IMSC]) !== 0); }
+
+  // The DMA is asked for as long as there is a byte (UARTRXDMASREQ); rp2040js knows what to do with that.
+  request() {
+    const dreq = DREQ_UART0_RX + 2 * this.number;
+    if (this.registers[R.DMACR] & RXDMAE && this.rx.length > 0) this.mcu.dma.setDREQ(dreq);
+    else this.mcu.dma.clearDREQ(dreq);
+  }
+
   raise(bit) { this.status |= bit; this.update(); }
   lower(bit) { this.status &= ~bit; this.update(); }
 
@@ -95,6 +107,7 @@ class Pl011 {
       case R.IMSC: this.registers[R.IMSC] = value & 0x7ff; this.update(); break;
       case R.CR: this.registers[R.CR] = value; this.begin(); break;
       case R.LCR_H: this.writeLineControl(value); break;
+      case R.DMACR: this.registers[R.DMACR] = value; this.request(); break;
       case R.IBRD: case R.FBRD: case R.IFLS: this.registers[offset] = value; break;
       default: this.violation(`write of register ${offset.toString(16)}`);
     }
@@ -150,6 +163,7 @@ class Pl011 {
     this.overrun = false;
     if (this.rx.length >= this.rxLevel) this.raise(INT_RX);
     this.timeOut.schedule(TIME_OUT_BITS * this.bitNs);
+    this.request();
   }
 
   readData() {
@@ -162,6 +176,7 @@ class Pl011 {
     if (this.rx.length === 0) {
       this.timeOut.cancel();
       this.lower(INT_RT);
+      this.request();
     }
     return entry;
   }

@@ -2,7 +2,7 @@
 // examples/rp2040/hps167s_battery.c: power for one reading, then sleep, also for longer than the clock takes to wrap.
 'use strict';
 const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {test, figure, run} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {FE, BE} = require('./pl011.js');
 const {Hps167s, Terminal, MS} = require('./devices.js');
@@ -110,3 +110,4 @@ test('the clock may wrap while it warms up, is asked, or sleeps', () => {
   }
 });
 
+run();

@@ -2,7 +2,7 @@
 // examples/rp2040/tasks.c: a task for each of two lines, and one that blinks.
 'use strict';
 const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {test, figure, run} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {Answering, A16_REAL_TIME} = require('./answering.js');
 const {Hps167s, MS} = require('./devices.js');
@@ -175,3 +175,4 @@ test('the core sleeps when all tasks wait', () => {
   assert.ok(share < 0.02, `awake for ${share} of the time`);
 });
 
+run();
