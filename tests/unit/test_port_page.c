@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "fathom/a16_modbus.h"
+#include "fathom/modbus_client.h"
+
+/* What port/README.md shows, and its interrupts. */
+void timer_interrupt(void);
+void receive_interrupt(void);
+void room_interrupt(void);
+void sent_interrupt(void);
+void pin_interrupt(void);
+void port_begin(void);
+fathom_capture_t port_capture(void);
+
+#include "port_page.c" /* all blocks of C of port/README.md, cut out by CMake */
+
+/* ---- the chip, and an A16 at the end of its line ---- */
+
+enum { BIT_US = 104, CHARACTER_US = 1040, DEVICE_US = 50000, MOST = 32 };
+
+/* A16 6(4), example 2: real-time value, 0x02EF = 751 mm. */
+static const uint8_t question[8] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36};
+static const uint8_t answer[7] = {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8};
+
+static struct {
+    uint32_t us;
+    uint32_t slow_us; /* what each look at the timer takes */
+    bool is_locked, has_wrapped;
+
+    bool on_room, on_sent, driver, is_register_full, is_shifting;
+    uint8_t in_register, in_shifter;
+    uint32_t shift_left_us;
+    uint8_t out[MOST];
+    uint8_t sent;
+    unsigned undriven;      /* us of a character without the driver */
+    uint32_t last_us;       /* the end of the last stop bit */
+    uint32_t driver_off_us; /* when it was let go */
+    uint32_t driver_on_us;
+    uint32_t first_start_us;
+
+    uint8_t byte, flags; /* that have come */
+    uint32_t answer_left_us;
+    uint8_t answered;
+
+    bool pin;
+} chip;
+
+uint32_t chip_lock(void)
+{
+    const bool was_locked = chip.is_locked;
+    chip.is_locked = true;
+    return was_locked;
+}
+
+static void interrupt_timer(void)
+{
+    if (chip.has_wrapped && !chip.is_locked) timer_interrupt();
+}
+
+void chip_unlock(uint32_t before)
+{
+    chip.is_locked = before != 0;
+    interrupt_timer();
+}
+
+static void tick(uint32_t us)
+{
+    for (; us != 0; us--)
+        if ((++chip.us & UINT16_MAX) == 0) chip.has_wrapped = true;
+    interrupt_timer();
+}
+
+uint16_t chip_timer(void)
+{
+    const uint16_t count = (uint16_t)chip.us;
+    tick(chip.slow_us);
+    return count;
+}
+
+bool chip_timer_wrapped(void) { return chip.has_wrapped; }
+void chip_timer_clear(void) { chip.has_wrapped = false; }
+uint8_t chip_uart_flags(void) { return chip.flags; }
+
+uint8_t chip_uart_take(void)
+{
+    chip.flags = 0; /* as on STM32: they are gone with the byte */
+    return chip.byte;
+}
+
+void chip_uart_put(uint8_t byte)
+{
+    assert_false(chip.is_register_full);
+    chip.in_register = byte;
+    chip.is_register_full = true;
+}
+
+void chip_uart_on_room(bool on) { chip.on_room = on; }
+void chip_uart_on_sent(bool on) { chip.on_sent = on; }
+
+void chip_driver(bool on)
+{
+    if (on)
+        chip.driver_on_us = chip.us;
+    else
+        chip.driver_off_us = chip.us;
+    chip.driver = on;
+}
+
+bool chip_pin(void) { return chip.pin; }
+void chip_pin_clear(void) {}
+
+static void come(uint8_t byte, uint8_t flags)
+{
+    chip.byte = byte;
+    chip.flags = flags;
+    receive_interrupt();
+}
+
+static void shift(void)
+{
+    if (chip.is_shifting) {
+        if (!chip.driver) chip.undriven++;
+        if (--chip.shift_left_us != 0) return;
+        chip.is_shifting = false;
+        chip.last_us = chip.us;
+        chip.out[chip.sent++ % MOST] = chip.in_shifter;
+        if (chip.sent == sizeof question) chip.answer_left_us = DEVICE_US;
+    }
+    if (!chip.is_register_full) return;
+    if (chip.sent == 0) chip.first_start_us = chip.us;
+    chip.in_shifter = chip.in_register;
+    chip.is_register_full = false;
+    chip.is_shifting = true;
+    chip.shift_left_us = CHARACTER_US;
+}
+
+/* The A16 answers what it has been asked, if it was that. */
+static void device(void)
+{
+    if (chip.answer_left_us == 0 || --chip.answer_left_us != 0) return;
+    if (memcmp(chip.out, question, sizeof question) != 0) return;
+    come(answer[chip.answered++], 0);
+    if (chip.answered < sizeof answer) chip.answer_left_us = CHARACTER_US;
+}
+
+static void run(uint32_t us)
+{
+    for (; us != 0; us--) {
+        tick(1);
+        shift();
+        device();
+        if (chip.on_room && !chip.is_register_full) room_interrupt();
+        if (chip.on_sent && !chip.is_register_full && !chip.is_shifting) sent_interrupt();
+    }
+}
+
+static int start(void **state)
+{
+    (void)state;
+    memset(&chip, 0, sizeof chip);
+    wraps = 0;
+    chip.driver = true; /* as nobody has set the pin */
+    port_begin();
+    return 0;
+}
+
+/* ---- the clock ---- */
+
+static void begin_at(uint32_t us)
+{
+    chip.us = us;
+    wraps = (uint16_t)(us >> 16);
+    chip.has_wrapped = false;
+}
+
+static uint32_t now(void) { return port_clock.now_us(port_clock.ctx); }
+
+static void the_clock_is_right_wherever_the_timer_wraps_while_it_is_read(void **state)
+{
+    static const uint32_t around[] = {0x00010000, 0x80000000, 0x00000000};
+    (void)state;
+    for (unsigned i = 0; i != 3; i++)
+        for (uint32_t early = 0; early != 12; early++)
+            for (chip.slow_us = 0; chip.slow_us != 6; chip.slow_us++)
+                for (int locked = 0; locked != 2; locked++) {
+                    begin_at(around[i] - early);
+                    chip.is_locked = locked != 0; /* as within another interrupt */
+                    const uint32_t from = chip.us;
+                    const uint32_t read = now();
+                    assert_in_range(fathom_elapsed_us(read, from), 0, fathom_elapsed_us(chip.us, from));
+                    assert_int_equal(chip.is_locked, locked != 0);
+                    chip.is_locked = false;
+                    interrupt_timer();
+                    const uint32_t slow_us = chip.slow_us;
+                    chip.slow_us = 0;
+                    assert_int_equal(now(), chip.us); /* the interrupt has counted */
+                    chip.slow_us = slow_us;
+                }
+}
+
+static void the_clock_wraps_at_2_to_the_32(void **state)
+{
+    (void)state;
+    begin_at(UINT32_MAX - 2);
+    assert_int_equal(now(), UINT32_MAX - 2);
+    tick(5);
+    assert_int_equal(now(), 2);
+}
+
+/* From the last value of a counter to its next: as many us as really pass, or not? */
+static void a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tick_does_not(void **state)
+{
+    const uint32_t cycles = UINT32_MAX;
+    const uint16_t tick_16 = UINT16_MAX;
+    const uint32_t tick_32 = UINT32_MAX;
+    (void)state;
+    assert_int_equal(cycles / 64, 67108863);
+    assert_int_not_equal(fathom_elapsed_us((uint32_t)(cycles + 1) / 64, cycles / 64), 1);
+    assert_int_not_equal(fathom_elapsed_us((uint16_t)(tick_16 + 1) * 1000u, tick_16 * 1000u), 1000);
+    assert_int_equal(fathom_elapsed_us((uint32_t)(tick_32 + 1) * 1000u, tick_32 * 1000u), 1000);
+}
+
+/* ---- the UART ---- */
+
+static int read_port(uint8_t *bytes, size_t capacity, uint8_t *flags)
+{
+    fathom_rx_t rx = {0, 0};
+    const int n = port_uart.read(port_uart.ctx, bytes, capacity, &rx);
+    *flags = rx.flags;
+    return n;
+}
+
+static void a_read_never_spans_a_wrong_byte(void **state)
+{
+    uint8_t bytes[8], flags;
+    (void)state;
+    come(1, 0);
+    come(2, 0);
+    come(3, FATHOM_RX_PARITY);
+    come(4, 0);
+    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 2);
+    assert_int_equal(flags, 0);
+    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 1);
+    assert_int_equal(bytes[0], 3);
+    assert_int_equal(flags, FATHOM_RX_PARITY);
+    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 1);
+    assert_int_equal(bytes[0], 4);
+    assert_int_equal(flags, 0);
+    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 0);
+}
+
+static void the_indices_wrap_and_bytes_stay_in_order(void **state)
+{
+    uint8_t byte, flags;
+    (void)state;
+    for (unsigned i = 0; i != 1000; i++) {
+        come((uint8_t)(7 * i), 0);
+        assert_int_equal(read_port(&byte, 1, &flags), 1);
+        assert_int_equal(byte, (uint8_t)(7 * i));
+    }
+}
+
+static void a_full_ring_loses_what_comes_and_says_so(void **state)
+{
+    uint8_t bytes[255], flags;
+    (void)state;
+    for (unsigned i = 0; i != FATHOM_SERIAL_RING + 3; i++) come((uint8_t)i, 0);
+    assert_int_equal(read_port(bytes, sizeof bytes, &flags), FATHOM_SERIAL_RING);
+    assert_int_equal(flags, 0);
+    come(99, 0);
+    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 1);
+    assert_int_equal(flags, FATHOM_RX_OVERRUN);
+}
+
+static void a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit(void **state)
+{
+    (void)state;
+    assert_false(chip.driver);
+    run(1000);
+    assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
+    assert_int_equal(port_uart.write(port_uart.ctx, answer, sizeof answer), 0); /* busy */
+    for (unsigned left = 2 * sizeof question * CHARACTER_US; !port_uart.sent(port_uart.ctx); left--) {
+        assert_int_not_equal(left, 0);
+        run(1);
+    }
+    assert_int_equal(chip.sent, sizeof question);
+    assert_memory_equal(chip.out, question, sizeof question);
+    assert_int_equal(chip.undriven, 0);
+    assert_true(chip.driver_on_us <= chip.first_start_us);
+    assert_false(chip.driver);
+    assert_in_range(chip.driver_off_us - chip.last_us, 0, BIT_US);
+    assert_int_equal(chip.last_us - chip.first_start_us, sizeof question * CHARACTER_US); /* no gap */
+    chip.sent = 0;
+    assert_int_equal(port_uart.write(port_uart.ctx, answer, sizeof answer), sizeof answer);
+}
+
+static void a_request_that_finds_no_memory_is_refused(void **state)
+{
+    const uint8_t bytes[9] = {0};
+    (void)state;
+    assert_true(port_uart.write(port_uart.ctx, bytes, sizeof bytes) < 0);
+    run(10 * CHARACTER_US);
+    assert_int_equal(chip.sent, 0);
+    assert_false(chip.driver);
+}
+
+/* A line and a sensor on this port, in a loop of `round_us`, from `us` on. */
+static void read_sensor(uint32_t us, uint32_t round_us)
+{
+    uint8_t frame[16];
+    fathom_line_t line;
+    const fathom_line_config_t line_config = {.uart = &port_uart,
+                                              .clock = &port_clock,
+                                              .frame = frame,
+                                              .frame_size = sizeof frame,
+                                              .silence_us = FATHOM_T3_5_US(9600, 10)};
+    fathom_a16_modbus_t a16;
+    (void)start(NULL);
+    begin_at(us);
+    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
+    const fathom_modbus_t modbus = fathom_modbus_client(&line);
+    const fathom_a16_modbus_config_t config = {
+        .modbus = &modbus, .clock = &port_clock, .value = FATHOM_A16_REAL_TIME};
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
+    fathom_sample_t sample;
+    fathom_status_t status;
+    unsigned rounds = 0;
+    while ((status = fathom_poll(&sensor, &sample)) == FATHOM_PENDING) {
+        assert_true(rounds++ < 200000 / round_us + 1);
+        run(round_us);
+    }
+    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(sample.kind, FATHOM_TARGET);
+    assert_int_equal(sample.distance_mm, 751);
+}
+
+static void a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap(void **state)
+{
+    static const uint32_t from_us[] = {0, 0x0000F000, UINT32_MAX - 1000, UINT32_MAX - 20000,
+                                       UINT32_MAX - 60000};
+    (void)state;
+    for (unsigned i = 0; i != 5; i++) {
+        read_sensor(from_us[i], 100);
+        read_sensor(from_us[i], 20000);
+    }
+}
+
+/* ---- pulses ---- */
+
+static void edge(bool high)
+{
+    chip.pin = high;
+    pin_interrupt();
+}
+
+static void a_pulse_is_as_wide_as_it_was_also_across_the_wrap(void **state)
+{
+    fathom_pulse_t pulse;
+    (void)state;
+    begin_at(UINT32_MAX - 5000);
+    const fathom_capture_t capture = port_capture();
+    capture.arm(capture.ctx);
+    edge(true);
+    assert_int_equal(capture.take(capture.ctx, &pulse), 0);
+    assert_true(pulse.is_high);
+    tick(10000);
+    edge(false);
+    assert_int_equal(capture.take(capture.ctx, &pulse), 1);
+    assert_int_equal(pulse.width_us, 10000);
+    assert_int_equal(pulse.end_us, 4999); /* -5001 + 10000 */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(the_clock_is_right_wherever_the_timer_wraps_while_it_is_read, start),
+        cmocka_unit_test_setup(the_clock_wraps_at_2_to_the_32, start),
+        cmocka_unit_test(a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tick_does_not),
+        cmocka_unit_test_setup(a_read_never_spans_a_wrong_byte, start),
+        cmocka_unit_test_setup(the_indices_wrap_and_bytes_stay_in_order, start),
+        cmocka_unit_test_setup(a_full_ring_loses_what_comes_and_says_so, start),
+        cmocka_unit_test_setup(a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit, start),
+        cmocka_unit_test_setup(a_request_that_finds_no_memory_is_refused, start),
+        cmocka_unit_test(a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap),
+        cmocka_unit_test_setup(a_pulse_is_as_wide_as_it_was_also_across_the_wrap, start),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
