@@ -141,6 +141,28 @@ test('an interrupt that comes while a task changes places does no harm', () => {
   assert.strictEqual(reading(bench, 'tank').errors + reading(bench, 'gate').errors, 0);
 });
 
+test('what is given right before the core would sleep keeps it awake', () => {
+  const bench = start();
+  const {machine} = bench;
+  const enter = machine.core.exceptionEntry.bind(machine.core);
+  machine.core.exceptionEntry = (number) => {
+    enter(number);
+    if (number === 36) machine.uart[0].update(); // as it really is
+  };
+  let calls = 0, given = 0, since = 0, longest = 0;
+  machine.watch('fathom_rp2040_idle', () => {
+    if (calls % 3 === 0) longest = Math.max(longest, machine.clock.nanos - since);
+  }, () => {
+    if (++calls % 3 !== 0) return;
+    given++;
+    since = machine.clock.nanos;
+    machine.mcu.setInterrupt(20, true); // which comes before its first instruction
+  });
+  go(bench, 1000);
+  assert.ok(given > 50, `${given} times`);
+  assert.ok(longest < 5000, `it slept for ${longest} ns`);
+});
+
 test('each stack has room to spare', () => {
   const bench = start({gate: [MEASURING, NEVER, MEASURING]});
   go(bench, 3000);
