@@ -4,15 +4,15 @@
 #include "internal/alarm.h"
 #include "rp2040.h"
 
-/* 2.5.7 DMA: a channel's registers, and interrupt 0. The aliases differ in which write starts a transfer. */
-typedef struct {
-    volatile uint32_t read_addr, write_addr, trans_count, ctrl_trig, al1_ctrl, al1_read_addr, al1_write_addr,
-        al1_trans_count_trig, al2_al3[8];
-} dma_channel_t;
-
-#define DMA_CHANNEL(number) ((dma_channel_t *)(uintptr_t)(0x50000000u + 0x40u * (number)))
-#define DMA_INTE0           RP2040_REGISTER(0x50000404)
-#define DMA_INTS0           RP2040_REGISTER(0x5000040C)
+/* 2.5.7 DMA, of a channel: CTRL_TRIG and AL1_TRANS_COUNT_TRIG begin a transfer. And of interrupt 0. */
+#define DMA_CHANNEL(number, offset)      RP2040_REGISTER(0x50000000u + 0x40u * (number) + (offset))
+#define DMA_READ_ADDR(number)            DMA_CHANNEL(number, 0x00u)
+#define DMA_WRITE_ADDR(number)           DMA_CHANNEL(number, 0x04u)
+#define DMA_TRANS_COUNT(number)          DMA_CHANNEL(number, 0x08u)
+#define DMA_CTRL_TRIG(number)            DMA_CHANNEL(number, 0x0Cu)
+#define DMA_AL1_TRANS_COUNT_TRIG(number) DMA_CHANNEL(number, 0x1Cu)
+#define DMA_INTE0                        RP2040_REGISTER(0x50000404)
+#define DMA_INTS0                        RP2040_REGISTER(0x5000040C)
 
 enum {
     CTRL_EN = 1 << 0,
@@ -37,8 +37,6 @@ enum {
     US_PER_S = 1000000
 };
 
-static dma_channel_t *channel_of(const dma_uart_t *uart) { return DMA_CHANNEL(uart->config->channel); }
-
 static uint32_t now_us(void) { return fathom_rp2040_clock.now_us(fathom_rp2040_clock.ctx); }
 
 /* All bytes so far; wraps. */
@@ -48,7 +46,7 @@ static uint32_t count(const dma_uart_t *uart)
     uint32_t left;
     do {
         before = uart->before;
-        left = channel_of(uart)->trans_count;
+        left = DMA_TRANS_COUNT(uart->config->channel);
     } while (before != uart->before); /* a transfer ended in between */
     return before + (TRANSFER - left);
 }
@@ -59,7 +57,7 @@ void dma_uart_ended(dma_uart_t *uart)
     if ((DMA_INTS0 & bit) == 0) return;
     DMA_INTS0 = bit;
     uart->before += TRANSFER;
-    channel_of(uart)->al1_trans_count_trig = TRANSFER; /* goes on in the ring where it stands */
+    DMA_AL1_TRANS_COUNT_TRIG(uart->config->channel) = TRANSFER; /* goes on in the ring where it stands */
 }
 
 /* ---- silence ---- */
@@ -187,6 +185,7 @@ bool dma_uart_begin(dma_uart_t *uart, const dma_uart_config_t *config)
 {
     const unsigned number = config->wiring.number;
     const unsigned alarm = config->wiring.alarm;
+    const unsigned channel = config->channel;
     if (alarm >= FATHOM_RP2040_ALARMS || !fathom_rp2040_uart_setup(&config->wiring, &config->line))
         return false;
     rp2040_clear(&RP2040_RESETS_RESET, RESETS_DMA);
@@ -200,15 +199,14 @@ bool dma_uart_begin(dma_uart_t *uart, const dma_uart_config_t *config)
     uart->is_after_silence = false;
     uart->marks_taken = uart->marked = 0;
 
-    dma_channel_t *const channel = channel_of(uart);
     RP2040_UART(number)->dmacr = UART_RXDMAE;
-    channel->read_addr = (uint32_t)(uintptr_t)&RP2040_UART(number)->dr;
-    channel->write_addr = (uint32_t)(uintptr_t)uart->ring;
-    channel->trans_count = TRANSFER;
-    channel->ctrl_trig = CTRL_EN | CTRL_HALFWORDS | CTRL_INCR_WRITE | CTRL_RING_SIZE | CTRL_RING_SEL_WRITE |
-                         (uint32_t)config->channel << CTRL_CHAIN_TO |
-                         (DREQ_UART0_RX + 2u * number) << CTRL_TREQ_SEL;
-    rp2040_set(&DMA_INTE0, UINT32_C(1) << config->channel);
+    DMA_READ_ADDR(channel) = (uint32_t)(uintptr_t)&RP2040_UART(number)->dr;
+    DMA_WRITE_ADDR(channel) = (uint32_t)(uintptr_t)uart->ring;
+    DMA_TRANS_COUNT(channel) = TRANSFER;
+    DMA_CTRL_TRIG(channel) = CTRL_EN | CTRL_HALFWORDS | CTRL_INCR_WRITE | CTRL_RING_SIZE |
+                             CTRL_RING_SEL_WRITE | (uint32_t)channel << CTRL_CHAIN_TO |
+                             (DREQ_UART0_RX + 2u * number) << CTRL_TREQ_SEL;
+    rp2040_set(&DMA_INTE0, UINT32_C(1) << channel);
     fathom_rp2040_alarm_enable(alarm);
     look_later(uart); /* a silence from here on counts */
     RP2040_NVIC_ISER = UINT32_C(1) << RP2040_IRQ_DMA_0 | UINT32_C(1) << RP2040_IRQ_IO_BANK0;
