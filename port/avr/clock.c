@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "inside.h"
+#include "internal/avr_port.h"
 
 #define PERIOD_US (65536UL / FATHOM_AVR_TICKS_PER_US)
 

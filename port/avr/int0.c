@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "inside.h"
+#include "internal/avr_port.h"
 
 static fathom_edges_t *seen;
 

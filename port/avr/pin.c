@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "inside.h"
+#include "internal/avr_port.h"
 
 /* PINx, DDRx and PORTx stand in this order (ATmega328P, 14.4). */
 static volatile uint8_t *pin_of(const fathom_avr_pin_t *pin) { return pin->port - 2; }

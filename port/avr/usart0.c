@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "inside.h"
+#include "internal/avr_port.h"
 
 /*
  * Bytes that wait for the main loop, each followed by UCSR0A as it was when it came. One writer, the interrupt, and

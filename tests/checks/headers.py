@@ -14,6 +14,7 @@ COMPILERS = [
     (['g++', '-std=c++11', *CXX_WARNINGS], '.cpp'),
     (['clang++-14', '-std=c++11', *CXX_WARNINGS], '.cpp'),
 ]
+AVR = [(['avr-gcc', '-std=c99', '-mmcu=atmega328p', '-DF_CPU=16000000UL', *WARNINGS], '.c')]  # for avr-libc's headers
 
 
 def check(root, only):
@@ -25,7 +26,7 @@ def check(root, only):
             folder = os.path.join(root, 'port', path.split(os.sep)[1]) if path.startswith('port') else ''
             include = [LIBMODBUS, '-I' + os.path.join(root, 'include')] + (['-I' + folder] if folder else [])
             name = os.path.relpath(os.path.join(root, path), folder or os.path.join(root, 'include'))
-            for compiler, ending in COMPILERS:
+            for compiler, ending in AVR if path.startswith('port/avr/internal/') else COMPILERS:
                 source = os.path.join(work, 'alone' + ending)
                 with open(source, 'w', encoding='utf-8') as file:
                     file.write(f'#include "{name}"\n#include "{name}"\nextern int used;\nint used;\n')

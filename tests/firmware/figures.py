@@ -4,13 +4,14 @@
 figures.csv, with their bounds, and none may get worse. The simulators are deterministic, so a figure is the same each
 time for one version of the compiler, which the file names.
 
-    figures.py MACHINE COMPILER PROGRAM [ARGUMENT ...]
-                                 runs PROGRAM, which prints lines "figure NAME VALUE UNIT", and shows them
+    figures.py GROUP COMPILER PROGRAM [ARGUMENT ...]
+                                 runs PROGRAM, whose lines "figure NAME VALUE UNIT" are GROUP's, and shows them
     figures.py --check ...       also fails when one is worse than the kept one or over its bound, missing or new
     figures.py --update ...      also keeps them; bounds stay, and are written into the file by hand
     figures.py --self-test       shows that the comparison works
 
-Less is better in all of them. A figure's name begins with its machine.
+Less is better in all of them. It fails when PROGRAM does, and prints first what that has printed, so PROGRAM may be a
+test. NAME begins with the machine's; COMPILER is the one that made the images.
 """
 import argparse
 import csv
@@ -24,12 +25,10 @@ FIGURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'figures.csv'
 LINE = re.compile(r'^figure (\w+) (-?\d+(?:\.\d+)?) (\S+)$', re.M)
 
 
-def printed_figures(text, machine):
+def printed_figures(text):
     """{name: (figure, unit)} of what a program has printed"""
     found = {}
     for name, figure, unit in LINE.findall(text):
-        if not name.startswith(machine + '_'):
-            raise ValueError(f'{name} is no figure of {machine}: its name begins with {machine}_')
         if name in found:
             raise ValueError(f'{name} was printed twice')
         found[name] = (figure, unit)
@@ -39,7 +38,7 @@ def printed_figures(text, machine):
 
 
 def read(path):
-    """({machine: compiler}, {name: row})"""
+    """({group: compiler}, {name: row})"""
     compilers, rows = {}, {}
     if os.path.exists(path):
         with open(path, encoding='utf-8') as file:
@@ -51,9 +50,9 @@ def read(path):
 
 def write(path, compilers, rows):
     with open(path, 'w', encoding='utf-8', newline='') as file:
-        for machine, compiler in sorted(compilers.items()):
-            print(f'# {machine}: {compiler}', file=file)
-        out = csv.DictWriter(file, ['name', 'unit', 'figure', 'bound'], lineterminator='\n')
+        for group, compiler in sorted(compilers.items()):
+            print(f'# {group}: {compiler}', file=file)
+        out = csv.DictWriter(file, ['group', 'name', 'unit', 'figure', 'bound'], lineterminator='\n')
         out.writeheader()
         out.writerows(rows.values())
 
@@ -62,15 +61,17 @@ def is_over(figure, limit):
     return limit != '' and float(figure) > float(limit)
 
 
-def problems(found, machine, compiler, compilers, rows):
+def problems(found, group, compiler, compilers, rows):
     """What is worse than it was, or than it may be, as lines; what is better is only printed."""
-    if compilers.get(machine) != compiler:
-        return [f'{machine} was measured with {compilers.get(machine)}; here is {compiler}: nothing to compare']
+    if compilers.get(group) != compiler:
+        return [f'{group} was measured with {compilers.get(group)}; here is {compiler}: nothing to compare']
     lines = []
     for name, (figure, unit) in found.items():
         row = rows.get(name)
         if row is None:
             lines.append(f'{name}: {figure} {unit} is not in figures.csv: keep it with --update')
+        elif row['group'] != group:
+            lines.append(f'{name}: of {group}, was of {row["group"]}')
         elif row['unit'] != unit:
             lines.append(f'{name}: in {unit}, was in {row["unit"]}')
         elif is_over(figure, row['figure']):
@@ -79,32 +80,32 @@ def problems(found, machine, compiler, compilers, rows):
             print(f'better: {name}: {figure} {unit}, was {row["figure"]}; keep it with --update')
         if row is not None and is_over(figure, row['bound']):
             lines.append(f'OVER: {name}: {figure} {unit}, its bound is {row["bound"]}')
-    for name in rows:
-        if name.startswith(machine + '_') and name not in found:
+    for name, row in rows.items():
+        if row['group'] == group and name not in found:
             lines.append(f'{name} was not measured')
     return lines
 
 
-def update(found, machine, compiler, compilers, rows):
-    compilers[machine] = compiler
-    for name in [name for name in rows if name.startswith(machine + '_') and name not in found]:
+def update(found, group, compiler, compilers, rows):
+    compilers[group] = compiler
+    for name in [name for name in rows if rows[name]['group'] == group and name not in found]:
         del rows[name]
     for name, (figure, unit) in found.items():
         bound = rows[name]['bound'] if name in rows else ''
-        rows[name] = {'name': name, 'unit': unit, 'figure': figure, 'bound': bound}
+        rows[name] = {'group': group, 'name': name, 'unit': unit, 'figure': figure, 'bound': bound}
 
 
 def self_test():
     text = 'x\nfigure chip_isr 50 cycles\nfigure chip_bus 0.25 %\nfigures of the day\n'
-    found = printed_figures(text, 'chip')
+    found = printed_figures(text)
     assert found == {'chip_isr': ('50', 'cycles'), 'chip_bus': ('0.25', '%')}
-    for wrong in ('figure other_isr 1 cycles\n', text + 'figure chip_isr 49 cycles\n', 'nothing\n'):
+    for wrong in (text + 'figure chip_isr 49 cycles\n', 'nothing\n'):
         try:
-            printed_figures(wrong, 'chip')
+            printed_figures(wrong)
         except ValueError:
             continue
         raise AssertionError(wrong)
-    other = {'name': 'core_isr', 'unit': 'cycles', 'figure': '1', 'bound': '2'}
+    other = {'group': 'core', 'name': 'core_isr', 'unit': 'cycles', 'figure': '1', 'bound': '2'}
     compilers, rows = {'core': 'cc 2'}, {'core_isr': other}
     update(found, 'chip', 'cc 1', compilers, rows)
     rows['chip_isr']['bound'] = '60'
@@ -123,7 +124,8 @@ def self_test():
     assert count({'chip_bus': ('0.25', 'us')}) == 1
     assert count({'chip_new': ('1', 'B')}) == 1
     assert count({}, compiler='cc 2') == 1
-    assert count({}, kept={**rows, 'chip_gone': {**other, 'name': 'chip_gone'}}) == 1
+    assert count({}, kept={**rows, 'chip_gone': {**rows['chip_isr'], 'name': 'chip_gone'}}) == 1
+    assert count({}, kept={**rows, 'chip_isr': {**rows['chip_isr'], 'group': 'core'}}) == 1
     loose = {**rows, 'chip_isr': {**rows['chip_isr'], 'figure': '70'}}
     assert count({'chip_isr': ('61', 'cycles')}, kept=loose) == 1
     update({'chip_isr': ('40', 'cycles')}, 'chip', 'cc 3', compilers, rows)
@@ -138,7 +140,7 @@ def main():
     parser.add_argument('--check', action='store_true', help='fail when a figure is worse than the kept one')
     parser.add_argument('--update', action='store_true', help='keep the figures in figures.csv')
     parser.add_argument('--self-test', action='store_true', help='show that the comparison works')
-    parser.add_argument('machine', nargs='?')
+    parser.add_argument('group', nargs='?')
     parser.add_argument('compiler', nargs='?')
     parser.add_argument('program', nargs=argparse.REMAINDER)
     options = parser.parse_args()
@@ -147,12 +149,12 @@ def main():
     if not options.program:
         parser.error('which program measures?')
 
-    done = subprocess.run(options.program, capture_output=True, text=True, check=False)
+    done = subprocess.run(options.program, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    print(done.stdout, end='')
     if done.returncode != 0:
-        print(done.stdout + done.stderr, end='')
         print(f'{options.program[0]} ended with {done.returncode}')
         return 1
-    found = printed_figures(done.stdout, options.machine)
+    found = printed_figures(done.stdout)
     version = subprocess.run([options.compiler, '-dumpversion'], capture_output=True, text=True, check=True)
     compiler = f'{os.path.basename(options.compiler)} {version.stdout.strip()}'
     compilers, rows = read(FIGURES)
@@ -161,9 +163,9 @@ def main():
         row = rows.get(name, {'figure': '', 'bound': ''})
         print(f'{name:40} {figure:>10} {row["figure"]:>10} {row["bound"]:>10} {unit}')
     if options.update:
-        update(found, options.machine, compiler, compilers, rows)
+        update(found, options.group, compiler, compilers, rows)
         write(FIGURES, compilers, rows)
-    lines = problems(found, options.machine, compiler, compilers, rows) if options.check else []
+    lines = problems(found, options.group, compiler, compilers, rows) if options.check else []
     print('\n'.join([*lines, f'{len(found)} figures, {len(lines)} problems']))
     return 1 if lines else 0
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef FATHOM_AVR_INSIDE_H
-#define FATHOM_AVR_INSIDE_H
+#ifndef FATHOM_AVR_PORT_H
+#define FATHOM_AVR_PORT_H
 
 /* What the sources of this port share. */
 
@@ -8,7 +8,7 @@
 #include <avr/io.h>
 #include <stdint.h>
 
-#include "fathom_avr.h"
+#include "../fathom_avr.h"
 
 #if F_CPU != 16000000UL && F_CPU != 8000000UL
 #error "F_CPU is to be 16000000UL or 8000000UL: Timer1 divides it by 8 and has to count 0.5 or 1 us"
