@@ -24,10 +24,13 @@ fathom_uart_t channel_uart(channel_t *channel)
 void channel_turn(channel_t *from, channel_t *to, const fathom_pin_t *select, bool to_is_high)
 {
     uint8_t bytes[8];
-    fathom_rx_t rx;
+    fathom_rx_t rx = {0};
     from->selected = false;
     select->set(select->ctx, to_is_high);
-    while (to->uart->read(to->uart->ctx, bytes, sizeof bytes, &rx) > 0) continue;
+    int dropped;
+    do {
+        dropped = to->uart->read(to->uart->ctx, bytes, sizeof bytes, &rx);
+    } while (dropped > 0);
     to->selected = true;
     to->fresh = true;
 }
