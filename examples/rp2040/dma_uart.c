@@ -28,7 +28,7 @@ enum {
 };
 
 enum {
-    /* A transfer ends after so many bytes, and the next one begins. It could be 2^32 - 1 as well; then this would be tried
+    /* A transfer ends after so many bytes, and the next one begins. It could be 2^32 - 1 as well; then that would happen
      * for the first time after a month in the field. */
     TRANSFER = 1024,
     IDLE_BITS = 32, /* as the UART's own time-out has it: three characters */
@@ -204,7 +204,7 @@ bool dma_uart_begin(dma_uart_t *uart, const dma_uart_config_t *config)
     DMA_WRITE_ADDR(channel) = (uint32_t)(uintptr_t)uart->ring;
     DMA_TRANS_COUNT(channel) = TRANSFER;
     DMA_CTRL_TRIG(channel) = CTRL_EN | CTRL_HALFWORDS | CTRL_INCR_WRITE | CTRL_RING_SIZE |
-                             CTRL_RING_SEL_WRITE | (uint32_t)channel << CTRL_CHAIN_TO |
+                             CTRL_RING_SEL_WRITE | channel << CTRL_CHAIN_TO |
                              (DREQ_UART0_RX + 2u * number) << CTRL_TREQ_SEL;
     rp2040_set(&DMA_INTE0, UINT32_C(1) << channel);
     fathom_rp2040_alarm_enable(alarm);

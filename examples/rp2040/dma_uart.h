@@ -15,9 +15,10 @@
  * (STM32), it takes the place of both.
  */
 enum {
-    DMA_UART_RING =
-        64, /* bytes that wait for the main loop. A power of two: the DMA's addresses wrap by it */
-    DMA_UART_MARKS = 16 /* silences that are remembered. A power of two; older ones are forgotten */
+    /* Bytes that wait for the main loop. A power of two: the DMA's addresses wrap by it. */
+    DMA_UART_RING = 64,
+    /* Silences that are remembered; older ones are forgotten. A power of two. */
+    DMA_UART_MARKS = 16
 };
 
 /* Read at every call; it outlives the use. */
@@ -25,8 +26,8 @@ typedef struct {
     fathom_rp2040_wiring_t wiring; /* without a driver; the alarm is used here */
     fathom_line_settings_t line;
     uint8_t channel; /* 0..11, nobody else's */
-    fathom_rp2040_idle_t
-        *idle; /* is told when the line falls silent; the looks before that wake the core as well */
+    /* Is told when the line falls silent; the looks before that wake the core as well. NULL: nobody is. */
+    fathom_rp2040_idle_t *idle;
 } dma_uart_config_t;
 
 typedef struct {
