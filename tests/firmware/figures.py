@@ -8,6 +8,7 @@ time for one version of the compiler, which the file names.
                                  runs PROGRAM, whose lines "figure NAME VALUE UNIT" are GROUP's, and shows them
     figures.py --check ...       also fails when one is worse than the kept one or over its bound, missing or new
     figures.py --update ...      also keeps them; bounds stay, and are written into the file by hand
+    figures.py --readme          fails unless the README's table is that of figures.csv; with --update it writes it
     figures.py --self-test       shows that the comparison works
 
 Less is better in all of them. It fails when PROGRAM does, and prints first what that has printed, so PROGRAM may be a
@@ -21,8 +22,60 @@ import subprocess
 import sys
 import tempfile
 
-FIGURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'figures.csv')
+HERE = os.path.dirname(os.path.abspath(__file__))
+FIGURES = os.path.join(HERE, 'figures.csv')
+README = os.path.join(os.path.dirname(os.path.dirname(HERE)), 'README.md')
+TABLE = re.compile(r'(?s)(?<=<!-- firmware: kept by tests/firmware/figures.py --readme --update -->\n).*?(?=<!-- end -->)')
 LINE = re.compile(r'^figure (\w+) (-?\d+(?:\.\d+)?) (\S+)$', re.M)
+
+# What the README tells of them; the rest is in the file.
+IN_README = [
+    ('avr_receive_interrupt', 'ATmega328P: receive interrupt, and 4 more of entry'),
+    ('avr_empty_interrupt', 'transmit buffer empty'),
+    ('avr_transmit_interrupt', 'transmit complete, which drops driver-enable'),
+    ('avr_overflow_interrupt', 'the clock'),
+    ('avr_capture_interrupt', 'input capture, with a glitch'),
+    ('avr_int0_interrupt', 'INT0'),
+    ('avr_poll_shortest', '`fathom_line_poll` that finds nothing, on this port'),
+    ('avr_poll_longest', '`fathom_line_poll`, the longest'),
+    ('avr_crc_byte', 'a byte of CRC'),
+    ('avr_share_9600', 'of the processor, while an HPS-167S is polled as often as 9600 baud allow'),
+    ('avr_share_115200', 'the same at 115200 baud, 54 times a second'),
+    ('avr_share_gathering_115200', 'the same, if bytes may gather for 1 ms'),
+    ('avr_bus_hps167s_9600', 'bus time of an HPS-167S poll over what line and sensor allow, 9600 baud'),
+    ('avr_bus_hps167s_115200', 'the same at 115200 baud'),
+    ('avr_bus_a05_9600', 'the same of an A05, one probe, 9600 baud'),
+    ('avr_bus_a05_115200', 'the same at 115200 baud'),
+    ('avr_stack_hps167s_rs485', 'deepest stack of `hps167s_rs485`, interrupts included'),
+    ('rp2040_uart_interrupt', 'RP2040: UART interrupt, a FIFO of bytes'),
+    ('rp2040_edge_interrupt', 'edge interrupt'),
+    ('rp2040_poll_idle', '`fathom_line_poll` that finds nothing'),
+    ('rp2040_poll_with_answer', 'the one that gets the answer'),
+    ('rp2040_hps167s_cpu_share', 'of the processor in `hps167s_rs485`, asleep in between'),
+    ('rp2040_poll_bus_time', 'bus time of an HPS-167S poll over what line and sensor allow, 19200 baud'),
+]
+
+
+def readme_table(rows):
+    lines = ['| | measured |', '|---|---|']
+    for name, what in IN_README:
+        lines.append(f'| {what} | {rows[name]["figure"]} {rows[name]["unit"]} |')
+    return '\n'.join(lines) + '\n'
+
+
+def readme(is_update):
+    with open(README, encoding='utf-8') as file:
+        text = file.read()
+    table = readme_table(read(FIGURES)[1])
+    found = TABLE.findall(text)
+    if is_update and len(found) == 1:
+        with open(README, 'w', encoding='utf-8') as file:
+            file.write(TABLE.sub(lambda _: table, text))
+        found = [table]
+    good = found == [table]
+    print('1 passed, 0 failed' if good else 'the README\'s table is not that of figures.csv: figures.py --readme --update\n'
+          '0 passed, 1 failed')
+    return 0 if good else 1
 
 
 def printed_figures(text):
@@ -131,7 +184,12 @@ def self_test():
     update({'chip_isr': ('40', 'cycles')}, 'chip', 'cc 3', compilers, rows)
     assert list(rows) == ['core_isr', 'chip_isr'] and rows['chip_isr']['bound'] == '60'
     assert compilers == {'core': 'cc 2', 'chip': 'cc 3'}
-    print('self-test passed')
+    shown = {name: {'figure': '1', 'unit': 'B'} for name, _ in IN_README}
+    marked = '<!-- firmware: kept by tests/firmware/figures.py --readme --update -->\n%s<!-- end -->'
+    assert TABLE.findall(marked % readme_table(shown)) == [readme_table(shown)]
+    changed = {**shown, IN_README[0][0]: {'figure': '2', 'unit': 'B'}}
+    assert TABLE.findall(marked % readme_table(shown)) != [readme_table(changed)]
+    print('1 passed, 0 failed')
     return 0
 
 
@@ -139,6 +197,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--check', action='store_true', help='fail when a figure is worse than the kept one')
     parser.add_argument('--update', action='store_true', help='keep the figures in figures.csv')
+    parser.add_argument('--readme', action='store_true', help='only look at the table of the README')
     parser.add_argument('--self-test', action='store_true', help='show that the comparison works')
     parser.add_argument('group', nargs='?')
     parser.add_argument('compiler', nargs='?')
@@ -146,6 +205,8 @@ def main():
     options = parser.parse_args()
     if options.self_test:
         return self_test()
+    if options.readme:
+        return readme(options.update)
     if not options.program:
         parser.error('which program measures?')
 
@@ -166,7 +227,7 @@ def main():
         update(found, options.group, compiler, compilers, rows)
         write(FIGURES, compilers, rows)
     lines = problems(found, options.group, compiler, compilers, rows) if options.check else []
-    print('\n'.join([*lines, f'{len(found)} figures, {len(lines)} problems']))
+    print('\n'.join([*lines, f'{len(found) - len(lines)} passed, {len(lines)} failed']))
     return 1 if lines else 0
 
 
