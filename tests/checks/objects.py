@@ -29,7 +29,7 @@ TARGETS = [
 ]
 # The CRC tables are const. An AVR keeps const data in RAM, which is why it has a CRC of its own.
 AVR_CONST = {'src/crc16.c', 'src/crc16_small.c'}
-AVR_ONLY = ['port/avr/crc16.c']
+AVR_ONLY = ['port/avr/crc16.c', 'port/avr/crc16_table.c']
 
 
 def sections(prefix, obj, root):

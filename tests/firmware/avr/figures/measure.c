@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "board.h"
+#include "crcs.h"
 #include "profile.h"
 #include "sim/a05.h"
 #include "sim/a16.h"
@@ -200,15 +201,11 @@ static bus_t measure_bus(uint8_t rate, bool is_a05)
         join(&hps.device, &settings);
     }
     profile_begin(&profile, &board);
-    const profile_cost_t *const crc = profile_function(&profile, "fathom_crc16");
     run_readings(60);
     const bus_t bus = bus_time(&settings, is_a05 ? 7 : 13);
     char name[32];
     snprintf(name, sizeof name, "bus_%s_%lu", is_a05 ? "a05" : "hps167s", (unsigned long)rates[rate]);
     figure(name, bus.over_percent, "%");
-    /* Of 6 bytes of a request, and of 11 of an answer. */
-    if (rate == 3 && !is_a05)
-        figure("crc_byte", (crc->longest_cycles - crc->shortest_cycles) / 5.0, "cycles");
     note_interrupts();
     board_end(&board);
     return bus;
@@ -222,6 +219,31 @@ static void measure_all_buses(void)
         if (bus.over_us > over_us) over_us = bus.over_us;
     }
     figure("bus_over", over_us, "us");
+}
+
+/* ---- CRC ---- */
+
+static double crc_cycles(const char *function, uint8_t length)
+{
+    start("crcs", 0);
+    profile_begin(&profile, &board);
+    const profile_cost_t *const cost = profile_function(&profile, function);
+    board_run_us(&board, 1000); /* its memory has been cleared */
+    crcs_t *const asked = (crcs_t *)(void *)board_data(&board, "asked");
+    asked->length = length;
+    asked->go = 1;
+    if (board_next_record(&board, 100000) == NULL) give_up("no CRC");
+    const double cycles = cost->longest_cycles;
+    board_end(&board);
+    return cycles;
+}
+
+static void measure_crcs(void)
+{
+    figure("crc_byte", (crc_cycles("crc_without_table", 60) - crc_cycles("crc_without_table", 10)) / 50,
+           "cycles");
+    figure("crc_table_byte", (crc_cycles("crc_by_table", 60) - crc_cycles("crc_by_table", 10)) / 50,
+           "cycles");
 }
 
 /* ---- stack ---- */
@@ -282,6 +304,7 @@ int main(void)
     measure_share(true, false);
     measure_share(true, true);
     measure_all_buses();
+    measure_crcs();
     show_interrupts();
     measure_stacks();
     return EXIT_SUCCESS;

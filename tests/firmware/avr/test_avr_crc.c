@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: MIT */
+
+/* The two CRCs of port/avr, with its table in program memory and without, against the definition. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "board.h"
+#include "crcs.h"
+
+static board_t board;
+
+static int start(void **state)
+{
+    (void)state;
+    assert_true(board_start(&board, "crcs"));
+    assert_true(board_run_us(&board, 1000)); /* its memory has been cleared */
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+/* MODBUS over Serial Line V1.02, 6.2.2 */
+static uint16_t defined(const uint8_t *bytes, uint8_t length)
+{
+    uint16_t crc = 0xFFFF;
+    while (length-- != 0) {
+        crc ^= *bytes++;
+        for (int bit = 0; bit < 8; bit++) crc = (uint16_t)((crc & 1) != 0 ? crc >> 1 ^ 0xA001 : crc >> 1);
+    }
+    return crc;
+}
+
+static void assert_crc(const uint8_t *bytes, uint8_t length, uint16_t expected)
+{
+    crcs_t *const asked = (crcs_t *)(void *)board_data(&board, "asked");
+    memcpy(asked->bytes, bytes, length);
+    asked->length = length;
+    asked->go = 1;
+    const board_record_t *const record = board_next_record(&board, 100000);
+    assert_non_null(record);
+    assert_int_equal(record->kind, CRCS_RECORD);
+    assert_int_equal(record->length, 4);
+    assert_int_equal(record->bytes[0] | record->bytes[1] << 8, expected); /* without a table */
+    assert_int_equal(record->bytes[2] | record->bytes[3] << 8, expected); /* by the table */
+}
+
+static void the_examples_of_the_datasheets_have_their_crc(void **state)
+{
+    (void)state;
+    static const uint8_t a16[] = {0x01, 0x03, 0x01, 0x01,
+                                  0x00, 0x01, 0xD4, 0x36}; /* A16 6(4), the low byte first */
+    static const uint8_t hps[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* HPS-167S #5 */
+    assert_crc(a16, 6, 0x36D4);
+    assert_crc(a16, 8, 0);
+    assert_crc(hps, 6, 0xCBC5);
+    assert_crc(hps, 8, 0);
+}
+
+static void every_byte_alone_and_none(void **state)
+{
+    (void)state;
+    assert_crc((const uint8_t *)"", 0, 0xFFFF);
+    for (int i = 0; i < 256; i++) {
+        const uint8_t byte = (uint8_t)i;
+        assert_crc(&byte, 1, defined(&byte, 1));
+    }
+}
+
+static void frames_of_every_length(void **state)
+{
+    (void)state;
+    uint8_t bytes[CRCS_BYTES];
+    uint32_t random = 1;
+    for (uint8_t length = 0; length <= CRCS_BYTES; length++) {
+        for (uint8_t i = 0; i < length; i++)
+            bytes[i] = (uint8_t)((random = random * 1103515245u + 12345u) >> 16);
+        assert_crc(bytes, length, defined(bytes, length));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(the_examples_of_the_datasheets_have_their_crc, start, stop),
+        cmocka_unit_test_setup_teardown(every_byte_alone_and_none, start, stop),
+        cmocka_unit_test_setup_teardown(frames_of_every_length, start, stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
