@@ -15,9 +15,8 @@ extern "C" {
  * Over a frame that ends in its own CRC the result is 0, which is how a receiver checks one.
  *
  * Link exactly one of: src/crc16.c (256-entry table, 512 bytes, fastest), src/crc16_small.c (16 entries,
- * 32 bytes), or on an AVR, where avr-gcc would put those in RAM, port/avr/crc16.c (no table) or
- * port/avr/crc16_table.c (256 entries in program memory, 24 cycles a byte
- * instead of 30).
+ * 32 bytes). avr-gcc would put those in RAM: on an AVR port/avr/crc16.c (no table, 30 cycles a byte) or
+ * port/avr/crc16_table.c (256 entries in program memory, 24 cycles a byte).
  *
  * bytes: may be NULL when length is 0, which gives 0xFFFF.
  */
