@@ -10,8 +10,20 @@ enum { CCMR1_IC1_TI1 = 1, CCMR1_IC2_TI1 = 2 << 8 };
 enum { CCER_CC1E = 1 << 0, CCER_CC2E = 1 << 4, CCER_CC2P = 1 << 5 };
 enum { CC1 = 1 << 1, CC2 = 1 << 2, CC1OF = 1 << 9, CC2OF = 1 << 10 }; /* in SR; the first two in DIER too */
 enum { TIM2_INTERRUPT = 28, TIM2_ALTERNATE = 1 };
+enum { OVERTAKEN_US = 1000 }; /* longer than an interrupt that comes between SR and CCR takes */
 
 static fathom_edges_t *captured; /* TIM2 exists once */
+static uint32_t fed_us;
+
+/* Between the reading of SR and of CCR1 a spike may put a new rise there; the fall before it, which comes with the next
+ * interrupt, is over then. */
+static void feed(bool high, uint32_t time_us)
+{
+    const uint32_t behind_us = fed_us - time_us;
+    if (behind_us != 0 && behind_us < OVERTAKEN_US) return;
+    fed_us = time_us;
+    fathom_edges_feed(captured, high, time_us);
+}
 
 void fathom_stm32f4_tim2_interrupt(void)
 {
@@ -22,10 +34,12 @@ void fathom_stm32f4_tim2_interrupt(void)
     if ((why & CC2) != 0) fall_us = TIM2[TIM_CCR2];
     TIM2[TIM_SR] = ~(why & (CC1OF | CC2OF)); /* an overtaken edge is one that edges.h finds missing */
     if (captured == NULL) return;
-    const bool fall_first = (why & (CC1 | CC2)) == (CC1 | CC2) && rise_us - fall_us < UINT32_MAX / 2;
-    if (fall_first) fathom_edges_feed(captured, false, fall_us);
-    if ((why & CC1) != 0) fathom_edges_feed(captured, true, rise_us);
-    if ((why & CC2) != 0 && !fall_first) fathom_edges_feed(captured, false, fall_us);
+    /* With both in the same us the level before tells which was first. */
+    const bool is_fall_first = rise_us == fall_us ? captured->high : rise_us - fall_us < UINT32_MAX / 2;
+    const bool fall_first = (why & (CC1 | CC2)) == (CC1 | CC2) && is_fall_first;
+    if (fall_first) feed(false, fall_us);
+    if ((why & CC1) != 0) feed(true, rise_us);
+    if ((why & CC2) != 0 && !fall_first) feed(false, fall_us);
 }
 
 bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges)
@@ -33,6 +47,7 @@ bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_
     if (pin->port != 'A' || (pin->number != 0 && pin->number != 5 && pin->number != 15)) return false;
     TIM2[TIM_DIER] = 0;
     captured = edges;
+    fed_us = TIM2[TIM_CNT];
     (void)fathom_stm32f4_pin_begin(pin, GPIO_ALTERNATE, FATHOM_STM32F4_DOWN, TIM2_ALTERNATE);
     TIM2[TIM_CCER] = 0; /* the selection can be written while it is off */
     TIM2[TIM_CCMR1] = CCMR1_IC1_TI1 | CCMR1_IC2_TI1;

@@ -25,7 +25,7 @@ enum { LENGTH = 0x24000 };
 enum { SR = 0x00, DR = 0x04, CR1 = 0x0C };                                                /* of a USART */
 enum { MODER = 0x00, PUPDR = 0x0C, IDR = 0x10, BSRR = 0x18, AFRL = 0x20 };                /* of a port */
 enum { PE = 0x01, FE = 0x02, NE = 0x04, ORE = 0x08, RXNE = 0x20, TC = 0x40, TXE = 0x80 }; /* in SR */
-enum { CC1IF = 2, CC2IF = 4 }; /* in SR of a timer */
+enum { CC1IF = 2, CC2IF = 4, CC1OF = 0x200 }; /* in SR of a timer */
 
 static uint8_t enabled; /* the interrupt */
 void fathom_stm32f4_enable_interrupt(uint8_t number) { enabled = number; }
@@ -129,6 +129,32 @@ static void a_fall_before_the_rise_ends_the_pulse_before(void **state)
     assert_pulse(3000, 4000);
     captured(CC2IF, 5000, 0x7000);
     assert_pulse(0x7000 - 5000, 0x7000);
+}
+
+static void a_spike_within_a_microsecond_loses_no_pulse_after_it(void **state)
+{
+    (void)state;
+    captured(CC1IF | CC2IF, 1000, 1000); /* a line that is low */
+    assert_pulse(0, 1000);
+    captured(CC1IF, 2000, 1000);
+    captured(CC1IF | CC2IF, 3000, 3000); /* and one that is high */
+    assert_pulse(1000, 3000);
+    captured(CC2IF, 3000, 90000);
+    assert_pulse(87000, 90000);
+}
+
+/* Rise at 1000, read from SR; fall at 1001 and rise at 1002 before CCR1 is read; the fall has its interrupt then. */
+static void a_fall_that_was_overtaken_by_the_next_rise_ends_no_pulse(void **state)
+{
+    (void)state;
+    captured(CC1IF, 1002, 1001);
+    captured(CC2IF | CC1OF, 1002, 1001);
+    assert_int_equal(capture.take(capture.ctx, &pulse), 0);
+    captured(CC2IF, 1002, 4002);
+    assert_pulse(3000, 4002);
+    captured(CC1IF, 2, 4002); /* 71.6 minutes later, less 4 ms: a rise like any other */
+    captured(CC2IF, 2, 5002);
+    assert_pulse(5000, 5002);
 }
 
 static void an_interrupt_without_a_capture_is_nothing(void **state)
@@ -317,6 +343,8 @@ int main(void)
         cmocka_unit_test_setup(both_in_one_interrupt_are_a_pulse_also_across_the_wrap_of_the_clock,
                                begin_capture),
         cmocka_unit_test_setup(a_fall_before_the_rise_ends_the_pulse_before, begin_capture),
+        cmocka_unit_test_setup(a_spike_within_a_microsecond_loses_no_pulse_after_it, begin_capture),
+        cmocka_unit_test_setup(a_fall_that_was_overtaken_by_the_next_rise_ends_no_pulse, begin_capture),
         cmocka_unit_test_setup(an_interrupt_without_a_capture_is_nothing, begin_capture),
         cmocka_unit_test_setup(an_output_is_high_before_it_is_driven_and_an_input_has_its_pull, clear),
         cmocka_unit_test_setup(the_clock_is_tim2_divided_to_1_mhz, clear),
