@@ -85,7 +85,12 @@ void fathom_virt_external_interrupt(fathom_virt_uart_t *uart)
     for (uint32_t source = VIRT_PLIC_CLAIM; source != 0; source = VIRT_PLIC_CLAIM) {
         if (source == VIRT_UART_SOURCE) {
             receive(uart);
-            if (uart->serial.leaving && (status(uart) & LSR_EMPTY) != 0) send(uart);
+            if ((status(uart) & LSR_EMPTY) != 0) {
+                if (uart->serial.leaving)
+                    send(uart);
+                else /* sent already, by a byte's interrupt within write: this one would come again for ever */
+                    UART[IER] = IER_RECEIVED | IER_ERROR;
+            }
         }
         VIRT_PLIC_CLAIM = source; /* complete */
     }
@@ -126,7 +131,7 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
         return 1;
     const uint32_t by = divider(uart->clock_hz, settings);
     if (by == 0) return -1;
-    if (!uart_sent(uart)) return 0;
+    if (uart->is_break || !uart_sent(uart)) return 0; /* LCR has the break, too */
     set_up(uart, settings, by);
     return 1;
 }

@@ -14,7 +14,7 @@ class Alone(qemu.Case):
         self.self_test('clock', 15)
 
     def test_the_uart_takes_what_it_can_be_set_to(self):
-        self.self_test('settings', 27)
+        self.self_test('settings', 29)
 
     def test_a_sleep_that_is_over_before_it_has_begun_ends(self):
         self.self_test('sleeps', 1, shift=10)

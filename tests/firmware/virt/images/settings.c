@@ -54,7 +54,11 @@ int main(void)
 
     check(uart.set_break(uart.ctx, true) == 1 && registers[LCR] == 0x47, "a break is held");
     check(uart.write(uart.ctx, many, 8) == 0, "during which nothing leaves");
+    check(set(&uart, 9600, FATHOM_PARITY_NONE, 1) == 0 && registers[LCR] == 0x47,
+          "and no other rate ends it");
     check(uart.set_break(uart.ctx, false) == 1 && registers[LCR] == 0x07, "until it is over");
+    registers[IER] |= 2; /* as write does after a byte's interrupt has sent all */
+    check((registers[IER] & 2) == 0, "room for bytes that are not there interrupts once");
     check(uart.write(uart.ctx, many, sizeof many) < 0, "more than its memory holds is refused");
     __asm__ volatile(
         "csrc mstatus, %0" ::"r"(8)); /* QEMU takes a FIFO at once, so that interrupts would take all */
