@@ -82,10 +82,11 @@ static void drive(bool on)
 /* There is room for a byte. */
 ISR(USART_UDRE_vect)
 {
-    /* A transmit complete that is still pending would be from before this byte: it came too late to be without a gap,
-     * and the driver has to stay on. Written as 0, the errors of the receiver stay. */
-    UCSR0A = (uint8_t)((UCSR0A & _BV(U2X0)) | _BV(TXC0));
     UDR0 = *next;
+    /* A transmit complete that is pending now is from before this byte, which came too late to be without a gap: the
+     * driver has to stay on. After it, since the last byte may end right before it. Written as 0, the errors of the
+     * receiver stay. */
+    UCSR0A = (uint8_t)((UCSR0A & _BV(U2X0)) | _BV(TXC0));
     next++;
     if (--left == 0) UCSR0B &= (uint8_t)~_BV(UDRIE0);
 }

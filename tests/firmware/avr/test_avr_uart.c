@@ -153,6 +153,36 @@ static void the_driver_stays_on_through_a_pause_that_other_interrupts_make(void 
     assert_true(remote_sent(&board));
 }
 
+static bool first_has_begun(void *ctx)
+{
+    (void)ctx;
+    return board.bytes_seen != 0;
+}
+
+/* The interrupt that gives the second byte is late by a character, so that the first one ends at any cycle of it: before
+ * the byte is given transmit complete comes of that, and means nothing. */
+static void a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on(void **state)
+{
+    (void)state;
+    int pauses = 0;
+    for (uint64_t before_cycles = 0; before_cycles < 240; before_cycles++) {
+        forget();
+        volatile remote_t *const remote = remote_call(&board, REMOTE_WRITE);
+        remote->bytes[0] = 0x11;
+        remote->bytes[1] = 0x22;
+        remote->length = 2;
+        assert_true(board_run(&board, first_has_begun, NULL, 1000));
+        board_stall(&board, board.bytes[0].end_cycle - board.avr->cycle - before_cycles);
+        board_run_us(&board, 2000);
+        assert_int_equal(board.bytes_seen, 2);
+        assert_int_equal(board.cut_bytes, 0);
+        assert_int_equal(board.driver_edges_seen, 2);
+        assert_true(board.driver_edges[1].cycle >= board.bytes[1].end_cycle);
+        if (board.bytes[1].begin_cycle != board.bytes[0].end_cycle) pauses++;
+    }
+    assert_in_range(pauses, 20, 220); /* it was early and it was late */
+}
+
 static void sent_is_exact_to_the_stop_bit(void **state)
 {
     (void)state;
@@ -281,6 +311,8 @@ int main(void)
                                         stop),
         cmocka_unit_test_setup_teardown(the_driver_stays_on_through_a_pause_that_other_interrupts_make, start,
                                         stop),
+        cmocka_unit_test_setup_teardown(
+            a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on, start, stop),
         cmocka_unit_test_setup_teardown(sent_is_exact_to_the_stop_bit, start, stop),
         cmocka_unit_test_setup_teardown(a_write_is_refused_while_bytes_leave_and_does_not_touch_them, start,
                                         stop),
