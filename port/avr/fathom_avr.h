@@ -35,8 +35,8 @@ extern "C" {
 /* Timer1 runs from here on, from 0; nobody else uses it. Called before all the others. */
 void fathom_avr_clock_begin(void);
 
-/* us since then; wraps as hal.h has it. It is late by no more than the longest time for which interrupts are off, and
- * right as long as that stays under 32 ms (at 16 MHz). */
+/* us since then; wraps as hal.h has it. Right as long as interrupts are never off for longer than half a period of Timer1:
+ * 16 ms at 16 MHz, 32 ms at 8 MHz. */
 extern const fathom_clock_t fathom_avr_clock;
 
 /* A pin: the PORT register and the bit. */
@@ -74,10 +74,10 @@ typedef struct {
 /*
  * USART0. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before and after such a byte.
  * No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE: they would cost in each receive interrupt what the main loop sees as well.
- * write       takes up to request_size bytes; of more it says < 0. It begins with the first byte at once, and drives
+ * write       takes 1 to request_size bytes; of none or more it says < 0. It begins with the first byte at once, and drives
  *             `driver` from before that until the last stop bit has left (transmit complete), in the interrupt.
  * sent        is exact.
- * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; < 0 beyond.
+ * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; at 8 MHz no 115200 either; < 0 beyond.
  * set_break   the transmitter lets go of TXD (PD1), which is driven low; `driver` is high as long.
  * Cost: a receive interrupt of at most 60 cycles, see the README.
  */

@@ -136,7 +136,7 @@ static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
 static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     (void)ctx;
-    if (length > config->request_size) return -1;
+    if (length - 1 >= config->request_size) return -1; /* 0 bytes are too many, too */
     if (sending || in_break) return 0;
     for (size_t i = 0; i != length; i++) config->request[i] = bytes[i];
     next = config->request;
