@@ -31,6 +31,9 @@ static uint32_t time_us(const fathom_rp2040_uart_t *uart, uint32_t bits)
     return bits * US_PER_S / uart->line.baud;
 }
 
+/* Plain stores and loads before it stay before the volatile ones after it, and the other way round. */
+static void keep_order(void) { __asm__ volatile("" ::: "memory"); }
+
 static void tell(const fathom_rp2040_uart_t *uart)
 {
     if (uart->config->idle != NULL) uart->config->idle->has_news = true;
@@ -85,6 +88,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     uint8_t taken = uart->taken;
     if (taken == uart->written && (hardware->fr & RP2040_UART_FR_RXFE) != 0) return 0;
     rp2040_clear(&hardware->imsc, RECEIVE);
+    keep_order();
     (void)gather(uart);
     const uint8_t end = uart->written;
     int n = 0;
@@ -104,6 +108,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
         if (errors != 0) break;
     }
     uart->taken = taken;
+    keep_order();
     rp2040_set(&hardware->imsc, RECEIVE);
     return n;
 }
@@ -136,6 +141,7 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     if (length > uart->config->request_size) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0;
     for (size_t i = 0; i < length; i++) uart->config->request[i] = bytes[i];
+    keep_order();
     /* In this order: an alarm of the request before that comes now finds this one unsent, and leaves the driver. */
     uart->given = 0;
     uart->length = (uint8_t)length;
