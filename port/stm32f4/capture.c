@@ -33,7 +33,8 @@ void fathom_stm32f4_tim2_interrupt(void)
     if ((why & CC1) != 0) rise_us = TIM2[TIM_CCR1]; /* which clears CC1 */
     if ((why & CC2) != 0) fall_us = TIM2[TIM_CCR2];
     TIM2[TIM_SR] = ~(why & (CC1OF | CC2OF)); /* an overtaken edge is one that edges.h finds missing */
-    if (captured == NULL) return;
+    if (captured == NULL || (why & (CC1 | CC2)) == 0) return;
+    fathom_stm32f4_happened = 1;
     /* With both in the same us the level before tells which was first. */
     const bool is_fall_first = rise_us == fall_us ? captured->high : rise_us - fall_us < UINT32_MAX / 2;
     const bool fall_first = (why & (CC1 | CC2)) == (CC1 | CC2) && is_fall_first;

@@ -124,8 +124,8 @@ typedef struct {
 
 /*
  * For fathom_wait, or a main loop that has nothing to do: sleeps (WFI) until an interrupt has run or max_us have
- * passed, and returns; at once if a byte waits already. A byte that comes while it goes to sleep wakes it. ctx: a
- * fathom_stm32f4_idle_t. Interrupts are enabled afterwards.
+ * passed, and returns; at once if a byte waits, or if since the last sleep an edge was fed or a request has left. What
+ * comes while it goes to sleep wakes it. ctx: a fathom_stm32f4_idle_t. Interrupts are enabled afterwards.
  */
 void fathom_stm32f4_idle(void *ctx, uint32_t max_us);
 

@@ -3,4 +3,6 @@
 
 #define NVIC_ISER ((volatile uint32_t *)0xE000E100u)
 
+volatile uint8_t fathom_stm32f4_happened;
+
 void fathom_stm32f4_enable_interrupt(uint8_t number) { NVIC_ISER[number / 32] = 1u << number % 32; }

@@ -96,6 +96,7 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart)
         fathom_stm32f4_pin_set(&usart->driver, false);
         registers[CR1] = control & ~(uint32_t)CR1_TCIE;
         usart->serial.leaving = false;
+        fathom_stm32f4_happened = 1;
     }
 }
 

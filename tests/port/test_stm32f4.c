@@ -28,6 +28,7 @@ enum { PE = 0x01, FE = 0x02, NE = 0x04, ORE = 0x08, RXNE = 0x20, TC = 0x40, TXE 
 enum { CC1IF = 2, CC2IF = 4, CC1OF = 0x200 }; /* in SR of a timer */
 
 static uint8_t enabled; /* the interrupt */
+volatile uint8_t fathom_stm32f4_happened;
 void fathom_stm32f4_enable_interrupt(uint8_t number) { enabled = number; }
 
 static int map(void **state)
@@ -56,6 +57,7 @@ static int begin_capture(void **state)
     (void)state;
     static const fathom_stm32f4_pin_t pa0 = {'A', 0};
     memset(PERIPHERALS, 0, LENGTH);
+    fathom_stm32f4_happened = 0;
     fathom_edges_init(&edges, NULL);
     capture = fathom_edges_capture(&edges);
     if (!fathom_stm32f4_capture_begin(&pa0, &edges)) return -1;
@@ -107,6 +109,7 @@ static void a_rise_and_a_fall_are_a_pulse(void **state)
 {
     (void)state;
     captured(CC1IF, 1000, 0);
+    assert_int_equal(fathom_stm32f4_happened, 1);
     assert_int_equal(capture.take(capture.ctx, &pulse), 0);
     captured(CC2IF, 1000, 4000);
     assert_pulse(3000, 4000);
@@ -162,6 +165,7 @@ static void an_interrupt_without_a_capture_is_nothing(void **state)
     (void)state;
     captured(0, 1000, 4000);
     captured(1, 1000, 4000); /* UIF */
+    assert_int_equal(fathom_stm32f4_happened, 0);
     assert_int_equal(capture.take(capture.ctx, &pulse), 0);
     assert_false(pulse.is_high);
 }

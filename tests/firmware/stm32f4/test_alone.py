@@ -14,7 +14,7 @@ class Alone(qemu.Case):
         self.self_test('clock', 6)
 
     def test_every_usart_is_where_it_is_and_is_set_as_it_was_told(self):
-        self.self_test('settings', 42)
+        self.self_test('settings', 44)
 
 
 if __name__ == '__main__':

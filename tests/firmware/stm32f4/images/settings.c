@@ -6,12 +6,21 @@
 #include "start.h"
 
 enum { USARTS = 6, BRR = 0x08 / 4, CR1 = 0x0C / 4, CR2 = 0x10 / 4 };
-enum { PCLK1_HZ = 42000000 };
+enum { PCLK1_HZ = 42000000, QEMU_TIMER_HZ = 1000000000 };
 
 static fathom_stm32f4_usart_t usart;
 static uint8_t request[8];
 
 void usart2_interrupt(void) {}
+void tim5_interrupt(void) { fathom_stm32f4_tim5_interrupt(); }
+
+static uint32_t slept_us(uint32_t max_us)
+{
+    fathom_stm32f4_idle_t idle = {&usart, 1};
+    const uint32_t since_us = fathom_stm32f4_clock.now_us(fathom_stm32f4_clock.ctx);
+    fathom_stm32f4_idle(&idle, max_us);
+    return fathom_elapsed_us(fathom_stm32f4_clock.now_us(fathom_stm32f4_clock.ctx), since_us);
+}
 
 static int set(const fathom_uart_t *uart, uint32_t baud, uint8_t parity, uint8_t stop_bits)
 {
@@ -58,6 +67,7 @@ int main(void)
         check(fathom_stm32f4_usart_begin(&usart, &config) && registers[BRR] == 2188,
               "and has 19200 after it");
     }
+    fathom_stm32f4_clock_begin(QEMU_TIMER_HZ);
     const fathom_uart_t uart = fathom_stm32f4_usart(&usart);
     set_all(&uart, (const volatile uint32_t *)bases[USARTS - 1]);
 
@@ -72,6 +82,8 @@ int main(void)
     check(!uart.sent(uart.ctx), "until its last stop bit");
     fathom_stm32f4_usart_interrupt(&usart);
     check(uart.sent(uart.ctx), "which ends it");
+    check_within(slept_us(50000), 0, 100, "and the next sleep: it came before WFI");
+    check_within(slept_us(50000), 50000, 500000, "but no other");
     check(uart.set_break(uart.ctx, true) == 1, "a break is taken");
     check(uart.write(uart.ctx, many, 8) == 0, "during which nothing leaves");
     check(uart.set_break(uart.ctx, false) == 1 && uart.write(uart.ctx, many, 8) == 8, "until it is over");
