@@ -61,7 +61,7 @@ void fathom_mps2_uart_interrupt(fathom_mps2_uart_t *uart);
 
 /*
  * By value; it points to `uart`. FATHOM_RX_OVERRUN is told; there is no FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
- * write      takes up to request_size bytes; of more it says < 0. It begins with the first byte at once.
+ * write      takes 1 to request_size bytes; of none or more it says < 0. It begins with the first byte at once.
  * sent       one character of time after the last byte has left the buffer: no flag tells more. Up to one character
  *            late.
  * set_line   8N1, the clock divided by 16 or more: 24..1562500 baud, within 2.5 %; < 0 beyond, and for parity or 2 stop bits.

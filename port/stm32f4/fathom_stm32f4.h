@@ -95,7 +95,7 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart);
 /*
  * By value; it points to `usart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before
  * and after such a byte. No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
- * write       takes up to request_size bytes; of more it says < 0. It drives `driver` from before the first start bit
+ * write       takes 1 to request_size bytes; of none or more it says < 0. It drives `driver` from before the first start bit
  *             until the last stop bit has left (TC), and lets it go in the interrupt.
  * sent        is exact.
  * set_line    within 2.5 %: bus_hz / 65535 to bus_hz / 16 baud. 8E1 and 8O1 are words of 9 bits here (M and PCE).

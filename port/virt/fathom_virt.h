@@ -68,7 +68,7 @@ void fathom_virt_external_interrupt(fathom_virt_uart_t *uart);
 /*
  * By value; it points to `uart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before
  * and after such a byte. No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
- * write       takes up to request_size bytes; of more it says < 0. It begins with up to 16 bytes at once.
+ * write       takes 1 to request_size bytes; of none or more it says < 0. It begins with up to 16 bytes at once.
  * sent        is exact: TEMT. No interrupt tells of it, so this UART drives no RS-485 transceiver: take one that
  *             switches over by itself, or another UART.
  * set_line    within 2.5 %: 8 data bits, any parity, 1 or 2 stop bits.
