@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A board with an STM32F405, as it comes out of reset: everything runs from the 16 MHz of HSI, which is within 1 %
- * (RM0090 7.2.2). A board with a crystal sets its clocks in board_begin. */
+ * (RM0090 7.2.2): good enough for a UART, and a distance by pulse is off by as much. A board with a crystal sets its
+ * clocks in board_begin. */
 #include "board.h"
 
 #include "cortex_m.h"

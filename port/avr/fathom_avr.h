@@ -25,10 +25,12 @@ extern "C" {
  *   crc16.c                                               instead of src/crc16.c: without a table, 30 cycles a byte
  *   crc16_table.c                                         instead of that: 512 bytes of flash, 24 cycles a byte
  *
- * F_CPU is the chip's clock in Hz: 16000000 or 8000000, so that Timer1 divides it by 8 and counts 0.5 or 1 us.
+ * F_CPU is the chip's clock in Hz: 16000000 or 8000000, so that Timer1 divides it by 8 and counts 0.5 or 1 us. Of a
+ * crystal or resonator: the 8 MHz inside may be off by 10 % before it is calibrated, and so would all
+ * rates and widths be.
  * All functions belong to the main loop. The caller enables interrupts, sei(), after the begin functions.
  *
- * The two chips' peripherals exist once, so the state of this port is static: RAM as the linker shows it, and no
+ * Each of these peripherals exists once, so the state of this port is static: RAM as the linker shows it, and no
  * more than one of each.
  */
 
@@ -51,7 +53,9 @@ fathom_pin_t fathom_avr_output(const fathom_avr_pin_t *pin);
 fathom_pin_t fathom_avr_input(const fathom_avr_pin_t *pin, bool pull_up);
 
 enum {
-    FATHOM_AVR_RX_RING = 64 /* bytes that wait for the main loop, less one: 5.5 ms of them at 115200 baud */
+    /* Bytes that wait for the main loop, less one: 5.5 ms of them at 115200 baud. A power of two, 128 at most: two bytes
+     * each, and their indices are single bytes. */
+    FATHOM_AVR_RX_RING = 64
 };
 
 typedef struct {
@@ -93,7 +97,7 @@ bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *config);
  * used at once, each with its own.
  *
  * icp1: the time is the hardware's, to a tick of Timer1, whatever else runs. Pulses and pauses shorter than the
- * capture interrupt take can be missed: edges.h then gives none rather than a wrong one. Noise canceler on: 4 cycles
+ * capture interrupt can be missed: edges.h then gives none rather than a wrong one. Noise canceler on: 4 cycles
  * late at both ends.
  * int0: the time is that of the interrupt, so an edge is late by what else runs with interrupts off: the longest of
  * the other interrupts, if several are in use.

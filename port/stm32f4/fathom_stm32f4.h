@@ -31,7 +31,8 @@ extern "C" {
  * wire. Not seen on a board.
  *
  * Registers and sections: RM0090. The bits in RCC that these peripherals and pins need are set by the begin functions;
- * the clocks themselves are the application's. All functions but the interrupts belong to the main loop.
+ * the clocks themselves are the application's. All functions but the interrupts belong to the main loop. The priorities of
+ * the interrupts stay what they are, 0 after reset; under an RTOS set them to what its calls from interrupts want.
  */
 
 /* A pin: {'A', 2} is PA2. */
@@ -95,6 +96,7 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart);
 /*
  * By value; it points to `usart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before
  * and after such a byte. No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
+ *             While bytes leave, a parity error may be missed (errata ES0182: a write to DR can clear it).
  * write       takes 1 to request_size bytes; of none or more it says < 0. It drives `driver` from before the first start bit
  *             until the last stop bit has left (TC), and lets it go in the interrupt.
  * sent        is exact.
