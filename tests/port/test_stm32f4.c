@@ -220,9 +220,9 @@ static fathom_stm32f4_usart_t usart;
 static fathom_uart_t uart;
 static uint8_t request[8];
 
-static int begin_usart(void **state)
+/* driver: the port of its pin 1. */
+static int begin_with_driver(char driver)
 {
-    (void)clear(state);
     const fathom_stm32f4_usart_config_t config = {.request = request,
                                                   .request_size = sizeof request,
                                                   .number = 2,
@@ -230,10 +230,16 @@ static int begin_usart(void **state)
                                                   .line = {19200, FATHOM_PARITY_EVEN, 1},
                                                   .tx = {'A', 2},
                                                   .rx = {'A', 3},
-                                                  .driver = {'A', 1}};
+                                                  .driver = {driver, 1}};
     if (!fathom_stm32f4_usart_begin(&usart, &config)) return -1;
     uart = fathom_stm32f4_usart(&usart);
     return 0;
+}
+
+static int begin_usart(void **state)
+{
+    (void)clear(state);
+    return begin_with_driver('A');
 }
 
 static void interrupt(uint32_t why)
@@ -327,12 +333,14 @@ static void a_break_holds_the_pin_low_with_the_driver_on(void **state)
 {
     (void)state;
     static const uint8_t byte = 1;
+    assert_int_equal(begin_with_driver('B'), 0); /* whose BSRR is another one than TX's */
     assert_int_equal(uart.set_break(uart.ctx, true), 1);
+    assert_int_equal(GPIOB_AT(BSRR), 1 << 1);
     assert_int_equal(GPIOA_AT(BSRR), 1 << 18);
     assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 1 << 4 | 2 << 6);
     assert_int_equal(uart.write(uart.ctx, &byte, 1), 0);
     assert_int_equal(uart.set_break(uart.ctx, false), 1);
-    assert_int_equal(GPIOA_AT(BSRR), 1 << 17);
+    assert_int_equal(GPIOB_AT(BSRR), 1 << 17);
     assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 2 << 4 | 2 << 6);
     assert_int_equal(uart.write(uart.ctx, &byte, 1), 1);
     assert_int_equal(uart.set_break(uart.ctx, true), 0);

@@ -8,7 +8,7 @@
 /*
  * The image "remote" calls a function of the port when it is told to, so that a test can go through the port step by
  * step, with the processor running on in between. Each of these takes some hundred cycles of simulated time.
- * The driver-enable pin is PD3; a request may have REMOTE_REQUEST bytes.
+ * The driver-enable pin is PD3, another output is PD4; a request may have REMOTE_REQUEST bytes.
  */
 void remote_start(board_t *board);
 
@@ -26,7 +26,8 @@ void remote_idle(board_t *board, uint32_t max_us);
  * stay on). A REMOTE_MARK record comes just before each reading, and a REMOTE_CLOCK record with its 4 bytes after it. */
 void remote_watch_clock(board_t *board, bool on, uint8_t masked);
 
-/* Begins a call and does not wait for its end. */
+/* Begins a call and does not wait for its end. REMOTE_READ and REMOTE_PIN make a REMOTE_MARK record just before they
+ * call the port. */
 volatile remote_t *remote_call(board_t *board, uint8_t call);
 
 #endif

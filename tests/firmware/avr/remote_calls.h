@@ -17,6 +17,7 @@ enum { /* call */
        REMOTE_NOW,
        REMOTE_IDLE,
        REMOTE_CLOCK,
+       REMOTE_PIN,
        REMOTE_READY,
        REMOTE_MARK
 };

@@ -183,6 +183,31 @@ static void a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_
     assert_in_range(pauses, 20, 220); /* it was early and it was late */
 }
 
+/* The interrupt writes the driver's register, and so does the main loop. */
+static void a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall(void **state)
+{
+    (void)state;
+    enum { PORTD_AT = 0x2B, PD4 = 0x10, NEAR = 1500 };
+    for (uint64_t phase = 0; phase < 160; phase++) {
+        const bool high = phase % 2 != 0;
+        forget();
+        remote_write(&board, request, 1);
+        board_run_us(&board,
+                     (uint32_t)(board.bytes[0].end_cycle - board.avr->cycle - NEAR) / BOARD_CYCLES_PER_US);
+        board.taken = board.recorded;
+        remote_call(&board, REMOTE_PIN)->flags = high;
+        while (board_next_record(&board, 1000)->kind != REMOTE_MARK) {
+        }
+        const uint64_t left = board.bytes[0].end_cycle - board.avr->cycle;
+        assert_in_range(left, 100, NEAR);
+        board_stall(&board, left + phase - 100);
+        board_run_us(&board, 100);
+        assert_int_equal(board.bytes_seen, 1);
+        assert_false(board.driver_on);
+        assert_int_equal(board.avr->data[PORTD_AT] & PD4, high ? PD4 : 0);
+    }
+}
+
 static void sent_is_exact_to_the_stop_bit(void **state)
 {
     (void)state;
@@ -317,6 +342,8 @@ int main(void)
                                         stop),
         cmocka_unit_test_setup_teardown(
             a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on, start, stop),
+        cmocka_unit_test_setup_teardown(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall,
+                                        start, stop),
         cmocka_unit_test_setup_teardown(sent_is_exact_to_the_stop_bit, start, stop),
         cmocka_unit_test_setup_teardown(a_write_is_refused_while_bytes_leave_and_does_not_touch_them, start,
                                         stop),

@@ -13,6 +13,7 @@ const FLASH = 0x10000000, RAM = 0x20000000, RAM_SIZE = 0x40000;
 const CYCLE_NS = 8; // 125 MHz
 const US = 1000, MS = 1000000;
 const RESETS = 0x4000c, UARTS = [0x40034, 0x40038], RESET_OF_UART0 = 22;
+const WATCHDOG = 0x40058, TICK = 0x2c;
 const SCRATCH0 = 0x4005800c, SCRATCH1 = 0x40058010, ENDED = 0x454e4421; // examples/rp2040/board.h
 
 class Machine {
@@ -29,6 +30,7 @@ class Machine {
 
     this.uart = UARTS.map((page, number) => (this.mcu.peripherals[page] = new Pl011(this.mcu, number)));
     this.watchResets();
+    this.watchTick();
     this.mendPrimask();
     const {segments, symbols} = readElf(path);
     this.symbols = symbols;
@@ -54,6 +56,16 @@ class Machine {
         uart.inReset = (resets.reset >> (RESET_OF_UART0 + number) & 1) !== 0;
         if (uart.inReset) uart.reset();
       });
+    };
+  }
+
+  // rp2040js's TIMER counts microseconds, whatever its tick is set to. So that is kept for the test.
+  watchTick() {
+    const watchdog = this.mcu.peripherals[WATCHDOG];
+    const write = watchdog.writeUint32.bind(watchdog);
+    watchdog.writeUint32 = (offset, value) => {
+      if (offset === TICK) this.tick = value;
+      write(offset, value);
     };
   }
 

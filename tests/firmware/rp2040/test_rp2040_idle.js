@@ -114,6 +114,7 @@ test('idle ends in time although something holds it up at any of its instruction
 
 test('the clock counts microseconds and wraps', () => {
   const desk = new Desk({startUs: 2 ** 32 - 500});
+  assert.strictEqual(desk.machine.tick, 0x200 | 12); // ENABLE, and 12 periods of clk_ref's 12 MHz (4.7.6)
   for (let i = 0; i < 20; i++) {
     const from = Math.floor(desk.machine.us);
     const now = desk.call('now') >>> 0;

@@ -199,6 +199,28 @@ test('the driver is let go in time when the clock wraps while bytes leave', () =
   }
 });
 
+test('the driver is let go in time when a receive interrupt comes at any instruction of write', () => {
+  // Of a character that takes 1.28 us, so that the alarm for its end has passed when the interrupt is over.
+  const bench = begin('7812500 8N1', {driver: 6});
+  const levels = bench.machine.record(6);
+  const {core} = bench.machine;
+  const step = core.executeInstruction.bind(core);
+  let left = 0;
+  core.executeInstruction = () => {
+    if (left > 0 && --left === 0) [1, 2, 3, 4].forEach((value) => bench.uart.receive(value));
+    return step();
+  };
+  for (let instructions = 1; instructions < 250; instructions++) {
+    left = instructions;
+    bench.desk.write([1]);
+    bench.machine.run(0.02);
+    assert.strictEqual(levels.length, 2 * instructions, 'it still drives');
+    assert.strictEqual(left, 0);
+    assert.deepStrictEqual(bench.desk.read().bytes, [1, 2, 3, 4]);
+  }
+  end(bench);
+});
+
 test('a break holds TX low and the driver high; nothing is written meanwhile', () => {
   const bench = begin('9600 8N1', {driver: 6});
   const levels = bench.machine.record(6);

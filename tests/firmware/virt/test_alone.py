@@ -11,7 +11,7 @@ import qemu  # noqa: E402
 
 class Alone(qemu.Case):
     def test_the_clock_is_right_across_its_wrap_and_so_is_the_sleep(self):
-        self.self_test('clock', 15)
+        self.self_test('clock', 16)
 
     def test_the_uart_takes_what_it_can_be_set_to(self):
         self.self_test('settings', 29)

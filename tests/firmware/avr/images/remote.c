@@ -13,6 +13,8 @@ volatile remote_t remote;
 static uint8_t request[REMOTE_REQUEST];
 static fathom_avr_usart_config_t configs[2]; /* the one that the port has, and one to try */
 static uint8_t used;
+static const fathom_avr_pin_t pd4 = {&PORTD, _BV(PORTD4)};
+static fathom_pin_t output;
 
 static fathom_line_settings_t settings(void)
 {
@@ -73,6 +75,10 @@ static int16_t call(uint8_t what)
     case REMOTE_NOW:
         remote.time_us = fathom_avr_clock.now_us(NULL);
         return 0;
+    case REMOTE_PIN:
+        GPIOR1 = REMOTE_MARK;
+        output.set(output.ctx, remote.flags != 0);
+        return 0;
     case REMOTE_IDLE:
         fathom_avr_idle(NULL, remote.time_us);
         return 0;
@@ -104,6 +110,7 @@ static void watch_clock(void)
 int main(void)
 {
     fathom_avr_clock_begin();
+    output = fathom_avr_output(&pd4);
     sei();
     GPIOR1 = REMOTE_READY;
     for (;;) {

@@ -68,7 +68,8 @@ int main(void)
     check(set(&uart, 9600, FATHOM_PARITY_NONE, 1) == 0, "and no other rate");
     check(uart.set_break(uart.ctx, true) == 0, "and no break");
     __asm__ volatile("csrs mstatus, %0" ::"r"(8));
-    while (!uart.sent(uart.ctx)) {
+    const uint32_t since_us = fathom_virt_clock.now_us(0);
+    while (!uart.sent(uart.ctx) && fathom_elapsed_us(fathom_virt_clock.now_us(0), since_us) < 100000) {
     }
     check(set(&uart, 9600, FATHOM_PARITY_NONE, 1) == 1, "until it has left");
     return check_result();

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+
+/* What input capture makes of edges that come while its own interrupt runs. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "board.h"
+
+enum { US = BOARD_CYCLES_PER_US, PULSE_CYCLES = 1000 * US };
+
+static board_t board;
+static uint64_t rise_cycle; /* of the next edge that is placed */
+
+static int start(void **state)
+{
+    (void)state;
+    assert_true(board_start(&board, "pulses"));
+    board_drive(&board, 'B', 0, false);
+    assert_true(board_run_us(&board, 1000));
+    return 0;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    assert_false(board.crashed);
+    board_end(&board);
+    return 0;
+}
+
+/* `offset` cycles after rise_cycle. */
+static void edge(bool high, uint64_t offset) { board_drive_at(&board, 'B', 0, high, rise_cycle + offset); }
+
+/* The width of the next pulse that is told, in us; 0: none is for 3 ms. */
+static uint32_t told_us(void)
+{
+    const board_record_t *const record = board_next_record(&board, 3000);
+    if (record == NULL) return 0;
+    assert_int_equal(record->kind, 1);
+    uint32_t us = 0;
+    for (int i = 3; i >= 0; i--) us = us << 8 | record->bytes[i];
+    return us;
+}
+
+static void place(void)
+{
+    board_run_us(&board, 2000);
+    assert_int_equal(board.taken, board.recorded); /* the pulse before was told once */
+    rise_cycle = board.avr->cycle + 100 * US;
+}
+
+static void assert_told(uint32_t us, uint64_t least_cycles, uint64_t most_cycles)
+{
+    assert_in_range((uint64_t)us * US, least_cycles - US, most_cycles + US);
+}
+
+/* Its fall is captured from 72 cycles on, when the interrupt has turned to it. Before that the interrupt finds the pin
+ * low again, and what it tells is as long as itself. Either way the pulse after it is right. */
+static void a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right(void **state)
+{
+    (void)state;
+    enum { TURNED = 72, INTERRUPT = 190 };
+    for (uint64_t width = 1; width < 2 * INTERRUPT; width++) {
+        place();
+        edge(true, 0);
+        edge(false, width);
+        const uint32_t us = told_us();
+        if (width < TURNED)
+            assert_told(us, 1 + US, INTERRUPT);
+        else
+            assert_told(us, width, width);
+        place();
+        edge(true, 0);
+        edge(false, PULSE_CYCLES);
+        assert_told(told_us(), PULSE_CYCLES, PULSE_CYCLES);
+    }
+}
+
+/* Low again for some cycles, both edges while the interrupt gets at the first one: the pulse begins before or after. */
+static void a_bounce_in_the_interrupt_costs_no_more_than_itself(void **state)
+{
+    (void)state;
+    for (uint64_t high = 1; high < 60; high += 3) {
+        for (uint64_t low = 1; low < 60; low += 3) {
+            place();
+            edge(true, 0);
+            edge(false, high);
+            edge(true, high + low);
+            edge(false, PULSE_CYCLES);
+            assert_told(told_us(), PULSE_CYCLES - high - low, PULSE_CYCLES);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right,
+                                        start, stop),
+        cmocka_unit_test_setup_teardown(a_bounce_in_the_interrupt_costs_no_more_than_itself, start, stop),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
