@@ -129,8 +129,8 @@ static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *byt
     if (length == 0 || length > serial->size) return -1;
     if (serial->leaving) return 0;
     /* Volatile, so that it is in place before the rest tells of it. */
-    volatile uint8_t *const request = serial->request;
-    for (size_t i = 0; i != length; i++) request[i] = bytes[i];
+    volatile uint8_t *const kept = serial->request;
+    for (size_t i = 0; i != length; i++) kept[i] = bytes[i];
     serial->length = (uint8_t)length;
     serial->at = 0;
     serial->leaving = true;
