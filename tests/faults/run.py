@@ -8,9 +8,12 @@ A fault is a file NNN-NAME.patch: a line that says what is broken, "Promise: " a
 and the test programs that are expected to find it, then a unified diff with one line of context. Those programs
 run first, and only if they pass do all the others of the kinds below. A fault is missed when all pass; a file
 that does not apply any more, or does not compile, is a failure too. NAME: only the faults whose names have it.
-Where libmodbus is missing the port over it is not built, and its faults are left out."""
+Where libmodbus is missing the port over it is not built, and its faults are left out.
+A program firmware/NAME is the test firmware.NAME of tests/firmware, whose images are built for it. All faults of one
+machine go to the same copy, so that no other one builds it; where its tools are missing they are left out."""
 import argparse
 import concurrent.futures
+import glob
 import os
 import queue
 import re
@@ -27,10 +30,24 @@ HAS_LIBMODBUS = shutil.which('pkg-config') is not None and \
     subprocess.run(['pkg-config', '--exists', 'libmodbus'], check=False).returncode == 0
 FIRMWARE = 'firmware/'
 KINDS = ('unit', 'golden', 'property', 'port', 'sim') + (('libmodbus',) if HAS_LIBMODBUS else ())
+FAILED = r'^(?:\[  FAILED  \]|FAILED|FAIL:|ERROR:) +(\w+.*)$'  # a case; by cmocka, the runner in JavaScript, unittest
 LIMIT_S = 20  # for one test program that a fault names
 LONG_LIMIT_S = 90  # for one of all the others
 CONFIGURE = ['-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_C_FLAGS_DEBUG=-O1', '-DFATHOM_STRICT=OFF', '-DFATHOM_CHECKS=OFF',
              '-DFATHOM_INSTALL=OFF', '-DCMAKE_C_COMPILER=' + os.environ.get('CC', 'gcc')]
+
+
+def machines():
+    """The folder in tests/firmware that each of its tests is in; test_NAME.py for QEMU is MACHINE_NAME to ctest."""
+    found = {}
+    for path in glob.glob(os.path.join(ROOT, 'tests', FIRMWARE, '*', 'test_*')):
+        machine = os.path.basename(os.path.dirname(path))
+        name = os.path.splitext(os.path.basename(path))[0]
+        found[FIRMWARE + name] = found[FIRMWARE + name.replace('test', machine, 1)] = machine
+    return found
+
+
+MACHINES = machines()
 
 
 class Broken(Exception):
@@ -50,6 +67,10 @@ class Fault:
         seen_by = found[3].split()
         self.firmware = [name for name in seen_by if name.startswith(FIRMWARE)]
         self.programs = [name for name in seen_by if name not in self.firmware]
+        unknown = [name for name in self.firmware if name not in MACHINES]
+        if unknown:
+            raise SystemExit(f'{file_name}: there is no {" ".join(unknown)}')
+        self.machine = MACHINES[self.firmware[0]] if self.firmware else None
         self.files = re.findall(r'^--- a/(\S+)', '\n--- a/' + diff, re.M)
 
     def can_be_built(self):
@@ -77,6 +98,12 @@ class Copy:
                       f'-DFATHOM_EXAMPLES={switch}'], 'not configured')
         self.build(self.programs)
 
+    def firmware_tests(self):
+        """Those that this system has the tools for."""
+        listed = subprocess.run(['ctest', '-N', '-L', 'firmware'], cwd=self.build_root, stdout=subprocess.PIPE, text=True,
+                                check=True).stdout
+        return {FIRMWARE + name for name in re.findall(r': firmware\.(\w+)$', listed, re.M)}
+
     def command(self, command, words):
         done = subprocess.run(command, cwd=self.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               check=False)
@@ -85,7 +112,8 @@ class Copy:
             raise Broken('\n    '.join([words, *errors[:5]]))
 
     def build(self, programs):
-        self.command(['cmake', '--build', self.build_root, '--target', *programs], 'it does not compile')
+        targets = [name.removeprefix(FIRMWARE) for name in programs] or ['help']
+        self.command(['cmake', '--build', self.build_root, '--target', *targets], 'it does not compile')
 
     def seen_by(self, program, limit_s):
         """What the test program says against the sources as they are; None when it passes."""
@@ -95,7 +123,8 @@ class Copy:
             command = ['ctest', '--output-on-failure', '--no-tests=error', '-R', rf'^firmware\.{name}$']
         with tempfile.TemporaryFile('w+', errors='replace') as output:
             test = subprocess.Popen(command, cwd=self.build_root, stdin=subprocess.DEVNULL, stdout=output,
-                                    stderr=subprocess.STDOUT, start_new_session=True)
+                                    stderr=subprocess.STDOUT, start_new_session=True,
+                                    env={**os.environ, 'FATHOM_FIRST_FAILURE': '1'})
             try:
                 status = test.wait(limit_s)
             except subprocess.TimeoutExpired:
@@ -107,7 +136,7 @@ class Copy:
                     pass
                 test.wait()
             output.seek(0)
-            failed = re.search(r'^\[  FAILED  \] (\w+)$', output.read(), re.M)
+            failed = re.search(FAILED, output.read(), re.M)
         if status == 0:
             return None
         how = ', which hangs' if status is None else ', which crashes' if status < 0 else ''
@@ -128,7 +157,7 @@ class Copy:
         try:
             self.command(['patch', '-p1', '--fuzz=0', '--no-backup-if-mismatch', '--reject-file=-', '-i', fault.path],
                          'the patch does not apply any more')
-            self.build([name.removeprefix(FIRMWARE) for name in fault.programs + fault.firmware])
+            self.build(fault.programs + fault.firmware)
             seen = self.first_seen_by(fault.programs + fault.firmware, LIMIT_S)
             if seen is None and not fault.firmware:
                 self.build(self.programs)
@@ -141,28 +170,61 @@ class Copy:
                     file.write(content)
 
 
-def try_all(faults, copies):
-    """Prints a line a fault, in order; returns how many were not seen."""
-    free = queue.Queue()
-    for copy in copies:
-        free.put(copy)
+def shares(faults, count):
+    """The faults of firmware in so many lists, each machine in one of them."""
+    lists = [[] for _ in range(count)]
+    by_machine = {}
+    for fault in faults:
+        if fault.machine:
+            by_machine.setdefault(fault.machine, []).append(fault)
+    for group in sorted(by_machine.values(), key=len, reverse=True):
+        min(lists, key=len).extend(group)
+    return lists
 
-    def attempt(fault):
-        copy = free.get()
+
+def see_without_fault(copy, programs, faults):
+    """A test that fails although nothing is planted, or None. Builds what is still missing."""
+    firmware = sorted({name for fault in faults for name in fault.firmware})
+    copy.build(firmware)
+    return copy.first_seen_by(programs + firmware)
+
+
+def try_all(faults, copies, own):
+    """Prints a line a fault, in order; returns how many were not seen. own: what each copy begins with."""
+    rest = queue.SimpleQueue()
+    for fault in faults:
+        if not fault.machine:
+            rest.put(fault)
+    results = {fault.name: concurrent.futures.Future() for fault in faults}
+
+    def attempt(copy, fault):
         try:
-            return copy.plant(fault), ''
+            results[fault.name].set_result((copy.plant(fault), ''))
         except (Broken, OSError) as error:
-            return None, str(error).rstrip()
-        finally:
-            free.put(copy)
+            results[fault.name].set_result((None, str(error).rstrip()))
+        except Exception as error:  # of this program: raised where the result is waited for
+            results[fault.name].set_exception(error)
+
+    def work(copy, own_faults):
+        for fault in own_faults:
+            attempt(copy, fault)
+        while True:
+            try:
+                fault = rest.get_nowait()
+            except queue.Empty:
+                return
+            attempt(copy, fault)
 
     missed = 0
     with concurrent.futures.ThreadPoolExecutor(len(copies)) as pool:
-        for fault, (seen, why) in zip(faults, pool.map(attempt, faults)):
+        workers = pool.map(work, copies, own)
+        for fault in faults:
+            seen, why = results[fault.name].result()
             if seen is None:
                 missed += 1
                 why = why or f'no test sees it ({fault.what})'
             print(f'{fault.name}: {f"seen by {seen}" if seen else f"FAILED, {why}"}', flush=True)
+        list(workers)
     return missed
 
 
@@ -186,18 +248,25 @@ def main():
     with tempfile.TemporaryDirectory(prefix='fathom-faults.') as folder:
         try:
             with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-                firmware = sorted({name for fault in faults for name in fault.firmware})
                 roots = [os.path.join(folder, str(number)) for number in range(jobs)]
-                copies = list(pool.map(lambda root: Copy(root, bool(firmware)), roots))
-                copies[0].build([name.removeprefix(FIRMWARE) for name in firmware] or ['help'])
+                with_firmware = any(fault.machine for fault in faults)
+                copies = list(pool.map(lambda root: Copy(root, with_firmware), roots))
+                there = copies[0].firmware_tests()
+                without_tools = {fault.machine for fault in faults if not there.issuperset(fault.firmware)}
+                for machine in sorted(without_tools):
+                    left_out = [fault for fault in faults if fault.machine == machine]
+                    print(f'without the tools for {machine}: {len(left_out)} faults are left out')
+                faults = [fault for fault in faults if fault.machine not in without_tools]
+                own = shares(faults, jobs)
+                programs = [copies[0].programs[number::jobs] for number in range(jobs)]
+                seen = next(filter(None, pool.map(see_without_fault, copies, programs, own)), None)
         except Broken as error:
             print(f'without a fault: {error}\n0 passed, 1 failed')
             return 1
-        seen = copies[0].first_seen_by(copies[0].programs + firmware)
         if seen:
             print(f'without a fault: {seen} fails\n0 passed, 1 failed')
             return 1
-        missed = try_all(faults, copies)
+        missed = try_all(faults, copies, own)
     print(f'{len(faults) - missed} passed, {missed} failed')
     return 1 if missed or not faults else 0
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tests of one file, in their order; its last statement is run(). The last line is "N passed, 0 failed".
+// The tests of one file, in their order; its last statement is run(). The last line is "N passed, 0 failed". With
+// FATHOM_FIRST_FAILURE in the environment the first one that fails is the last.
 'use strict';
 
 const tests = [];
@@ -14,17 +15,19 @@ function figure(name, value, unit) {
 }
 
 function run() {
-  let failed = 0;
+  let passed = 0, failed = 0;
   for (const {name, body} of tests) {
     try {
       body();
       console.log(`passed  ${name}`);
+      passed++;
     } catch (error) {
       failed++;
       console.log(`FAILED  ${name}\n${error.stack}`);
+      if (process.env.FATHOM_FIRST_FAILURE) break;
     }
   }
-  console.log(`${tests.length - failed} passed, ${failed} failed`);
+  console.log(`${passed} passed, ${failed} failed`);
   process.exitCode = failed === 0 && tests.length > 0 ? 0 : 1;
 }
 
