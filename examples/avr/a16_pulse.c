@@ -48,6 +48,21 @@ static bool begin(void)
                                                                  .trigger = &trigger}) == FATHOM_READY;
 }
 
+/* Nobody talks to it; but a byte of noise that nobody takes would keep it awake. */
+static void forget_what_came(void)
+{
+    uint8_t byte;
+    fathom_rx_t rx = {0, 0};
+    while (fathom_avr_usart0.read(fathom_avr_usart0.ctx, &byte, 1, &rx) > 0) {
+    }
+}
+
+static void idle(void *ctx, uint32_t max_us)
+{
+    forget_what_came();
+    fathom_avr_idle(ctx, max_us);
+}
+
 int main(void)
 {
     if (!begin()) return 1;
@@ -55,7 +70,7 @@ int main(void)
     text_t text = {0};
     for (;;) {
         fathom_sample_t sample;
-        const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, NULL);
+        const fathom_status_t status = fathom_wait(&sensor, &sample, idle, NULL);
         if (status == FATHOM_READY)
             text_sample(&text, &sample);
         else

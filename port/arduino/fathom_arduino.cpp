@@ -53,7 +53,7 @@ bool can_reach(uint32_t baud)
     /* A classic AVR divides F_CPU / 8 by a whole number, 1..4096. */
     const uint32_t eighth = F_CPU / 8;
     const uint32_t divider = (eighth + baud / 2) / baud;
-    if (divider == 0) return false;
+    if (divider == 0 || divider > 4096) return false;
     const uint32_t real = eighth / divider;
     return (real > baud ? real - baud : baud - real) <= baud / 40;
 #else

@@ -18,6 +18,7 @@ static const uint8_t *volatile next; /* of the request */
 static volatile uint8_t left;        /* of its bytes, those that UDR0 has not got */
 static volatile bool sending;        /* up to its last stop bit */
 static bool in_break;
+static fathom_line_settings_t line; /* that holds */
 
 fathom_avr_usart_counters_t fathom_avr_usart0_counters;
 
@@ -156,11 +157,14 @@ static bool usart_sent(void *ctx)
     return !sending;
 }
 
-/* What UBRR0 + 1 is with U2X0 set, or 0 where it cannot be within 2.5 %. */
-static uint16_t divisor_of(uint32_t baud)
+/* What UBRR0 + 1 is with U2X0 set; 0 where the rate cannot be within 2.5 %, or the hardware has no such settings. */
+static uint16_t divisor_of(const fathom_line_settings_t *settings)
 {
     const uint32_t eighth = F_CPU / 8;
-    if (baud == 0 || baud > eighth) return 0;
+    const uint32_t baud = settings->baud;
+    if (baud == 0 || baud > eighth || settings->parity > FATHOM_PARITY_ODD || settings->stop_bits < 1 ||
+        settings->stop_bits > 2)
+        return 0;
     const uint32_t divisor = (eighth + baud / 2) / baud;
     if (divisor > 4096) return 0;
     const uint32_t product = divisor * baud;
@@ -168,27 +172,30 @@ static uint16_t divisor_of(uint32_t baud)
     return off * 40 > product ? 0 : (uint16_t)divisor; /* F_CPU / 8 / divisor against baud */
 }
 
-static bool set(const fathom_line_settings_t *line)
+static void set(const fathom_line_settings_t *settings, uint16_t divisor)
 {
-    const uint16_t divisor = divisor_of(line->baud);
-    if (divisor == 0 || line->parity > FATHOM_PARITY_ODD || line->stop_bits < 1 || line->stop_bits > 2)
-        return false;
     /* Where the same rate is there without U2X0, the receiver looks at each bit twice as often. */
     const bool twice = divisor % 2 != 0;
     UBRR0 = (uint16_t)((twice ? divisor : divisor / 2) - 1);
     UCSR0A = twice ? _BV(U2X0) : 0;
-    UCSR0C = (uint8_t)(_BV(UCSZ01) | _BV(UCSZ00) | (line->stop_bits == 2 ? _BV(USBS0) : 0) |
-                       (line->parity == FATHOM_PARITY_NONE   ? 0
-                        : line->parity == FATHOM_PARITY_EVEN ? _BV(UPM01)
-                                                             : _BV(UPM01) | _BV(UPM00)));
-    return true;
+    UCSR0C = (uint8_t)(_BV(UCSZ01) | _BV(UCSZ00) | (settings->stop_bits == 2 ? _BV(USBS0) : 0) |
+                       (settings->parity == FATHOM_PARITY_NONE   ? 0
+                        : settings->parity == FATHOM_PARITY_EVEN ? _BV(UPM01)
+                                                                 : _BV(UPM01) | _BV(UPM00)));
+    line = *settings;
 }
 
-static int usart_set_line(void *ctx, const fathom_line_settings_t *line)
+static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     (void)ctx;
-    if (sending) return divisor_of(line->baud) == 0 ? -1 : 0;
-    return set(line) ? 1 : -1;
+    if (settings->baud == line.baud && settings->parity == line.parity &&
+        settings->stop_bits == line.stop_bits)
+        return 1;
+    const uint16_t divisor = divisor_of(settings);
+    if (divisor == 0) return -1;
+    if (sending) return 0;
+    set(settings, divisor);
+    return 1;
 }
 
 static int usart_set_break(void *ctx, bool on)
@@ -221,9 +228,11 @@ const fathom_uart_t fathom_avr_usart0 = {
 
 bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *new_config)
 {
-    if (new_config->request == NULL || new_config->request_size == 0 || !set(&new_config->line)) return false;
+    const uint16_t divisor = divisor_of(&new_config->line);
+    if (new_config->request == NULL || new_config->request_size == 0 || divisor == 0) return false;
     UCSR0B = 0;
     config = new_config;
+    set(&config->line, divisor);
     if (config->driver.port != NULL) {
         drive(false);
         config->driver.port[-1] |= config->driver.mask; /* DDRx stands before PORTx */

@@ -138,7 +138,7 @@ static bool uart_sent(void *ctx)
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_rp2040_uart_t *const uart = ctx;
-    if (length > uart->config->request_size) return -1;
+    if (length == 0 || length > uart->config->request_size) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0;
     for (size_t i = 0; i < length; i++) uart->config->request[i] = bytes[i];
     keep_order();

@@ -192,6 +192,19 @@ static void the_line_of_text_comes_right_after_the_pulse(void **state)
     assert_in_range((console.end_cycle - fell) / BOARD_CYCLES_PER_US, 116500, 117000);
 }
 
+/* Its UART only prints; a byte of noise on RXD is no reason to stay awake. */
+static void it_sleeps_also_after_a_byte_of_noise(void **state)
+{
+    (void)state;
+    static const uint8_t noise = 0x55;
+    board_feed(&board, &noise, NULL, 1, board.avr->cycle + 16000, 0);
+    assert_true(board_run_us(&board, 300000));
+    const uint64_t begin_cycle = board.avr->cycle, asleep_cycles = board.asleep_cycles;
+    assert_true(board_run_us(&board, 1000000));
+    const uint64_t cycles = board.avr->cycle - begin_cycle;
+    assert_true(board.asleep_cycles - asleep_cycles > cycles / 100 * 95);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +215,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(short_pulses_before_the_right_one_are_noise, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_pulse_of_more_than_105_ms_is_a_fault, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_line_of_text_comes_right_after_the_pulse, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(it_sleeps_also_after_a_byte_of_noise, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

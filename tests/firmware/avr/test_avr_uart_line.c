@@ -136,6 +136,23 @@ static void settings_wait_until_all_bytes_have_left(void **state)
     assert_int_equal(board.bytes[3].end_cycle - board.bytes[3].begin_cycle, 10 * 104 * 16);
 }
 
+static void settings_that_hold_already_do_so_at_once_also_while_bytes_leave(void **state)
+{
+    (void)state;
+    static const uint8_t request[] = {1, 2, 3};
+    const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
+    assert_int_equal(remote_write(&board, request, sizeof request), 3);
+    assert_int_equal(remote_set_line(&board, &at_19200), 1);
+    assert_int_equal(remote_set_line(&board, &at_9600), 0);
+    board_run_us(&board, 3000);
+    assert_int_equal(board.bytes_seen, 3);
+    assert_int_equal(remote_set_line(&board, &at_9600), 1);
+    assert_int_equal(remote_write(&board, request, sizeof request), 3);
+    assert_int_equal(remote_set_line(&board, &at_9600), 1);
+    assert_int_equal(remote_set_line(&board, &at_19200), 0);
+    assert_int_equal(ubrr(), 103);
+}
+
 static void what_was_received_before_is_kept(void **state)
 {
     (void)state;
@@ -158,6 +175,8 @@ int main(void)
                                         start, stop),
         cmocka_unit_test_setup_teardown(every_format_has_its_bits, start, stop),
         cmocka_unit_test_setup_teardown(settings_wait_until_all_bytes_have_left, start, stop),
+        cmocka_unit_test_setup_teardown(settings_that_hold_already_do_so_at_once_also_while_bytes_leave,
+                                        start, stop),
         cmocka_unit_test_setup_teardown(what_was_received_before_is_kept, start, stop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

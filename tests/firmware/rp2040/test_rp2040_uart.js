@@ -103,6 +103,7 @@ test('a request of any length leaves whole, in order and without a gap', () => {
 test('write takes all or nothing, and the caller may reuse his memory', () => {
   const bench = begin('19200 8E1');
   assert.strictEqual(bench.desk.write(bytesUpTo(201)), -1); // more than request_size
+  assert.strictEqual(bench.desk.write([]), -1);
   assert.strictEqual(bench.desk.write(bytesUpTo(100)), 100);
   assert.strictEqual(bench.desk.write([255, 255]), 0);
   bench.machine.until(() => bench.uart.sent.length === 100);
