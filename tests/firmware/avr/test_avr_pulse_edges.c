@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
-/* What input capture makes of edges that come while its own interrupt runs. */
+/* What input capture makes of edges that come while its own interrupt runs; and INT0 by itself. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +11,7 @@
 #include "board.h"
 
 enum { US = BOARD_CYCLES_PER_US, PULSE_CYCLES = 1000 * US };
+enum { BY_ICP1 = 1, BY_INT0 = 2 }; /* images/pulses.c */
 
 static board_t board;
 static uint64_t rise_cycle; /* of the next edge that is placed */
@@ -20,6 +21,7 @@ static int start(void **state)
     (void)state;
     assert_true(board_start(&board, "pulses"));
     board_drive(&board, 'B', 0, false);
+    board_drive(&board, 'D', 2, false);
     assert_true(board_run_us(&board, 1000));
     return 0;
 }
@@ -36,11 +38,11 @@ static int stop(void **state)
 static void edge(bool high, uint64_t offset) { board_drive_at(&board, 'B', 0, high, rise_cycle + offset); }
 
 /* The width of the next pulse that is told, in us; 0: none is for 3 ms. */
-static uint32_t told_us(void)
+static uint32_t told_us(uint8_t by)
 {
     const board_record_t *const record = board_next_record(&board, 3000);
     if (record == NULL) return 0;
-    assert_int_equal(record->kind, 1);
+    assert_int_equal(record->kind, by);
     uint32_t us = 0;
     for (int i = 3; i >= 0; i--) us = us << 8 | record->bytes[i];
     return us;
@@ -68,7 +70,7 @@ static void a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right(voi
         place();
         edge(true, 0);
         edge(false, width);
-        const uint32_t us = told_us();
+        const uint32_t us = told_us(BY_ICP1);
         if (width < TURNED)
             assert_told(us, 1 + US, INTERRUPT);
         else
@@ -76,7 +78,7 @@ static void a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right(voi
         place();
         edge(true, 0);
         edge(false, PULSE_CYCLES);
-        assert_told(told_us(), PULSE_CYCLES, PULSE_CYCLES);
+        assert_told(told_us(BY_ICP1), PULSE_CYCLES, PULSE_CYCLES);
     }
 }
 
@@ -91,8 +93,20 @@ static void a_bounce_in_the_interrupt_costs_no_more_than_itself(void **state)
             edge(false, high);
             edge(true, high + low);
             edge(false, PULSE_CYCLES);
-            assert_told(told_us(), PULSE_CYCLES - high - low, PULSE_CYCLES);
+            assert_told(told_us(BY_ICP1), PULSE_CYCLES - high - low, PULSE_CYCLES);
         }
+    }
+}
+
+/* With nothing else to delay it. */
+static void int0_tells_a_pulse_alone_within_1_us(void **state)
+{
+    (void)state;
+    for (uint64_t more = 0; more < 8 * US; more += 5) {
+        place();
+        board_drive_at(&board, 'D', 2, true, rise_cycle);
+        board_drive_at(&board, 'D', 2, false, rise_cycle + PULSE_CYCLES + more);
+        assert_told(told_us(BY_INT0), PULSE_CYCLES + more, PULSE_CYCLES + more);
     }
 }
 
@@ -102,6 +116,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right,
                                         start, stop),
         cmocka_unit_test_setup_teardown(a_bounce_in_the_interrupt_costs_no_more_than_itself, start, stop),
+        cmocka_unit_test_setup_teardown(int0_tells_a_pulse_alone_within_1_us, start, stop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
