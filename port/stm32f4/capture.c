@@ -7,6 +7,8 @@
 /* RM0090 18.3.6, PWM input mode, without the reset of the counter: both captures look at TI1, the first at its rise,
  * the second at its fall. */
 enum { CCMR1_IC1_TI1 = 1, CCMR1_IC2_TI1 = 2 << 8 };
+/* Eight samples at the timer's clock have to agree, both ways: 0.1 us late at both ends, and no ringing. */
+enum { CCMR1_IC1F_8 = 3 << 4, CCMR1_IC2F_8 = 3 << 12 };
 enum { CCER_CC1E = 1 << 0, CCER_CC2E = 1 << 4, CCER_CC2P = 1 << 5 };
 enum { CC1 = 1 << 1, CC2 = 1 << 2, CC1OF = 1 << 9, CC2OF = 1 << 10 }; /* in SR; the first two in DIER too */
 enum { TIM2_INTERRUPT = 28, TIM2_ALTERNATE = 1 };
@@ -51,7 +53,7 @@ bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_
     fed_us = TIM2[TIM_CNT];
     (void)fathom_stm32f4_pin_begin(pin, GPIO_ALTERNATE, FATHOM_STM32F4_DOWN, TIM2_ALTERNATE);
     TIM2[TIM_CCER] = 0; /* the selection can be written while it is off */
-    TIM2[TIM_CCMR1] = CCMR1_IC1_TI1 | CCMR1_IC2_TI1;
+    TIM2[TIM_CCMR1] = CCMR1_IC1_TI1 | CCMR1_IC2_TI1 | CCMR1_IC1F_8 | CCMR1_IC2F_8;
     TIM2[TIM_CCER] = CCER_CC1E | CCER_CC2E | CCER_CC2P;
     TIM2[TIM_SR] = 0;
     TIM2[TIM_DIER] = CC1 | CC2;

@@ -83,7 +83,7 @@ static void assert_pulse(uint32_t width_us, uint32_t end_us)
 static void the_captures_are_set_up_for_both_edges_of_ti1(void **state)
 {
     (void)state;
-    assert_int_equal(TIM2_AT(0x18), 0x0201); /* CCMR1: CC1S 01, CC2S 10 (RM0090 18.4.7) */
+    assert_int_equal(TIM2_AT(0x18), 0x3231); /* CCMR1: CC1S 01, CC2S 10, IC1F and IC2F 0011 (RM0090 18.4.7) */
     assert_int_equal(TIM2_AT(0x20), 0x0031); /* CCER: CC1E, CC2E, CC2P (18.4.9) */
     assert_int_equal(TIM2_AT(0x0C), 0x0006); /* DIER: CC1IE, CC2IE (18.4.4) */
     assert_int_equal(enabled, 28);
