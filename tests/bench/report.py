@@ -31,7 +31,7 @@ def show(figures):
         value = figures.get(name)
         line = f'{what:50} {"-" if value is None else value:>8} {bound or "":>6} {stretch or "":>7} {unit:6} '
         print(line + ('NOT MEASURED' if value is None else verdict(value, bound, stretch)))
-    print('Not measured here: the bus time of a poll, which needs a UART port for the ATmega328P.')
+    print('The bus time of a poll and what the ports cost: tests/firmware/figures.csv')
 
 
 def show_functions(functions):
