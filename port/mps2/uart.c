@@ -24,16 +24,12 @@ static const place_t places[] = {{(volatile uint32_t *)0x40004000u, 0},
                                  {(volatile uint32_t *)0x40007000u, 18},
                                  {(volatile uint32_t *)0x40009000u, 20}};
 
-/* 0: not within 2.5 %. */
+/* 0: not within 2.5 %, or not 8N1, which is all that these UARTs have. */
 static uint32_t divider(const fathom_line_settings_t *line)
 {
-    if (line->baud == 0 || line->baud > FATHOM_MPS2_HZ / MIN_BAUDDIV || line->parity != FATHOM_PARITY_NONE ||
-        line->stop_bits != 1)
-        return 0;
-    const uint32_t by = (FATHOM_MPS2_HZ + line->baud / 2) / line->baud;
-    const uint32_t real = FATHOM_MPS2_HZ / by;
-    const uint32_t off = real > line->baud ? real - line->baud : line->baud - real;
-    return by < MIN_BAUDDIV || by > MAX_BAUDDIV || off > line->baud / 40 ? 0 : by;
+    return line->parity != FATHOM_PARITY_NONE || line->stop_bits != 1
+               ? 0
+               : fathom_serial_divider(FATHOM_MPS2_HZ, line, MIN_BAUDDIV, MAX_BAUDDIV);
 }
 
 void fathom_mps2_uart_interrupt(fathom_mps2_uart_t *uart)

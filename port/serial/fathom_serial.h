@@ -137,6 +137,28 @@ static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *byt
     return (int)length;
 }
 
+/* ---- for set_line ---- */
+
+static inline bool fathom_serial_is_same(const fathom_line_settings_t *a, const fathom_line_settings_t *b)
+{
+    return a->baud == b->baud && a->parity == b->parity && a->stop_bits == b->stop_bits;
+}
+
+/* What clock_hz is to be divided by for these settings, least..most; 0: that does not come within 2.5 %, is faster than
+ * clock_hz / least, or there is no such parity or number of stop bits. */
+static inline uint32_t fathom_serial_divider(uint32_t clock_hz, const fathom_line_settings_t *line,
+                                             uint32_t least, uint32_t most)
+{
+    const uint32_t baud = line->baud;
+    if (baud == 0 || baud > clock_hz / least || line->parity > FATHOM_PARITY_ODD || line->stop_bits < 1 ||
+        line->stop_bits > 2)
+        return 0;
+    const uint32_t by = (clock_hz + baud / 2) / baud;
+    const uint32_t real = clock_hz / by;
+    const uint32_t off = real > baud ? real - baud : baud - real;
+    return by < least || by > most || off > baud / 40 ? 0 : by;
+}
+
 #ifdef __cplusplus
 }
 #endif

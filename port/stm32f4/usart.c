@@ -40,18 +40,7 @@ static const place_t places[] = {
 /* With 16 samples a bit BRR is the divider itself, its sixteenths below the point. 0: not within 2.5 %. */
 static uint32_t divider(uint32_t bus_hz, const fathom_line_settings_t *line)
 {
-    if (line->baud == 0 || line->baud > bus_hz / MIN_BRR || line->parity > FATHOM_PARITY_ODD ||
-        line->stop_bits < 1 || line->stop_bits > 2)
-        return 0;
-    const uint32_t by = (bus_hz + line->baud / 2) / line->baud;
-    const uint32_t real = bus_hz / by;
-    const uint32_t off = real > line->baud ? real - line->baud : line->baud - real;
-    return by < MIN_BRR || by > MAX_BRR || off > line->baud / 40 ? 0 : by;
-}
-
-static bool is_same(const fathom_line_settings_t *a, const fathom_line_settings_t *b)
-{
-    return a->baud == b->baud && a->parity == b->parity && a->stop_bits == b->stop_bits;
+    return fathom_serial_divider(bus_hz, line, MIN_BRR, MAX_BRR);
 }
 
 static void set_up(fathom_stm32f4_usart_t *usart, const fathom_line_settings_t *line, uint32_t by)
@@ -122,7 +111,7 @@ static bool usart_sent(void *ctx) { return !((const fathom_stm32f4_usart_t *)ctx
 static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     fathom_stm32f4_usart_t *const usart = ctx;
-    if (is_same(settings, &usart->line)) return 1;
+    if (fathom_serial_is_same(settings, &usart->line)) return 1;
     const uint32_t by = divider(usart->bus_hz, settings);
     if (by == 0) return -1;
     if (usart->serial.leaving) return 0;

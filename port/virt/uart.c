@@ -17,14 +17,7 @@ enum { FIFO = 16, SAMPLES = 16 };
 /* 0: not within 2.5 %. */
 static uint32_t divider(uint32_t clock_hz, const fathom_line_settings_t *line)
 {
-    const uint32_t highest = clock_hz / SAMPLES;
-    if (line->baud == 0 || line->baud > highest + highest / 40 || line->parity > FATHOM_PARITY_ODD ||
-        line->stop_bits < 1 || line->stop_bits > 2)
-        return 0;
-    const uint32_t by = (highest + line->baud / 2) / line->baud;
-    const uint32_t real = highest / by;
-    const uint32_t off = real > line->baud ? real - line->baud : line->baud - real;
-    return by > UINT16_MAX || off > line->baud / 40 ? 0 : by;
+    return fathom_serial_divider(clock_hz / SAMPLES, line, 1, UINT16_MAX);
 }
 
 static void set_up(fathom_virt_uart_t *uart, const fathom_line_settings_t *line, uint32_t by)
@@ -125,10 +118,7 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     fathom_virt_uart_t *const uart = ctx;
-    const fathom_line_settings_t *const line = &uart->line;
-    if (settings->baud == line->baud && settings->parity == line->parity &&
-        settings->stop_bits == line->stop_bits)
-        return 1;
+    if (fathom_serial_is_same(settings, &uart->line)) return 1;
     const uint32_t by = divider(uart->clock_hz, settings);
     if (by == 0) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0; /* LCR has the break, too */

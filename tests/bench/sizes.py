@@ -39,7 +39,7 @@ class Builder:
         self.machine = machine
         self.work = os.path.join(work, 'sizes_' + machine.name)
         os.mkdir(self.work)
-        self.library = os.path.join(self.work, 'libfathom.a')
+        self.archive = os.path.join(self.work, 'libfathom.a')
         self.sources = [*source(*sorted(name for name in os.listdir(os.path.join(ROOT, 'src'))
                                         if name.endswith('.c') and not name.startswith('crc16'))), machine.crc]
         self.programs = [os.path.join(FOLDER, name) for name in sorted(os.listdir(FOLDER))
@@ -53,7 +53,7 @@ class Builder:
         self.machine.build(self.object(path), '-g', '-c', path)
 
     def archive(self):
-        run(self.machine.prefix + 'ar', 'rcs', self.library, *(self.object(path) for path in self.sources))
+        run(self.machine.prefix + 'ar', 'rcs', self.archive, *(self.object(path) for path in self.sources))
         self.empty = os.path.join(self.work, 'empty.elf')
         self.machine.build(self.empty, *self.machine.link, *here('empty.c'))
 
@@ -76,7 +76,7 @@ class Builder:
                           *(self.object(path) for path in self.programs)]
         if self.machine.is_avr and row == 'everything':
             arguments += ROOMY
-        self.machine.build(elf, *arguments, self.library, '-lgcc')
+        self.machine.build(elf, *arguments, self.archive, '-lgcc')
         return elf, roots
 
     def measure(self, row):
