@@ -1,70 +1,30 @@
 /* SPDX-License-Identifier: MIT */
-#include "board.h"
-#include "dma_uart.h"
 #include "fathom/a16_auto.h"
-#include "fathom_rp2040.h"
-#include "report.h"
+#include "fathom/line.h"
+#include "fathom/wait.h"
 #include "rp2040.h"
-#include "vectors.h"
 
 /*
- * examples/rp2040/a16_dma.c in a loop that comes round every SCRATCH2 us (0: as often as it can). SCRATCH3 gets the time
- * of the last reading, SCRATCH4 what the line counts as bad bytes.
+ * examples/rp2040/a16_dma.c in a loop that comes round every SCRATCH2 us (0: as often as it can): this stands in the
+ * place of its fathom_wait, by the linker. SCRATCH3 gets the time of the last reading, SCRATCH4 what the line counts as
+ * bad bytes.
  */
-enum { A16_RX = 4, A16_TX = 5, TEXT_TX = 0, TEXT_RX = 1, LOOK_ALARM = 0, IDLE_ALARM = 3, CHANNEL = 2 };
+fathom_status_t __wrap_fathom_wait(const fathom_sensor_t *sensor, fathom_sample_t *sample, fathom_idle_t idle,
+                                   void *idle_ctx);
 
-static fathom_rp2040_idle_t idle = {.alarm = IDLE_ALARM};
-static fathom_rp2040_uart_t text;
-dma_uart_t a16_line;
-
-void uart0_irq(void) { fathom_rp2040_uart_interrupt(&text); }
-void dma_irq_0(void) { dma_uart_ended(&a16_line); }
-void io_irq_bank0(void) { dma_uart_edge(&a16_line); }
-void timer_irq_0(void) { dma_uart_look(&a16_line); }
-void timer_irq_3(void) { fathom_rp2040_idle_alarm(&idle); }
-
-int main(void)
+fathom_status_t __wrap_fathom_wait(const fathom_sensor_t *sensor, fathom_sample_t *sample, fathom_idle_t idle,
+                                   void *idle_ctx)
 {
-    static uint8_t line_of_text[REPORT_SIZE];
-    static const fathom_rp2040_uart_config_t text_config = {
-        .wiring = {.clk_peri_hz = BOARD_CLK_PERI_HZ, .number = 0, .tx = TEXT_TX, .rx = TEXT_RX},
-        .line = {.baud = 115200, .parity = FATHOM_PARITY_NONE, .stop_bits = 1},
-        .request = line_of_text,
-        .request_size = sizeof line_of_text,
-    };
-    static const dma_uart_config_t dma_config = {
-        .wiring =
-            {.clk_peri_hz = BOARD_CLK_PERI_HZ, .number = 1, .tx = A16_RX, .rx = A16_TX, .alarm = LOOK_ALARM},
-        .line = {.baud = 9600, .parity = FATHOM_PARITY_NONE, .stop_bits = 1},
-        .channel = CHANNEL,
-        .idle = &idle,
-    };
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
-    if (!fathom_rp2040_uart_begin(&text, &text_config)) return 1;
-    if (!dma_uart_begin(&a16_line, &dma_config)) return 2;
-    const fathom_uart_t out = fathom_rp2040_uart(&text);
-    const fathom_uart_t wire = dma_uart(&a16_line);
-
-    uint8_t frame[16];
-    fathom_line_t line;
-    const fathom_line_config_t line_config = {
-        .uart = &wire, .clock = &fathom_rp2040_clock, .frame = frame, .frame_size = sizeof frame};
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 3;
-    fathom_a16_auto_t a16;
-    const fathom_a16_auto_config_t config = {.line = &line};
-    if (fathom_a16_auto_init(&a16, &config) != FATHOM_READY) return 4;
-    const fathom_sensor_t sensor = fathom_a16_auto_sensor(&a16);
+    static uint32_t since_us;
     const uint32_t round_us = RP2040_WATCHDOG_SCRATCH(2);
-    uint32_t since_us = RP2040_TIMER_RAWL;
+    const fathom_line_t *const line = ((const fathom_dyp_auto_t *)sensor->ctx)->line;
     for (;;) {
-        fathom_sample_t sample;
-        const fathom_status_t status = fathom_poll(&sensor, &sample);
-        if (status == FATHOM_READY) RP2040_WATCHDOG_SCRATCH(3) = sample.time_us;
-        RP2040_WATCHDOG_SCRATCH(4) = line.counters[FATHOM_LINE_BAD_BYTES];
-        if (status != FATHOM_PENDING) report(&out, status, &sample);
         for (uint32_t passed_us; (passed_us = fathom_elapsed_us(RP2040_TIMER_RAWL, since_us)) < round_us;)
-            fathom_rp2040_idle(&idle, round_us - passed_us);
+            idle(idle_ctx, round_us - passed_us);
         since_us = RP2040_TIMER_RAWL;
+        const fathom_status_t status = fathom_poll(sensor, sample);
+        if (status == FATHOM_READY) RP2040_WATCHDOG_SCRATCH(3) = sample->time_us;
+        RP2040_WATCHDOG_SCRATCH(4) = line->counters[FATHOM_LINE_BAD_BYTES];
+        if (status != FATHOM_PENDING) return status;
     }
 }
