@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/crc16.h"
 #include "fathom/modbus_rtu.h"
@@ -35,10 +32,9 @@ static unsigned accepted(const vector_t *row, const uint8_t *bytes, uint8_t have
 
 enum { ALL_BYTES = 267 }; /* in the Modbus frames of the table */
 
-static void every_modbus_frame_without_an_error_is_taken(void **state)
+TEST(every_modbus_frame_without_an_error_is_taken)
 {
     unsigned bytes = 0;
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         assert_int_equal(accepted(row, row->bytes, row->length), row->direction == VECTOR_BOTH ? 2 : 1);
@@ -47,10 +43,9 @@ static void every_modbus_frame_without_an_error_is_taken(void **state)
     assert_int_equal(bytes, ALL_BYTES);
 }
 
-static void every_single_bit_error_in_a_modbus_frame_is_refused(void **state)
+TEST(every_single_bit_error_in_a_modbus_frame_is_refused)
 {
     unsigned tried = 0;
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         uint8_t bytes[VECTOR_BYTES];
@@ -64,10 +59,9 @@ static void every_single_bit_error_in_a_modbus_frame_is_refused(void **state)
     assert_int_equal(tried, 8 * ALL_BYTES);
 }
 
-static void every_single_byte_error_in_a_modbus_frame_is_refused(void **state)
+TEST(every_single_byte_error_in_a_modbus_frame_is_refused)
 {
     uint32_t tried = 0;
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         uint8_t bytes[VECTOR_BYTES];
@@ -85,11 +79,10 @@ static void every_single_byte_error_in_a_modbus_frame_is_refused(void **state)
 
 /* Whoever looks for requests on the line sees answers too, and one of their damaged beginnings in 65536 has a
  * right CRC by chance. In this table it is this one. */
-static void one_damaged_answer_looks_like_a_request_by_chance(void **state)
+TEST(one_damaged_answer_looks_like_a_request_by_chance)
 {
     static const uint8_t chance[] = {0x01, 0x03, 0x16, 0xB0, 0x00, 0xFF, 0x00, 0x25};
     unsigned found = 0;
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         uint8_t bytes[VECTOR_BYTES];
@@ -109,9 +102,8 @@ static void one_damaged_answer_looks_like_a_request_by_chance(void **state)
 }
 
 /* A CRC of 16 bits sees every burst of up to 16 bits, so any two bytes side by side as well. */
-static void every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused(void **state)
+TEST(every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused)
 {
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         uint8_t bytes[VECTOR_BYTES];
@@ -126,9 +118,8 @@ static void every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused(v
     }
 }
 
-static void a_modbus_frame_that_breaks_off_is_refused_wherever_it_does(void **state)
+TEST(a_modbus_frame_that_breaks_off_is_refused_wherever_it_does)
 {
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         for (uint8_t have = 1; have != row->length; have++)
@@ -154,9 +145,8 @@ static uint8_t length_of_prefix(length_of_t *length_of, const uint8_t *bytes, ui
     return length;
 }
 
-static void the_length_of_an_answer_is_known_from_its_third_byte(void **state)
+TEST(the_length_of_an_answer_is_known_from_its_third_byte)
 {
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         if ((row->direction & VECTOR_ANSWER) == 0) continue;
@@ -166,11 +156,10 @@ static void the_length_of_an_answer_is_known_from_its_third_byte(void **state)
     }
 }
 
-static void the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count(void **state)
+TEST(the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count)
 {
     /* HPS-167S table 37 without its CRC, which it does not print: 36 ms, 2 registers, 4 bytes. */
     static const uint8_t write_many[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24};
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
         if ((row->direction & VECTOR_REQUEST) == 0) continue;
@@ -183,19 +172,4 @@ static void the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_co
                                                                                                : have < 7
                                                                                                    ? 7
                                                                                                    : 13);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_modbus_frame_without_an_error_is_taken),
-        cmocka_unit_test(every_single_bit_error_in_a_modbus_frame_is_refused),
-        cmocka_unit_test(every_single_byte_error_in_a_modbus_frame_is_refused),
-        cmocka_unit_test(one_damaged_answer_looks_like_a_request_by_chance),
-        cmocka_unit_test(every_error_in_two_neighbouring_bytes_of_a_modbus_frame_is_refused),
-        cmocka_unit_test(a_modbus_frame_that_breaks_off_is_refused_wherever_it_does),
-        cmocka_unit_test(the_length_of_an_answer_is_known_from_its_third_byte),
-        cmocka_unit_test(the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/dyp_frame.h"
 #include "fathom/dyp_protocol.h"
@@ -125,10 +122,9 @@ enum { FF_BYTES = 14, REQUEST_BYTES = 15, ANSWER_BYTES = 25, DYP_BYTES = 35 };
 
 enum { REQUEST_ALL = 0, ANSWER_ALL = 1, REQUEST_ONE = 2, ANSWER_ONE = 3, ADDRESS_5 = 4 }; /* rows */
 
-static void every_frame_without_an_error_is_taken_by_whom_it_is_meant_for(void **state)
+TEST(every_frame_without_an_error_is_taken_by_whom_it_is_meant_for)
 {
     unsigned bytes = 0;
-    (void)state;
     for (unsigned i = 0; i != AUTO_ROWS; i++) {
         const vector_t *const frame = &auto_vectors[i].frame;
         assert_true(takes_its_frame(frame, frame->bytes, frame->length));
@@ -150,9 +146,8 @@ static void every_frame_without_an_error_is_taken_by_whom_it_is_meant_for(void *
     assert_int_equal(dyp_vectors[ANSWER_ONE].frame.length, 7);
 }
 
-static void every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refused(void **state)
+TEST(every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refused)
 {
-    (void)state;
     for (unsigned bits = 0; bits != 2; bits++) {
         tried = 0;
         for (uint8_t i = 0; i != AUTO_ROWS; i++)
@@ -161,18 +156,16 @@ static void every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refu
     }
 }
 
-static void every_single_bit_and_byte_error_in_a_55_AA_request_is_refused_by_all_units(void **state)
+TEST(every_single_bit_and_byte_error_in_a_55_AA_request_is_refused_by_all_units)
 {
-    (void)state;
     assert_int_equal(corrupt_rows(VECTOR_REQUEST, hears_a_request, true, nothing), 0);
     assert_int_equal(tried, 8 * REQUEST_BYTES);
     assert_int_equal(corrupt_rows(VECTOR_REQUEST, hears_a_request, false, nothing), 0);
     assert_int_equal(tried, 255 * REQUEST_BYTES);
 }
 
-static void no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_was_asked(void **state)
+TEST(no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_was_asked)
 {
-    (void)state;
     assert_int_equal(corrupt_rows(VECTOR_ANSWER, takes_its_answer, true, nothing), 0);
     assert_int_equal(tried, 8 * ANSWER_BYTES);
     assert_int_equal(corrupt_rows(VECTOR_ANSWER, takes_its_answer, false, nothing), 0);
@@ -190,11 +183,10 @@ static void no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_wa
  * a fifth byte of 03, which is 07; 11 to 13 leave the length, and the sum wrong by 1 to 3; 01 needs 13 bytes. In a
  * frame of 5 bytes, 03 leaves the length and the others need more bytes.
  */
-static void one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address(void **state)
+TEST(one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address)
 {
     static const unrefused_t list[] = {{ANSWER_ALL, 3, 0x03}, END};
     enum { LISTED = sizeof list / sizeof list[0] - 1 };
-    (void)state;
     assert_int_equal(LISTED, 1);
     assert_int_equal(corrupt_rows(VECTOR_BOTH, takes_any_answer, true, list), LISTED);
     assert_int_equal(tried, 8 * DYP_BYTES);
@@ -211,14 +203,13 @@ static void one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address(void **s
  *                       07 -> 10 asks unit 1 for probe 1 again
  * Any other command but 07, which there is not, has another sum.
  */
-static void five_wrong_bytes_make_an_answer_a_request_and_three_of_them_are_one_bit(void **state)
+TEST(five_wrong_bytes_make_an_answer_a_request_and_three_of_them_are_one_bit)
 {
     static const unrefused_t list[] = {
         {ANSWER_ALL, 2, 0x03}, {ANSWER_ALL, 3, 0x03}, {ANSWER_ALL, 4, 0x01},
         {ANSWER_ONE, 2, 0xF8}, {ANSWER_ONE, 4, 0x10}, END,
     };
     enum { LISTED = sizeof list / sizeof list[0] - 1, OF_ONE_BIT = 3 };
-    (void)state;
     assert_int_equal(LISTED, 5);
     assert_int_equal(corrupt_rows(VECTOR_ANSWER, hears_a_request, true, list), OF_ONE_BIT);
     assert_int_equal(tried, 8 * ANSWER_BYTES);
@@ -262,9 +253,8 @@ enum { CHANGES = 255 * 255 }; /* of two bytes, neither as it was */
  * value of the first: 255 of 255 * 255, one in 255. A wrong start is refused at once. So of 4 bytes, 3 * 2 / 2
  * pairs without the start pass so often, and of 10 bytes 9 * 8 / 2.
  */
-static void of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes(void **state)
+TEST(of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes)
 {
-    (void)state;
     assert_int_equal(corrupt_twice(&auto_vectors[0].frame, takes_its_frame), 3 * 255);
     assert_int_equal(tried, 6 * CHANGES);
     assert_int_equal(corrupt_twice(&auto_vectors[1].frame, takes_its_frame), 36 * 255);
@@ -276,9 +266,8 @@ static void of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes
  * and 3 of the 7 with one: 9 * 8 / 2 and 3 * 2 / 2 pairs. An answer to set-address has one that is not known, and
  * no two wrong bytes pass.
  */
-static void of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes(void **state)
+TEST(of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes)
 {
-    (void)state;
     assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ALL].frame, takes_its_answer), 36 * 255);
     assert_int_equal(tried, 78 * CHANGES);
     assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ONE].frame, takes_its_answer), 3 * 255);
@@ -299,9 +288,8 @@ static void of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes(v
  *   command 03 and the address a: FF + a + 03 = 07 for a = 05; or the fifth byte, 03                       2
  * and of 55 AA 05 03 07 the address and the sum                                                        255
  */
-static void who_takes_any_55_AA_answer_takes_these_too(void **state)
+TEST(who_takes_any_55_AA_answer_takes_these_too)
 {
-    (void)state;
     assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ALL].frame, takes_any_answer),
                      36 * 255 + 9 * 255 + 8 * 255 + 4 + 12);
     assert_int_equal(corrupt_twice(&dyp_vectors[ANSWER_ONE].frame, takes_any_answer),
@@ -312,9 +300,8 @@ static void who_takes_any_55_AA_answer_takes_these_too(void **state)
 /* A request has three bytes that may differ: the address with the sum in 255 ways, and each of the 5 other
  * commands with the address or with the sum. So two ways make a question for a distance set an address:
  * 55 AA FF 03 01 and 55 AA 01 03 03; 55 AA 0E 03 10 and 55 AA 01 03 03. */
-static void of_two_wrong_bytes_in_a_55_AA_request_265_pass(void **state)
+TEST(of_two_wrong_bytes_in_a_55_AA_request_265_pass)
 {
-    (void)state;
     assert_int_equal(corrupt_twice(&dyp_vectors[REQUEST_ALL].frame, hears_a_request), 255 + 5 + 5);
     assert_int_equal(corrupt_twice(&dyp_vectors[REQUEST_ONE].frame, hears_a_request), 255 + 5 + 5);
     assert_int_equal(corrupt_twice(&dyp_vectors[ADDRESS_5].frame, hears_a_request), 255 + 5 + 5);
@@ -322,31 +309,12 @@ static void of_two_wrong_bytes_in_a_55_AA_request_265_pass(void **state)
 }
 
 /* Sums do not see the order of bytes, nor two errors that cancel out. Not refused, and known: */
-static void what_an_8_bit_sum_cannot_see_is_this_list(void **state)
+TEST(what_an_8_bit_sum_cannot_see_is_this_list)
 {
     static const uint8_t unseen[3][4] = {
         {0xFF, 0xA1, 0x07, 0xA7}, /* the bytes of A16 2(4) changed places: 41223 mm */
         {0xFF, 0x08, 0xA0, 0xA7}, /* one more and one less: 2208 mm */
         {0xFF, 0x87, 0x21, 0xA7}, /* bit 7 of both: 34593 mm */
     };
-    (void)state;
     for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_frame_valid(unseen[i], 4));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_frame_without_an_error_is_taken_by_whom_it_is_meant_for),
-        cmocka_unit_test(every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refused),
-        cmocka_unit_test(every_single_bit_and_byte_error_in_a_55_AA_request_is_refused_by_all_units),
-        cmocka_unit_test(no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_was_asked),
-        cmocka_unit_test(one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address),
-        cmocka_unit_test(five_wrong_bytes_make_an_answer_a_request_and_three_of_them_are_one_bit),
-        cmocka_unit_test(of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes),
-        cmocka_unit_test(of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes),
-        cmocka_unit_test(who_takes_any_55_AA_answer_takes_these_too),
-        cmocka_unit_test(of_two_wrong_bytes_in_a_55_AA_request_265_pass),
-        cmocka_unit_test(what_an_8_bit_sum_cannot_see_is_this_list),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

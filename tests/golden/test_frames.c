@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/crc16.h"
 #include "fathom/dyp_frame.h"
@@ -127,9 +124,8 @@ static void crc_row(void **state)
 
 /* ---- the tables themselves ---- */
 
-static void the_tables_carry_every_printed_frame(void **state)
+TEST(the_tables_carry_every_printed_frame)
 {
-    (void)state;
     unsigned requests = 0;
     unsigned answers = 0;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
@@ -142,9 +138,8 @@ static void the_tables_carry_every_printed_frame(void **state)
     assert_int_equal(answers, 20);
 }
 
-static void every_55_AA_frame_goes_both_ways(void **state)
+TEST(every_55_AA_frame_goes_both_ways)
 {
-    (void)state;
     for (unsigned i = 0; i != DYP_ROWS; i++) {
         const dyp_vector_t *const row = &dyp_vectors[i];
         uint8_t frame[FRAME];
@@ -173,33 +168,30 @@ static void every_55_AA_frame_goes_both_ways(void **state)
 /* ---- mistakes in the datasheets ---- */
 
 /* HPS-167S, abnormal response code: "01 03 00 08 00 04 C5 C8"; table 17 and the CRC itself say C5 CB. */
-static void hps_the_printed_crc_C5_C8_is_refused_and_C5_CB_is_right(void **state)
+TEST(hps_the_printed_crc_C5_C8_is_refused_and_C5_CB_is_right)
 {
     static const uint8_t printed[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xC8};
     static const uint8_t right[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB};
-    (void)state;
     assert_int_not_equal(fathom_crc16(printed, 8), 0);
     assert_int_equal(fathom_crc16(right, 8), 0);
 }
 
 /* That looks like a misprint and is none: tables 15 and 17. */
-static void hps_commands_4_and_5_do_share_the_crc_C5_CB(void **state)
+TEST(hps_commands_4_and_5_do_share_the_crc_C5_CB)
 {
     static const uint8_t temperature[] = {0x01, 0x03, 0x00, 0x04, 0x00, 0x01};
     static const uint8_t measurement[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04};
-    (void)state;
     assert_int_equal(fathom_crc16(temperature, 6), 0xCBC5);
     assert_int_equal(fathom_crc16(measurement, 6), 0xCBC5);
 }
 
 /* HPS-167S table 40 prints address, code, CRC: 4 bytes. Its example is 01 83 02 C0 F1. */
-static void hps_an_exception_has_the_function_that_table_40_leaves_out(void **state)
+TEST(hps_an_exception_has_the_function_that_table_40_leaves_out)
 {
     static const uint8_t as_table_40[] = {0x01, 0x02, 0xC0, 0xF1};
     static const uint8_t example[] = {0x01, 0x83, 0x02, 0xC0, 0xF1};
     uint8_t frame[13];
     fathom_modbus_message_t message;
-    (void)state;
     assert_int_equal(fathom_modbus_rtu_response_length(as_table_40, 4), 0);
     assert_int_equal(fathom_modbus_rtu_response_length(example, 5), 5);
     fathom_modbus_read_holding_registers(&message, 1, 0x0008, 4, NULL);
@@ -210,13 +202,12 @@ static void hps_an_exception_has_the_function_that_table_40_leaves_out(void **st
 
 /* HPS-167S tables 9 to 38 head the last two bytes "CRC high byte, CRC low byte"; the low byte goes first. 2.2.5
  * gives the value 1241, which MODBUS over Serial Line V1.02, 6.2.2 sends as 41 12 after the message 02 07. */
-static void hps_the_low_byte_of_the_crc_goes_first(void **state)
+TEST(hps_the_low_byte_of_the_crc_goes_first)
 {
     static const uint8_t message_0207[] = {0x02, 0x07};
     static const uint8_t table_9[] = {0x01, 0x03, 0x00, 0x01, 0x00, 0x03};
     uint8_t frame[8];
     fathom_modbus_message_t message;
-    (void)state;
     assert_int_equal(fathom_crc16(message_0207, 2), 0x1241);
     assert_int_equal(fathom_crc16(table_9, 6), 0x0B54);
     fathom_modbus_read_holding_registers(&message, 1, 0x0001, 3, NULL);
@@ -226,10 +217,9 @@ static void hps_the_low_byte_of_the_crc_goes_first(void **state)
 }
 
 /* HPS-167S 2.2.4.3 limits a write to 0x78 and to 0x7B registers; the Modbus specification (6.12) to 0x7B. */
-static void hps_a_write_of_many_takes_123_registers_not_120(void **state)
+TEST(hps_a_write_of_many_takes_123_registers_not_120)
 {
     fathom_modbus_message_t message;
-    (void)state;
     fathom_modbus_write_multiple_registers(&message, 1, 0, 123, NULL);
     assert_int_equal(fathom_modbus_rtu_room(&message), 255);
     fathom_modbus_write_multiple_registers(&message, 1, 0, 124, NULL);
@@ -238,11 +228,10 @@ static void hps_a_write_of_many_takes_123_registers_not_120(void **state)
 
 /* HPS-167S tables 4 and 7: 0 to 252 bytes of data, 0 to 256. The longest answer that Modbus knows carries 250
  * bytes of registers and their count. */
-static void hps_an_answer_carries_at_most_251_bytes_of_data(void **state)
+TEST(hps_an_answer_carries_at_most_251_bytes_of_data)
 {
     static const uint8_t longest[] = {0x01, 0x03, 250};
     static const uint8_t longer[] = {0x01, 0x03, 252};
-    (void)state;
     assert_int_equal(fathom_modbus_rtu_response_length(longest, 3), 255);
     assert_int_equal(fathom_modbus_rtu_response_length(longer, 3), 0);
 }
@@ -250,11 +239,10 @@ static void hps_an_answer_carries_at_most_251_bytes_of_data(void **state)
 /* HPS-167S appendix: a stray C0 at index 106, and 60 entries missing. The right high bytes are what eight bits
  * of the polynomial A001 do to each low byte, and so the low byte of our CRC of one byte, whose state is
  * FF FF: crc(b) = table[b ^ FF] ^ 00FF. */
-static void hps_the_printed_table_has_197_entries_and_ours_is_right(void **state)
+TEST(hps_the_printed_table_has_197_entries_and_ours_is_right)
 {
     uint8_t right[256];
     unsigned same = 0;
-    (void)state;
     for (unsigned i = 0; i != 256; i++) {
         unsigned crc = i;
         for (int bit = 0; bit != 8; bit++) crc = (crc & 1) != 0 ? crc >> 1 ^ 0xA001 : crc >> 1;
@@ -272,46 +260,31 @@ static void hps_the_printed_table_has_197_entries_and_ours_is_right(void **state
 }
 
 /* A16 2(3), 3(4), 5(3) print the start as "0XFF 0XFF", 1 byte; the examples have one FF. */
-static void a16_a_frame_begins_with_one_FF(void **state)
+TEST(a16_a_frame_begins_with_one_FF)
 {
     static const uint8_t example[] = {0xFF, 0x07, 0xA1, 0xA7};
     static const uint8_t as_printed[] = {0xFF, 0xFF, 0x07, 0xA1, 0xA7};
-    (void)state;
     assert_true(fathom_dyp_frame_valid(example, 4));
     assert_false(fathom_dyp_frame_valid(as_printed, 4));
 }
 
 /* ---- all of them ---- */
 
-enum { FIXED_TESTS = 10, TESTS = FIXED_TESTS + AUTO_ROWS + MODBUS_ROWS + CRC_ROWS, NAME = 96 };
+enum { ROWS = AUTO_ROWS + MODBUS_ROWS + CRC_ROWS, NAME = 96 };
 
-static struct CMUnitTest tests[TESTS] = {
-    cmocka_unit_test(the_tables_carry_every_printed_frame),
-    cmocka_unit_test(every_55_AA_frame_goes_both_ways),
-    cmocka_unit_test(hps_the_printed_crc_C5_C8_is_refused_and_C5_CB_is_right),
-    cmocka_unit_test(hps_commands_4_and_5_do_share_the_crc_C5_CB),
-    cmocka_unit_test(hps_an_exception_has_the_function_that_table_40_leaves_out),
-    cmocka_unit_test(hps_the_low_byte_of_the_crc_goes_first),
-    cmocka_unit_test(hps_a_write_of_many_takes_123_registers_not_120),
-    cmocka_unit_test(hps_an_answer_carries_at_most_251_bytes_of_data),
-    cmocka_unit_test(hps_the_printed_table_has_197_entries_and_ours_is_right),
-    cmocka_unit_test(a16_a_frame_begins_with_one_FF),
-};
-static char names[TESTS][NAME];
-static unsigned used = FIXED_TESTS;
+static suite_test_t rows[ROWS];
+static char names[ROWS][NAME];
+static unsigned used;
 
-/* cmocka passes the row on as the test's state and does not write to it. */
 static void add(void (*function)(void **), const void *row, const char *source, const char *name, uint8_t way)
 {
     static const char *const ways[] = {"", ", request", ", answer", ", both ways"};
     snprintf(names[used], NAME, "%s: %s%s", source, name, ways[way]);
-    tests[used].name = names[used];
-    tests[used].test_func = function;
-    memcpy(&tests[used].initial_state, &row, sizeof row);
+    suite_add(&rows[used], &suite, __FILE__, names[used], function, row);
     used++;
 }
 
-int main(void)
+__attribute__((constructor)) static void add_rows(void)
 {
     for (unsigned i = 0; i != AUTO_ROWS; i++) {
         const vector_t *const frame = &auto_vectors[i].frame;
@@ -322,5 +295,4 @@ int main(void)
         add(modbus_row, &modbus_vectors[i], frame->source, frame->name, frame->direction);
     }
     for (unsigned i = 0; i != CRC_ROWS; i++) add(crc_row, &crc_vectors[i], crc_vectors[i].source, "CRC", 0);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

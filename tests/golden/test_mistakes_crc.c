@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/modbus_rtu.h"
 
@@ -14,10 +11,9 @@
 
 static uint16_t values[FATHOM_MODBUS_MAX_READ];
 
-static void no_request_or_answer_of_any_count_is_longer_than_8_bits_can_tell(void **state)
+TEST(no_request_or_answer_of_any_count_is_longer_than_8_bits_can_tell)
 {
     fathom_modbus_message_t message;
-    (void)state;
     for (unsigned count = 0; count != 256; count++) {
         /* 3 bytes and a CRC around an answer to a read, but the request has 8 in all; 7 and a CRC around a write */
         const unsigned read = 5 + 2 * count > 8 ? 5 + 2 * count : 8;
@@ -29,9 +25,8 @@ static void no_request_or_answer_of_any_count_is_longer_than_8_bits_can_tell(voi
     }
 }
 
-static void no_answer_or_request_is_waited_for_that_8_bits_cannot_tell(void **state)
+TEST(no_answer_or_request_is_waited_for_that_8_bits_cannot_tell)
 {
-    (void)state;
     for (unsigned size = 0; size != 256; size++) {
         const uint8_t answer[] = {0x01, 0x03, (uint8_t)size};
         const uint8_t request[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, (uint8_t)size};
@@ -41,13 +36,4 @@ static void no_answer_or_request_is_waited_for_that_8_bits_cannot_tell(void **st
         const unsigned served = fathom_modbus_rtu_request_length(request, sizeof request);
         assert_true(served == 0 || served == 9 + size);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_request_or_answer_of_any_count_is_longer_than_8_bits_can_tell),
-        cmocka_unit_test(no_answer_or_request_is_waited_for_that_8_bits_cannot_tell),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

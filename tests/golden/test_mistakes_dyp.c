@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/a05_dyp.h"
 #include "fathom/a05_modbus.h"
@@ -22,44 +19,40 @@ static uint8_t sum_of(const uint8_t *bytes, size_t count)
     return (uint8_t)(sum & 0xFF);
 }
 
-static void a05_2_3_3_prints_60_as_the_sum_of_the_answer_which_is_62(void **state)
+TEST(a05_2_3_3_prints_60_as_the_sum_of_the_answer_which_is_62)
 {
     uint8_t answer[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
-    (void)state;
     assert_int_equal(sum_of(answer, 12), 0x62);
     assert_false(fathom_dyp_protocol_valid(answer, sizeof answer));
     answer[12] = 0x62;
     assert_true(fathom_dyp_protocol_valid(answer, sizeof answer));
 }
 
-static void a05_2_3_5_prints_command_10_for_setting_the_address_which_is_03(void **state)
+TEST(a05_2_3_5_prints_command_10_for_setting_the_address_which_is_03)
 {
     /* its own example: 55 AA 05 03, sum 07, and the same as the answer */
     static const uint8_t example[] = {0x55, 0xAA, 0x05, 0x03, 0x07};
     uint8_t request[FATHOM_DYP_REQUEST_LENGTH];
-    (void)state;
     assert_int_equal(fathom_dyp_protocol_encode_request(request, 5, FATHOM_DYP_SET_ADDRESS), sizeof example);
     assert_memory_equal(request, example, sizeof example);
     assert_int_not_equal(FATHOM_DYP_SET_ADDRESS, 0x10);
 }
 
-static void a05_2_3_5_prints_an_answer_with_a_distance_and_it_has_none(void **state)
+TEST(a05_2_3_5_prints_an_answer_with_a_distance_and_it_has_none)
 {
     static const uint8_t example[] = {0x55, 0xAA, 0x05, 0x03, 0x07};
-    (void)state;
     assert_int_equal(fathom_dyp_protocol_answer_length(FATHOM_DYP_SET_ADDRESS), 5);
     assert_int_equal(fathom_dyp_protocol_values(FATHOM_DYP_SET_ADDRESS), 0);
     assert_int_equal(fathom_dyp_protocol_length(example, 4), 5);
     assert_true(fathom_dyp_protocol_valid(example, sizeof example));
 }
 
-static void a05_2_3_prints_data_1h_twice_and_the_second_is_data_1l(void **state)
+TEST(a05_2_3_prints_data_1h_twice_and_the_second_is_data_1l)
 {
     /* the example: 03E8 is 1000, 07D0 2000; of two high bytes it would be 0303 and 0707 */
     static const uint8_t answer[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07,
                                      0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
     uint16_t values[4] = {0, 0, 0, 0};
-    (void)state;
     fathom_dyp_protocol_decode(answer, values);
     assert_int_equal(values[0], 1000);
     assert_int_equal(values[1], 2000);
@@ -123,18 +116,16 @@ static uint8_t probe_of(uint8_t wanted, uint16_t registers)
     return sample.probe;
 }
 
-static void a05_3_3_prints_0109_as_probe_3_and_it_is_probe_4(void **state)
+TEST(a05_3_3_prints_0109_as_probe_3_and_it_is_probe_4)
 {
     static const uint8_t asked[] = {0x01, 0x03, 0x01, 0x09, 0x00, 0x01};
-    (void)state;
     assert_int_equal(probe_of(0x08, FATHOM_A05_REGISTERS), 4);
     assert_memory_equal(head, asked, sizeof asked);
 }
 
-static void a05_3_3_prints_that_four_registers_are_those_of_three(void **state)
+TEST(a05_3_3_prints_that_four_registers_are_those_of_three)
 {
     /* remark 2: 0010 to 0013 "have the same function as 0106 to 0108": it is 0109 */
-    (void)state;
     for (uint8_t probe = 1; probe <= 4; probe++) {
         assert_int_equal(probe_of((uint8_t)(1u << (probe - 1)), FATHOM_A05_REGISTERS_ALIAS), probe);
         assert_int_equal(head[2] * 256 + head[3], 0x0010 + probe - 1);
@@ -145,30 +136,15 @@ static void a05_3_3_prints_that_four_registers_are_those_of_three(void **state)
 
 /* ---- A16 ---- */
 
-static void a16_2_to_5_print_two_start_bytes_and_it_is_one(void **state)
+TEST(a16_2_to_5_print_two_start_bytes_and_it_is_one)
 {
     static const uint8_t example[] = {0xFF, 0x07, 0xA1, 0xA7};
     static const uint8_t printed[] = {0xFF, 0xFF, 0x07, 0xA1, 0xA6}; /* 2 * FF + 07 + A1 = 2A6 */
     uint16_t value = 0;
-    (void)state;
     assert_int_equal(FATHOM_DYP_A16_LENGTH, 4);
     assert_true(fathom_dyp_frame_valid(example, 4));
     fathom_dyp_frame_decode(example, &value, 1);
     assert_int_equal(value, 1953);
     assert_false(fathom_dyp_frame_valid(printed, 4));
     assert_false(fathom_dyp_frame_valid(printed + 1, 4));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a05_2_3_3_prints_60_as_the_sum_of_the_answer_which_is_62),
-        cmocka_unit_test(a05_2_3_5_prints_command_10_for_setting_the_address_which_is_03),
-        cmocka_unit_test(a05_2_3_5_prints_an_answer_with_a_distance_and_it_has_none),
-        cmocka_unit_test(a05_2_3_prints_data_1h_twice_and_the_second_is_data_1l),
-        cmocka_unit_test(a05_3_3_prints_0109_as_probe_3_and_it_is_probe_4),
-        cmocka_unit_test(a05_3_3_prints_that_four_registers_are_those_of_three),
-        cmocka_unit_test(a16_2_to_5_print_two_start_bytes_and_it_is_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/crc16.h"
 #include "fathom/hps167s_info.h"
@@ -32,13 +29,12 @@ static bool crc_is_right(const uint8_t *frame, size_t length)
     return frame[length - 2] == (crc & 0xFF) && frame[length - 1] == crc >> 8;
 }
 
-static void the_request_of_the_abnormal_response_has_c5_c8_and_should_have_c5_cb(void **state)
+TEST(the_request_of_the_abnormal_response_has_c5_c8_and_should_have_c5_cb)
 {
     static const uint8_t printed[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xC8};
     uint16_t values[4];
     uint8_t frame[8];
     fathom_modbus_message_t message;
-    (void)state;
     fathom_modbus_read_holding_registers(&message, 1, 0x0008, 4, values);
     assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 8);
     assert_memory_equal(frame, printed, 7);
@@ -48,23 +44,21 @@ static void the_request_of_the_abnormal_response_has_c5_c8_and_should_have_c5_cb
 }
 
 /* That #4 and #5 have one CRC is no misprint. */
-static void tables_15_and_17_share_the_crc_c5_cb_and_rightly_so(void **state)
+TEST(tables_15_and_17_share_the_crc_c5_cb_and_rightly_so)
 {
     static const uint8_t four[] = {0x01, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xCB};
     static const uint8_t five[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB};
-    (void)state;
     assert_true(crc_is_right(four, 8));
     assert_true(crc_is_right(five, 8));
 }
 
 /* Address, code, CRC would be 01 02 and two more; its own example has the function with 80 between. */
-static void table_40_leaves_out_the_function_with_80_which_its_example_has(void **state)
+TEST(table_40_leaves_out_the_function_with_80_which_its_example_has)
 {
     static const uint8_t example[] = {0x01, 0x83, 0x02, 0xC0, 0xF1};
     uint8_t printed[4] = {0x01, 0x02, 0, 0};
     uint16_t values[4] = {0xA5A5, 0, 0, 0};
     fathom_modbus_message_t message;
-    (void)state;
     fathom_modbus_read_holding_registers(&message, 1, 0x0008, 4, values);
     assert_true(crc_is_right(example, 5));
     assert_int_equal(fathom_modbus_rtu_response_length(example, 5), 5);
@@ -110,7 +104,7 @@ static void end_with(const uint8_t *frame)
 static const fathom_modbus_t modbus = {.submit = submit, .poll = poll};
 static const fathom_clock_t clock = {.now_us = now_us};
 
-static void command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9(void **state)
+TEST(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9)
 {
     static const uint8_t example[] = {0x01, 0x03, 0x16, 0xB0, 0x00, 0x39, 0x00, 0x25, 0x42,
                                       0x34, 0x57, 0x14, 0x20, 0x34, 0x38, 0x35, 0x01, 0x06,
@@ -118,7 +112,6 @@ static void command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9
     const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &clock};
     fathom_hps167s_details_t details;
     fathom_hps167s_t hps;
-    (void)state;
     assert_true(crc_is_right(example, sizeof example)); /* so the bytes are what the device said */
     assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_READY);
     assert_int_equal(fathom_hps167s_details(&hps, &details), FATHOM_PENDING);
@@ -134,10 +127,9 @@ static void command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9
 /* ---- the CRC ---- */
 
 /* The tables name the first of the two "MSB" or "high byte". */
-static void the_tables_put_the_high_byte_of_the_crc_first_and_every_example_the_low_byte(void **state)
+TEST(the_tables_put_the_high_byte_of_the_crc_first_and_every_example_the_low_byte)
 {
     unsigned frames = 0;
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const frame = &modbus_vectors[i].frame;
         if (strcmp(frame->sensor, "HPS-167S") != 0) continue;
@@ -149,10 +141,9 @@ static void the_tables_put_the_high_byte_of_the_crc_first_and_every_example_the_
     assert_int_equal(frames, 15);
 }
 
-static void the_appendix_has_197_entries_of_256_in_auchcrchi(void **state)
+TEST(the_appendix_has_197_entries_of_256_in_auchcrchi)
 {
     unsigned wrong = 0, first_wrong = 256;
-    (void)state;
     assert_int_equal(sizeof printed_auchCRCHi, 197);
     for (unsigned i = 0; i != 256; i++) {
         const uint8_t byte = (uint8_t)i;
@@ -169,9 +160,8 @@ static void the_appendix_has_197_entries_of_256_in_auchcrchi(void **state)
 }
 
 /* Two bytes take every entry of a table into every other: 65536 of them, bit by bit. */
-static void our_crc_is_that_of_the_polynomial_for_every_pair_of_bytes(void **state)
+TEST(our_crc_is_that_of_the_polynomial_for_every_pair_of_bytes)
 {
-    (void)state;
     for (uint32_t i = 0; i != 65536; i++) {
         const uint8_t pair[] = {(uint8_t)(i >> 8), (uint8_t)(i & 0xFF)};
         assert_int_equal(fathom_crc16(pair, 2), bitwise(pair, 2));
@@ -180,11 +170,10 @@ static void our_crc_is_that_of_the_polynomial_for_every_pair_of_bytes(void **sta
 
 /* Its main() calls crc16 under "Implementation_1" and CRC16 under "Implementation_2", which are the second and the first
  * in the text above, and prints FF69 BEE5 ... for the former: that is the order on the wire. The register has 69FF. */
-static void the_appendix_prints_the_results_of_its_implementations_the_wrong_way_round(void **state)
+TEST(the_appendix_prints_the_results_of_its_implementations_the_wrong_way_round)
 {
     static const uint16_t registers[] = {0x69FF, 0xE5BE, 0x617F, 0x4523, 0x8576, 0x0DF4, 0xF102};
     unsigned rows = 0;
-    (void)state;
     for (unsigned i = 0; i != CRC_ROWS; i++) {
         const crc_vector_t *const row = &crc_vectors[i];
         if (strncmp(row->source, "HPS-167S appendix", 17) != 0) continue;
@@ -198,11 +187,10 @@ static void the_appendix_prints_the_results_of_its_implementations_the_wrong_way
 }
 
 /* CRC-16/CCITT: 0x1021 and not reflected; of table 17 it is not C5 CB either way round. */
-static void revision_1_1_calls_it_crc16_ccitt_and_it_is_not(void **state)
+TEST(revision_1_1_calls_it_crc16_ccitt_and_it_is_not)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04};
     static const unsigned starts[] = {0x0000, 0xFFFF, 0x1D0F};
-    (void)state;
     assert_int_equal(fathom_crc16(request, 6), 0xCBC5);
     for (unsigned i = 0; i != 3; i++) {
         unsigned crc = starts[i];
@@ -219,11 +207,10 @@ static void revision_1_1_calls_it_crc16_ccitt_and_it_is_not(void **state)
 /* ---- counts ---- */
 
 /* 2.2.4.3 has 1..0x78 for the request and 1..0x7B for its answer; the Modbus application protocol has 0x7B. */
-static void a_write_of_many_takes_1_to_7b_registers_and_not_78(void **state)
+TEST(a_write_of_many_takes_1_to_7b_registers_and_not_78)
 {
     static uint16_t values[130];
     fathom_modbus_message_t message;
-    (void)state;
     for (unsigned count = 0; count != 130; count++) {
         fathom_modbus_write_multiple_registers(&message, 1, 0x0020, (uint8_t)count, values);
         assert_int_equal(fathom_modbus_rtu_room(&message), count >= 1 && count <= 0x7B ? 9 + 2 * count : 0);
@@ -231,12 +218,11 @@ static void a_write_of_many_takes_1_to_7b_registers_and_not_78(void **state)
 }
 
 /* Table 4 has 0..252 bytes of data and table 7 0..256; a frame has 256 bytes in all: address, function, 252, CRC. */
-static void data_are_252_bytes_at_most_and_not_256(void **state)
+TEST(data_are_252_bytes_at_most_and_not_256)
 {
     static uint16_t values[130];
     fathom_modbus_message_t message;
     unsigned most = 0;
-    (void)state;
     for (unsigned count = 0; count != 130; count++) {
         fathom_modbus_write_multiple_registers(&message, 1, 0x0020, (uint8_t)count, values);
         const unsigned data = fathom_modbus_rtu_room(&message);
@@ -253,14 +239,13 @@ static void data_are_252_bytes_at_most_and_not_256(void **state)
 
 /* Note *2 speaks of more than 20 meters, and the range ends at 18: what lies beyond is believed up to 30 m and no
  * further, so that a unit which does see farther is not called broken. */
-static void note_2_says_20_meters_where_the_range_ends_at_18(void **state)
+TEST(note_2_says_20_meters_where_the_range_ends_at_18)
 {
     static const uint16_t distances[][2] = {{18000, FATHOM_TARGET},
                                             {18001, FATHOM_TARGET},
                                             {20001, FATHOM_TARGET},
                                             {30000, FATHOM_TARGET},
                                             {30001, 0}};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         const uint16_t registers[4] = {distances[i][0], 0xDCB2, 0x0701, 0};
         fathom_sample_t sample;
@@ -272,34 +257,13 @@ static void note_2_says_20_meters_where_the_range_ends_at_18(void **state)
 }
 
 /* Table 28 is the answer to #10 and is called that of the baud rate: its register is 0012, the baud rate's 0011. */
-static void table_28_is_titled_baud_rate_and_is_the_measurement_mode(void **state)
+TEST(table_28_is_titled_baud_rate_and_is_the_measurement_mode)
 {
     unsigned found = 0;
-    (void)state;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const modbus_vector_t *const row = &modbus_vectors[i];
         if (strcmp(row->frame.source, "HPS tables 27 28") == 0) found += row->meaning.address == 0x0012;
         if (strcmp(row->frame.source, "HPS tables 25 26") == 0) found += row->meaning.address == 0x0011;
     }
     assert_int_equal(found, 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_request_of_the_abnormal_response_has_c5_c8_and_should_have_c5_cb),
-        cmocka_unit_test(tables_15_and_17_share_the_crc_c5_cb_and_rightly_so),
-        cmocka_unit_test(table_40_leaves_out_the_function_with_80_which_its_example_has),
-        cmocka_unit_test(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9),
-        cmocka_unit_test(the_tables_put_the_high_byte_of_the_crc_first_and_every_example_the_low_byte),
-        cmocka_unit_test(the_appendix_has_197_entries_of_256_in_auchcrchi),
-        cmocka_unit_test(our_crc_is_that_of_the_polynomial_for_every_pair_of_bytes),
-        cmocka_unit_test(the_appendix_prints_the_results_of_its_implementations_the_wrong_way_round),
-        cmocka_unit_test(revision_1_1_calls_it_crc16_ccitt_and_it_is_not),
-        cmocka_unit_test(a_write_of_many_takes_1_to_7b_registers_and_not_78),
-        cmocka_unit_test(data_are_252_bytes_at_most_and_not_256),
-        cmocka_unit_test(note_2_says_20_meters_where_the_range_ends_at_18),
-        cmocka_unit_test(table_28_is_titled_baud_rate_and_is_the_measurement_mode),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,21 +35,12 @@ static int set_up(modbus_t *modbus)
     return 0;
 }
 
-int rig_tcp_set_up(void **state)
-{
-    (void)state;
-    return set_up(modbus_new_tcp("127.0.0.1", 502));
-}
+int rig_tcp_set_up(void **state) { return set_up(modbus_new_tcp("127.0.0.1", 502)); }
 
-int rig_rtu_set_up(void **state)
-{
-    (void)state;
-    return set_up(modbus_new_rtu("/nowhere", 19200, 'E', 8, 1));
-}
+int rig_rtu_set_up(void **state) { return set_up(modbus_new_rtu("/nowhere", 19200, 'E', 8, 1)); }
 
 int rig_tear_down(void **state)
 {
-    (void)state;
     if (rig.far >= 0) (void)close(rig.far);
     modbus_close(rig.modbus);
     modbus_free(rig.modbus);

@@ -2,13 +2,10 @@
 #ifndef LIBMODBUS_RIG_H
 #define LIBMODBUS_RIG_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake.h"
 #include "fathom_libmodbus.h"

@@ -62,18 +62,18 @@ static void expect_to_go_on(void)
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_OK);
 }
 
-static void a_server_that_closes_breaks_it_until_there_is_a_new_connection(void **state)
+static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_down};
+
+TEST(a_server_that_closes_breaks_it_until_there_is_a_new_connection)
 {
-    (void)state;
     ask();
     hang_up();
     expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
     expect_to_go_on();
 }
 
-static void an_answer_before_the_end_of_the_connection_is_read(void **state)
+TEST(an_answer_before_the_end_of_the_connection_is_read)
 {
-    (void)state;
     ask();
     rig_say(answer_1, sizeof answer_1);
     hang_up();
@@ -81,9 +81,8 @@ static void an_answer_before_the_end_of_the_connection_is_read(void **state)
     rig_expect_three();
 }
 
-static void half_an_answer_and_the_end_break_it(void **state)
+TEST(half_an_answer_and_the_end_break_it)
 {
-    (void)state;
     for (size_t cut = 1; cut != sizeof answer_1; cut++) {
         if (cut != 1) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
         ask();
@@ -96,9 +95,8 @@ static void half_an_answer_and_the_end_break_it(void **state)
 }
 
 /* The far end of a socket pair that closes with a request unread is a reset. */
-static void a_reset_has_the_systems_number(void **state)
+TEST(a_reset_has_the_systems_number)
 {
-    (void)state;
     rig_ask_three(&rig.request, 1, 3);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     hang_up();
@@ -107,9 +105,8 @@ static void a_reset_has_the_systems_number(void **state)
     expect_to_go_on();
 }
 
-static void a_modbus_t_that_is_not_connected_is_a_broken_port(void **state)
+TEST(a_modbus_t_that_is_not_connected_is_a_broken_port)
 {
-    (void)state;
     ask();
     modbus_close(rig.modbus);
     expect_broken(FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
@@ -117,7 +114,7 @@ static void a_modbus_t_that_is_not_connected_is_a_broken_port(void **state)
     expect_to_go_on();
 }
 
-static void what_is_no_modbus_breaks_it_and_ends_the_connection(void **state)
+TEST(what_is_no_modbus_breaks_it_and_ends_the_connection)
 {
     static const uint8_t nonsense[][9] = {
         {'H', 'T', 'T', 'P', '/', '1', '.', '1', ' '},
@@ -128,7 +125,6 @@ static void what_is_no_modbus_breaks_it_and_ends_the_connection(void **state)
         {0xF0, 1, 0, 0, 0, 255, 1, 0x83, 2}, /* more than Modbus has */
         {0xF0, 1, 0, 0, 1, 3, 1, 0x83, 2},
     };
-    (void)state;
     for (size_t i = 0; i != sizeof nonsense / sizeof nonsense[0]; i++) {
         uint8_t byte = 0;
         if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
@@ -141,13 +137,12 @@ static void what_is_no_modbus_breaks_it_and_ends_the_connection(void **state)
 }
 
 /* The socket waits if it is let; then the alarm ends the test. */
-static void a_full_connection_is_busy_and_nothing_waits(void **state)
+TEST(a_full_connection_is_busy_and_nothing_waits)
 {
     static uint8_t junk[4096];
     const int fd = modbus_get_socket(rig.modbus);
     size_t filled = 0;
     ssize_t n = 0;
-    (void)state;
     while ((n = send(fd, junk, sizeof junk, MSG_DONTWAIT)) > 0) filled += (size_t)n;
     rig_ask_three(&rig.request, 1, 0);
     for (int i = 0; i != 10; i++) assert_int_equal(poll_once(), FATHOM_PENDING);
@@ -164,10 +159,9 @@ static void a_full_connection_is_busy_and_nothing_waits(void **state)
     rig_expect_three();
 }
 
-static void a_connection_that_stays_full_is_broken_after_a_second(void **state)
+TEST(a_connection_that_stays_full_is_broken_after_a_second)
 {
     static uint8_t junk[4096];
-    (void)state;
     while (send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT) > 0) continue;
     rig_ask_three(&rig.request, 1, 0);
     rig_run(FATHOM_LINE_SEND_US - FINE_US, FINE_US);
@@ -176,9 +170,8 @@ static void a_connection_that_stays_full_is_broken_after_a_second(void **state)
     assert_int_equal(status(), FATHOM_ERR_PORT);
 }
 
-static void units_that_modbus_set_slave_refuses_are_unsupported(void **state)
+TEST(units_that_modbus_set_slave_refuses_are_unsupported)
 {
-    (void)state;
     assert_int_equal(modbus_set_slave(rig.modbus, 42), 0);
     for (unsigned unit = 0; unit != 256; unit++) {
         const bool is_unsupported = unit >= 248 && unit <= 254;
@@ -190,10 +183,9 @@ static void units_that_modbus_set_slave_refuses_are_unsupported(void **state)
     }
 }
 
-static void line_settings_are_unsupported_and_nothing_is_sent(void **state)
+TEST(line_settings_are_unsupported_and_nothing_is_sent)
 {
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     rig.request.exchange.settings = &settings;
     assert_int_equal(poll_once(), FATHOM_PENDING);
@@ -201,9 +193,8 @@ static void line_settings_are_unsupported_and_nothing_is_sent(void **state)
     rig_expect_sent(NULL, 0);
 }
 
-static void counts_out_of_range_and_reads_from_everybody_are_refused(void **state)
+TEST(counts_out_of_range_and_reads_from_everybody_are_refused)
 {
-    (void)state;
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 126, rig.values);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_ARGUMENT);
     fathom_modbus_read_holding_registers(&rig.request.message, 0, 0, 1, rig.values);
@@ -212,11 +203,10 @@ static void counts_out_of_range_and_reads_from_everybody_are_refused(void **stat
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_BUSY);
 }
 
-static void init_wants_all_that_it_needs(void **state)
+TEST(init_wants_all_that_it_needs)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
     const fathom_libmodbus_config_t timeless = {.clock = NULL};
-    (void)state;
     assert_int_equal(fathom_libmodbus_init(NULL, rig.modbus, &config), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_libmodbus_init(&rig.port, NULL, &config), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, NULL), FATHOM_ERR_ARGUMENT);
@@ -224,10 +214,9 @@ static void init_wants_all_that_it_needs(void **state)
 }
 
 /* Else libmodbus would sleep and connect by itself when sending fails: the alarm ends that. */
-static void libmodbus_does_not_recover_by_itself(void **state)
+TEST(libmodbus_does_not_recover_by_itself)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
-    (void)state;
     assert_int_equal(modbus_set_error_recovery(rig.modbus, MODBUS_ERROR_RECOVERY_LINK), 0);
     assert_int_equal(modbus_set_response_timeout(rig.modbus, 2 * RIG_ALARM_S, 0), 0);
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
@@ -235,9 +224,8 @@ static void libmodbus_does_not_recover_by_itself(void **state)
     assert_true(modbus_send_raw_request(rig.modbus, request_1 + 6, 6) < 0);
 }
 
-static void a_wait_ends_when_a_byte_is_there_or_the_far_end_has_gone(void **state)
+TEST(a_wait_ends_when_a_byte_is_there_or_the_far_end_has_gone)
 {
-    (void)state;
     ask();
     rig_say(answer_1, 1);
     fathom_libmodbus_wait(&rig.port, FATHOM_NO_DEADLINE);
@@ -247,25 +235,4 @@ static void a_wait_ends_when_a_byte_is_there_or_the_far_end_has_gone(void **stat
     fathom_libmodbus_wait(&rig.port, 1000);
     hang_up();
     fathom_libmodbus_wait(&rig.port, FATHOM_NO_DEADLINE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        RIG_TEST_TCP(a_server_that_closes_breaks_it_until_there_is_a_new_connection),
-        RIG_TEST_TCP(an_answer_before_the_end_of_the_connection_is_read),
-        RIG_TEST_TCP(half_an_answer_and_the_end_break_it),
-        RIG_TEST_TCP(a_reset_has_the_systems_number),
-        RIG_TEST_TCP(a_modbus_t_that_is_not_connected_is_a_broken_port),
-        RIG_TEST_TCP(what_is_no_modbus_breaks_it_and_ends_the_connection),
-        RIG_TEST_TCP(a_full_connection_is_busy_and_nothing_waits),
-        RIG_TEST_TCP(a_connection_that_stays_full_is_broken_after_a_second),
-        RIG_TEST_TCP(units_that_modbus_set_slave_refuses_are_unsupported),
-        RIG_TEST_TCP(line_settings_are_unsupported_and_nothing_is_sent),
-        RIG_TEST_TCP(counts_out_of_range_and_reads_from_everybody_are_refused),
-        RIG_TEST_TCP(init_wants_all_that_it_needs),
-        RIG_TEST_TCP(libmodbus_does_not_recover_by_itself),
-        RIG_TEST_TCP(a_wait_ends_when_a_byte_is_there_or_the_far_end_has_gone),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,6 +34,8 @@ static int set_up(void **state)
     return modbus_set_socket(rig.modbus, near);
 }
 
+static const suite_t suite = {.set_up = set_up, .tear_down = rig_tear_down};
+
 static fathom_status_t poll_once(void)
 {
     rig.fake.now_us += 1000;
@@ -58,9 +60,8 @@ static bool wakes(void)
     return n != 0;
 }
 
-static void half_an_answer_wakes_nobody_a_second_time_and_the_rest_does(void **state)
+TEST(half_an_answer_wakes_nobody_a_second_time_and_the_rest_does)
 {
-    (void)state;
     for (size_t cut = 1; cut != sizeof first; cut++) {
         if (cut != 1) assert_int_equal(rig_tear_down(NULL) + set_up(NULL), 0);
         rig_ask_three(&rig.request, 1, 0);
@@ -80,10 +81,9 @@ static void half_an_answer_wakes_nobody_a_second_time_and_the_rest_does(void **s
     }
 }
 
-static void after_a_header_alone_it_waits_for_all_that_the_header_tells(void **state)
+TEST(after_a_header_alone_it_waits_for_all_that_the_header_tells)
 {
     enum { HEADER = 6 };
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first, 3, 3);
@@ -99,9 +99,8 @@ static void after_a_header_alone_it_waits_for_all_that_the_header_tells(void **s
     rig_expect_three();
 }
 
-static void the_first_byte_of_the_next_answer_wakes_again(void **state)
+TEST(the_first_byte_of_the_next_answer_wakes_again)
 {
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first, 8, 8);
@@ -115,16 +114,4 @@ static void the_first_byte_of_the_next_answer_wakes_again(void **state)
     say_and_arrive(second + 1, sizeof second - 1, sizeof second);
     assert_int_equal(poll_once(), FATHOM_READY);
     rig_expect_three();
-}
-
-#define OVER_TCP(test) cmocka_unit_test_setup_teardown(test, set_up, rig_tear_down)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        OVER_TCP(half_an_answer_wakes_nobody_a_second_time_and_the_rest_does),
-        OVER_TCP(after_a_header_alone_it_waits_for_all_that_the_header_tells),
-        OVER_TCP(the_first_byte_of_the_next_answer_wakes_again),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

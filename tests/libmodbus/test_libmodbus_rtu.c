@@ -22,18 +22,18 @@ static void ask(uint8_t retries)
     rig_expect_sent(request, sizeof request);
 }
 
-static void a_request_has_its_crc_once_and_its_answer_is_read(void **state)
+static const suite_t suite = {.set_up = rig_rtu_set_up, .tear_down = rig_tear_down};
+
+TEST(a_request_has_its_crc_once_and_its_answer_is_read)
 {
-    (void)state;
     ask(0);
     rig_say(answer, sizeof answer);
     rig_run(FINE_US, FINE_US);
     rig_expect_three();
 }
 
-static void the_silence_before_a_request_is_kept(void **state)
+TEST(the_silence_before_a_request_is_kept)
 {
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     rig_run(SILENCE_US - 2 * FINE_US, FINE_US);
     rig_expect_sent(NULL, 0);
@@ -41,9 +41,8 @@ static void the_silence_before_a_request_is_kept(void **state)
     rig_expect_sent(request, sizeof request);
 }
 
-static void an_answer_a_byte_at_a_time_is_read(void **state)
+TEST(an_answer_a_byte_at_a_time_is_read)
 {
-    (void)state;
     ask(0);
     for (size_t i = 0; i != sizeof answer; i++) {
         rig_expect_none();
@@ -53,9 +52,8 @@ static void an_answer_a_byte_at_a_time_is_read(void **state)
     rig_expect_three();
 }
 
-static void an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it(void **state)
+TEST(an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it)
 {
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_sent(request, sizeof request);
@@ -65,10 +63,9 @@ static void an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it(void 
     rig_expect_three();
 }
 
-static void an_exception_is_complete_by_its_length(void **state)
+TEST(an_exception_is_complete_by_its_length)
 {
     static const uint8_t refusal[] = {0x01, 0x83, 0x02, 0xC0, 0xF1}; /* HPS-167S, table 40's example */
-    (void)state;
     ask(0);
     rig_say(refusal, sizeof refusal);
     rig_run(FINE_US, FINE_US);
@@ -76,9 +73,8 @@ static void an_exception_is_complete_by_its_length(void **state)
     assert_int_equal(rig.request.message.exception, 2);
 }
 
-static void noise_before_an_answer_is_dropped(void **state)
+TEST(noise_before_an_answer_is_dropped)
 {
-    (void)state;
     ask(0);
     rig_say("\xFF\x00\x55", 3);
     rig_say(answer, sizeof answer);
@@ -86,9 +82,8 @@ static void noise_before_an_answer_is_dropped(void **state)
     rig_expect_three();
 }
 
-static void a_damaged_answer_is_a_checksum_error(void **state)
+TEST(a_damaged_answer_is_a_checksum_error)
 {
-    (void)state;
     for (size_t i = 1; i != sizeof answer; i++) {
         uint8_t damaged[sizeof answer];
         if (i != 1) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
@@ -104,10 +99,9 @@ static void a_damaged_answer_is_a_checksum_error(void **state)
 }
 
 /* 05 03 02 12 34 and its CRC: unit 5's, which nobody asked. */
-static void another_units_answer_is_not_taken(void **state)
+TEST(another_units_answer_is_not_taken)
 {
     static const uint8_t other[] = {0x05, 0x03, 0x02, 0x12, 0x34, 0x44, 0xF3};
-    (void)state;
     ask(0);
     rig_say(other, sizeof other);
     rig_run(1000, FINE_US);
@@ -117,9 +111,8 @@ static void another_units_answer_is_not_taken(void **state)
     rig_expect_three();
 }
 
-static void a_late_answer_serves_the_retry_that_waits(void **state)
+TEST(a_late_answer_serves_the_retry_that_waits)
 {
-    (void)state;
     ask(1);
     rig_run(RIG_TIMEOUT_US + SILENCE_US, FINE_US);
     rig_expect_sent(NULL, 0); /* it owes an answer */
@@ -130,9 +123,8 @@ static void a_late_answer_serves_the_retry_that_waits(void **state)
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
 }
 
-static void a_unit_that_owes_is_asked_after_twice_the_time_out(void **state)
+TEST(a_unit_that_owes_is_asked_after_twice_the_time_out)
 {
-    (void)state;
     ask(1);
     rig_run(2 * RIG_TIMEOUT_US - SILENCE_US, FINE_US);
     rig_expect_sent(NULL, 0);
@@ -141,12 +133,11 @@ static void a_unit_that_owes_is_asked_after_twice_the_time_out(void **state)
 }
 
 /* What it says in its default, found out, is FATHOM_ERR_ECHO before the first read. */
-static void the_config_says_whether_there_is_an_echo(void **state)
+TEST(the_config_says_whether_there_is_an_echo)
 {
     static const uint8_t write[] = {0x01, 0x06, 0x00, 0x10, 0x00, 0x07};
     static const uint8_t outcomes[] = {FATHOM_LINE_ECHO_AUTO, FATHOM_LINE_ECHO_OFF, FATHOM_LINE_ECHO_ON};
     static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_READY, FATHOM_ERR_NO_ANSWER};
-    (void)state;
     for (size_t i = 0; i != sizeof outcomes; i++) {
         if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
         const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .echo = outcomes[i]};
@@ -164,10 +155,9 @@ static void the_config_says_whether_there_is_an_echo(void **state)
     }
 }
 
-static void the_config_has_the_silence_and_the_gap(void **state)
+TEST(the_config_has_the_silence_and_the_gap)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .silence_us = 1750, .gap_us = 3000};
-    (void)state;
     assert_int_equal(rig.port.config.gap_us, GAP_US); /* the default, behind an operating system */
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
     rig_ask_three(&rig.request, 1, 0);
@@ -180,9 +170,8 @@ static void the_config_has_the_silence_and_the_gap(void **state)
     assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* it broke off */
 }
 
-static void units_over_247_are_unsupported(void **state)
+TEST(units_over_247_are_unsupported)
 {
-    (void)state;
     for (unsigned unit = 0; unit != 256; unit++) {
         fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
         assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request),
@@ -191,10 +180,9 @@ static void units_over_247_are_unsupported(void **state)
     }
 }
 
-static void line_settings_are_unsupported_and_nothing_is_sent(void **state)
+TEST(line_settings_are_unsupported_and_nothing_is_sent)
 {
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     rig.request.exchange.settings = &settings;
     rig_run(SILENCE_US + FINE_US, FINE_US);
@@ -203,17 +191,15 @@ static void line_settings_are_unsupported_and_nothing_is_sent(void **state)
 }
 
 /* It would sleep until the request has left. */
-static void a_transceiver_that_libmodbus_switches_is_unsupported(void **state)
+TEST(a_transceiver_that_libmodbus_switches_is_unsupported)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
-    (void)state;
     assert_int_equal(modbus_rtu_set_rts(rig.modbus, MODBUS_RTU_RTS_UP), 0);
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_ERR_UNSUPPORTED);
 }
 
-static void a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back(void **state)
+TEST(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back)
 {
-    (void)state;
     ask(3);
     assert_int_equal(close(rig.far), 0);
     rig.far = -1;
@@ -231,11 +217,10 @@ static void a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back(void 
 }
 
 /* As libmodbus opens it, and as it looks when the far end of a pseudo terminal closes. */
-static void a_terminal_that_hangs_up_is_broken(void **state)
+TEST(a_terminal_that_hangs_up_is_broken)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
     const int far = posix_openpt(O_RDWR | O_NOCTTY);
-    (void)state;
     assert_true(far >= 0 && grantpt(far) == 0 && unlockpt(far) == 0);
     assert_int_equal(rig_tear_down(NULL), 0);
     rig.modbus = modbus_new_rtu(ptsname(far), 19200, 'N', 8, 1);
@@ -254,9 +239,8 @@ static void a_terminal_that_hangs_up_is_broken(void **state)
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
 }
 
-static void a_modbus_t_that_is_not_connected_is_a_broken_port(void **state)
+TEST(a_modbus_t_that_is_not_connected_is_a_broken_port)
 {
-    (void)state;
     modbus_close(rig.modbus);
     rig_ask_three(&rig.request, 1, 0);
     rig.fake.now_us += SLOW_US;
@@ -267,12 +251,11 @@ static void a_modbus_t_that_is_not_connected_is_a_broken_port(void **state)
     assert_true(rig.port.uart.sent(rig.port.uart.ctx)); /* nobody waits for it */
 }
 
-static void a_full_port_is_busy_and_nothing_waits(void **state)
+TEST(a_full_port_is_busy_and_nothing_waits)
 {
     static uint8_t junk[4096];
     size_t filled = 0;
     ssize_t n = 0;
-    (void)state;
     while ((n = send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT)) > 0)
         filled += (size_t)n;
     rig_ask_three(&rig.request, 1, 0);
@@ -287,30 +270,4 @@ static void a_full_port_is_busy_and_nothing_waits(void **state)
     assert_true(rig.port.uart.sent(rig.port.uart.ctx));
     rig_run(FINE_US, FINE_US);
     rig_expect_sent(request, sizeof request);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        RIG_TEST_RTU(a_request_has_its_crc_once_and_its_answer_is_read),
-        RIG_TEST_RTU(the_silence_before_a_request_is_kept),
-        RIG_TEST_RTU(an_answer_a_byte_at_a_time_is_read),
-        RIG_TEST_RTU(an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it),
-        RIG_TEST_RTU(an_exception_is_complete_by_its_length),
-        RIG_TEST_RTU(noise_before_an_answer_is_dropped),
-        RIG_TEST_RTU(a_damaged_answer_is_a_checksum_error),
-        RIG_TEST_RTU(another_units_answer_is_not_taken),
-        RIG_TEST_RTU(a_late_answer_serves_the_retry_that_waits),
-        RIG_TEST_RTU(a_unit_that_owes_is_asked_after_twice_the_time_out),
-        RIG_TEST_RTU(the_config_says_whether_there_is_an_echo),
-        RIG_TEST_RTU(the_config_has_the_silence_and_the_gap),
-        RIG_TEST_RTU(units_over_247_are_unsupported),
-        RIG_TEST_RTU(line_settings_are_unsupported_and_nothing_is_sent),
-        RIG_TEST_RTU(a_transceiver_that_libmodbus_switches_is_unsupported),
-        RIG_TEST_RTU(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back),
-        RIG_TEST_RTU(a_terminal_that_hangs_up_is_broken),
-        RIG_TEST_RTU(a_modbus_t_that_is_not_connected_is_a_broken_port),
-        RIG_TEST_RTU(a_full_port_is_busy_and_nothing_waits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

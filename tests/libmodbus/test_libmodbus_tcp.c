@@ -20,9 +20,10 @@ static void ask(uint8_t retries)
     assert_int_equal(status(), FATHOM_PENDING);
 }
 
-static void a_request_has_a_header_and_no_crc_and_its_answer_is_read(void **state)
+static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_down};
+
+TEST(a_request_has_a_header_and_no_crc_and_its_answer_is_read)
 {
-    (void)state;
     ask(0);
     rig.fake.now_us += 5000;
     rig_say(answer_1, sizeof answer_1);
@@ -33,9 +34,8 @@ static void a_request_has_a_header_and_no_crc_and_its_answer_is_read(void **stat
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_ANSWERS], 1);
 }
 
-static void every_request_has_a_transaction_of_its_own(void **state)
+TEST(every_request_has_a_transaction_of_its_own)
 {
-    (void)state;
     ask(0);
     rig_say(answer_1, sizeof answer_1);
     rig_run(FINE_US, FINE_US);
@@ -47,11 +47,10 @@ static void every_request_has_a_transaction_of_its_own(void **state)
     rig_expect_three();
 }
 
-static void transactions_begin_again_at_zero(void **state)
+TEST(transactions_begin_again_at_zero)
 {
     static const uint8_t request[] = {0, 0, 0, 0, 0, 6, 1, 3, 1, 7, 0, 3};
     static const uint8_t answer[] = {0, 0, 0, 0, 0, 9, 1, 3, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
-    (void)state;
     rig.port.transaction = 0xFFFF;
     rig_ask_three(&rig.request, 1, 0);
     rig_run(FINE_US, FINE_US);
@@ -61,9 +60,8 @@ static void transactions_begin_again_at_zero(void **state)
     rig_expect_three();
 }
 
-static void an_answer_that_comes_a_byte_at_a_time_is_read_when_it_is_whole(void **state)
+TEST(an_answer_that_comes_a_byte_at_a_time_is_read_when_it_is_whole)
 {
-    (void)state;
     ask(0);
     for (size_t i = 0; i != sizeof answer_1; i++) {
         rig_expect_none();
@@ -73,9 +71,8 @@ static void an_answer_that_comes_a_byte_at_a_time_is_read_when_it_is_whole(void 
     rig_expect_three();
 }
 
-static void an_answer_cut_anywhere_is_no_answer(void **state)
+TEST(an_answer_cut_anywhere_is_no_answer)
 {
-    (void)state;
     for (size_t cut = 1; cut != sizeof answer_1; cut++) {
         if (cut != 1) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
         ask(0);
@@ -86,9 +83,8 @@ static void an_answer_cut_anywhere_is_no_answer(void **state)
     }
 }
 
-static void the_rest_of_a_cut_answer_is_late_and_the_next_is_read(void **state)
+TEST(the_rest_of_a_cut_answer_is_late_and_the_next_is_read)
 {
-    (void)state;
     ask(0);
     rig_say(answer_1, 9);
     rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
@@ -106,9 +102,8 @@ static void the_rest_of_a_cut_answer_is_late_and_the_next_is_read(void **state)
 }
 
 /* Twice the time-out after the request its unit may be asked again, and only the transaction tells the two apart. */
-static void an_answer_to_an_earlier_transaction_is_never_taken(void **state)
+TEST(an_answer_to_an_earlier_transaction_is_never_taken)
 {
-    (void)state;
     ask(0);
     rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
@@ -125,10 +120,9 @@ static void an_answer_to_an_earlier_transaction_is_never_taken(void **state)
     assert_int_equal(rig.port.late_answers, 1);
 }
 
-static void answers_glued_together_are_told_apart(void **state)
+TEST(answers_glued_together_are_told_apart)
 {
     static const uint8_t glued[] = {OTHER(0), OTHER(7), ANSWER(1), OTHER(1)};
-    (void)state;
     ask(0);
     rig_say(glued, sizeof glued);
     rig_run(FINE_US, FINE_US);
@@ -140,9 +134,8 @@ static void answers_glued_together_are_told_apart(void **state)
     rig_expect_three();
 }
 
-static void many_late_answers_at_once_do_not_hide_the_right_one(void **state)
+TEST(many_late_answers_at_once_do_not_hide_the_right_one)
 {
-    (void)state;
     ask(0);
     for (int i = 0; i != 100; i++) rig_say((const uint8_t[]){OTHER(0)}, sizeof other_1);
     rig_say(answer_1, sizeof answer_1);
@@ -151,9 +144,8 @@ static void many_late_answers_at_once_do_not_hide_the_right_one(void **state)
     assert_int_equal(rig.port.late_answers, 100);
 }
 
-static void a_late_answer_serves_the_retry_that_waits(void **state)
+TEST(a_late_answer_serves_the_retry_that_waits)
 {
-    (void)state;
     ask(1);
     rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
     assert_int_equal(status(), FATHOM_PENDING);
@@ -165,10 +157,9 @@ static void a_late_answer_serves_the_retry_that_waits(void **state)
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
 }
 
-static void retries_are_sent_and_then_it_has_failed(void **state)
+TEST(retries_are_sent_and_then_it_has_failed)
 {
     static const uint8_t request_3[] = {REQUEST(3)};
-    (void)state;
     ask(2);
     rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
     rig_expect_sent(request_2, sizeof request_2);
@@ -182,9 +173,8 @@ static void retries_are_sent_and_then_it_has_failed(void **state)
 }
 
 /* Unit 2 does not hide behind the right transaction. */
-static void another_units_answer_is_not_taken(void **state)
+TEST(another_units_answer_is_not_taken)
 {
-    (void)state;
     ask(0);
     uint8_t wrong[sizeof answer_1];
     memcpy(wrong, answer_1, sizeof wrong);
@@ -196,10 +186,9 @@ static void another_units_answer_is_not_taken(void **state)
     rig_expect_none();
 }
 
-static void another_function_is_malformed(void **state)
+TEST(another_function_is_malformed)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 6, 1, 0x06, 0x01, 0x07, 0x00, 0x03};
-    (void)state;
     ask(0);
     rig_say(wrong, sizeof wrong);
     rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
@@ -208,10 +197,9 @@ static void another_function_is_malformed(void **state)
 }
 
 /* Six bytes of registers are said, four are there: by its header the frame is whole. */
-static void a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_out_of_step(void **state)
+TEST(a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_out_of_step)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
-    (void)state;
     ask(1);
     rig_say(wrong, sizeof wrong);
     rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
@@ -223,10 +211,9 @@ static void a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_o
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_CHECKSUM_ERRORS], 1);
 }
 
-static void a_damaged_answer_is_given_up_at_once(void **state)
+TEST(a_damaged_answer_is_given_up_at_once)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
-    (void)state;
     ask(0);
     rig_say(wrong, sizeof wrong);
     rig_run(2000, FINE_US);
@@ -234,10 +221,9 @@ static void a_damaged_answer_is_given_up_at_once(void **state)
 }
 
 /* An exception is three bytes behind the header. */
-static void what_only_begins_like_a_gateways_exception_is_none(void **state)
+TEST(what_only_begins_like_a_gateways_exception_is_none)
 {
     static const uint8_t longer[] = {0xF0, 1, 0, 0, 0, 4, 1, 0x83, 0x0B, 0x55};
-    (void)state;
     ask(0);
     rig_say(longer, sizeof longer);
     rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
@@ -245,9 +231,8 @@ static void what_only_begins_like_a_gateways_exception_is_none(void **state)
     assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
 }
 
-static void exceptions_have_their_numbers(void **state)
+TEST(exceptions_have_their_numbers)
 {
-    (void)state;
     for (unsigned number = 1; number != 256; number++) {
         if (number == 0x0A || number == 0x0B) continue;
         if (number != 1) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
@@ -260,9 +245,8 @@ static void exceptions_have_their_numbers(void **state)
     }
 }
 
-static void a_gateways_exceptions_are_no_answer(void **state)
+TEST(a_gateways_exceptions_are_no_answer)
 {
-    (void)state;
     for (uint8_t number = 0x0A; number <= 0x0B; number++) {
         if (number != 0x0A) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
         ask(1);
@@ -280,9 +264,8 @@ static void a_gateways_exceptions_are_no_answer(void **state)
     }
 }
 
-static void a_late_gateways_exception_is_late(void **state)
+TEST(a_late_gateways_exception_is_late)
 {
-    (void)state;
     ask(0);
     rig_say((const uint8_t[]){REFUSAL(0, 0x0B), ANSWER(1)}, 9 + sizeof answer_1);
     rig_run(FINE_US, FINE_US);
@@ -291,9 +274,8 @@ static void a_late_gateways_exception_is_late(void **state)
     assert_int_equal(rig.port.late_answers, 1);
 }
 
-static void counters_stop_at_65535(void **state)
+TEST(counters_stop_at_65535)
 {
-    (void)state;
     rig.port.late_answers = UINT16_MAX;
     rig.port.gateway_refusals = UINT16_MAX;
     ask(0);
@@ -305,11 +287,10 @@ static void counters_stop_at_65535(void **state)
 }
 
 /* 125 registers are 253 bytes behind the header; the longest that Modbus has are 254. */
-static void the_longest_answer_is_read_and_a_longer_one_dropped(void **state)
+TEST(the_longest_answer_is_read_and_a_longer_one_dropped)
 {
     static uint8_t longer[6 + 254] = {0xF0, 1, 0, 0, 0, 254, 1, 0x03, 251};
     static uint8_t answer[6 + 253] = {0xF0, 1, 0, 0, 0, 253, 1, 0x03, 250};
-    (void)state;
     rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 125, rig.values);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
@@ -322,32 +303,4 @@ static void the_longest_answer_is_read_and_a_longer_one_dropped(void **state)
     rig_run(FINE_US, FINE_US);
     assert_int_equal(status(), FATHOM_READY);
     for (uint8_t i = 0; i != 125; i++) assert_int_equal(rig.values[i], (2 * i) * 256 + 2 * i + 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        RIG_TEST_TCP(a_request_has_a_header_and_no_crc_and_its_answer_is_read),
-        RIG_TEST_TCP(every_request_has_a_transaction_of_its_own),
-        RIG_TEST_TCP(transactions_begin_again_at_zero),
-        RIG_TEST_TCP(an_answer_that_comes_a_byte_at_a_time_is_read_when_it_is_whole),
-        RIG_TEST_TCP(an_answer_cut_anywhere_is_no_answer),
-        RIG_TEST_TCP(the_rest_of_a_cut_answer_is_late_and_the_next_is_read),
-        RIG_TEST_TCP(an_answer_to_an_earlier_transaction_is_never_taken),
-        RIG_TEST_TCP(answers_glued_together_are_told_apart),
-        RIG_TEST_TCP(many_late_answers_at_once_do_not_hide_the_right_one),
-        RIG_TEST_TCP(a_late_answer_serves_the_retry_that_waits),
-        RIG_TEST_TCP(retries_are_sent_and_then_it_has_failed),
-        RIG_TEST_TCP(another_units_answer_is_not_taken),
-        RIG_TEST_TCP(another_function_is_malformed),
-        RIG_TEST_TCP(a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_out_of_step),
-        RIG_TEST_TCP(a_damaged_answer_is_given_up_at_once),
-        RIG_TEST_TCP(what_only_begins_like_a_gateways_exception_is_none),
-        RIG_TEST_TCP(exceptions_have_their_numbers),
-        RIG_TEST_TCP(a_gateways_exceptions_are_no_answer),
-        RIG_TEST_TCP(a_late_gateways_exception_is_late),
-        RIG_TEST_TCP(counters_stop_at_65535),
-        RIG_TEST_TCP(the_longest_answer_is_read_and_a_longer_one_dropped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,10 +20,11 @@ static void ask(uint8_t retries)
     assert_int_equal(status(), FATHOM_PENDING);
 }
 
-static void a_write_is_acknowledged_by_its_own_words_at_once(void **state)
+static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_down};
+
+TEST(a_write_is_acknowledged_by_its_own_words_at_once)
 {
     static const uint8_t write[] = {0xF0, 1, 0, 0, 0, 6, 1, 0x06, 0x00, 0x10, 0x00, 0x07}; /* HPS-167S #8 */
-    (void)state;
     rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
@@ -34,10 +35,9 @@ static void a_write_is_acknowledged_by_its_own_words_at_once(void **state)
     assert_int_equal(status(), FATHOM_READY); /* TCP has no echo */
 }
 
-static void a_broadcast_needs_no_answer(void **state)
+TEST(a_broadcast_needs_no_answer)
 {
     static const uint8_t write[] = {0xF0, 1, 0, 0, 0, 6, 0, 0x06, 0x00, 0x10, 0x00, 0x07};
-    (void)state;
     rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_write_single_register(&rig.request.message, 0, 0x0010, 7);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
@@ -49,9 +49,8 @@ static void a_broadcast_needs_no_answer(void **state)
     assert_int_equal(status(), FATHOM_READY);
 }
 
-static void a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it(void **state)
+TEST(a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it)
 {
-    (void)state;
     rig_ask_three(&rig.request, 1, 0);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_sent(request_1, sizeof request_1);
@@ -61,9 +60,8 @@ static void a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it(void **stat
     rig_expect_three();
 }
 
-static void the_wrap_of_the_clock_changes_nothing(void **state)
+TEST(the_wrap_of_the_clock_changes_nothing)
 {
-    (void)state;
     rig.fake.now_us = UINT32_MAX - RIG_TIMEOUT_US / 2;
     (void)rig.seam.poll(rig.seam.ctx);
     ask(0);
@@ -74,13 +72,12 @@ static void the_wrap_of_the_clock_changes_nothing(void **state)
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
 }
 
-static void requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_the_others(void **state)
+TEST(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_the_others)
 {
     static const uint8_t to_2[] = {0xF0, 2, 0, 0, 0, 6, 2, 3, 1, 7, 0, 3};
     static const uint8_t from_2[] = {0xF0, 2, 0, 0, 0, 9, 2, 3, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
     static const uint8_t to_1[] = {REQUEST(3)};
     fathom_modbus_request_t second;
-    (void)state;
     rig_ask_three(&rig.request, 1, 1);
     rig_ask_three(&second, 2, 0);
     rig_run(FINE_US, FINE_US);
@@ -95,9 +92,8 @@ static void requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_ho
     rig_expect_sent(to_1, sizeof to_1);
 }
 
-static void a_cancelled_request_is_nobodys_and_its_answer_too(void **state)
+TEST(a_cancelled_request_is_nobodys_and_its_answer_too)
 {
-    (void)state;
     ask(0);
     rig.seam.cancel(rig.seam.ctx, &rig.request);
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
@@ -112,11 +108,10 @@ static void a_cancelled_request_is_nobodys_and_its_answer_too(void **state)
     rig_expect_three();
 }
 
-static void what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not(void **state)
+TEST(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not)
 {
     fathom_modbus_request_t second;
     fathom_modbus_request_t third;
-    (void)state;
     ask(0);
     rig_ask_three(&second, 2, 0);
     rig_ask_three(&third, 1, 0);
@@ -124,18 +119,4 @@ static void what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_no
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
     assert_int_equal(third.exchange.status, FATHOM_ERR_CANCELLED);
     assert_int_equal(second.exchange.status, FATHOM_PENDING);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        RIG_TEST_TCP(a_write_is_acknowledged_by_its_own_words_at_once),
-        RIG_TEST_TCP(a_broadcast_needs_no_answer),
-        RIG_TEST_TCP(a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it),
-        RIG_TEST_TCP(the_wrap_of_the_clock_changes_nothing),
-        RIG_TEST_TCP(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_the_others),
-        RIG_TEST_TCP(a_cancelled_request_is_nobodys_and_its_answer_too),
-        RIG_TEST_TCP(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

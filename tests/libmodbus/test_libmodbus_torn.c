@@ -51,10 +51,12 @@ static void expect_port(fathom_libmodbus_error_t error)
     assert_int_equal(fathom_libmodbus_error(&rig.port), error);
 }
 
-static void a_part_of_a_request_ends_the_connection(void **state)
+static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_down};
+static const suite_t with_rig_rtu_set_up = {.set_up = rig_rtu_set_up, .tear_down = rig_tear_down};
+
+TEST(a_part_of_a_request_ends_the_connection)
 {
     uint8_t byte = 0;
-    (void)state;
     sending.most = 5;
     ask();
     sending.most = 0;
@@ -63,10 +65,9 @@ static void a_part_of_a_request_ends_the_connection(void **state)
     assert_int_equal(recv(rig.far, &byte, 1, MSG_DONTWAIT), 0); /* nothing can follow it */
 }
 
-static void what_is_refused_for_a_while_is_sent_later(void **state)
+TEST(what_is_refused_for_a_while_is_sent_later)
 {
     static const int errors[] = {EAGAIN, EINTR};
-    (void)state;
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
         if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
         sending.error = errors[i];
@@ -78,9 +79,8 @@ static void what_is_refused_for_a_while_is_sent_later(void **state)
     }
 }
 
-static void what_the_system_says_else_is_kept(void **state)
+TEST(what_the_system_says_else_is_kept)
 {
-    (void)state;
     sending.error = EHOSTUNREACH;
     ask();
     sending.error = 0;
@@ -88,18 +88,16 @@ static void what_the_system_says_else_is_kept(void **state)
     assert_int_equal(rig.port.system_error, EHOSTUNREACH);
 }
 
-static void a_part_of_a_request_of_rtu_is_told_too(void **state)
+TEST_IN(with_rig_rtu_set_up, a_part_of_a_request_of_rtu_is_told_too)
 {
-    (void)state;
     sending.error = EMBBADDATA;
     ask();
     sending.error = 0;
     expect_port(FATHOM_LIBMODBUS_ERR_TORN);
 }
 
-static void what_rtu_is_refused_for_a_while_is_sent_later(void **state)
+TEST_IN(with_rig_rtu_set_up, what_rtu_is_refused_for_a_while_is_sent_later)
 {
-    (void)state;
     sending.error = EAGAIN;
     ask();
     assert_int_equal(rig.request.exchange.status, FATHOM_PENDING);
@@ -109,10 +107,9 @@ static void what_rtu_is_refused_for_a_while_is_sent_later(void **state)
     assert_int_equal(rig.request.exchange.attempts, 1);
 }
 
-static void an_adapter_that_was_unplugged_has_hung_up(void **state)
+TEST_IN(with_rig_rtu_set_up, an_adapter_that_was_unplugged_has_hung_up)
 {
     static const int errors[] = {EIO, ENXIO, ENODEV};
-    (void)state;
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
         if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
         sending.error = errors[i];
@@ -120,17 +117,4 @@ static void an_adapter_that_was_unplugged_has_hung_up(void **state)
         sending.error = 0;
         expect_port(FATHOM_LIBMODBUS_ERR_HUNG_UP);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        RIG_TEST_TCP(a_part_of_a_request_ends_the_connection),
-        RIG_TEST_TCP(what_is_refused_for_a_while_is_sent_later),
-        RIG_TEST_TCP(what_the_system_says_else_is_kept),
-        RIG_TEST_RTU(a_part_of_a_request_of_rtu_is_told_too),
-        RIG_TEST_RTU(what_rtu_is_refused_for_a_while_is_sent_later),
-        RIG_TEST_RTU(an_adapter_that_was_unplugged_has_hung_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

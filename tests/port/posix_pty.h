@@ -36,6 +36,6 @@ unsigned posix_count_fds(void);
 int posix_run_unprivileged(int (*body)(void *), void *arg);
 
 /* Ends the program with a signal when a test hangs. */
-void posix_start_watchdog(void);
+void posix_start_watchdog(unsigned round);
 
 #endif

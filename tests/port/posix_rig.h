@@ -2,11 +2,9 @@
 #ifndef FATHOM_TESTS_POSIX_RIG_H
 #define FATHOM_TESTS_POSIX_RIG_H
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom_posix.h"
 #include "posix_pty.h"

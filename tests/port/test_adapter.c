@@ -2,9 +2,6 @@
 /* How the tool knows a USB adapter again: against a sysfs that is built here, of links and one-line files laid out as
  * Linux does for usb-serial (ttyUSB0 below the interface) and cdc_acm (the interface itself). */
 #define _DEFAULT_SOURCE 1
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "../../examples/fathom/adapter.h"
 
@@ -27,7 +24,6 @@ static void run(const char *command)
 
 static int set_up(void **state)
 {
-    (void)state;
     char command[LONG];
     strcpy(root, "/tmp/fathom-sysfs-XXXXXX");
     if (mkdtemp(root) == NULL) return -1;
@@ -38,12 +34,13 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void)state;
     char command[LONG];
     (void)snprintf(command, sizeof command, "rm -rf %s", root);
     run(command);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
 
 static void write_file(const char *folder, const char *name, const char *text)
 {
@@ -96,9 +93,8 @@ static bool identify(adapter_t *adapter, const char *tty)
     return adapter_identify(adapter, root, path);
 }
 
-static void an_adapter_is_what_its_usb_device_says(void **state)
+TEST(an_adapter_is_what_its_usb_device_says)
 {
-    (void)state;
     adapter_t adapter;
     plug_in("1-2", "0403", "6001", "A50285BI");
     add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
@@ -113,9 +109,8 @@ static void an_adapter_is_what_its_usb_device_says(void **state)
     assert_false(adapter.needs_socket);
 }
 
-static void an_adapter_of_the_cdc_class_too_and_through_a_link(void **state)
+TEST(an_adapter_of_the_cdc_class_too_and_through_a_link)
 {
-    (void)state;
     adapter_t adapter;
     char target[LONG];
     char link_path[LONG];
@@ -129,9 +124,8 @@ static void an_adapter_of_the_cdc_class_too_and_through_a_link(void **state)
     assert_string_equal(adapter.socket, "1-3.4");
 }
 
-static void a_tty_that_is_no_usb_adapter_is_none(void **state)
+TEST(a_tty_that_is_no_usb_adapter_is_none)
 {
-    (void)state;
     char path[ADAPTER_PATH] = "untouched";
     adapter_t adapter;
     add_tty("ttyS0", "platform/serial8250");
@@ -142,9 +136,8 @@ static void a_tty_that_is_no_usb_adapter_is_none(void **state)
     assert_string_equal(path, "untouched");
 }
 
-static void with_a_serial_number_it_is_found_in_another_socket_under_another_name(void **state)
+TEST(with_a_serial_number_it_is_found_in_another_socket_under_another_name)
 {
-    (void)state;
     char path[ADAPTER_PATH];
     adapter_t adapter;
     plug_in("1-2", "0403", "6001", "A50285BI");
@@ -161,9 +154,8 @@ static void with_a_serial_number_it_is_found_in_another_socket_under_another_nam
     assert_string_equal(path, "/dev/ttyUSB1");
 }
 
-static void another_vendor_or_product_with_its_serial_number_is_another(void **state)
+TEST(another_vendor_or_product_with_its_serial_number_is_another)
 {
-    (void)state;
     char path[ADAPTER_PATH];
     adapter_t adapter;
     plug_in("1-2", "0403", "6001", "0001");
@@ -179,9 +171,8 @@ static void another_vendor_or_product_with_its_serial_number_is_another(void **s
     assert_false(adapter_find(&adapter, root, path));
 }
 
-static void without_a_serial_number_it_is_found_in_its_socket_only(void **state)
+TEST(without_a_serial_number_it_is_found_in_its_socket_only)
 {
-    (void)state;
     char path[ADAPTER_PATH];
     adapter_t adapter;
     plug_in("1-2", "1a86", "7523", NULL);
@@ -198,9 +189,8 @@ static void without_a_serial_number_it_is_found_in_its_socket_only(void **state)
     assert_string_equal(path, "/dev/ttyUSB5");
 }
 
-static void two_with_the_same_serial_number_are_told_apart_by_their_socket(void **state)
+TEST(two_with_the_same_serial_number_are_told_apart_by_their_socket)
 {
-    (void)state;
     char path[ADAPTER_PATH];
     adapter_t adapter;
     plug_in("1-2", "10c4", "ea60", "0001");
@@ -213,9 +203,8 @@ static void two_with_the_same_serial_number_are_told_apart_by_their_socket(void 
     assert_false(adapter_find(&adapter, root, path)); /* ttyUSB1 has another sensor */
 }
 
-static void the_ports_of_one_adapter_are_told_apart(void **state)
+TEST(the_ports_of_one_adapter_are_told_apart)
 {
-    (void)state;
     char path[ADAPTER_PATH];
     adapter_t adapter;
     plug_in("1-2", "0403", "6011", "FT4ABC");
@@ -227,20 +216,4 @@ static void the_ports_of_one_adapter_are_told_apart(void **state)
     assert_false(adapter.needs_socket);
     assert_true(adapter_find(&adapter, root, path));
     assert_string_equal(path, "/dev/ttyUSB1");
-}
-
-int main(void)
-{
-#define TEST(f) cmocka_unit_test_setup_teardown(f, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(an_adapter_is_what_its_usb_device_says),
-        TEST(an_adapter_of_the_cdc_class_too_and_through_a_link),
-        TEST(a_tty_that_is_no_usb_adapter_is_none),
-        TEST(with_a_serial_number_it_is_found_in_another_socket_under_another_name),
-        TEST(another_vendor_or_product_with_its_serial_number_is_another),
-        TEST(without_a_serial_number_it_is_found_in_its_socket_only),
-        TEST(two_with_the_same_serial_number_are_told_apart_by_their_socket),
-        TEST(the_ports_of_one_adapter_are_told_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/a16_modbus.h"
 #include "fathom/modbus_client.h"
@@ -163,13 +160,15 @@ static void run(uint32_t us)
 
 static int start(void **state)
 {
-    (void)state;
     memset(&chip, 0, sizeof chip);
     wraps = 0;
     chip.driver = true; /* as nobody has set the pin */
     port_begin();
     return 0;
 }
+
+static const suite_t suite = {.set_up = start};
+static const suite_t plain;
 
 /* ---- the clock ---- */
 
@@ -182,10 +181,9 @@ static void begin_at(uint32_t us)
 
 static uint32_t now(void) { return port_clock.now_us(port_clock.ctx); }
 
-static void the_clock_is_right_wherever_the_timer_wraps_while_it_is_read(void **state)
+TEST(the_clock_is_right_wherever_the_timer_wraps_while_it_is_read)
 {
     static const uint32_t around[] = {0x00010000, 0x80000000, 0x00000000};
-    (void)state;
     for (unsigned i = 0; i != 3; i++)
         for (uint32_t early = 0; early != 12; early++)
             for (chip.slow_us = 0; chip.slow_us != 6; chip.slow_us++)
@@ -205,9 +203,8 @@ static void the_clock_is_right_wherever_the_timer_wraps_while_it_is_read(void **
                 }
 }
 
-static void the_clock_wraps_at_2_to_the_32(void **state)
+TEST(the_clock_wraps_at_2_to_the_32)
 {
-    (void)state;
     begin_at(UINT32_MAX - 2);
     assert_int_equal(now(), UINT32_MAX - 2);
     tick(5);
@@ -215,12 +212,11 @@ static void the_clock_wraps_at_2_to_the_32(void **state)
 }
 
 /* From the last value of a counter to its next: as many us as really pass, or not? */
-static void a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tick_does_not(void **state)
+TEST_IN(plain, a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tick_does_not)
 {
     const uint32_t cycles = UINT32_MAX;
     const uint16_t tick_16 = UINT16_MAX;
     const uint32_t tick_32 = UINT32_MAX;
-    (void)state;
     assert_int_equal(cycles / 64, 67108863);
     assert_int_not_equal(fathom_elapsed_us((uint32_t)(cycles + 1) / 64, cycles / 64), 1);
     assert_int_not_equal(fathom_elapsed_us((uint16_t)(tick_16 + 1) * 1000u, tick_16 * 1000u), 1000);
@@ -237,10 +233,9 @@ static int read_port(uint8_t *bytes, size_t capacity, uint8_t *flags)
     return n;
 }
 
-static void a_read_never_spans_a_wrong_byte(void **state)
+TEST(a_read_never_spans_a_wrong_byte)
 {
     uint8_t bytes[8], flags;
-    (void)state;
     come(1, 0);
     come(2, 0);
     come(3, FATHOM_RX_PARITY);
@@ -256,10 +251,9 @@ static void a_read_never_spans_a_wrong_byte(void **state)
     assert_int_equal(read_port(bytes, sizeof bytes, &flags), 0);
 }
 
-static void the_indices_wrap_and_bytes_stay_in_order(void **state)
+TEST(the_indices_wrap_and_bytes_stay_in_order)
 {
     uint8_t byte, flags;
-    (void)state;
     for (unsigned i = 0; i != 1000; i++) {
         come((uint8_t)(7 * i), 0);
         assert_int_equal(read_port(&byte, 1, &flags), 1);
@@ -267,10 +261,9 @@ static void the_indices_wrap_and_bytes_stay_in_order(void **state)
     }
 }
 
-static void a_full_ring_loses_what_comes_and_says_so(void **state)
+TEST(a_full_ring_loses_what_comes_and_says_so)
 {
     uint8_t bytes[255], flags;
-    (void)state;
     for (unsigned i = 0; i != FATHOM_SERIAL_RING + 3; i++) come((uint8_t)i, 0);
     assert_int_equal(read_port(bytes, sizeof bytes, &flags), FATHOM_SERIAL_RING);
     assert_int_equal(flags, 0);
@@ -279,9 +272,8 @@ static void a_full_ring_loses_what_comes_and_says_so(void **state)
     assert_int_equal(flags, FATHOM_RX_OVERRUN);
 }
 
-static void a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit(void **state)
+TEST(a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit)
 {
-    (void)state;
     assert_false(chip.driver);
     run(1000);
     assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
@@ -301,10 +293,9 @@ static void a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit(vo
     assert_int_equal(port_uart.write(port_uart.ctx, answer, sizeof answer), sizeof answer);
 }
 
-static void a_request_that_finds_no_memory_is_refused(void **state)
+TEST(a_request_that_finds_no_memory_is_refused)
 {
     const uint8_t bytes[9] = {0};
-    (void)state;
     assert_true(port_uart.write(port_uart.ctx, bytes, sizeof bytes) < 0);
     run(10 * CHARACTER_US);
     assert_int_equal(chip.sent, 0);
@@ -342,11 +333,10 @@ static void read_sensor(uint32_t us, uint32_t round_us)
     assert_int_equal(sample.distance_mm, 751);
 }
 
-static void a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap(void **state)
+TEST_IN(plain, a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap)
 {
     static const uint32_t from_us[] = {0, 0x0000F000, UINT32_MAX - 1000, UINT32_MAX - 20000,
                                        UINT32_MAX - 60000};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         read_sensor(from_us[i], 100);
         read_sensor(from_us[i], 20000);
@@ -361,10 +351,9 @@ static void edge(bool high)
     pin_interrupt();
 }
 
-static void a_pulse_is_as_wide_as_it_was_also_across_the_wrap(void **state)
+TEST(a_pulse_is_as_wide_as_it_was_also_across_the_wrap)
 {
     fathom_pulse_t pulse;
-    (void)state;
     begin_at(UINT32_MAX - 5000);
     const fathom_capture_t capture = port_capture();
     capture.arm(capture.ctx);
@@ -376,21 +365,4 @@ static void a_pulse_is_as_wide_as_it_was_also_across_the_wrap(void **state)
     assert_int_equal(capture.take(capture.ctx, &pulse), 1);
     assert_int_equal(pulse.width_us, 10000);
     assert_int_equal(pulse.end_us, 4999); /* -5001 + 10000 */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_clock_is_right_wherever_the_timer_wraps_while_it_is_read, start),
-        cmocka_unit_test_setup(the_clock_wraps_at_2_to_the_32, start),
-        cmocka_unit_test(a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tick_does_not),
-        cmocka_unit_test_setup(a_read_never_spans_a_wrong_byte, start),
-        cmocka_unit_test_setup(the_indices_wrap_and_bytes_stay_in_order, start),
-        cmocka_unit_test_setup(a_full_ring_loses_what_comes_and_says_so, start),
-        cmocka_unit_test_setup(a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit, start),
-        cmocka_unit_test_setup(a_request_that_finds_no_memory_is_refused, start),
-        cmocka_unit_test(a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap),
-        cmocka_unit_test_setup(a_pulse_is_as_wide_as_it_was_also_across_the_wrap, start),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

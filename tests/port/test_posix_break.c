@@ -15,7 +15,7 @@ static fathom_uart_t open_wire(port_rig_t *rig)
     return fathom_posix_uart(&rig->port);
 }
 
-static void a_break_begins_and_ends_when_it_is_told_to(void **state)
+TEST(a_break_begins_and_ends_when_it_is_told_to)
 {
     const fathom_uart_t uart = open_wire(*state);
     assert_int_equal(uart.set_break(uart.ctx, true), 1);
@@ -24,7 +24,7 @@ static void a_break_begins_and_ends_when_it_is_told_to(void **state)
     assert_int_equal(driver.breaks, 0);
 }
 
-static void bytes_that_are_leaving_come_first(void **state)
+TEST(bytes_that_are_leaving_come_first)
 {
     const fathom_uart_t uart = open_wire(*state);
     driver.queued = 3;
@@ -34,7 +34,7 @@ static void bytes_that_are_leaving_come_first(void **state)
     assert_int_equal(uart.set_break(uart.ctx, true), 1);
 }
 
-static void a_device_that_has_gone_is_a_broken_port(void **state)
+TEST(a_device_that_has_gone_is_a_broken_port)
 {
     port_rig_t *const rig = *state;
     const fathom_uart_t uart = open_wire(rig);
@@ -46,7 +46,7 @@ static void a_device_that_has_gone_is_a_broken_port(void **state)
     assert_int_equal(driver.break_calls, 1);
 }
 
-static void a_port_that_is_closed_is_broken_too(void **state)
+TEST(a_port_that_is_closed_is_broken_too)
 {
     port_rig_t *const rig = *state;
     const fathom_uart_t uart = open_wire(rig);
@@ -54,7 +54,7 @@ static void a_port_that_is_closed_is_broken_too(void **state)
     assert_int_equal(uart.set_break(uart.ctx, true), -1);
 }
 
-static void on_a_pseudo_terminal_a_zero_stands_for_it(void **state)
+TEST(on_a_pseudo_terminal_a_zero_stands_for_it)
 {
     port_rig_t *const rig = *state;
     uint8_t bytes[4] = {0xA5, 0xA5, 0xA5, 0xA5};
@@ -74,14 +74,5 @@ static int set_up(void **state)
     return port_rig_set_up(state);
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, port_rig_tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(a_break_begins_and_ends_when_it_is_told_to), TEST(bytes_that_are_leaving_come_first),
-        TEST(a_device_that_has_gone_is_a_broken_port),    TEST(a_port_that_is_closed_is_broken_too),
-        TEST(on_a_pseudo_terminal_a_zero_stands_for_it),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+static const suite_t suite = {
+    .set_up = set_up, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};

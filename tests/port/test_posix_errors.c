@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* mkstemp, chown */
 #include <grp.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom_posix.h"
 #include "posix_pty.h"
@@ -32,6 +30,9 @@ static int tear_down(void **state)
     return 0;
 }
 
+static const suite_t suite = {.begin_round = posix_start_watchdog};
+static const suite_t fresh = {.set_up = set_up, .tear_down = tear_down};
+
 static void check_failure(const char *path, fathom_posix_status_t error, const char *text)
 {
     fathom_posix_uart_t port;
@@ -48,9 +49,8 @@ static void check_failure(const char *path, fathom_posix_status_t error, const c
     assert_int_equal(posix_count_fds(), before);
 }
 
-static void a_missing_path_is_told_as_such(void **state)
+TEST(a_missing_path_is_told_as_such)
 {
-    (void)state;
     check_failure("/dev/ttyNONE7", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
     check_failure("/dev/null/ttyUSB0", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
     check_failure("", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
@@ -58,9 +58,8 @@ static void a_missing_path_is_told_as_such(void **state)
                   FATHOM_POSIX_ERR_NOT_FOUND, ": no such device");
 }
 
-static void what_is_not_a_tty_is_told_as_such(void **state)
+TEST(what_is_not_a_tty_is_told_as_such)
 {
-    (void)state;
     char file[] = "/tmp/fathom-test-XXXXXX";
     const int fd = mkstemp(file);
     assert_true(fd >= 0);
@@ -99,7 +98,7 @@ static void give_to_tty(const posix_pty_t *pty)
 
 /* A real EACCES: the owner may do nothing, which stops him even where his group may, and the port is opened
  * by a child that is not root. */
-static void a_denied_permission_names_the_group_and_how_to_join_it(void **state)
+TEST_IN(fresh, a_denied_permission_names_the_group_and_how_to_join_it)
 {
     const posix_pty_t *const pty = *state;
     struct stat status;
@@ -127,7 +126,7 @@ int __wrap_getgrgid_r(gid_t gid, struct group *entry, char *memory, size_t size,
     return groups_have_no_names ? 0 : __real_getgrgid_r(gid, entry, memory, size, result);
 }
 
-static void a_denied_permission_shows_a_group_without_a_name_as_its_number(void **state)
+TEST_IN(fresh, a_denied_permission_shows_a_group_without_a_name_as_its_number)
 {
     const posix_pty_t *const pty = *state;
     struct stat status;
@@ -145,7 +144,7 @@ static void a_denied_permission_shows_a_group_without_a_name_as_its_number(void 
     assert_int_equal(result, 0);
 }
 
-static void a_denied_permission_names_no_group_that_would_not_help(void **state)
+TEST_IN(fresh, a_denied_permission_names_no_group_that_would_not_help)
 {
     const posix_pty_t *const pty = *state;
     denied_t denied = {pty->path, {"permission denied", "mode 0020", "udev"}}; /* may write, may not read */
@@ -159,9 +158,8 @@ static void a_denied_permission_names_no_group_that_would_not_help(void **state)
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
 }
 
-static void a_closed_folder_on_the_way_is_told_as_such(void **state)
+TEST(a_closed_folder_on_the_way_is_told_as_such)
 {
-    (void)state;
     char folder[] = "/tmp/fathom-test-XXXXXX";
     char path[64];
     assert_non_null(mkdtemp(folder));
@@ -170,19 +168,4 @@ static void a_closed_folder_on_the_way_is_told_as_such(void **state)
     denied_t denied = {path, {"permission denied", "a folder on its way", path}};
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
     assert_int_equal(rmdir(folder), 0);
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_missing_path_is_told_as_such),
-        cmocka_unit_test(what_is_not_a_tty_is_told_as_such),
-        TEST(a_denied_permission_names_the_group_and_how_to_join_it),
-        TEST(a_denied_permission_shows_a_group_without_a_name_as_its_number),
-        TEST(a_denied_permission_names_no_group_that_would_not_help),
-        cmocka_unit_test(a_closed_folder_on_the_way_is_told_as_such),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

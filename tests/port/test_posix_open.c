@@ -2,16 +2,14 @@
 #define _DEFAULT_SOURCE 1 /* CRTSCTS, rates above 38400 */
 #include <fcntl.h>
 #include <poll.h>
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom_posix.h"
 #include "posix_pty.h"
@@ -33,6 +31,8 @@ static int tear_down(void **state)
     posix_pty_close(*state);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down, .begin_round = posix_start_watchdog};
 
 static void check_seen(const posix_pty_t *pty, speed_t speed, uint8_t parity, uint8_t stop_bits)
 {
@@ -58,7 +58,7 @@ static const struct {
              {500000, B500000}, {576000, B576000}, {921600, B921600}};
 enum { RATES = sizeof rates / sizeof rates[0] };
 
-static void every_rate_is_what_the_other_end_sees(void **state)
+TEST(every_rate_is_what_the_other_end_sees)
 {
     const posix_pty_t *const pty = *state;
     fathom_posix_uart_t port;
@@ -77,7 +77,7 @@ static void every_rate_is_what_the_other_end_sees(void **state)
     fathom_posix_close(&port);
 }
 
-static void every_parity_and_stop_bit_is_accepted_in_every_order(void **state)
+TEST(every_parity_and_stop_bit_is_accepted_in_every_order)
 {
     const posix_pty_t *const pty = *state;
     fathom_posix_uart_t port;
@@ -96,7 +96,7 @@ static void every_parity_and_stop_bit_is_accepted_in_every_order(void **state)
     }
 }
 
-static void what_came_before_it_was_opened_is_thrown_away(void **state)
+TEST(what_came_before_it_was_opened_is_thrown_away)
 {
     const posix_pty_t *const pty = *state;
     const int slave = open(pty->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -118,7 +118,7 @@ static void what_came_before_it_was_opened_is_thrown_away(void **state)
     assert_int_equal(close(slave), 0);
 }
 
-static void the_descriptor_does_not_block_and_is_not_inherited(void **state)
+TEST(the_descriptor_does_not_block_and_is_not_inherited)
 {
     const posix_pty_t *const pty = *state;
     fathom_posix_uart_t port;
@@ -137,7 +137,7 @@ static int open_in_a_new_session(void *path)
     return open("/dev/tty", O_RDWR | O_CLOEXEC) < 0 ? 0 : 3;
 }
 
-static void it_does_not_become_the_controlling_terminal(void **state)
+TEST(it_does_not_become_the_controlling_terminal)
 {
     posix_pty_t *const pty = *state;
     assert_int_equal(chmod(pty->path, 0666), 0);
@@ -151,7 +151,7 @@ static int open_it(void *path)
     return -(int)fathom_posix_open(&port, path, &usual);
 }
 
-static void a_second_open_is_refused_even_to_root_and_allowed_after_close(void **state)
+TEST(a_second_open_is_refused_even_to_root_and_allowed_after_close)
 {
     posix_pty_t *const pty = *state;
     fathom_posix_uart_t first;
@@ -172,7 +172,7 @@ static void a_second_open_is_refused_even_to_root_and_allowed_after_close(void *
     assert_int_equal(posix_run_unprivileged(open_it, pty->path), 0);
 }
 
-static void a_program_that_was_killed_does_not_keep_the_port(void **state)
+TEST(a_program_that_was_killed_does_not_keep_the_port)
 {
     posix_pty_t *const pty = *state;
     int pipe_ends[2];
@@ -198,7 +198,7 @@ static void a_program_that_was_killed_does_not_keep_the_port(void **state)
     (void)close(pipe_ends[1]);
 }
 
-static void arguments_outside_the_contract_are_refused(void **state)
+TEST(arguments_outside_the_contract_are_refused)
 {
     const posix_pty_t *const pty = *state;
     const unsigned before = posix_count_fds();
@@ -228,21 +228,4 @@ static void arguments_outside_the_contract_are_refused(void **state)
     check_seen(pty, B9600, FATHOM_PARITY_NONE, 1);
     fathom_posix_close(&port);
     fathom_posix_close(NULL);
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(every_rate_is_what_the_other_end_sees),
-        TEST(every_parity_and_stop_bit_is_accepted_in_every_order),
-        TEST(what_came_before_it_was_opened_is_thrown_away),
-        TEST(the_descriptor_does_not_block_and_is_not_inherited),
-        TEST(it_does_not_become_the_controlling_terminal),
-        TEST(a_second_open_is_refused_even_to_root_and_allowed_after_close),
-        TEST(a_program_that_was_killed_does_not_keep_the_port),
-        TEST(arguments_outside_the_contract_are_refused),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,7 +26,7 @@ static speed_t speed_seen(const port_rig_t *rig)
     return cfgetospeed(&seen);
 }
 
-static void a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates(void **state)
+TEST(a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates)
 {
     port_rig_t *const rig = *state;
     driver.most = B115200;
@@ -37,7 +37,7 @@ static void a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates(
     assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &slower), FATHOM_POSIX_OK);
 }
 
-static void a_refused_change_puts_the_line_back_and_the_port_goes_on(void **state)
+TEST(a_refused_change_puts_the_line_back_and_the_port_goes_on)
 {
     port_rig_t *const rig = *state;
     const fathom_line_settings_t slower = {57600, FATHOM_PARITY_NONE, 1};
@@ -51,7 +51,7 @@ static void a_refused_change_puts_the_line_back_and_the_port_goes_on(void **stat
     assert_int_equal(port_rig_write(rig, &byte, 1), 1);
 }
 
-static void a_dropped_parity_is_refused_where_there_is_a_wire(void **state)
+TEST(a_dropped_parity_is_refused_where_there_is_a_wire)
 {
     port_rig_t *const rig = *state;
     const fathom_line_settings_t odd = {19200, FATHOM_PARITY_ODD, 1};
@@ -66,7 +66,7 @@ static void a_dropped_parity_is_refused_where_there_is_a_wire(void **state)
     assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &odd), FATHOM_POSIX_OK);
 }
 
-static void dropped_stop_bits_are_refused(void **state)
+TEST(dropped_stop_bits_are_refused)
 {
     port_rig_t *const rig = *state;
     const fathom_line_settings_t two = {19200, FATHOM_PARITY_NONE, 2};
@@ -75,7 +75,7 @@ static void dropped_stop_bits_are_refused(void **state)
     port_rig_says(rig, "asked for raw 19200 8N2, the driver set 19200 8N1");
 }
 
-static void a_tty_that_does_not_become_raw_is_refused(void **state)
+TEST(a_tty_that_does_not_become_raw_is_refused)
 {
     port_rig_t *const rig = *state;
     driver.keeps_echo = true;
@@ -83,7 +83,7 @@ static void a_tty_that_does_not_become_raw_is_refused(void **state)
     port_rig_says(rig, "not raw");
 }
 
-static void an_einval_counts_only_when_the_settings_did_not_hold(void **state)
+TEST(an_einval_counts_only_when_the_settings_did_not_hold)
 {
     port_rig_t *const rig = *state;
     driver.set_error = EINVAL;
@@ -93,7 +93,7 @@ static void an_einval_counts_only_when_the_settings_did_not_hold(void **state)
     open_fails(rig, &port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
 }
 
-static void an_interrupted_change_is_repeated(void **state)
+TEST(an_interrupted_change_is_repeated)
 {
     port_rig_t *const rig = *state;
     driver.set_interrupts = 3;
@@ -102,7 +102,7 @@ static void an_interrupted_change_is_repeated(void **state)
     assert_int_equal(driver.sets, 4);
 }
 
-static void errors_while_opening_are_told_with_the_systems_words(void **state)
+TEST(errors_while_opening_are_told_with_the_systems_words)
 {
     port_rig_t *const rig = *state;
     driver.set_error = ENOMEM;
@@ -130,7 +130,7 @@ static void errors_while_opening_are_told_with_the_systems_words(void **state)
     port_rig_says(rig, "opening it: Too many open files");
 }
 
-static void a_real_tty_is_taken_exclusively_and_given_back(void **state)
+TEST(a_real_tty_is_taken_exclusively_and_given_back)
 {
     port_rig_t *const rig = *state;
     port_rig_open(rig);
@@ -144,7 +144,7 @@ static void a_real_tty_is_taken_exclusively_and_given_back(void **state)
     assert_int_equal(driver.exclusive_calls, 2);
 }
 
-static void a_device_that_goes_while_its_line_is_changed_is_lost(void **state)
+TEST(a_device_that_goes_while_its_line_is_changed_is_lost)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -161,21 +161,5 @@ static int set_up(void **state)
     return port_rig_set_up(state);
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, port_rig_tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates),
-        TEST(a_refused_change_puts_the_line_back_and_the_port_goes_on),
-        TEST(a_dropped_parity_is_refused_where_there_is_a_wire),
-        TEST(dropped_stop_bits_are_refused),
-        TEST(a_tty_that_does_not_become_raw_is_refused),
-        TEST(an_einval_counts_only_when_the_settings_did_not_hold),
-        TEST(an_interrupted_change_is_repeated),
-        TEST(errors_while_opening_are_told_with_the_systems_words),
-        TEST(a_real_tty_is_taken_exclusively_and_given_back),
-        TEST(a_device_that_goes_while_its_line_is_changed_is_lost),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+static const suite_t suite = {
+    .set_up = set_up, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};

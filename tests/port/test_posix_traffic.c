@@ -9,7 +9,7 @@
 
 /* What drivers do to the bytes. The driver is posix_driver.h's. */
 
-static void a_read_that_was_interrupted_is_repeated(void **state)
+TEST(a_read_that_was_interrupted_is_repeated)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -19,7 +19,7 @@ static void a_read_that_was_interrupted_is_repeated(void **state)
     assert_int_equal(driver.read_interrupts, 0);
 }
 
-static void an_unplugged_adapter_fails_reads_for_good(void **state)
+TEST(an_unplugged_adapter_fails_reads_for_good)
 {
     static const int errors[] = {EIO, ENXIO, ENODEV, EBADF};
     port_rig_t *const rig = *state;
@@ -36,7 +36,7 @@ static void an_unplugged_adapter_fails_reads_for_good(void **state)
     }
 }
 
-static void a_request_taken_in_parts_leaves_whole_through_any_call(void **state)
+TEST(a_request_taken_in_parts_leaves_whole_through_any_call)
 {
     port_rig_t *const rig = *state;
     static const char request[] = "0123456789abcdefghij";
@@ -68,7 +68,7 @@ static void a_request_taken_in_parts_leaves_whole_through_any_call(void **state)
     assert_memory_equal(got + 20, request, 20);
 }
 
-static void a_wait_that_ends_because_there_is_room_has_used_it(void **state)
+TEST(a_wait_that_ends_because_there_is_room_has_used_it)
 {
     port_rig_t *const rig = *state;
     port_rig_open(rig);
@@ -80,7 +80,7 @@ static void a_wait_that_ends_because_there_is_room_has_used_it(void **state)
     assert_int_equal(fathom_posix_poll_events(&rig->port), POLLIN);
 }
 
-static void a_write_is_busy_when_the_kernel_takes_nothing(void **state)
+TEST(a_write_is_busy_when_the_kernel_takes_nothing)
 {
     port_rig_t *const rig = *state;
     port_rig_open(rig);
@@ -93,7 +93,7 @@ static void a_write_is_busy_when_the_kernel_takes_nothing(void **state)
     assert_int_equal(port_rig_write(rig, "abc", 3), 3);
 }
 
-static void a_port_that_is_lost_in_the_middle_of_a_request_says_so(void **state)
+TEST(a_port_that_is_lost_in_the_middle_of_a_request_says_so)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -121,7 +121,7 @@ static void let_it_leave(port_rig_t *rig)
     while (fathom_posix_now_us() - start_us < 1000) fathom_posix_wait(&rig->port, 1000);
 }
 
-static void sent_waits_for_the_kernels_queue_and_for_the_transmitter(void **state)
+TEST(sent_waits_for_the_kernels_queue_and_for_the_transmitter)
 {
     port_rig_t *const rig = *state;
     driver.queued = 1;
@@ -135,7 +135,7 @@ static void sent_waits_for_the_kernels_queue_and_for_the_transmitter(void **stat
     assert_true(port_rig_sent(rig));
 }
 
-static void sent_does_without_a_transmitter_state_where_there_is_none(void **state)
+TEST(sent_does_without_a_transmitter_state_where_there_is_none)
 {
     port_rig_t *const rig = *state;
     driver.lsr_error = ENOTTY;
@@ -145,7 +145,7 @@ static void sent_does_without_a_transmitter_state_where_there_is_none(void **sta
     assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_OK);
 }
 
-static void sent_on_a_lost_port_does_not_let_anybody_wait(void **state)
+TEST(sent_on_a_lost_port_does_not_let_anybody_wait)
 {
     port_rig_t *const rig = *state;
     port_rig_open(rig);
@@ -155,7 +155,7 @@ static void sent_on_a_lost_port_does_not_let_anybody_wait(void **state)
     assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
 }
 
-static void line_errors_are_the_drivers_counts(void **state)
+TEST(line_errors_are_the_drivers_counts)
 {
     port_rig_t *const rig = *state;
     fathom_posix_line_errors_t errors;
@@ -177,21 +177,5 @@ static int set_up(void **state)
     return port_rig_set_up(state);
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, port_rig_tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(a_read_that_was_interrupted_is_repeated),
-        TEST(an_unplugged_adapter_fails_reads_for_good),
-        TEST(a_request_taken_in_parts_leaves_whole_through_any_call),
-        TEST(a_wait_that_ends_because_there_is_room_has_used_it),
-        TEST(a_write_is_busy_when_the_kernel_takes_nothing),
-        TEST(a_port_that_is_lost_in_the_middle_of_a_request_says_so),
-        TEST(sent_waits_for_the_kernels_queue_and_for_the_transmitter),
-        TEST(sent_does_without_a_transmitter_state_where_there_is_none),
-        TEST(sent_on_a_lost_port_does_not_let_anybody_wait),
-        TEST(line_errors_are_the_drivers_counts),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+static const suite_t suite = {
+    .set_up = set_up, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};

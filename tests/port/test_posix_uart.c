@@ -16,7 +16,11 @@ static void fill_all(uint8_t *bytes)
     for (unsigned i = 0; i != 512; i++) bytes[256 + i] = (uint8_t)(255 - i / 2);
 }
 
-static void every_byte_value_arrives_as_it_was_sent(void **state)
+static const suite_t suite = {
+    .set_up = port_rig_set_up_open, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};
+static const suite_t plain;
+
+TEST(every_byte_value_arrives_as_it_was_sent)
 {
     const port_rig_t *const rig = *state;
     uint8_t all[ALL];
@@ -36,7 +40,7 @@ static void every_byte_value_arrives_as_it_was_sent(void **state)
     assert_int_equal(posix_pty_receive(&rig->pty, got, sizeof got), 0); /* no echo */
 }
 
-static void every_byte_value_leaves_as_it_was_written(void **state)
+TEST(every_byte_value_leaves_as_it_was_written)
 {
     const port_rig_t *const rig = *state;
     uint8_t all[ALL];
@@ -53,7 +57,7 @@ static void every_byte_value_leaves_as_it_was_written(void **state)
     assert_memory_equal(got, all, sizeof all);
 }
 
-static void reading_an_empty_port_returns_zero_every_time(void **state)
+TEST(reading_an_empty_port_returns_zero_every_time)
 {
     const port_rig_t *const rig = *state;
     uint8_t byte;
@@ -62,7 +66,7 @@ static void reading_an_empty_port_returns_zero_every_time(void **state)
     assert_string_equal(fathom_posix_error_text(&rig->port), "");
 }
 
-static void a_small_buffer_gets_the_bytes_in_portions(void **state)
+TEST(a_small_buffer_gets_the_bytes_in_portions)
 {
     const port_rig_t *const rig = *state;
     uint8_t got[4] = {0};
@@ -74,7 +78,7 @@ static void a_small_buffer_gets_the_bytes_in_portions(void **state)
     assert_memory_equal(got, "abc", 3);
 }
 
-static void after_a_hang_up_every_read_and_write_fails(void **state)
+TEST(after_a_hang_up_every_read_and_write_fails)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -88,7 +92,7 @@ static void after_a_hang_up_every_read_and_write_fails(void **state)
     assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_ERR_LOST);
 }
 
-static void a_write_finds_the_hang_up_too(void **state)
+TEST(a_write_finds_the_hang_up_too)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -98,7 +102,7 @@ static void a_write_finds_the_hang_up_too(void **state)
     assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
 }
 
-static void a_lost_port_works_again_once_it_is_reopened(void **state)
+TEST(a_lost_port_works_again_once_it_is_reopened)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -128,7 +132,7 @@ static size_t fill(const port_rig_t *rig)
     }
 }
 
-static void a_full_port_takes_nothing_and_what_it_took_leaves_whole_and_in_order(void **state)
+TEST(a_full_port_takes_nothing_and_what_it_took_leaves_whole_and_in_order)
 {
     port_rig_t *const rig = *state;
     uint8_t got[777];
@@ -153,7 +157,7 @@ static void a_full_port_takes_nothing_and_what_it_took_leaves_whole_and_in_order
     assert_int_equal(port_rig_write(rig, got, 1), 1);
 }
 
-static void a_write_of_no_length_or_too_long_leaves_the_port_as_it_was(void **state)
+TEST(a_write_of_no_length_or_too_long_leaves_the_port_as_it_was)
 {
     const port_rig_t *const rig = *state;
     uint8_t bytes[FATHOM_POSIX_WRITE_MAX + 1] = {0};
@@ -163,7 +167,7 @@ static void a_write_of_no_length_or_too_long_leaves_the_port_as_it_was(void **st
     assert_int_equal(port_rig_read(rig, bytes, 1), 0);
 }
 
-static void sent_takes_as_long_as_the_bytes_take_on_a_wire(void **state)
+TEST(sent_takes_as_long_as_the_bytes_take_on_a_wire)
 {
     port_rig_t *const rig = *state;
     const fathom_line_settings_t slow = {9600, FATHOM_PARITY_EVEN, 2};
@@ -183,7 +187,7 @@ static void sent_takes_as_long_as_the_bytes_take_on_a_wire(void **state)
     assert_true(fathom_posix_now_us() - start_us >= needed_us);
 }
 
-static void the_line_is_not_changed_under_bytes_that_leave(void **state)
+TEST(the_line_is_not_changed_under_bytes_that_leave)
 {
     port_rig_t *const rig = *state;
     const fathom_line_settings_t slow = {9600, FATHOM_PARITY_NONE, 1};
@@ -200,7 +204,7 @@ static void the_line_is_not_changed_under_bytes_that_leave(void **state)
     assert_int_equal(cfgetospeed(&seen), B230400);
 }
 
-static void a_change_of_the_line_keeps_what_was_received(void **state)
+TEST(a_change_of_the_line_keeps_what_was_received)
 {
     port_rig_t *const rig = *state;
     const fathom_line_settings_t slow = {9600, FATHOM_PARITY_NONE, 1};
@@ -220,7 +224,7 @@ static speed_t speed_at_the_other_end(const port_rig_t *rig)
 }
 
 /* hal.h: 1 they hold, 0 bytes are still leaving, < 0 it cannot. */
-static void the_hal_changes_the_line_between_two_requests(void **state)
+TEST(the_hal_changes_the_line_between_two_requests)
 {
     port_rig_t *const rig = *state;
     const fathom_uart_t uart = fathom_posix_uart(&rig->port);
@@ -244,7 +248,7 @@ static void the_hal_changes_the_line_between_two_requests(void **state)
     assert_int_equal(speed_at_the_other_end(rig), B230400);
 }
 
-static void a_closed_port_fails_and_can_be_closed_again(void **state)
+TEST(a_closed_port_fails_and_can_be_closed_again)
 {
     port_rig_t *const rig = *state;
     fathom_posix_line_errors_t errors;
@@ -260,9 +264,8 @@ static void a_closed_port_fails_and_can_be_closed_again(void **state)
     assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_CLOSED);
 }
 
-static void a_port_of_zeros_is_a_closed_one_and_not_standard_input(void **state)
+TEST_IN(plain, a_port_of_zeros_is_a_closed_one_and_not_standard_input)
 {
-    (void)state;
     static fathom_posix_uart_t zeros;
     const fathom_uart_t uart = fathom_posix_uart(&zeros);
     const unsigned before = posix_count_fds();
@@ -273,7 +276,7 @@ static void a_port_of_zeros_is_a_closed_one_and_not_standard_input(void **state)
     assert_int_equal(posix_count_fds(), before);
 }
 
-static void a_pseudo_terminal_counts_no_line_errors(void **state)
+TEST(a_pseudo_terminal_counts_no_line_errors)
 {
     port_rig_t *const rig = *state;
     fathom_posix_line_errors_t errors = {1, 2, 3, 4};
@@ -281,29 +284,4 @@ static void a_pseudo_terminal_counts_no_line_errors(void **state)
     assert_int_equal(fathom_posix_line_errors(&rig->port, &errors), FATHOM_POSIX_ERR_UNSUPPORTED);
     assert_int_equal(errors.parity, 1);
     assert_int_equal(port_rig_read(rig, &byte, 1), 0); /* the port is none the worse */
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, port_rig_set_up_open, port_rig_tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(every_byte_value_arrives_as_it_was_sent),
-        TEST(every_byte_value_leaves_as_it_was_written),
-        TEST(reading_an_empty_port_returns_zero_every_time),
-        TEST(a_small_buffer_gets_the_bytes_in_portions),
-        TEST(after_a_hang_up_every_read_and_write_fails),
-        TEST(a_write_finds_the_hang_up_too),
-        TEST(a_lost_port_works_again_once_it_is_reopened),
-        TEST(a_full_port_takes_nothing_and_what_it_took_leaves_whole_and_in_order),
-        TEST(a_write_of_no_length_or_too_long_leaves_the_port_as_it_was),
-        TEST(sent_takes_as_long_as_the_bytes_take_on_a_wire),
-        TEST(the_line_is_not_changed_under_bytes_that_leave),
-        TEST(a_change_of_the_line_keeps_what_was_received),
-        TEST(the_hal_changes_the_line_between_two_requests),
-        TEST(a_closed_port_fails_and_can_be_closed_again),
-        cmocka_unit_test(a_port_of_zeros_is_a_closed_one_and_not_standard_input),
-        TEST(a_pseudo_terminal_counts_no_line_errors),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

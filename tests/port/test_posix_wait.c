@@ -64,7 +64,11 @@ static void *hang_up(void *arg)
     return NULL;
 }
 
-static void bytes_that_are_there_end_the_wait_at_once(void **state)
+static const suite_t suite = {
+    .set_up = port_rig_set_up_open, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};
+static const suite_t plain;
+
+TEST(bytes_that_are_there_end_the_wait_at_once)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -73,7 +77,7 @@ static void bytes_that_are_there_end_the_wait_at_once(void **state)
     assert_int_equal(port_rig_read(rig, &byte, 1), 1);
 }
 
-static void bytes_that_come_end_the_wait(void **state)
+TEST(bytes_that_come_end_the_wait)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -84,7 +88,7 @@ static void bytes_that_come_end_the_wait(void **state)
     assert_int_equal(byte, 'x');
 }
 
-static void the_time_ends_the_wait_and_not_earlier(void **state)
+TEST(the_time_ends_the_wait_and_not_earlier)
 {
     port_rig_t *const rig = *state;
     static const uint32_t times_us[] = {0, 1, 999, 1750, 20000, 100000};
@@ -95,7 +99,7 @@ static void the_time_ends_the_wait_and_not_earlier(void **state)
     }
 }
 
-static void short_waits_are_not_rounded_up_to_milliseconds(void **state)
+TEST(short_waits_are_not_rounded_up_to_milliseconds)
 {
     port_rig_t *const rig = *state;
     uint64_t least_us = LONG_US;
@@ -106,7 +110,7 @@ static void short_waits_are_not_rounded_up_to_milliseconds(void **state)
     assert_in_range(least_us, 200, 900);
 }
 
-static void an_idle_wait_uses_no_cpu(void **state)
+TEST(an_idle_wait_uses_no_cpu)
 {
     port_rig_t *const rig = *state;
     const uint64_t before_us = cpu_us();
@@ -115,7 +119,7 @@ static void an_idle_wait_uses_no_cpu(void **state)
     assert_true(cpu_us() - before_us < 30000);
 }
 
-static void a_hang_up_ends_the_wait_and_no_later_wait_sleeps(void **state)
+TEST(a_hang_up_ends_the_wait_and_no_later_wait_sleeps)
 {
     port_rig_t *const rig = *state;
     uint8_t byte = 0;
@@ -135,7 +139,7 @@ static void on_signal(int number)
     signals++;
 }
 
-static void a_signal_ends_the_wait_and_does_no_harm_to_the_port(void **state)
+TEST(a_signal_ends_the_wait_and_does_no_harm_to_the_port)
 {
     port_rig_t *const rig = *state;
     struct sigaction action;
@@ -162,7 +166,7 @@ static void a_signal_ends_the_wait_and_does_no_harm_to_the_port(void **state)
     assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_OK);
 }
 
-static void the_wait_alone_moves_the_rest_of_a_request_along(void **state)
+TEST(the_wait_alone_moves_the_rest_of_a_request_along)
 {
     port_rig_t *const rig = *state;
     uint8_t bytes[251] = {0};
@@ -187,7 +191,7 @@ static void the_wait_alone_moves_the_rest_of_a_request_along(void **state)
     assert_int_equal(have, total);
 }
 
-static void a_poll_of_ones_own_sees_what_the_wait_sees(void **state)
+TEST(a_poll_of_ones_own_sees_what_the_wait_sees)
 {
     port_rig_t *const rig = *state;
     struct pollfd entry = {fathom_posix_fd(&rig->port), fathom_posix_poll_events(&rig->port), 0};
@@ -198,9 +202,8 @@ static void a_poll_of_ones_own_sees_what_the_wait_sees(void **state)
     assert_int_equal(entry.revents, POLLIN);
 }
 
-static void the_clock_never_runs_back_and_counts_microseconds(void **state)
+TEST_IN(plain, the_clock_never_runs_back_and_counts_microseconds)
 {
-    (void)state;
     const fathom_clock_t clock = fathom_posix_clock();
     uint64_t last_us = fathom_posix_now_us();
     for (int i = 0; i != 100000; i++) {
@@ -226,32 +229,11 @@ static void the_clock_never_runs_back_and_counts_microseconds(void **state)
     assert_true(fathom_elapsed_us(end_us, start_us) < LONG_US);
 }
 
-static void the_short_clock_is_the_low_half_of_the_long_one(void **state)
+TEST_IN(plain, the_short_clock_is_the_low_half_of_the_long_one)
 {
-    (void)state;
     const fathom_clock_t clock = fathom_posix_clock();
     const uint64_t before_us = fathom_posix_now_us();
     const uint32_t between_us = clock.now_us(clock.ctx);
     const uint64_t after_us = fathom_posix_now_us();
     assert_true(fathom_elapsed_us(between_us, (uint32_t)before_us) <= after_us - before_us);
-}
-
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, port_rig_set_up_open, port_rig_tear_down)
-    const struct CMUnitTest tests[] = {
-        TEST(bytes_that_are_there_end_the_wait_at_once),
-        TEST(bytes_that_come_end_the_wait),
-        TEST(the_time_ends_the_wait_and_not_earlier),
-        TEST(short_waits_are_not_rounded_up_to_milliseconds),
-        TEST(an_idle_wait_uses_no_cpu),
-        TEST(a_hang_up_ends_the_wait_and_no_later_wait_sleeps),
-        TEST(a_signal_ends_the_wait_and_does_no_harm_to_the_port),
-        TEST(the_wait_alone_moves_the_rest_of_a_request_along),
-        TEST(a_poll_of_ones_own_sees_what_the_wait_sees),
-        cmocka_unit_test(the_clock_never_runs_back_and_counts_microseconds),
-        cmocka_unit_test(the_short_clock_is_the_low_half_of_the_long_one),
-    };
-    posix_start_watchdog();
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What the UART ports of 32-bit machines share, port/serial: the ring between interrupt and main loop, and the
  * request that leaves. The test is both sides. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "../../port/serial/fathom_serial.h"
 
@@ -19,10 +16,11 @@ static fathom_rx_t rx;
 
 static int set_up(void **state)
 {
-    (void)state;
     fathom_serial_init(&serial, request, SIZE);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static int read_all(size_t capacity)
 {
@@ -35,9 +33,8 @@ static void put(unsigned from, unsigned count)
     for (unsigned i = 0; i != count; i++) fathom_serial_put(&serial, (uint8_t)(from + i), 0);
 }
 
-static void bytes_come_out_as_they_went_in_through_many_rounds(void **state)
+TEST(bytes_come_out_as_they_went_in_through_many_rounds)
 {
-    (void)state;
     unsigned in = 0;
     unsigned out = 0;
     /* Chunks of 1..128 bytes from every place in the ring; 8256 bytes, so that the indices wrap 32 times. */
@@ -53,9 +50,8 @@ static void bytes_come_out_as_they_went_in_through_many_rounds(void **state)
     assert_int_equal(serial.overruns, 0);
 }
 
-static void a_read_takes_no_more_than_its_capacity(void **state)
+TEST(a_read_takes_no_more_than_its_capacity)
 {
-    (void)state;
     put(10, 5);
     assert_int_equal(read_all(0), 0);
     assert_int_equal(read_all(2), 2);
@@ -65,9 +61,8 @@ static void a_read_takes_no_more_than_its_capacity(void **state)
     assert_int_equal(read_all(sizeof got), 0);
 }
 
-static void the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it(void **state)
+TEST(the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it)
 {
-    (void)state;
     put(0, 77); /* so that it does not stand at its beginning */
     assert_int_equal(read_all(sizeof got), 77);
     put(0, RING);
@@ -87,9 +82,8 @@ static void the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it
     assert_int_equal(rx.flags, 0);
 }
 
-static void a_byte_with_a_flag_comes_alone(void **state)
+TEST(a_byte_with_a_flag_comes_alone)
 {
-    (void)state;
     put(1, 2);
     fathom_serial_put(&serial, 3, FATHOM_RX_PARITY);
     fathom_serial_put(&serial, 4, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
@@ -109,9 +103,8 @@ static void a_byte_with_a_flag_comes_alone(void **state)
     assert_int_equal(serial.framing, 1);
 }
 
-static void a_loss_that_the_uart_tells_of_is_before_this_byte_or_before_the_next(void **state)
+TEST(a_loss_that_the_uart_tells_of_is_before_this_byte_or_before_the_next)
 {
-    (void)state;
     put(1, 1);
     fathom_serial_put(&serial, 2, FATHOM_RX_OVERRUN);
     fathom_serial_lose(&serial);
@@ -125,9 +118,8 @@ static void a_loss_that_the_uart_tells_of_is_before_this_byte_or_before_the_next
     assert_int_equal(serial.overruns, 2);
 }
 
-static void counters_stop_at_65535(void **state)
+TEST(counters_stop_at_65535)
 {
-    (void)state;
     serial.parity = serial.framing = serial.overruns = 65534;
     for (int i = 0; i != 3; i++)
         fathom_serial_put(&serial, 0, FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN);
@@ -136,9 +128,8 @@ static void counters_stop_at_65535(void **state)
     assert_int_equal(serial.overruns, 65535);
 }
 
-static void a_request_is_kept_and_handed_out_byte_by_byte(void **state)
+TEST(a_request_is_kept_and_handed_out_byte_by_byte)
 {
-    (void)state;
     uint8_t bytes[SIZE] = {1, 2, 3, 4, 5, 6, 7, 8};
     uint8_t byte = 99;
     assert_false(fathom_serial_next(&serial, &byte));
@@ -157,9 +148,8 @@ static void a_request_is_kept_and_handed_out_byte_by_byte(void **state)
     }
 }
 
-static void a_request_waits_for_the_one_before_and_has_to_fit(void **state)
+TEST(a_request_waits_for_the_one_before_and_has_to_fit)
 {
-    (void)state;
     static const uint8_t bytes[SIZE + 1] = {1, 2, 3};
     assert_true(fathom_serial_load(&serial, bytes, 0) < 0);
     assert_true(fathom_serial_load(&serial, bytes, SIZE + 1) < 0);
@@ -169,19 +159,4 @@ static void a_request_waits_for_the_one_before_and_has_to_fit(void **state)
     assert_true(fathom_serial_load(&serial, bytes, SIZE + 1) < 0);
     assert_int_equal(request[0], 1);
     assert_int_equal(request[1], 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(bytes_come_out_as_they_went_in_through_many_rounds, set_up),
-        cmocka_unit_test_setup(a_read_takes_no_more_than_its_capacity, set_up),
-        cmocka_unit_test_setup(the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it, set_up),
-        cmocka_unit_test_setup(a_byte_with_a_flag_comes_alone, set_up),
-        cmocka_unit_test_setup(a_loss_that_the_uart_tells_of_is_before_this_byte_or_before_the_next, set_up),
-        cmocka_unit_test_setup(counters_stop_at_65535, set_up),
-        cmocka_unit_test_setup(a_request_is_kept_and_handed_out_byte_by_byte, set_up),
-        cmocka_unit_test_setup(a_request_waits_for_the_one_before_and_has_to_fit, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

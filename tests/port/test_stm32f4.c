@@ -3,14 +3,12 @@
  * lies in their place, at their addresses (RM0090 2.3), which the test reads and sets. It has no side effects: a
  * register keeps what was written to it last. */
 #define _GNU_SOURCE 1 /* MAP_FIXED_NOREPLACE */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "internal/stm32f4_port.h"
 
@@ -31,19 +29,11 @@ static uint8_t enabled; /* the interrupt */
 volatile uint8_t fathom_stm32f4_happened;
 void fathom_stm32f4_enable_interrupt(uint8_t number) { enabled = number; }
 
-static int map(void **state)
+static void map(unsigned round)
 {
-    (void)state;
-    return mmap(PERIPHERALS, LENGTH, PROT_READ | PROT_WRITE,
-                MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE, -1, 0) == PERIPHERALS
-               ? 0
-               : -1;
-}
-
-static int unmap(void **state)
-{
-    (void)state;
-    return munmap(PERIPHERALS, LENGTH);
+    if (mmap(PERIPHERALS, LENGTH, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED_NOREPLACE,
+             -1, 0) != PERIPHERALS)
+        abort();
 }
 
 /* ---- the capture ---- */
@@ -54,7 +44,6 @@ static fathom_pulse_t pulse;
 
 static int begin_capture(void **state)
 {
-    (void)state;
     static const fathom_stm32f4_pin_t pa0 = {'A', 0};
     memset(PERIPHERALS, 0, LENGTH);
     fathom_stm32f4_happened = 0;
@@ -64,6 +53,8 @@ static int begin_capture(void **state)
     capture.arm(capture.ctx);
     return 0;
 }
+
+static const suite_t suite = {.set_up = begin_capture, .begin_round = map};
 
 static void captured(uint32_t flags, uint32_t rise_us, uint32_t fall_us)
 {
@@ -80,9 +71,8 @@ static void assert_pulse(uint32_t width_us, uint32_t end_us)
     assert_int_equal(pulse.end_us, end_us);
 }
 
-static void the_captures_are_set_up_for_both_edges_of_ti1(void **state)
+TEST(the_captures_are_set_up_for_both_edges_of_ti1)
 {
-    (void)state;
     assert_int_equal(TIM2_AT(0x18), 0x3231); /* CCMR1: CC1S 01, CC2S 10, IC1F and IC2F 0011 (RM0090 18.4.7) */
     assert_int_equal(TIM2_AT(0x20), 0x0031); /* CCER: CC1E, CC2E, CC2P (18.4.9) */
     assert_int_equal(TIM2_AT(0x0C), 0x0006); /* DIER: CC1IE, CC2IE (18.4.4) */
@@ -92,9 +82,8 @@ static void the_captures_are_set_up_for_both_edges_of_ti1(void **state)
     assert_int_equal(REGISTER(0x40023830) & 1, 1); /* AHB1ENR: GPIOA */
 }
 
-static void only_the_pins_of_tim2_ch1_are_taken(void **state)
+TEST(only_the_pins_of_tim2_ch1_are_taken)
 {
-    (void)state;
     static const fathom_stm32f4_pin_t others[] = {{'A', 1}, {'B', 0}, {'A', 16}, {0, 0}};
     static const fathom_stm32f4_pin_t pa5 = {'A', 5};
     static const fathom_stm32f4_pin_t pa15 = {'A', 15};
@@ -105,9 +94,8 @@ static void only_the_pins_of_tim2_ch1_are_taken(void **state)
     assert_int_equal(GPIOA_AT(AFRL + 4) >> 28, 1);
 }
 
-static void a_rise_and_a_fall_are_a_pulse(void **state)
+TEST(a_rise_and_a_fall_are_a_pulse)
 {
-    (void)state;
     captured(CC1IF, 1000, 0);
     assert_int_equal(fathom_stm32f4_happened, 1);
     assert_int_equal(capture.take(capture.ctx, &pulse), 0);
@@ -115,18 +103,16 @@ static void a_rise_and_a_fall_are_a_pulse(void **state)
     assert_pulse(3000, 4000);
 }
 
-static void both_in_one_interrupt_are_a_pulse_also_across_the_wrap_of_the_clock(void **state)
+TEST(both_in_one_interrupt_are_a_pulse_also_across_the_wrap_of_the_clock)
 {
-    (void)state;
     captured(CC1IF | CC2IF, 1000, 4000);
     assert_pulse(3000, 4000);
     captured(CC1IF | CC2IF, 0xFFFFFFF0, 90000);
     assert_pulse(90016, 90000);
 }
 
-static void a_fall_before_the_rise_ends_the_pulse_before(void **state)
+TEST(a_fall_before_the_rise_ends_the_pulse_before)
 {
-    (void)state;
     captured(CC1IF, 1000, 0);
     captured(CC1IF | CC2IF, 5000, 4000);
     assert_pulse(3000, 4000);
@@ -134,9 +120,8 @@ static void a_fall_before_the_rise_ends_the_pulse_before(void **state)
     assert_pulse(0x7000 - 5000, 0x7000);
 }
 
-static void a_spike_within_a_microsecond_loses_no_pulse_after_it(void **state)
+TEST(a_spike_within_a_microsecond_loses_no_pulse_after_it)
 {
-    (void)state;
     captured(CC1IF | CC2IF, 1000, 1000); /* a line that is low */
     assert_pulse(0, 1000);
     captured(CC1IF, 2000, 1000);
@@ -147,9 +132,8 @@ static void a_spike_within_a_microsecond_loses_no_pulse_after_it(void **state)
 }
 
 /* Rise at 1000, read from SR; fall at 1001 and rise at 1002 before CCR1 is read; the fall has its interrupt then. */
-static void a_fall_that_was_overtaken_by_the_next_rise_ends_no_pulse(void **state)
+TEST(a_fall_that_was_overtaken_by_the_next_rise_ends_no_pulse)
 {
-    (void)state;
     captured(CC1IF, 1002, 1001);
     captured(CC2IF | CC1OF, 1002, 1001);
     assert_int_equal(capture.take(capture.ctx, &pulse), 0);
@@ -160,9 +144,8 @@ static void a_fall_that_was_overtaken_by_the_next_rise_ends_no_pulse(void **stat
     assert_pulse(5000, 5002);
 }
 
-static void an_interrupt_without_a_capture_is_nothing(void **state)
+TEST(an_interrupt_without_a_capture_is_nothing)
 {
-    (void)state;
     captured(0, 1000, 4000);
     captured(1, 1000, 4000); /* UIF */
     assert_int_equal(fathom_stm32f4_happened, 0);
@@ -172,9 +155,16 @@ static void an_interrupt_without_a_capture_is_nothing(void **state)
 
 /* ---- pins and clock ---- */
 
-static void an_output_is_high_before_it_is_driven_and_an_input_has_its_pull(void **state)
+static int clear(void **state)
 {
-    (void)state;
+    memset(PERIPHERALS, 0, LENGTH);
+    return 0;
+}
+
+static const suite_t clear_suite = {.set_up = clear};
+
+TEST_IN(clear_suite, an_output_is_high_before_it_is_driven_and_an_input_has_its_pull)
+{
     static const fathom_stm32f4_pin_t pb1 = {'B', 1};
     static const fathom_stm32f4_pin_t pb2 = {'B', 2};
     const fathom_pin_t output = fathom_stm32f4_output(&pb1);
@@ -195,9 +185,8 @@ static void an_output_is_high_before_it_is_driven_and_an_input_has_its_pull(void
     assert_null(input.set);
 }
 
-static void the_clock_is_tim2_divided_to_1_mhz(void **state)
+TEST_IN(clear_suite, the_clock_is_tim2_divided_to_1_mhz)
 {
-    (void)state;
     fathom_stm32f4_clock_begin(84000000);
     assert_int_equal(TIM2_AT(0x28), 83);         /* PSC */
     assert_int_equal(TIM2_AT(0x2C), 0xFFFFFFFF); /* ARR */
@@ -205,13 +194,6 @@ static void the_clock_is_tim2_divided_to_1_mhz(void **state)
     assert_int_equal(REGISTER(0x40023840), 9);   /* APB1ENR: TIM2, TIM5 */
     TIM2_AT(0x24) = 0xFEDCBA98;
     assert_int_equal(fathom_stm32f4_clock.now_us(fathom_stm32f4_clock.ctx), 0xFEDCBA98);
-}
-
-static int clear(void **state)
-{
-    (void)state;
-    memset(PERIPHERALS, 0, LENGTH);
-    return 0;
 }
 
 /* ---- USART2 with TX on PA2, RX on PA3, the driver on PA1 ---- */
@@ -242,15 +224,16 @@ static int begin_usart(void **state)
     return begin_with_driver('A');
 }
 
+static const suite_t usart_suite = {.set_up = begin_usart};
+
 static void interrupt(uint32_t why)
 {
     USART2_AT(SR) = why;
     fathom_stm32f4_usart_interrupt(&usart);
 }
 
-static void its_pins_are_its_own_and_the_driver_is_off(void **state)
+TEST_IN(usart_suite, its_pins_are_its_own_and_the_driver_is_off)
 {
-    (void)state;
     assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 2 << 4 | 2 << 6);
     assert_int_equal(GPIOA_AT(AFRL), 7 << 8 | 7 << 12);
     assert_int_equal(GPIOA_AT(PUPDR), 2 << 2 | 1 << 4 | 1 << 6);
@@ -259,9 +242,8 @@ static void its_pins_are_its_own_and_the_driver_is_off(void **state)
     assert_int_equal(enabled, 38);
 }
 
-static void the_driver_is_on_from_before_the_first_byte_until_the_last_stop_bit_has_left(void **state)
+TEST_IN(usart_suite, the_driver_is_on_from_before_the_first_byte_until_the_last_stop_bit_has_left)
 {
-    (void)state;
     static const uint8_t bytes[] = {0x11, 0x22, 0x33};
     assert_int_equal(uart.write(uart.ctx, bytes, 3), 3);
     assert_int_equal(GPIOA_AT(BSRR), 1 << 1);
@@ -298,9 +280,8 @@ static void assert_read(uint8_t byte, uint8_t flags)
     assert_int_equal(rx.flags, flags);
 }
 
-static void a_byte_is_read_without_its_parity_and_with_its_errors(void **state)
+TEST_IN(usart_suite, a_byte_is_read_without_its_parity_and_with_its_errors)
 {
-    (void)state;
     received(RXNE, 0x1AA); /* with 9 bits a word, DR has the parity above the byte */
     assert_read(0xAA, 0);
     received(RXNE | PE, 0x55);
@@ -316,9 +297,8 @@ static void a_byte_is_read_without_its_parity_and_with_its_errors(void **state)
     assert_int_equal(usart.serial.framing, 2);
 }
 
-static void an_overrun_is_told_of_the_byte_behind_the_loss(void **state)
+TEST_IN(usart_suite, an_overrun_is_told_of_the_byte_behind_the_loss)
 {
-    (void)state;
     received(RXNE | ORE, 1);
     assert_read(1, 0);
     received(RXNE, 2);
@@ -329,9 +309,8 @@ static void an_overrun_is_told_of_the_byte_behind_the_loss(void **state)
     assert_int_equal(usart.serial.overruns, 2);
 }
 
-static void a_break_holds_the_pin_low_with_the_driver_on(void **state)
+TEST_IN(usart_suite, a_break_holds_the_pin_low_with_the_driver_on)
 {
-    (void)state;
     static const uint8_t byte = 1;
     assert_int_equal(begin_with_driver('B'), 0); /* whose BSRR is another one than TX's */
     assert_int_equal(uart.set_break(uart.ctx, true), 1);
@@ -344,28 +323,4 @@ static void a_break_holds_the_pin_low_with_the_driver_on(void **state)
     assert_int_equal(GPIOA_AT(MODER), 1 << 2 | 2 << 4 | 2 << 6);
     assert_int_equal(uart.write(uart.ctx, &byte, 1), 1);
     assert_int_equal(uart.set_break(uart.ctx, true), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_captures_are_set_up_for_both_edges_of_ti1, begin_capture),
-        cmocka_unit_test_setup(only_the_pins_of_tim2_ch1_are_taken, begin_capture),
-        cmocka_unit_test_setup(a_rise_and_a_fall_are_a_pulse, begin_capture),
-        cmocka_unit_test_setup(both_in_one_interrupt_are_a_pulse_also_across_the_wrap_of_the_clock,
-                               begin_capture),
-        cmocka_unit_test_setup(a_fall_before_the_rise_ends_the_pulse_before, begin_capture),
-        cmocka_unit_test_setup(a_spike_within_a_microsecond_loses_no_pulse_after_it, begin_capture),
-        cmocka_unit_test_setup(a_fall_that_was_overtaken_by_the_next_rise_ends_no_pulse, begin_capture),
-        cmocka_unit_test_setup(an_interrupt_without_a_capture_is_nothing, begin_capture),
-        cmocka_unit_test_setup(an_output_is_high_before_it_is_driven_and_an_input_has_its_pull, clear),
-        cmocka_unit_test_setup(the_clock_is_tim2_divided_to_1_mhz, clear),
-        cmocka_unit_test_setup(its_pins_are_its_own_and_the_driver_is_off, begin_usart),
-        cmocka_unit_test_setup(the_driver_is_on_from_before_the_first_byte_until_the_last_stop_bit_has_left,
-                               begin_usart),
-        cmocka_unit_test_setup(a_byte_is_read_without_its_parity_and_with_its_errors, begin_usart),
-        cmocka_unit_test_setup(an_overrun_is_told_of_the_byte_behind_the_loss, begin_usart),
-        cmocka_unit_test_setup(a_break_holds_the_pin_low_with_the_driver_on, begin_usart),
-    };
-    return cmocka_run_group_tests(tests, map, unmap);
 }

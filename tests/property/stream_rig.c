@@ -2,12 +2,9 @@
 #include "stream_rig.h"
 
 #include <limits.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 enum { BYTE_US = 1042, PAUSE_US = 90000, GAP_US = 5000, LOOP_US = 20000, LONGEST_CHUNK = 25 };
 

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "stream_rig.h"
 
@@ -28,10 +25,9 @@ static void hold(uint8_t *sent, unsigned value)
     for (unsigned i = 0; i != FRAMES; i++) make_frame(sent + i * LENGTH, value);
 }
 
-static void with_gaps_seen_every_value_is_shown_rightly_from_every_start(void **state)
+TEST(with_gaps_seen_every_value_is_shown_rightly_from_every_start)
 {
     unsigned runs = 0;
-    (void)state;
     for (unsigned value = 0; value != VALUES; value++) {
         uint8_t sent[FRAMES * LENGTH];
         hold(sent, value);
@@ -58,11 +54,10 @@ enum { TWO_READINGS = sizeof two_readings / sizeof two_readings[0] };
 
 /* Without gaps those four are never shown, the others always, but for the first one or two frames and the last,
  * which no other follows; and no value is ever shown wrongly. What is not shown is counted as ambiguous. */
-static void without_gaps_no_value_is_shown_wrongly_and_four_are_not_shown(void **state)
+TEST(without_gaps_no_value_is_shown_wrongly_and_four_are_not_shown)
 {
     unsigned hidden = 0;
     unsigned runs = 0;
-    (void)state;
     for (unsigned value = 0; value != VALUES; value++) {
         uint8_t sent[FRAMES * LENGTH];
         hold(sent, value);
@@ -89,12 +84,11 @@ static void without_gaps_no_value_is_shown_wrongly_and_four_are_not_shown(void *
 }
 
 /* The four probes of an A05, held still at values that are often in question. */
-static void frames_of_four_probes_are_never_shown_out_of_step(void **state)
+TEST(frames_of_four_probes_are_never_shown_out_of_step)
 {
     static const uint16_t values[] = {0x0000, 0x00FF, 0x01FF, 0x03E8, 0x07D0, 0x07FF, 0x053B,
                                       0x0DEA, 0xFF00, 0xFFFD, 0xFFFE, 0xFFFF, 0x1770, 0x00FA};
     enum { COUNT = sizeof values / sizeof values[0], LONG = FATHOM_DYP_A05_LENGTH };
-    (void)state;
     unsigned ambiguous = 0;
     unsigned runs = 0;
     for (unsigned n = 0; n != COUNT * COUNT * COUNT * COUNT; n++) {
@@ -115,14 +109,4 @@ static void frames_of_four_probes_are_never_shown_out_of_step(void **state)
     }
     assert_int_equal(runs, 14 * 14 * 14 * 14 * 10 * 2);
     assert_true(ambiguous > 100); /* the set-up does hold such frames */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_gaps_seen_every_value_is_shown_rightly_from_every_start),
-        cmocka_unit_test(without_gaps_no_value_is_shown_wrongly_and_four_are_not_shown),
-        cmocka_unit_test(frames_of_four_probes_are_never_shown_out_of_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/hps167s_info.h"
 
@@ -48,10 +45,9 @@ static void start(uint8_t steps_per_degree)
 }
 
 /* With the other bytes of the usual answer: warm-up 5 s, reconnect 180 ms. */
-static void of_all_distances_only_255_mm_can_look_like_a_configuration(void **state)
+TEST(of_all_distances_only_255_mm_can_look_like_a_configuration)
 {
     unsigned distances = 0;
-    (void)state;
     start(0);
     for (uint32_t raw = 0; raw != 65536; raw++) {
         bool may_be = false;
@@ -73,10 +69,9 @@ static void of_all_distances_only_255_mm_can_look_like_a_configuration(void **st
 }
 
 /* Of 65536 last halves of a reconnect time one in 18 is a multiple: 3641 with the first half 0. */
-static void the_reconnect_time_lets_one_frame_in_18_through(void **state)
+TEST(the_reconnect_time_lets_one_frame_in_18_through)
 {
     unsigned passed = 0;
-    (void)state;
     start(0);
     for (uint32_t ms = 0; ms != 65536; ms++) {
         const uint16_t registers[4] = {0x00FF, 0x0500, (uint16_t)(ms >> 8), (uint16_t)((ms & 0xFF) << 8 | 1)};
@@ -88,9 +83,8 @@ static void the_reconnect_time_lets_one_frame_in_18_through(void **state)
 }
 
 /* All ones in distance, ambient and precision, nought in magnitude; the exponent is not named. */
-static void the_abnormal_packet_is_never_a_configuration(void **state)
+TEST(the_abnormal_packet_is_never_a_configuration)
 {
-    (void)state;
     start(0);
     for (unsigned exponent = 0; exponent != 256; exponent++) {
         const uint16_t registers[4] = {0xFFFF, 0, (uint16_t)(exponent << 8 | 0xFF), 0xFFFF};
@@ -108,13 +102,12 @@ static fathom_status_t ask(uint16_t raw, fathom_hps167s_temperature_t *out)
 }
 
 /* tenths * 9 * steps is (raw - 32 * steps) * 50, rounded to the nearest: they differ by half of 9 * steps at most. */
-static void every_temperature_is_exact_to_half_a_tenth_or_refused(void **state)
+TEST(every_temperature_is_exact_to_half_a_tenth_or_refused)
 {
     static const struct {
         uint8_t steps;
         unsigned refused; /* of 65536 */
     } rows[] = {{1, 65536 - 11797}, {2, 65536 - 23593}, {10, 0}, {100, 0}, {255, 0}};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         const long steps = rows[i].steps;
         unsigned refused = 0;
@@ -136,15 +129,4 @@ static void every_temperature_is_exact_to_half_a_tenth_or_refused(void **state)
         }
         assert_int_equal(refused, rows[i].refused);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(of_all_distances_only_255_mm_can_look_like_a_configuration),
-        cmocka_unit_test(the_reconnect_time_lets_one_frame_in_18_through),
-        cmocka_unit_test(the_abnormal_packet_is_never_a_configuration),
-        cmocka_unit_test(every_temperature_is_exact_to_half_a_tenth_or_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

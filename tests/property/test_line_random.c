@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/modbus_client.h"
 
@@ -212,9 +209,8 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
     return outcome;
 }
 
-static void on_a_clean_line_every_request_is_answered(void **state)
+TEST(on_a_clean_line_every_request_is_answered)
 {
-    (void)state;
     const weather_t clean = {0, 0, 0, 0, 0};
     const outcome_t outcome = run(&clean, 2000, 0, 1);
     assert_int_equal(outcome.ready, 2000);
@@ -222,9 +218,8 @@ static void on_a_clean_line_every_request_is_answered(void **state)
     assert_int_equal(world.overlaps, 0);
 }
 
-static void on_a_bad_line_no_answer_is_taken_for_another_requests(void **state)
+TEST(on_a_bad_line_no_answer_is_taken_for_another_requests)
 {
-    (void)state;
     const weather_t bad = {.late = 5, .flip = 10, .tear = 15, .lose = 20, .noise = 20000};
     const outcome_t outcome = run(&bad, TRANSACTIONS, 0, 2);
     assert_int_equal(outcome.wrong, 0);
@@ -236,9 +231,8 @@ static void on_a_bad_line_no_answer_is_taken_for_another_requests(void **state)
     assert_in_range(outcome.longest_us, 0, 5000000);
 }
 
-static void retries_make_up_for_what_is_lost_and_still_nothing_is_wrong(void **state)
+TEST(retries_make_up_for_what_is_lost_and_still_nothing_is_wrong)
 {
-    (void)state;
     const weather_t bad = {.late = 5, .flip = 10, .tear = 15, .lose = 20, .noise = 20000};
     const outcome_t outcome = run(&bad, TRANSACTIONS / 4, 2, 3);
     assert_int_equal(outcome.wrong, 0);
@@ -246,22 +240,10 @@ static void retries_make_up_for_what_is_lost_and_still_nothing_is_wrong(void **s
     assert_in_range(outcome.ready, TRANSACTIONS / 4 * 95 / 100, TRANSACTIONS / 4);
 }
 
-static void noise_alone_costs_readings_and_makes_none_wrong(void **state)
+TEST(noise_alone_costs_readings_and_makes_none_wrong)
 {
-    (void)state;
     const weather_t noisy = {.noise = 1500};
     const outcome_t outcome = run(&noisy, TRANSACTIONS / 10, 0, 4);
     assert_int_equal(outcome.wrong, 0);
     assert_true(outcome.ready > 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(on_a_clean_line_every_request_is_answered),
-        cmocka_unit_test(on_a_bad_line_no_answer_is_taken_for_another_requests),
-        cmocka_unit_test(retries_make_up_for_what_is_lost_and_still_nothing_is_wrong),
-        cmocka_unit_test(noise_alone_costs_readings_and_makes_none_wrong),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

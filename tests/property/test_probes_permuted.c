@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "stream_rig.h"
 
@@ -79,18 +76,16 @@ static unsigned show_held(const uint8_t *frame, bool gaps)
     return runs;
 }
 
-static void the_set_up_is_the_hazard(void **state)
+TEST(the_set_up_is_the_hazard)
 {
     static const uint8_t permuted[] = {0xFF, 0x05, 0x3B, 0x07, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07};
-    (void)state;
     for (uint8_t i = 0; i != LENGTH; i++) assert_int_equal(permuted[i], known[(6 + i) % LENGTH]);
     assert_true(rig_is_valid(known, LENGTH));
     assert_true(rig_is_valid(permuted, LENGTH));
 }
 
-static void with_gaps_seen_probes_held_still_are_never_permuted(void **state)
+TEST(with_gaps_seen_probes_held_still_are_never_permuted)
 {
-    (void)state;
     unsigned runs = show_held(known, true);
     rig_seed(1);
     for (unsigned i = 0; i != PROBES * HAZARDS_OF_A_PROBE; i++) {
@@ -101,9 +96,8 @@ static void with_gaps_seen_probes_held_still_are_never_permuted(void **state)
     assert_int_equal(runs, 4001 * 10 * 3);
 }
 
-static void without_gaps_probes_held_still_are_never_permuted_but_said_to_be_ambiguous(void **state)
+TEST(without_gaps_probes_held_still_are_never_permuted_but_said_to_be_ambiguous)
 {
-    (void)state;
     unsigned runs = show_held(known, false);
     rig_seed(1);
     for (unsigned i = 0; i != PROBES * HAZARDS_OF_A_PROBE; i++) {
@@ -143,10 +137,9 @@ static void make_sequence(uint8_t *sent, unsigned number)
     if (number == 0) memcpy(sent - MOVING * LENGTH, known, LENGTH);
 }
 
-static void with_gaps_seen_every_frame_of_moving_probes_is_shown_in_order_from_the_first(void **state)
+TEST(with_gaps_seen_every_frame_of_moving_probes_is_shown_in_order_from_the_first)
 {
     unsigned runs = 0;
-    (void)state;
     rig_seed(2);
     for (unsigned n = 0; n != SEQUENCES; n++) {
         uint8_t sent[MOVING * LENGTH];
@@ -169,14 +162,13 @@ static void with_gaps_seen_every_frame_of_moving_probes_is_shown_in_order_from_t
  * others are shown, but for those that AMBIGUOUS counts. Every place with a right sum is in one of the counters;
  * the last frame may still wait.
  */
-static void without_gaps_no_frame_of_moving_probes_is_permuted_and_AMBIGUOUS_counts_what_is_lost(void **state)
+TEST(without_gaps_no_frame_of_moving_probes_is_permuted_and_AMBIGUOUS_counts_what_is_lost)
 {
     unsigned runs = 0;
     unsigned ambiguous = 0;
     unsigned clear = 0;
     unsigned missed = 0;
     unsigned frames = 0;
-    (void)state;
     rig_seed(3);
     for (unsigned n = 0; n != SEQUENCES; n++) {
         uint8_t sent[MOVING * LENGTH];
@@ -209,17 +201,4 @@ static void without_gaps_no_frame_of_moving_probes_is_permuted_and_AMBIGUOUS_cou
         frames, missed, ambiguous, clear, runs);
     assert_int_equal(runs, 300 * 10 * 3);
     assert_true(ambiguous > 1000 && missed > 1000 && clear > 1000); /* the set-up has all of them */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_set_up_is_the_hazard),
-        cmocka_unit_test(with_gaps_seen_probes_held_still_are_never_permuted),
-        cmocka_unit_test(without_gaps_probes_held_still_are_never_permuted_but_said_to_be_ambiguous),
-        cmocka_unit_test(with_gaps_seen_every_frame_of_moving_probes_is_shown_in_order_from_the_first),
-        cmocka_unit_test(
-            without_gaps_no_frame_of_moving_probes_is_permuted_and_AMBIGUOUS_counts_what_is_lost),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

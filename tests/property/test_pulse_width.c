@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/pulse_width.h"
 
@@ -24,10 +21,9 @@ static void assert_nearest_half_up(uint16_t mm, uint64_t n, uint64_t d)
 /* ---- the datasheet's formula ---- */
 
 /* A16 1(4): S = T / 57.5 in cm: 10 * T / 57.5 = 20 * T / 115 mm. */
-static void every_width_to_100_ms_is_the_nearest_mm_of_t_over_57_5(void **state)
+TEST(every_width_to_100_ms_is_the_nearest_mm_of_t_over_57_5)
 {
     unsigned ties = 0;
-    (void)state;
     for (uint32_t us = 0; us <= 100000; us++) {
         const uint16_t mm = fathom_pulse_width_mm(us);
         assert_nearest_half_up(mm, 20 * (uint64_t)us, 115);
@@ -39,17 +35,15 @@ static void every_width_to_100_ms_is_the_nearest_mm_of_t_over_57_5(void **state)
 
 /* The mistake of A16 DS 1: "V = 348 m/s" and "S = T / 57.5" differ by 0.05 %. 10000 us * 348 m/s / 2 = 1740 mm, and
  * 10000 / 57.5 = 173.9 cm; the example says 173.9. */
-static void the_example_of_a16_1_decides_between_348_m_per_s_and_57_5(void **state)
+TEST(the_example_of_a16_1_decides_between_348_m_per_s_and_57_5)
 {
-    (void)state;
     assert_int_equal(fathom_pulse_width_mm(10000), 1739);
 }
 
 /* By hand, T * 4 / 23: 12000 / 23 = 521.7, 345000 / 23 = 15000, 376000 / 23 = 16347.8; 348 m/s would give 522, 15007.5
  * and 16356 mm. */
-static void widths_of_the_datasheet_by_hand(void **state)
+TEST(widths_of_the_datasheet_by_hand)
 {
-    (void)state;
     assert_int_equal(fathom_pulse_width_mm(0), 0);
     assert_int_equal(fathom_pulse_width_mm(2), 0); /* 0.35 */
     assert_int_equal(fathom_pulse_width_mm(3), 1); /* 0.52 */
@@ -58,9 +52,8 @@ static void widths_of_the_datasheet_by_hand(void **state)
     assert_int_equal(fathom_pulse_width_mm(94000), 16348);
 }
 
-static void widths_beyond_65535_mm_give_65535(void **state)
+TEST(widths_beyond_65535_mm_give_65535)
 {
-    (void)state;
     assert_int_equal(fathom_pulse_width_mm(376823), 65534); /* 1507292 / 23 = 65534.4 */
     assert_int_equal(fathom_pulse_width_mm(376824), 65535); /* 1507296 / 23 = 65534.6 */
     assert_int_equal(fathom_pulse_width_mm(376830), 65535); /* 65535.65 */
@@ -80,27 +73,24 @@ static uint64_t numerator(uint32_t us, int16_t air_dc)
 
 enum { DENOMINATOR = 20000000 };
 
-static void every_tenth_of_a_degree_and_width_is_the_nearest_mm_and_so_within_1_mm_at_15_m(void **state)
+TEST(every_tenth_of_a_degree_and_width_is_the_nearest_mm_and_so_within_1_mm_at_15_m)
 {
-    (void)state;
     for (int16_t dc = -400; dc <= 850; dc++)
         for (uint32_t us = 0; us <= 105000; us++)
             assert_nearest_half_up(fathom_pulse_width_mm_in_air(us, dc), numerator(us, dc), DENOMINATOR);
 }
 
 /* 331.3 + 12.12 = 343.42 m/s: 10000 us are 1717.1 mm. 331.3 - 24.24 = 307.06: 1535.3. 331.3 + 51.51 = 382.81: 1914.05 */
-static void temperatures_by_hand(void **state)
+TEST(temperatures_by_hand)
 {
-    (void)state;
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, 200), 1717);
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, -400), 1535);
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, 850), 1914);
 }
 
 /* 347.83 m/s is at (347.83 - 331.3) / 0.606 = 27.3 degC. */
-static void at_27_3_degrees_both_formulas_agree_to_1_mm(void **state)
+TEST(at_27_3_degrees_both_formulas_agree_to_1_mm)
 {
-    (void)state;
     for (uint32_t us = 0; us <= 105000; us++) {
         const int plain = fathom_pulse_width_mm(us);
         const int in_air = fathom_pulse_width_mm_in_air(us, 273);
@@ -108,9 +98,8 @@ static void at_27_3_degrees_both_formulas_agree_to_1_mm(void **state)
     }
 }
 
-static void beyond_the_ends_the_nearer_end_counts(void **state)
+TEST(beyond_the_ends_the_nearer_end_counts)
 {
-    (void)state;
     assert_int_equal(fathom_pulse_width_mm_in_air(94000, -401), fathom_pulse_width_mm_in_air(94000, -400));
     assert_int_equal(fathom_pulse_width_mm_in_air(94000, INT16_MIN),
                      fathom_pulse_width_mm_in_air(94000, -400));
@@ -123,10 +112,9 @@ static void beyond_the_ends_the_nearer_end_counts(void **state)
 }
 
 /* The products do not wrap, and what is too long says so. */
-static void long_widths_in_any_air_grow_until_65535_mm(void **state)
+TEST(long_widths_in_any_air_grow_until_65535_mm)
 {
     static const int16_t dcs[] = {-400, 0, 850};
-    (void)state;
     for (unsigned i = 0; i != sizeof dcs / sizeof *dcs; i++) {
         for (uint32_t us = 105000; us <= 600000; us += 13) {
             const uint16_t mm = fathom_pulse_width_mm_in_air(us, dcs[i]);
@@ -137,20 +125,4 @@ static void long_widths_in_any_air_grow_until_65535_mm(void **state)
         }
         assert_int_equal(fathom_pulse_width_mm_in_air(UINT32_MAX, dcs[i]), 65535);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_width_to_100_ms_is_the_nearest_mm_of_t_over_57_5),
-        cmocka_unit_test(the_example_of_a16_1_decides_between_348_m_per_s_and_57_5),
-        cmocka_unit_test(widths_of_the_datasheet_by_hand),
-        cmocka_unit_test(widths_beyond_65535_mm_give_65535),
-        cmocka_unit_test(every_tenth_of_a_degree_and_width_is_the_nearest_mm_and_so_within_1_mm_at_15_m),
-        cmocka_unit_test(temperatures_by_hand),
-        cmocka_unit_test(at_27_3_degrees_both_formulas_agree_to_1_mm),
-        cmocka_unit_test(beyond_the_ends_the_nearer_end_counts),
-        cmocka_unit_test(long_widths_in_any_air_grow_until_65535_mm),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "stream_rig.h"
 
@@ -191,9 +188,8 @@ static tally_t damage_all(damage_each_t *each, unsigned which, bool gaps)
 /* How many bytes the runs of one length have. */
 static unsigned bytes_of(unsigned which) { return RUNS * RUN * lengths[which]; }
 
-static void with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else(void **state)
+TEST(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else)
 {
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         const tally_t tally = damage_all(lose_each, which, true);
         assert_int_equal(tally.wrong, 0);
@@ -202,9 +198,8 @@ static void with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else(vo
     }
 }
 
-static void with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else(void **state)
+TEST(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else)
 {
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         const tally_t tally = damage_all(change_each, which, true);
         assert_int_equal(tally.wrong, 0);
@@ -216,9 +211,8 @@ static void with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else
 /* None but of the frames that end in FF: L - 2 of the 256 (L + 1) ways of such a frame, and FF in front of the start.
  * There are four of them at least, of 511 mm, FF 01 FF FF: in front of the start and behind it FF makes it FF FF 01 FF,
  * and behind 01 it stays as it is, so 2 ways each. */
-static void with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF(void **state)
+TEST(with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF)
 {
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         const unsigned frames = RUNS * RUN;
         unsigned ends_in_FF = 0;
@@ -237,9 +231,8 @@ static void with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF(void **
 }
 
 /* In each of four frames the same. FF 07 A1 A7 and FF 03 E8 07 D0 07 A1 0D EA 60 do not end in FF. */
-static void of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes(void **state)
+TEST(of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes)
 {
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
         tally_t added = {0, 0, 0, 0};
@@ -259,13 +252,12 @@ static void of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes(voi
  *   FF H L X (FF) is right for X = FF alone, and FF H L FF (X) as well
  * Of all others none passes, which makes 513 of 65536 x 5 x 256, one in 163520.
  */
-static void with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass(void **state)
+TEST(with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass)
 {
     enum { PASS = 2 + 256 + 255 };
     static const uint16_t example = 1953;
     uint8_t sent[RUN * FATHOM_DYP_A16_LENGTH];
     tally_t tally = {0, 0, 0, 0};
-    (void)state;
     for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 4, 4, &example);
     for (unsigned high = 0; high != 256; high++) {
         const uint16_t value = (uint16_t)(high * 256 + (256 - high) % 256);
@@ -284,12 +276,11 @@ static void with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass(v
 
 /* 1000 2000 1953 3465 mm: FF + 03 + E8 + 07 + D0 + 07 + A1 + 0D + 89 = 3FF. All but 89 and the sum make 376, so X =
  * 89 - 76 = 13 passes, in 8 places; FF in front would want 75 for the 89. */
-static void of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass(void **state)
+TEST(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass)
 {
     static const uint16_t values[4] = {1000, 2000, 1953, 3465};
     uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
     tally_t tally = {0, 0, 0, 0};
-    (void)state;
     for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 10, 10, values);
     assert_int_equal(sent[9], 0xFF);
     add_each(&tally, sent, 10, true);
@@ -298,9 +289,8 @@ static void of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass(void **sta
 }
 
 /* A byte that comes twice is one of the added ones: the first FF of 511 mm, and no other here. */
-static void with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does(void **state)
+TEST(with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does)
 {
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         const tally_t tally = damage_all(double_each, which, true);
         assert_int_equal(tally.wrong, tally.due);
@@ -310,9 +300,8 @@ static void with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does(void **sta
     }
 }
 
-static void without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading(void **state)
+TEST(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading)
 {
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         tally_t tally = damage_all(lose_each, which, false);
         assert_int_equal(tally.wrong, 0);
@@ -332,10 +321,9 @@ static void without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading(void **st
  * with an FF behind it. That is beyond all that an A16 measures. Later frames are known to be ambiguous. The FF can
  * be added at 5 places between the 01 of the first frame and that of the second; doubled it can be at 3 of them.
  */
-static void without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_value(void **state)
+TEST(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_value)
 {
     enum { ADDED_FF = 5, DOUBLED_FF = 3 };
-    (void)state;
     for (unsigned which = 0; which != LENGTHS; which++) {
         tally_t tally = damage_all(add_each, which, false);
         assert_int_equal(tally.wrong, which == OF_FOUR ? ADDED_FF : 0);
@@ -356,12 +344,11 @@ static void without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_anot
  * 3A or 07 -> 06, spoils the right frame and makes a second one out of step, ten bytes behind the first. Without
  * gaps that one is not shown because the first overlapped a right frame.
  */
-static void without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_of_step(void **state)
+TEST(without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_of_step)
 {
     static const uint16_t values[2][4] = {{1000, 2000, 2047, 1339}, {1001, 2000, 2047, 1339}};
     uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
     tally_t tally = {0, 0, 0, 0};
-    (void)state;
     for (unsigned i = 0; i != RUN; i++) rig_make_frame(sent + i * 10, 10, values[i / 2]);
     change_each(&tally, sent, 10, false);
     assert_int_equal(tally.runs, 255 * RUN * 10);
@@ -382,7 +369,7 @@ static void without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_
  *   S lost: it was FF, and the frame is right
  * So one in 511 of the lost bytes passes; 2035 mm, FF 07 F3 F9, without F3 reads 2041 mm.
  */
-static void without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target(void **state)
+TEST(without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target)
 {
     enum { PASS = 256 + 255 + 2 };
     static const uint16_t example = 1953;
@@ -390,7 +377,6 @@ static void without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_targ
     uint8_t sent[RUN * FATHOM_DYP_A16_LENGTH];
     tally_t tally = {0, 0, 0, 0};
     tally_t with_gaps = {0, 0, 0, 0};
-    (void)state;
     rig_make_frame(sent, 4, &example);
     for (unsigned frame = 2; frame != RUN; frame++) rig_make_frame(sent + frame * 4, 4, &no_target);
     for (unsigned mm = 0; mm != 65536; mm++) {
@@ -406,22 +392,4 @@ static void without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_targ
     assert_int_equal(tally.wrong, PASS);
     assert_int_equal(with_gaps.runs, 4 * 65536);
     assert_int_equal(with_gaps.wrong, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else),
-        cmocka_unit_test(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else),
-        cmocka_unit_test(with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF),
-        cmocka_unit_test(of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes),
-        cmocka_unit_test(with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass),
-        cmocka_unit_test(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass),
-        cmocka_unit_test(with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does),
-        cmocka_unit_test(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading),
-        cmocka_unit_test(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_value),
-        cmocka_unit_test(without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_of_step),
-        cmocka_unit_test(without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

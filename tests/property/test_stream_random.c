@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/a05_auto.h"
 
@@ -159,10 +156,9 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
 }
 
 /* Frames of 10.4 ms and pauses of 90 ms, and a loop that sees each pause. */
-static void with_pauses_seen_no_frame_is_lost_and_none_is_wrong(void **state)
+TEST(with_pauses_seen_no_frame_is_lost_and_none_is_wrong)
 {
     static const uint32_t loops_us[] = {100, 1000, 5000, 20000};
-    (void)state;
     for (size_t i = 0; i != sizeof loops_us / sizeof loops_us[0]; i++) {
         const outcome_t outcome = run(90000, loops_us[i], 0, 0, 1 + (uint32_t)i);
         assert_int_equal(outcome.wrong, 0);
@@ -170,9 +166,8 @@ static void with_pauses_seen_no_frame_is_lost_and_none_is_wrong(void **state)
     }
 }
 
-static void with_a_byte_lost_or_a_bit_flipped_in_every_fifth_frame_none_is_wrong(void **state)
+TEST(with_a_byte_lost_or_a_bit_flipped_in_every_fifth_frame_none_is_wrong)
 {
-    (void)state;
     for (uint32_t seed = 10; seed != 14; seed++) {
         const outcome_t outcome = run(90000, 2000, 10, 10, seed);
         assert_int_equal(outcome.wrong, 0);
@@ -181,22 +176,11 @@ static void with_a_byte_lost_or_a_bit_flipped_in_every_fifth_frame_none_is_wrong
 }
 
 /* A loop so slow that it never sees the line silent: then frames are believed only in step with another. */
-static void without_pauses_seen_shifted_frames_are_not_shown(void **state)
+TEST(without_pauses_seen_shifted_frames_are_not_shown)
 {
-    (void)state;
     for (uint32_t seed = 20; seed != 24; seed++) {
         const outcome_t outcome = run(0, 3000, 50, 50, seed);
         assert_int_equal(outcome.wrong, 0);
         assert_true(outcome.right > FRAMES / 4);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_pauses_seen_no_frame_is_lost_and_none_is_wrong),
-        cmocka_unit_test(with_a_byte_lost_or_a_bit_flipped_in_every_fifth_frame_none_is_wrong),
-        cmocka_unit_test(without_pauses_seen_shifted_frames_are_not_shown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,12 +5,8 @@
 /* What the tests of the simulator share: a host at the near end of a line, which notes each byte and the
  * time of its last bit. No codec here: frames are literal bytes, from the datasheets where they print them. */
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "suite.h"
 #include <stdint.h>
-/* cmocka wants the four above first */
-#include <cmocka.h>
 
 #include "sim/sim.h"
 
@@ -97,16 +93,9 @@ static inline void bench_expect(bench_t *bench, const uint8_t *bytes, size_t cou
 #define ASSERT_SPAN(later_us, earlier_us, from_us, to_us)                                                    \
     assert_in_range(fathom_elapsed_us((later_us), (earlier_us)), (from_us), (to_us))
 
-/* Runs the group at every start. */
-#define BENCH_MAIN(tests)                                                                                    \
-    int main(void)                                                                                           \
-    {                                                                                                        \
-        int failed = 0;                                                                                      \
-        for (size_t i = 0; i < BENCH_STARTS; i++) {                                                          \
-            bench_start_us = bench_starts_us[i];                                                             \
-            failed += cmocka_run_group_tests(tests, NULL, NULL);                                             \
-        }                                                                                                    \
-        return failed;                                                                                       \
-    }
+/* Every test at every start. */
+static inline void bench_begin_round(unsigned round) { bench_start_us = bench_starts_us[round]; }
+
+#define BENCH_ROUNDS .begin_round = bench_begin_round, .rounds = BENCH_STARTS
 
 #endif

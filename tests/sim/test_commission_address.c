@@ -160,11 +160,9 @@ static void follow(uint8_t model, uint32_t loop_us)
     assert_int_equal(device_of(&s, 0)->counters.writes, 1);
 }
 
-static void an_address_that_is_set_is_followed_and_not_set_twice(void **state)
-{
-    (void)state;
-    for_all(follow);
-}
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(an_address_that_is_set_is_followed_and_not_set_twice) { for_all(follow); }
 
 static void in_use(uint8_t model, uint32_t loop_us)
 {
@@ -176,11 +174,7 @@ static void in_use(uint8_t model, uint32_t loop_us)
     assert_int_equal(device_of(&s, 0)->counters.writes + device_of(&s, 1)->counters.writes, 0);
 }
 
-static void an_address_at_which_another_answers_is_not_given(void **state)
-{
-    (void)state;
-    for_all(in_use);
-}
+TEST(an_address_at_which_another_answers_is_not_given) { for_all(in_use); }
 
 static void lost_confirmation(uint8_t model, uint32_t loop_us)
 {
@@ -198,11 +192,7 @@ static void lost_confirmation(uint8_t model, uint32_t loop_us)
     assert_int_equal(read_once(&s, &sample), FATHOM_ERR_NO_ANSWER); /* the driver is where it was */
 }
 
-static void without_confirmation_it_is_at_one_of_the_two(void **state)
-{
-    (void)state;
-    for_all(lost_confirmation);
-}
+TEST(without_confirmation_it_is_at_one_of_the_two) { for_all(lost_confirmation); }
 
 static void lost_acknowledgement(uint8_t model, uint32_t loop_us)
 {
@@ -213,11 +203,7 @@ static void lost_acknowledgement(uint8_t model, uint32_t loop_us)
     assert_int_equal(device_of(&s, 0)->counters.writes, 1); /* it is not written again */
 }
 
-static void a_lost_acknowledgement_does_not_matter_if_the_reading_confirms(void **state)
-{
-    (void)state;
-    for_all(lost_acknowledgement);
-}
+TEST(a_lost_acknowledgement_does_not_matter_if_the_reading_confirms) { for_all(lost_acknowledgement); }
 
 static void nobody(uint8_t model, uint32_t loop_us)
 {
@@ -230,11 +216,7 @@ static void nobody(uint8_t model, uint32_t loop_us)
     }
 }
 
-static void a_dead_device_does_not_look_like_success_where_the_line_echoes(void **state)
-{
-    (void)state;
-    for_all(nobody);
-}
+TEST(a_dead_device_does_not_look_like_success_where_the_line_echoes) { for_all(nobody); }
 
 static void follow_with_echo(uint8_t model, uint32_t loop_us)
 {
@@ -245,18 +227,13 @@ static void follow_with_echo(uint8_t model, uint32_t loop_us)
     assert_int_equal(device_of(&s, 0)->unit, 5);
 }
 
-static void it_works_where_the_line_echoes(void **state)
-{
-    (void)state;
-    for_all(follow_with_echo);
-}
+TEST(it_works_where_the_line_echoes) { for_all(follow_with_echo); }
 
 /* ---- the hazard of 55 AA 03 ---- */
 
-static void every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus(void **state)
+TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
 {
     stage_t s;
-    (void)state;
     set_up(&s, A05_DYP, 0);
     add_device(&s, 1, 9);
     (void)set_address(&s, 5); /* what it reads from two devices at once is anybody's guess */
@@ -272,13 +249,12 @@ static void every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus(void 
 
 /* ---- requests of others ---- */
 
-static void what_waits_for_the_old_address_is_cancelled(void **state)
+TEST(what_waits_for_the_old_address_is_cancelled)
 {
     stage_t s;
     uint16_t value = 0;
     fathom_modbus_request_t request = {.exchange = {.timeout_us = 100 * MS}};
     fathom_modbus_request_t other = {.exchange = {.timeout_us = 100 * MS}};
-    (void)state;
     set_up(&s, A16, 0);
     fathom_modbus_read_holding_registers(&request.message, 1, 0x0101, 1, &value);
     fathom_modbus_read_holding_registers(&other.message, 9, 0x0101, 1, &value);
@@ -298,12 +274,11 @@ static void what_waits_for_the_old_address_is_cancelled(void **state)
     assert_int_equal(other.exchange.status, FATHOM_ERR_NO_ANSWER);
 }
 
-static void what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unknown(void **state)
+TEST(what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unknown)
 {
     stage_t s;
     fathom_sample_t sample;
     uint8_t address = 0;
-    (void)state;
     set_up(&s, A05, 0);
     assert_int_equal(fathom_a05_modbus_set_address(&s.driver.a05, 5), FATHOM_PENDING);
     fathom_a05_modbus_cancel(&s.driver.a05);
@@ -321,9 +296,8 @@ static void what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unkn
     assert_int_equal(sample.unit, 1);
 }
 
-static void addresses_of_everybody_are_refused(void **state)
+TEST(addresses_of_everybody_are_refused)
 {
-    (void)state;
     for (uint8_t model = 0; model != MODELS; model++) {
         stage_t s;
         set_up(&s, model, 0);
@@ -333,9 +307,8 @@ static void addresses_of_everybody_are_refused(void **state)
     }
 }
 
-static void after_power_on_an_a05_that_is_silent_warms_up(void **state)
+TEST(after_power_on_an_a05_that_is_silent_warms_up)
 {
-    (void)state;
     for (uint8_t model = A05; model != MODELS; model++) {
         stage_t s;
         fathom_sample_t sample;
@@ -351,19 +324,3 @@ static void after_power_on_an_a05_that_is_silent_warms_up(void **state)
         assert_int_equal(read_once(&s, &sample), FATHOM_ERR_NO_ANSWER);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(an_address_that_is_set_is_followed_and_not_set_twice),
-    cmocka_unit_test(an_address_at_which_another_answers_is_not_given),
-    cmocka_unit_test(without_confirmation_it_is_at_one_of_the_two),
-    cmocka_unit_test(a_lost_acknowledgement_does_not_matter_if_the_reading_confirms),
-    cmocka_unit_test(a_dead_device_does_not_look_like_success_where_the_line_echoes),
-    cmocka_unit_test(it_works_where_the_line_echoes),
-    cmocka_unit_test(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus),
-    cmocka_unit_test(what_waits_for_the_old_address_is_cancelled),
-    cmocka_unit_test(what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unknown),
-    cmocka_unit_test(addresses_of_everybody_are_refused),
-    cmocka_unit_test(after_power_on_an_a05_that_is_silent_warms_up),
-};
-
-BENCH_MAIN(tests)

@@ -58,9 +58,10 @@ static void one_of_the_two(const job_t *first, const job_t *second)
     assert_int_equal(told(&s), expected);
 }
 
-static void a_command_is_busy_for_as_long_as_another_is_not_finished(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(a_command_is_busy_for_as_long_as_another_is_not_finished)
 {
-    (void)state;
     for (unsigned a = 0; a != jobs_count; a++)
         for (unsigned b = 0; b != jobs_count; b++) {
             const job_t *const first = &jobs[a];
@@ -76,11 +77,10 @@ static void a_command_is_busy_for_as_long_as_another_is_not_finished(void **stat
 
 /* ---- the wrap ---- */
 
-static void the_clock_may_wrap_at_any_step(void **state)
+TEST(the_clock_may_wrap_at_any_step)
 {
     static commission_t s;
     const uint32_t start_us = bench_start_us;
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
         for (uint32_t before_us = 0; before_us < 3 * SECOND; before_us += 61 * MS + 7) {
             bench_start_us = (uint32_t)(0u - before_us);
@@ -103,11 +103,10 @@ static uint32_t time_of_next_outcome_us(commission_t *s, fathom_status_t expecte
     return fathom_elapsed_us(s->clock.now_us, start_us);
 }
 
-static void a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands(void **state)
+TEST(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands)
 {
     /* Time-outs of fathom_poll: a16_modbus.h, a05_modbus.h, a05_dyp.h, hps167s.h. */
     static const uint32_t timeouts_us[] = {1 * SECOND, 600 * MS, 500 * MS, 500 * MS};
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++) {
         static commission_t s;
         const job_t *const job = &jobs[j];
@@ -135,9 +134,8 @@ static void a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands(voi
 
 /* ---- a broken port ---- */
 
-static void a_broken_port_is_said_by_every_poll_until_it_works_again(void **state)
+TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
 {
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++) {
         static commission_t s;
         fathom_sample_t sample;
@@ -157,12 +155,3 @@ static void a_broken_port_is_said_by_every_poll_until_it_works_again(void **stat
         assert_int_equal(jobs[j].has(&s), jobs[j].wanted);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_command_is_busy_for_as_long_as_another_is_not_finished),
-    cmocka_unit_test(the_clock_may_wrap_at_any_step),
-    cmocka_unit_test(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands),
-    cmocka_unit_test(a_broken_port_is_said_by_every_poll_until_it_works_again),
-};
-
-BENCH_MAIN(tests)

@@ -56,9 +56,10 @@ static void beside_another_driver(const job_t *job, uint32_t loop_us, uint8_t ec
     assert_true(recovers(&s));
 }
 
-static void another_driver_of_the_same_unit_takes_no_outcome_away(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(another_driver_of_the_same_unit_takes_no_outcome_away)
 {
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
         for (unsigned l = 0; l != 4; l++)
             for (uint8_t echo = 0; echo != 3; echo++) beside_another_driver(&jobs[j], loops_us[l], echo);
@@ -97,9 +98,8 @@ static void behind_others(const job_t *job, uint32_t loop_us)
     assert_int_equal(told(&s), job->kind == READS ? 0 : 1);
 }
 
-static void a_queue_that_is_never_empty_delays_and_no_more(void **state)
+TEST(a_queue_that_is_never_empty_delays_and_no_more)
 {
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
         for (unsigned l = 0; l != 3; l++) behind_others(&jobs[j], loops_us[l]);
 }
@@ -143,9 +143,8 @@ static void both_protocols(bool dyp_sets, uint32_t loop_us)
     assert_true(readings >= 4);
 }
 
-static void an_address_is_set_in_one_protocol_while_the_other_measures(void **state)
+TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
 {
-    (void)state;
     for (unsigned l = 0; l != 4; l++) {
         both_protocols(false, loops_us[l]);
         both_protocols(true, loops_us[l]);
@@ -181,11 +180,10 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     return status == FATHOM_READY;
 }
 
-static void unasked_measurements_are_no_answers(void **state)
+TEST(unasked_measurements_are_no_answers)
 {
     unsigned ready = 0;
     unsigned all = 0;
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
         for (uint32_t unasked_us = 19 * MS; unasked_us < 300 * MS; unasked_us += 27 * MS)
             for (unsigned l = 0; l != 3 && jobs[j].model == HPS; l++, all++)
@@ -195,11 +193,10 @@ static void unasked_measurements_are_no_answers(void **state)
 
 /* ---- a rate that holds from the next power-on ---- */
 
-static void a_rate_for_the_next_power_on_is_followed_then(void **state)
+TEST(a_rate_for_the_next_power_on_is_followed_then)
 {
     static commission_t s;
     fathom_sample_t sample;
-    (void)state;
     for (unsigned l = 0; l != 4; l++)
         for (unsigned cut = 0; cut != 2; cut++) {
             set_up(&s, HPS, 1, loops_us[l], FATHOM_LINE_ECHO_AUTO);
@@ -216,13 +213,3 @@ static void a_rate_for_the_next_power_on_is_followed_then(void **state)
             assert_int_equal(told(&s), 1);
         }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(another_driver_of_the_same_unit_takes_no_outcome_away),
-    cmocka_unit_test(a_queue_that_is_never_empty_delays_and_no_more),
-    cmocka_unit_test(an_address_is_set_in_one_protocol_while_the_other_measures),
-    cmocka_unit_test(unasked_measurements_are_no_answers),
-    cmocka_unit_test(a_rate_for_the_next_power_on_is_followed_then),
-};
-
-BENCH_MAIN(tests)

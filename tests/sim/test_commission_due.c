@@ -80,10 +80,11 @@ static void ask(desk_t *desk)
     assert_int_equal(desk->request.exchange.attempts, 1);
 }
 
-static void a_time_out_in_mid_answer_is_due_when_the_answer_has_broken_off(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(a_time_out_in_mid_answer_is_due_when_the_answer_has_broken_off)
 {
     desk_t desk;
-    (void)state;
     set_desk(&desk);
     ask(&desk);
     assert_int_equal(fathom_line_due_us(&desk.line), 100 * MS);
@@ -96,11 +97,10 @@ static void a_time_out_in_mid_answer_is_due_when_the_answer_has_broken_off(void 
     assert_int_equal(desk.request.exchange.status, FATHOM_ERR_CHECKSUM);
 }
 
-static void a_request_behind_part_of_a_late_answer_is_due_when_that_has_broken_off(void **state)
+TEST(a_request_behind_part_of_a_late_answer_is_due_when_that_has_broken_off)
 {
     desk_t desk;
     fathom_modbus_request_t other = {.exchange = {.timeout_us = 100 * MS}};
-    (void)state;
     set_desk(&desk);
     ask(&desk);
     come(&desk, 100 * MS, NULL, 0);
@@ -138,10 +138,9 @@ static void hear_frame(radio_t *radio, const uint8_t *bytes, size_t count)
     assert_int_equal(fathom_poll(&radio->sensor, &radio->sample), FATHOM_PENDING);
 }
 
-static void a_silence_behind_a_frame_gives_it_also_with_an_open_exchange(void **state)
+TEST(a_silence_behind_a_frame_gives_it_also_with_an_open_exchange)
 {
     radio_t radio;
-    (void)state;
     hear_frame(&radio, LITERAL(0xFF, 0x02, 0xEF, 0xF0));
     assert_int_equal(fathom_due_us(&radio.sensor, 1), 5 * MS);
     radio.desk.now_us += 5 * MS;
@@ -149,10 +148,9 @@ static void a_silence_behind_a_frame_gives_it_also_with_an_open_exchange(void **
     assert_int_equal(radio.sample.distance_mm, 751);
 }
 
-static void bytes_that_the_line_holds_back_are_no_silence_behind_a_frame(void **state)
+TEST(bytes_that_the_line_holds_back_are_no_silence_behind_a_frame)
 {
     radio_t radio;
-    (void)state;
     hear_frame(&radio, LITERAL(0xFF, 0x02, 0xEF, 0xF0, 0x01, 0x03));
     /* What comes next may be the answer, and is held; it is no beginning of another frame of the stream. */
     come(&radio.desk, 3 * MS, LITERAL(0x02));
@@ -166,10 +164,9 @@ static void bytes_that_the_line_holds_back_are_no_silence_behind_a_frame(void **
     assert_int_equal(radio.a16.base.stream.counters[FATHOM_STREAM_UNSURE], 1);
 }
 
-static void an_answer_right_behind_a_frame_delays_it_and_no_more(void **state)
+TEST(an_answer_right_behind_a_frame_delays_it_and_no_more)
 {
     radio_t radio;
-    (void)state;
     hear_frame(&radio, LITERAL(0xFF, 0x02, 0xEF, 0xF0, 0x01, 0x03));
     come(&radio.desk, 3 * MS, LITERAL(0x02));
     radio.desk.now_us += 2 * MS;
@@ -180,13 +177,3 @@ static void an_answer_right_behind_a_frame_delays_it_and_no_more(void **state)
     assert_int_equal(fathom_poll(&radio.sensor, &radio.sample), FATHOM_READY);
     assert_int_equal(radio.sample.distance_mm, 751);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_time_out_in_mid_answer_is_due_when_the_answer_has_broken_off),
-    cmocka_unit_test(a_request_behind_part_of_a_late_answer_is_due_when_that_has_broken_off),
-    cmocka_unit_test(a_silence_behind_a_frame_gives_it_also_with_an_open_exchange),
-    cmocka_unit_test(bytes_that_the_line_holds_back_are_no_silence_behind_a_frame),
-    cmocka_unit_test(an_answer_right_behind_a_frame_delays_it_and_no_more),
-};
-
-BENCH_MAIN(tests)

@@ -107,11 +107,12 @@ static void with_fault(const job_t *job, uint8_t kind, uint32_t frame, uint32_t 
     expect_works(&s, job, status, what);
 }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* Each start of the clock takes the loops another way round. */
-static void no_fault_at_any_frame_makes_an_outcome_untrue(void **state)
+TEST(no_fault_at_any_frame_makes_an_outcome_untrue)
 {
     unsigned l = bench_start_us % 3;
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
         for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
             for (uint32_t frame = 1; frame <= 6; frame++, l++)
@@ -128,11 +129,10 @@ static uint32_t any(uint32_t below)
 
 /* Four kinds at once, each of them at a third of the frames, on a port that knows this or that, with or without a
  * measurement before. */
-static void many_faults_at_once_make_no_outcome_untrue(void **state)
+TEST(many_faults_at_once_make_no_outcome_untrue)
 {
     static commission_t s;
     char what[80];
-    (void)state;
     random_state = bench_start_us;
     for (unsigned round = 0; round != RUNS; round++) {
         const job_t *const job = &jobs[round % jobs_count];
@@ -169,10 +169,3 @@ static void many_faults_at_once_make_no_outcome_untrue(void **state)
     }
     assert_int_equal(problems, 0);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(many_faults_at_once_make_no_outcome_untrue),
-    cmocka_unit_test(no_fault_at_any_frame_makes_an_outcome_untrue),
-};
-
-BENCH_MAIN(tests)

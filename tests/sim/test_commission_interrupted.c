@@ -99,11 +99,12 @@ static bool interrupted(const job_t *job, unsigned act, unsigned step, uint32_t 
     return true;
 }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* Every step, over all the starts of the clock. */
-static void whatever_interrupts_a_command_it_ends_as_it_says_and_works_again(void **state)
+TEST(whatever_interrupts_a_command_it_ends_as_it_says_and_works_again)
 {
     static unsigned start; /* which one of bench_starts_us */
-    (void)state;
     for (unsigned j = 0; j != jobs_count; j++)
         for (unsigned act = 0; act != ACTS; act++)
             for (unsigned l = 0; l != 2; l++) {
@@ -114,9 +115,3 @@ static void whatever_interrupts_a_command_it_ends_as_it_says_and_works_again(voi
     start++;
     assert_int_equal(problems, 0);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(whatever_interrupts_a_command_it_ends_as_it_says_and_works_again),
-};
-
-BENCH_MAIN(tests)

@@ -100,10 +100,11 @@ static bool is_sending(serial_t *t)
     return device_of(&t->s, 0)->counters.automatic >= before + 3;
 }
 
-static void settings_are_changed_while_it_sends_and_it_sends_again_afterwards(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(settings_are_changed_while_it_sends_and_it_sends_again_afterwards)
 {
     static serial_t t;
-    (void)state;
     for (unsigned l = 0; l != 4; l++)
         for (uint32_t later_us = 0; later_us < 100 * MS; later_us += 7 * MS) { /* of the period of 100 ms */
             set_up_serial(&t, loops_us[l]);
@@ -147,19 +148,17 @@ static void with_fault(uint8_t kind, uint32_t frame, uint32_t loop_us)
     assert_true(is_sending(&t));
 }
 
-static void no_fault_shows_a_wrong_reading_or_a_return_that_was_none(void **state)
+TEST(no_fault_shows_a_wrong_reading_or_a_return_that_was_none)
 {
-    (void)state;
     for (uint8_t kind = FATHOM_SIM_FAULT_UNIT; kind != FATHOM_SIM_FAULT_END; kind++)
         for (uint32_t frame = 1; frame <= 8; frame++)
             for (unsigned l = 0; l != 4; l++)
                 if (kind != FATHOM_SIM_FAULT_UNASKED) with_fault(kind, frame, loops_us[l]);
 }
 
-static void what_was_given_up_is_begun_anew(void **state)
+TEST(what_was_given_up_is_begun_anew)
 {
     static serial_t t;
-    (void)state;
     for (unsigned step = 0; step != 120; step++) {
         fathom_sample_t sample;
         set_up_serial(&t, 20 * MS);
@@ -176,11 +175,10 @@ static void what_was_given_up_is_begun_anew(void **state)
     }
 }
 
-static void a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came(void **state)
+TEST(a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came)
 {
     static serial_t t;
     fathom_sample_t sample;
-    (void)state;
     set_up_serial(&t, 1 * MS);
     assert_int_equal(set_threshold(&t, 750), FATHOM_READY);
     while (!t.rs232.is_listening) {
@@ -191,12 +189,3 @@ static void a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came(void *
     assert_int_equal(fathom_a16_rs232_due_us(&t.rs232), 0);
     assert_int_equal(return_to_automatic(&t), FATHOM_READY);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(settings_are_changed_while_it_sends_and_it_sends_again_afterwards),
-    cmocka_unit_test(no_fault_shows_a_wrong_reading_or_a_return_that_was_none),
-    cmocka_unit_test(what_was_given_up_is_begun_anew),
-    cmocka_unit_test(a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came),
-};
-
-BENCH_MAIN(tests)

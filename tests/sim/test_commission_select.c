@@ -81,10 +81,11 @@ static void power(start_t *s, fathom_a05_value_t value)
     fathom_sim_power_cycle(&s->wire, &s->a05.device, 0, s->clock.now_us);
 }
 
-static void the_values_are_those_that_were_chosen(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(the_values_are_those_that_were_chosen)
 {
     static start_t s;
-    (void)state;
     for (unsigned l = 0; l != 4; l++) {
         set_up_start(&s, loops_us[l]);
         power(&s, FATHOM_A05_REAL_TIME);
@@ -96,10 +97,9 @@ static void the_values_are_those_that_were_chosen(void **state)
     }
 }
 
-static void the_line_is_held_low_for_a_second_and_a_half_and_no_longer(void **state)
+TEST(the_line_is_held_low_for_a_second_and_a_half_and_no_longer)
 {
     static start_t s;
-    (void)state;
     for (unsigned l = 1; l != 4; l++) {
         set_up_start(&s, loops_us[l]);
         power(&s, FATHOM_A05_REAL_TIME);
@@ -114,10 +114,9 @@ static void the_line_is_held_low_for_a_second_and_a_half_and_no_longer(void **st
 }
 
 /* The A05 hears Modbus from then on, and its automatic output ends. */
-static void what_was_asked_meanwhile_is_sent_afterwards(void **state)
+TEST(what_was_asked_meanwhile_is_sent_afterwards)
 {
     static start_t s;
-    (void)state;
     for (unsigned l = 0; l != 4; l++) {
         set_up_start(&s, loops_us[l]);
         power(&s, FATHOM_A05_REAL_TIME);
@@ -143,11 +142,10 @@ static void what_was_asked_meanwhile_is_sent_afterwards(void **state)
     }
 }
 
-static void while_a_request_is_on_its_way_it_is_busy_and_nothing_changes(void **state)
+TEST(while_a_request_is_on_its_way_it_is_busy_and_nothing_changes)
 {
     static start_t s;
     uint8_t address = 0;
-    (void)state;
     set_up_start(&s, 1 * MS);
     fathom_sim_clock_advance(&s.clock, 20 * MS);
     while (s.line.head == NULL || s.line.head->attempts == 0) {
@@ -161,12 +159,3 @@ static void while_a_request_is_on_its_way_it_is_busy_and_nothing_changes(void **
     assert_true(s.wire.in_break);
     assert_int_equal(first_probe_mm(&s), 1000);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_values_are_those_that_were_chosen),
-    cmocka_unit_test(the_line_is_held_low_for_a_second_and_a_half_and_no_longer),
-    cmocka_unit_test(what_was_asked_meanwhile_is_sent_afterwards),
-    cmocka_unit_test(while_a_request_is_on_its_way_it_is_busy_and_nothing_changes),
-};
-
-BENCH_MAIN(tests)

@@ -41,9 +41,8 @@ static void expect_eight(void)
     rig_expect_unharmed();
 }
 
-static void test_eight_sensors_of_three_models_are_found_and_none_is_harmed(void **state)
+TEST(test_eight_sensors_of_three_models_are_found_and_none_is_harmed)
 {
-    (void)state;
     for (unsigned i = 0; i != STARTS; i++) {
         begin_eight(starts_us[i]);
         assert_int_equal(rig_walk(), FATHOM_READY);
@@ -53,18 +52,16 @@ static void test_eight_sensors_of_three_models_are_found_and_none_is_harmed(void
     }
 }
 
-static void test_eight_are_found_by_a_loop_of_20_ms(void **state)
+TEST(test_eight_are_found_by_a_loop_of_20_ms)
 {
-    (void)state;
     begin_eight(UINT32_C(0xFFF00000));
     rig.coarse_us = 20000;
     assert_int_equal(rig_walk(), FATHOM_READY);
     expect_eight();
 }
 
-static void test_eight_are_found_behind_an_adapter_that_echoes(void **state)
+TEST(test_eight_are_found_behind_an_adapter_that_echoes)
 {
-    (void)state;
     begin_eight(0);
     rig.sim_line.echo = true;
     assert_int_equal(rig_walk(), FATHOM_READY);
@@ -73,10 +70,9 @@ static void test_eight_are_found_behind_an_adapter_that_echoes(void **state)
     assert_false(rig.walk.heard.has_master);
 }
 
-static void test_an_echo_alone_is_no_device_at_any_address(void **state)
+TEST(test_an_echo_alone_is_no_device_at_any_address)
 {
     /* Nor is that of units 83 and 147, which looks like an answer. */
-    (void)state;
     rig_begin(0);
     rig.sim_line.echo = true;
     rig.plan.last = 254;
@@ -96,12 +92,11 @@ static void test_an_echo_alone_is_no_device_at_any_address(void **state)
     rig_expect_sensor(147, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
 }
 
-static void test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers(void **state)
+TEST(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers)
 {
     static fathom_sim_fault_t noise;
     static fathom_sim_fault_t flips;
     uint32_t flipped = 0;
-    (void)state;
     for (uint32_t seed = 1; seed != 9; seed++) {
         begin_eight(0);
         fathom_sim_fault_init(&noise, seed);
@@ -121,10 +116,8 @@ static void test_eight_are_found_although_one_is_noisy_and_another_damages_half_
     assert_true(flipped >= 8);
 }
 
-static void test_every_address_at_every_rate_and_parity_takes_less_than_10_minutes_and_what_was_said(
-    void **state)
+TEST(test_every_address_at_every_rate_and_parity_takes_less_than_10_minutes_and_what_was_said)
 {
-    (void)state;
     rig_begin(UINT32_C(0xF0000000)); /* the clock wraps in between */
     rig_plan_everything();
     const uint64_t said_us = scan_plan_us(&rig.plan) - rig.plan.listen_us;
@@ -140,9 +133,8 @@ static void test_every_address_at_every_rate_and_parity_takes_less_than_10_minut
     assert_true(rig.progress_us < said_us);
 }
 
-static void test_with_eight_sensors_every_address_takes_less_than_10_minutes(void **state)
+TEST(test_with_eight_sensors_every_address_takes_less_than_10_minutes)
 {
-    (void)state;
     begin_eight(0);
     rig_plan_everything();
     assert_int_equal(rig_walk(), FATHOM_READY);
@@ -151,9 +143,8 @@ static void test_with_eight_sensors_every_address_takes_less_than_10_minutes(voi
     assert_true(rig.passed_us + rig.plan.listen_us <= scan_plan_us(&rig.plan) + 8u * SCAN_FOUND_US);
 }
 
-static void test_a_silent_address_is_asked_again_as_often_as_the_plan_says(void **state)
+TEST(test_a_silent_address_is_asked_again_as_often_as_the_plan_says)
 {
-    (void)state;
     rig_begin(0);
     rig.plan.repeats = 2;
     rig.plan.last = 4;
@@ -163,9 +154,8 @@ static void test_a_silent_address_is_asked_again_as_often_as_the_plan_says(void 
     assert_true(rig.passed_us + rig.plan.listen_us <= scan_plan_us(&rig.plan));
 }
 
-static void test_the_time_out_of_the_plan_is_kept(void **state)
+TEST(test_the_time_out_of_the_plan_is_kept)
 {
-    (void)state;
     rig_begin(0);
     rig.plan.timeout_us = 400000;
     rig.plan.last = 2;
@@ -173,10 +163,9 @@ static void test_the_time_out_of_the_plan_is_kept(void **state)
     assert_in_range(rig.passed_us, 4 * 400000 + 300000, scan_plan_us(&rig.plan) - rig.plan.listen_us);
 }
 
-static void test_an_a16_or_a05_may_take_longer_than_an_hps167s(void **state)
+TEST(test_an_a16_or_a05_may_take_longer_than_an_hps167s)
 {
     const fathom_line_settings_t odd = {9600, FATHOM_PARITY_ODD, 1};
-    (void)state;
     rig_begin(0);
     assert_int_equal(scan_timeout_us(&rig.plan, &scan_dyp_line), 150000);
     assert_int_equal(scan_timeout_us(&rig.plan, &scan_hps167s_line), 100000);
@@ -190,10 +179,9 @@ static void test_an_a16_or_a05_may_take_longer_than_an_hps167s(void **state)
                     3646 + 8333 + 2 * 150000 + 5208 + 310000);
 }
 
-static void test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tried(void **state)
+TEST(test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tried)
 {
     const fathom_line_settings_t fast = {57600, FATHOM_PARITY_EVEN, 1};
-    (void)state;
     rig_begin(0);
     rig_plan_everything();
     rig.plan.settings[6] = (fathom_line_settings_t){57600, FATHOM_PARITY_EVEN, 1}; /* the factory's first */
@@ -209,9 +197,8 @@ static void test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_
     rig_expect_unharmed();
 }
 
-static void test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on(void **state)
+TEST(test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on)
 {
-    (void)state;
     rig_begin(0);
     rig.plan.settings[2] = rig.plan.settings[1];
     rig.plan.settings[1] = (fathom_line_settings_t){230400, FATHOM_PARITY_EVEN, 1};
@@ -223,9 +210,8 @@ static void test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on(void **s
     rig_expect_sensor(1, FATHOM_HPS167S, SCAN_MODBUS, &scan_hps167s_line);
 }
 
-static void test_one_that_answers_late_is_found_all_the_same(void **state)
+TEST(test_one_that_answers_late_is_found_all_the_same)
 {
-    (void)state;
     /* 220 to 250 ms, where 150 are waited for: it answers while the next address is asked. */
     rig_begin(UINT32_C(0xFFF00000));
     rig_a16(&(fathom_sim_a16_config_t){.unit = 3, .mode = FATHOM_SIM_A16_MODBUS, .settings_us = 250000});
@@ -236,9 +222,8 @@ static void test_one_that_answers_late_is_found_all_the_same(void **state)
     rig_expect_sensor(5, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
 }
 
-static void test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_asked(void **state)
+TEST(test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_asked)
 {
-    (void)state;
     rig_begin(0);
     rig_a05(&(fathom_sim_a05_config_t){.unit = 100, .mode = FATHOM_SIM_A05_DYP});
     assert_int_equal(rig_walk(), FATHOM_READY);
@@ -247,9 +232,8 @@ static void test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_as
     rig_expect_unharmed();
 }
 
-static void test_it_ends_at_once_when_that_is_asked_for(void **state)
+TEST(test_it_ends_at_once_when_that_is_asked_for)
 {
-    (void)state;
     for (uint32_t waits = 0; waits < 400; waits += 7) {
         begin_eight(0);
         rig.waits_left = waits;
@@ -259,35 +243,10 @@ static void test_it_ends_at_once_when_that_is_asked_for(void **state)
     }
 }
 
-static void test_a_port_that_breaks_ends_it(void **state)
+TEST(test_a_port_that_breaks_ends_it)
 {
-    (void)state;
     begin_eight(0);
     rig.is_broken = true;
     assert_int_equal(rig_walk(), FATHOM_ERR_PORT);
     assert_int_equal(rig.found, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_eight_sensors_of_three_models_are_found_and_none_is_harmed),
-        cmocka_unit_test(test_eight_are_found_by_a_loop_of_20_ms),
-        cmocka_unit_test(test_eight_are_found_behind_an_adapter_that_echoes),
-        cmocka_unit_test(test_an_echo_alone_is_no_device_at_any_address),
-        cmocka_unit_test(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers),
-        cmocka_unit_test(
-            test_every_address_at_every_rate_and_parity_takes_less_than_10_minutes_and_what_was_said),
-        cmocka_unit_test(test_with_eight_sensors_every_address_takes_less_than_10_minutes),
-        cmocka_unit_test(test_a_silent_address_is_asked_again_as_often_as_the_plan_says),
-        cmocka_unit_test(test_the_time_out_of_the_plan_is_kept),
-        cmocka_unit_test(test_an_a16_or_a05_may_take_longer_than_an_hps167s),
-        cmocka_unit_test(test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tried),
-        cmocka_unit_test(test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on),
-        cmocka_unit_test(test_one_that_answers_late_is_found_all_the_same),
-        cmocka_unit_test(test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_asked),
-        cmocka_unit_test(test_it_ends_at_once_when_that_is_asked_for),
-        cmocka_unit_test(test_a_port_that_breaks_ends_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

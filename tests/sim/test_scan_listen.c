@@ -17,9 +17,8 @@ static void listen_for_3_s(void)
     assert_int_equal(rig.sim_line.counters.from_host, 0);
 }
 
-static void test_a_quiet_line_is_listened_to_for_just_that_long(void **state)
+TEST(test_a_quiet_line_is_listened_to_for_just_that_long)
 {
-    (void)state;
     rig_begin(UINT32_C(0xFFF00000));
     rig_a16(&(fathom_sim_a16_config_t){.unit = 1, .mode = FATHOM_SIM_A16_MODBUS});
     listen_for_3_s();
@@ -27,12 +26,11 @@ static void test_a_quiet_line_is_listened_to_for_just_that_long(void **state)
     assert_int_equal(rig.passed_us, 3000000);
 }
 
-static void test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent(void **state)
+TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
 {
     /* Held still at values whose bytes look like frames one byte further: 511 mm is FF 01 FF FF. */
     static fathom_sim_fixed_t scenes[] = {
         {{511, 511, 511, 511}}, {{1000, 2000, 2047, 1339}}, {{-1, -1, -1, -1}}, {{65281, 0, 255, 65535}}};
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         for (unsigned coarse = 0; coarse != 2; coarse++) {
             rig_begin(UINT32_C(0xFFF00000));
@@ -59,9 +57,8 @@ static void test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent(void 
     }
 }
 
-static void test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devices(void **state)
+TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devices)
 {
-    (void)state;
     rig_begin(0);
     rig.sim_line.full_duplex = true;
     rig_a16(&(fathom_sim_a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_AUTO});
@@ -80,13 +77,12 @@ static void test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_
     assert_int_equal(rig.found, 0);
 }
 
-static void test_an_hps167s_that_sends_unasked_is_found_at_its_rate(void **state)
+TEST(test_an_hps167s_that_sends_unasked_is_found_at_its_rate)
 {
     /* HPS-167S #5, the example's answer */
     static const uint8_t answer[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
                                      0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
     const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
-    (void)state;
     /* so often that what was heard at the wrong rate fills any memory */
     rig_begin(0);
     begin_speaker(&fast, 40000, answer, sizeof answer);
@@ -98,12 +94,11 @@ static void test_an_hps167s_that_sends_unasked_is_found_at_its_rate(void **state
     assert_int_equal(talk.finding.line.baud, 115200);
 }
 
-static void test_a_rate_that_the_port_cannot_do_does_not_end_the_listening(void **state)
+TEST(test_a_rate_that_the_port_cannot_do_does_not_end_the_listening)
 {
     static const uint8_t answer[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
                                      0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
     const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
-    (void)state;
     rig_begin(0);
     rig.refused_baud = 57600;
     begin_speaker(&fast, 180000, answer, sizeof answer);
@@ -112,11 +107,10 @@ static void test_a_rate_that_the_port_cannot_do_does_not_end_the_listening(void 
     assert_int_equal(talk.finding.line.baud, 115200);
 }
 
-static void test_another_master_is_told(void **state)
+TEST(test_another_master_is_told)
 {
     /* A16 6, the first example: it asks address 1 for 0100 */
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
-    (void)state;
     rig_begin(0);
     begin_speaker(&scan_dyp_line, 500000, request, sizeof request);
     listen_for_3_s();
@@ -125,9 +119,8 @@ static void test_another_master_is_told(void **state)
     assert_int_equal(talk.finding.address, 1);
 }
 
-static void test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise(void **state)
+TEST(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise)
 {
-    (void)state;
     rig_begin(0);
     begin_speaker(&scan_dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
     listen_for_3_s();
@@ -143,12 +136,11 @@ static void test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise(v
 
 /* ---- what it may not ask ---- */
 
-static void test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count(void **state)
+TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
 {
     scan_question_t question = {
         .line = &scan_hps167s_line, .timeout_us = 100000, .first = 0x0009, .address = 1};
     scan_answer_t answer;
-    (void)state;
     rig_begin(0);
     rig_hps(&(fathom_sim_hps167s_config_t){.unit = 1});
     for (uint8_t count = 1; count <= SCAN_REGISTERS; count++) {
@@ -169,19 +161,4 @@ static void test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count
     assert_int_equal(answer.status, FATHOM_READY);
     assert_int_equal(rig.requests, 1);
     rig_expect_unharmed();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_quiet_line_is_listened_to_for_just_that_long),
-        cmocka_unit_test(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent),
-        cmocka_unit_test(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devices),
-        cmocka_unit_test(test_an_hps167s_that_sends_unasked_is_found_at_its_rate),
-        cmocka_unit_test(test_a_rate_that_the_port_cannot_do_does_not_end_the_listening),
-        cmocka_unit_test(test_another_master_is_told),
-        cmocka_unit_test(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise),
-        cmocka_unit_test(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

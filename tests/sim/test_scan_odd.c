@@ -8,9 +8,8 @@ static const uint8_t junk[] = {0x02, 0x84, 0x31, 0x90, 0x11, 0xE7};
 
 /* ---- answers that are damaged ---- */
 
-static void test_two_units_with_one_address_are_told_and_their_neighbours_found(void **state)
+TEST(test_two_units_with_one_address_are_told_and_their_neighbours_found)
 {
-    (void)state;
     for (uint32_t seed = 0; seed != 8; seed++) {
         rig_begin(0);
         rig_a16(&(fathom_sim_a16_config_t){.unit = 1, .mode = FATHOM_SIM_A16_MODBUS, .seed = seed});
@@ -31,10 +30,9 @@ static void test_two_units_with_one_address_are_told_and_their_neighbours_found(
     }
 }
 
-static void test_two_answers_to_one_question_are_told(void **state)
+TEST(test_two_answers_to_one_question_are_told)
 {
     /* One answers 0200 after 17.5 to 20 ms, the other after 35 to 40: both answers are whole. */
-    (void)state;
     rig_begin(0);
     rig_a16(&(fathom_sim_a16_config_t){.unit = 6, .mode = FATHOM_SIM_A16_MODBUS});
     rig_a16(&(fathom_sim_a16_config_t){.unit = 6, .mode = FATHOM_SIM_A16_MODBUS, .settings_us = 40000});
@@ -43,9 +41,8 @@ static void test_two_answers_to_one_question_are_told(void **state)
     assert_true(rig_find(6)->is_double);
 }
 
-static void test_one_spike_on_a_dead_address_is_no_device(void **state)
+TEST(test_one_spike_on_a_dead_address_is_no_device)
 {
-    (void)state;
     rig_begin(0);
     /* once, 1.2 s after the beginning */
     const fathom_sim_device_t *const spike = begin_speaker(&scan_dyp_line, 1200000, junk, 1);
@@ -57,9 +54,8 @@ static void test_one_spike_on_a_dead_address_is_no_device(void **state)
     assert_true(rig.walk.heard.bytes != 0);
 }
 
-static void test_answers_that_are_no_modbus_are_told_once(void **state)
+TEST(test_answers_that_are_no_modbus_are_told_once)
 {
-    (void)state;
     rig_begin(UINT32_C(0xFFF00000));
     begin_speaker(&scan_hps167s_line, 0, junk, sizeof junk);
     rig_a16(&(fathom_sim_a16_config_t){.unit = 3, .mode = FATHOM_SIM_A16_MODBUS});
@@ -73,10 +69,8 @@ static void test_answers_that_are_no_modbus_are_told_once(void **state)
     assert_in_range(rig.probed[1][FATHOM_PARITY_EVEN], 64, 80);
 }
 
-static void test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_one_another_protocol(
-    void **state)
+TEST(test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_one_another_protocol)
 {
-    (void)state;
     for (uint8_t last = 3; last <= 4; last++) {
         rig_begin(0);
         begin_speaker(&scan_dyp_line, 0, junk, sizeof junk)->unit = 3;
@@ -99,11 +93,10 @@ static void expect_other(uint8_t address)
     assert_int_equal(rig_find(address)->kind, SCAN_OTHER);
 }
 
-static void test_whoever_answers_everything_or_nothing_is_another_modbus_device(void **state)
+TEST(test_whoever_answers_everything_or_nothing_is_another_modbus_device)
 {
     const fathom_line_settings_t *const lines[] = {&scan_dyp_line, &scan_hps167s_line};
     const uint16_t values[] = {0, 9, 0xFFFF, 0xB00B, 0x0909}; /* the last is a date */
-    (void)state;
     for (unsigned line = 0; line != 2; line++) {
         for (unsigned i = 0; i != sizeof values / sizeof values[0]; i++) {
             rig_begin(0);
@@ -120,9 +113,8 @@ static void test_whoever_answers_everything_or_nothing_is_another_modbus_device(
     }
 }
 
-static void test_whoever_has_another_address_in_0200_than_its_own_is_no_a16(void **state)
+TEST(test_whoever_has_another_address_in_0200_than_its_own_is_no_a16)
 {
-    (void)state;
     for (uint16_t address = 9; address != 12; address++) {
         rig_begin(0);
         stranger = (stranger_t){.value = 754, .address = address, .only = {0x0200, 0x0101}};
@@ -139,11 +131,10 @@ static void test_whoever_has_another_address_in_0200_than_its_own_is_no_a16(void
     rig_expect_sensor(9, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
 }
 
-static void test_whoever_has_no_date_in_0001_is_no_hps167s(void **state)
+TEST(test_whoever_has_no_date_in_0001_is_no_hps167s)
 {
     /* #3 begins with the right byte; in #1 the month is 0, 13 or 32, or the day is 0 */
     const uint16_t versions[] = {0x1400, 0x140D, 0x0020, 0x0009};
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         rig_begin(0);
         stranger = (stranger_t){.value = 0xB000, .version = versions[i]};
@@ -152,19 +143,17 @@ static void test_whoever_has_no_date_in_0001_is_no_hps167s(void **state)
     }
 }
 
-static void test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s(void **state)
+TEST(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
 {
     /* #2 is in its ranges but for the baud rate's code, 0 */
-    (void)state;
     rig_begin(0);
     stranger = (stranger_t){.version = 0x0909};
     begin_stranger(9, &scan_hps167s_line);
     expect_other(9);
 }
 
-static void test_an_a16_that_answers_0100_alone_is_known(void **state)
+TEST(test_an_a16_that_answers_0100_alone_is_known)
 {
-    (void)state;
     rig_begin(0);
     stranger = (stranger_t){.value = 754, .address = 9, .only = {0x0200, 0x0100}};
     begin_stranger(9, &scan_dyp_line);
@@ -173,10 +162,9 @@ static void test_an_a16_that_answers_0100_alone_is_known(void **state)
     assert_int_equal(rig_find(9)->value, 754);
 }
 
-static void test_an_a05_whose_measurement_is_lost_once_is_known(void **state)
+TEST(test_an_a05_whose_measurement_is_lost_once_is_known)
 {
     static fathom_sim_fault_t fault;
-    (void)state;
     rig_begin(0);
     rig_a05(&(fathom_sim_a05_config_t){.unit = 9, .mode = FATHOM_SIM_A05_MODBUS});
     fathom_sim_fault_init(&fault, 1);
@@ -188,11 +176,10 @@ static void test_an_a05_whose_measurement_is_lost_once_is_known(void **state)
     rig_expect_sensor(9, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
 }
 
-static void test_a_frame_of_an_address_that_was_not_asked_is_noted(void **state)
+TEST(test_a_frame_of_an_address_that_was_not_asked_is_noted)
 {
     /* A16 6, the first example's answer */
     static const uint8_t answer[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
-    (void)state;
     rig_begin(0);
     rig.plan.first = 2;
     rig.plan.last = 4;
@@ -203,10 +190,9 @@ static void test_a_frame_of_an_address_that_was_not_asked_is_noted(void **state)
     assert_false(rig.walk.heard.has_master);
 }
 
-static void test_another_master_that_begins_later_is_noted(void **state)
+TEST(test_another_master_that_begins_later_is_noted)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
-    (void)state;
     rig_begin(0);
     rig.plan.first = 2;
     rig.plan.last = 4;
@@ -218,9 +204,8 @@ static void test_another_master_that_begins_later_is_noted(void **state)
     assert_int_equal(rig.walk.heard.outside, 0);
 }
 
-static void test_measurements_may_take_longer_than_the_first_answer(void **state)
+TEST(test_measurements_may_take_longer_than_the_first_answer)
 {
-    (void)state;
     rig_begin(0);
     rig_a16(&(fathom_sim_a16_config_t){.unit = 1, .mode = FATHOM_SIM_A16_MODBUS, .realtime_us = 290000});
     rig_a05(&(fathom_sim_a05_config_t){.unit = 2, .mode = FATHOM_SIM_A05_MODBUS, .probe_us = 290000});
@@ -230,9 +215,8 @@ static void test_measurements_may_take_longer_than_the_first_answer(void **state
     rig_expect_sensor(2, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
 }
 
-static void test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same(void **state)
+TEST(test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same)
 {
-    (void)state;
     rig_begin(0);
     rig_a16(&(fathom_sim_a16_config_t){.unit = 1, .mode = FATHOM_SIM_A16_MODBUS, .exceptions = true});
     rig_a05(&(fathom_sim_a05_config_t){.unit = 2, .mode = FATHOM_SIM_A05_MODBUS, .exceptions = true});
@@ -242,27 +226,4 @@ static void test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_s
     rig_expect_sensor(1, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
     rig_expect_sensor(2, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
     rig_expect_sensor(3, FATHOM_HPS167S, SCAN_MODBUS, &scan_hps167s_line);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_two_units_with_one_address_are_told_and_their_neighbours_found),
-        cmocka_unit_test(test_two_answers_to_one_question_are_told),
-        cmocka_unit_test(test_one_spike_on_a_dead_address_is_no_device),
-        cmocka_unit_test(test_answers_that_are_no_modbus_are_told_once),
-        cmocka_unit_test(
-            test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_one_another_protocol),
-        cmocka_unit_test(test_whoever_answers_everything_or_nothing_is_another_modbus_device),
-        cmocka_unit_test(test_whoever_has_another_address_in_0200_than_its_own_is_no_a16),
-        cmocka_unit_test(test_whoever_has_no_date_in_0001_is_no_hps167s),
-        cmocka_unit_test(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s),
-        cmocka_unit_test(test_an_a16_that_answers_0100_alone_is_known),
-        cmocka_unit_test(test_an_a05_whose_measurement_is_lost_once_is_known),
-        cmocka_unit_test(test_a_frame_of_an_address_that_was_not_asked_is_noted),
-        cmocka_unit_test(test_another_master_that_begins_later_is_noted),
-        cmocka_unit_test(test_measurements_may_take_longer_than_the_first_answer),
-        cmocka_unit_test(test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,20 +27,20 @@ static void set(stage_t *stage, uint8_t mode, fathom_sim_fixed_t fixed, fathom_s
 /* the probes of the examples in A05 3(4)1 */
 #define EXAMPLE FIXED(316, 250, 659, 2426)
 
-static void automatic_frame_is_that_of_a05_1_3(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(automatic_frame_is_that_of_a05_1_3)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, FIXED(1000, 2000, 1953, 3562), DEFAULTS);
     bench_wait(&s.bench, 320 * MS);
     EXPECT(&s.bench, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60);
     assert_int_equal(s.a05.device.counters.measurements, 4);
 }
 
-static void automatic_frames_come_every_300_ms_byte_by_byte(void **state)
+TEST(automatic_frames_come_every_300_ms_byte_by_byte)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, FIXED(1000, 2000, 1953, 3562), DEFAULTS);
     const uint32_t start_us = s.bench.now_us;
     bench_wait(&s.bench, 930 * MS);
@@ -56,19 +56,17 @@ static void automatic_frames_come_every_300_ms_byte_by_byte(void **state)
     assert_int_equal(s.a05.device.counters.automatic, 10);
 }
 
-static void a_probe_without_a_target_does_not_touch_the_others(void **state)
+TEST(a_probe_without_a_target_does_not_touch_the_others)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, FIXED(1000, FATHOM_SIM_NO_TARGET, FATHOM_SIM_INTERFERENCE, 3562), DEFAULTS);
     bench_wait(&s.bench, 320 * MS);
     EXPECT(&s.bench, 0xFF, 0x03, 0xE8, 0xFF, 0xFD, 0xFF, 0xFE, 0x0D, 0xEA, 0xDA);
 }
 
-static void the_first_command_ends_automatic_output_until_power_off(void **state)
+TEST(the_first_command_ends_automatic_output_until_power_off)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, EXAMPLE, DEFAULTS);
     bench_wait(&s.bench, 250 * MS);
     ASK(&s.bench, 300 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7);     /* 3(4)1 example 1 */
@@ -82,11 +80,10 @@ static void the_first_command_ends_automatic_output_until_power_off(void **state
     EXPECT(&s.bench, 0xFF, 0x01, 0x3C, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x4E);
 }
 
-static void an_answer_and_a_frame_that_are_due_together_follow_each_other(void **state)
+TEST(an_answer_and_a_frame_that_are_due_together_follow_each_other)
 {
     int frame_first = 0, answer_first = 0;
     stage_t s;
-    (void)state;
     /* the request ends at 208.3 ms, the frame is due at 300, the answer somewhere between 278 and 338 */
     for (uint32_t probe_us = 80 * MS; probe_us < 130 * MS; probe_us += 500) {
         set(&s, FATHOM_SIM_A05_AUTO, EXAMPLE, (fathom_sim_a05_config_t){.probe_us = probe_us});
@@ -109,10 +106,9 @@ static void an_answer_and_a_frame_that_are_due_together_follow_each_other(void *
     assert_true(answer_first > 10);
 }
 
-static void reads_are_those_of_a05_3_4_1(void **state)
+TEST(reads_are_those_of_a05_3_4_1)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, FIXED(316, 2331, 0, 0), DEFAULTS);
     ASK(&s.bench, 150 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7); /* example 1 */
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x01, 0x3C, 0xB9, 0xC5);
@@ -124,10 +120,9 @@ static void reads_are_those_of_a05_3_4_1(void **state)
     assert_int_equal(s.a05.device.counters.measurements, 5);
 }
 
-static void the_fourth_probe_is_at_0109_though_the_table_calls_it_the_third(void **state)
+TEST(the_fourth_probe_is_at_0109_though_the_table_calls_it_the_third)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ASK(&s.bench, 150 * MS, 0x01, 0x03, 0x01, 0x09, 0x00, 0x01, 0x55, 0xF4);
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x09, 0x7A, 0x3F, 0xF7);
@@ -135,10 +130,9 @@ static void the_fourth_probe_is_at_0109_though_the_table_calls_it_the_third(void
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x09, 0x7A, 0x3F, 0xF7);
 }
 
-static void all_four_come_in_one_read_at_either_address(void **state)
+TEST(all_four_come_in_one_read_at_either_address)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ASK(&s.bench, 450 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x04, 0xA5, 0xF4);
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0x01, 0x3C, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x06, 0x2A);
@@ -146,10 +140,9 @@ static void all_four_come_in_one_read_at_either_address(void **state)
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0x01, 0x3C, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x06, 0x2A);
 }
 
-static void a_read_takes_about_100_ms_a_probe(void **state)
+TEST(a_read_takes_about_100_ms_a_probe)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     uint32_t end_us = ASK(&s.bench, 450 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7);
     ASSERT_SPAN(s.bench.end_us[0], end_us, 87500 + 1042, 100 * MS + 1042);
@@ -158,10 +151,9 @@ static void a_read_takes_about_100_ms_a_probe(void **state)
     ASSERT_SPAN(s.bench.end_us[0], end_us, 350 * MS + 1042, 400 * MS + 1042);
 }
 
-static void what_it_does_not_know_is_silence(void **state)
+TEST(what_it_does_not_know_is_silence)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ASK(&s.bench, 450 * MS, 0x01, 0x03, 0x01, 0x09, 0x00, 0x02, 0x15, 0xF5); /* past the last */
     ASK(&s.bench, 450 * MS, 0x01, 0x03, 0x00, 0x13, 0x00, 0x02, 0x35, 0xCE);
@@ -179,10 +171,9 @@ static void what_it_does_not_know_is_silence(void **state)
     EXPECT(&s.bench, 0x01, 0x83, 0x03, 0x01, 0x31);
 }
 
-static void set_address_is_echoed_and_obeyed_a05_3_4_2(void **state)
+TEST(set_address_is_echoed_and_obeyed_a05_3_4_2)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
@@ -192,10 +183,9 @@ static void set_address_is_echoed_and_obeyed_a05_3_4_2(void **state)
     EXPECT_SILENCE(&s.bench);
 }
 
-static void a_broadcast_is_obeyed_without_an_answer(void **state)
+TEST(a_broadcast_is_obeyed_without_an_answer)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ASK(&s.bench, 300 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x05, 0x5D, 0xAF);
     ASK(&s.bench, 300 * MS, 0xFF, 0x03, 0x01, 0x06, 0x00, 0x01, 0x70, 0x29);
@@ -204,10 +194,9 @@ static void a_broadcast_is_obeyed_without_an_answer(void **state)
     assert_int_equal(s.a05.device.counters.requests, 2);
 }
 
-static void it_is_deaf_and_silent_until_it_is_up(void **state)
+TEST(it_is_deaf_and_silent_until_it_is_up)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, EXAMPLE, (fathom_sim_a05_config_t){.start_us = 900 * MS});
     ASK(&s.bench, 880 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7);
     EXPECT_SILENCE(&s.bench);
@@ -216,21 +205,3 @@ static void it_is_deaf_and_silent_until_it_is_up(void **state)
     ASK(&s.bench, 150 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7);
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x01, 0x3C, 0xB9, 0xC5);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(automatic_frame_is_that_of_a05_1_3),
-    cmocka_unit_test(automatic_frames_come_every_300_ms_byte_by_byte),
-    cmocka_unit_test(a_probe_without_a_target_does_not_touch_the_others),
-    cmocka_unit_test(the_first_command_ends_automatic_output_until_power_off),
-    cmocka_unit_test(an_answer_and_a_frame_that_are_due_together_follow_each_other),
-    cmocka_unit_test(reads_are_those_of_a05_3_4_1),
-    cmocka_unit_test(the_fourth_probe_is_at_0109_though_the_table_calls_it_the_third),
-    cmocka_unit_test(all_four_come_in_one_read_at_either_address),
-    cmocka_unit_test(a_read_takes_about_100_ms_a_probe),
-    cmocka_unit_test(what_it_does_not_know_is_silence),
-    cmocka_unit_test(set_address_is_echoed_and_obeyed_a05_3_4_2),
-    cmocka_unit_test(a_broadcast_is_obeyed_without_an_answer),
-    cmocka_unit_test(it_is_deaf_and_silent_until_it_is_up),
-};
-
-BENCH_MAIN(tests)

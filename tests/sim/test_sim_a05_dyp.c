@@ -27,10 +27,11 @@ static void set(stage_t *stage, fathom_sim_fixed_t fixed, fathom_sim_a05_config_
 #define FIXED(...) ((fathom_sim_fixed_t){{__VA_ARGS__}})
 #define ALL        FIXED(1000, 2000, 1953, 3562) /* of the example in A05 2(3)3 */
 
-static void all_probes_are_those_of_a05_2_3_3_whose_sum_is_62_not_60(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(all_probes_are_those_of_a05_2_3_3_whose_sum_is_62_not_60)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, DEFAULTS);
     ASK(&s.bench, 300 * MS, 0x55, 0xAA, 0x01, 0x01, 0x01);
     EXPECT(&s.bench, 0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62);
@@ -39,10 +40,9 @@ static void all_probes_are_those_of_a05_2_3_3_whose_sum_is_62_not_60(void **stat
     assert_int_equal(s.a05.device.counters.answered, 1);
 }
 
-static void one_probe_is_that_of_a05_2_3_4_and_the_others_follow(void **state)
+TEST(one_probe_is_that_of_a05_2_3_4_and_the_others_follow)
 {
     stage_t s;
-    (void)state;
     set(&s, FIXED(1953, 2000, 1000, 3562), DEFAULTS);
     ASK(&s.bench, 150 * MS, 0x55, 0xAA, 0x01, 0x10, 0x10);
     EXPECT(&s.bench, 0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8);
@@ -55,10 +55,9 @@ static void one_probe_is_that_of_a05_2_3_4_and_the_others_follow(void **state)
     assert_int_equal(s.a05.device.counters.measurements, 4);
 }
 
-static void no_target_and_interference_are_sent_as_in_the_other_modes(void **state)
+TEST(no_target_and_interference_are_sent_as_in_the_other_modes)
 {
     stage_t s;
-    (void)state;
     set(&s, FIXED(FATHOM_SIM_NO_TARGET, FATHOM_SIM_INTERFERENCE, 1, 2), DEFAULTS);
     ASK(&s.bench, 150 * MS, 0x55, 0xAA, 0x01, 0x10, 0x10);
     EXPECT(&s.bench, 0x55, 0xAA, 0x01, 0x10, 0xFF, 0xFD, 0x0C); /* 01 + 10 + FF + FD - 1 = 20C */
@@ -84,18 +83,16 @@ static void times(const uint8_t *request, uint32_t least_ms, uint32_t most_ms)
     assert_true(most_us > (most_ms - 1) * MS);
 }
 
-static void all_probes_take_200_to_210_ms_and_one_65_to_75_ms(void **state)
+TEST(all_probes_take_200_to_210_ms_and_one_65_to_75_ms)
 {
-    (void)state;
     times((const uint8_t[]){0x55, 0xAA, 0x01, 0x01, 0x01}, 200, 210);
     times((const uint8_t[]){0x55, 0xAA, 0x01, 0x10, 0x10}, 65, 75);
     times((const uint8_t[]){0x55, 0xAA, 0x01, 0x13, 0x13}, 65, 75);
 }
 
-static void other_times_may_be_set(void **state)
+TEST(other_times_may_be_set)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, (fathom_sim_a05_config_t){.all_us = 400 * MS, .one_us = 30 * MS});
     uint32_t end_us = ASK(&s.bench, 500 * MS, 0x55, 0xAA, 0x01, 0x01, 0x01);
     ASSERT_SPAN(s.bench.end_us[0], end_us, 390 * MS + 1042, 400 * MS + 1042);
@@ -104,10 +101,9 @@ static void other_times_may_be_set(void **state)
     ASSERT_SPAN(s.bench.end_us[0], end_us, 20 * MS + 1042, 30 * MS + 1042);
 }
 
-static void it_measures_when_it_answers_and_is_deaf_until_then(void **state)
+TEST(it_measures_when_it_answers_and_is_deaf_until_then)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x55, 0xAA, 0x01, 0x10, 0x10);
     s.fixed.value[0] = 1953;
@@ -116,10 +112,9 @@ static void it_measures_when_it_answers_and_is_deaf_until_then(void **state)
     assert_int_equal(s.a05.device.counters.unheard, 5);
 }
 
-static void set_address_is_answered_with_its_own_bytes_a05_2_3_5(void **state)
+TEST(set_address_is_answered_with_its_own_bytes_a05_2_3_5)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x55, 0xAA, 0x05, 0x03, 0x07);
     EXPECT(&s.bench, 0x55, 0xAA, 0x05, 0x03, 0x07);
@@ -136,11 +131,10 @@ static void set_address_is_answered_with_its_own_bytes_a05_2_3_5(void **state)
     assert_int_equal(s.a05.device.unit, 0xFE);
 }
 
-static void every_unit_that_hears_set_address_obeys_it(void **state)
+TEST(every_unit_that_hears_set_address_obeys_it)
 {
     stage_t s;
     fathom_sim_a05_t other;
-    (void)state;
     set(&s, ALL, (fathom_sim_a05_config_t){.settings_us = 20 * MS});
     fathom_sim_a05_init(
         &other, &(fathom_sim_a05_config_t){.unit = 2, .mode = FATHOM_SIM_A05_DYP, .settings_us = 60 * MS});
@@ -155,10 +149,9 @@ static void every_unit_that_hears_set_address_obeys_it(void **state)
     assert_int_equal(s.a05.device.counters.writes, 2);
 }
 
-static void addresses_00_and_ff_are_refused_in_silence(void **state)
+TEST(addresses_00_and_ff_are_refused_in_silence)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, DEFAULTS);
     ASK(&s.bench, 300 * MS, 0x55, 0xAA, 0x00, 0x03, 0x02);
     ASK(&s.bench, 300 * MS, 0x55, 0xAA, 0xFF, 0x03, 0x01);
@@ -168,10 +161,9 @@ static void addresses_00_and_ff_are_refused_in_silence(void **state)
     assert_int_equal(s.a05.device.counters.unserved, 2);
 }
 
-static void ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to(void **state)
+TEST(ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, (fathom_sim_a05_config_t){.unit = 7});
     ASK(&s.bench, 300 * MS, 0x55, 0xAA, 0xFF, 0x11, 0x0F);
     EXPECT(&s.bench, 0x55, 0xAA, 0x07, 0x11, 0x07, 0xD0, 0xEE);              /* 07 + 11 + 07 + D0 - 1 */
@@ -186,10 +178,9 @@ static void ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to(vo
     EXPECT(&s.bench, 0x55, 0xAA, 0x07, 0x11, 0x07, 0xD0, 0xEE);
 }
 
-static void what_it_does_not_know_is_silence_and_counted(void **state)
+TEST(what_it_does_not_know_is_silence_and_counted)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, DEFAULTS);
     ASK(&s.bench, 300 * MS, 0x55, 0xAA, 0x01, 0x01, 0x02); /* the sum is 01 */
     ASK(&s.bench, 300 * MS, 0x55, 0xAA, 0x01, 0x00);       /* the sum of three, but too short */
@@ -212,10 +203,9 @@ static void what_it_does_not_know_is_silence_and_counted(void **state)
     EXPECT(&s.bench, 0x55, 0xAA, 0x01, 0x10, 0x03, 0xE8, 0xFB); /* 01 + 10 + 03 + E8 - 1 */
 }
 
-static void it_speaks_modbus_at_the_same_time(void **state)
+TEST(it_speaks_modbus_at_the_same_time)
 {
     stage_t s;
-    (void)state;
     set(&s, FIXED(316, 250, 659, 2426), DEFAULTS);
     ASK(&s.bench, 450 * MS, 0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6);
     EXPECT(&s.bench, 0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47);
@@ -227,10 +217,9 @@ static void it_speaks_modbus_at_the_same_time(void **state)
     EXPECT(&s.bench, 0x55, 0xAA, 0x05, 0x11, 0x00, 0xFA, 0x0F);
 }
 
-static void the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself(void **state)
+TEST(the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself)
 {
     stage_t s;
-    (void)state;
     set(&s, ALL, DEFAULTS);
     bench_wait(&s.bench, 5000 * MS);
     EXPECT_SILENCE(&s.bench);
@@ -243,21 +232,3 @@ static void the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself
     assert_int_equal(s.a05.device.counters.crc_errors, 2);
     assert_int_equal(s.a05.device.unit, 1);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(all_probes_are_those_of_a05_2_3_3_whose_sum_is_62_not_60),
-    cmocka_unit_test(one_probe_is_that_of_a05_2_3_4_and_the_others_follow),
-    cmocka_unit_test(no_target_and_interference_are_sent_as_in_the_other_modes),
-    cmocka_unit_test(all_probes_take_200_to_210_ms_and_one_65_to_75_ms),
-    cmocka_unit_test(other_times_may_be_set),
-    cmocka_unit_test(it_measures_when_it_answers_and_is_deaf_until_then),
-    cmocka_unit_test(set_address_is_answered_with_its_own_bytes_a05_2_3_5),
-    cmocka_unit_test(every_unit_that_hears_set_address_obeys_it),
-    cmocka_unit_test(addresses_00_and_ff_are_refused_in_silence),
-    cmocka_unit_test(ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to),
-    cmocka_unit_test(what_it_does_not_know_is_silence_and_counted),
-    cmocka_unit_test(it_speaks_modbus_at_the_same_time),
-    cmocka_unit_test(the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself),
-};
-
-BENCH_MAIN(tests)

@@ -78,10 +78,11 @@ static void cycle(stage_t *s, fathom_a05_value_t value)
     fathom_sim_power_cycle(&s->wire, &s->device.device, 50 * MS, s->clock.now_us);
 }
 
-static void what_is_chosen_at_power_on_is_sent_until_the_next(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(what_is_chosen_at_power_on_is_sent_until_the_next)
 {
     static const uint32_t loops_us[] = {1 * MS, 20 * MS};
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         stage_t s;
         const uint32_t loop_us = loops_us[i / 2];
@@ -96,19 +97,11 @@ static void what_is_chosen_at_power_on_is_sent_until_the_next(void **state)
     }
 }
 
-static void rx_that_is_low_later_chooses_nothing(void **state)
+TEST(rx_that_is_low_later_chooses_nothing)
 {
     stage_t s;
-    (void)state;
     set_up(&s, true);
     assert_int_equal(heard_mm(&s, 1 * MS), PROCESSED_MM);
     s.select.set(s.select.ctx, false);
     assert_int_equal(heard_mm(&s, 1 * MS), PROCESSED_MM);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(what_is_chosen_at_power_on_is_sent_until_the_next),
-    cmocka_unit_test(rx_that_is_low_later_chooses_nothing),
-};
-
-BENCH_MAIN(tests)

@@ -38,10 +38,11 @@ static void cycle_power(stage_t *s)
 #define REAL_TIME 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60 /* 1(3) */
 #define PROCESSED 0xFF, 0x01, 0x3C, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x4E
 
-static void the_level_of_rx_at_power_on_selects_what_automatic_frames_say(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(the_level_of_rx_at_power_on_selects_what_automatic_frames_say)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, DEFAULTS); /* floating or high */
     bench_wait(&s.bench, 320 * MS);
     EXPECT(&s.bench, PROCESSED);
@@ -50,10 +51,9 @@ static void the_level_of_rx_at_power_on_selects_what_automatic_frames_say(void *
     EXPECT(&s.bench, REAL_TIME);
 }
 
-static void the_level_counts_when_power_comes_and_not_later(void **state)
+TEST(the_level_counts_when_power_comes_and_not_later)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, DEFAULTS);
     s.a05.real_time = true;
     bench_wait(&s.bench, 320 * MS);
@@ -67,10 +67,9 @@ static void the_level_counts_when_power_comes_and_not_later(void **state)
     EXPECT(&s.bench, PROCESSED);
 }
 
-static void what_is_asked_for_is_real_time_whatever_was_selected(void **state)
+TEST(what_is_asked_for_is_real_time_whatever_was_selected)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_DYP, DEFAULTS);
     ASK(&s.bench, 450 * MS, 0x01, 0x03, 0x01, 0x06, 0x00, 0x04, 0xA5, 0xF4);
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0xA8, 0x20);
@@ -78,20 +77,18 @@ static void what_is_asked_for_is_real_time_whatever_was_selected(void **state)
     EXPECT(&s.bench, 0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62);
 }
 
-static void without_processed_values_of_their_own_they_are_the_real_time_ones(void **state)
+TEST(without_processed_values_of_their_own_they_are_the_real_time_ones)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_AUTO, DEFAULTS);
     s.a05.device.processed.distance = NULL;
     bench_wait(&s.bench, 320 * MS);
     EXPECT(&s.bench, REAL_TIME);
 }
 
-static void the_address_is_kept_whichever_protocol_set_it(void **state)
+TEST(the_address_is_kept_whichever_protocol_set_it)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_DYP, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x55, 0xAA, 0x05, 0x03, 0x07); /* 2(3)5 */
     EXPECT(&s.bench, 0x55, 0xAA, 0x05, 0x03, 0x07);
@@ -107,20 +104,18 @@ static void the_address_is_kept_whichever_protocol_set_it(void **state)
     assert_int_equal(s.a05.device.counters.flash_writes, 2);
 }
 
-static void flash_wears_also_when_the_address_is_what_it_was(void **state)
+TEST(flash_wears_also_when_the_address_is_what_it_was)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_DYP, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x01, 0x49, 0xB2);
     ASK(&s.bench, 50 * MS, 0x55, 0xAA, 0x01, 0x03, 0x03);
     assert_int_equal(s.a05.device.counters.flash_writes, 2);
 }
 
-static void what_it_does_not_obey_is_counted(void **state)
+TEST(what_it_does_not_obey_is_counted)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_DYP, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0xFF, 0xC8, 0x32);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x01, 0x05, 0x49, 0xE1);
@@ -140,24 +135,10 @@ static void what_it_does_not_obey_is_counted(void **state)
     assert_int_equal(s.a05.device.counters.writes_refused, 7);
 }
 
-static void a_new_address_is_acknowledged_from_itself_as_an_option(void **state)
+TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A05_MODBUS, (fathom_sim_a05_config_t){.answers_from_new = true});
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
     EXPECT(&s.bench, 0x05, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xF5);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_level_of_rx_at_power_on_selects_what_automatic_frames_say),
-    cmocka_unit_test(the_level_counts_when_power_comes_and_not_later),
-    cmocka_unit_test(what_is_asked_for_is_real_time_whatever_was_selected),
-    cmocka_unit_test(without_processed_values_of_their_own_they_are_the_real_time_ones),
-    cmocka_unit_test(the_address_is_kept_whichever_protocol_set_it),
-    cmocka_unit_test(flash_wears_also_when_the_address_is_what_it_was),
-    cmocka_unit_test(what_it_does_not_obey_is_counted),
-    cmocka_unit_test(a_new_address_is_acknowledged_from_itself_as_an_option),
-};
-
-BENCH_MAIN(tests)

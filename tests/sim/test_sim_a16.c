@@ -24,12 +24,13 @@ static void set(stage_t *stage, uint8_t mode, int32_t distance, fathom_sim_a16_c
 
 #define DEFAULTS ((fathom_sim_a16_config_t){0})
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- automatic: A16 2, 5 ---- */
 
-static void automatic_frame_is_that_of_a16_2_4(void **state)
+TEST(automatic_frame_is_that_of_a16_2_4)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_UART, 1953, DEFAULTS);
     bench_wait(&s.bench, 110 * MS);
     EXPECT(&s.bench, 0xFF, 0x07, 0xA1, 0xA7);
@@ -38,10 +39,9 @@ static void automatic_frame_is_that_of_a16_2_4(void **state)
     EXPECT(&s.bench, 0xFF, 0x07, 0xA1, 0xA7);
 }
 
-static void automatic_frames_come_every_100_ms_byte_by_byte(void **state)
+TEST(automatic_frames_come_every_100_ms_byte_by_byte)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 1953, DEFAULTS);
     const uint32_t start_us = s.bench.now_us;
     for (int i = 0; i < 50; i++) bench_wait(&s.bench, 20 * MS); /* a loop that comes round every 20 ms */
@@ -56,10 +56,9 @@ static void automatic_frames_come_every_100_ms_byte_by_byte(void **state)
     }
 }
 
-static void a_byte_is_not_there_before_its_last_bit(void **state)
+TEST(a_byte_is_not_there_before_its_last_bit)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 1953, DEFAULTS);
     bench_wait(&s.bench, 100 * MS + 1041);
     EXPECT_SILENCE(&s.bench);
@@ -72,10 +71,9 @@ static void a_byte_is_not_there_before_its_last_bit(void **state)
     EXPECT(&s.bench, 0x07);
 }
 
-static void the_period_and_the_start_are_options(void **state)
+TEST(the_period_and_the_start_are_options)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 511, (fathom_sim_a16_config_t){.period_us = 40 * MS, .start_us = 900 * MS});
     bench_wait(&s.bench, 940 * MS);
     EXPECT_SILENCE(&s.bench);
@@ -83,10 +81,9 @@ static void the_period_and_the_start_are_options(void **state)
     EXPECT(&s.bench, 0xFF, 0x01, 0xFF, 0xFF, 0xFF, 0x01, 0xFF, 0xFF, 0xFF, 0x01, 0xFF, 0xFF);
 }
 
-static void no_target_and_interference_are_fffd_and_fffe(void **state)
+TEST(no_target_and_interference_are_fffd_and_fffe)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, FATHOM_SIM_NO_TARGET, DEFAULTS);
     bench_wait(&s.bench, 110 * MS);
     EXPECT(&s.bench, 0xFF, 0xFF, 0xFD, 0xFB);
@@ -103,10 +100,9 @@ static void no_target_and_interference_are_fffd_and_fffe(void **state)
 
 /* ---- automatic, then Modbus: A16 5 ---- */
 
-static void the_first_command_ends_automatic_output_with_frames_around_the_answer(void **state)
+TEST(the_first_command_ends_automatic_output_with_frames_around_the_answer)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
     bench_wait(&s.bench, 50 * MS);
     ASK(&s.bench, 300 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36); /* A16 6(4) example 2 */
@@ -118,10 +114,9 @@ static void the_first_command_ends_automatic_output_with_frames_around_the_answe
     assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
 }
 
-static void without_lingering_the_command_is_the_end(void **state)
+TEST(without_lingering_the_command_is_the_end)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
     bench_wait(&s.bench, 105 * MS);
     EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0);
@@ -129,20 +124,18 @@ static void without_lingering_the_command_is_the_end(void **state)
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
 }
 
-static void a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way(void **state)
+TEST(a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
     bench_wait(&s.bench, 95 * MS); /* the request lasts from 95 to 103.3 ms, the frame from 100 to 104.2 */
     ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
     EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
 }
 
-static void only_a_command_for_it_ends_automatic_output(void **state)
+TEST(only_a_command_for_it_ends_automatic_output)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
     ASK(&s.bench, 10 * MS, 0x02, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x05); /* another unit's */
     ASK(&s.bench, 10 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x37); /* wrong CRC */
@@ -158,10 +151,9 @@ static void only_a_command_for_it_ends_automatic_output(void **state)
     assert_int_equal(s.a16.device.counters.unserved, 1);
 }
 
-static void a_uart_module_takes_no_command(void **state)
+TEST(a_uart_module_takes_no_command)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_UART, 751, DEFAULTS);
     ASK(&s.bench, 10 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
     bench_wait(&s.bench, 400 * MS);
@@ -171,10 +163,9 @@ static void a_uart_module_takes_no_command(void **state)
     assert_int_equal(s.a16.device.counters.requests, 0);
 }
 
-static void power_makes_it_automatic_again(void **state)
+TEST(power_makes_it_automatic_again)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
     ASK(&s.bench, 500 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
@@ -189,10 +180,9 @@ static void power_makes_it_automatic_again(void **state)
 
 /* ---- Modbus: A16 6 ---- */
 
-static void reads_are_those_of_a16_6_4(void **state)
+TEST(reads_are_those_of_a16_6_4)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
     bench_wait(&s.bench, 10000 * MS);
     EXPECT_SILENCE(&s.bench);
@@ -212,10 +202,9 @@ static void reads_are_those_of_a16_6_4(void **state)
     assert_int_equal(s.a16.device.counters.measurements, 4);
 }
 
-static void settings_read_as_from_the_factory(void **state)
+TEST(settings_read_as_from_the_factory)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2);
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
@@ -228,11 +217,10 @@ static void settings_read_as_from_the_factory(void **state)
     assert_int_equal(s.a16.device.counters.measurements, 0);
 }
 
-static void answers_take_their_time_and_the_seed_decides_which(void **state)
+TEST(answers_take_their_time_and_the_seed_decides_which)
 {
     stage_t s;
     uint32_t first_us[3][8];
-    (void)state;
     for (size_t run = 0; run < 3; run++) {
         set(&s, FATHOM_SIM_A16_MODBUS, 754, (fathom_sim_a16_config_t){.seed = run == 2 ? 99 : 7});
         for (size_t i = 0; i < 8; i++) {
@@ -251,10 +239,9 @@ static void answers_take_their_time_and_the_seed_decides_which(void **state)
     assert_memory_not_equal(first_us[0], first_us[2], sizeof first_us[0]);
 }
 
-static void the_answer_times_are_options(void **state)
+TEST(the_answer_times_are_options)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 754,
         (fathom_sim_a16_config_t){.realtime_us = 40 * MS, .processed_us = 1, .settings_us = 200 * MS});
     uint32_t end_us = ASK(&s.bench, 60 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
@@ -268,10 +255,9 @@ static void the_answer_times_are_options(void **state)
     ASSERT_SPAN(s.bench.end_us[0], end_us, 175 * MS + 1042, 200 * MS + 1042);
 }
 
-static void set_address_is_echoed_and_obeyed_a16_6_4_example_3(void **state)
+TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
@@ -284,10 +270,9 @@ static void set_address_is_echoed_and_obeyed_a16_6_4_example_3(void **state)
     EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
 }
 
-static void address_ff_is_for_the_broadcast_and_cannot_be_set(void **state)
+TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     ASK(&s.bench, 300 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0xFF, 0xC8, 0x32);
     EXPECT_SILENCE(&s.bench);
@@ -295,10 +280,9 @@ static void address_ff_is_for_the_broadcast_and_cannot_be_set(void **state)
     assert_int_equal(s.a16.device.counters.writes, 0);
 }
 
-static void a_broadcast_is_obeyed_without_an_answer(void **state)
+TEST(a_broadcast_is_obeyed_without_an_answer)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     ASK(&s.bench, 300 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x05, 0x5D, 0xAF);
     EXPECT_SILENCE(&s.bench);
@@ -310,19 +294,17 @@ static void a_broadcast_is_obeyed_without_an_answer(void **state)
     assert_int_equal(s.a16.device.counters.answered, 0);
 }
 
-static void a_broadcast_is_answered_from_its_own_address_as_an_option(void **state)
+TEST(a_broadcast_is_answered_from_its_own_address_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 751, (fathom_sim_a16_config_t){.unit = 5, .answers_broadcast = true});
     ASK(&s.bench, 300 * MS, 0xFF, 0x03, 0x01, 0x01, 0x00, 0x01, 0xC1, 0xE8);
     EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x02, 0xEF, 0x09, 0x68);
 }
 
-static void what_it_does_not_know_is_silence(void **state)
+TEST(what_it_does_not_know_is_silence)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x02, 0x00, 0x01, 0x24, 0x36); /* unknown register */
     ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x02, 0xC5, 0xF7); /* two at once */
@@ -333,10 +315,9 @@ static void what_it_does_not_know_is_silence(void **state)
     assert_int_equal(s.a16.device.counters.unserved, 4);
 }
 
-static void exceptions_are_an_option(void **state)
+TEST(exceptions_are_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, 751, (fathom_sim_a16_config_t){.exceptions = true});
     ASK(&s.bench, 100 * MS, 0x01, 0x03, 0x01, 0x02, 0x00, 0x01, 0x24, 0x36);
     EXPECT(&s.bench, 0x01, 0x83, 0x02, 0xC0, 0xF1);
@@ -346,29 +327,3 @@ static void exceptions_are_an_option(void **state)
     EXPECT(&s.bench, 0x01, 0x84, 0x01, 0x82, 0xC0);
     assert_int_equal(s.a16.device.counters.exceptions, 3);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(automatic_frame_is_that_of_a16_2_4),
-    cmocka_unit_test(automatic_frames_come_every_100_ms_byte_by_byte),
-    cmocka_unit_test(a_byte_is_not_there_before_its_last_bit),
-    cmocka_unit_test(the_period_and_the_start_are_options),
-    cmocka_unit_test(no_target_and_interference_are_fffd_and_fffe),
-    cmocka_unit_test(the_first_command_ends_automatic_output_with_frames_around_the_answer),
-    cmocka_unit_test(without_lingering_the_command_is_the_end),
-    cmocka_unit_test(a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way),
-    cmocka_unit_test(only_a_command_for_it_ends_automatic_output),
-    cmocka_unit_test(a_uart_module_takes_no_command),
-    cmocka_unit_test(power_makes_it_automatic_again),
-    cmocka_unit_test(reads_are_those_of_a16_6_4),
-    cmocka_unit_test(settings_read_as_from_the_factory),
-    cmocka_unit_test(answers_take_their_time_and_the_seed_decides_which),
-    cmocka_unit_test(the_answer_times_are_options),
-    cmocka_unit_test(set_address_is_echoed_and_obeyed_a16_6_4_example_3),
-    cmocka_unit_test(address_ff_is_for_the_broadcast_and_cannot_be_set),
-    cmocka_unit_test(a_broadcast_is_obeyed_without_an_answer),
-    cmocka_unit_test(a_broadcast_is_answered_from_its_own_address_as_an_option),
-    cmocka_unit_test(what_it_does_not_know_is_silence),
-    cmocka_unit_test(exceptions_are_an_option),
-};
-
-BENCH_MAIN(tests)

@@ -157,17 +157,11 @@ static void every_width_is_read_each_cycle(bool by_break)
     }
 }
 
-static void pwm_by_a_pin_reads_every_width_each_cycle(void **state)
-{
-    (void)state;
-    every_width_is_read_each_cycle(false);
-}
+static const suite_t suite = {BENCH_ROUNDS};
 
-static void pwm_by_a_break_reads_every_width_each_cycle(void **state)
-{
-    (void)state;
-    every_width_is_read_each_cycle(true);
-}
+TEST(pwm_by_a_pin_reads_every_width_each_cycle) { every_width_is_read_each_cycle(false); }
+
+TEST(pwm_by_a_break_reads_every_width_each_cycle) { every_width_is_read_each_cycle(true); }
 
 static void on_edge(void *ctx, bool high, uint32_t time_us)
 {
@@ -181,9 +175,8 @@ static void on_edge_twice(void *ctx, bool high, uint32_t time_us)
     on_edge(ctx, high, time_us + 40);
 }
 
-static void edges_of_a_pin_interrupt_read_as_a_capture_does_also_doubled(void **state)
+TEST(edges_of_a_pin_interrupt_read_as_a_capture_does_also_doubled)
 {
-    (void)state;
     for (size_t i = 0; i < 2 * STEPS; i++) {
         set(FATHOM_SIM_A16_PWM, 15000, steps_us[i % STEPS], DEFAULTS);
         fathom_edges_init(&desk.edges, &desk.level);
@@ -200,9 +193,8 @@ static void edges_of_a_pin_interrupt_read_as_a_capture_does_also_doubled(void **
     }
 }
 
-static void a_cut_wire_is_no_answer_and_a_mended_one_is_read_again(void **state)
+TEST(a_cut_wire_is_no_answer_and_a_mended_one_is_read_again)
 {
-    (void)state;
     for (size_t s = 0; s < STEPS; s++) {
         set(FATHOM_SIM_A16_PWM, 1739, steps_us[s], DEFAULTS);
         begin_pwm(false);
@@ -219,9 +211,8 @@ static void a_cut_wire_is_no_answer_and_a_mended_one_is_read_again(void **state)
     }
 }
 
-static void a_stuck_wire_is_a_fault_each_cycle_and_never_a_distance(void **state)
+TEST(a_stuck_wire_is_a_fault_each_cycle_and_never_a_distance)
 {
-    (void)state;
     for (size_t s = 0; s < STEPS; s++) {
         set(FATHOM_SIM_A16_PWM, 1739, steps_us[s], DEFAULTS);
         begin_pwm(false);
@@ -237,9 +228,8 @@ static void a_stuck_wire_is_a_fault_each_cycle_and_never_a_distance(void **state
     }
 }
 
-static void noise_between_trigger_and_pulse_changes_no_reading(void **state)
+TEST(noise_between_trigger_and_pulse_changes_no_reading)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1739, 500, DEFAULTS);
     begin_pwm(false);
     for (unsigned cycle = 0; cycle < 10; cycle++) {
@@ -259,9 +249,8 @@ static void noise_between_trigger_and_pulse_changes_no_reading(void **state)
     assert_int_equal(desk.no_answers + desk.errors, 0);
 }
 
-static void a_module_without_power_is_no_answer(void **state)
+TEST(a_module_without_power_is_no_answer)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1739, 20000, (fathom_sim_a16_config_t){.start_us = 1500 * MS});
     begin_pwm(false);
     run(1400 * MS);
@@ -271,9 +260,8 @@ static void a_module_without_power_is_no_answer(void **state)
     assert_true(desk.samples >= 2);
 }
 
-static void who_sleeps_until_it_is_due_or_woken_reads_each_cycle(void **state)
+TEST(who_sleeps_until_it_is_due_or_woken_reads_each_cycle)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1739, 500, DEFAULTS);
     begin_pwm(false);
     const uint32_t start_us = desk.sim_clock.now_us;
@@ -305,16 +293,14 @@ static void controlled_reads_each_trigger(bool by_break, bool knows)
     }
 }
 
-static void controlled_by_a_break_reads_each_trigger(void **state)
+TEST(controlled_by_a_break_reads_each_trigger)
 {
-    (void)state;
     controlled_reads_each_trigger(true, true);
     controlled_reads_each_trigger(true, false); /* a port that knows nothing */
 }
 
-static void controlled_by_a_pin_reads_each_trigger(void **state)
+TEST(controlled_by_a_pin_reads_each_trigger)
 {
-    (void)state;
     controlled_reads_each_trigger(false, true);
     controlled_reads_each_trigger(false, false);
 }
@@ -327,11 +313,10 @@ static void delay(void *ctx, fathom_sim_frame_t *frame)
     frame->delay_us = *delays_us;
 }
 
-static void late_and_lost_answers_are_no_answer_and_never_the_next_ones(void **state)
+TEST(late_and_lost_answers_are_no_answer_and_never_the_next_ones)
 {
     static const uint32_t late_us[] = {45 * MS, 60 * MS, 85 * MS};
     static const fathom_sim_faults_t faults = {.outgoing = delay};
-    (void)state;
     for (size_t i = 0; i < 3; i++) {
         delays_us = &late_us[i];
         set(FATHOM_SIM_A16_CONTROLLED, 1953, 500, (fathom_sim_a16_config_t){.faults = &faults});
@@ -364,26 +349,8 @@ static void the_select_of_the_automatic_mode_reaches_the_module(bool by_break)
     assert_int_equal(desk.errors, 0);
 }
 
-static void the_select_works_by_a_pin_and_by_a_break(void **state)
+TEST(the_select_works_by_a_pin_and_by_a_break)
 {
-    (void)state;
     the_select_of_the_automatic_mode_reaches_the_module(false);
     the_select_of_the_automatic_mode_reaches_the_module(true);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(pwm_by_a_pin_reads_every_width_each_cycle),
-    cmocka_unit_test(pwm_by_a_break_reads_every_width_each_cycle),
-    cmocka_unit_test(edges_of_a_pin_interrupt_read_as_a_capture_does_also_doubled),
-    cmocka_unit_test(a_cut_wire_is_no_answer_and_a_mended_one_is_read_again),
-    cmocka_unit_test(a_stuck_wire_is_a_fault_each_cycle_and_never_a_distance),
-    cmocka_unit_test(noise_between_trigger_and_pulse_changes_no_reading),
-    cmocka_unit_test(a_module_without_power_is_no_answer),
-    cmocka_unit_test(who_sleeps_until_it_is_due_or_woken_reads_each_cycle),
-    cmocka_unit_test(controlled_by_a_break_reads_each_trigger),
-    cmocka_unit_test(controlled_by_a_pin_reads_each_trigger),
-    cmocka_unit_test(late_and_lost_answers_are_no_answer_and_never_the_next_ones),
-    cmocka_unit_test(the_select_works_by_a_pin_and_by_a_break),
-};
-
-BENCH_MAIN(tests)

@@ -98,11 +98,12 @@ static size_t hear(uint8_t *bytes, fathom_rx_t *rx_of)
     return (size_t)uart.read(uart.ctx, bytes, 16, rx_of);
 }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- PWM: A16 1 ---- */
 
-static void a_falling_edge_brings_one_pulse_after_110_ms(void **state)
+TEST(a_falling_edge_brings_one_pulse_after_110_ms)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1739, DEFAULTS); /* A16 1(4): 10000 us */
     const uint32_t start_us = desk.clock.now_us;
     wait(500 * MS);
@@ -126,7 +127,7 @@ static void a_falling_edge_brings_one_pulse_after_110_ms(void **state)
     assert_int_equal(desk.a16.device.counters.measurements, 1);
 }
 
-static void the_width_follows_the_distance_from_3_to_94_ms(void **state)
+TEST(the_width_follows_the_distance_from_3_to_94_ms)
 {
     static const struct {
         int32_t value;
@@ -143,7 +144,6 @@ static void the_width_follows_the_distance_from_3_to_94_ms(void **state)
         {FATHOM_SIM_NO_TARGET, 94000},
         {FATHOM_SIM_INTERFERENCE, 94000},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         set(FATHOM_SIM_A16_PWM, rows[i].value, DEFAULTS);
         trigger();
@@ -153,9 +153,8 @@ static void the_width_follows_the_distance_from_3_to_94_ms(void **state)
     }
 }
 
-static void edges_during_a_cycle_are_ignored_and_counted(void **state)
+TEST(edges_during_a_cycle_are_ignored_and_counted)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     for (int i = 0; i < 10; i++) {
@@ -174,9 +173,8 @@ static void edges_during_a_cycle_are_ignored_and_counted(void **state)
     assert_int_equal(desk.edges, 4);
 }
 
-static void times_of_the_pulse_are_options(void **state)
+TEST(times_of_the_pulse_are_options)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, FATHOM_SIM_NO_TARGET,
         (fathom_sim_a16_config_t){
             .cycle_us = 150 * MS, .pulse_us = 20 * MS, .no_target_us = 93 * MS, .start_us = 900 * MS});
@@ -196,10 +194,9 @@ static void times_of_the_pulse_are_options(void **state)
 
 /* ---- the host's side of the pins ---- */
 
-static void the_capture_takes_pulses_that_begin_after_arm_in_their_order(void **state)
+TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
 {
     fathom_pulse_t pulse = {7, 7, false};
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     wait(110 * MS);
@@ -228,10 +225,9 @@ static void the_capture_takes_pulses_that_begin_after_arm_in_their_order(void **
     assert_int_equal(take(&pulse), 0);
 }
 
-static void a_wire_can_break_stick_and_make_noise(void **state)
+TEST(a_wire_can_break_stick_and_make_noise)
 {
     fathom_pulse_t pulse;
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     arm();
     fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_HIGH);
@@ -256,9 +252,8 @@ static void a_wire_can_break_stick_and_make_noise(void **state)
     assert_int_equal(desk.edges, 5);
 }
 
-static void without_power_tx_is_low_and_no_edge_is_noticed(void **state)
+TEST(without_power_tx_is_low_and_no_edge_is_noticed)
 {
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     wait(109 * MS);
@@ -271,11 +266,10 @@ static void without_power_tx_is_low_and_no_edge_is_noticed(void **state)
     assert_true(tx());
 }
 
-static void a_break_a_pin_and_a_byte_are_one_wire(void **state)
+TEST(a_break_a_pin_and_a_byte_are_one_wire)
 {
     const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
     const uint8_t byte = 0xFF;
-    (void)state;
     set(FATHOM_SIM_A16_PWM, 1000, (fathom_sim_a16_config_t){.cycle_us = 1});
     assert_int_equal(brk(true), 1);
     assert_int_equal(brk(true), 1);
@@ -301,13 +295,12 @@ static void a_break_a_pin_and_a_byte_are_one_wire(void **state)
 
 /* ---- a TX pin that is a UART's as well ---- */
 
-static void the_bits_of_a_byte_can_be_seen_at_the_pin(void **state)
+TEST(the_bits_of_a_byte_can_be_seen_at_the_pin)
 {
-    static const char bits[] = "0111111111"  /* FF */
-                               "0111000001"  /* 07 */
-                               "0100001011"  /* A1 */
-                               "0111001011"; /* A7 */
-    (void)state;
+    static const char bits[] = "0111111111"   /* FF */
+                               "0111000001"   /* 07 */
+                               "0100001011"   /* A1 */
+                               "0111001011";  /* A7 */
     set(FATHOM_SIM_A16_UART, 1953, DEFAULTS); /* A16 2(4) */
     wait(100 * MS);
     /* in the middle of each bit of 104.17 us; characters are rounded up to 1042, 2084, 3125, 4167 us */
@@ -323,7 +316,7 @@ static void the_bits_of_a_byte_can_be_seen_at_the_pin(void **state)
     assert_int_equal(desk.edges, 0);
 }
 
-static void parity_and_two_stop_bits_can_be_seen_too(void **state)
+TEST(parity_and_two_stop_bits_can_be_seen_too)
 {
     static const struct {
         fathom_line_settings_t settings;
@@ -336,7 +329,6 @@ static void parity_and_two_stop_bits_can_be_seen_too(void **state)
         {{9600, FATHOM_PARITY_ODD, 2}, 0x03, "011000000111"},
         {{9600, FATHOM_PARITY_NONE, 2}, 0x80, "00000000111"},
     };
-    (void)state;
     for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
         fathom_sim_sender_t sender;
         memset(&sender, 0, sizeof sender);
@@ -350,11 +342,10 @@ static void parity_and_two_stop_bits_can_be_seen_too(void **state)
     }
 }
 
-static void a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host(void **state)
+TEST(a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host)
 {
     uint8_t bytes[16];
     fathom_rx_t rx_of;
-    (void)state;
     set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
     desk.a16.device.tx_is_uart = true;
     fathom_sim_device_set_level(&desk.a16.device, false, desk.line.now_us);
@@ -376,11 +367,10 @@ static void a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host(void **stat
     assert_int_equal(desk.edges, 3);
 }
 
-static void a_break_spoils_the_frame_that_a_device_hears(void **state)
+TEST(a_break_spoils_the_frame_that_a_device_hears)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}; /* A16 6(4) */
     const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
-    (void)state;
     set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
     for (int with_break = 0; with_break < 2; with_break++) {
         assert_int_equal(uart.write(uart.ctx, request, 8), 8);
@@ -396,12 +386,11 @@ static void a_break_spoils_the_frame_that_a_device_hears(void **state)
 
 /* ---- controlled: A16 3 ---- */
 
-static void each_edge_brings_one_frame_90_to_110_ms_later(void **state)
+TEST(each_edge_brings_one_frame_90_to_110_ms_later)
 {
     static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 3(5) */
     uint32_t least_us = UINT32_MAX;
     uint32_t most_us = 0;
-    (void)state;
     set(FATHOM_SIM_A16_CONTROLLED, 1953, DEFAULTS);
     wait(500 * MS);
     for (int i = 0; i < 50; i++) {
@@ -440,12 +429,11 @@ static void drop(void *ctx, fathom_sim_frame_t *frame)
     frame->length = 0;
 }
 
-static void faults_reach_the_frame_that_was_triggered(void **state)
+TEST(faults_reach_the_frame_that_was_triggered)
 {
     static const fathom_sim_faults_t faults = {.outgoing = drop};
     uint8_t bytes[16];
     fathom_rx_t rx_of;
-    (void)state;
     set(FATHOM_SIM_A16_CONTROLLED, 1953, (fathom_sim_a16_config_t){.faults = &faults});
     trigger();
     wait(300 * MS);
@@ -464,9 +452,8 @@ static uint16_t next_value(void)
     return (uint16_t)(bytes[1] * 256 + bytes[2]);
 }
 
-static void rx_low_sends_the_real_time_value_and_rx_high_the_processed_one(void **state)
+TEST(rx_low_sends_the_real_time_value_and_rx_high_the_processed_one)
 {
-    (void)state;
     fathom_sim_fixed_t processed = {{1000}};
     set(FATHOM_SIM_A16_UART, 2000, (fathom_sim_a16_config_t){.processed = fathom_sim_fixed(&processed)});
     wait(50 * MS);
@@ -478,23 +465,3 @@ static void rx_low_sends_the_real_time_value_and_rx_high_the_processed_one(void 
     assert_int_equal(brk(true), 1);
     assert_int_equal(next_value(), 2000);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_falling_edge_brings_one_pulse_after_110_ms),
-    cmocka_unit_test(the_width_follows_the_distance_from_3_to_94_ms),
-    cmocka_unit_test(edges_during_a_cycle_are_ignored_and_counted),
-    cmocka_unit_test(times_of_the_pulse_are_options),
-    cmocka_unit_test(the_capture_takes_pulses_that_begin_after_arm_in_their_order),
-    cmocka_unit_test(a_wire_can_break_stick_and_make_noise),
-    cmocka_unit_test(without_power_tx_is_low_and_no_edge_is_noticed),
-    cmocka_unit_test(a_break_a_pin_and_a_byte_are_one_wire),
-    cmocka_unit_test(the_bits_of_a_byte_can_be_seen_at_the_pin),
-    cmocka_unit_test(parity_and_two_stop_bits_can_be_seen_too),
-    cmocka_unit_test(a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host),
-    cmocka_unit_test(a_break_spoils_the_frame_that_a_device_hears),
-    cmocka_unit_test(each_edge_brings_one_frame_90_to_110_ms_later),
-    cmocka_unit_test(faults_reach_the_frame_that_was_triggered),
-    cmocka_unit_test(rx_low_sends_the_real_time_value_and_rx_high_the_processed_one),
-};
-
-BENCH_MAIN(tests)

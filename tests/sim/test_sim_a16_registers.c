@@ -39,10 +39,11 @@ static void cycle_power(stage_t *s)
     EXPECT_SILENCE(&s->bench);
 }
 
-static void polarity_of_example_6_is_echoed_read_back_and_kept(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(polarity_of_example_6_is_echoed_read_back_and_kept)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73);
@@ -57,10 +58,9 @@ static void polarity_of_example_6_is_echoed_read_back_and_kept(void **state)
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
 }
 
-static void threshold_of_the_last_example_is_echoed_read_back_and_kept(void **state)
+TEST(threshold_of_the_last_example_is_echoed_read_back_and_kept)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF);
@@ -75,10 +75,9 @@ static void threshold_of_the_last_example_is_echoed_read_back_and_kept(void **st
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0xFF, 0xFF, 0xB9, 0xF4);
 }
 
-static void data_type_of_example_5_is_echoed_read_back_and_kept(void **state)
+TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
@@ -93,10 +92,9 @@ static void data_type_of_example_5_is_echoed_read_back_and_kept(void **state)
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
 }
 
-static void processed_and_real_time_values_are_two(void **state)
+TEST(processed_and_real_time_values_are_two)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6); /* example 1 */
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1);
@@ -107,10 +105,9 @@ static void processed_and_real_time_values_are_two(void **state)
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
 }
 
-static void automatic_frames_say_the_value_of_the_data_type(void **state)
+TEST(automatic_frames_say_the_value_of_the_data_type)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
     bench_wait(&s.bench, 105 * MS);
     EXPECT(&s.bench, AUTO_PROCESSED);
@@ -128,10 +125,9 @@ static void automatic_frames_say_the_value_of_the_data_type(void **state)
     EXPECT(&s.bench, AUTO_REAL_TIME);
 }
 
-static void a_uart_module_says_what_the_level_of_rx_selects_2_2(void **state)
+TEST(a_uart_module_says_what_the_level_of_rx_selects_2_2)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_UART, DEFAULTS);
     bench_wait(&s.bench, 105 * MS);
     EXPECT(&s.bench, AUTO_PROCESSED);
@@ -142,10 +138,9 @@ static void a_uart_module_says_what_the_level_of_rx_selects_2_2(void **state)
 
 /* ---- 0x0202 ---- */
 
-static void automatic_output_returns_with_the_command_of_example_4(void **state)
+TEST(automatic_output_returns_with_the_command_of_example_4)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
     ASK(&s.bench, 2000 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2);
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
@@ -160,10 +155,9 @@ static void automatic_output_returns_with_the_command_of_example_4(void **state)
     assert_int_equal(s.a16.device.counters.flash_writes, 0);
 }
 
-static void a_module_that_still_is_automatic_stays_so(void **state)
+TEST(a_module_that_still_is_automatic_stays_so)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
@@ -171,10 +165,9 @@ static void a_module_that_still_is_automatic_stays_so(void **state)
     assert_in_range(s.bench.heard, 9 * 4, 10 * 4);
 }
 
-static void the_controlled_mode_stays_and_no_mode_is_kept(void **state)
+TEST(the_controlled_mode_stays_and_no_mode_is_kept)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
     ASK(&s.bench, 1000 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x00, 0x29, 0xB2);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x00, 0x29, 0xB2);
@@ -186,10 +179,9 @@ static void the_controlled_mode_stays_and_no_mode_is_kept(void **state)
     EXPECT_SILENCE(&s.bench);
 }
 
-static void rs485_has_no_automatic_mode_to_return_to(void **state)
+TEST(rs485_has_no_automatic_mode_to_return_to)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 2000 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
@@ -213,10 +205,9 @@ static void refuse_all(stage_t *s)
     assert_int_equal(s->a16.device.counters.writes_refused, 8);
 }
 
-static void a_value_that_a_register_does_not_have_is_silence_or_exception_3(void **state)
+TEST(a_value_that_a_register_does_not_have_is_silence_or_exception_3)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     refuse_all(&s);
     EXPECT_SILENCE(&s.bench);
@@ -240,10 +231,9 @@ static void a_value_that_a_register_does_not_have_is_silence_or_exception_3(void
            0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
 }
 
-static void flash_wears_with_each_setting_that_is_kept(void **state)
+TEST(flash_wears_with_each_setting_that_is_kept)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3); /* as it is */
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0x03, 0xE8, 0x68, 0xCD);
@@ -258,10 +248,9 @@ static void flash_wears_with_each_setting_that_is_kept(void **state)
     EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
 }
 
-static void a_broadcast_is_obeyed_without_an_answer(void **state)
+TEST(a_broadcast_is_obeyed_without_an_answer)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x7E, 0x01);
     EXPECT_SILENCE(&s.bench);
@@ -269,10 +258,9 @@ static void a_broadcast_is_obeyed_without_an_answer(void **state)
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
 }
 
-static void a_new_address_is_acknowledged_from_itself_as_an_option(void **state)
+TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.answers_from_new = true});
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
     EXPECT(&s.bench, 0x05, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xF5);
@@ -286,22 +274,3 @@ static void a_new_address_is_acknowledged_from_itself_as_an_option(void **state)
     ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x06, 0x1D, 0xAE);
     EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x00, 0x00, 0x06, 0x08, 0x70);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(polarity_of_example_6_is_echoed_read_back_and_kept),
-    cmocka_unit_test(threshold_of_the_last_example_is_echoed_read_back_and_kept),
-    cmocka_unit_test(data_type_of_example_5_is_echoed_read_back_and_kept),
-    cmocka_unit_test(processed_and_real_time_values_are_two),
-    cmocka_unit_test(automatic_frames_say_the_value_of_the_data_type),
-    cmocka_unit_test(a_uart_module_says_what_the_level_of_rx_selects_2_2),
-    cmocka_unit_test(automatic_output_returns_with_the_command_of_example_4),
-    cmocka_unit_test(a_module_that_still_is_automatic_stays_so),
-    cmocka_unit_test(the_controlled_mode_stays_and_no_mode_is_kept),
-    cmocka_unit_test(rs485_has_no_automatic_mode_to_return_to),
-    cmocka_unit_test(a_value_that_a_register_does_not_have_is_silence_or_exception_3),
-    cmocka_unit_test(flash_wears_with_each_setting_that_is_kept),
-    cmocka_unit_test(a_broadcast_is_obeyed_without_an_answer),
-    cmocka_unit_test(a_new_address_is_acknowledged_from_itself_as_an_option),
-};
-
-BENCH_MAIN(tests)

@@ -119,9 +119,10 @@ static fathom_status_t go_back(stage_t *s, fathom_sample_t *sample)
     }
 }
 
-static void the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back)
 {
-    (void)state;
     for (unsigned loop = 0; loop != 2; loop++) {
         stage_t s;
         fathom_sample_t sample;
@@ -143,11 +144,10 @@ static void the_first_modbus_command_ends_automatic_output_and_0202_brings_it_ba
     }
 }
 
-static void a_frame_from_before_the_command_confirms_nothing(void **state)
+TEST(a_frame_from_before_the_command_confirms_nothing)
 {
     stage_t s;
     fathom_sample_t sample;
-    (void)state;
     set_up(&s, FATHOM_SIM_A16_AUTO, 0);
     for (unsigned i = 0; i != 300; i++) { /* a frame comes and nobody takes it */
         fathom_sim_clock_advance(&s.clock, 1 * MS);
@@ -158,11 +158,10 @@ static void a_frame_from_before_the_command_confirms_nothing(void **state)
     assert_true(s.automatic.base.stream.counters[FATHOM_STREAM_FRAMES] != 0);
 }
 
-static void one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds(void **state)
+TEST(one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds)
 {
     stage_t s;
     fathom_sample_t sample;
-    (void)state;
     for (unsigned loop = 0; loop != 2; loop++) {
         set_up(&s, FATHOM_SIM_A16_MODBUS, loop * 20 * MS);
         const uint32_t start_us = s.clock.now_us;
@@ -172,11 +171,10 @@ static void one_that_acknowledges_and_does_not_send_is_found_out_after_two_secon
     }
 }
 
-static void a_refusal_and_a_broken_port_are_told_as_they_are(void **state)
+TEST(a_refusal_and_a_broken_port_are_told_as_they_are)
 {
     stage_t s;
     fathom_sample_t sample;
-    (void)state;
     set_up(&s, FATHOM_SIM_A16_MODBUS, 0);
     assert_non_null(
         fathom_sim_fault_add(&s.fault, FATHOM_SIM_FAULT_EXCEPTION, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
@@ -197,11 +195,10 @@ static void a_refusal_and_a_broken_port_are_told_as_they_are(void **state)
     assert_false(s.rs232.is_listening);
 }
 
-static void a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames(void **state)
+TEST(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames)
 {
     static const uint8_t kinds[] = {FATHOM_SIM_FAULT_FLIP_BIT, FATHOM_SIM_FAULT_TRUNCATE,
                                     FATHOM_SIM_FAULT_FUNCTION, FATHOM_SIM_FAULT_SILENCE};
-    (void)state;
     for (size_t i = 0; i != sizeof kinds; i++) {
         stage_t s;
         fathom_sample_t sample;
@@ -216,11 +213,10 @@ static void a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames(void **sta
 }
 
 /* A first answer with noise before it does not show whether the line echoes (line.h). */
-static void an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames(void **state)
+TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 {
     stage_t s;
     fathom_sample_t sample;
-    (void)state;
     set_up(&s, FATHOM_SIM_A16_MODBUS, 0);
     s.config.echo = FATHOM_LINE_ECHO_AUTO;
     assert_non_null(fathom_sim_fault_add(&s.fault, FATHOM_SIM_FAULT_BREAK, FATHOM_SIM_FAULT_ALWAYS_PPM, 1));
@@ -229,13 +225,12 @@ static void an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames(void 
     ASSERT_SPAN(s.clock.now_us, start_us, 3000 * MS, 4000 * MS); /* the time-out of the write before */
 }
 
-static void another_commands_outcome_comes_first(void **state)
+TEST(another_commands_outcome_comes_first)
 {
     stage_t s;
     fathom_sample_t sample;
     uint16_t threshold_mm = 0;
     fathom_status_t status;
-    (void)state;
     set_up(&s, FATHOM_SIM_A16_AUTO, 0);
     assert_int_equal(fathom_a16_switch_threshold_mm(&s.asked, &threshold_mm), FATHOM_PENDING);
     assert_int_equal(fathom_a16_rs232_return_to_automatic(&s.rs232, &sample), FATHOM_ERR_BUSY);
@@ -245,11 +240,10 @@ static void another_commands_outcome_comes_first(void **state)
     assert_int_equal(go_back(&s, &sample), FATHOM_READY);
 }
 
-static void due_is_never_later_than_the_end_of_the_wait(void **state)
+TEST(due_is_never_later_than_the_end_of_the_wait)
 {
     stage_t s;
     fathom_sample_t sample;
-    (void)state;
     set_up(&s, FATHOM_SIM_A16_MODBUS, 0);
     while (!s.rs232.is_listening) {
         assert_int_equal(fathom_a16_rs232_return_to_automatic(&s.rs232, &sample), FATHOM_PENDING);
@@ -261,16 +255,3 @@ static void due_is_never_later_than_the_end_of_the_wait(void **state)
     assert_int_equal(fathom_a16_rs232_due_us(&s.rs232), 0);
     assert_int_equal(fathom_a16_rs232_return_to_automatic(&s.rs232, &sample), FATHOM_ERR_UNCONFIRMED);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(another_commands_outcome_comes_first),
-    cmocka_unit_test(due_is_never_later_than_the_end_of_the_wait),
-    cmocka_unit_test(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back),
-    cmocka_unit_test(a_frame_from_before_the_command_confirms_nothing),
-    cmocka_unit_test(one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds),
-    cmocka_unit_test(a_refusal_and_a_broken_port_are_told_as_they_are),
-    cmocka_unit_test(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames),
-    cmocka_unit_test(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames),
-};
-
-BENCH_MAIN(tests)

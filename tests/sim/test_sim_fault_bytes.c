@@ -79,17 +79,11 @@ static void flips(uint8_t kind, bool one_bit)
     }
 }
 
-static void flip_bit_changes_one_bit_of_any_byte(void **state)
-{
-    (void)state;
-    flips(FATHOM_SIM_FAULT_FLIP_BIT, true);
-}
+static const suite_t suite = {BENCH_ROUNDS};
 
-static void flip_byte_changes_one_byte_to_any_other_value(void **state)
-{
-    (void)state;
-    flips(FATHOM_SIM_FAULT_FLIP_BYTE, false);
-}
+TEST(flip_bit_changes_one_bit_of_any_byte) { flips(FATHOM_SIM_FAULT_FLIP_BIT, true); }
+
+TEST(flip_byte_changes_one_byte_to_any_other_value) { flips(FATHOM_SIM_FAULT_FLIP_BYTE, false); }
 
 /* `shorter` is `longer` without the byte at `at`. */
 static bool is_without(const uint8_t *shorter, const uint8_t *longer, size_t length, size_t at)
@@ -97,9 +91,8 @@ static bool is_without(const uint8_t *shorter, const uint8_t *longer, size_t len
     return memcmp(shorter, longer, at) == 0 && memcmp(shorter + at, longer + at + 1, length - at - 1) == 0;
 }
 
-static void drop_takes_one_byte_away_wherever_it_stands(void **state)
+TEST(drop_takes_one_byte_away_wherever_it_stands)
 {
-    (void)state;
     for (size_t n = 0; n < SETTINGS; n++) {
         stage_t s;
         const size_t length = golden[settings[n]].length;
@@ -120,9 +113,8 @@ static void drop_takes_one_byte_away_wherever_it_stands(void **state)
     }
 }
 
-static void insert_puts_one_byte_between_two_others(void **state)
+TEST(insert_puts_one_byte_between_two_others)
 {
-    (void)state;
     for (size_t n = 0; n < SETTINGS; n++) {
         stage_t s;
         const size_t length = golden[settings[n]].length;
@@ -145,9 +137,8 @@ static void insert_puts_one_byte_between_two_others(void **state)
     }
 }
 
-static void truncate_leaves_the_beginning(void **state)
+TEST(truncate_leaves_the_beginning)
 {
-    (void)state;
     for (size_t n = 0; n < SETTINGS; n++) {
         stage_t s;
         const size_t length = golden[settings[n]].length;
@@ -163,9 +154,8 @@ static void truncate_leaves_the_beginning(void **state)
     }
 }
 
-static void trailing_adds_one_to_four_bytes_without_a_gap(void **state)
+TEST(trailing_adds_one_to_four_bytes_without_a_gap)
 {
-    (void)state;
     for (size_t n = 0; n < SETTINGS; n++) {
         stage_t s;
         const size_t length = golden[settings[n]].length;
@@ -212,26 +202,23 @@ static void replaced(setting_t setting, uint8_t kind, size_t at, uint8_t least, 
     assert_true(varies);
 }
 
-static void unit_answers_from_another_address(void **state)
+TEST(unit_answers_from_another_address)
 {
-    (void)state;
     replaced(A16_MODBUS, FATHOM_SIM_FAULT_UNIT, 0, 1, 254);
     replaced(HPS167S, FATHOM_SIM_FAULT_UNIT, 0, 1, 254);
     replaced(A05_DYP, FATHOM_SIM_FAULT_UNIT, 2, 1, 254);
 }
 
-static void function_answers_to_another_function_or_command(void **state)
+TEST(function_answers_to_another_function_or_command)
 {
-    (void)state;
     replaced(A16_MODBUS, FATHOM_SIM_FAULT_FUNCTION, 1, 1, 127);
     replaced(HPS167S, FATHOM_SIM_FAULT_FUNCTION, 1, 1, 127);
     replaced(A05_DYP, FATHOM_SIM_FAULT_FUNCTION, 3, 0, 255);
 }
 
-static void count_is_one_less_or_more_where_there_is_one(void **state)
+TEST(count_is_one_less_or_more_where_there_is_one)
 {
     stage_t s;
-    (void)state;
     second_frame(&s, A16_AUTO, FATHOM_SIM_FAULT_COUNT, 0, 0);
     EXPECT_BYTES(&s, 0xFF, 0x02, 0xEF, 0x02, 0xEF, 0xE1); /* FF + 02 + EF + 02 + EF = 2E1 */
     second_frame(&s, A05_AUTO, FATHOM_SIM_FAULT_COUNT, 0, 0);
@@ -264,12 +251,11 @@ static void count_is_one_less_or_more_where_there_is_one(void **state)
     EXPECT_BYTES(&s, 0x55, 0xAA, 0x05, 0x03, 0x00, 0x07);
 }
 
-static void exception_is_of_the_code_given_or_any(void **state)
+TEST(exception_is_of_the_code_given_or_any)
 {
     stage_t s;
     uint8_t least = 255;
     uint8_t most = 0;
-    (void)state;
     second_frame(&s, A16_MODBUS, FATHOM_SIM_FAULT_EXCEPTION, 2, 0);
     EXPECT_BYTES(&s, 0x01, 0x83, 0x02, 0xC0, 0xF1); /* HPS-167S, abnormal response */
     third_frame_is_good(&s, A16_MODBUS, FATHOM_SIM_FAULT_EXCEPTION);
@@ -286,7 +272,7 @@ static void exception_is_of_the_code_given_or_any(void **state)
     assert_int_equal(most, 255);
 }
 
-static void what_does_not_fit_a_frame_leaves_it_alone_and_is_not_counted(void **state)
+TEST(what_does_not_fit_a_frame_leaves_it_alone_and_is_not_counted)
 {
     static const struct {
         setting_t setting;
@@ -297,7 +283,6 @@ static void what_does_not_fit_a_frame_leaves_it_alone_and_is_not_counted(void **
         {A05_DYP, FATHOM_SIM_FAULT_EXCEPTION},    {A05_DYP, FATHOM_SIM_FAULT_FAULT},
         {HPS167S, FATHOM_SIM_FAULT_INTERFERENCE}, {HPS167S, FATHOM_SIM_FAULT_CLOCK_JUMP}, /* no clock */
     };
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         stage_t s;
         stage_set(&s, rows[i].setting, 1);
@@ -311,19 +296,3 @@ static void what_does_not_fit_a_frame_leaves_it_alone_and_is_not_counted(void **
         assert_int_equal(s.fault.counters[rows[i].kind], 0);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(flip_bit_changes_one_bit_of_any_byte),
-    cmocka_unit_test(flip_byte_changes_one_byte_to_any_other_value),
-    cmocka_unit_test(drop_takes_one_byte_away_wherever_it_stands),
-    cmocka_unit_test(insert_puts_one_byte_between_two_others),
-    cmocka_unit_test(truncate_leaves_the_beginning),
-    cmocka_unit_test(trailing_adds_one_to_four_bytes_without_a_gap),
-    cmocka_unit_test(unit_answers_from_another_address),
-    cmocka_unit_test(function_answers_to_another_function_or_command),
-    cmocka_unit_test(count_is_one_less_or_more_where_there_is_one),
-    cmocka_unit_test(exception_is_of_the_code_given_or_any),
-    cmocka_unit_test(what_does_not_fit_a_frame_leaves_it_alone_and_is_not_counted),
-};
-
-BENCH_MAIN(tests)

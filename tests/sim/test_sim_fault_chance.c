@@ -30,9 +30,13 @@ static bool is_likely(uint32_t hits, uint32_t n, uint32_t chance_ppm)
     return apart / 1000 * (apart / 1000) <= 25 * variance;
 }
 
-static void the_bound_is_five_sigma(void **state)
+/* Once: millions of frames, whose times the other tests look at. */
+static void begin_round(unsigned round) { bench_start_us = UINT32_C(0xFFFF0000); }
+
+static const suite_t suite = {.begin_round = begin_round};
+
+TEST(the_bound_is_five_sigma)
 {
-    (void)state;
     /* 10000 at 50 %: sigma 50 */
     assert_true(is_likely(5250, 10000, 500000));
     assert_true(is_likely(4750, 10000, 500000));
@@ -43,10 +47,9 @@ static void the_bound_is_five_sigma(void **state)
     assert_false(is_likely(150, 10000, 10000));
 }
 
-static void each_kind_comes_as_often_as_it_is_told(void **state)
+TEST(each_kind_comes_as_often_as_it_is_told)
 {
     static const uint32_t chances_ppm[] = {1000, 50000, 500000};
-    (void)state;
     for (uint8_t kind = FIRST; kind <= LAST; kind++) {
         for (size_t i = 0; i < 3; i++) {
             stage_t s;
@@ -82,12 +85,11 @@ static void each_kind_comes_as_often_as_it_is_told(void **state)
     }
 }
 
-static void what_the_host_finds_damaged_is_what_was_counted(void **state)
+TEST(what_the_host_finds_damaged_is_what_was_counted)
 {
     stage_t s;
     uint32_t missing = 0;
     uint32_t wrong = 0;
-    (void)state;
     stage_set(&s, A16_AUTO, 3);
     ADD(&s, SILENCE, 100000, 0);
     ADD(&s, FLIP_BIT, 100000, 0);
@@ -106,10 +108,9 @@ static void what_the_host_finds_damaged_is_what_was_counted(void **state)
     assert_true(is_likely(both, FRAMES, 10000)); /* 10 % of 10 %: they do not know of each other */
 }
 
-static void a_chance_may_be_never_and_one_in_a_million_is_rare(void **state)
+TEST(a_chance_may_be_never_and_one_in_a_million_is_rare)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 3);
     ADD(&s, SILENCE, 0, 0);
     ADD(&s, DROP, 0, 5);
@@ -136,10 +137,9 @@ static uint64_t run_many(uint32_t seed, uint32_t *frames_hit)
     return number;
 }
 
-static void the_same_seed_is_the_same_run_and_another_is_another(void **state)
+TEST(the_same_seed_is_the_same_run_and_another_is_another)
 {
     uint32_t hit[3];
-    (void)state;
     const uint64_t first = run_many(5, &hit[0]);
     assert_true(first == run_many(5, &hit[1]));
     assert_int_equal(hit[0], hit[1]);
@@ -147,11 +147,10 @@ static void the_same_seed_is_the_same_run_and_another_is_another(void **state)
     assert_true(first != run_many(6, &hit[2]));
 }
 
-static void one_rule_more_does_not_move_the_hits_of_the_others(void **state)
+TEST(one_rule_more_does_not_move_the_hits_of_the_others)
 {
     uint32_t hits[2] = {0, 0};
     uint64_t frames[2] = {0, 0};
-    (void)state;
     for (int more = 0; more < 2; more++) {
         stage_t s;
         stage_set(&s, A16_AUTO, 9);
@@ -169,10 +168,9 @@ static void one_rule_more_does_not_move_the_hits_of_the_others(void **state)
     assert_true(frames[0] == frames[1]);
 }
 
-static void two_kinds_may_hit_one_frame(void **state)
+TEST(two_kinds_may_hit_one_frame)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     ADD(&s, EXCEPTION, ALWAYS, 2)->code = 2;
     ADD(&s, DUPLICATE, ALWAYS, 2);
@@ -191,12 +189,11 @@ static void two_kinds_may_hit_one_frame(void **state)
                      BIT(EXCEPTION) | BIT(DUPLICATE) | BIT(TRAILING) | BIT(DROP));
 }
 
-static void a_run_of_frames_is_hit_together(void **state)
+TEST(a_run_of_frames_is_hit_together)
 {
     stage_t s;
     uint32_t longest = 0;
     uint32_t length = 0;
-    (void)state;
     stage_set(&s, A16_AUTO, 1);
     ADD(&s, SILENCE, ALWAYS, 3)->run = 4;
     for (uint32_t n = 1; n <= 9; n++) {
@@ -218,10 +215,9 @@ static void a_run_of_frames_is_hit_together(void **state)
     assert_true(longest >= 5);
 }
 
-static void all_stops_when_they_are_switched_off_and_goes_on_again(void **state)
+TEST(all_stops_when_they_are_switched_off_and_goes_on_again)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 1);
     add_many(&s, 300000);
     (void)run_frames(&s, 200);
@@ -243,10 +239,9 @@ static void all_stops_when_they_are_switched_off_and_goes_on_again(void **state)
     assert_true(s.fault.frames_hit > hit + 30);
 }
 
-static void everything_at_once_still_ends(void **state)
+TEST(everything_at_once_still_ends)
 {
     static const setting_t settings[] = {A16_AUTO, A16_MODBUS, A05_AUTO, A05_DYP, HPS167S};
-    (void)state;
     for (size_t n = 0; n < sizeof settings / sizeof settings[0]; n++) {
         stage_t s;
         stage_set(&s, settings[n], 4);
@@ -267,9 +262,8 @@ static void everything_at_once_still_ends(void **state)
     }
 }
 
-static void kinds_have_names_and_can_be_found(void **state)
+TEST(kinds_have_names_and_can_be_found)
 {
-    (void)state;
     for (uint8_t kind = FIRST; kind <= LAST; kind++) {
         assert_non_null(fathom_sim_fault_name(kind));
         assert_true(strlen(fathom_sim_fault_text(kind)) > 5);
@@ -284,7 +278,7 @@ static void kinds_have_names_and_can_be_found(void **state)
     assert_null(fathom_sim_fault_text(0));
 }
 
-static void what_cannot_hit_a_device_is_known(void **state)
+TEST(what_cannot_hit_a_device_is_known)
 {
     static const struct {
         setting_t setting;
@@ -294,7 +288,6 @@ static void what_cannot_hit_a_device_is_known(void **state)
         {A05_DYP, BIT(FAULT)},    {A16_AUTO, BIT(FAULT)}, /* it can be asked, too */
         {A05_AUTO, BIT(FAULT)},   {HPS167S, BIT(INTERFERENCE)},
     };
-    (void)state;
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         stage_t s;
         uint32_t cannot = 0;
@@ -313,10 +306,9 @@ static void what_cannot_hit_a_device_is_known(void **state)
     assert_int_equal(cannot, BIT(FAULT) | BIT(UNIT) | BIT(FUNCTION) | BIT(EXCEPTION) | BIT(ECHO));
 }
 
-static void there_is_an_end_to_the_rules(void **state)
+TEST(there_is_an_end_to_the_rules)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 0);
     assert_null(fathom_sim_fault_add(&s.fault, 0, ALWAYS, 0));
     assert_null(fathom_sim_fault_add(&s.fault, FATHOM_SIM_FAULT_END, ALWAYS, 0));
@@ -324,27 +316,4 @@ static void there_is_an_end_to_the_rules(void **state)
     assert_null(ADD(&s, NOISE, ALWAYS, 0));
     stage_wait(&s, 350 * MS); /* six pauses fit a frame: the rest of the rules finds no room */
     assert_true(s.count > 0);
-}
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_bound_is_five_sigma),
-    cmocka_unit_test(each_kind_comes_as_often_as_it_is_told),
-    cmocka_unit_test(what_the_host_finds_damaged_is_what_was_counted),
-    cmocka_unit_test(a_chance_may_be_never_and_one_in_a_million_is_rare),
-    cmocka_unit_test(the_same_seed_is_the_same_run_and_another_is_another),
-    cmocka_unit_test(one_rule_more_does_not_move_the_hits_of_the_others),
-    cmocka_unit_test(two_kinds_may_hit_one_frame),
-    cmocka_unit_test(a_run_of_frames_is_hit_together),
-    cmocka_unit_test(all_stops_when_they_are_switched_off_and_goes_on_again),
-    cmocka_unit_test(everything_at_once_still_ends),
-    cmocka_unit_test(kinds_have_names_and_can_be_found),
-    cmocka_unit_test(what_cannot_hit_a_device_is_known),
-    cmocka_unit_test(there_is_an_end_to_the_rules),
-};
-
-/* Once: millions of frames, whose times the other tests look at. */
-int main(void)
-{
-    bench_start_us = UINT32_C(0xFFFF0000);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,23 +48,16 @@ static void marked(uint8_t kind, uint8_t flag)
     assert_int_equal(places, 0x7F);
 }
 
-static void parity_marks_one_wrong_byte(void **state)
-{
-    (void)state;
-    marked(FATHOM_SIM_FAULT_PARITY, FATHOM_RX_PARITY);
-}
+static const suite_t suite = {BENCH_ROUNDS};
 
-static void framing_marks_one_wrong_byte(void **state)
-{
-    (void)state;
-    marked(FATHOM_SIM_FAULT_FRAMING, FATHOM_RX_FRAMING);
-}
+TEST(parity_marks_one_wrong_byte) { marked(FATHOM_SIM_FAULT_PARITY, FATHOM_RX_PARITY); }
 
-static void overrun_loses_one_byte_and_marks_the_next_that_comes(void **state)
+TEST(framing_marks_one_wrong_byte) { marked(FATHOM_SIM_FAULT_FRAMING, FATHOM_RX_FRAMING); }
+
+TEST(overrun_loses_one_byte_and_marks_the_next_that_comes)
 {
     const uint8_t answer[] = {A16_ANSWER};
     uint32_t places = 0;
-    (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         stage_t s;
         size_t at = 6;
@@ -86,10 +79,9 @@ static void overrun_loses_one_byte_and_marks_the_next_that_comes(void **state)
     assert_int_equal(places, 0x7F);
 }
 
-static void break_is_a_marked_00_before_the_frame(void **state)
+TEST(break_is_a_marked_00_before_the_frame)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 1);
     ADD(&s, BREAK, ALWAYS, 2)->us = 5 * MS;
     stage_wait(&s, 150 * MS);
@@ -101,10 +93,9 @@ static void break_is_a_marked_00_before_the_frame(void **state)
     assert_in_range(s.end_us[1] - s.end_us[0], 5 * MS + 1041, 5 * MS + 1042);
 }
 
-static void marks_move_with_their_bytes(void **state)
+TEST(marks_move_with_their_bytes)
 {
     stage_t s;
-    (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         stage_set(&s, A16_AUTO, seed);
         ADD(&s, PARITY, ALWAYS, 1);
@@ -125,11 +116,10 @@ static void marks_move_with_their_bytes(void **state)
     }
 }
 
-static void another_device_takes_a_marked_byte_for_spoiled(void **state)
+TEST(another_device_takes_a_marked_byte_for_spoiled)
 {
     stage_t s;
     fathom_sim_a16_t other;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     fathom_sim_a16_init(&other, &(fathom_sim_a16_config_t){.unit = 2, .mode = FATHOM_SIM_A16_MODBUS});
     bench_attach(&s.bench, &other.device);
@@ -141,13 +131,12 @@ static void another_device_takes_a_marked_byte_for_spoiled(void **state)
     assert_int_equal(other.device.counters.torn, 1);
 }
 
-static void the_hosts_clock_jumps_and_the_line_does_not(void **state)
+TEST(the_hosts_clock_jumps_and_the_line_does_not)
 {
     stage_t s;
     fathom_sim_clock_t clock;
     fathom_sim_uart_t uart;
     uint8_t bytes[16];
-    (void)state;
     stage_set(&s, A16_AUTO, 1);
     fathom_sim_clock_init(&clock, bench_start_us, 0);
     fathom_sim_uart_init(&uart, &s.bench.line, &clock);
@@ -192,10 +181,9 @@ static void the_hosts_clock_jumps_and_the_line_does_not(void **state)
 
 /* ---- what is measured ---- */
 
-static void stuck_says_the_value_of_the_frame_before(void **state)
+TEST(stuck_says_the_value_of_the_frame_before)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 1);
     ADD(&s, STUCK, ALWAYS, 2)->run = 2;
     stage_wait(&s, 150 * MS);
@@ -209,10 +197,9 @@ static void stuck_says_the_value_of_the_frame_before(void **state)
     assert_int_equal(HITS(&s, STUCK), 2);
 }
 
-static void always_stuck_holds_the_first_value(void **state)
+TEST(always_stuck_holds_the_first_value)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A05_DYP, 1);
     ADD(&s, STUCK, ALWAYS, 0)->code = 1; /* probe 1 only */
     stage_next(&s, A05_DYP);
@@ -229,10 +216,9 @@ static void always_stuck_holds_the_first_value(void **state)
     assert_int_equal(s.bytes[7], 0xD1);
 }
 
-static void no_target_interference_and_fault_are_what_the_sensor_says(void **state)
+TEST(no_target_interference_and_fault_are_what_the_sensor_says)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 1);
     ADD(&s, NO_TARGET, ALWAYS, 1);
     ADD(&s, INTERFERENCE, ALWAYS, 2);
@@ -262,10 +248,9 @@ static void no_target_interference_and_fault_are_what_the_sensor_says(void **sta
     assert_int_equal(HITS(&s, NO_TARGET), 1);
 }
 
-static void a_frame_that_measures_nothing_is_not_counted_as_hit(void **state)
+TEST(a_frame_that_measures_nothing_is_not_counted_as_hit)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     ADD(&s, NO_TARGET, ALWAYS, 0);
     stage_ask(&s, LITERAL(0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2), 50 * MS); /* the address */
@@ -274,19 +259,3 @@ static void a_frame_that_measures_nothing_is_not_counted_as_hit(void **state)
     stage_ask(&s, LITERAL(A16_ASKED), 200 * MS);
     assert_int_equal(HITS(&s, NO_TARGET), 1);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(parity_marks_one_wrong_byte),
-    cmocka_unit_test(framing_marks_one_wrong_byte),
-    cmocka_unit_test(overrun_loses_one_byte_and_marks_the_next_that_comes),
-    cmocka_unit_test(break_is_a_marked_00_before_the_frame),
-    cmocka_unit_test(marks_move_with_their_bytes),
-    cmocka_unit_test(another_device_takes_a_marked_byte_for_spoiled),
-    cmocka_unit_test(the_hosts_clock_jumps_and_the_line_does_not),
-    cmocka_unit_test(stuck_says_the_value_of_the_frame_before),
-    cmocka_unit_test(always_stuck_holds_the_first_value),
-    cmocka_unit_test(no_target_interference_and_fault_are_what_the_sensor_says),
-    cmocka_unit_test(a_frame_that_measures_nothing_is_not_counted_as_hit),
-};
-
-BENCH_MAIN(tests)

@@ -17,9 +17,10 @@ static uint32_t at_us(const stage_t *s, size_t byte) { return s->end_us[byte] - 
 /* A span that is right to 2 us: ends are rounded up to whole us. */
 #define ASSERT_AT(is_us, should_us) assert_in_range((is_us), (should_us), (should_us) + 2)
 
-static void split_pauses_before_any_byte_but_the_first(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(split_pauses_before_any_byte_but_the_first)
 {
-    (void)state;
     uint32_t places = 0;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         stage_t s;
@@ -41,9 +42,8 @@ static void split_pauses_before_any_byte_but_the_first(void **state)
     assert_int_equal(places, 0xE);
 }
 
-static void a_pause_moves_with_its_byte_when_a_break_comes_first(void **state)
+TEST(a_pause_moves_with_its_byte_when_a_break_comes_first)
 {
-    (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         uint32_t places[2] = {0, 0};
         for (int with = 0; with < 2; with++) {
@@ -61,10 +61,9 @@ static void a_pause_moves_with_its_byte_when_a_break_comes_first(void **state)
     }
 }
 
-static void duplicate_comes_twice_at_once_or_after_a_pause(void **state)
+TEST(duplicate_comes_twice_at_once_or_after_a_pause)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     ADD(&s, DUPLICATE, ALWAYS, 1);
     ADD(&s, DUPLICATE, ALWAYS, 2)->us = 30 * MS;
@@ -79,11 +78,10 @@ static void duplicate_comes_twice_at_once_or_after_a_pause(void **state)
     assert_int_equal(HITS(&s, DUPLICATE), 2);
 }
 
-static void delay_and_late_come_later_by_so_much(void **state)
+TEST(delay_and_late_come_later_by_so_much)
 {
     stage_t s;
     stage_t plain;
-    (void)state;
     stage_set(&plain, A16_MODBUS, 0); /* the same answer times */
     stage_set(&s, A16_MODBUS, 0);
     ADD(&s, DELAY, ALWAYS, 1);
@@ -102,10 +100,9 @@ static void delay_and_late_come_later_by_so_much(void **state)
     assert_int_equal(s.fault.frames_hit, 4);
 }
 
-static void a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too(void **state)
+TEST(a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 0);
     ADD(&s, LATE, ALWAYS, 1)->us = 700 * MS;
     stage_ask(&s, LITERAL(A16_ASKED), 400 * MS);
@@ -121,10 +118,9 @@ static void a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_la
     ASSERT_AT(at_us(&s, 8), due_us(3, 0));
 }
 
-static void silence_keeps_the_frame_back_and_the_device_is_free(void **state)
+TEST(silence_keeps_the_frame_back_and_the_device_is_free)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 0);
     ADD(&s, SILENCE, ALWAYS, 2);
     stage_ask(&s, LITERAL(A16_ASKED), 150 * MS);
@@ -137,10 +133,9 @@ static void silence_keeps_the_frame_back_and_the_device_is_free(void **state)
     EXPECT_BYTES(&s, A16_ANSWER);
 }
 
-static void power_cycle_cuts_the_frame_and_the_device_starts_anew(void **state)
+TEST(power_cycle_cuts_the_frame_and_the_device_starts_anew)
 {
     uint32_t lengths = 0;
-    (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         stage_t s;
         stage_set(&s, A16_AUTO, seed);
@@ -158,10 +153,9 @@ static void power_cycle_cuts_the_frame_and_the_device_starts_anew(void **state)
     assert_int_equal(lengths, 0xF);
 }
 
-static void without_power_a_device_is_deaf_and_then_begins_in_its_first_mode(void **state)
+TEST(without_power_a_device_is_deaf_and_then_begins_in_its_first_mode)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_AUTO, 3);
     s.bench.line.full_duplex = true;
     stage_ask(&s, LITERAL(A16_ASKED), 500 * MS); /* leaves automatic mode; a frame may come before */
@@ -177,10 +171,9 @@ static void without_power_a_device_is_deaf_and_then_begins_in_its_first_mode(voi
     assert_memory_equal(s.bytes, ((const uint8_t[]){A16_FRAME}), 4);
 }
 
-static void noise_is_one_to_eight_bytes_apart_from_the_frame(void **state)
+TEST(noise_is_one_to_eight_bytes_apart_from_the_frame)
 {
     uint32_t counts[2] = {0, 0};
-    (void)state;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         stage_t s;
         stage_set(&s, A16_AUTO, seed);
@@ -200,10 +193,9 @@ static void noise_is_one_to_eight_bytes_apart_from_the_frame(void **state)
     assert_int_equal(counts[1], 0x1FE);
 }
 
-static void after_its_own_bytes_a_device_listens_again_though_noise_follows(void **state)
+TEST(after_its_own_bytes_a_device_listens_again_though_noise_follows)
 {
     bool seen = false;
-    (void)state;
     for (uint32_t seed = 0; seed < 20 && !seen; seed++) {
         stage_t s;
         stage_set(&s, A16_MODBUS, seed);
@@ -221,10 +213,9 @@ static void after_its_own_bytes_a_device_listens_again_though_noise_follows(void
     assert_true(seen);
 }
 
-static void unasked_is_a_frame_of_the_devices_own(void **state)
+TEST(unasked_is_a_frame_of_the_devices_own)
 {
     static const setting_t settings[] = {A16_AUTO, A16_MODBUS, A05_AUTO, A05_DYP, HPS167S};
-    (void)state;
     for (size_t n = 0; n < sizeof settings / sizeof settings[0]; n++) {
         const setting_t setting = settings[n];
         const size_t length = golden[setting].length;
@@ -244,9 +235,8 @@ static void unasked_is_a_frame_of_the_devices_own(void **state)
     }
 }
 
-static void unasked_is_a_measurement_also_where_something_else_was_asked(void **state)
+TEST(unasked_is_a_measurement_also_where_something_else_was_asked)
 {
-    (void)state;
     bool before = false;
     bool after = false;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
@@ -266,10 +256,9 @@ static void unasked_is_a_measurement_also_where_something_else_was_asked(void **
     assert_true(before && after);
 }
 
-static void noise_and_unasked_frames_come_also_when_the_frame_does_not(void **state)
+TEST(noise_and_unasked_frames_come_also_when_the_frame_does_not)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     ADD(&s, SILENCE, ALWAYS, 0);
     ADD(&s, UNASKED, ALWAYS, 1);
@@ -280,10 +269,9 @@ static void noise_and_unasked_frames_come_also_when_the_frame_does_not(void **st
     assert_int_equal(s.count, 0);
 }
 
-static void echo_repeats_the_request_of_that_frame(void **state)
+TEST(echo_repeats_the_request_of_that_frame)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     ADD(&s, ECHO, ALWAYS, 2);
     for (uint32_t n = 1; n <= 3; n++) {
@@ -303,10 +291,9 @@ static void echo_repeats_the_request_of_that_frame(void **state)
     EXPECT_BYTES(&s, A16_ANSWER);
 }
 
-static void a_line_that_has_an_echo_keeps_it(void **state)
+TEST(a_line_that_has_an_echo_keeps_it)
 {
     stage_t s;
-    (void)state;
     stage_set(&s, A16_MODBUS, 1);
     s.bench.line.echo = true;
     fathom_sim_fault_attach(&s.fault, &s.bench.line, s.device);
@@ -316,23 +303,3 @@ static void a_line_that_has_an_echo_keeps_it(void **state)
         EXPECT_BYTES(&s, A16_ASKED, A16_ANSWER);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(split_pauses_before_any_byte_but_the_first),
-    cmocka_unit_test(a_pause_moves_with_its_byte_when_a_break_comes_first),
-    cmocka_unit_test(duplicate_comes_twice_at_once_or_after_a_pause),
-    cmocka_unit_test(delay_and_late_come_later_by_so_much),
-    cmocka_unit_test(a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too),
-    cmocka_unit_test(silence_keeps_the_frame_back_and_the_device_is_free),
-    cmocka_unit_test(power_cycle_cuts_the_frame_and_the_device_starts_anew),
-    cmocka_unit_test(without_power_a_device_is_deaf_and_then_begins_in_its_first_mode),
-    cmocka_unit_test(noise_is_one_to_eight_bytes_apart_from_the_frame),
-    cmocka_unit_test(after_its_own_bytes_a_device_listens_again_though_noise_follows),
-    cmocka_unit_test(unasked_is_a_frame_of_the_devices_own),
-    cmocka_unit_test(unasked_is_a_measurement_also_where_something_else_was_asked),
-    cmocka_unit_test(noise_and_unasked_frames_come_also_when_the_frame_does_not),
-    cmocka_unit_test(echo_repeats_the_request_of_that_frame),
-    cmocka_unit_test(a_line_that_has_an_echo_keeps_it),
-};
-
-BENCH_MAIN(tests)

@@ -71,10 +71,11 @@ static void set(stage_t *s, uint8_t mode)
 #define REQUEST 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36
 #define ANSWER  0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8
 
-static void a_hook_that_does_nothing_changes_nothing(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(a_hook_that_does_nothing_changes_nothing)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     ASK(&s.bench, 200 * MS, REQUEST);
     EXPECT(&s.bench, ANSWER);
@@ -87,10 +88,9 @@ static void a_hook_that_does_nothing_changes_nothing(void **state)
     assert_int_equal(s.out.seen, 1);
 }
 
-static void an_answer_can_come_after_a_time_out_and_keeps_the_device_busy(void **state)
+TEST(an_answer_can_come_after_a_time_out_and_keeps_the_device_busy)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     s.out.delay_us = 700 * MS;
     const uint32_t end_us = ASK(&s.bench, 400 * MS, REQUEST);
@@ -104,20 +104,18 @@ static void an_answer_can_come_after_a_time_out_and_keeps_the_device_busy(void *
     assert_int_equal(s.a16.device.counters.unheard, 8);
 }
 
-static void a_bit_can_be_flipped(void **state)
+TEST(a_bit_can_be_flipped)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     s.out.flip = 0x10;
     ASK(&s.bench, 200 * MS, REQUEST);
     EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x12, 0xEF, 0xF8, 0xA8);
 }
 
-static void an_answer_can_be_lost_and_the_device_is_free_at_once(void **state)
+TEST(an_answer_can_be_lost_and_the_device_is_free_at_once)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     s.out.drop = true;
     ASK(&s.bench, 130 * MS, REQUEST);
@@ -128,10 +126,9 @@ static void an_answer_can_be_lost_and_the_device_is_free_at_once(void **state)
     EXPECT(&s.bench, ANSWER);
 }
 
-static void an_answer_can_be_shorter_or_longer(void **state)
+TEST(an_answer_can_be_shorter_or_longer)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     s.out.length = 4;
     ASK(&s.bench, 200 * MS, REQUEST);
@@ -147,10 +144,9 @@ static void an_answer_can_be_shorter_or_longer(void **state)
     }
 }
 
-static void automatic_frames_pass_the_hook_too_and_keep_their_period(void **state)
+TEST(automatic_frames_pass_the_hook_too_and_keep_their_period)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     s.out.flip = 0x01;
     s.out.delay_us = 30 * MS;
@@ -166,10 +162,9 @@ static void automatic_frames_pass_the_hook_too_and_keep_their_period(void **stat
     assert_int_equal(s.out.seen, 7);
 }
 
-static void a_frame_delayed_over_its_period_skips_those_it_covers(void **state)
+TEST(a_frame_delayed_over_its_period_skips_those_it_covers)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     s.out.delay_us = 250 * MS;
     const uint32_t start_us = s.bench.now_us;
@@ -189,10 +184,9 @@ static void a_frame_delayed_over_its_period_skips_those_it_covers(void **state)
     assert_int_equal(s.bench.heard, 8);
 }
 
-static void a_delay_counts_from_the_end_of_the_frame_before(void **state)
+TEST(a_delay_counts_from_the_end_of_the_frame_before)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     s.out.delay_us = 30 * MS;
     const uint32_t start_us = s.bench.now_us;
@@ -201,10 +195,9 @@ static void a_delay_counts_from_the_end_of_the_frame_before(void **state)
     EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0, ANSWER);
 }
 
-static void a_request_can_be_missed_or_heard_wrong(void **state)
+TEST(a_request_can_be_missed_or_heard_wrong)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     s.faults.outgoing = NULL;
     s.faults.incoming = incoming;
@@ -223,17 +216,3 @@ static void a_request_can_be_missed_or_heard_wrong(void **state)
     EXPECT(&s.bench, ANSWER);
     assert_int_equal(s.in.seen, 3);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_hook_that_does_nothing_changes_nothing),
-    cmocka_unit_test(an_answer_can_come_after_a_time_out_and_keeps_the_device_busy),
-    cmocka_unit_test(a_bit_can_be_flipped),
-    cmocka_unit_test(an_answer_can_be_lost_and_the_device_is_free_at_once),
-    cmocka_unit_test(an_answer_can_be_shorter_or_longer),
-    cmocka_unit_test(automatic_frames_pass_the_hook_too_and_keep_their_period),
-    cmocka_unit_test(a_frame_delayed_over_its_period_skips_those_it_covers),
-    cmocka_unit_test(a_delay_counts_from_the_end_of_the_frame_before),
-    cmocka_unit_test(a_request_can_be_missed_or_heard_wrong),
-};
-
-BENCH_MAIN(tests)

@@ -22,20 +22,20 @@ static void set(stage_t *stage, int32_t distance, fathom_sim_hps167s_config_t co
 
 #define DEFAULTS ((fathom_sim_hps167s_config_t){0})
 
-static void single_measurement_is_that_of_command_5(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(single_measurement_is_that_of_command_5)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 20 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB); /* table 17 */
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xFD, 0x41);
     assert_int_equal(s.hps.device.counters.measurements, 1);
 }
 
-static void the_misprinted_crc_of_the_abnormal_response_is_no_request(void **state)
+TEST(the_misprinted_crc_of_the_abnormal_response_is_no_request)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xC8);
     EXPECT_SILENCE(&s.bench);
@@ -43,20 +43,18 @@ static void the_misprinted_crc_of_the_abnormal_response_is_no_request(void **sta
     assert_int_equal(s.hps.device.counters.requests, 0);
 }
 
-static void sensor_details_are_those_of_command_3(void **state)
+TEST(sensor_details_are_those_of_command_3)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x03, 0x00, 0x0B, 0xF4, 0x0D); /* table 13 */
     EXPECT(&s.bench, 0x01, 0x03, 0x16, 0xB0, 0x00, 0x39, 0x00, 0x25, 0x42, 0x34, 0x57, 0x14, 0x20, 0x34, 0x38,
            0x35, 0x01, 0x06, 0x07, 0x05, 0x13, 0x09, 0x17, 0x03, 0x09, 0x1A, 0xDC);
 }
 
-static void version_configuration_and_temperature_answer_tables_9_11_15(void **state)
+TEST(version_configuration_and_temperature_answer_tables_9_11_15)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.temperature_f = -10});
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x01, 0x00, 0x03, 0x54, 0x0B);
     EXPECT(&s.bench, 0x01, 0x03, 0x06, 0x14, 0x09, 0x1B, 0x02, 0x01, 0x00, 0x58, 0xD4);
@@ -71,28 +69,25 @@ static void version_configuration_and_temperature_answer_tables_9_11_15(void **s
     assert_int_equal(s.hps.device.counters.measurements, 0);
 }
 
-static void no_target_is_65530_with_little_light(void **state)
+TEST(no_target_is_65530_with_little_light)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_NO_TARGET, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0xFF, 0xFA, 0x00, 0x10, 0x00, 0x01, 0x00, 0x00, 0x10, 0xDF);
 }
 
-static void a_fault_is_the_abnormal_packet_of_command_5(void **state)
+TEST(a_fault_is_the_abnormal_packet_of_command_5)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_FAULT, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xE4, 0x5C);
 }
 
-static void the_first_answer_comes_at_once_and_the_next_a_period_later(void **state)
+TEST(the_first_answer_comes_at_once_and_the_next_a_period_later)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     const uint32_t end_us = ASK(&s.bench, 12 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
     assert_int_equal(s.bench.heard, 13);
@@ -121,40 +116,36 @@ static uint32_t answers_in_10_s(stage_t *s)
     return answers;
 }
 
-static void it_measures_54_times_a_second_and_6_times_as_an_option(void **state)
+TEST(it_measures_54_times_a_second_and_6_times_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     assert_in_range(answers_in_10_s(&s), 538, 540);
     set(&s, 2083, (fathom_sim_hps167s_config_t){.period_us = 166667});
     assert_in_range(answers_in_10_s(&s), 59, 60);
 }
 
-static void without_automatic_measuring_each_takes_a_period(void **state)
+TEST(without_automatic_measuring_each_takes_a_period)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.no_auto_output = true});
     const uint32_t end_us = ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
     assert_int_equal(s.bench.heard, 13);
     ASSERT_SPAN(s.bench.end_us[0], end_us, 18519 + 572, 18519 + 573);
 }
 
-static void it_says_nothing_unless_asked(void **state)
+TEST(it_says_nothing_unless_asked)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
     bench_wait(&s.bench, 600000 * MS);
     EXPECT_SILENCE(&s.bench);
 }
 
-static void a_command_with_another_length_is_exception_2(void **state)
+TEST(a_command_with_another_length_is_exception_2)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x03, 0x84, 0x09);
     EXPECT(&s.bench, 0x01, 0x83, 0x02, 0xC0, 0xF1); /* the datasheet's own example */
@@ -171,12 +162,11 @@ static void a_command_with_another_length_is_exception_2(void **state)
     EXPECT(&s.bench, 0x01, 0x83, 0x03, 0x01, 0x31);
 }
 
-static void every_length_but_the_right_one_is_refused_at_every_address(void **state)
+TEST(every_length_but_the_right_one_is_refused_at_every_address)
 {
     /* CRCs of 01 03 00 aa 00 cc, by bits: MODBUS over Serial Line 6.2.2 */
     static const uint8_t right[16] = {0, 3, 4, 11, 1, 0, 0, 0, 4, 1, 0, 0, 0, 0, 0, 0};
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.wrong_length = 3});
     for (uint8_t address = 0; address < 16; address++) {
         for (uint8_t count = 0; count < 16; count++) {
@@ -204,10 +194,9 @@ static void every_length_but_the_right_one_is_refused_at_every_address(void **st
     assert_int_equal(s.hps.device.counters.resets_refused, 15);
 }
 
-static void an_unknown_function_is_exception_1_whatever_its_length(void **state)
+TEST(an_unknown_function_is_exception_1_whatever_its_length)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x04, 0x00, 0x08, 0x00, 0x04, 0x70, 0x0B);
     EXPECT(&s.bench, 0x01, 0x84, 0x01, 0x82, 0xC0);
@@ -217,10 +206,9 @@ static void an_unknown_function_is_exception_1_whatever_its_length(void **state)
     EXPECT_SILENCE(&s.bench);
 }
 
-static void factory_reset_is_that_of_tables_19_and_20_and_is_counted(void **state)
+TEST(factory_reset_is_that_of_tables_19_and_20_and_is_counted)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.unit = 2, .no_termination = true});
     ASK(&s.bench, 30 * MS, 0x02, 0x03, 0x00, 0x09, 0x00, 0x01, 0x54, 0x3B);
     EXPECT(&s.bench, 0x02, 0x03, 0x02, 0x00, 0x01, 0x3D, 0x84);
@@ -233,11 +221,10 @@ static void factory_reset_is_that_of_tables_19_and_20_and_is_counted(void **stat
     assert_int_equal(s.hps.device.counters.resets, 2);
 }
 
-static void it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_to_a_reset(void **state)
+TEST(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_to_a_reset)
 {
     static const uint32_t baud[] = {19200, 57600, 115200, 230400};
     stage_t s;
-    (void)state;
     for (uint8_t code = 1; code <= 4; code++) {
         const fathom_line_settings_t settings = {baud[code - 1], FATHOM_PARITY_EVEN, 1};
         set(&s, 2083, (fathom_sim_hps167s_config_t){.baud_code = code});
@@ -255,10 +242,9 @@ static void it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_
     }
 }
 
-static void nothing_else_resets_it(void **state)
+TEST(nothing_else_resets_it)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x09, 0x00, 0x02, 0x14, 0x09);
     EXPECT(&s.bench, 0x01, 0x83, 0x02, 0xC0, 0xF1);
@@ -277,10 +263,9 @@ static void nothing_else_resets_it(void **state)
     assert_int_equal(s.hps.device.counters.resets, 1);
 }
 
-static void a_broadcast_is_not_answered(void **state)
+TEST(a_broadcast_is_not_answered)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x00, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC4, 0x1A);
     EXPECT_SILENCE(&s.bench);
@@ -290,10 +275,9 @@ static void a_broadcast_is_not_answered(void **state)
     assert_int_equal(s.bench.heard, 13);
 }
 
-static void another_unit_is_not_meant(void **state)
+TEST(another_unit_is_not_meant)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x02, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xF8);
     EXPECT_SILENCE(&s.bench);
@@ -303,10 +287,9 @@ static void another_unit_is_not_meant(void **state)
     EXPECT(&s.bench, 0x02, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xF2, 0x05);
 }
 
-static void while_it_warms_up_it_measures_nothing_but_answers_the_rest(void **state)
+TEST(while_it_warms_up_it_measures_nothing_but_answers_the_rest)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.warm_up_s = 5});
     bench_wait(&s.bench, 4900 * MS);
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
@@ -329,10 +312,9 @@ static void ask_in_two(stage_t *s, size_t first, uint32_t gap_us)
     bench_ask(&s->bench, bytes + first, 8 - first, 30 * MS);
 }
 
-static void a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request(void **state)
+TEST(a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request)
 {
     stage_t s;
-    (void)state;
     for (size_t first = 1; first < 8; first++) {
         set(&s, 2083, DEFAULTS);
         ask_in_two(&s, first, 850); /* t1.5 is 859.4 us */
@@ -355,10 +337,9 @@ static void a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request(void **st
     }
 }
 
-static void a_request_behind_another_one_without_a_silence_is_none(void **state)
+TEST(a_request_behind_another_one_without_a_silence_is_none)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xCB, /* and at once */
         0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
@@ -368,29 +349,3 @@ static void a_request_behind_another_one_without_a_silence_is_none(void **state)
     EXPECT_SILENCE(&s.bench);
     assert_int_equal(s.hps.device.counters.crc_errors, 2);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(single_measurement_is_that_of_command_5),
-    cmocka_unit_test(the_misprinted_crc_of_the_abnormal_response_is_no_request),
-    cmocka_unit_test(sensor_details_are_those_of_command_3),
-    cmocka_unit_test(version_configuration_and_temperature_answer_tables_9_11_15),
-    cmocka_unit_test(no_target_is_65530_with_little_light),
-    cmocka_unit_test(a_fault_is_the_abnormal_packet_of_command_5),
-    cmocka_unit_test(the_first_answer_comes_at_once_and_the_next_a_period_later),
-    cmocka_unit_test(it_measures_54_times_a_second_and_6_times_as_an_option),
-    cmocka_unit_test(without_automatic_measuring_each_takes_a_period),
-    cmocka_unit_test(it_says_nothing_unless_asked),
-    cmocka_unit_test(a_command_with_another_length_is_exception_2),
-    cmocka_unit_test(every_length_but_the_right_one_is_refused_at_every_address),
-    cmocka_unit_test(an_unknown_function_is_exception_1_whatever_its_length),
-    cmocka_unit_test(factory_reset_is_that_of_tables_19_and_20_and_is_counted),
-    cmocka_unit_test(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_to_a_reset),
-    cmocka_unit_test(nothing_else_resets_it),
-    cmocka_unit_test(a_broadcast_is_not_answered),
-    cmocka_unit_test(another_unit_is_not_meant),
-    cmocka_unit_test(while_it_warms_up_it_measures_nothing_but_answers_the_rest),
-    cmocka_unit_test(a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request),
-    cmocka_unit_test(a_request_behind_another_one_without_a_silence_is_none),
-};
-
-BENCH_MAIN(tests)

@@ -53,11 +53,12 @@ static fathom_status_t with(fathom_status_t (*command)(void), int32_t argument)
 
 static uint32_t wear(void) { return device()->counters.flash_writes; }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- what it tells ---- */
 
-static void commands_1_to_4_tell_what_the_device_has(void **state)
+TEST(commands_1_to_4_tell_what_the_device_has)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, NULL);
@@ -82,13 +83,12 @@ static void commands_1_to_4_tell_what_the_device_has(void **state)
 
 /* ---- what is read back ---- */
 
-static void settings_with_read_back_are_written_once_and_kept(void **state)
+TEST(settings_with_read_back_are_written_once_and_kept)
 {
     static const struct {
         fathom_status_t (*set)(void);
         int32_t value;
     } settings[] = {{seven, 9}, {ten, 0}, {eleven, 0}, {fifteen, 65556}};
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, NULL);
@@ -110,9 +110,8 @@ static void settings_with_read_back_are_written_once_and_kept(void **state)
 }
 
 /* Answers: two to #2, then the acknowledgement is the third frame, and the reading the fourth. */
-static void a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not(void **state)
+TEST(a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, NULL);
@@ -132,9 +131,8 @@ static void a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not
 
 /* ---- what is not ---- */
 
-static void write_only_commands_are_acknowledged(void **state)
+TEST(write_only_commands_are_acknowledged)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, NULL);
@@ -151,9 +149,8 @@ static void write_only_commands_are_acknowledged(void **state)
     }
 }
 
-static void a_write_only_command_is_told_once_where_the_line_echoes(void **state)
+TEST(a_write_only_command_is_told_once_where_the_line_echoes)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         line_echoes = true;
@@ -168,9 +165,8 @@ static void a_write_only_command_is_told_once_where_the_line_echoes(void **state
 
 /* ---- warm-up ---- */
 
-static void silence_refusal_and_the_abnormal_packet_of_a_warm_up_are_no_error(void **state)
+TEST(silence_refusal_and_the_abnormal_packet_of_a_warm_up_are_no_error)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         for (uint8_t says = 0; says != 3; says++) {
@@ -192,14 +188,3 @@ static void silence_refusal_and_the_abnormal_packet_of_a_warm_up_are_no_error(vo
         }
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(commands_1_to_4_tell_what_the_device_has),
-    cmocka_unit_test(settings_with_read_back_are_written_once_and_kept),
-    cmocka_unit_test(a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not),
-    cmocka_unit_test(write_only_commands_are_acknowledged),
-    cmocka_unit_test(a_write_only_command_is_told_once_where_the_line_echoes),
-    cmocka_unit_test(silence_refusal_and_the_abnormal_packet_of_a_warm_up_are_no_error),
-};
-
-BENCH_MAIN(tests)

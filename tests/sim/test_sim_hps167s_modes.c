@@ -33,12 +33,13 @@ static void set(stage_t *stage, fathom_sim_hps167s_config_t config)
 #define ANSWER_2  0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00, 0xB4, 0x01, 0x63, 0x1C
 enum { FRAME = 13, CHARACTER_US = 573, SILENCE_US = 2005 }; /* 11 bits, and 3.5 of them, at 19200 */
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- unasked: "continuous output" (#10, #15) ---- */
 
-static void it_sends_by_itself_as_an_option(void **state)
+TEST(it_sends_by_itself_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
     const uint32_t start_us = s.bench.now_us;
     for (int i = 0; i < 51; i++) bench_wait(&s.bench, 20 * MS); /* a loop that comes round every 20 ms */
@@ -53,20 +54,18 @@ static void it_sends_by_itself_as_an_option(void **state)
     assert_int_equal(s.hps.device.counters.measurements, 10);
 }
 
-static void it_fills_the_line_with_54_frames_a_second(void **state)
+TEST(it_fills_the_line_with_54_frames_a_second)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 18519});
     for (int i = 0; i < 51; i++) bench_wait(&s.bench, 20 * MS);
     assert_int_equal(s.hps.device.counters.automatic, 55); /* 1020 / 18.519 */
     assert_in_range(s.bench.heard, 54 * FRAME, 55 * FRAME);
 }
 
-static void what_it_sends_is_the_scene(void **state)
+TEST(what_it_sends_is_the_scene)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .unit = 2});
     bench_wait(&s.bench, 110 * MS);
     EXPECT(&s.bench, 0x02, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xF2, 0x05);
@@ -101,11 +100,10 @@ static bool asked_at(stage_t *s, uint32_t at_us)
     return answers != 0;
 }
 
-static void it_answers_while_it_sends_by_itself(void **state)
+TEST(it_answers_while_it_sends_by_itself)
 {
     uint32_t answered = 0, beside = 0, collided = 0, tried = 0;
     stage_t s;
-    (void)state;
     /* the request lasts 4.6 ms, the answer begins 4.2 to 4.5 ms behind it, and frames come at 100 and 200 ms */
     for (uint32_t at_us = 80 * MS; at_us < 120 * MS; at_us += 250) {
         const bool came = asked_at(&s, at_us);
@@ -123,10 +121,9 @@ static void it_answers_while_it_sends_by_itself(void **state)
     assert_int_equal(answered + collided, tried);
 }
 
-static void a_measurement_that_is_asked_for_is_not_sent_unasked_as_well(void **state)
+TEST(a_measurement_that_is_asked_for_is_not_sent_unasked_as_well)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
     bench_wait(&s.bench, 98 * MS); /* the request ends at 102.6 ms, when a frame is on the wire */
     bench_wait(&s.bench, 11 * MS);
@@ -137,10 +134,9 @@ static void a_measurement_that_is_asked_for_is_not_sent_unasked_as_well(void **s
                 118519 - 113584 + CHARACTER_US + 1);
 }
 
-static void without_continuous_measuring_it_is_silent(void **state)
+TEST(without_continuous_measuring_it_is_silent)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .no_auto_output = true});
     bench_wait(&s.bench, 1000 * MS);
     EXPECT_SILENCE(&s.bench);
@@ -160,11 +156,10 @@ static void without_continuous_measuring_it_is_silent(void **state)
     EXPECT_SILENCE(&s.bench);
 }
 
-static void a_frame_between_a_new_rate_and_its_acknowledgement_has_the_old_one(void **state)
+TEST(a_frame_between_a_new_rate_and_its_acknowledgement_has_the_old_one)
 {
     uint32_t between = 0;
     stage_t s;
-    (void)state;
     for (uint32_t at_us = 90 * MS; at_us < 95300; at_us += 100) {
         set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
         bench_wait(&s.bench, at_us);
@@ -184,11 +179,10 @@ static void a_frame_between_a_new_rate_and_its_acknowledgement_has_the_old_one(v
     assert_true(between > 10);
 }
 
-static void a_fault_sends_one_more_of_them_though_nobody_has_asked_yet(void **state)
+TEST(a_fault_sends_one_more_of_them_though_nobody_has_asked_yet)
 {
     fathom_sim_fault_t fault;
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
     fathom_sim_fault_init(&fault, 1);
     assert_non_null(fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_UNASKED, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
@@ -202,10 +196,9 @@ static void a_fault_sends_one_more_of_them_though_nobody_has_asked_yet(void **st
 
 /* ---- warm-up: "the sensor will not output measurement data" (#7) ---- */
 
-static void the_warm_up_is_silence_an_exception_or_the_abnormal_packet(void **state)
+TEST(the_warm_up_is_silence_an_exception_or_the_abnormal_packet)
 {
     stage_t s;
-    (void)state;
     for (uint8_t says = 0; says <= FATHOM_SIM_HPS167S_ABNORMAL; says++) {
         set(&s, (fathom_sim_hps167s_config_t){.warm_up_s = 5, .warm_up_says = says});
         for (int i = 0; i < 2; i++) {
@@ -232,10 +225,9 @@ static void the_warm_up_is_silence_an_exception_or_the_abnormal_packet(void **st
     }
 }
 
-static void unasked_frames_wait_for_the_end_of_the_warm_up_or_are_abnormal_till_then(void **state)
+TEST(unasked_frames_wait_for_the_end_of_the_warm_up_or_are_abnormal_till_then)
 {
     stage_t s;
-    (void)state;
     for (uint8_t says = 0; says <= FATHOM_SIM_HPS167S_ABNORMAL; says++) {
         set(&s, (fathom_sim_hps167s_config_t){.warm_up_s = 1, .warm_up_says = says, .unasked_us = 300 * MS});
         bench_wait(&s.bench, 1100 * MS);
@@ -250,10 +242,9 @@ static void unasked_frames_wait_for_the_end_of_the_warm_up_or_are_abnormal_till_
 
 /* ---- no data: #15 ---- */
 
-static void without_data_it_is_silent_for_the_reconnect_time_and_abnormal_then(void **state)
+TEST(without_data_it_is_silent_for_the_reconnect_time_and_abnormal_then)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .reconnect_ms = 360});
     bench_wait(&s.bench, 150 * MS);
     EXPECT(&s.bench, EXAMPLE);
@@ -274,10 +265,9 @@ static void without_data_it_is_silent_for_the_reconnect_time_and_abnormal_then(v
     EXPECT(&s.bench, EXAMPLE);
 }
 
-static void a_request_without_data_waits_for_the_reconnect_time(void **state)
+TEST(a_request_without_data_waits_for_the_reconnect_time)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.reconnect_ms = 360});
     bench_wait(&s.bench, 150 * MS);
     const uint32_t lost_us = s.bench.now_us;
@@ -302,10 +292,9 @@ static void a_request_without_data_waits_for_the_reconnect_time(void **state)
     EXPECT(&s.bench, EXAMPLE);
 }
 
-static void a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most(void **state)
+TEST(a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
     ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0xFF, 0xFF, 0xFF, 0xFC, 0xB0,
         0x22); /* the largest multiple of 18 */
@@ -320,32 +309,12 @@ static void a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most(vo
     EXPECT(&s.bench, ABNORMAL);
 }
 
-static void without_data_a_single_measurement_is_abnormal_after_its_time(void **state)
+TEST(without_data_a_single_measurement_is_abnormal_after_its_time)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.no_auto_output = true});
     fathom_sim_hps167s_lose(&s.hps, true, s.bench.now_us);
     const uint32_t end_us = ASK(&s.bench, 50 * MS, MEASURE);
     ASSERT_SPAN(s.bench.end_us[0], end_us, 18519 + CHARACTER_US - 1, 18519 + CHARACTER_US);
     EXPECT(&s.bench, ABNORMAL);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(it_sends_by_itself_as_an_option),
-    cmocka_unit_test(it_fills_the_line_with_54_frames_a_second),
-    cmocka_unit_test(what_it_sends_is_the_scene),
-    cmocka_unit_test(it_answers_while_it_sends_by_itself),
-    cmocka_unit_test(a_measurement_that_is_asked_for_is_not_sent_unasked_as_well),
-    cmocka_unit_test(without_continuous_measuring_it_is_silent),
-    cmocka_unit_test(a_frame_between_a_new_rate_and_its_acknowledgement_has_the_old_one),
-    cmocka_unit_test(a_fault_sends_one_more_of_them_though_nobody_has_asked_yet),
-    cmocka_unit_test(the_warm_up_is_silence_an_exception_or_the_abnormal_packet),
-    cmocka_unit_test(unasked_frames_wait_for_the_end_of_the_warm_up_or_are_abnormal_till_then),
-    cmocka_unit_test(without_data_it_is_silent_for_the_reconnect_time_and_abnormal_then),
-    cmocka_unit_test(a_request_without_data_waits_for_the_reconnect_time),
-    cmocka_unit_test(a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most),
-    cmocka_unit_test(without_data_a_single_measurement_is_abnormal_after_its_time),
-};
-
-BENCH_MAIN(tests)

@@ -24,11 +24,12 @@ static fathom_status_t with(fathom_status_t (*command)(void), int32_t argument)
 
 static uint32_t wear(void) { return device()->counters.flash_writes; }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- where it is ---- */
 
-static void an_address_is_followed_and_not_set_twice(void **state)
+TEST(an_address_is_followed_and_not_set_twice)
 {
-    (void)state;
     for (unsigned from_new = 0; from_new != 2; from_new++) {
         IN_BOTH_LOOPS
         {
@@ -43,9 +44,8 @@ static void an_address_is_followed_and_not_set_twice(void **state)
     }
 }
 
-static void an_address_at_which_another_answers_is_not_given(void **state)
+TEST(an_address_at_which_another_answers_is_not_given)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, NULL);
@@ -57,9 +57,8 @@ static void an_address_at_which_another_answers_is_not_given(void **state)
     }
 }
 
-static void without_confirmation_it_is_at_one_of_the_two_addresses(void **state)
+TEST(without_confirmation_it_is_at_one_of_the_two_addresses)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, NULL);
@@ -70,9 +69,8 @@ static void without_confirmation_it_is_at_one_of_the_two_addresses(void **state)
     }
 }
 
-static void what_waits_for_the_old_address_is_cancelled(void **state)
+TEST(what_waits_for_the_old_address_is_cancelled)
 {
-    (void)state;
     set_stage(0, DEFAULTS, NULL);
     uint16_t values[4];
     fathom_modbus_request_t request = {.exchange = {.timeout_us = 100 * MS}};
@@ -94,10 +92,9 @@ static void what_waits_for_the_old_address_is_cancelled(void **state)
 
 /* ---- at which rate it is ---- */
 
-static void a_rate_is_followed_there_and_back(void **state)
+TEST(a_rate_is_followed_there_and_back)
 {
     static const uint32_t bauds[] = {57600, 115200, 230400};
-    (void)state;
     IN_BOTH_LOOPS
     {
         for (unsigned i = 0; i != 3; i++) {
@@ -115,9 +112,8 @@ static void a_rate_is_followed_there_and_back(void **state)
     }
 }
 
-static void a_rate_from_the_next_power_on_is_followed_then(void **state)
+TEST(a_rate_from_the_next_power_on_is_followed_then)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], (fathom_sim_hps167s_config_t){.unit = 1, .baud_at_power_on = true},
@@ -135,9 +131,8 @@ static void a_rate_from_the_next_power_on_is_followed_then(void **state)
 }
 
 /* The driver is told of a power-on that did not happen: it comes back to the rate before. */
-static void a_device_that_stays_at_its_rate_is_found_there(void **state)
+TEST(a_device_that_stays_at_its_rate_is_found_there)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], (fathom_sim_hps167s_config_t){.unit = 1, .baud_at_power_on = true},
@@ -149,9 +144,8 @@ static void a_device_that_stays_at_its_rate_is_found_there(void **state)
     }
 }
 
-static void without_confirmation_both_rates_are_asked_until_it_answers(void **state)
+TEST(without_confirmation_both_rates_are_asked_until_it_answers)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, &factory);
@@ -169,9 +163,8 @@ static void without_confirmation_both_rates_are_asked_until_it_answers(void **st
 }
 
 /* Two of one address: after the change they would answer at once. */
-static void a_rate_at_which_another_has_the_address_is_not_given(void **state)
+TEST(a_rate_at_which_another_has_the_address_is_not_given)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], DEFAULTS, &factory);
@@ -186,9 +179,8 @@ static void a_rate_at_which_another_has_the_address_is_not_given(void **state)
 
 static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
 
-static void a_reset_device_is_followed_home(void **state)
+TEST(a_reset_device_is_followed_home)
 {
-    (void)state;
     for (unsigned from_new = 0; from_new != 2; from_new++) {
         IN_BOTH_LOOPS
         {
@@ -208,9 +200,8 @@ static void a_reset_device_is_followed_home(void **state)
     }
 }
 
-static void a_reset_is_not_sent_where_another_is_at_address_1(void **state)
+TEST(a_reset_is_not_sent_where_another_is_at_address_1)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], (fathom_sim_hps167s_config_t){.unit = 7}, NULL);
@@ -221,9 +212,8 @@ static void a_reset_is_not_sent_where_another_is_at_address_1(void **state)
     }
 }
 
-static void a_reset_whose_confirmation_is_lost_is_unconfirmed_and_sent_once(void **state)
+TEST(a_reset_whose_confirmation_is_lost_is_unconfirmed_and_sent_once)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         set_stage(loops_us[loop], (fathom_sim_hps167s_config_t){.unit = 7}, NULL);
@@ -235,9 +225,8 @@ static void a_reset_whose_confirmation_is_lost_is_unconfirmed_and_sent_once(void
 }
 
 /* #4 is asked, and answered too late with one degree Fahrenheit, 00 01: as if it were the answer to #6. */
-static void a_late_temperature_of_1_degree_is_not_taken_for_a_reset(void **state)
+TEST(a_late_temperature_of_1_degree_is_not_taken_for_a_reset)
 {
-    (void)state;
     IN_BOTH_LOOPS
     {
         for (uint32_t late_ms = 850; late_ms <= 2350; late_ms += 100) {
@@ -258,21 +247,3 @@ static void a_late_temperature_of_1_degree_is_not_taken_for_a_reset(void **state
         }
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(an_address_is_followed_and_not_set_twice),
-    cmocka_unit_test(an_address_at_which_another_answers_is_not_given),
-    cmocka_unit_test(without_confirmation_it_is_at_one_of_the_two_addresses),
-    cmocka_unit_test(what_waits_for_the_old_address_is_cancelled),
-    cmocka_unit_test(a_rate_is_followed_there_and_back),
-    cmocka_unit_test(a_rate_from_the_next_power_on_is_followed_then),
-    cmocka_unit_test(a_device_that_stays_at_its_rate_is_found_there),
-    cmocka_unit_test(without_confirmation_both_rates_are_asked_until_it_answers),
-    cmocka_unit_test(a_rate_at_which_another_has_the_address_is_not_given),
-    cmocka_unit_test(a_reset_device_is_followed_home),
-    cmocka_unit_test(a_reset_is_not_sent_where_another_is_at_address_1),
-    cmocka_unit_test(a_reset_whose_confirmation_is_lost_is_unconfirmed_and_sent_once),
-    cmocka_unit_test(a_late_temperature_of_1_degree_is_not_taken_for_a_reset),
-};
-
-BENCH_MAIN(tests)

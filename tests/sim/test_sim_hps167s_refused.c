@@ -48,7 +48,9 @@ static void expect_factory(stage_t *s)
     assert_int_equal(s->hps.device.counters.resets, 0);
 }
 
-static void a_value_that_a_command_does_not_have_is_exception_3(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(a_value_that_a_command_does_not_have_is_exception_3)
 {
     static const struct {
         uint8_t address;
@@ -58,7 +60,6 @@ static void a_value_that_a_command_does_not_have_is_exception_3(void **state)
                  {0x13, 0x100}, {0x15, 1},     {0x15, 0xFFFF}, {0x15, 0xFF00}};
     enum { WRONG = sizeof wrong / sizeof wrong[0] };
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     for (size_t i = 0; i < WRONG; i++) {
         uint8_t bytes[8] = {
@@ -71,10 +72,9 @@ static void a_value_that_a_command_does_not_have_is_exception_3(void **state)
     expect_factory(&s);
 }
 
-static void which_exception_a_wrong_value_is_is_an_option(void **state)
+TEST(which_exception_a_wrong_value_is_is_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, (fathom_sim_hps167s_config_t){.wrong_value = 4});
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x10, 0x00, 0x21, 0x48, 0x17);
     EXPECT(&s.bench, 0x01, 0x86, 0x04, 0x43, 0xA3);
@@ -85,10 +85,9 @@ static void which_exception_a_wrong_value_is_is_an_option(void **state)
     expect_factory(&s);
 }
 
-static void a_reconnect_time_is_a_multiple_of_18_in_two_registers(void **state)
+TEST(a_reconnect_time_is_a_multiple_of_18_in_two_registers)
 {
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x69, 0x30,
         0x09); /* 361 */
@@ -126,11 +125,10 @@ static void a_reconnect_time_is_a_multiple_of_18_in_two_registers(void **state)
 }
 
 /* Every address 0..0x3F, with a value that all take; the commands of each function stand in `mine`. */
-static void function_6_has_the_addresses_of_7_to_14_and_no_other(void **state)
+TEST(function_6_has_the_addresses_of_7_to_14_and_no_other)
 {
     stage_t s;
     uint32_t obeyed = 0;
-    (void)state;
     for (uint8_t address = 0; address < 0x40; address++) {
         const bool mine = address == 0x0A || (address >= 0x11 && address <= 0x16);
         uint8_t bytes[8] = {0x01, 0x06, 0x00, address, 0x00, 0x00};
@@ -150,10 +148,9 @@ static void function_6_has_the_addresses_of_7_to_14_and_no_other(void **state)
     assert_int_equal(obeyed, 7);
 }
 
-static void function_16_has_the_address_of_15_and_no_other(void **state)
+TEST(function_16_has_the_address_of_15_and_no_other)
 {
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     for (uint8_t address = 0; address < 0x40; address++) {
         uint8_t bytes[13] = {0x01, 0x10, 0x00, address, 0x00, 0x01, 0x02, 0x00, 0x00};
@@ -168,10 +165,9 @@ static void function_16_has_the_address_of_15_and_no_other(void **state)
     expect_factory(&s);
 }
 
-static void what_is_written_is_not_to_be_read(void **state)
+TEST(what_is_written_is_not_to_be_read)
 {
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     for (uint8_t address = 0x0A; address <= 0x20; address++) {
         uint8_t bytes[8] = {0x01, 0x03, 0x00, address, 0x00, 0x01};
@@ -182,22 +178,20 @@ static void what_is_written_is_not_to_be_read(void **state)
     expect_factory(&s);
 }
 
-static void the_longest_write_of_many_is_refused_and_does_no_harm(void **state)
+TEST(the_longest_write_of_many_is_refused_and_does_no_harm)
 {
     uint8_t bytes[255] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x7B, 246}; /* 123 registers */
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     ask_sealed(&s, bytes, 253);
     EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
     expect_factory(&s);
 }
 
-static void a_broadcast_is_obeyed_by_all_and_answered_by_none(void **state)
+TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
 {
     fathom_sim_hps167s_t other;
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     fathom_sim_hps167s_init(&other, &(fathom_sim_hps167s_config_t){.unit = 2, .seed = 9});
     bench_attach(&s.bench, &other.device);
@@ -227,10 +221,9 @@ static void a_broadcast_is_obeyed_by_all_and_answered_by_none(void **state)
     assert_int_equal(other.device.counters.answered, 1);
 }
 
-static void flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there(void **state)
+TEST(flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there)
 {
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     for (uint32_t i = 1; i <= 3; i++) {
         ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x05, 0x69, 0xCB);
@@ -245,10 +238,9 @@ static void flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there(vo
     assert_int_equal(s.hps.device.counters.writes, 4);
 }
 
-static void the_reset_of_the_interface_brings_back_all_but_12_and_14(void **state)
+TEST(the_reset_of_the_interface_brings_back_all_but_12_and_14)
 {
     stage_t s;
-    (void)state;
     set(&s, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x07, 0xE8, 0x0A);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x12, 0x00, 0x00, 0x29, 0xCF);
@@ -271,18 +263,3 @@ static void the_reset_of_the_interface_brings_back_all_but_12_and_14(void **stat
     ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9);
     EXPECT(&s.bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x05, 0x00, 0x00, 0x00, 0xB4, 0x01, 0x63, 0x49);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_value_that_a_command_does_not_have_is_exception_3),
-    cmocka_unit_test(which_exception_a_wrong_value_is_is_an_option),
-    cmocka_unit_test(a_reconnect_time_is_a_multiple_of_18_in_two_registers),
-    cmocka_unit_test(function_6_has_the_addresses_of_7_to_14_and_no_other),
-    cmocka_unit_test(function_16_has_the_address_of_15_and_no_other),
-    cmocka_unit_test(what_is_written_is_not_to_be_read),
-    cmocka_unit_test(the_longest_write_of_many_is_refused_and_does_no_harm),
-    cmocka_unit_test(a_broadcast_is_obeyed_by_all_and_answered_by_none),
-    cmocka_unit_test(flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there),
-    cmocka_unit_test(the_reset_of_the_interface_brings_back_all_but_12_and_14),
-};
-
-BENCH_MAIN(tests)

@@ -50,12 +50,13 @@ static uint32_t distance(stage_t *s)
     return s->bench.bytes[3] * 256u + s->bench.bytes[4];
 }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- #12, #13, #14 ---- */
 
-static void the_offset_of_the_example_makes_215_mm_200_mm(void **state)
+TEST(the_offset_of_the_example_makes_215_mm_200_mm)
 {
     stage_t s;
-    (void)state;
     set(&s, 215, DEFAULTS);
     assert_int_equal(distance(&s), 215);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x49, 0xBA);
@@ -71,10 +72,9 @@ static void the_offset_of_the_example_makes_215_mm_200_mm(void **state)
     assert_int_equal(distance(&s), 225);
 }
 
-static void offsets_add_up_as_an_option(void **state)
+TEST(offsets_add_up_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, 40000, (fathom_sim_hps167s_config_t){.offset_adds = true});
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x49, 0xBA);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x49, 0xBA);
@@ -94,10 +94,9 @@ static void offsets_add_up_as_an_option(void **state)
     assert_int_equal(distance(&s), 1 + 32767);
 }
 
-static void an_offset_moves_distances_and_nothing_else(void **state)
+TEST(an_offset_moves_distances_and_nothing_else)
 {
     stage_t s;
-    (void)state;
     set(&s, 14, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x49, 0xBA);
     bench_forget(&s.bench);
@@ -117,10 +116,9 @@ static void an_offset_moves_distances_and_nothing_else(void **state)
     assert_int_equal(distance(&s), 65529); /* no distance becomes a mark */
 }
 
-static void a_filter_is_kept(void **state)
+TEST(a_filter_is_kept)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     assert_int_equal(s.hps.sensor.filter, 0);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x16, 0xFF, 0x9C, 0x29, 0x97);
@@ -135,10 +133,9 @@ static void a_filter_is_kept(void **state)
     assert_int_equal(distance(&s), 2083);
 }
 
-static void settings_are_loaded_from_the_user_or_from_the_factory(void **state)
+TEST(settings_are_loaded_from_the_user_or_from_the_factory)
 {
     stage_t s;
-    (void)state;
     set(&s, 215, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x49, 0xBA);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x16, 0x00, 0x32, 0xE9, 0xDB);
@@ -162,10 +159,9 @@ static void settings_are_loaded_from_the_user_or_from_the_factory(void **state)
 
 /* ---- #15 ---- */
 
-static void reconnect_time_is_acknowledged_as_in_table_38_with_its_high_word_first(void **state)
+TEST(reconnect_time_is_acknowledged_as_in_table_38_with_its_high_word_first)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x68, 0xF1,
         0xC9); /* 360 ms */
@@ -181,14 +177,3 @@ static void reconnect_time_is_acknowledged_as_in_table_38_with_its_high_word_fir
     EXPECT(&s.bench, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02);
     assert_memory_equal(configuration(&s) + RECONNECT, ((uint8_t[]){0, 0, 0, 0}), 4);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_offset_of_the_example_makes_215_mm_200_mm),
-    cmocka_unit_test(offsets_add_up_as_an_option),
-    cmocka_unit_test(an_offset_moves_distances_and_nothing_else),
-    cmocka_unit_test(a_filter_is_kept),
-    cmocka_unit_test(settings_are_loaded_from_the_user_or_from_the_factory),
-    cmocka_unit_test(reconnect_time_is_acknowledged_as_in_table_38_with_its_high_word_first),
-};
-
-BENCH_MAIN(tests)

@@ -57,12 +57,13 @@ static uint32_t distance(stage_t *s)
     return s->bench.bytes[3] * 256u + s->bench.bytes[4];
 }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- #7 ---- */
 
-static void warm_up_of_tables_21_and_22_acts_from_the_next_power_on(void **state)
+TEST(warm_up_of_tables_21_and_22_acts_from_the_next_power_on)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x05, 0x69, 0xCB);
     EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x05, 0x69, 0xCB);
@@ -77,10 +78,9 @@ static void warm_up_of_tables_21_and_22_acts_from_the_next_power_on(void **state
     assert_int_equal(distance(&s), 2083);
 }
 
-static void the_longest_warm_up_is_255_s(void **state)
+TEST(the_longest_warm_up_is_255_s)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0xFF, 0xE9, 0x88);
     EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x0A, 0x00, 0xFF, 0xE9, 0x88);
@@ -94,10 +94,9 @@ static void the_longest_warm_up_is_255_s(void **state)
 
 /* ---- #8 ---- */
 
-static void a_new_address_counts_at_once_and_is_acknowledged_from_the_old_one(void **state)
+TEST(a_new_address_counts_at_once_and_is_acknowledged_from_the_old_one)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x10, 0x00, 0x05, 0x48, 0x0C);
     EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x10, 0x00, 0x05, 0x48, 0x0C);
@@ -110,10 +109,9 @@ static void a_new_address_counts_at_once_and_is_acknowledged_from_the_old_one(vo
     EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x4D, 0x89, 0xB1);
 }
 
-static void a_new_address_is_acknowledged_from_itself_as_an_option(void **state)
+TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.answers_from_new = true});
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x10, 0x00, 0x20, 0x89, 0xD7); /* 32, the highest */
     EXPECT(&s.bench, 0x20, 0x06, 0x00, 0x10, 0x00, 0x20, 0x8F, 0x66);
@@ -125,21 +123,19 @@ static void a_new_address_is_acknowledged_from_itself_as_an_option(void **state)
 
 /* ---- #9 ---- */
 
-static void rate_of_tables_25_and_26_is_echoed(void **state)
+TEST(rate_of_tables_25_and_26_is_echoed)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x11, 0x00, 0x01, 0x18, 0x0F);
     EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x11, 0x00, 0x01, 0x18, 0x0F);
     assert_int_equal(configuration(&s)[BAUD], 1);
 }
 
-static void a_new_rate_counts_from_behind_its_acknowledgement(void **state)
+TEST(a_new_rate_counts_from_behind_its_acknowledgement)
 {
     static const uint32_t baud[] = {19200, 57600, 115200, 230400};
     stage_t s;
-    (void)state;
     for (uint8_t i = 0; i < 16; i++) {
         const uint8_t from = i / 4, to = i % 4;
         set(&s, 2083, (fathom_sim_hps167s_config_t){.baud_code = (uint8_t)(from + 1)});
@@ -162,10 +158,9 @@ static void a_new_rate_counts_from_behind_its_acknowledgement(void **state)
     }
 }
 
-static void a_new_rate_counts_from_the_next_power_on_as_an_option(void **state)
+TEST(a_new_rate_counts_from_the_next_power_on_as_an_option)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.baud_at_power_on = true});
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x11, 0x00, 0x03, 0x99, 0xCE);
     EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x11, 0x00, 0x03, 0x99, 0xCE);
@@ -175,10 +170,9 @@ static void a_new_rate_counts_from_the_next_power_on_as_an_option(void **state)
     assert_int_equal(configuration(&s)[BAUD], 3);
 }
 
-static void every_other_code_is_19200(void **state)
+TEST(every_other_code_is_19200)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.baud_code = 4});
     at_rate(&s, 230400);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x11, 0x00, 0x05, 0x19, 0xCC);
@@ -196,11 +190,10 @@ static void every_other_code_is_19200(void **state)
     assert_int_equal(configuration(&s)[BAUD], 1);
 }
 
-static void a_lost_acknowledgement_leaves_it_at_the_new_rate(void **state)
+TEST(a_lost_acknowledgement_leaves_it_at_the_new_rate)
 {
     fathom_sim_fault_t fault;
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     fathom_sim_fault_init(&fault, 1);
     assert_non_null(fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
@@ -227,10 +220,9 @@ static uint32_t measurement_us(stage_t *s)
     return fathom_elapsed_us(s->bench.end_us[0], end_us) - 573; /* a character is 572.9 us */
 }
 
-static void measuring_by_itself_ends_with_the_power_on_after_table_27(void **state)
+TEST(measuring_by_itself_ends_with_the_power_on_after_table_27)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, DEFAULTS);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x00, 0x12, 0x00, 0x00, 0x29, 0xCF);
     EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x12, 0x00, 0x00, 0x29, 0xCF);
@@ -248,10 +240,9 @@ static void measuring_by_itself_ends_with_the_power_on_after_table_27(void **sta
     assert_in_range(measurement_us(&s), 2186, 2500);
 }
 
-static void termination_of_tables_29_and_30_is_switched_at_the_next_power_on(void **state)
+TEST(termination_of_tables_29_and_30_is_switched_at_the_next_power_on)
 {
     stage_t s;
-    (void)state;
     set(&s, 2083, (fathom_sim_hps167s_config_t){.no_termination = true});
     assert_false(s.hps.terminated);
     ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x13, 0x00, 0xFF, 0x38, 0x4F);
@@ -268,19 +259,3 @@ static void termination_of_tables_29_and_30_is_switched_at_the_next_power_on(voi
     cycle_power(&s);
     assert_false(s.hps.terminated);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(warm_up_of_tables_21_and_22_acts_from_the_next_power_on),
-    cmocka_unit_test(the_longest_warm_up_is_255_s),
-    cmocka_unit_test(a_new_address_counts_at_once_and_is_acknowledged_from_the_old_one),
-    cmocka_unit_test(a_new_address_is_acknowledged_from_itself_as_an_option),
-    cmocka_unit_test(rate_of_tables_25_and_26_is_echoed),
-    cmocka_unit_test(a_new_rate_counts_from_behind_its_acknowledgement),
-    cmocka_unit_test(a_new_rate_counts_from_the_next_power_on_as_an_option),
-    cmocka_unit_test(every_other_code_is_19200),
-    cmocka_unit_test(a_lost_acknowledgement_leaves_it_at_the_new_rate),
-    cmocka_unit_test(measuring_by_itself_ends_with_the_power_on_after_table_27),
-    cmocka_unit_test(termination_of_tables_29_and_30_is_switched_at_the_next_power_on),
-};
-
-BENCH_MAIN(tests)

@@ -79,10 +79,11 @@ static fathom_status_t ask(fathom_status_t (*command)(void))
     }
 }
 
-static void every_frame_is_heard_in_any_loop(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(every_frame_is_heard_in_any_loop)
 {
     static const uint32_t loops_us[] = {0, 1000, 20 * MS};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         begin(loops_us[i], 100 * MS, false);
         listen_for(2050 * MS);
@@ -92,9 +93,8 @@ static void every_frame_is_heard_in_any_loop(void **state)
     }
 }
 
-static void at_54_a_second_a_slow_loop_gets_the_newest(void **state)
+TEST(at_54_a_second_a_slow_loop_gets_the_newest)
 {
-    (void)state;
     begin(20 * MS, 18519, false);
     listen_for(2050 * MS);
     assert_in_range(device()->counters.automatic, 109, 111); /* 2050 / 18.519 is 110.7 */
@@ -103,12 +103,11 @@ static void at_54_a_second_a_slow_loop_gets_the_newest(void **state)
 }
 
 /* Frames every 40 ms; each command is asked at a time when one may be on its way. */
-static void every_command_works_while_frames_arrive(void **state)
+TEST(every_command_works_while_frames_arrive)
 {
     static fathom_status_t (*const commands[])(void) = {one, two,    three,  four,     seven,    eight,
                                                         ten, eleven, twelve, thirteen, fourteen, fifteen};
     static const uint32_t loops_us[] = {0, 20 * MS};
-    (void)state;
     for (unsigned loop = 0; loop != 2; loop++) {
         for (uint32_t at_us = 0; at_us < 40 * MS; at_us += 7 * MS) {
             begin(loops_us[loop], 40 * MS, true);
@@ -136,13 +135,12 @@ static void every_command_works_while_frames_arrive(void **state)
 }
 
 /* Whatever is measured, and however long it stays: the configuration is the device's or there is none. */
-static void no_held_distance_passes_for_the_configuration(void **state)
+TEST(no_held_distance_passes_for_the_configuration)
 {
     /* 00FF is the one distance with the shape of #2; the optics make the rest of the frame fit too: 00FF 0500 0000 B401
      * is what #2 says with these settings but for the termination. */
     static const fathom_sim_optics_t like_2 = {0x0500, 0x00, 0x00, 0xB402};
     unsigned told = 0;
-    (void)state;
     for (uint32_t at_us = 0; at_us < 40 * MS; at_us += 1 * MS) {
         begin(at_us % 2 == 0 ? 0 : 20 * MS, 40 * MS, true);
         stage.sim[0].optics = &like_2;
@@ -161,9 +159,8 @@ static void no_held_distance_passes_for_the_configuration(void **state)
     assert_true(told > 50);
 }
 
-static void a_reset_is_done_while_frames_arrive(void **state)
+TEST(a_reset_is_done_while_frames_arrive)
 {
-    (void)state;
     for (uint32_t at_us = 0; at_us < 40 * MS; at_us += 5 * MS) {
         begin(0, 40 * MS, true);
         fathom_sim_clock_advance(&stage.clock, at_us);
@@ -177,13 +174,3 @@ static void a_reset_is_done_while_frames_arrive(void **state)
         assert_int_equal(wrong, 0);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_frame_is_heard_in_any_loop),
-    cmocka_unit_test(at_54_a_second_a_slow_loop_gets_the_newest),
-    cmocka_unit_test(every_command_works_while_frames_arrive),
-    cmocka_unit_test(no_held_distance_passes_for_the_configuration),
-    cmocka_unit_test(a_reset_is_done_while_frames_arrive),
-};
-
-BENCH_MAIN(tests)

@@ -29,12 +29,13 @@ static void set(stage_t *stage, uint8_t mode)
 static const uint8_t ask_realtime[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36};
 #define ANSWER 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- what is no request ---- */
 
-static void every_flipped_bit_is_met_with_silence(void **state)
+TEST(every_flipped_bit_is_met_with_silence)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     for (size_t bit = 0; bit < 64; bit++) {
         uint8_t bytes[8];
@@ -48,10 +49,9 @@ static void every_flipped_bit_is_met_with_silence(void **state)
     EXPECT(&s.bench, ANSWER);
 }
 
-static void every_torn_off_request_is_met_with_silence(void **state)
+TEST(every_torn_off_request_is_met_with_silence)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     for (size_t length = 1; length < 8; length++) bench_ask(&s.bench, ask_realtime, length, 200 * MS);
     EXPECT_SILENCE(&s.bench);
@@ -59,12 +59,11 @@ static void every_torn_off_request_is_met_with_silence(void **state)
     assert_int_equal(s.a16.device.counters.requests, 0);
 }
 
-static void garbage_of_any_length_is_met_with_silence(void **state)
+TEST(garbage_of_any_length_is_met_with_silence)
 {
     uint8_t garbage[256];
     uint32_t random = 1;
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     for (size_t length = 1; length <= 256; length++) {
         for (size_t i = 0; i < length; i++) {
@@ -80,10 +79,9 @@ static void garbage_of_any_length_is_met_with_silence(void **state)
     EXPECT(&s.bench, ANSWER);
 }
 
-static void a_right_crc_does_not_make_a_request_of_another_length(void **state)
+TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     ASK(&s.bench, 200 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0x00, 0x36, 0x5F); /* 9 bytes */
     ASK(&s.bench, 200 * MS, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);             /* an answer, 7 bytes */
@@ -93,10 +91,9 @@ static void a_right_crc_does_not_make_a_request_of_another_length(void **state)
     assert_int_equal(s.a16.device.counters.measurements, 0);
 }
 
-static void the_crc_of_nothing_is_no_broadcast(void **state)
+TEST(the_crc_of_nothing_is_no_broadcast)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     ASK(&s.bench, 10 * MS, 0xFF, 0xFF);       /* the CRC of no bytes is FF FF */
     ASK(&s.bench, 10 * MS, 0x01, 0x7E, 0x80); /* an address and its CRC */
@@ -106,10 +103,9 @@ static void the_crc_of_nothing_is_no_broadcast(void **state)
     assert_true(s.a16.device.counters.automatic >= 10);
 }
 
-static void frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap(void **state)
+TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     for (size_t first = 1; first < 8; first++) {
         bench_ask(&s.bench, ask_realtime, first, 3600); /* t3.5 is 3645.8 us */
@@ -124,10 +120,9 @@ static void frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap(void **sta
 
 /* ---- half-duplex ---- */
 
-static void a_device_hears_nothing_while_it_serves_a_request(void **state)
+TEST(a_device_hears_nothing_while_it_serves_a_request)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     bench_ask(&s.bench, ask_realtime, 8, 20 * MS);
     bench_ask(&s.bench, ask_realtime, 8, 20 * MS); /* it is measuring */
@@ -137,10 +132,9 @@ static void a_device_hears_nothing_while_it_serves_a_request(void **state)
     assert_int_equal(s.a16.device.counters.requests, 1);
 }
 
-static void a_frame_that_ends_before_the_answer_does_not_open_its_ears(void **state)
+TEST(a_frame_that_ends_before_the_answer_does_not_open_its_ears)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     s.bench.line.full_duplex = true;
     bench_wait(&s.bench, 89 * MS); /* the request is known at 101 ms, in the frame of 100..104.2 */
@@ -154,10 +148,9 @@ static void a_frame_that_ends_before_the_answer_does_not_open_its_ears(void **st
     assert_int_equal(s.a16.device.counters.requests, 1);
 }
 
-static void a_request_that_begins_during_an_answer_is_lost_with_it(void **state)
+TEST(a_request_that_begins_during_an_answer_is_lost_with_it)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     bench_ask(&s.bench, ask_realtime, 8, 5 * MS);
     while (s.bench.heard < 3) bench_wait(&s.bench, 100);
@@ -171,10 +164,9 @@ static void a_request_that_begins_during_an_answer_is_lost_with_it(void **state)
     assert_memory_not_equal(s.bench.bytes, ((const uint8_t[]){ANSWER}), 7); /* the host hears a mess */
 }
 
-static void an_automatic_frame_deafens_a_device_on_two_wires(void **state)
+TEST(an_automatic_frame_deafens_a_device_on_two_wires)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO); /* full_duplex stays false */
     bench_wait(&s.bench, 95 * MS);
     bench_ask(&s.bench, ask_realtime, 8, 20 * MS); /* the frame begins in the middle of it */
@@ -186,10 +178,9 @@ static void an_automatic_frame_deafens_a_device_on_two_wires(void **state)
     assert_int_equal(s.a16.device.counters.requests, 1);
 }
 
-static void the_host_hears_itself_only_with_echo(void **state)
+TEST(the_host_hears_itself_only_with_echo)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     s.bench.line.echo = true;
     bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
@@ -198,10 +189,9 @@ static void the_host_hears_itself_only_with_echo(void **state)
 
 /* ---- time ---- */
 
-static void sent_turns_true_with_the_last_stop_bit(void **state)
+TEST(sent_turns_true_with_the_last_stop_bit)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     assert_true(fathom_sim_sent(&s.bench.line, s.bench.now_us));
     const uint32_t end_us = bench_say(&s.bench, ask_realtime, 8);
@@ -210,10 +200,9 @@ static void sent_turns_true_with_the_last_stop_bit(void **state)
     assert_int_equal(s.bench.line.counters.from_host, 8);
 }
 
-static void due_leads_from_event_to_event_and_ends(void **state)
+TEST(due_leads_from_event_to_event_and_ends)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
     bench_say(&s.bench, ask_realtime, 8);
@@ -231,10 +220,9 @@ static void due_leads_from_event_to_event_and_ends(void **state)
     assert_int_equal(steps, 8 + 1 + 1 + 7); /* bytes, t3.5, the answer, its bytes */
 }
 
-static void one_jump_and_many_steps_tell_the_same(void **state)
+TEST(one_jump_and_many_steps_tell_the_same)
 {
     stage_t jump, step;
-    (void)state;
     set(&jump, FATHOM_SIM_A16_AUTO);
     set(&step, FATHOM_SIM_A16_AUTO);
     jump.bench.line.full_duplex = step.bench.line.full_duplex = true;
@@ -248,10 +236,9 @@ static void one_jump_and_many_steps_tell_the_same(void **state)
     assert_memory_equal(jump.bench.end_us, step.bench.end_us, jump.bench.heard * sizeof(uint32_t));
 }
 
-static void a_time_that_goes_back_changes_nothing(void **state)
+TEST(a_time_that_goes_back_changes_nothing)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     bench_wait(&s.bench, 150 * MS);
     assert_int_equal(s.bench.heard, 4);
@@ -262,10 +249,9 @@ static void a_time_that_goes_back_changes_nothing(void **state)
     assert_int_equal(s.bench.heard, 8);
 }
 
-static void it_works_for_hours_across_every_wrap(void **state)
+TEST(it_works_for_hours_across_every_wrap)
 {
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 30; i++) { /* 12.5 hours, 10 wraps */
         bench_wait(&s.bench, UINT32_C(1500000000));
@@ -276,13 +262,12 @@ static void it_works_for_hours_across_every_wrap(void **state)
 
 /* ---- what the host's UART knows ---- */
 
-static void a_read_tells_the_silence_before_and_the_time_of_the_last_byte(void **state)
+TEST(a_read_tells_the_silence_before_and_the_time_of_the_last_byte)
 {
     const uint8_t knows = FATHOM_RX_TIMED | FATHOM_RX_SILENCE;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[64];
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     const uint32_t later_us = s.bench.now_us + 250 * MS;
     /* two frames wait; one read does not span the silence between them */
@@ -299,25 +284,23 @@ static void a_read_tells_the_silence_before_and_the_time_of_the_last_byte(void *
     assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, sizeof bytes, knows, &rx), 0);
 }
 
-static void what_it_does_not_know_it_neither_tells_nor_minds(void **state)
+TEST(what_it_does_not_know_it_neither_tells_nor_minds)
 {
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[64];
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     const uint32_t later_us = s.bench.now_us + 250 * MS;
     assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, sizeof bytes, 0, &rx), 8);
     assert_int_equal(rx.flags, 0);
 }
 
-static void bytes_that_nobody_reads_are_lost_and_told(void **state)
+TEST(bytes_that_nobody_reads_are_lost_and_told)
 {
     const uint8_t knows = FATHOM_RX_OVERRUN;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[512];
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     s.bench.now_us += 6550 * MS; /* 65 frames, 260 bytes */
     assert_int_equal(
@@ -333,12 +316,11 @@ static void bytes_that_nobody_reads_are_lost_and_told(void **state)
 
 /* ---- rates ---- */
 
-static void at_another_rate_or_parity_nobody_understands(void **state)
+TEST(at_another_rate_or_parity_nobody_understands)
 {
     const fathom_line_settings_t even = {9600, FATHOM_PARITY_EVEN, 1};
     const fathom_line_settings_t near = {9700, FATHOM_PARITY_NONE, 1};
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
     bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
@@ -352,13 +334,12 @@ static void at_another_rate_or_parity_nobody_understands(void **state)
     EXPECT(&s.bench, ANSWER);
 }
 
-static void a_stream_at_another_rate_is_garbage_with_framing_errors(void **state)
+TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
 {
     const uint8_t knows = FATHOM_RX_FRAMING;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[8];
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
     s.bench.now_us += 150 * MS;
@@ -370,13 +351,12 @@ static void a_stream_at_another_rate_is_garbage_with_framing_errors(void **state
     assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, 8, knows, &rx), 0);
 }
 
-static void a_read_ends_with_a_byte_that_was_heard_wrong(void **state)
+TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
 {
     const uint8_t knows = FATHOM_RX_FRAMING;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[8];
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_AUTO);
     fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
     /* two characters of the frame are over when the host finds the rate */
@@ -393,12 +373,11 @@ static void a_read_ends_with_a_byte_that_was_heard_wrong(void **state)
 
 /* ---- more than one ---- */
 
-static void three_devices_share_a_line_each_at_its_address_and_rate(void **state)
+TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 {
     fathom_sim_a05_t a05;
     fathom_sim_hps167s_t hps;
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     fathom_sim_a05_config_t a05_config = {.unit = 5, .mode = FATHOM_SIM_A05_MODBUS};
     fathom_sim_hps167s_config_t hps_config = {.unit = 1}; /* the A16's, at another rate */
@@ -426,11 +405,10 @@ static void three_devices_share_a_line_each_at_its_address_and_rate(void **state
     assert_int_equal(hps.device.counters.others, 0); /* those were at another rate */
 }
 
-static void two_devices_at_one_address_collide(void **state)
+TEST(two_devices_at_one_address_collide)
 {
     fathom_sim_a16_t twin;
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     const fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_MODBUS}; /* the same seed: the same time */
     fathom_sim_a16_init(&twin, &config);
@@ -443,11 +421,10 @@ static void two_devices_at_one_address_collide(void **state)
     for (size_t i = 0; i < 14; i++) assert_int_not_equal(s.bench.bytes[i], ((uint8_t[]){ANSWER})[i / 2]);
 }
 
-static void a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request(void **state)
+TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 {
     fathom_sim_a05_t a05;
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     const fathom_sim_a05_config_t config = {.unit = 5, .mode = FATHOM_SIM_A05_MODBUS};
     fathom_sim_a05_init(&a05, &config);
@@ -469,11 +446,10 @@ static void a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request(v
     EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
 }
 
-static void a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing(void **state)
+TEST(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing)
 {
     fathom_sim_a05_t a05;
     stage_t s;
-    (void)state;
     set(&s, FATHOM_SIM_A16_MODBUS);
     const fathom_sim_a05_config_t config = {.unit = 5, .mode = FATHOM_SIM_A05_MODBUS};
     fathom_sim_a05_init(&a05, &config);
@@ -492,34 +468,3 @@ static void a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing(v
     ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
     EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_flipped_bit_is_met_with_silence),
-    cmocka_unit_test(every_torn_off_request_is_met_with_silence),
-    cmocka_unit_test(garbage_of_any_length_is_met_with_silence),
-    cmocka_unit_test(a_right_crc_does_not_make_a_request_of_another_length),
-    cmocka_unit_test(the_crc_of_nothing_is_no_broadcast),
-    cmocka_unit_test(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap),
-    cmocka_unit_test(a_device_hears_nothing_while_it_serves_a_request),
-    cmocka_unit_test(a_frame_that_ends_before_the_answer_does_not_open_its_ears),
-    cmocka_unit_test(a_request_that_begins_during_an_answer_is_lost_with_it),
-    cmocka_unit_test(an_automatic_frame_deafens_a_device_on_two_wires),
-    cmocka_unit_test(the_host_hears_itself_only_with_echo),
-    cmocka_unit_test(sent_turns_true_with_the_last_stop_bit),
-    cmocka_unit_test(due_leads_from_event_to_event_and_ends),
-    cmocka_unit_test(one_jump_and_many_steps_tell_the_same),
-    cmocka_unit_test(a_time_that_goes_back_changes_nothing),
-    cmocka_unit_test(it_works_for_hours_across_every_wrap),
-    cmocka_unit_test(a_read_tells_the_silence_before_and_the_time_of_the_last_byte),
-    cmocka_unit_test(what_it_does_not_know_it_neither_tells_nor_minds),
-    cmocka_unit_test(bytes_that_nobody_reads_are_lost_and_told),
-    cmocka_unit_test(at_another_rate_or_parity_nobody_understands),
-    cmocka_unit_test(a_stream_at_another_rate_is_garbage_with_framing_errors),
-    cmocka_unit_test(a_read_ends_with_a_byte_that_was_heard_wrong),
-    cmocka_unit_test(three_devices_share_a_line_each_at_its_address_and_rate),
-    cmocka_unit_test(two_devices_at_one_address_collide),
-    cmocka_unit_test(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request),
-    cmocka_unit_test(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing),
-};
-
-BENCH_MAIN(tests)

@@ -129,23 +129,6 @@ static void either(void (*follow)(bool from_new, uint32_t loop_us))
     for (unsigned i = 0; i != 4; i++) follow(i / 2 == 1, i % 2 == 1 ? 20 * MS : 0);
 }
 
-static void an_a16_may_acknowledge_from_its_old_or_its_new_address(void **state)
-{
-    (void)state;
-    either(an_a16_is_followed);
-}
+TEST(an_a16_may_acknowledge_from_its_old_or_its_new_address) { either(an_a16_is_followed); }
 
-static void an_a05_may_acknowledge_from_its_old_or_its_new_address(void **state)
-{
-    (void)state;
-    either(an_a05_is_followed);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_a16_may_acknowledge_from_its_old_or_its_new_address),
-        cmocka_unit_test(an_a05_may_acknowledge_from_its_old_or_its_new_address),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST(an_a05_may_acknowledge_from_its_old_or_its_new_address) { either(an_a05_is_followed); }

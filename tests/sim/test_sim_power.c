@@ -51,10 +51,11 @@ static void expect_both_work(stage_t *s)
     assert_int_equal(s->a05.device.carriers, 0);
 }
 
-static void without_power_it_hears_and_says_nothing(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(without_power_it_hears_and_says_nothing)
 {
     stage_t s;
-    (void)state;
     set(&s, 0);
     cycle(&s, 1000 * MS);
     for (int i = 0; i < 4; i++) ASK(&s.bench, 200 * MS, REALTIME); /* 833 ms */
@@ -65,10 +66,9 @@ static void without_power_it_hears_and_says_nothing(void **state)
     expect_both_work(&s);
 }
 
-static void it_starts_anew_when_power_is_back(void **state)
+TEST(it_starts_anew_when_power_is_back)
 {
     stage_t s;
-    (void)state;
     set(&s, 900 * MS);
     bench_wait(&s.bench, 1000 * MS);
     cycle(&s, 100 * MS);
@@ -79,10 +79,9 @@ static void it_starts_anew_when_power_is_back(void **state)
     expect_both_work(&s);
 }
 
-static void power_that_is_back_at_once_still_ends_what_it_was_doing(void **state)
+TEST(power_that_is_back_at_once_still_ends_what_it_was_doing)
 {
     stage_t s;
-    (void)state;
     set(&s, 0);
     ASK(&s.bench, 50 * MS, REALTIME); /* 105..120 ms */
     cycle(&s, 0);
@@ -93,10 +92,9 @@ static void power_that_is_back_at_once_still_ends_what_it_was_doing(void **state
     expect_both_work(&s);
 }
 
-static void it_is_cut_off_at_any_moment_of_an_answer(void **state)
+TEST(it_is_cut_off_at_any_moment_of_an_answer)
 {
     stage_t s;
-    (void)state;
     for (uint32_t into_us = 0; into_us < 7300; into_us += 130) { /* seven characters */
         set(&s, 0);
         bench_say(&s.bench, (const uint8_t[]){REALTIME}, 8);
@@ -112,10 +110,9 @@ static void it_is_cut_off_at_any_moment_of_an_answer(void **state)
     }
 }
 
-static void it_hears_nothing_of_a_request_that_it_woke_up_in(void **state)
+TEST(it_hears_nothing_of_a_request_that_it_woke_up_in)
 {
     stage_t s;
-    (void)state;
     for (uint32_t into_us = 1050; into_us < 8300; into_us += 130) { /* the second character to the eighth */
         set(&s, 0);
         bench_say(&s.bench, (const uint8_t[]){REALTIME}, 8);
@@ -128,11 +125,10 @@ static void it_hears_nothing_of_a_request_that_it_woke_up_in(void **state)
     }
 }
 
-static void a_wire_each_way_is_cut_off_as_well(void **state)
+TEST(a_wire_each_way_is_cut_off_as_well)
 {
     fathom_sim_a16_t a16;
     bench_t bench;
-    (void)state;
     bench_init(&bench, &bench_9600);
     bench.line.full_duplex = true;
     fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO});
@@ -147,11 +143,10 @@ static void a_wire_each_way_is_cut_off_as_well(void **state)
     assert_int_equal(a16.device.carriers, 0);
 }
 
-static void a_neighbour_with_wires_of_its_own_never_heard_it(void **state)
+TEST(a_neighbour_with_wires_of_its_own_never_heard_it)
 {
     fathom_sim_a16_t a16, other;
     bench_t bench;
-    (void)state;
     bench_init(&bench, &bench_9600);
     bench.line.full_duplex = true;
     fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO});
@@ -165,10 +160,9 @@ static void a_neighbour_with_wires_of_its_own_never_heard_it(void **state)
     EXPECT(&bench, OTHERS);
 }
 
-static void half_an_hour_is_the_longest(void **state)
+TEST(half_an_hour_is_the_longest)
 {
     stage_t s;
-    (void)state;
     set(&s, 0);
     cycle(&s, UINT32_C(1800000000));
     bench_wait(&s.bench, UINT32_C(1799900000));
@@ -178,13 +172,12 @@ static void half_an_hour_is_the_longest(void **state)
     expect_both_work(&s);
 }
 
-static void an_accident_in_an_acknowledgement_keeps_what_was_set(void **state)
+TEST(an_accident_in_an_acknowledgement_keeps_what_was_set)
 {
     const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
     fathom_sim_fault_t fault;
     fathom_sim_hps167s_t hps;
     bench_t bench;
-    (void)state;
     bench_init(&bench, &bench_19200);
     fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){0});
     fathom_sim_fault_init(&fault, 1);
@@ -228,11 +221,10 @@ static void play(bench_t *bench, uint32_t step_us)
     assert_int_equal(hps.device.counters.automatic, 5);
 }
 
-static void how_often_it_is_looked_at_changes_nothing(void **state)
+TEST(how_often_it_is_looked_at_changes_nothing)
 {
     static bench_t once, often;
     static const uint32_t steps_us[] = {1, 7, 333, 20 * MS};
-    (void)state;
     play(&once, 200 * MS);
     for (size_t i = 0; i < sizeof steps_us / sizeof steps_us[0]; i++) {
         play(&often, steps_us[i]);
@@ -241,18 +233,3 @@ static void how_often_it_is_looked_at_changes_nothing(void **state)
         assert_memory_equal(often.end_us, once.end_us, once.heard * sizeof once.end_us[0]);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(without_power_it_hears_and_says_nothing),
-    cmocka_unit_test(it_starts_anew_when_power_is_back),
-    cmocka_unit_test(power_that_is_back_at_once_still_ends_what_it_was_doing),
-    cmocka_unit_test(it_is_cut_off_at_any_moment_of_an_answer),
-    cmocka_unit_test(it_hears_nothing_of_a_request_that_it_woke_up_in),
-    cmocka_unit_test(a_wire_each_way_is_cut_off_as_well),
-    cmocka_unit_test(a_neighbour_with_wires_of_its_own_never_heard_it),
-    cmocka_unit_test(half_an_hour_is_the_longest),
-    cmocka_unit_test(an_accident_in_an_acknowledgement_keeps_what_was_set),
-    cmocka_unit_test(how_often_it_is_looked_at_changes_nothing),
-};
-
-BENCH_MAIN(tests)

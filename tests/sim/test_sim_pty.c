@@ -112,10 +112,9 @@ static void exchange(stage_t *s, int client)
     assert_true(fathom_elapsed_us(fathom_sim_pty_now_us(), begin_us) >= 120 * MS);
 }
 
-static void a_client_gets_an_answer_in_true_time(void **state)
+TEST(a_client_gets_an_answer_in_true_time)
 {
     stage_t s;
-    (void)state;
     set_a16(&s, FATHOM_SIM_A16_MODBUS);
     const int client = open_client(fathom_sim_pty_path(&s.pty), B9600);
     exchange(&s, client);
@@ -123,11 +122,10 @@ static void a_client_gets_an_answer_in_true_time(void **state)
     tear_down(&s);
 }
 
-static void the_port_is_raw_before_anyone_makes_it_so(void **state)
+TEST(the_port_is_raw_before_anyone_makes_it_so)
 {
     uint8_t byte;
     stage_t s;
-    (void)state;
     set_a16(&s, FATHOM_SIM_A16_MODBUS);
     const int client = open(s.link, O_RDWR | O_NOCTTY | O_NONBLOCK);
     assert_true(client >= 0);
@@ -139,11 +137,10 @@ static void the_port_is_raw_before_anyone_makes_it_so(void **state)
     tear_down(&s);
 }
 
-static void automatic_frames_come_at_their_own_pace(void **state)
+TEST(automatic_frames_come_at_their_own_pace)
 {
     uint8_t bytes[20];
     stage_t s;
-    (void)state;
     set_a16(&s, FATHOM_SIM_A16_AUTO);
     const uint32_t begin_us = fathom_sim_pty_now_us();
     const int client = open_client(s.link, B9600);
@@ -155,11 +152,10 @@ static void automatic_frames_come_at_their_own_pace(void **state)
     tear_down(&s);
 }
 
-static void clients_come_and_go(void **state)
+TEST(clients_come_and_go)
 {
     uint8_t byte;
     stage_t s;
-    (void)state;
     set_a16(&s, FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(hear(&s, -1, &byte, 1, 20), 0); /* nobody is there: no error, no spinning */
@@ -181,11 +177,10 @@ static void clients_come_and_go(void **state)
     tear_down(&s);
 }
 
-static void without_input_it_need_not_be_called(void **state)
+TEST(without_input_it_need_not_be_called)
 {
     uint32_t due_us = 0;
     stage_t s;
-    (void)state;
     set_a16(&s, FATHOM_SIM_A16_MODBUS);
     assert_int_equal(fathom_sim_pty_pump(&s.pty, &due_us), 0);
     assert_int_equal(due_us, UINT32_C(600000000));
@@ -196,12 +191,11 @@ static void without_input_it_need_not_be_called(void **state)
     tear_down(&s);
 }
 
-static void a_device_hears_its_own_rate_only(void **state)
+TEST(a_device_hears_its_own_rate_only)
 {
     const uint8_t measure[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* HPS-167S table 17 */
     uint8_t bytes[16];
     stage_t s;
-    (void)state;
     set_up(&s, &bench_19200);
     s.fixed.value[0] = 2083;
     const fathom_sim_hps167s_config_t config = {.scene = fathom_sim_fixed(&s.fixed)};
@@ -228,11 +222,10 @@ static void a_device_hears_its_own_rate_only(void **state)
     tear_down(&s);
 }
 
-static void what_nobody_reads_does_not_pile_up(void **state)
+TEST(what_nobody_reads_does_not_pile_up)
 {
     uint8_t bytes[4096];
     stage_t s;
-    (void)state;
     set_a16(&s, FATHOM_SIM_A16_AUTO);
     s.a16.device.period_us = 5 * MS; /* 800 bytes a second */
     assert_int_equal(hear(&s, -1, bytes, 1, 1200), 0);
@@ -245,12 +238,11 @@ static void what_nobody_reads_does_not_pile_up(void **state)
     tear_down(&s);
 }
 
-static void the_link_leads_to_the_terminal_and_replaces_an_old_one(void **state)
+TEST(the_link_leads_to_the_terminal_and_replaces_an_old_one)
 {
     char target[64] = {0};
     stage_t s;
     fathom_sim_pty_t second;
-    (void)state;
     set_up(&s, &bench_9600);
     assert_true(readlink(s.link, target, sizeof target - 1) > 0);
     assert_string_equal(target, fathom_sim_pty_path(&s.pty));
@@ -268,12 +260,11 @@ static void the_link_leads_to_the_terminal_and_replaces_an_old_one(void **state)
     tear_down(&s);
 }
 
-static void a_file_in_the_place_of_the_link_is_left_alone(void **state)
+TEST(a_file_in_the_place_of_the_link_is_left_alone)
 {
     char path[64];
     fathom_sim_line_t line;
     fathom_sim_pty_t pty;
-    (void)state;
     strcpy(path, "/tmp/fathom_sim_file_XXXXXX");
     const int fd = mkstemp(path);
     assert_true(fd >= 0);
@@ -295,20 +286,4 @@ static void a_file_in_the_place_of_the_link_is_left_alone(void **state)
     const fathom_sim_pty_config_t too_long = {.link = long_name};
     assert_int_equal(fathom_sim_pty_open(&pty, &line, &too_long), -1);
     assert_int_equal(errno, ENAMETOOLONG);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_client_gets_an_answer_in_true_time),
-        cmocka_unit_test(the_port_is_raw_before_anyone_makes_it_so),
-        cmocka_unit_test(automatic_frames_come_at_their_own_pace),
-        cmocka_unit_test(clients_come_and_go),
-        cmocka_unit_test(without_input_it_need_not_be_called),
-        cmocka_unit_test(a_device_hears_its_own_rate_only),
-        cmocka_unit_test(what_nobody_reads_does_not_pile_up),
-        cmocka_unit_test(the_link_leads_to_the_terminal_and_replaces_an_old_one),
-        cmocka_unit_test(a_file_in_the_place_of_the_link_is_left_alone),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,10 +15,11 @@ static void set_a05(stage_t *s, int32_t distance, fathom_sim_a05_config_t config
 
 #define A05 ((fathom_sim_a05_config_t){0})
 
-static void the_relay_closes_for_any_probe_that_is_nearer(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(the_relay_closes_for_any_probe_that_is_nearer)
 {
     stage_t s;
-    (void)state;
     for (int i = 0; i != 4; i++) {
         set_a05(&s, FATHOM_SIM_NO_TARGET, A05);
         wait(&s, 300 * MS);
@@ -36,10 +37,9 @@ static void the_relay_closes_for_any_probe_that_is_nearer(void **state)
     }
 }
 
-static void each_state_of_the_relay_lasts_a_second(void **state)
+TEST(each_state_of_the_relay_lasts_a_second)
 {
     stage_t s;
-    (void)state;
     set_a05(&s, 999, A05);
     wait(&s, 300 * MS);
     assert_false(level(&s));
@@ -62,10 +62,9 @@ static void each_state_of_the_relay_lasts_a_second(void **state)
     assert_true(level(&s));
 }
 
-static void what_is_taught_and_wired_are_options(void **state)
+TEST(what_is_taught_and_wired_are_options)
 {
     stage_t s;
-    (void)state;
     set_a05(&s, 2999,
             (fathom_sim_a05_config_t){.threshold_mm = 3000, .normally_closed = true, .period_us = 100 * MS});
     assert_false(level(&s)); /* it conducts */
@@ -78,10 +77,9 @@ static void what_is_taught_and_wired_are_options(void **state)
     assert_int_equal(s.a05.device.counters.measurements, 30);
 }
 
-static void without_power_the_relay_drops(void **state)
+TEST(without_power_the_relay_drops)
 {
     stage_t s;
-    (void)state;
     for (int closed = 0; closed != 2; closed++) {
         set_a05(&s, 999, (fathom_sim_a05_config_t){.normally_closed = closed != 0});
         wait(&s, 300 * MS);
@@ -97,10 +95,9 @@ static void without_power_the_relay_drops(void **state)
     }
 }
 
-static void a_contact_may_bounce(void **state)
+TEST(a_contact_may_bounce)
 {
     stage_t s;
-    (void)state;
     set_a05(&s, 999, (fathom_sim_a05_config_t){.bounces = 6});
     wait(&s, 300 * MS);
     assert_int_equal(s.edges, 1);
@@ -115,26 +112,14 @@ static void a_contact_may_bounce(void **state)
     assert_false(level(&s));
 }
 
-static void the_relay_has_no_ears_and_no_voice(void **state)
+TEST(the_relay_has_no_ears_and_no_voice)
 {
     stage_t s;
     uint8_t bytes[32];
     uint8_t bad;
-    (void)state;
     set_a05(&s, 999, A05);
     say(&s, (const uint8_t[]){0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7}, 8); /* A05 3(4) example 1 */
     wait(&s, 5000 * MS);
     assert_int_equal(receive(&s, bytes, &bad), 0);
     assert_int_equal(s.a05.device.counters.unheard, 8);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_relay_closes_for_any_probe_that_is_nearer),
-    cmocka_unit_test(each_state_of_the_relay_lasts_a_second),
-    cmocka_unit_test(what_is_taught_and_wired_are_options),
-    cmocka_unit_test(without_power_the_relay_drops),
-    cmocka_unit_test(a_contact_may_bounce),
-    cmocka_unit_test(the_relay_has_no_ears_and_no_voice),
-};
-
-BENCH_MAIN(tests)

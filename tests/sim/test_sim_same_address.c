@@ -41,10 +41,11 @@ static bool understood(const bench_t *bench, const uint8_t *answer, size_t lengt
     return false;
 }
 
-static void two_that_answer_within_each_others_answer_are_not_understood(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(two_that_answer_within_each_others_answer_are_not_understood)
 {
     stage_t s;
-    (void)state;
     for (uint32_t seed = 0; seed < 50; seed++) { /* 0 to 0.3 ms apart, of 7.4 */
         set(&s, seed);
         ASK(&s.bench, 50 * MS, MEASURE);
@@ -61,10 +62,9 @@ static void two_that_answer_within_each_others_answer_are_not_understood(void **
     }
 }
 
-static void one_that_loses_power_leaves_the_other_understood(void **state)
+TEST(one_that_loses_power_leaves_the_other_understood)
 {
     stage_t s;
-    (void)state;
     set(&s, 3);
     fathom_sim_power_cycle(&s.bench.line, &s.hps[1].device, 1000 * MS, s.bench.now_us);
     ASK(&s.bench, 50 * MS, MEASURE);
@@ -75,10 +75,9 @@ static void one_that_loses_power_leaves_the_other_understood(void **state)
     EXPECT(&s.bench, SECOND);
 }
 
-static void a_new_address_for_one_is_one_for_both(void **state)
+TEST(a_new_address_for_one_is_one_for_both)
 {
     stage_t s;
-    (void)state;
     set(&s, 3);
     ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x00, 0x10, 0x00, 0x05, 0x48, 0x0C);
     assert_false(understood(&s.bench, (const uint8_t[]){0x01, 0x06, 0x00, 0x10, 0x00, 0x05, 0x48, 0x0C}, 8));
@@ -87,10 +86,9 @@ static void a_new_address_for_one_is_one_for_both(void **state)
     assert_int_equal(s.hps[1].device.unit, 5);
 }
 
-static void one_at_another_rate_is_no_twin(void **state)
+TEST(one_at_another_rate_is_no_twin)
 {
     stage_t s;
-    (void)state;
     set(&s, 3);
     s.hps[1].device.settings.baud = 115200;
     ASK(&s.bench, 50 * MS, MEASURE);
@@ -99,12 +97,11 @@ static void one_at_another_rate_is_no_twin(void **state)
     assert_true(s.hps[1].device.counters.wrong_settings != 0);
 }
 
-static void two_models_collide_as_well(void **state)
+TEST(two_models_collide_as_well)
 {
     fathom_sim_a16_t a16;
     fathom_sim_a05_t a05;
     bench_t bench;
-    (void)state;
     bench_init(&bench, &bench_9600);
     fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .seed = 1});
     fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_MODBUS, .seed = 2});
@@ -120,11 +117,10 @@ static void two_models_collide_as_well(void **state)
     EXPECT(&bench, 0x01, 0x03, 0x02, 0xFF, 0xFD, 0x38, 0x35);
 }
 
-static void the_address_command_of_55_aa_makes_two_of_one_address_that_garble_each_other(void **state)
+TEST(the_address_command_of_55_aa_makes_two_of_one_address_that_garble_each_other)
 {
     fathom_sim_a05_t a05[2];
     bench_t bench;
-    (void)state;
     bench_init(&bench, &bench_9600);
     for (uint8_t i = 0; i < 2; i++) {
         fathom_sim_a05_init(&a05[i], &(fathom_sim_a05_config_t){
@@ -137,14 +133,3 @@ static void the_address_command_of_55_aa_makes_two_of_one_address_that_garble_ea
     assert_int_equal(a05[0].device.unit, 5);
     assert_int_equal(a05[1].device.unit, 5);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(two_that_answer_within_each_others_answer_are_not_understood),
-    cmocka_unit_test(one_that_loses_power_leaves_the_other_understood),
-    cmocka_unit_test(a_new_address_for_one_is_one_for_both),
-    cmocka_unit_test(one_at_another_rate_is_no_twin),
-    cmocka_unit_test(two_models_collide_as_well),
-    cmocka_unit_test(the_address_command_of_55_aa_makes_two_of_one_address_that_garble_each_other),
-};
-
-BENCH_MAIN(tests)

@@ -11,11 +11,12 @@ static int32_t at(fathom_sim_scene_t scene, uint8_t probe, uint32_t us)
     return scene.distance(scene.ctx, probe, bench_start_us + us);
 }
 
-static void fixed_things_stand_still_until_they_are_moved(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(fixed_things_stand_still_until_they_are_moved)
 {
     fathom_sim_fixed_t fixed = {{100, 200, FATHOM_SIM_NO_TARGET, 400}};
     const fathom_sim_scene_t scene = fathom_sim_fixed(&fixed);
-    (void)state;
     assert_int_equal(at(scene, 1, 0), 100);
     assert_int_equal(at(scene, 2, 1000), 200);
     assert_int_equal(at(scene, 3, 1000), FATHOM_SIM_NO_TARGET);
@@ -26,11 +27,10 @@ static void fixed_things_stand_still_until_they_are_moved(void **state)
     assert_int_equal(at(scene, 1, 0), 101);
 }
 
-static void a_thing_goes_there_and_back_evenly(void **state)
+TEST(a_thing_goes_there_and_back_evenly)
 {
     fathom_sim_moving_t moving = {1000, 3000, 2000 * MS, bench_start_us};
     const fathom_sim_scene_t scene = fathom_sim_moving(&moving);
-    (void)state;
     assert_int_equal(at(scene, 1, 0), 1000);
     assert_int_equal(at(scene, 1, 1 * MS), 1002);
     assert_int_equal(at(scene, 4, 250 * MS), 1500);
@@ -42,22 +42,20 @@ static void a_thing_goes_there_and_back_evenly(void **state)
     assert_int_equal(at(scene, 1, 1999 * MS), 1002);
 }
 
-static void a_thing_may_come_nearer_first(void **state)
+TEST(a_thing_may_come_nearer_first)
 {
     fathom_sim_moving_t moving = {65535, 0, 10, bench_start_us};
     const fathom_sim_scene_t scene = fathom_sim_moving(&moving);
-    (void)state;
     assert_int_equal(at(scene, 1, 0), 65535);
     assert_int_equal(at(scene, 1, 5), 0);
     assert_int_equal(at(scene, 1, 6), 13107);
 }
 
-static void the_movement_is_smooth_across_wraps(void **state)
+TEST(the_movement_is_smooth_across_wraps)
 {
     fathom_sim_moving_t moving = {0, 10000, 7777777, bench_start_us};
     const fathom_sim_scene_t scene = fathom_sim_moving(&moving);
     uint64_t us = 0;
-    (void)state;
     for (uint32_t i = 0; i < 1000000; i++) { /* 2.8 hours, 2.3 wraps, in steps of 10 ms */
         us += 10 * MS;
         const uint64_t phase_us = us % 7777777;
@@ -66,13 +64,12 @@ static void the_movement_is_smooth_across_wraps(void **state)
     }
 }
 
-static void a_device_sees_the_scene_at_the_moment_of_its_frame(void **state)
+TEST(a_device_sees_the_scene_at_the_moment_of_its_frame)
 {
     fathom_sim_moving_t moving = {1000, 2000, 2000 * MS, bench_start_us}; /* 1 mm a ms */
     fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_AUTO};
     fathom_sim_a16_t a16;
     bench_t bench;
-    (void)state;
     config.scene = fathom_sim_moving(&moving);
     bench_init(&bench, &bench_9600);
     fathom_sim_a16_init(&a16, &config);
@@ -80,13 +77,3 @@ static void a_device_sees_the_scene_at_the_moment_of_its_frame(void **state)
     bench_wait(&bench, 310 * MS); /* 1100, 1200, 1300 */
     EXPECT(&bench, 0xFF, 0x04, 0x4C, 0x4F, 0xFF, 0x04, 0xB0, 0xB3, 0xFF, 0x05, 0x14, 0x18);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(fixed_things_stand_still_until_they_are_moved),
-    cmocka_unit_test(a_thing_goes_there_and_back_evenly),
-    cmocka_unit_test(a_thing_may_come_nearer_first),
-    cmocka_unit_test(the_movement_is_smooth_across_wraps),
-    cmocka_unit_test(a_device_sees_the_scene_at_the_moment_of_its_frame),
-};
-
-BENCH_MAIN(tests)

@@ -32,12 +32,13 @@ static void set_a16(stage_t *s, int32_t distance, fathom_sim_a16_config_t config
 
 #define A16 ((fathom_sim_a16_config_t){0})
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- A16 4(2) ---- */
 
-static void three_measurements_500_ms_apart_make_it_high_and_five_low(void **state)
+TEST(three_measurements_500_ms_apart_make_it_high_and_five_low)
 {
     stage_t s;
-    (void)state;
     set_a16(&s, 999, A16);
     wait(&s, 1500 * MS - 1);
     assert_false(level(&s));
@@ -71,18 +72,16 @@ static void expect_turns(const char *turns, const int32_t *values)
     }
 }
 
-static void a_row_is_unbroken_and_equality_breaks_it(void **state)
+TEST(a_row_is_unbroken_and_equality_breaks_it)
 {
     static const int32_t rows[] = {999,  999,  1001, 999,  999, 1000, 999,  999,    1, 1,
                                    1001, 1001, 1001, 1001, 999, 1001, 2000, 0xFFFD, 0, -1};
-    (void)state;
     expect_turns("........!..........!", rows);
 }
 
-static void the_period_the_threshold_and_the_start_are_options(void **state)
+TEST(the_period_the_threshold_and_the_start_are_options)
 {
     stage_t s;
-    (void)state;
     set_a16(&s, 299,
             (fathom_sim_a16_config_t){.threshold_mm = 300, .period_us = 100 * MS, .start_us = 700 * MS});
     wait(&s, 1000 * MS - 1);
@@ -101,12 +100,11 @@ static const uint8_t threshold_2000[8] = {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x
 /* A16 6(4): the polarity to negative. */
 static const uint8_t negative[8] = {0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73};
 
-static void a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing(void **state)
+TEST(a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing)
 {
     stage_t s;
     uint8_t bytes[32];
     uint8_t bad;
-    (void)state;
     set_a16(&s, 999, A16);
     wait(&s, 100 * MS);
     receive(&s, bytes, &bad); /* what power-on made */
@@ -121,12 +119,11 @@ static void a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing(voi
     assert_int_equal(bad, 1);
 }
 
-static void an_answer_from_a_high_pin_stands_alone(void **state)
+TEST(an_answer_from_a_high_pin_stands_alone)
 {
     stage_t s;
     uint8_t bytes[32];
     uint8_t bad;
-    (void)state;
     set_a16(&s, 999, A16);
     wait(&s, 1600 * MS);
     receive(&s, bytes, &bad);
@@ -139,12 +136,11 @@ static void an_answer_from_a_high_pin_stands_alone(void **state)
     assert_int_equal(s.a16.device.counters.writes, 1);
 }
 
-static void an_answer_from_a_low_pin_has_a_break_before_and_behind_it(void **state)
+TEST(an_answer_from_a_low_pin_has_a_break_before_and_behind_it)
 {
     stage_t s;
     uint8_t bytes[32];
     uint8_t bad;
-    (void)state;
     set_a16(&s, 1500, A16);
     wait(&s, 2600 * MS);
     receive(&s, bytes, &bad);
@@ -162,12 +158,11 @@ static void an_answer_from_a_low_pin_has_a_break_before_and_behind_it(void **sta
     assert_true(level(&s));
 }
 
-static void polarity_is_obeyed_at_once_and_kept_without_power(void **state)
+TEST(polarity_is_obeyed_at_once_and_kept_without_power)
 {
     stage_t s;
     uint8_t bytes[32];
     uint8_t bad;
-    (void)state;
     set_a16(&s, 999, A16);
     wait(&s, 1700 * MS);
     assert_true(level(&s));
@@ -189,10 +184,9 @@ static void polarity_is_obeyed_at_once_and_kept_without_power(void **state)
     assert_int_equal(s.a16.polarity, 0);
 }
 
-static void a_setting_does_not_move_the_measurements(void **state)
+TEST(a_setting_does_not_move_the_measurements)
 {
     stage_t s;
-    (void)state;
     set_a16(&s, 999, A16);
     for (int i = 0; i != 7; i++) {
         say(&s, threshold_2000, 8);
@@ -206,7 +200,7 @@ static void a_setting_does_not_move_the_measurements(void **state)
     assert_true(level(&s));
 }
 
-static void other_values_of_polarity_and_other_registers_are_silence(void **state)
+TEST(other_values_of_polarity_and_other_registers_are_silence)
 {
     stage_t s;
     uint8_t bytes[32];
@@ -214,7 +208,6 @@ static void other_values_of_polarity_and_other_registers_are_silence(void **stat
     /* CRCs by the bitwise algorithm: polarity 2, and register 0x0208 */
     static const uint8_t polarity_2[8] = {0x01, 0x06, 0x02, 0x05, 0x00, 0x02, 0x19, 0xB2};
     static const uint8_t unknown[8] = {0x01, 0x06, 0x02, 0x08, 0x00, 0x01, 0xC8, 0x70};
-    (void)state;
     set_a16(&s, 999, A16);
     wait(&s, 1700 * MS);
     receive(&s, bytes, &bad);
@@ -228,17 +221,3 @@ static void other_values_of_polarity_and_other_registers_are_silence(void **stat
     assert_int_equal(s.a16.device.counters.writes, 0);
     assert_int_equal(s.a16.polarity, 1);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(three_measurements_500_ms_apart_make_it_high_and_five_low),
-    cmocka_unit_test(a_row_is_unbroken_and_equality_breaks_it),
-    cmocka_unit_test(the_period_the_threshold_and_the_start_are_options),
-    cmocka_unit_test(a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing),
-    cmocka_unit_test(an_answer_from_a_high_pin_stands_alone),
-    cmocka_unit_test(an_answer_from_a_low_pin_has_a_break_before_and_behind_it),
-    cmocka_unit_test(polarity_is_obeyed_at_once_and_kept_without_power),
-    cmocka_unit_test(a_setting_does_not_move_the_measurements),
-    cmocka_unit_test(other_values_of_polarity_and_other_registers_are_silence),
-};
-
-BENCH_MAIN(tests)

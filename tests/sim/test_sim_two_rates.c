@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/fathom.h"
 #include "sim/a05.h"
@@ -126,9 +123,8 @@ static tally_t run(uint32_t for_us)
     return tally;
 }
 
-static void sensors_with_different_settings_are_read_on_one_pair(void **state)
+TEST(sensors_with_different_settings_are_read_on_one_pair)
 {
-    (void)state;
     for (int echo = 0; echo != 2; echo++) {
         begin(&slow, &fast, echo != 0);
         const tally_t tally = run(20000 * MS);
@@ -143,9 +139,8 @@ static void sensors_with_different_settings_are_read_on_one_pair(void **state)
 }
 
 /* Without it, whoever has other settings hears noise and stays silent. */
-static void without_their_settings_only_those_of_the_line_answer(void **state)
+TEST(without_their_settings_only_those_of_the_line_answer)
 {
-    (void)state;
     begin(NULL, NULL, false);
     const tally_t tally = run(20000 * MS);
     assert_true(tally.readings[0] > 0 && tally.readings[1] > 0);
@@ -153,13 +148,4 @@ static void without_their_settings_only_those_of_the_line_answer(void **state)
     assert_int_equal(tally.readings[2], 0);
     assert_true(tally.errors[2] > 0);
     assert_true(pair.sim_hps.device.counters.wrong_settings > 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sensors_with_different_settings_are_read_on_one_pair),
-        cmocka_unit_test(without_their_settings_only_those_of_the_line_answer),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

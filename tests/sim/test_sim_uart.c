@@ -48,10 +48,11 @@ static const uint8_t measure[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB
 static const uint8_t measured[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
                                    0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
 
-static void write_takes_all_or_nothing_and_sent_tells_when(void **state)
+static const suite_t suite = {BENCH_ROUNDS};
+
+TEST(write_takes_all_or_nothing_and_sent_tells_when)
 {
     desk_t d;
-    (void)state;
     set(&d, 0);
     const fathom_uart_t uart = fathom_sim_uart(&d.uarts[2]);
     assert_true(uart.sent(uart.ctx));
@@ -66,12 +67,11 @@ static void write_takes_all_or_nothing_and_sent_tells_when(void **state)
     assert_int_equal(d.lines[2].counters.from_host, 8);
 }
 
-static void read_gives_only_what_has_arrived_and_when(void **state)
+TEST(read_gives_only_what_has_arrived_and_when)
 {
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[32];
     desk_t d;
-    (void)state;
     set(&d, 0);
     const fathom_uart_t uart = fathom_sim_uart(&d.uarts[0]);
     fathom_sim_clock_advance(&d.clock, 102 * MS);
@@ -88,12 +88,11 @@ static void read_gives_only_what_has_arrived_and_when(void **state)
     assert_memory_equal(bytes, ((const uint8_t[]){0x07, 0xA1, 0xA7}), 3); /* A16 2(4) */
 }
 
-static void a_port_may_know_nothing(void **state)
+TEST(a_port_may_know_nothing)
 {
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[32];
     desk_t d;
-    (void)state;
     set(&d, 0);
     d.uarts[0].knows = 0;
     const fathom_uart_t uart = fathom_sim_uart(&d.uarts[0]);
@@ -103,13 +102,12 @@ static void a_port_may_know_nothing(void **state)
 }
 
 /* The README's loop: it polls, and each look at the clock is a little later. */
-static void a_bare_polling_loop_hears_all_three_sensors(void **state)
+TEST(a_bare_polling_loop_hears_all_three_sensors)
 {
     desk_t d;
     size_t heard[3] = {0, 0, 0};
     uint8_t last[3][32];
     uint32_t looks = 0;
-    (void)state;
     set(&d, 50);
     const fathom_clock_t clock = fathom_sim_clock(&d.clock);
     fathom_uart_t uarts[3];
@@ -135,13 +133,12 @@ static void a_bare_polling_loop_hears_all_three_sensors(void **state)
 }
 
 /* A blocking wait: poll, and idle when there is nothing. */
-static void an_idle_hook_leads_through_an_exchange_in_few_steps(void **state)
+TEST(an_idle_hook_leads_through_an_exchange_in_few_steps)
 {
     uint8_t bytes[32];
     size_t heard = 0;
     int idles = 0;
     desk_t d;
-    (void)state;
     set(&d, 0);
     const fathom_clock_t clock = fathom_sim_clock(&d.clock);
     const fathom_uart_t uart = fathom_sim_uart(&d.uarts[2]);
@@ -157,10 +154,9 @@ static void an_idle_hook_leads_through_an_exchange_in_few_steps(void **state)
     assert_in_range(fathom_elapsed_us(clock.now_us(clock.ctx), bench_start_us), 14 * MS, 100 * MS);
 }
 
-static void idle_goes_no_further_than_it_may(void **state)
+TEST(idle_goes_no_further_than_it_may)
 {
     desk_t d;
-    (void)state;
     set(&d, 0);
     fathom_sim_clock_idle(&d.clock, 30 * MS);
     assert_int_equal(fathom_elapsed_us(d.clock.now_us, bench_start_us), 30 * MS);
@@ -172,19 +168,17 @@ static void idle_goes_no_further_than_it_may(void **state)
     assert_int_equal(fathom_elapsed_us(d.clock.now_us, bench_start_us), 100 * MS + 1042);
 }
 
-static void idle_with_nothing_to_come_moves_a_second(void **state)
+TEST(idle_with_nothing_to_come_moves_a_second)
 {
     fathom_sim_clock_t clock;
-    (void)state;
     fathom_sim_clock_init(&clock, bench_start_us, 0);
     fathom_sim_clock_idle(&clock, FATHOM_NO_DEADLINE);
     assert_int_equal(fathom_elapsed_us(clock.now_us, bench_start_us), 1000 * MS);
 }
 
-static void any_advance_is_lived_through(void **state)
+TEST(any_advance_is_lived_through)
 {
     desk_t d;
-    (void)state;
     set(&d, 0);
     fathom_sim_clock_advance(&d.clock, UINT32_C(4200000000)); /* 70 minutes at once */
     assert_int_equal(fathom_elapsed_us(d.clock.now_us, bench_start_us), UINT32_C(4200000000));
@@ -192,10 +186,9 @@ static void any_advance_is_lived_through(void **state)
     assert_int_equal(d.a05.device.counters.automatic, 14000);
 }
 
-static void a_line_that_nobody_polls_keeps_up_with_a_stepping_clock(void **state)
+TEST(a_line_that_nobody_polls_keeps_up_with_a_stepping_clock)
 {
     desk_t d;
-    (void)state;
     set(&d, 100 * MS);
     const fathom_clock_t clock = fathom_sim_clock(&d.clock);
     for (int i = 0; i < 60000; i++) (void)clock.now_us(clock.ctx); /* 100 minutes */
@@ -208,11 +201,10 @@ static void a_line_that_nobody_polls_keeps_up_with_a_stepping_clock(void **state
     assert_int_equal(d.a16.device.counters.automatic, 40000);
 }
 
-static void two_uarts_on_one_line_are_one_line_on_the_clock(void **state)
+TEST(two_uarts_on_one_line_are_one_line_on_the_clock)
 {
     fathom_sim_uart_t again;
     desk_t d;
-    (void)state;
     set(&d, 0);
     for (size_t i = 0; i < 3; i++) fathom_sim_uart_init(&again, &d.lines[i], &d.clock);
     size_t lines = 0;
@@ -222,18 +214,3 @@ static void two_uarts_on_one_line_are_one_line_on_the_clock(void **state)
     }
     assert_int_equal(lines, 3);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(write_takes_all_or_nothing_and_sent_tells_when),
-    cmocka_unit_test(read_gives_only_what_has_arrived_and_when),
-    cmocka_unit_test(a_port_may_know_nothing),
-    cmocka_unit_test(a_bare_polling_loop_hears_all_three_sensors),
-    cmocka_unit_test(an_idle_hook_leads_through_an_exchange_in_few_steps),
-    cmocka_unit_test(idle_goes_no_further_than_it_may),
-    cmocka_unit_test(idle_with_nothing_to_come_moves_a_second),
-    cmocka_unit_test(any_advance_is_lived_through),
-    cmocka_unit_test(a_line_that_nobody_polls_keeps_up_with_a_stepping_clock),
-    cmocka_unit_test(two_uarts_on_one_line_are_one_line_on_the_clock),
-};
-
-BENCH_MAIN(tests)

@@ -6,11 +6,12 @@
 static const uint32_t steps_us[] = {500, 7000, 20000};
 enum { STEPS = sizeof steps_us / sizeof *steps_us };
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* ---- A16 ---- */
 
-static void the_switch_of_an_a16_is_read_in_any_loop(void **state)
+TEST(the_switch_of_an_a16_is_read_in_any_loop)
 {
-    (void)state;
     for (unsigned i = 0; i != STEPS; i++) {
         const uint32_t step_us = steps_us[i];
         set_a16(2000);
@@ -31,10 +32,9 @@ static void the_switch_of_an_a16_is_read_in_any_loop(void **state)
     }
 }
 
-static void a_program_that_sleeps_as_long_as_it_is_told_sees_each_change(void **state)
+TEST(a_program_that_sleeps_as_long_as_it_is_told_sees_each_change)
 {
     unsigned looks = 0;
-    (void)state;
     set_a16(2000);
     for (int32_t mm = 999; mm <= 1001; mm += 2) {
         s.fixed.value[0] = mm;
@@ -62,9 +62,8 @@ static void set_threshold(uint16_t mm, uint32_t step_us)
     assert_int_equal(read_mm, mm);
 }
 
-static void the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change(void **state)
+TEST(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change)
 {
-    (void)state;
     for (unsigned i = 0; i != STEPS; i++) {
         set_a16(1500);
         run(3000 * MS, steps_us[i]);
@@ -92,9 +91,8 @@ static void the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change(void
 
 /* A port that marks nothing: the bytes of a break are noise, and a line that is not told does not find out that it has
  * no echo. Then a write is not believed by its answer, but by the value that is read back. */
-static void a_port_that_knows_nothing_will_do(void **state)
+TEST(a_port_that_knows_nothing_will_do)
 {
-    (void)state;
     set_a16(1500);
     s.port[0].config.echo = FATHOM_LINE_ECHO_AUTO;
     s.port[0].uart.knows = 0;
@@ -116,9 +114,8 @@ static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint32_t ste
     return status;
 }
 
-static void the_polarity_is_set_and_the_driver_reads_by_it(void **state)
+TEST(the_polarity_is_set_and_the_driver_reads_by_it)
 {
-    (void)state;
     for (unsigned i = 0; i != STEPS; i++) {
         const uint32_t step_us = steps_us[i];
         for (int32_t mm = 999; mm <= 1001; mm += 2) {
@@ -139,9 +136,8 @@ static void the_polarity_is_set_and_the_driver_reads_by_it(void **state)
     }
 }
 
-static void a_polarity_that_could_not_be_set_changes_nothing(void **state)
+TEST(a_polarity_that_could_not_be_set_changes_nothing)
 {
-    (void)state;
     set_a16(999);
     run(2100 * MS, 20000);
     expect("FN");
@@ -155,9 +151,8 @@ static void a_polarity_that_could_not_be_set_changes_nothing(void **state)
     expect("FNF");
 }
 
-static void while_the_polarity_is_being_set_the_level_is_not_looked_at(void **state)
+TEST(while_the_polarity_is_being_set_the_level_is_not_looked_at)
 {
-    (void)state;
     set_a16(999);
     run(2100 * MS, 20000);
     assert_int_equal(fathom_a16_switch_set_polarity(&s.a16, &s.settings, FATHOM_A16_NEGATIVE),
@@ -176,9 +171,8 @@ static void while_the_polarity_is_being_set_the_level_is_not_looked_at(void **st
 
 /* ---- A05 ---- */
 
-static void the_relay_of_an_a05_is_read_in_any_loop_and_by_either_contact(void **state)
+TEST(the_relay_of_an_a05_is_read_in_any_loop_and_by_either_contact)
 {
-    (void)state;
     for (unsigned i = 0; i != STEPS; i++) {
         for (unsigned closed = 0; closed != 2; closed++) {
             const fathom_sim_a05_config_t bounces = {.bounces = 10, .normally_closed = closed != 0};
@@ -200,16 +194,3 @@ static void the_relay_of_an_a05_is_read_in_any_loop_and_by_either_contact(void *
         }
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_switch_of_an_a16_is_read_in_any_loop),
-    cmocka_unit_test(a_program_that_sleeps_as_long_as_it_is_told_sees_each_change),
-    cmocka_unit_test(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change),
-    cmocka_unit_test(a_port_that_knows_nothing_will_do),
-    cmocka_unit_test(the_polarity_is_set_and_the_driver_reads_by_it),
-    cmocka_unit_test(a_polarity_that_could_not_be_set_changes_nothing),
-    cmocka_unit_test(while_the_polarity_is_being_set_the_level_is_not_looked_at),
-    cmocka_unit_test(the_relay_of_an_a05_is_read_in_any_loop_and_by_either_contact),
-};
-
-BENCH_MAIN(tests)

@@ -23,12 +23,13 @@ static void forget_old_samples(void)
     s.samples = 1;
 }
 
+static const suite_t suite = {BENCH_ROUNDS};
+
 /* An A16 that sends by itself every 500 ms sees what the switch sees: its frames, debounced, are that switch. */
-static void a_debounced_a16_is_the_switch_of_one(void **state)
+TEST(a_debounced_a16_is_the_switch_of_one)
 {
     fathom_a16_auto_t automatic;
     fathom_debounce_t gate;
-    (void)state;
     random_state = 1;
     set_a16(2000);
     const fathom_sim_a16_config_t config = {
@@ -57,11 +58,10 @@ static void a_debounced_a16_is_the_switch_of_one(void **state)
 }
 
 /* An A05 that sends by itself measures with the relay, every 300 ms. */
-static void the_rule_over_an_a05_is_the_relay_of_one(void **state)
+TEST(the_rule_over_an_a05_is_the_relay_of_one)
 {
     fathom_a05_auto_t automatic;
     fathom_a05_relay_rule_t rule;
-    (void)state;
     random_state = 2;
     set_a05(3000, (fathom_sim_a05_config_t){.probes = 0x0B}, 0);
     const fathom_sim_a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&s.fixed)};
@@ -89,10 +89,3 @@ static void the_rule_over_an_a05_is_the_relay_of_one(void **state)
     assert_in_range(changes, 100, 1000);
     assert_int_equal(s.errors, 0);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_debounced_a16_is_the_switch_of_one),
-    cmocka_unit_test(the_rule_over_an_a05_is_the_relay_of_one),
-};
-
-BENCH_MAIN(tests)

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "plan.h"
 #include "theory.h"
@@ -67,27 +64,24 @@ static void all_faults_at_once(void **state)
     assert_int_equal(seen.broken, 0);
 }
 
-static void three_causes_cannot_be_told_apart(void **state)
+TEST(three_causes_cannot_be_told_apart)
 {
-    (void)state;
     assert_int_equal(THEORY_ALIKE, 3);
     for (uint8_t i = 0; i < THEORY_ALIKE; i++) assert_non_null(theory_alike[i].why);
 }
 
 /* Poisson with mean 1: more than 9 come with probability 1.1e-7, more than 8 with 1.1e-6. With mean 0.001 two come
  * with 5e-7, one with 1e-3. */
-static void the_bound_on_chance_is_that_of_one_in_a_million(void **state)
+TEST(the_bound_on_chance_is_that_of_one_in_a_million)
 {
-    (void)state;
     assert_int_equal(theory_most(0), 0);
     assert_int_equal(theory_most(1), 9);
     assert_int_equal(theory_most(0.001), 1);
 }
 
 /* Bits of a checksum: 16, 8. */
-static void one_byte_that_stays_one_byte_is_never_let_pass(void **state)
+TEST(one_byte_that_stays_one_byte_is_never_let_pass)
 {
-    (void)state;
     for (uint8_t setting = 0; setting < SOAK_SETTINGS; setting++) {
         if (soak_facts[setting].proof == SOAK_NO_GAP) continue;
         assert_int_equal(theory_pass(setting, FATHOM_SIM_FAULT_FLIP_BIT), 0);
@@ -102,32 +96,19 @@ static void one_byte_that_stays_one_byte_is_never_let_pass(void **state)
     assert_int_equal(theory_pass(SOAK_A05_AUTO, FATHOM_SIM_FAULT_INSERT), 65536 >> 16);
 }
 
-#define CASE(what, number, sensor)                                                                           \
-    {                                                                                                        \
-        "soak_" #sensor "_" #what, what, NULL, NULL, (void *)&settings[number]                               \
-    }
 #define SENSOR(number, sensor)                                                                               \
-    CASE(each_fault_alone, number, sensor), CASE(every_pair_of_faults, number, sensor),                      \
-        CASE(all_faults_at_once, number, sensor)
+    static const uint8_t sensor##_setting = number;                                                          \
+    TEST_ROW(soak_##sensor##_each_fault_alone, each_fault_alone, &sensor##_setting)                          \
+    TEST_ROW(soak_##sensor##_every_pair_of_faults, every_pair_of_faults, &sensor##_setting)                  \
+    TEST_ROW(soak_##sensor##_all_faults_at_once, all_faults_at_once, &sensor##_setting)
 
-int main(void)
-{
-    static uint8_t settings[SOAK_SETTINGS];
-    for (uint8_t i = 0; i < SOAK_SETTINGS; i++) settings[i] = i;
-    const struct CMUnitTest tests[] = {
-        SENSOR(SOAK_A16_AUTO, a16_auto),
-        SENSOR(SOAK_A16_TIGHT, a16_tight),
-        SENSOR(SOAK_A05_AUTO, a05_auto),
-        SENSOR(SOAK_A05_TIGHT, a05_tight),
-        SENSOR(SOAK_A16_PROCESSED, a16_processed),
-        SENSOR(SOAK_A16_REAL_TIME, a16_real_time),
-        SENSOR(SOAK_A05_MODBUS, a05_modbus),
-        SENSOR(SOAK_A05_DYP, a05_dyp),
-        SENSOR(SOAK_A05_DYP_ONE, a05_dyp_one),
-        SENSOR(SOAK_HPS167S, hps167s),
-        cmocka_unit_test(three_causes_cannot_be_told_apart),
-        cmocka_unit_test(the_bound_on_chance_is_that_of_one_in_a_million),
-        cmocka_unit_test(one_byte_that_stays_one_byte_is_never_let_pass),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+SENSOR(SOAK_A16_AUTO, a16_auto)
+SENSOR(SOAK_A16_TIGHT, a16_tight)
+SENSOR(SOAK_A05_AUTO, a05_auto)
+SENSOR(SOAK_A05_TIGHT, a05_tight)
+SENSOR(SOAK_A16_PROCESSED, a16_processed)
+SENSOR(SOAK_A16_REAL_TIME, a16_real_time)
+SENSOR(SOAK_A05_MODBUS, a05_modbus)
+SENSOR(SOAK_A05_DYP, a05_dyp)
+SENSOR(SOAK_A05_DYP_ONE, a05_dyp_one)
+SENSOR(SOAK_HPS167S, hps167s)

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "eight.h"
 
@@ -37,21 +34,18 @@ static void seven_keep_their_readings(uint8_t trouble)
     }
 }
 
-static void with_one_of_eight_dead_seven_keep_nine_tenths_and_it_comes_back_in_time(void **state)
+TEST(with_one_of_eight_dead_seven_keep_nine_tenths_and_it_comes_back_in_time)
 {
-    (void)state;
     seven_keep_their_readings(EIGHT_DEAD);
 }
 
-static void with_one_of_eight_always_damaged_seven_keep_nine_tenths_and_it_comes_back_in_time(void **state)
+TEST(with_one_of_eight_always_damaged_seven_keep_nine_tenths_and_it_comes_back_in_time)
 {
-    (void)state;
     seven_keep_their_readings(EIGHT_DAMAGED);
 }
 
-static void without_back_off_one_dead_unit_takes_more_than_a_tenth(void **state)
+TEST(without_back_off_one_dead_unit_takes_more_than_a_tenth)
 {
-    (void)state;
     for (uint8_t mix = 0; mix < EIGHT_MIXES; mix++) {
         eight_result_t alive;
         eight_result_t result;
@@ -60,14 +54,4 @@ static void without_back_off_one_dead_unit_takes_more_than_a_tenth(void **state)
         expect_sound(&result, eight_mix_names[mix]);
         assert_true(eight_percent(&alive, &result) < EIGHT_LEAST_PERCENT);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_one_of_eight_dead_seven_keep_nine_tenths_and_it_comes_back_in_time),
-        cmocka_unit_test(with_one_of_eight_always_damaged_seven_keep_nine_tenths_and_it_comes_back_in_time),
-        cmocka_unit_test(without_back_off_one_dead_unit_takes_more_than_a_tenth),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

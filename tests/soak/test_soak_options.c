@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "defences.h"
 
@@ -24,48 +21,33 @@ static void run(const char *name, defence_result_t *result)
     fail();
 }
 
-static void a_wide_window_lets_more_wrong_readings_pass(void **state)
+TEST(a_wide_window_lets_more_wrong_readings_pass)
 {
     defence_result_t result;
-    (void)state;
     run("plausibility window", &result);
     assert_true(defence_matters(&result));
 }
 
-static void without_pauses_that_are_seen_511_mm_are_never_shown(void **state)
+TEST(without_pauses_that_are_seen_511_mm_are_never_shown)
 {
     defence_result_t result;
-    (void)state;
     run("pauses that are seen", &result);
     assert_true(result.with < EXCHANGES / 1000);
     assert_true(result.without >= EXCHANGES);
 }
 
-static void without_its_deadline_a_silent_stream_is_stuck(void **state)
+TEST(without_its_deadline_a_silent_stream_is_stuck)
 {
     defence_result_t result;
-    (void)state;
     run("stale deadline", &result);
     assert_int_equal(result.with, 0);
     assert_true(defence_matters(&result));
 }
 
-static void an_echo_that_is_denied_acknowledges_writes_to_nobody(void **state)
+TEST(an_echo_that_is_denied_acknowledges_writes_to_nobody)
 {
     defence_result_t result;
-    (void)state;
     run("echo found out", &result);
     assert_int_equal(result.with, 0);
     assert_int_equal(result.without, EXCHANGES / 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_wide_window_lets_more_wrong_readings_pass),
-        cmocka_unit_test(without_pauses_that_are_seen_511_mm_are_never_shown),
-        cmocka_unit_test(without_its_deadline_a_silent_stream_is_stuck),
-        cmocka_unit_test(an_echo_that_is_denied_acknowledges_writes_to_nobody),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

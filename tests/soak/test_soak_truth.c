@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "sim/device.h"
 #include "truth.h"
@@ -43,20 +40,18 @@ static truth_verdict_t stream(truth_t *truth, uint8_t probe, uint16_t raw, uint3
     return truth_judge(truth, &sample, now_us, 0, true);
 }
 
-static void what_it_has_said_since_the_request_is_right(void **state)
+TEST(what_it_has_said_since_the_request_is_right)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_MODBUS, 0);
     say(&truth, 1000, 100, 200);
     assert_int_equal(ask(&truth, 1, 100, 1500, 900), TRUTH_RIGHT);
     assert_int_equal(ask(&truth, 2, 200, 1500, 900), TRUTH_RIGHT);
 }
 
-static void what_it_has_never_said_is_damaged(void **state)
+TEST(what_it_has_never_said_is_damaged)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_MODBUS, 0);
     say(&truth, 1000, 100, 200);
     assert_int_equal(ask(&truth, 1, 101, 1500, 900), TRUTH_DAMAGED);
@@ -64,19 +59,17 @@ static void what_it_has_never_said_is_damaged(void **state)
     assert_int_equal(ask(&truth, 5, 100, 1500, 900), TRUTH_DAMAGED);
 }
 
-static void what_another_probe_has_said_is_permuted(void **state)
+TEST(what_another_probe_has_said_is_permuted)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_MODBUS, 0);
     say(&truth, 1000, 100, 200);
     assert_int_equal(ask(&truth, 1, 200, 1500, 900), TRUTH_PERMUTED);
 }
 
-static void what_it_has_said_before_the_request_or_says_later_is_stale(void **state)
+TEST(what_it_has_said_before_the_request_or_says_later_is_stale)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_MODBUS, 0);
     say(&truth, 1000, 100, 200);
     say(&truth, 3000, 101, 201);
@@ -85,10 +78,9 @@ static void what_it_has_said_before_the_request_or_says_later_is_stale(void **st
     assert_int_equal(ask(&truth, 1, 101, 3500, 2000), TRUTH_RIGHT);
 }
 
-static void a_stream_gives_each_frame_once_and_none_after_a_newer_one(void **state)
+TEST(a_stream_gives_each_frame_once_and_none_after_a_newer_one)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_AUTO, 0);
     say(&truth, 1000, 100, 200);
     say(&truth, 2000, 101, 201);
@@ -98,10 +90,9 @@ static void a_stream_gives_each_frame_once_and_none_after_a_newer_one(void **sta
     assert_int_equal(stream(&truth, 1, 100, 2600), TRUTH_STALE);
 }
 
-static void the_rest_of_a_sample_has_to_follow_from_its_bits(void **state)
+TEST(the_rest_of_a_sample_has_to_follow_from_its_bits)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_MODBUS, 0);
     say(&truth, 1000, 100, FATHOM_SIM_NO_TARGET);
     fathom_sample_t sample = sample_of(1, 100);
@@ -117,10 +108,9 @@ static void the_rest_of_a_sample_has_to_follow_from_its_bits(void **state)
     assert_int_equal(truth_judge(&truth, &sample, 1500, 900, false), TRUTH_RIGHT);
 }
 
-static void what_does_not_speak_for_the_device_is_not_its_word(void **state)
+TEST(what_does_not_speak_for_the_device_is_not_its_word)
 {
     truth_t truth;
-    (void)state;
     truth_init(&truth, SOAK_A05_MODBUS, 0);
     truth_measured(&truth, 1, 100);
     truth_forget(truth_leaves(&truth, 1000));
@@ -128,11 +118,10 @@ static void what_does_not_speak_for_the_device_is_not_its_word(void **state)
 }
 
 /* 5990 distances, eight units, four probes: 187 frames until one comes again. */
-static void the_scene_repeats_itself_later_than_the_log_reaches(void **state)
+TEST(the_scene_repeats_itself_later_than_the_log_reaches)
 {
     static truth_t units[8];
     static uint8_t seen[5990 + 1];
-    (void)state;
     for (uint8_t i = 0; i < 8; i++) truth_init(&units[i], SOAK_A05_MODBUS, i);
     for (uint32_t look = 0; look < 2 * TRUTH_ROOM * TRUTH_PROBES; look++)
         for (uint8_t i = 0; i < 8; i++) {
@@ -140,19 +129,4 @@ static void the_scene_repeats_itself_later_than_the_log_reaches(void **state)
             assert_in_range(mm, 1, 5990);
             assert_int_equal(seen[mm]++, 0);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_it_has_said_since_the_request_is_right),
-        cmocka_unit_test(what_it_has_never_said_is_damaged),
-        cmocka_unit_test(what_another_probe_has_said_is_permuted),
-        cmocka_unit_test(what_it_has_said_before_the_request_or_says_later_is_stale),
-        cmocka_unit_test(a_stream_gives_each_frame_once_and_none_after_a_newer_one),
-        cmocka_unit_test(the_rest_of_a_sample_has_to_follow_from_its_bits),
-        cmocka_unit_test(what_does_not_speak_for_the_device_is_not_its_word),
-        cmocka_unit_test(the_scene_repeats_itself_later_than_the_log_reaches),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 enum { GUARD = 0xA5, T3_5_US = 3646, GAP_US = 5000 };
 

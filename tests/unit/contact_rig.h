@@ -2,12 +2,9 @@
 #ifndef FATHOM_TESTS_CONTACT_RIG_H
 #define FATHOM_TESTS_CONTACT_RIG_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake.h"
 #include "fathom/sensor.h"

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 controlled_t controlled;
 
@@ -26,7 +24,6 @@ void controlled_start(void) { controlled_start_at(RIG_START_US); }
 
 int controlled_set_up(void **state)
 {
-    (void)state;
     memset(&controlled.config, 0, sizeof controlled.config);
     controlled_start();
     return 0;

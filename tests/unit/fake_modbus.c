@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "fake_modbus.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 static void assert_unchanged(const fake_modbus_t *fake)
 {

@@ -2,12 +2,9 @@
 #ifndef FATHOM_TESTS_HPS_DESK_H
 #define FATHOM_TESTS_HPS_DESK_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/hps167s_info.h"
@@ -60,7 +57,12 @@ void desk_assert_guard(const void *object, size_t size);
 
 #define ROWS(...) (const row_t[]){__VA_ARGS__}, sizeof((const row_t[]){__VA_ARGS__}) / sizeof(row_t)
 
-/* Runs the group in a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
-int desk_main(int (*group)(void));
+/* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
+enum { DESK_ROUNDS = 4 };
+void desk_begin_round(unsigned round);
+
+#define DESK_SUITE                                                                                           \
+    static const suite_t suite = {                                                                           \
+        .set_up = desk_set_up, .begin_round = desk_begin_round, .rounds = DESK_ROUNDS}
 
 #endif

@@ -2,12 +2,9 @@
 #ifndef FATHOM_TESTS_LINE_BENCH_H
 #define FATHOM_TESTS_LINE_BENCH_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake.h"
 #include "fathom/line.h"
@@ -31,7 +28,6 @@ extern bench_t bench;
 
 /* Before each test. */
 int set_up(void **state);
-#define TEST(name) cmocka_unit_test_setup(name, set_up)
 
 /* Frames of the datasheets: A16 6(4) examples 1 and 2, HPS-167S "abnormal response", A05 3(4) example 3. */
 extern const uint8_t ask_1_processed[8];

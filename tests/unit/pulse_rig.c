@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "pulse_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 enum { GUARD = 0xA5 };
 
@@ -28,7 +25,6 @@ void pulse_rig_start(uint32_t now_us)
 
 int pulse_rig_set_up(void **state)
 {
-    (void)state;
     memset(&stand.config, 0, sizeof stand.config);
     stand.config.trigger = &stand.pin.trigger;
     pulse_rig_start(1000);

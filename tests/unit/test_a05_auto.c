@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fathom/a05_auto.h"
@@ -29,11 +26,12 @@ static void start(void) { start_at(RIG_START_US); }
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     start();
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void send(const uint8_t frame[10]) { rig_send(frame, 10, 500); }
 
@@ -54,9 +52,8 @@ static unsigned counter(unsigned which) { return a05.base.stream.counters[which]
 
 /* ---- readings ---- */
 
-static void the_example_of_the_datasheet_is_four_samples_of_one_sequence_and_time(void **state)
+TEST(the_example_of_the_datasheet_is_four_samples_of_one_sequence_and_time)
 {
-    (void)state;
     send(example);
     assert_int_equal(rig.samples, 4);
     for (unsigned i = 0; i != 4; i++) {
@@ -74,9 +71,8 @@ static void the_example_of_the_datasheet_is_four_samples_of_one_sequence_and_tim
     }
 }
 
-static void one_poll_gives_one_sample_in_the_order_of_the_probes(void **state)
+TEST(one_poll_gives_one_sample_in_the_order_of_the_probes)
 {
-    (void)state;
     rig_run(10000, 1000);
     fake_receive(&rig.fake, 0, example, 10);
     assert_int_equal(rig_poll(), FATHOM_PENDING);
@@ -89,10 +85,9 @@ static void one_poll_gives_one_sample_in_the_order_of_the_probes(void **state)
     assert_int_equal(rig_poll(), FATHOM_PENDING);
 }
 
-static void every_frame_is_four_samples_in_loops_from_100_us_to_20_ms(void **state)
+TEST(every_frame_is_four_samples_in_loops_from_100_us_to_20_ms)
 {
     static const uint32_t steps_us[] = {100, 521, 1042, 3333, 10000, 20000};
-    (void)state;
     for (unsigned i = 0; i != sizeof steps_us / sizeof *steps_us; i++) {
         start();
         for (unsigned n = 1; n <= 20; n++) {
@@ -108,10 +103,9 @@ static void every_frame_is_four_samples_in_loops_from_100_us_to_20_ms(void **sta
     }
 }
 
-static void a_new_frame_does_not_mix_into_the_samples_of_the_old_one(void **state)
+TEST(a_new_frame_does_not_mix_into_the_samples_of_the_old_one)
 {
     uint8_t newer[10];
-    (void)state;
     make(newer, (const uint16_t[]){301, 302, 303, 304});
     rig_run(10000, 1000);
     fake_receive(&rig.fake, 0, example, 10);
@@ -135,10 +129,9 @@ static void a_new_frame_does_not_mix_into_the_samples_of_the_old_one(void **stat
     }
 }
 
-static void codes_mean_nothing_there_for_their_probe_alone(void **state)
+TEST(codes_mean_nothing_there_for_their_probe_alone)
 {
     uint8_t frame[10];
-    (void)state;
     make(frame, (const uint16_t[]){0xFFFD, 0xFFFE, 0, 6000});
     send(frame);
     assert_int_equal(rig.samples, 4);
@@ -154,9 +147,8 @@ static void codes_mean_nothing_there_for_their_probe_alone(void **state)
 
 /* ---- probes ---- */
 
-static void every_choice_of_probes_gives_samples_of_those_alone(void **state)
+TEST(every_choice_of_probes_gives_samples_of_those_alone)
 {
-    (void)state;
     for (uint8_t probes = 1; probes <= 15; probes++) {
         uint16_t values[4];
         uint8_t frame[10];
@@ -180,9 +172,8 @@ static void every_choice_of_probes_gives_samples_of_those_alone(void **state)
     }
 }
 
-static void a_frame_with_one_value_that_cannot_be_is_refused_whole(void **state)
+TEST(a_frame_with_one_value_that_cannot_be_is_refused_whole)
 {
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         uint16_t values[4];
         uint8_t frame[10];
@@ -200,10 +191,9 @@ static void a_frame_with_one_value_that_cannot_be_is_refused_whole(void **state)
     }
 }
 
-static void a_window_of_the_users_own_is_kept(void **state)
+TEST(a_window_of_the_users_own_is_kept)
 {
     uint8_t frame[10];
-    (void)state;
     config.window.min_mm = 250;
     config.window.max_mm = 4500;
     start();
@@ -224,10 +214,9 @@ static void a_window_of_the_users_own_is_kept(void **state)
  * 07 + FF + 05 + 3B = 407. */
 static const uint8_t permutable[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
 
-static void with_silence_between_frames_probes_are_not_permuted(void **state)
+TEST(with_silence_between_frames_probes_are_not_permuted)
 {
     static const uint16_t right[] = {1000, 2000, 2047, 1339};
-    (void)state;
     for (unsigned n = 0; n != 5; n++) {
         send(permutable);
         for (unsigned i = 0; i != 4; i++) assert_int_equal(rig.last[i].distance_mm, right[i]);
@@ -235,9 +224,8 @@ static void with_silence_between_frames_probes_are_not_permuted(void **state)
     assert_int_equal(rig.samples, 20);
 }
 
-static void without_silence_probes_are_not_permuted_and_it_turns_stale(void **state)
+TEST(without_silence_probes_are_not_permuted_and_it_turns_stale)
 {
-    (void)state;
     fake_receive(&rig.fake, 0, permutable + 6, 4);
     rig_poll();
     for (unsigned n = 0; n != 400; n++) { /* 4.168 s */
@@ -251,9 +239,8 @@ static void without_silence_probes_are_not_permuted_and_it_turns_stale(void **st
 
 /* ---- stale, due, the port, the clock ---- */
 
-static void it_is_stale_after_2_s_or_as_the_config_says_and_once_each_time(void **state)
+TEST(it_is_stale_after_2_s_or_as_the_config_says_and_once_each_time)
 {
-    (void)state;
     send(example);
     rig_run(1999000, 1000);
     assert_int_equal(rig.stales, 0);
@@ -269,9 +256,8 @@ static void it_is_stale_after_2_s_or_as_the_config_says_and_once_each_time(void 
     assert_int_equal(rig.stales, 1);
 }
 
-static void it_works_across_the_wrap_of_the_clock(void **state)
+TEST(it_works_across_the_wrap_of_the_clock)
 {
-    (void)state;
     for (uint32_t before_us = 0; before_us <= 300000; before_us += 30000) {
         start_at(UINT32_MAX - before_us);
         for (unsigned n = 1; n <= 3; n++) {
@@ -283,9 +269,8 @@ static void it_works_across_the_wrap_of_the_clock(void **state)
     }
 }
 
-static void a_broken_port_is_said_when_the_samples_that_came_before_are_taken(void **state)
+TEST(a_broken_port_is_said_when_the_samples_that_came_before_are_taken)
 {
-    (void)state;
     rig_run(10000, 1000);
     fake_receive(&rig.fake, 0, example, 10);
     assert_int_equal(rig_poll(), FATHOM_PENDING);
@@ -299,9 +284,8 @@ static void a_broken_port_is_said_when_the_samples_that_came_before_are_taken(vo
     assert_int_equal(rig.samples, 8);
 }
 
-static void the_gap_that_counts_is_the_configs(void **state)
+TEST(the_gap_that_counts_is_the_configs)
 {
-    (void)state;
     assert_int_equal(a05.base.stream.listener.gap_us, 5000);
     config.gap_us = 25000;
     start();
@@ -310,10 +294,9 @@ static void the_gap_that_counts_is_the_configs(void **state)
 
 /* ---- setting up ---- */
 
-static void wrong_arguments_are_refused_and_nothing_listens(void **state)
+TEST(wrong_arguments_are_refused_and_nothing_listens)
 {
     fathom_a05_auto_t other;
-    (void)state;
     fathom_line_listen(&rig.line, NULL);
     for (unsigned probes = 16; probes != 256; probes++) {
         config.probes = (uint8_t)probes;
@@ -327,35 +310,9 @@ static void wrong_arguments_are_refused_and_nothing_listens(void **state)
     assert_null(rig.line.listener);
 }
 
-static void deinit_stops_listening(void **state)
+TEST(deinit_stops_listening)
 {
-    (void)state;
     assert_ptr_equal(rig.line.listener, &a05.base.stream.listener);
     fathom_a05_auto_deinit(&a05);
     assert_null(rig.line.listener);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_example_of_the_datasheet_is_four_samples_of_one_sequence_and_time),
-        FRESH(one_poll_gives_one_sample_in_the_order_of_the_probes),
-        FRESH(every_frame_is_four_samples_in_loops_from_100_us_to_20_ms),
-        FRESH(a_new_frame_does_not_mix_into_the_samples_of_the_old_one),
-        FRESH(codes_mean_nothing_there_for_their_probe_alone),
-        FRESH(every_choice_of_probes_gives_samples_of_those_alone),
-        FRESH(a_frame_with_one_value_that_cannot_be_is_refused_whole),
-        FRESH(a_window_of_the_users_own_is_kept),
-        FRESH(with_silence_between_frames_probes_are_not_permuted),
-        FRESH(without_silence_probes_are_not_permuted_and_it_turns_stale),
-        FRESH(it_is_stale_after_2_s_or_as_the_config_says_and_once_each_time),
-        FRESH(it_works_across_the_wrap_of_the_clock),
-        FRESH(a_broken_port_is_said_when_the_samples_that_came_before_are_taken),
-        FRESH(the_gap_that_counts_is_the_configs),
-        FRESH(wrong_arguments_are_refused_and_nothing_listens),
-        FRESH(deinit_stops_listening),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

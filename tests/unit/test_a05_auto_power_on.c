@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fathom/a05_auto.h"
@@ -41,10 +38,9 @@ static void start_at(uint32_t now_us, const fathom_pin_t *select)
 
 static bool is_low(const fathom_pin_t *select) { return select != NULL ? !pin_is_high : rig.fake.in_break; }
 
-static void rx_is_low_for_a_second_and_a_half_for_real_time_values(void **state)
+TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
 {
     static const uint32_t starts_us[] = {1000, 0xFFFFFFFFu - 700000};
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         const fathom_pin_t *const select = i % 2 == 0 ? &pin : NULL;
         start_at(starts_us[i / 2], select);
@@ -61,9 +57,8 @@ static void rx_is_low_for_a_second_and_a_half_for_real_time_values(void **state)
     }
 }
 
-static void rx_is_high_for_processed_values(void **state)
+TEST(rx_is_high_for_processed_values)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_READY);
     assert_int_equal(rig.fake.breaks, 0);
@@ -73,9 +68,8 @@ static void rx_is_high_for_processed_values(void **state)
     assert_true(pin_is_high);
 }
 
-static void a_second_power_on_begins_anew(void **state)
+TEST(a_second_power_on_begins_anew)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
     rig_run(1000000, 1000);
@@ -86,9 +80,8 @@ static void a_second_power_on_begins_anew(void **state)
     assert_false(rig.fake.in_break);
 }
 
-static void the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten(void **state)
+TEST(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     rig_run(1900000, 1000);
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_READY);
@@ -100,9 +93,8 @@ static void the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_f
     assert_int_equal(rig.samples, 4);
 }
 
-static void a_port_that_cannot_is_said_and_a_pin_helps(void **state)
+TEST(a_port_that_cannot_is_said_and_a_pin_helps)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     rig.fake.uart.set_break = NULL;
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_ERR_UNSUPPORTED);
@@ -113,9 +105,8 @@ static void a_port_that_cannot_is_said_and_a_pin_helps(void **state)
     assert_int_equal(pin_sets, 1);
 }
 
-static void a_line_that_sends_is_busy_and_another_value_is_none(void **state)
+TEST(a_line_that_sends_is_busy_and_another_value_is_none)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     rig.fake.busy_until_us = rig.fake.now_us + 1000;
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_ERR_BUSY);
@@ -125,9 +116,8 @@ static void a_line_that_sends_is_busy_and_another_value_is_none(void **state)
     assert_int_equal(fathom_a05_auto_power_on(&a05, (fathom_a05_value_t)2), FATHOM_ERR_ARGUMENT);
 }
 
-static void who_stops_listening_lets_rx_go(void **state)
+TEST(who_stops_listening_lets_rx_go)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
     fathom_a05_auto_deinit(&a05);
@@ -137,9 +127,8 @@ static void who_stops_listening_lets_rx_go(void **state)
     assert_int_equal(rig.fake.breaks, 1);
 }
 
-static void in_a_slow_loop_rx_is_low_for_longer_and_never_for_less(void **state)
+TEST(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less)
 {
-    (void)state;
     start_at(RIG_START_US, NULL);
     assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
     rig_run(1480000, 20000);
@@ -148,19 +137,4 @@ static void in_a_slow_loop_rx_is_low_for_longer_and_never_for_less(void **state)
     assert_int_equal(rig.sensor.due_us(rig.sensor.ctx), 0);
     (void)rig_poll();
     assert_false(rig.fake.in_break);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rx_is_low_for_a_second_and_a_half_for_real_time_values),
-        cmocka_unit_test(rx_is_high_for_processed_values),
-        cmocka_unit_test(a_second_power_on_begins_anew),
-        cmocka_unit_test(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten),
-        cmocka_unit_test(a_port_that_cannot_is_said_and_a_pin_helps),
-        cmocka_unit_test(a_line_that_sends_is_busy_and_another_value_is_none),
-        cmocka_unit_test(who_stops_listening_lets_rx_go),
-        cmocka_unit_test(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,6 +25,8 @@ static int set_up_a05(void **state)
     return 0;
 }
 
+static const suite_t suite = {.set_up = set_up_a05};
+
 static void start(void)
 {
     assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
@@ -72,9 +74,8 @@ static fathom_status_t next_within(uint32_t us)
 
 /* ---- all probes ---- */
 
-static void four_samples_share_sequence_and_time(void **state)
+TEST(four_samples_share_sequence_and_time)
 {
-    (void)state;
     start();
     for (unsigned answer = 1; answer <= 3; answer++) {
         until_written(answer - 1);
@@ -99,7 +100,7 @@ static void four_samples_share_sequence_and_time(void **state)
     }
 }
 
-static void every_choice_of_several_probes_measures_all_and_hands_over_the_wanted(void **state)
+TEST(every_choice_of_several_probes_measures_all_and_hands_over_the_wanted)
 {
     for (uint8_t probes = 1; probes != 16; probes++) {
         if ((probes & (probes - 1)) == 0) continue;
@@ -122,11 +123,10 @@ static void every_choice_of_several_probes_measures_all_and_hands_over_the_wante
 
 /* FFFD is no object, FFFE interference of sister models (dyp.h), 0 no object of older firmware; 6001 is outside.
  * FF + 01 + 01 = 101; FF + FD = 1FC; FF + FE = 1FD; 0; 17 + 71 = 88: 01 + FC + FD + 88 = 282. */
-static void values_mean_what_they_mean_in_the_other_modes(void **state)
+TEST(values_mean_what_they_mean_in_the_other_modes)
 {
     static const uint8_t odd[] = {0x55, 0xAA, 0x01, 0x01, 0xFF, 0xFD, 0xFF,
                                   0xFE, 0x00, 0x00, 0x17, 0x71, 0x82};
-    (void)state;
     start();
     until_written(0);
     assert_nothing_for(205000);
@@ -145,9 +145,8 @@ static void values_mean_what_they_mean_in_the_other_modes(void **state)
     assert_nothing_for(1000);
 }
 
-static void the_window_is_the_configs(void **state)
+TEST(the_window_is_the_configs)
 {
-    (void)state;
     config.window.min_mm = 1001;
     config.window.max_mm = 2000;
     start();
@@ -165,7 +164,7 @@ static void the_window_is_the_configs(void **state)
 
 /* ---- one probe ---- */
 
-static void one_probe_is_measured_alone(void **state)
+TEST(one_probe_is_measured_alone)
 {
     for (uint8_t probe = 1; probe <= 4; probe++) {
         const uint8_t command = (uint8_t)(0x0F + probe);
@@ -218,7 +217,7 @@ static void assert_period(uint8_t probes, uint32_t period_us, uint32_t expected_
     }
 }
 
-static void commands_keep_the_least_time_between_them(void **state)
+TEST(commands_keep_the_least_time_between_them)
 {
     assert_period(0, 0, 250000);
     set_up_a05(state);
@@ -233,7 +232,7 @@ static void commands_keep_the_least_time_between_them(void **state)
     assert_period(1, 250000, 250000);
 }
 
-static void the_period_is_kept_across_the_wrap_of_the_clock(void **state)
+TEST(the_period_is_kept_across_the_wrap_of_the_clock)
 {
     for (uint32_t before_us = 20000; before_us < 600000; before_us += 70000) {
         set_up_a05(state);
@@ -255,7 +254,7 @@ static void assert_time_out(uint8_t probes, uint32_t timeout_us, uint32_t expect
     assert_nothing_for(1000);
 }
 
-static void silence_is_said_after_the_time_out(void **state)
+TEST(silence_is_said_after_the_time_out)
 {
     assert_time_out(0, 0, 500000);
     set_up_a05(state);
@@ -266,9 +265,8 @@ static void silence_is_said_after_the_time_out(void **state)
     assert_time_out(1, 80000, 80000);
 }
 
-static void retries_are_the_configs(void **state)
+TEST(retries_are_the_configs)
 {
-    (void)state;
     config.probes = 1;
     config.retries = 2;
     start();
@@ -276,9 +274,8 @@ static void retries_are_the_configs(void **state)
     assert_int_equal(bench.fake.written, 3);
 }
 
-static void a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says(void **state)
+TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
 {
-    (void)state;
     config.probes = 1;
     config.backoff_us = 300000;
     start();
@@ -293,10 +290,9 @@ static void a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says(v
 
 /* ---- errors ---- */
 
-static void errors_leave_the_sample_alone_and_the_sensor_goes_on(void **state)
+TEST(errors_leave_the_sample_alone_and_the_sensor_goes_on)
 {
     uint8_t damaged[sizeof four];
-    (void)state;
     memcpy(damaged, four, sizeof four);
     damaged[12] = 0x60; /* as A05 2(3)3 prints it */
     start();
@@ -323,7 +319,7 @@ static void errors_leave_the_sample_alone_and_the_sensor_goes_on(void **state)
     assert_int_equal(sample.sequence, 1);
 }
 
-static void wrong_arguments_are_refused(void **state)
+TEST(wrong_arguments_are_refused)
 {
     config.line = NULL;
     assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_ERR_ARGUMENT);
@@ -340,11 +336,10 @@ static void wrong_arguments_are_refused(void **state)
     }
 }
 
-static void address_and_settings_are_the_configs(void **state)
+TEST(address_and_settings_are_the_configs)
 {
     static const uint8_t ask_254[] = {0x55, 0xAA, 0xFE, 0x01, 0xFE}; /* FF + FE + 01 = 1FE */
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    (void)state;
     config.address = 254;
     config.settings = &settings;
     start();
@@ -353,9 +348,8 @@ static void address_and_settings_are_the_configs(void **state)
     assert_int_equal(bench.fake.writes[0].baud, 9600);
 }
 
-static void deinit_cancels_what_is_under_way(void **state)
+TEST(deinit_cancels_what_is_under_way)
 {
-    (void)state;
     start();
     until_written(0);
     fathom_a05_dyp_deinit(&a05);
@@ -363,27 +357,4 @@ static void deinit_cancels_what_is_under_way(void **state)
     receive(four, sizeof four);
     run(1000);
     for (unsigned i = 0; i != 4; i++) assert_int_equal(a05.values[i], 0x5A5A);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up_a05)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(four_samples_share_sequence_and_time),
-        FRESH(every_choice_of_several_probes_measures_all_and_hands_over_the_wanted),
-        FRESH(values_mean_what_they_mean_in_the_other_modes),
-        FRESH(the_window_is_the_configs),
-        FRESH(one_probe_is_measured_alone),
-        FRESH(commands_keep_the_least_time_between_them),
-        FRESH(the_period_is_kept_across_the_wrap_of_the_clock),
-        FRESH(silence_is_said_after_the_time_out),
-        FRESH(retries_are_the_configs),
-        FRESH(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says),
-        FRESH(errors_leave_the_sample_alone_and_the_sensor_goes_on),
-        FRESH(wrong_arguments_are_refused),
-        FRESH(address_and_settings_are_the_configs),
-        FRESH(deinit_cancels_what_is_under_way),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

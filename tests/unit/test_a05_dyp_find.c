@@ -20,6 +20,8 @@ static int set_up_find(void **state)
     return 0;
 }
 
+static const suite_t suite = {.set_up = set_up_find};
+
 static fathom_status_t find_for(uint32_t us)
 {
     for (uint32_t passed_us = 0; passed_us < us; passed_us += 200) {
@@ -42,18 +44,16 @@ static void until_asked(size_t written)
     assert_int_equal(bench.fake.written, written);
 }
 
-static void the_address_is_where_the_answer_came_from(void **state)
+TEST(the_address_is_where_the_answer_came_from)
 {
-    (void)state;
     until_asked(1);
     receive(from_5, sizeof from_5);
     assert_int_equal(find_for(200), FATHOM_READY);
     assert_int_equal(address, 5);
 }
 
-static void each_outcome_comes_once_and_the_next_call_asks_anew(void **state)
+TEST(each_outcome_comes_once_and_the_next_call_asks_anew)
 {
-    (void)state;
     until_asked(1);
     receive(from_5, sizeof from_5);
     assert_int_equal(find_for(200), FATHOM_READY);
@@ -63,16 +63,15 @@ static void each_outcome_comes_once_and_the_next_call_asks_anew(void **state)
     assert_int_equal(address, 254);
 }
 
-static void silence_is_no_answer_and_leaves_the_address_alone(void **state)
+TEST(silence_is_no_answer_and_leaves_the_address_alone)
 {
-    (void)state;
     until_asked(1);
     assert_int_equal(find_for(5 * BYTE_US + 200000 - 70000 - 1000), FATHOM_PENDING);
     assert_int_equal(find_for(2000), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(address, 0xA5);
 }
 
-static void what_is_damaged_gives_no_address(void **state)
+TEST(what_is_damaged_gives_no_address)
 {
     uint8_t damaged[sizeof from_5];
     for (unsigned bit = 0; bit != 8 * sizeof from_5; bit++) {
@@ -86,10 +85,9 @@ static void what_is_damaged_gives_no_address(void **state)
     }
 }
 
-static void of_two_answers_the_first_is_taken(void **state)
+TEST(of_two_answers_the_first_is_taken)
 {
     uint8_t glued[sizeof from_5 + sizeof from_254];
-    (void)state;
     memcpy(glued, from_254, sizeof from_254);
     memcpy(glued + sizeof from_254, from_5, sizeof from_5);
     until_asked(1);
@@ -99,9 +97,8 @@ static void of_two_answers_the_first_is_taken(void **state)
     assert_int_equal(find.value, 1953);
 }
 
-static void on_an_echoing_line_the_echo_is_no_device(void **state)
+TEST(on_an_echoing_line_the_echo_is_no_device)
 {
-    (void)state;
     bench.config.echo = FATHOM_LINE_ECHO_AUTO;
     for (unsigned i = 0; bench.fake.written != 1; i++) {
         assert_true(i < 5000);
@@ -114,9 +111,8 @@ static void on_an_echoing_line_the_echo_is_no_device(void **state)
     assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_ON);
 }
 
-static void it_can_be_given_up(void **state)
+TEST(it_can_be_given_up)
 {
-    (void)state;
     until_asked(1);
     fathom_a05_dyp_find_cancel(&find, &bench.line);
     assert_null(bench.line.head);
@@ -129,38 +125,18 @@ static void it_can_be_given_up(void **state)
     assert_int_equal(address, 5);
 }
 
-static void a_broken_port_ends_it(void **state)
+TEST(a_broken_port_ends_it)
 {
-    (void)state;
     until_asked(1);
     bench.fake.read_fails = true;
     assert_int_equal(find_for(200), FATHOM_ERR_PORT);
     assert_int_equal(address, 0xA5);
 }
 
-static void a_line_without_room_says_so(void **state)
+TEST(a_line_without_room_says_so)
 {
-    (void)state;
     bench.config.frame_size = 12;
     assert_int_equal(find_for(200), FATHOM_ERR_CAPACITY);
     assert_int_equal(find_for(200), FATHOM_ERR_CAPACITY);
     assert_null(bench.line.head);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up_find)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_address_is_where_the_answer_came_from),
-        FRESH(each_outcome_comes_once_and_the_next_call_asks_anew),
-        FRESH(silence_is_no_answer_and_leaves_the_address_alone),
-        FRESH(what_is_damaged_gives_no_address),
-        FRESH(of_two_answers_the_first_is_taken),
-        FRESH(on_an_echoing_line_the_echo_is_no_device),
-        FRESH(it_can_be_given_up),
-        FRESH(a_broken_port_ends_it),
-        FRESH(a_line_without_room_says_so),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,6 +15,8 @@ static int set_up_driver(void **state)
     return fathom_a05_dyp_init(&dyp, &config) == FATHOM_READY ? 0 : -1;
 }
 
+static const suite_t suite = {.set_up = set_up_driver};
+
 /* A write of the address register, as a program would send it that has taken the seam for Modbus. */
 static void assert_refused(void)
 {
@@ -40,11 +42,10 @@ static const uint8_t probe_1_of_7[] = {0x55, 0xAA, 0x07, 0x10, 0x07, 0x5B, 0x78}
 /* 55 + AA + 07 + 03 = 109 */
 static const uint8_t taken_7[] = {0x55, 0xAA, 0x07, 0x03, 0x09};
 
-static void a_write_through_the_seam_is_refused_at_every_time(void **state)
+TEST(a_write_through_the_seam_is_refused_at_every_time)
 {
     fathom_status_t status = FATHOM_PENDING;
     size_t seen = 0;
-    (void)state;
     assert_refused();
     for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
         assert_true(ms < 10000);
@@ -63,9 +64,8 @@ static void a_write_through_the_seam_is_refused_at_every_time(void **state)
     assert_refused();
 }
 
-static void what_was_refused_or_given_up_leaves_the_seam_closed(void **state)
+TEST(what_was_refused_or_given_up_leaves_the_seam_closed)
 {
-    (void)state;
     assert_int_equal(fathom_a05_dyp_set_every_address(&dyp, 0), FATHOM_ERR_ARGUMENT);
     assert_refused();
     assert_int_equal(fathom_a05_dyp_set_every_address(&dyp, 255), FATHOM_ERR_ARGUMENT);
@@ -75,10 +75,3 @@ static void what_was_refused_or_given_up_leaves_the_seam_closed(void **state)
     assert_refused();
     assert_int_equal(sent_with_command_3(), 0);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test_setup(a_write_through_the_seam_is_refused_at_every_time, set_up_driver),
-    cmocka_unit_test_setup(what_was_refused_or_given_up_leaves_the_seam_closed, set_up_driver),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

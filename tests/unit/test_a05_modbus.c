@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake.h"
 #include "fake_modbus.h"
@@ -21,7 +18,6 @@ static fathom_sample_t sample;
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     memset(&config, 0, sizeof config);
     config.modbus = &fake.modbus;
@@ -29,6 +25,8 @@ static int set_up(void **state)
     memset(&a05, 0x5A, sizeof a05);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void start(void)
 {
@@ -118,9 +116,8 @@ static void ask_mask(const mask_t *mask, uint16_t first)
     fake_modbus_assert_asked(&fake, 2, 1, first, mask->count);
 }
 
-static void every_choice_of_probes_is_one_read_with_its_own_time_out_and_pace(void **state)
+TEST(every_choice_of_probes_is_one_read_with_its_own_time_out_and_pace)
 {
-    (void)state;
     for (unsigned i = 0; i != 15; i++) {
         assert_int_equal(masks[i].probes, i + 1);
         set_up(NULL);
@@ -130,9 +127,8 @@ static void every_choice_of_probes_is_one_read_with_its_own_time_out_and_pace(vo
 }
 
 /* A05 3(3) remark 2 prints "same function as 0x0106~0x0108"; the table beside it has 0013 for No. 4 too. */
-static void every_choice_of_probes_in_the_other_block_of_registers(void **state)
+TEST(every_choice_of_probes_in_the_other_block_of_registers)
 {
-    (void)state;
     for (unsigned i = 0; i != 15; i++) {
         set_up(NULL);
         config.probes = masks[i].probes;
@@ -141,16 +137,11 @@ static void every_choice_of_probes_in_the_other_block_of_registers(void **state)
     }
 }
 
-static void by_default_it_asks_unit_1_for_all_four_probes(void **state)
-{
-    (void)state;
-    ask_mask(&masks[14], 0x0106);
-}
+TEST(by_default_it_asks_unit_1_for_all_four_probes) { ask_mask(&masks[14], 0x0106); }
 
 /* A05 3(3) calls 0109 "No.3 probe"; its description beside it says No. 4. */
-static void register_0109_is_probe_4(void **state)
+TEST(register_0109_is_probe_4)
 {
-    (void)state;
     config.probes = 0x8;
     start();
     assert_nothing_after(0);
@@ -160,9 +151,8 @@ static void register_0109_is_probe_4(void **state)
     assert_int_equal(sample.probe, 4);
 }
 
-static void the_config_is_asked_as_it_says(void **state)
+TEST(the_config_is_asked_as_it_says)
 {
-    (void)state;
     config.address = 254;
     config.probes = 0x2;
     config.timeout_us = 55000;
@@ -182,9 +172,8 @@ static void the_config_is_asked_as_it_says(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void a_period_that_the_probes_cannot_keep_is_stretched(void **state)
+TEST(a_period_that_the_probes_cannot_keep_is_stretched)
 {
-    (void)state;
     config.period_us = 399999;
     start();
     assert_nothing_after(0);
@@ -196,10 +185,9 @@ static void a_period_that_the_probes_cannot_keep_is_stretched(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void wrong_arguments_are_refused(void **state)
+TEST(wrong_arguments_are_refused)
 {
     static const uint16_t registers[] = {0x0107, 0x0105, 0x0011, 0x000F, 0x0200, 1};
-    (void)state;
     config.modbus = NULL;
     assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_ERR_ARGUMENT);
     set_up(NULL);
@@ -226,9 +214,8 @@ static void wrong_arguments_are_refused(void **state)
 
 /* ---- what comes back ---- */
 
-static void the_samples_of_one_answer_share_sequence_and_time(void **state)
+TEST(the_samples_of_one_answer_share_sequence_and_time)
 {
-    (void)state;
     config.address = 5;
     start();
     for (unsigned answer = 1; answer <= 3; answer++) {
@@ -250,9 +237,8 @@ static void the_samples_of_one_answer_share_sequence_and_time(void **state)
     }
 }
 
-static void a_value_that_cannot_be_is_refused_alone(void **state)
+TEST(a_value_that_cannot_be_is_refused_alone)
 {
-    (void)state;
     config.window.min_mm = 250;
     config.window.max_mm = 4500;
     start();
@@ -271,9 +257,8 @@ static void a_value_that_cannot_be_is_refused_alone(void **state)
     assert_nothing_after(0);
 }
 
-static void a_probe_between_that_is_not_wanted_gives_nothing_whatever_it_reads(void **state)
+TEST(a_probe_between_that_is_not_wanted_gives_nothing_whatever_it_reads)
 {
-    (void)state;
     config.probes = 0x9;
     start();
     assert_nothing_after(0);
@@ -283,11 +268,10 @@ static void a_probe_between_that_is_not_wanted_gives_nothing_whatever_it_reads(v
     assert_int_equal(a05.base.answer.implausible, 0);
 }
 
-static void every_error_passes_through_and_leaves_the_sample_alone(void **state)
+TEST(every_error_passes_through_and_leaves_the_sample_alone)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
                                              FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED};
-    (void)state;
     start();
     for (unsigned i = 0; i != sizeof errors / sizeof *errors; i++) {
         assert_nothing_after(400000);
@@ -303,9 +287,8 @@ static void every_error_passes_through_and_leaves_the_sample_alone(void **state)
     assert_sample_untouched();
 }
 
-static void deinit_cancels_what_is_under_way(void **state)
+TEST(deinit_cancels_what_is_under_way)
 {
-    (void)state;
     start();
     assert_nothing_after(0);
     fathom_a05_modbus_deinit(&a05);
@@ -313,7 +296,7 @@ static void deinit_cancels_what_is_under_way(void **state)
 }
 
 /* A05 3(4)1 example 3, byte for byte: probes 2, 3, 4 read 250, 659, 2426 mm. */
-static void the_example_of_the_datasheet_goes_over_a_line(void **state)
+TEST(the_example_of_the_datasheet_goes_over_a_line)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
     static const uint8_t answer[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
@@ -322,7 +305,6 @@ static void the_example_of_the_datasheet_goes_over_a_line(void **state)
     uint8_t frame[13];
     fathom_line_t line;
     unsigned got = 0;
-    (void)state;
     fake_init(&uart);
     uart.byte_us = 1042;
     const fathom_line_config_t line_config = {
@@ -345,26 +327,4 @@ static void the_example_of_the_datasheet_goes_over_a_line(void **state)
     }
     assert_int_equal(got, 3);
     assert_memory_equal(uart.writes[0].bytes, request, sizeof request);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(every_choice_of_probes_is_one_read_with_its_own_time_out_and_pace),
-        FRESH(every_choice_of_probes_in_the_other_block_of_registers),
-        FRESH(by_default_it_asks_unit_1_for_all_four_probes),
-        FRESH(register_0109_is_probe_4),
-        FRESH(the_config_is_asked_as_it_says),
-        FRESH(a_period_that_the_probes_cannot_keep_is_stretched),
-        FRESH(wrong_arguments_are_refused),
-        FRESH(the_samples_of_one_answer_share_sequence_and_time),
-        FRESH(a_value_that_cannot_be_is_refused_alone),
-        FRESH(a_probe_between_that_is_not_wanted_gives_nothing_whatever_it_reads),
-        FRESH(every_error_passes_through_and_leaves_the_sample_alone),
-        FRESH(deinit_cancels_what_is_under_way),
-        FRESH(the_example_of_the_datasheet_goes_over_a_line),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

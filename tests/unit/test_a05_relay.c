@@ -21,10 +21,11 @@ static void start(bool level)
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 /* The kind that this level is read as. */
 static uint8_t read_as(bool level)
@@ -37,9 +38,8 @@ static uint8_t read_as(bool level)
 }
 
 /* A05 4(1): closed, and so conducting, when a probe has something nearer than the threshold. */
-static void a_normally_open_contact_that_conducts_is_near(void **state)
+TEST(a_normally_open_contact_that_conducts_is_near)
 {
-    (void)state;
     assert_int_equal(read_as(false), FATHOM_NEAR);
     assert_int_equal(read_as(true), FATHOM_FAR);
     config.wiring = FATHOM_A05_RELAY_NORMALLY_OPEN;
@@ -51,9 +51,8 @@ static void a_normally_open_contact_that_conducts_is_near(void **state)
     assert_int_equal(read_as(true), FATHOM_NEAR);
 }
 
-static void a_normally_closed_contact_that_conducts_is_far(void **state)
+TEST(a_normally_closed_contact_that_conducts_is_far)
 {
-    (void)state;
     config.wiring = FATHOM_A05_RELAY_NORMALLY_CLOSED;
     assert_int_equal(read_as(false), FATHOM_FAR);
     assert_int_equal(read_as(true), FATHOM_NEAR);
@@ -62,9 +61,8 @@ static void a_normally_closed_contact_that_conducts_is_far(void **state)
     assert_int_equal(read_as(true), FATHOM_FAR);
 }
 
-static void a_sample_says_who_and_when_and_has_no_distance(void **state)
+TEST(a_sample_says_who_and_when_and_has_no_distance)
 {
-    (void)state;
     start(true);
     pins_run(50 * MS, 1000);
     pins_turn(3 * MS);
@@ -77,9 +75,8 @@ static void a_sample_says_who_and_when_and_has_no_distance(void **state)
     assert_int_equal(pins.sample.distance_mm, 0);
 }
 
-static void the_times_are_options(void **state)
+TEST(the_times_are_options)
 {
-    (void)state;
     config.timing.settle_us = 30000;
     config.timing.period_us = 400000;
     config.timing.look_us = 3000;
@@ -101,9 +98,8 @@ static void the_times_are_options(void **state)
     assert_int_equal(pins.stales, 1);
 }
 
-static void a_config_without_sense_is_refused(void **state)
+TEST(a_config_without_sense_is_refused)
 {
-    (void)state;
     start(true);
     config.wiring = 3;
     assert_int_equal(fathom_a05_relay_init(&relay, &config), FATHOM_ERR_ARGUMENT);
@@ -116,16 +112,4 @@ static void a_config_without_sense_is_refused(void **state)
     config.clock = &pins.fake.clock;
     config.pin = NULL;
     assert_int_equal(fathom_a05_relay_init(&relay, &config), FATHOM_ERR_ARGUMENT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_normally_open_contact_that_conducts_is_near, set_up),
-        cmocka_unit_test_setup(a_normally_closed_contact_that_conducts_is_far, set_up),
-        cmocka_unit_test_setup(a_sample_says_who_and_when_and_has_no_distance, set_up),
-        cmocka_unit_test_setup(the_times_are_options, set_up),
-        cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

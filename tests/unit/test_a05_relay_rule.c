@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/a05_relay_rule.h"
 
@@ -24,13 +21,14 @@ static void start(void)
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     now_us = UINT32_MAX - 3 * HALF_S; /* the clock and the numbers wrap in every longer test */
     sequence = UINT16_MAX - 2;
     start();
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static bool give(uint8_t probe, uint8_t kind, uint16_t mm)
 {
@@ -51,9 +49,8 @@ static bool measure(uint16_t one, uint16_t two, uint16_t three, uint16_t four)
     return changed;
 }
 
-static void any_probe_nearer_than_the_threshold_closes(void **state)
+TEST(any_probe_nearer_than_the_threshold_closes)
 {
-    (void)state;
     for (uint8_t near = 0; near != 4; near++) {
         set_up(state);
         assert_true(measure(1001, NONE, 4500, 1001));
@@ -65,9 +62,8 @@ static void any_probe_nearer_than_the_threshold_closes(void **state)
     }
 }
 
-static void it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one(void **state)
+TEST(it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one)
 {
-    (void)state;
     sequence++;
     assert_false(give(1, FATHOM_TARGET, 1001));
     assert_true(give(2, FATHOM_TARGET, 999));
@@ -85,9 +81,8 @@ static void it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one(vo
 
 /* ---- Decision: each state lasts at least 1 s ---- */
 
-static void each_state_lasts_at_least_1_s(void **state)
+TEST(each_state_lasts_at_least_1_s)
 {
-    (void)state;
     assert_true(measure(999, 999, 999, 999));
     assert_false(measure(1001, 1001, 1001, 1001)); /* 0.5 s */
     assert_true(measure(1001, 1001, 1001, 1001));
@@ -98,9 +93,8 @@ static void each_state_lasts_at_least_1_s(void **state)
     assert_true(measure(999, 999, 999, 999));
 }
 
-static void how_long_a_state_lasts_is_an_option(void **state)
+TEST(how_long_a_state_lasts_is_an_option)
 {
-    (void)state;
     config.hold_us = 1;
     start();
     assert_true(measure(999, 999, 999, 999));
@@ -115,9 +109,8 @@ static void how_long_a_state_lasts_is_an_option(void **state)
 
 /* ---- Decision: what is not fitted never closes it ---- */
 
-static void a_probe_that_is_not_fitted_counts_for_nothing(void **state)
+TEST(a_probe_that_is_not_fitted_counts_for_nothing)
 {
-    (void)state;
     config.probes = 0x05; /* 1 and 3 */
     start();
     assert_true(measure(1001, 1, 1001, 1));
@@ -130,9 +123,8 @@ static void a_probe_that_is_not_fitted_counts_for_nothing(void **state)
     assert_int_equal(rule.debounce.level, FATHOM_FAR);
 }
 
-static void every_mask_of_probes_heeds_its_own_and_no_other(void **state)
+TEST(every_mask_of_probes_heeds_its_own_and_no_other)
 {
-    (void)state;
     for (uint8_t probes = 1; probes != 16; probes++) {
         for (uint8_t near = 0; near != 16; near++) {
             config.probes = probes;
@@ -146,9 +138,8 @@ static void every_mask_of_probes_heeds_its_own_and_no_other(void **state)
 
 /* ---- what is missing ---- */
 
-static void a_measurement_without_one_of_its_probes_holds_unless_another_is_near(void **state)
+TEST(a_measurement_without_one_of_its_probes_holds_unless_another_is_near)
 {
-    (void)state;
     assert_true(measure(999, 999, 999, 999));
     for (int i = 0; i != 9; i++) {
         now_us += HALF_S;
@@ -164,16 +155,14 @@ static void a_measurement_without_one_of_its_probes_holds_unless_another_is_near
     assert_int_equal(rule.debounce.level, FATHOM_NEAR);
 }
 
-static void a_sample_of_a_measurement_before_completes_none(void **state)
+TEST(a_sample_of_a_measurement_before_completes_none)
 {
-    (void)state;
     for (uint8_t probe = 1; probe <= 4; probe++, sequence++) assert_false(give(probe, FATHOM_TARGET, 2000));
     assert_int_equal(rule.debounce.level, 0);
 }
 
-static void a_probe_that_speaks_twice_in_a_measurement_is_heard_once(void **state)
+TEST(a_probe_that_speaks_twice_in_a_measurement_is_heard_once)
 {
-    (void)state;
     for (int i = 0; i != 4; i++) assert_false(give(1, FATHOM_TARGET, 2000));
     assert_false(give(1, FATHOM_TARGET, 999));
     assert_false(give(2, FATHOM_TARGET, 2000));
@@ -182,10 +171,9 @@ static void a_probe_that_speaks_twice_in_a_measurement_is_heard_once(void **stat
     assert_int_equal(rule.debounce.level, FATHOM_FAR);
 }
 
-static void a_first_measurement_of_any_number_counts(void **state)
+TEST(a_first_measurement_of_any_number_counts)
 {
     static const uint16_t numbers[] = {0, 1, 255, UINT16_MAX};
-    (void)state;
     for (int i = 0; i != 4; i++) {
         start();
         sequence = (uint16_t)(numbers[i] - 1);
@@ -195,11 +183,10 @@ static void a_first_measurement_of_any_number_counts(void **state)
 
 /* ---- options ---- */
 
-static void the_threshold_goes_from_250_to_4500_mm(void **state)
+TEST(the_threshold_goes_from_250_to_4500_mm)
 {
     static const uint16_t allowed_mm[] = {250, 1000, 4500};
     static const uint16_t refused_mm[] = {1, 249, 4501, UINT16_MAX};
-    (void)state;
     for (int i = 0; i != 3; i++) {
         config.threshold_mm = allowed_mm[i];
         start();
@@ -216,9 +203,8 @@ static void the_threshold_goes_from_250_to_4500_mm(void **state)
     }
 }
 
-static void equality_holds_the_state_unless_it_is_told_otherwise(void **state)
+TEST(equality_holds_the_state_unless_it_is_told_otherwise)
 {
-    (void)state;
     assert_false(measure(1000, 1001, 1001, 1001));
     assert_true(measure(1000, 1001, 1001, 999));
     measure(1001, 1001, 1001, 1000);
@@ -234,9 +220,8 @@ static void equality_holds_the_state_unless_it_is_told_otherwise(void **state)
     assert_int_equal(rule.debounce.level, FATHOM_FAR);
 }
 
-static void a_config_without_sense_is_refused(void **state)
+TEST(a_config_without_sense_is_refused)
 {
-    (void)state;
     config.probes = 0x10;
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
     config.probes = 0x0F;
@@ -269,9 +254,8 @@ static void measure_all(unsigned said)
         if ((said >> 2 * i & 3) != MISSING) give((uint8_t)(i + 1), FATHOM_TARGET, mm[said >> 2 * i & 3]);
 }
 
-static void every_two_measurements_with_every_mask_are_right(void **state)
+TEST(every_two_measurements_with_every_mask_are_right)
 {
-    (void)state;
     config.hold_us = 1;
     for (uint8_t probes = 1; probes != 16; probes++) {
         config.probes = probes;
@@ -286,25 +270,4 @@ static void every_two_measurements_with_every_mask_are_right(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(any_probe_nearer_than_the_threshold_closes, set_up),
-        cmocka_unit_test_setup(it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one, set_up),
-        cmocka_unit_test_setup(each_state_lasts_at_least_1_s, set_up),
-        cmocka_unit_test_setup(how_long_a_state_lasts_is_an_option, set_up),
-        cmocka_unit_test_setup(a_probe_that_is_not_fitted_counts_for_nothing, set_up),
-        cmocka_unit_test_setup(every_mask_of_probes_heeds_its_own_and_no_other, set_up),
-        cmocka_unit_test_setup(a_measurement_without_one_of_its_probes_holds_unless_another_is_near, set_up),
-        cmocka_unit_test_setup(a_sample_of_a_measurement_before_completes_none, set_up),
-        cmocka_unit_test_setup(a_probe_that_speaks_twice_in_a_measurement_is_heard_once, set_up),
-        cmocka_unit_test_setup(a_first_measurement_of_any_number_counts, set_up),
-        cmocka_unit_test_setup(the_threshold_goes_from_250_to_4500_mm, set_up),
-        cmocka_unit_test_setup(equality_holds_the_state_unless_it_is_told_otherwise, set_up),
-        cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
-        cmocka_unit_test_setup(every_two_measurements_with_every_mask_are_right, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

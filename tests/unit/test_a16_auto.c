@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fathom/a16_auto.h"
@@ -37,11 +34,12 @@ static void start(void) { start_at(RIG_START_US); }
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     start();
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void send(const uint8_t frame[4]) { rig_send(frame, 4, 500); }
 
@@ -49,9 +47,8 @@ static unsigned counter(unsigned which) { return a16.base.stream.counters[which]
 
 /* ---- readings ---- */
 
-static void the_example_of_the_datasheet_is_a_sample_with_all_its_members(void **state)
+TEST(the_example_of_the_datasheet_is_a_sample_with_all_its_members)
 {
-    (void)state;
     send(mm_1953);
     assert_int_equal(rig.samples, 1);
     assert_int_equal(rig.sample.distance_mm, 1953);
@@ -67,9 +64,8 @@ static void the_example_of_the_datasheet_is_a_sample_with_all_its_members(void *
     assert_true(fake_drained(&rig.fake));
 }
 
-static void a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came(void **state)
+TEST(a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came)
 {
-    (void)state;
     rig_run(20000, 500);
     fake_receive(&rig.fake, 0, mm_1953, 3);
     assert_int_equal(rig_poll(), FATHOM_PENDING);
@@ -87,9 +83,8 @@ static void a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came(v
 }
 
 /* The byte behind it has come in time, but is read only when the silence would have been long enough. */
-static void a_byte_that_has_come_is_looked_at_before_the_silence(void **state)
+TEST(a_byte_that_has_come_is_looked_at_before_the_silence)
 {
-    (void)state;
     rig_run(20000, 500);
     fake_receive(&rig.fake, 0, mm_1953, 4);
     assert_int_equal(rig_poll(), FATHOM_PENDING);
@@ -99,10 +94,9 @@ static void a_byte_that_has_come_is_looked_at_before_the_silence(void **state)
     assert_int_equal(counter(FATHOM_STREAM_UNSURE), 1);
 }
 
-static void every_frame_is_one_sample_in_loops_from_100_us_to_20_ms(void **state)
+TEST(every_frame_is_one_sample_in_loops_from_100_us_to_20_ms)
 {
     static const uint32_t steps_us[] = {100, 521, 1042, 3333, 10000, 20000};
-    (void)state;
     for (unsigned i = 0; i != sizeof steps_us / sizeof *steps_us; i++) {
         start();
         for (unsigned n = 1; n <= 20; n++) {
@@ -133,9 +127,8 @@ static const reading_t readings[] = {
     {zero, FATHOM_NO_TARGET, 0, false},
 };
 
-static void frames_are_target_no_target_or_refused(void **state)
+TEST(frames_are_target_no_target_or_refused)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof readings / sizeof *readings; i++) {
         start();
         send(readings[i].frame);
@@ -150,9 +143,8 @@ static void frames_are_target_no_target_or_refused(void **state)
     }
 }
 
-static void a_window_of_the_users_own_is_kept(void **state)
+TEST(a_window_of_the_users_own_is_kept)
 {
-    (void)state;
     config.window.min_mm = 500;
     config.window.max_mm = 1953;
     start();
@@ -165,9 +157,8 @@ static void a_window_of_the_users_own_is_kept(void **state)
     assert_int_equal(rig.sample.sequence, 2); /* what was refused has no number */
 }
 
-static void the_count_of_refused_frames_stops_at_65535(void **state)
+TEST(the_count_of_refused_frames_stops_at_65535)
 {
-    (void)state;
     a16.base.answer.implausible = 65534;
     for (unsigned i = 0; i != 3; i++) {
         send(mm_16351);
@@ -176,9 +167,8 @@ static void the_count_of_refused_frames_stops_at_65535(void **state)
     }
 }
 
-static void a_frame_with_any_wrong_byte_is_no_sample(void **state)
+TEST(a_frame_with_any_wrong_byte_is_no_sample)
 {
-    (void)state;
     for (unsigned at = 0; at != 4; at++) {
         uint8_t frame[4];
         memcpy(frame, mm_1953, 4);
@@ -190,10 +180,9 @@ static void a_frame_with_any_wrong_byte_is_no_sample(void **state)
     assert_int_equal(rig.samples, 1);
 }
 
-static void the_time_is_the_ports_stamp_where_it_has_one(void **state)
+TEST(the_time_is_the_ports_stamp_where_it_has_one)
 {
     static const uint32_t starts_us[] = {1000, UINT32_MAX - 60000, UINT32_MAX - 45000};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         start_at(starts_us[i]);
         rig_run(40000, 20000);
@@ -208,9 +197,8 @@ static void the_time_is_the_ports_stamp_where_it_has_one(void **state)
 /* ---- silence and its absence ---- */
 
 /* 511 mm held still is FF FF 01 FF a byte out of step: 65281 mm, with a good sum. */
-static void with_silence_between_frames_511_mm_is_511_mm(void **state)
+TEST(with_silence_between_frames_511_mm_is_511_mm)
 {
-    (void)state;
     for (unsigned i = 0; i != 10; i++) {
         send(mm_511);
         assert_int_equal(rig.sample.distance_mm, 511);
@@ -226,9 +214,8 @@ static void run_without_gaps(const uint8_t frame[4], unsigned frames)
     }
 }
 
-static void without_silence_511_mm_is_never_shown_and_turns_stale(void **state)
+TEST(without_silence_511_mm_is_never_shown_and_turns_stale)
 {
-    (void)state;
     fake_receive(&rig.fake, 0, mm_511 + 2, 2); /* it was heard from within a frame on */
     rig_poll();
     run_without_gaps(mm_511, 1000); /* 4.168 s */
@@ -237,9 +224,8 @@ static void without_silence_511_mm_is_never_shown_and_turns_stale(void **state)
     assert_true(counter(FATHOM_STREAM_AMBIGUOUS) > 1000);
 }
 
-static void without_silence_a_value_with_one_alignment_is_shown(void **state)
+TEST(without_silence_a_value_with_one_alignment_is_shown)
 {
-    (void)state;
     fake_receive(&rig.fake, 0, mm_1953 + 2, 2);
     rig_poll();
     run_without_gaps(mm_1953, 10);
@@ -248,9 +234,8 @@ static void without_silence_a_value_with_one_alignment_is_shown(void **state)
     assert_int_equal(counter(FATHOM_STREAM_UNSURE), 1);
 }
 
-static void the_gap_that_counts_is_the_configs(void **state)
+TEST(the_gap_that_counts_is_the_configs)
 {
-    (void)state;
     config.gap_us = 25000;
     start();
     assert_int_equal(a16.base.stream.listener.gap_us, 25000);
@@ -271,9 +256,8 @@ static void the_gap_that_counts_is_the_configs(void **state)
 
 /* ---- stale ---- */
 
-static void it_is_stale_after_2_s_and_says_so_once_every_2_s(void **state)
+TEST(it_is_stale_after_2_s_and_says_so_once_every_2_s)
 {
-    (void)state;
     rig_run(1999000, 1000);
     assert_int_equal(rig.stales, 0);
     rig_run(1000, 1000);
@@ -285,9 +269,8 @@ static void it_is_stale_after_2_s_and_says_so_once_every_2_s(void **state)
     assert_int_equal(counter(FATHOM_STREAM_STALES), 2);
 }
 
-static void every_good_frame_begins_the_deadline_again(void **state)
+TEST(every_good_frame_begins_the_deadline_again)
 {
-    (void)state;
     config.stale_us = 300000;
     start();
     for (unsigned i = 0; i != 5; i++) {
@@ -303,10 +286,9 @@ static void every_good_frame_begins_the_deadline_again(void **state)
     assert_int_equal(rig.samples, 5);
 }
 
-static void noise_does_not_keep_it_from_turning_stale(void **state)
+TEST(noise_does_not_keep_it_from_turning_stale)
 {
     static const uint8_t noise[] = {0x00, 0xFF, 0x13};
-    (void)state;
     for (unsigned i = 0; i != 200; i++) {
         fake_receive(&rig.fake, 0, noise, sizeof noise);
         rig_run(10000, 5000);
@@ -315,9 +297,8 @@ static void noise_does_not_keep_it_from_turning_stale(void **state)
     assert_int_equal(counter(FATHOM_STREAM_BYTES), 600);
 }
 
-static void it_works_across_the_wrap_of_the_clock(void **state)
+TEST(it_works_across_the_wrap_of_the_clock)
 {
-    (void)state;
     for (uint32_t before_us = 0; before_us <= 300000; before_us += 30000) {
         start_at(UINT32_MAX - before_us);
         for (unsigned n = 1; n <= 3; n++) {
@@ -336,9 +317,8 @@ static void it_works_across_the_wrap_of_the_clock(void **state)
 
 /* ---- due ---- */
 
-static void it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale(void **state)
+TEST(it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale)
 {
-    (void)state;
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 5000);
     rig_run(5000, 5000);
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 1995000);
@@ -360,9 +340,8 @@ static void it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale(void **sta
 
 /* ---- the port ---- */
 
-static void a_broken_port_is_said_by_every_poll_until_it_works_again(void **state)
+TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
 {
-    (void)state;
     send(mm_1953);
     rig.fake.read_fails = true;
     for (unsigned i = 0; i != 5; i++) assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
@@ -375,10 +354,9 @@ static void a_broken_port_is_said_by_every_poll_until_it_works_again(void **stat
 
 /* ---- setting up ---- */
 
-static void no_line_or_a_window_upside_down_is_refused_and_nothing_listens(void **state)
+TEST(no_line_or_a_window_upside_down_is_refused_and_nothing_listens)
 {
     fathom_a16_auto_t other;
-    (void)state;
     fathom_line_listen(&rig.line, NULL);
     config.window.min_mm = 16351;
     assert_int_equal(fathom_a16_auto_init(&other, &config), FATHOM_ERR_ARGUMENT);
@@ -390,44 +368,13 @@ static void no_line_or_a_window_upside_down_is_refused_and_nothing_listens(void 
     assert_null(rig.line.listener);
 }
 
-static void deinit_stops_listening_unless_another_does(void **state)
+TEST(deinit_stops_listening_unless_another_does)
 {
     fathom_a16_auto_t other;
-    (void)state;
     assert_ptr_equal(rig.line.listener, &a16.base.stream.listener);
     assert_int_equal(fathom_a16_auto_init(&other, &config), FATHOM_READY);
     fathom_a16_auto_deinit(&a16);
     assert_ptr_equal(rig.line.listener, &other.base.stream.listener);
     fathom_a16_auto_deinit(&other);
     assert_null(rig.line.listener);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_example_of_the_datasheet_is_a_sample_with_all_its_members),
-        FRESH(a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came),
-        FRESH(a_byte_that_has_come_is_looked_at_before_the_silence),
-        FRESH(every_frame_is_one_sample_in_loops_from_100_us_to_20_ms),
-        FRESH(frames_are_target_no_target_or_refused),
-        FRESH(a_window_of_the_users_own_is_kept),
-        FRESH(the_count_of_refused_frames_stops_at_65535),
-        FRESH(a_frame_with_any_wrong_byte_is_no_sample),
-        FRESH(the_time_is_the_ports_stamp_where_it_has_one),
-        FRESH(with_silence_between_frames_511_mm_is_511_mm),
-        FRESH(without_silence_511_mm_is_never_shown_and_turns_stale),
-        FRESH(without_silence_a_value_with_one_alignment_is_shown),
-        FRESH(the_gap_that_counts_is_the_configs),
-        FRESH(it_is_stale_after_2_s_and_says_so_once_every_2_s),
-        FRESH(every_good_frame_begins_the_deadline_again),
-        FRESH(noise_does_not_keep_it_from_turning_stale),
-        FRESH(it_works_across_the_wrap_of_the_clock),
-        FRESH(it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale),
-        FRESH(a_broken_port_is_said_by_every_poll_until_it_works_again),
-        FRESH(no_line_or_a_window_upside_down_is_refused_and_nothing_listens),
-        FRESH(deinit_stops_listening_unless_another_does),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

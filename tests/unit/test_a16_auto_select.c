@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fake_pin.h"
@@ -19,7 +16,6 @@ static fake_pin_t pin;
 
 static int set_up(void **state)
 {
-    (void)state;
     rig_start(RIG_START_US);
     fake_pin_init(&pin, &rig.fake);
     memset(&config, 0, sizeof config);
@@ -28,9 +24,10 @@ static int set_up(void **state)
     return 0;
 }
 
-static void by_default_nothing_is_driven(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(by_default_nothing_is_driven)
 {
-    (void)state;
     rig.fake.uart.set_break = NULL;
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
     fathom_a16_auto_deinit(&a16);
@@ -38,9 +35,8 @@ static void by_default_nothing_is_driven(void **state)
     assert_int_equal(pin.sets, 0);
 }
 
-static void a_pin_is_driven_at_init_and_when_told(void **state)
+TEST(a_pin_is_driven_at_init_and_when_told)
 {
-    (void)state;
     config.select = &pin.trigger;
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
     assert_true(pin.level);
@@ -56,9 +52,8 @@ static void a_pin_is_driven_at_init_and_when_told(void **state)
     assert_null(rig.line.listener);
 }
 
-static void without_a_pin_a_break_selects_until_deinit(void **state)
+TEST(without_a_pin_a_break_selects_until_deinit)
 {
-    (void)state;
     config.real_time = true;
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
     assert_true(rig.fake.in_break);
@@ -70,10 +65,9 @@ static void without_a_pin_a_break_selects_until_deinit(void **state)
     assert_null(rig.line.listener);
 }
 
-static void frames_are_read_in_a_break(void **state)
+TEST(frames_are_read_in_a_break)
 {
     static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 2(4) */
-    (void)state;
     config.real_time = true;
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
     rig.sensor = fathom_a16_auto_sensor(&a16);
@@ -82,9 +76,8 @@ static void frames_are_read_in_a_break(void **state)
     assert_int_equal(rig.sample.distance_mm, 1953);
 }
 
-static void a_port_that_cannot_is_said_by_init_and_nothing_listens(void **state)
+TEST(a_port_that_cannot_is_said_by_init_and_nothing_listens)
 {
-    (void)state;
     config.real_time = true;
     rig.fake.never_sent = true;
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_ERR_BUSY);
@@ -97,9 +90,8 @@ static void a_port_that_cannot_is_said_by_init_and_nothing_listens(void **state)
     assert_int_equal(fathom_a16_auto_select(&a16, true), FATHOM_ERR_UNSUPPORTED);
 }
 
-static void a_selection_that_failed_has_changed_nothing(void **state)
+TEST(a_selection_that_failed_has_changed_nothing)
 {
-    (void)state;
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
     rig.fake.never_sent = true;
     assert_int_equal(fathom_a16_auto_select(&a16, true), FATHOM_PENDING);
@@ -107,19 +99,4 @@ static void a_selection_that_failed_has_changed_nothing(void **state)
     rig.fake.never_sent = false;
     assert_int_equal(fathom_a16_auto_select(&a16, true), FATHOM_READY);
     assert_true(a16.real_time);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(by_default_nothing_is_driven),
-        FRESH(a_pin_is_driven_at_init_and_when_told),
-        FRESH(without_a_pin_a_break_selects_until_deinit),
-        FRESH(frames_are_read_in_a_break),
-        FRESH(a_port_that_cannot_is_said_by_init_and_nothing_listens),
-        FRESH(a_selection_that_failed_has_changed_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

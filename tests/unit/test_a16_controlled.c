@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 /* Sums by hand: FF + 3F + DF = 21D, FF + FF + FD = 2FB, FF + FF + FE = 2FC. */
 static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
 static const uint8_t no_object[] = {0xFF, 0xFF, 0xFD, 0xFB};
 static const uint8_t interference[] = {0xFF, 0xFF, 0xFE, 0xFC};
 
+static const suite_t suite = {.set_up = controlled_set_up};
+
 /* ---- the trigger ---- */
 
-static void a_break_of_2_ms_triggers_every_121_ms(void **state)
+TEST(a_break_of_2_ms_triggers_every_121_ms)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     assert_int_equal(rig.fake.now_us, RIG_START_US + 2 * MS);
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 2 * MS);
@@ -36,9 +35,8 @@ static void a_break_of_2_ms_triggers_every_121_ms(void **state)
     }
 }
 
-static void a_pin_triggers_instead_of_the_break(void **state)
+TEST(a_pin_triggers_instead_of_the_break)
 {
-    (void)state;
     controlled.config.trigger = &controlled.pin.trigger;
     controlled_start();
     assert_true(controlled.pin.level);
@@ -55,9 +53,8 @@ static void a_pin_triggers_instead_of_the_break(void **state)
     assert_int_equal(rig.fake.breaks, 0);
 }
 
-static void period_and_low_time_are_options_and_a_shorter_period_is_not_kept(void **state)
+TEST(period_and_low_time_are_options_and_a_shorter_period_is_not_kept)
 {
-    (void)state;
     controlled.config.trigger = &controlled.pin.trigger;
     controlled.config.period_us = 300 * MS;
     controlled.config.low_us = 10 * MS;
@@ -72,9 +69,8 @@ static void period_and_low_time_are_options_and_a_shorter_period_is_not_kept(voi
     assert_int_equal(controlled.pin.least_us, 121 * MS);
 }
 
-static void a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge(void **state)
+TEST(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge)
 {
-    (void)state;
     controlled.config.trigger = &controlled.pin.trigger;
     controlled_start();
     for (unsigned i = 0; i != 100; i++) {
@@ -87,9 +83,8 @@ static void a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edg
 
 /* ---- the answer ---- */
 
-static void the_example_of_the_datasheet_is_a_sample_with_all_its_members(void **state)
+TEST(the_example_of_the_datasheet_is_a_sample_with_all_its_members)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     const uint32_t edge_us = rig.fake.now_us;
     controlled_answer(controlled_1953, 100 * MS);
@@ -117,9 +112,8 @@ static const struct {
     {mm_16351, 0, false},
 };
 
-static void frames_are_target_no_target_or_refused(void **state)
+TEST(frames_are_target_no_target_or_refused)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof readings / sizeof *readings; i++) {
         controlled_start();
         controlled_run_to_break(1, 100);
@@ -139,9 +133,8 @@ static void frames_are_target_no_target_or_refused(void **state)
     assert_int_equal(controlled.a16.answer.implausible, UINT16_MAX);
 }
 
-static void a_window_of_the_users_own_is_kept(void **state)
+TEST(a_window_of_the_users_own_is_kept)
 {
-    (void)state;
     controlled.config.window.min_mm = 1954;
     controlled_start();
     controlled_run_to_break(1, 100);
@@ -151,9 +144,8 @@ static void a_window_of_the_users_own_is_kept(void **state)
 
 /* ---- the port ---- */
 
-static void a_busy_port_delays_the_edges_and_costs_no_answer(void **state)
+TEST(a_busy_port_delays_the_edges_and_costs_no_answer)
 {
-    (void)state;
     rig.fake.never_sent = true;
     rig_run(50 * MS, 100);
     assert_int_equal(rig.fake.breaks, 0);
@@ -172,9 +164,8 @@ static void a_busy_port_delays_the_edges_and_costs_no_answer(void **state)
     assert_int_equal(rig.samples, 1);
 }
 
-static void a_broken_port_is_said_by_every_poll_until_it_works_again(void **state)
+TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     rig.fake.read_fails = true;
     for (unsigned i = 0; i != 5; i++) {
@@ -196,10 +187,9 @@ static int broken(void *ctx, bool on)
     return -1;
 }
 
-static void a_break_that_fails_is_said_by_every_poll_until_it_works_again(void **state)
+TEST(a_break_that_fails_is_said_by_every_poll_until_it_works_again)
 {
     int (*const works)(void *ctx, bool on) = rig.fake.uart.set_break;
-    (void)state;
     rig.fake.uart.set_break = broken;
     rig.fake.now_us += 2 * MS;
     for (unsigned i = 0; i != 3; i++) assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
@@ -210,10 +200,9 @@ static void a_break_that_fails_is_said_by_every_poll_until_it_works_again(void *
 
 /* ---- setting up ---- */
 
-static void a_config_that_cannot_work_is_refused_and_nothing_listens(void **state)
+TEST(a_config_that_cannot_work_is_refused_and_nothing_listens)
 {
     fathom_a16_controlled_t other;
-    (void)state;
     fathom_line_listen(&rig.line, NULL);
     controlled.config.window.min_mm = 16351;
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
@@ -232,10 +221,9 @@ static void a_config_that_cannot_work_is_refused_and_nothing_listens(void **stat
     assert_ptr_equal(rig.line.listener, &other.listener);
 }
 
-static void deinit_ends_the_break_and_stops_listening_unless_another_does(void **state)
+TEST(deinit_ends_the_break_and_stops_listening_unless_another_does)
 {
     fathom_a16_controlled_t other;
-    (void)state;
     controlled_run_to_break(1, 100);
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_READY);
     fathom_a16_controlled_deinit(&controlled.a16);
@@ -243,25 +231,4 @@ static void deinit_ends_the_break_and_stops_listening_unless_another_does(void *
     assert_ptr_equal(rig.line.listener, &other.listener);
     fathom_a16_controlled_deinit(&other);
     assert_null(rig.line.listener);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, controlled_set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(a_break_of_2_ms_triggers_every_121_ms),
-        FRESH(a_pin_triggers_instead_of_the_break),
-        FRESH(period_and_low_time_are_options_and_a_shorter_period_is_not_kept),
-        FRESH(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge),
-        FRESH(the_example_of_the_datasheet_is_a_sample_with_all_its_members),
-        FRESH(frames_are_target_no_target_or_refused),
-        FRESH(a_window_of_the_users_own_is_kept),
-        FRESH(a_busy_port_delays_the_edges_and_costs_no_answer),
-        FRESH(a_broken_port_is_said_by_every_poll_until_it_works_again),
-        FRESH(a_break_that_fails_is_said_by_every_poll_until_it_works_again),
-        FRESH(a_config_that_cannot_work_is_refused_and_nothing_listens),
-        FRESH(deinit_ends_the_break_and_stops_listening_unless_another_does),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

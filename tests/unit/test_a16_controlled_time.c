@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 static const uint8_t wrong_sum[] = {0xFF, 0x07, 0xA1, 0xA6};
 
@@ -24,9 +22,10 @@ static const struct {
     {134 * MS, FATHOM_ERR_NO_ANSWER, 1},
 };
 
-static void a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else(void **state)
+static const suite_t suite = {.set_up = controlled_set_up};
+
+TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof times / sizeof *times; i++) {
         controlled_start();
         controlled_run_to_break(1, 50);
@@ -38,10 +37,9 @@ static void a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else(void **
     }
 }
 
-static void both_ends_of_the_time_are_options(void **state)
+TEST(both_ends_of_the_time_are_options)
 {
     static const uint32_t after_us[] = {39900, 40 * MS, 60 * MS, 60200};
-    (void)state;
     controlled.config.earliest_us = 40 * MS;
     controlled.config.latest_us = 60 * MS;
     for (unsigned i = 0; i != 4; i++) {
@@ -52,9 +50,8 @@ static void both_ends_of_the_time_are_options(void **state)
     }
 }
 
-static void no_answer_is_said_at_130_ms_and_the_next_trigger_follows(void **state)
+TEST(no_answer_is_said_at_130_ms_and_the_next_trigger_follows)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     rig_run(2 * MS, 100);
     rig_run(127900, 100);
@@ -65,9 +62,8 @@ static void no_answer_is_said_at_130_ms_and_the_next_trigger_follows(void **stat
     assert_int_equal(rig.fake.breaks, 2);
 }
 
-static void a_damaged_answer_is_a_wrong_checksum_and_the_next_one_is_not(void **state)
+TEST(a_damaged_answer_is_a_wrong_checksum_and_the_next_one_is_not)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     controlled_answer(wrong_sum, 100 * MS);
     assert_int_equal(controlled_outcome(100), FATHOM_ERR_CHECKSUM);
@@ -75,9 +71,8 @@ static void a_damaged_answer_is_a_wrong_checksum_and_the_next_one_is_not(void **
 }
 
 /* Bytes before the time of an answer are none. */
-static void noise_right_after_the_trigger_is_no_damaged_answer(void **state)
+TEST(noise_right_after_the_trigger_is_no_damaged_answer)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     controlled_answer(wrong_sum, 20 * MS);
     assert_int_equal(controlled_outcome(100), FATHOM_ERR_NO_ANSWER);
@@ -86,9 +81,8 @@ static void noise_right_after_the_trigger_is_no_damaged_answer(void **state)
     assert_int_equal(controlled_outcome(100), FATHOM_READY);
 }
 
-static void a_late_answer_is_not_that_of_the_next_trigger_and_the_count_stops(void **state)
+TEST(a_late_answer_is_not_that_of_the_next_trigger_and_the_count_stops)
 {
-    (void)state;
     controlled.a16.late = UINT16_MAX - 1;
     controlled_run_to_break(1, 100);
     for (unsigned i = 0; i != 3; i++) {
@@ -104,9 +98,8 @@ static void a_late_answer_is_not_that_of_the_next_trigger_and_the_count_stops(vo
 }
 
 /* With an answer taken, a second one to the same trigger has no business. */
-static void a_second_frame_to_one_trigger_is_late(void **state)
+TEST(a_second_frame_to_one_trigger_is_late)
 {
-    (void)state;
     controlled_run_to_break(1, 100);
     controlled_answer(controlled_1953, 90 * MS);
     controlled_answer(controlled_511, 105 * MS);
@@ -117,9 +110,8 @@ static void a_second_frame_to_one_trigger_is_late(void **state)
 }
 
 /* Stamped at 131 ms, read at 139 ms, when the poll before was at 119 ms: it may have come in time but for the stamp. */
-static void the_ports_time_stamps_decide_where_there_are_any(void **state)
+TEST(the_ports_time_stamps_decide_where_there_are_any)
 {
-    (void)state;
     for (uint32_t came_us = 129 * MS; came_us <= 131 * MS; came_us += MS) {
         controlled_start();
         controlled_run_to_break(1, 100);
@@ -136,7 +128,7 @@ static void the_ports_time_stamps_decide_where_there_are_any(void **state)
 
 /* ---- loops and the clock ---- */
 
-static void every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_wrap(void **state)
+TEST(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_wrap)
 {
     static const uint32_t steps_us[] = {100, 1000, 3333, 20000, 33000, 300000};
     static const uint32_t starts_us[] = {0,
@@ -145,7 +137,6 @@ static void every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_acros
                                          UINT32_MAX - 100000,
                                          UINT32_MAX - 250000,
                                          UINT32_C(0x7FFFF000)};
-    (void)state;
     for (unsigned s = 0; s != sizeof steps_us / sizeof *steps_us; s++) {
         for (unsigned n = 0; n != sizeof starts_us / sizeof *starts_us; n++) {
             unsigned triggers = 0;
@@ -168,9 +159,8 @@ static void every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_acros
     }
 }
 
-static void who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger(void **state)
+TEST(who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger)
 {
-    (void)state;
     unsigned polls = 0;
     unsigned answered = 0;
     while (rig.samples != 5) {
@@ -192,10 +182,9 @@ static void who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger(void **state
 }
 
 /* Its stream has a deadline of its own, 71 minutes, which is no concern of the user's. */
-static void hours_without_an_answer_are_one_no_answer_a_trigger(void **state)
+TEST(hours_without_an_answer_are_one_no_answer_a_trigger)
 {
     unsigned no_answers = 0;
-    (void)state;
     for (unsigned i = 0; i != 40000; i++) {
         rig.fake.now_us += 135 * MS;
         rig.fake.busy_until_us = rig.fake.now_us; /* what left 35 minutes ago would come, to the fake */
@@ -206,24 +195,4 @@ static void hours_without_an_answer_are_one_no_answer_a_trigger(void **state)
     assert_true(no_answers > 15000);
     assert_int_equal(rig.stales, 0);
     assert_int_equal(controlled.a16.late, 0);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, controlled_set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else),
-        FRESH(both_ends_of_the_time_are_options),
-        FRESH(no_answer_is_said_at_130_ms_and_the_next_trigger_follows),
-        FRESH(a_damaged_answer_is_a_wrong_checksum_and_the_next_one_is_not),
-        FRESH(noise_right_after_the_trigger_is_no_damaged_answer),
-        FRESH(a_late_answer_is_not_that_of_the_next_trigger_and_the_count_stops),
-        FRESH(a_second_frame_to_one_trigger_is_late),
-        FRESH(the_ports_time_stamps_decide_where_there_are_any),
-        FRESH(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_wrap),
-        FRESH(who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger),
-        FRESH(hours_without_an_answer_are_one_no_answer_a_trigger),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake.h"
 #include "fake_modbus.h"
@@ -21,7 +18,6 @@ static fathom_sample_t sample;
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     memset(&config, 0, sizeof config);
     config.modbus = &fake.modbus;
@@ -29,6 +25,8 @@ static int set_up(void **state)
     memset(&a16, 0x5A, sizeof a16);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void start(void)
 {
@@ -67,9 +65,8 @@ static fathom_status_t ask_and_answer(uint16_t value)
 /* ---- what is asked ---- */
 
 /* A16 6(3): 0100 processed, 0101 real-time; one register. */
-static void by_default_it_asks_unit_1_for_the_processed_value_with_1_s_and_no_retry(void **state)
+TEST(by_default_it_asks_unit_1_for_the_processed_value_with_1_s_and_no_retry)
 {
-    (void)state;
     start();
     assert_nothing_after(0);
     fake_modbus_assert_asked(&fake, 1, 1, 0x0100, 1);
@@ -77,9 +74,8 @@ static void by_default_it_asks_unit_1_for_the_processed_value_with_1_s_and_no_re
     assert_int_equal(fake.request->exchange.retries, 0);
 }
 
-static void the_real_time_value_is_asked_with_300_ms(void **state)
+TEST(the_real_time_value_is_asked_with_300_ms)
 {
-    (void)state;
     config.value = FATHOM_A16_REAL_TIME;
     start();
     assert_nothing_after(0);
@@ -87,9 +83,8 @@ static void the_real_time_value_is_asked_with_300_ms(void **state)
     assert_int_equal(fake.request->exchange.timeout_us, 300000);
 }
 
-static void the_config_is_asked_as_it_says(void **state)
+TEST(the_config_is_asked_as_it_says)
 {
-    (void)state;
     config.value = FATHOM_A16_REAL_TIME;
     config.address = 254;
     config.timeout_us = 77000;
@@ -111,11 +106,10 @@ typedef struct {
     uint32_t pace_us;
 } pace_t;
 
-static void the_pace_is_the_period_but_at_least_120_ms(void **state)
+TEST(the_pace_is_the_period_but_at_least_120_ms)
 {
     static const pace_t paces[] = {
         {0, 120000}, {1, 120000}, {119999, 120000}, {120001, 120001}, {5000000, 5000000}};
-    (void)state;
     for (unsigned i = 0; i != sizeof paces / sizeof *paces; i++) {
         set_up(NULL);
         config.period_us = paces[i].period_us;
@@ -129,9 +123,8 @@ static void the_pace_is_the_period_but_at_least_120_ms(void **state)
     }
 }
 
-static void wrong_arguments_are_refused(void **state)
+TEST(wrong_arguments_are_refused)
 {
-    (void)state;
     config.modbus = NULL;
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_ERR_ARGUMENT);
     set_up(NULL);
@@ -155,9 +148,8 @@ static void wrong_arguments_are_refused(void **state)
 
 /* ---- what comes back ---- */
 
-static void a_sample_has_all_its_members(void **state)
+TEST(a_sample_has_all_its_members)
 {
-    (void)state;
     config.address = 17;
     start();
     assert_nothing_after(0);
@@ -187,7 +179,7 @@ typedef struct {
     bool interference;
 } reading_t;
 
-static void values_mean_target_no_target_or_nothing_that_can_be(void **state)
+TEST(values_mean_target_no_target_or_nothing_that_can_be)
 {
     static const reading_t readings[] = {
         {1, FATHOM_READY, FATHOM_TARGET, 1, false},        {16350, FATHOM_READY, FATHOM_TARGET, 16350, false},
@@ -195,7 +187,6 @@ static void values_mean_target_no_target_or_nothing_that_can_be(void **state)
         {0xFFFE, FATHOM_READY, FATHOM_NO_TARGET, 0, true}, {16351, FATHOM_ERR_MALFORMED, 0, 0, false},
         {0xFFFC, FATHOM_ERR_MALFORMED, 0, 0, false},       {0xFFFF, FATHOM_ERR_MALFORMED, 0, 0, false},
     };
-    (void)state;
     start();
     for (unsigned i = 0; i != sizeof readings / sizeof *readings; i++) {
         assert_int_equal(ask_and_answer(readings[i].value), readings[i].status);
@@ -211,9 +202,8 @@ static void values_mean_target_no_target_or_nothing_that_can_be(void **state)
     assert_int_equal(a16.base.answer.implausible, 3);
 }
 
-static void a_window_of_the_users_own_is_kept(void **state)
+TEST(a_window_of_the_users_own_is_kept)
 {
-    (void)state;
     config.window.min_mm = 500;
     config.window.max_mm = 15000;
     start();
@@ -223,11 +213,10 @@ static void a_window_of_the_users_own_is_kept(void **state)
     assert_int_equal(ask_and_answer(15001), FATHOM_ERR_MALFORMED);
 }
 
-static void every_error_passes_through_and_leaves_the_sample_alone(void **state)
+TEST(every_error_passes_through_and_leaves_the_sample_alone)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
                                              FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED};
-    (void)state;
     start();
     for (unsigned i = 0; i != sizeof errors / sizeof *errors; i++) {
         assert_nothing_after(PACE_US);
@@ -246,9 +235,8 @@ static void every_error_passes_through_and_leaves_the_sample_alone(void **state)
     assert_int_equal(sample.sequence, 1);
 }
 
-static void the_sequence_counts_answers_and_wraps(void **state)
+TEST(the_sequence_counts_answers_and_wraps)
 {
-    (void)state;
     start();
     for (uint32_t i = 1; i <= 65537; i++) {
         assert_int_equal(ask_and_answer(754), FATHOM_READY);
@@ -257,9 +245,8 @@ static void the_sequence_counts_answers_and_wraps(void **state)
     }
 }
 
-static void deinit_cancels_what_is_under_way(void **state)
+TEST(deinit_cancels_what_is_under_way)
 {
-    (void)state;
     start();
     fathom_a16_modbus_deinit(&a16);
     assert_int_equal(fake.cancels, 0);
@@ -292,7 +279,7 @@ static void start_wire(wire_t *wire)
 }
 
 /* A16 6(4) examples 1 and 2, byte for byte. */
-static void the_examples_of_the_datasheet_go_over_a_line(void **state)
+TEST(the_examples_of_the_datasheet_go_over_a_line)
 {
     static const uint8_t requests[][8] = {{0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6},
                                           {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}};
@@ -300,7 +287,6 @@ static void the_examples_of_the_datasheet_go_over_a_line(void **state)
                                          {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8}};
     static const uint16_t distances[] = {754, 751};
     static wire_t wire;
-    (void)state;
     for (uint8_t i = 0; i != 2; i++) {
         fathom_status_t status = FATHOM_PENDING;
         start_wire(&wire);
@@ -322,13 +308,12 @@ static void the_examples_of_the_datasheet_go_over_a_line(void **state)
 /* Two units on one line, in a loop that comes to one of them every 10 ms. The first one's answer is read, and
  * the second one's request sent, in the second one's poll. sample.h: time_us is the clock when the last byte
  * of the answer came; the port's stamp says when that was. */
-static void the_time_is_the_answers_own_when_anothers_poll_brought_it(void **state)
+TEST(the_time_is_the_answers_own_when_anothers_poll_brought_it)
 {
     static const uint8_t answer[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1}; /* A16 6(4) ex 1 */
     static wire_t wire;
     static fathom_a16_modbus_t other;
     fathom_status_t status = FATHOM_PENDING;
-    (void)state;
     start_wire(&wire);
     start();
     config.address = 2;
@@ -354,26 +339,4 @@ static void the_time_is_the_answers_own_when_anothers_poll_brought_it(void **sta
     assert_int_equal(status, FATHOM_READY);
     assert_int_equal(sample.distance_mm, 754);
     assert_int_equal(sample.time_us, came_us);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(by_default_it_asks_unit_1_for_the_processed_value_with_1_s_and_no_retry),
-        FRESH(the_real_time_value_is_asked_with_300_ms),
-        FRESH(the_config_is_asked_as_it_says),
-        FRESH(the_pace_is_the_period_but_at_least_120_ms),
-        FRESH(wrong_arguments_are_refused),
-        FRESH(a_sample_has_all_its_members),
-        FRESH(values_mean_target_no_target_or_nothing_that_can_be),
-        FRESH(a_window_of_the_users_own_is_kept),
-        FRESH(every_error_passes_through_and_leaves_the_sample_alone),
-        FRESH(the_sequence_counts_answers_and_wraps),
-        FRESH(deinit_cancels_what_is_under_way),
-        FRESH(the_examples_of_the_datasheet_go_over_a_line),
-        FRESH(the_time_is_the_answers_own_when_anothers_poll_brought_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

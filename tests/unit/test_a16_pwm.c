@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_pin.h"
 #include "fathom/a16_pwm.h"
@@ -31,7 +28,6 @@ static void start(void)
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     config.clock = &fake.clock;
     config.capture = &pin.capture;
@@ -39,6 +35,8 @@ static int set_up(void **state)
     start();
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 /* Runs until a cycle has brought something; without a sample none may be written. A cycle that begins before that has
  * a pulse of this width, or none. */
@@ -68,9 +66,8 @@ static fathom_status_t measure(uint32_t width_us)
     return cycle(width_us);
 }
 
-static void the_example_of_the_datasheet_is_a_sample_with_all_its_members(void **state)
+TEST(the_example_of_the_datasheet_is_a_sample_with_all_its_members)
 {
-    (void)state;
     assert_int_equal(measure(10000), FATHOM_READY); /* A16 1(4): 173.9 cm */
     assert_int_equal(last.distance_mm, 1739);
     assert_int_equal(last.raw, 10000);
@@ -84,9 +81,8 @@ static void the_example_of_the_datasheet_is_a_sample_with_all_its_members(void *
     assert_int_equal(last.time_us, pin.fall_us + 120 * MS);
 }
 
-static void no_target_and_faults_are_samples_without_a_distance(void **state)
+TEST(no_target_and_faults_are_samples_without_a_distance)
 {
-    (void)state;
     assert_int_equal(measure(94000), FATHOM_READY);
     assert_int_equal(last.kind, FATHOM_NO_TARGET);
     assert_int_equal(last.raw, 94000);
@@ -102,16 +98,14 @@ static void no_target_and_faults_are_samples_without_a_distance(void **state)
     assert_int_equal(last.raw, 0);
 }
 
-static void no_pulse_is_no_answer_and_never_no_target(void **state)
+TEST(no_pulse_is_no_answer_and_never_no_target)
 {
-    (void)state;
     assert_int_equal(measure(0), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(cycle(0), FATHOM_ERR_NO_ANSWER);
 }
 
-static void samples_are_numbered_and_errors_are_not(void **state)
+TEST(samples_are_numbered_and_errors_are_not)
 {
-    (void)state;
     unsigned no_answers = 0;
     assert_int_equal(cycle(10000), FATHOM_READY);
     assert_int_equal(last.sequence, 1);
@@ -125,9 +119,8 @@ static void samples_are_numbered_and_errors_are_not(void **state)
     assert_int_equal(no_answers, 2); /* the cycles that had begun without one */
 }
 
-static void a_window_of_the_users_own_is_kept_and_refusals_are_counted(void **state)
+TEST(a_window_of_the_users_own_is_kept_and_refusals_are_counted)
 {
-    (void)state;
     config.window.min_mm = 1739;
     config.window.max_mm = 1740;
     assert_int_equal(measure(10000), FATHOM_READY);
@@ -141,9 +134,8 @@ static void a_window_of_the_users_own_is_kept_and_refusals_are_counted(void **st
     assert_int_equal(a16.implausible, UINT16_MAX);
 }
 
-static void the_whole_range_is_in_the_default_windows(void **state)
+TEST(the_whole_range_is_in_the_default_windows)
 {
-    (void)state;
     config.no_target_us = 94000;
     assert_int_equal(measure(2700), FATHOM_READY);
     assert_int_equal(last.distance_mm, 470); /* 469.6 */
@@ -155,9 +147,8 @@ static void the_whole_range_is_in_the_default_windows(void **state)
     assert_int_equal(last.distance_mm, 17992); /* 382.81 * 46.9995 = 17991.9 */
 }
 
-static void the_temperature_of_the_air_is_an_option_that_may_change(void **state)
+TEST(the_temperature_of_the_air_is_an_option_that_may_change)
 {
-    (void)state;
     config.air_dc = 200; /* without in_air it means nothing */
     assert_int_equal(measure(10000), FATHOM_READY);
     assert_int_equal(last.distance_mm, 1739);
@@ -172,9 +163,8 @@ static void the_temperature_of_the_air_is_an_option_that_may_change(void **state
 }
 
 /* Each of the engine's options reaches it. */
-static void the_options_of_the_pulse_are_the_drivers(void **state)
+TEST(the_options_of_the_pulse_are_the_drivers)
 {
-    (void)state;
     config.noise_us = 11000;
     assert_int_equal(measure(10000), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(a16.meter.noises, 1);
@@ -198,9 +188,8 @@ static void the_options_of_the_pulse_are_the_drivers(void **state)
     assert_int_equal(pin.low_us, 50 * MS);
 }
 
-static void it_is_due_as_its_engine_is(void **state)
+TEST(it_is_due_as_its_engine_is)
 {
-    (void)state;
     assert_int_equal(fathom_due_us(&sensor, 1), 2 * MS);
     fake.now_us += 2 * MS;
     fathom_poll(&sensor, &last);
@@ -210,9 +199,8 @@ static void it_is_due_as_its_engine_is(void **state)
     assert_int_equal(fathom_due_us(&sensor, 1), 119 * MS);
 }
 
-static void a_break_triggers_where_there_is_no_pin(void **state)
+TEST(a_break_triggers_where_there_is_no_pin)
 {
-    (void)state;
     config.trigger = NULL;
     config.uart = &fake.uart;
     start();
@@ -223,9 +211,8 @@ static void a_break_triggers_where_there_is_no_pin(void **state)
     assert_false(fake.in_break);
 }
 
-static void a_config_that_cannot_work_is_refused(void **state)
+TEST(a_config_that_cannot_work_is_refused)
 {
-    (void)state;
     config.window.min_mm = 16351;
     assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_ERR_ARGUMENT);
     config.in_air = true;
@@ -235,24 +222,4 @@ static void a_config_that_cannot_work_is_refused(void **state)
     config.window.min_mm = 0;
     config.capture = NULL;
     assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_ERR_ARGUMENT);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_example_of_the_datasheet_is_a_sample_with_all_its_members),
-        FRESH(no_target_and_faults_are_samples_without_a_distance),
-        FRESH(no_pulse_is_no_answer_and_never_no_target),
-        FRESH(samples_are_numbered_and_errors_are_not),
-        FRESH(a_window_of_the_users_own_is_kept_and_refusals_are_counted),
-        FRESH(the_whole_range_is_in_the_default_windows),
-        FRESH(the_temperature_of_the_air_is_an_option_that_may_change),
-        FRESH(the_options_of_the_pulse_are_the_drivers),
-        FRESH(it_is_due_as_its_engine_is),
-        FRESH(a_break_triggers_where_there_is_no_pin),
-        FRESH(a_config_that_cannot_work_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/a16_settings.h"
@@ -16,13 +13,14 @@ static fathom_a16_modbus_t sensor;
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
     memset(&sensor, 0x5A, sizeof sensor);
     assert_int_equal(fathom_a16_modbus_init(&sensor, &config), FATHOM_READY);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void pass(void) { fake.now_us += FATHOM_A16_MIN_PERIOD_US; }
 
@@ -124,7 +122,7 @@ enum { ROWS = sizeof rows / sizeof rows[0] };
 static uint16_t register_of(const row_t *row) { return (uint16_t)(row->write[2] << 8 | row->write[3]); }
 static unsigned example_of(const row_t *row) { return (unsigned)row->write[4] << 8 | row->write[5]; }
 
-static void a_register_is_read(void **state)
+TEST(a_register_is_read)
 {
     for (const row_t *row = rows; row != rows + ROWS; row++) {
         unsigned value = 77;
@@ -137,7 +135,7 @@ static void a_register_is_read(void **state)
     }
 }
 
-static void a_value_that_a_register_cannot_have_is_refused(void **state)
+TEST(a_value_that_a_register_cannot_have_is_refused)
 {
     for (const row_t *row = rows; row != rows + ROWS; row++) {
         unsigned value = 77;
@@ -150,7 +148,7 @@ static void a_value_that_a_register_cannot_have_is_refused(void **state)
     }
 }
 
-static void a_failed_read_writes_nothing(void **state)
+TEST(a_failed_read_writes_nothing)
 {
     unsigned value = 77;
     static fathom_status_t (*const gets[])(unsigned *value) = {get_address, get_polarity, get_threshold,
@@ -164,7 +162,7 @@ static void a_failed_read_writes_nothing(void **state)
     }
 }
 
-static void a_register_is_set_as_in_the_examples_of_6_4(void **state)
+TEST(a_register_is_set_as_in_the_examples_of_6_4)
 {
     for (const row_t *row = rows; row != rows + ROWS; row++) {
         const unsigned wanted = example_of(row);
@@ -183,7 +181,7 @@ static void a_register_is_set_as_in_the_examples_of_6_4(void **state)
     }
 }
 
-static void what_is_out_of_range_is_not_sent(void **state)
+TEST(what_is_out_of_range_is_not_sent)
 {
     for (const row_t *row = rows; row != rows + ROWS; row++) {
         set_up(state);
@@ -200,13 +198,12 @@ static void what_is_out_of_range_is_not_sent(void **state)
     }
 }
 
-static void the_address_is_read_and_followed_when_it_is_set(void **state)
+TEST(the_address_is_read_and_followed_when_it_is_set)
 {
     /* A16 6(4), example 3 */
     static const uint8_t write[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05};
     fathom_sample_t sample;
     unsigned address = 0;
-    (void)state;
     ASKS(get_address(&address));
     assert_reads(1, 0x0200);
     answer(1);
@@ -237,21 +234,19 @@ static void the_address_is_read_and_followed_when_it_is_set(void **state)
     assert_int_equal(sample.unit, 5);
 }
 
-static void an_address_over_255_is_none(void **state)
+TEST(an_address_over_255_is_none)
 {
     unsigned address = 77;
-    (void)state;
     ASKS(get_address(&address));
     answer(256);
     assert_int_equal(get_address(&address), FATHOM_ERR_MALFORMED);
     assert_int_equal(address, 77);
 }
 
-static void the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is(void **state)
+TEST(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is)
 {
     /* A16 6(4), example 4 */
     static const uint8_t write[] = {0x01, 0x06, 0x02, 0x02, 0x00, 0x01};
-    (void)state;
     ASKS(set_mode(1));
     assert_reads(1, 0x0200); /* is it there, and does the line echo? */
     answer(1);
@@ -263,16 +258,15 @@ static void the_operating_mode_is_write_only_and_its_acknowledgement_all_there_i
     assert_int_equal(fake.submits, 2);
 }
 
-static void the_operating_mode_of_one_that_does_not_answer_is_not_written(void **state)
+TEST(the_operating_mode_of_one_that_does_not_answer_is_not_written)
 {
-    (void)state;
     ASKS(set_mode(1));
     fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
     assert_int_equal(set_mode(1), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(fake.submits, 1);
 }
 
-static void either_distance_can_be_asked_once(void **state)
+TEST(either_distance_can_be_asked_once)
 {
     static const struct {
         fathom_a16_value_t value;
@@ -293,20 +287,18 @@ static void either_distance_can_be_asked_once(void **state)
     assert_int_equal(fathom_a16_measure(&sensor, (fathom_a16_value_t)2, &sample), FATHOM_ERR_ARGUMENT);
 }
 
-static void a_distance_asked_once_is_refused_like_any_other(void **state)
+TEST(a_distance_asked_once_is_refused_like_any_other)
 {
     fathom_sample_t sample;
-    (void)state;
     ASKS(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample));
     answer(16351);
     assert_int_equal(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample), FATHOM_ERR_MALFORMED);
 }
 
-static void a_distance_asked_once_is_not_mixed_up_with_the_repeated_one(void **state)
+TEST(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one)
 {
     const fathom_sensor_t driver = fathom_a16_modbus_sensor(&sensor);
     fathom_sample_t sample;
-    (void)state;
     ASKS(fathom_poll(&driver, &sample));
     assert_int_equal(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample), FATHOM_PENDING);
     assert_int_equal(fake.submits, 1);
@@ -318,11 +310,10 @@ static void a_distance_asked_once_is_not_mixed_up_with_the_repeated_one(void **s
     assert_int_equal(sample.distance_mm, 2222);
 }
 
-static void after_power_on_silence_is_warming_up_for_a_second_and_a_half(void **state)
+TEST(after_power_on_silence_is_warming_up_for_a_second_and_a_half)
 {
     const fathom_sensor_t driver = fathom_a16_modbus_sensor(&sensor);
     fathom_sample_t sample;
-    (void)state;
     ASKS(fathom_poll(&driver, &sample));
     fathom_a16_modbus_power_on(&sensor);
     assert_null(fake.request);
@@ -333,24 +324,4 @@ static void after_power_on_silence_is_warming_up_for_a_second_and_a_half(void **
     ASKS(fathom_poll(&driver, &sample)); /* takes the period, which is the rest of the time and more */
     fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
     assert_int_equal(fathom_poll(&driver, &sample), FATHOM_ERR_NO_ANSWER);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(a_register_is_read, set_up),
-        cmocka_unit_test_setup(a_value_that_a_register_cannot_have_is_refused, set_up),
-        cmocka_unit_test_setup(a_failed_read_writes_nothing, set_up),
-        cmocka_unit_test_setup(a_register_is_set_as_in_the_examples_of_6_4, set_up),
-        cmocka_unit_test_setup(what_is_out_of_range_is_not_sent, set_up),
-        cmocka_unit_test_setup(the_address_is_read_and_followed_when_it_is_set, set_up),
-        cmocka_unit_test_setup(an_address_over_255_is_none, set_up),
-        cmocka_unit_test_setup(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is, set_up),
-        cmocka_unit_test_setup(the_operating_mode_of_one_that_does_not_answer_is_not_written, set_up),
-        cmocka_unit_test_setup(either_distance_can_be_asked_once, set_up),
-        cmocka_unit_test_setup(a_distance_asked_once_is_refused_like_any_other, set_up),
-        cmocka_unit_test_setup(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one, set_up),
-        cmocka_unit_test_setup(after_power_on_silence_is_warming_up_for_a_second_and_a_half, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

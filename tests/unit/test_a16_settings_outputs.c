@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/a16_settings.h"
@@ -44,7 +41,6 @@ static void assert_untouched(void)
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
     memset(&sensor, 0, sizeof sensor); /* 0 is something that each could be given by mistake */
@@ -56,6 +52,8 @@ static int set_up(void **state)
     return 0;
 }
 
+static const suite_t suite = {.set_up = set_up};
+
 static void ask(fathom_status_t (*get)(void))
 {
     fake.now_us += FATHOM_A16_MIN_PERIOD_US;
@@ -64,10 +62,9 @@ static void ask(fathom_status_t (*get)(void))
     assert_untouched();
 }
 
-static void while_it_is_asked_and_when_that_fails_it_is_left_alone(void **state)
+TEST(while_it_is_asked_and_when_that_fails_it_is_left_alone)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT};
-    (void)state;
     for (unsigned i = 0; i != GETS; i++) {
         for (unsigned k = 0; k != sizeof errors / sizeof *errors; k++) {
             ask(gets[i]);
@@ -82,9 +79,8 @@ static void while_it_is_asked_and_when_that_fails_it_is_left_alone(void **state)
     }
 }
 
-static void a_command_that_is_busy_leaves_it_alone(void **state)
+TEST(a_command_that_is_busy_leaves_it_alone)
 {
-    (void)state;
     for (unsigned i = 0; i != GETS; i++) {
         ask(gets[i]);
         for (unsigned other = 0; other != GETS; other++)
@@ -94,10 +90,9 @@ static void a_command_that_is_busy_leaves_it_alone(void **state)
     }
 }
 
-static void an_answer_writes_that_one_alone(void **state)
+TEST(an_answer_writes_that_one_alone)
 {
     static const uint16_t zero[] = {0};
-    (void)state;
     for (unsigned i = 0; i != GETS; i++) {
         assert_int_equal(set_up(NULL), 0);
         ask(gets[i]);
@@ -109,11 +104,3 @@ static void an_answer_writes_that_one_alone(void **state)
         assert_int_equal(value, i == 3 ? FATHOM_A16_PROCESSED : value_before);
     }
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test_setup(while_it_is_asked_and_when_that_fails_it_is_left_alone, set_up),
-    cmocka_unit_test_setup(a_command_that_is_busy_leaves_it_alone, set_up),
-    cmocka_unit_test_setup(an_answer_writes_that_one_alone, set_up),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

@@ -37,12 +37,13 @@ static void start(bool level) { start_at(START_US, level); }
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     config.line = &line;
     start(false);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static uint8_t read_as(bool level)
 {
@@ -80,24 +81,21 @@ static void answer(uint32_t in_us, bool level, const uint8_t *bytes, size_t leng
 
 /* ---- the level ---- */
 
-static void high_is_near_from_the_factory(void **state)
+TEST(high_is_near_from_the_factory)
 {
-    (void)state;
     assert_int_equal(read_as(true), FATHOM_NEAR);
     assert_int_equal(read_as(false), FATHOM_FAR);
 }
 
-static void polarity_is_an_option(void **state)
+TEST(polarity_is_an_option)
 {
-    (void)state;
     config.negative = true;
     assert_int_equal(read_as(true), FATHOM_FAR);
     assert_int_equal(read_as(false), FATHOM_NEAR);
 }
 
-static void a_sample_says_who_it_is(void **state)
+TEST(a_sample_says_who_it_is)
 {
-    (void)state;
     config.address = 5;
     assert_int_equal(read_as(true), FATHOM_NEAR);
     assert_int_equal(pins.sample.model, FATHOM_A16);
@@ -105,9 +103,8 @@ static void a_sample_says_who_it_is(void **state)
     assert_int_equal(pins.sample.probe, 1);
 }
 
-static void without_a_line_the_level_alone_counts(void **state)
+TEST(without_a_line_the_level_alone_counts)
 {
-    (void)state;
     config.line = NULL;
     start(true);
     pins_run(SETTLE_US, 20000);
@@ -115,9 +112,8 @@ static void without_a_line_the_level_alone_counts(void **state)
     assert_int_equal(pins.fake.reads, 0);
 }
 
-static void the_times_are_options(void **state)
+TEST(the_times_are_options)
 {
-    (void)state;
     config.line = NULL;
     config.timing.settle_us = 30000;
     config.timing.period_us = 400000;
@@ -136,9 +132,8 @@ static void the_times_are_options(void **state)
     assert_int_equal(pins.stales, 1);
 }
 
-static void a_config_without_sense_is_refused(void **state)
+TEST(a_config_without_sense_is_refused)
 {
-    (void)state;
     config.pin = NULL;
     assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
     config.pin = &pins.pin;
@@ -149,10 +144,9 @@ static void a_config_without_sense_is_refused(void **state)
 /* ---- Modbus on the same pins ---- */
 
 /* Loops of 100 us to 20 ms, levels, and offsets of the answer to the loop: the bits of the answer are no levels. */
-static void an_answer_on_the_pin_is_no_change_in_any_loop(void **state)
+TEST(an_answer_on_the_pin_is_no_change_in_any_loop)
 {
     static const uint32_t steps_us[] = {100, 1000, 7000, 20000};
-    (void)state;
     for (unsigned s = 0; s != 4; s++) {
         for (uint32_t offset_us = 0; offset_us < 20000; offset_us += 700) {
             for (unsigned level = 0; level != 2; level++) {
@@ -173,9 +167,8 @@ static void an_answer_on_the_pin_is_no_change_in_any_loop(void **state)
     }
 }
 
-static void a_level_that_turns_during_an_exchange_is_a_sample_after_it(void **state)
+TEST(a_level_that_turns_during_an_exchange_is_a_sample_after_it)
 {
-    (void)state;
     pins_run(60 * MS, 1000);
     pins_expect(1, FATHOM_FAR);
     set_register(0x0206, 2000);
@@ -195,9 +188,8 @@ static void a_level_that_turns_during_an_exchange_is_a_sample_after_it(void **st
     assert_in_range(fathom_elapsed_us(pins.sample.time_us, ended_us), 5000, 5300);
 }
 
-static void a_level_that_has_all_but_settled_when_a_request_leaves_waits(void **state)
+TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
 {
-    (void)state;
     pins_run(60 * MS, 1000);
     pins_turn(1 * MS);
     pins_run(20 * MS, 1000); /* seen for 19 ms */
@@ -209,10 +201,9 @@ static void a_level_that_has_all_but_settled_when_a_request_leaves_waits(void **
 }
 
 /* To the host's UART a low level is a break: 00 without a stop bit, before the answer and after it. */
-static void garbage_with_framing_errors_around_an_answer_is_dropped_and_counted(void **state)
+TEST(garbage_with_framing_errors_around_an_answer_is_dropped_and_counted)
 {
     const fathom_rx_t spoilt = {0, FATHOM_RX_FRAMING};
-    (void)state;
     pins_run(60 * MS, 1000);
     set_register(0x0206, 2000);
     pins_run(10 * MS, 1000);
@@ -229,9 +220,8 @@ static void garbage_with_framing_errors_around_an_answer_is_dropped_and_counted(
 }
 
 /* A port that cannot tell: the bytes of a break are noise before the answer. */
-static void unmarked_garbage_before_an_answer_is_dropped_too(void **state)
+TEST(unmarked_garbage_before_an_answer_is_dropped_too)
 {
-    (void)state;
     pins_run(60 * MS, 1000);
     set_register(0x0206, 2000);
     pins_run(10 * MS, 1000);
@@ -243,9 +233,8 @@ static void unmarked_garbage_before_an_answer_is_dropped_too(void **state)
     pins_expect(1, FATHOM_FAR);
 }
 
-static void an_answer_after_its_time_out_is_no_change_either(void **state)
+TEST(an_answer_after_its_time_out_is_no_change_either)
 {
-    (void)state;
     pins_run(60 * MS, 1000);
     set_register(0x0206, 2000);
     while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
@@ -259,9 +248,8 @@ static void an_answer_after_its_time_out_is_no_change_either(void **state)
 }
 
 /* The unit owes an answer, so the next request waits for it; the pin is free. */
-static void a_request_that_waits_does_not_hide_the_level(void **state)
+TEST(a_request_that_waits_does_not_hide_the_level)
 {
-    (void)state;
     pins_run(60 * MS, 1000);
     set_register(0x0206, 2000);
     while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
@@ -272,9 +260,8 @@ static void a_request_that_waits_does_not_hide_the_level(void **state)
     pins_expect(2, FATHOM_NEAR);
 }
 
-static void bytes_that_never_end_make_it_stale(void **state)
+TEST(bytes_that_never_end_make_it_stale)
 {
-    (void)state;
     for (unsigned i = 0; i != 4200; i++) {
         fake_receive(&pins.fake, 0, &nothing, 1);
         pins_run(1 * MS, 1000);
@@ -285,9 +272,8 @@ static void bytes_that_never_end_make_it_stale(void **state)
     pins_expect(1, FATHOM_FAR);
 }
 
-static void while_the_line_is_busy_a_look_is_due_in_5_ms(void **state)
+TEST(while_the_line_is_busy_a_look_is_due_in_5_ms)
 {
-    (void)state;
     pins_run(60 * MS, 1000);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 10000);
     set_register(0x0206, 2000);
@@ -300,9 +286,8 @@ static void while_the_line_is_busy_a_look_is_due_in_5_ms(void **state)
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
 }
 
-static void a_broken_port_is_said_but_does_not_hide_the_level(void **state)
+TEST(a_broken_port_is_said_but_does_not_hide_the_level)
 {
-    (void)state;
     pins.fake.read_fails = true;
     pins_run(100 * MS, 1000);
     pins_expect(1, FATHOM_FAR);
@@ -314,9 +299,8 @@ static void a_broken_port_is_said_but_does_not_hide_the_level(void **state)
 
 /* ---- polarity by Modbus ---- */
 
-static void polarity_that_is_set_and_told_is_no_change(void **state)
+TEST(polarity_that_is_set_and_told_is_no_change)
 {
-    (void)state;
     for (unsigned level = 0; level != 2; level++) {
         start(level != 0);
         pins_run(60 * MS, 1000);
@@ -336,28 +320,4 @@ static void polarity_that_is_set_and_told_is_no_change(void **state)
         pins_run(50 * MS, 1000);
         pins_expect(3, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(high_is_near_from_the_factory, set_up),
-        cmocka_unit_test_setup(polarity_is_an_option, set_up),
-        cmocka_unit_test_setup(a_sample_says_who_it_is, set_up),
-        cmocka_unit_test_setup(without_a_line_the_level_alone_counts, set_up),
-        cmocka_unit_test_setup(the_times_are_options, set_up),
-        cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
-        cmocka_unit_test_setup(an_answer_on_the_pin_is_no_change_in_any_loop, set_up),
-        cmocka_unit_test_setup(a_level_that_turns_during_an_exchange_is_a_sample_after_it, set_up),
-        cmocka_unit_test_setup(a_level_that_has_all_but_settled_when_a_request_leaves_waits, set_up),
-        cmocka_unit_test_setup(garbage_with_framing_errors_around_an_answer_is_dropped_and_counted, set_up),
-        cmocka_unit_test_setup(unmarked_garbage_before_an_answer_is_dropped_too, set_up),
-        cmocka_unit_test_setup(an_answer_after_its_time_out_is_no_change_either, set_up),
-        cmocka_unit_test_setup(a_request_that_waits_does_not_hide_the_level, set_up),
-        cmocka_unit_test_setup(bytes_that_never_end_make_it_stale, set_up),
-        cmocka_unit_test_setup(while_the_line_is_busy_a_look_is_due_in_5_ms, set_up),
-        cmocka_unit_test_setup(a_broken_port_is_said_but_does_not_hide_the_level, set_up),
-        cmocka_unit_test_setup(polarity_that_is_set_and_told_is_no_change, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fake_modbus.h"
@@ -24,10 +21,11 @@ static fake_modbus_t fake;
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 /* ---- the time-out of a command, and the time after power-on ---- */
 
@@ -49,11 +47,10 @@ static void assert_times(fathom_sensor_t sensor, uint32_t asked_us, uint32_t com
     assert_in_range(fake.now_us - on_us, start_us, start_us + 400000);
 }
 
-static void an_a16s_command_and_start_take_as_long_as_the_config_says(void **state)
+TEST(an_a16s_command_and_start_take_as_long_as_the_config_says)
 {
     fathom_a16_modbus_t a16;
     uint8_t address;
-    (void)state;
     for (unsigned i = 0; i != 2; i++) {
         const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus,
                                                    .clock = &fake.clock,
@@ -69,11 +66,10 @@ static void an_a16s_command_and_start_take_as_long_as_the_config_says(void **sta
     }
 }
 
-static void an_a05s_command_and_start_take_as_long_as_the_config_says(void **state)
+TEST(an_a05s_command_and_start_take_as_long_as_the_config_says)
 {
     fathom_a05_modbus_t a05;
     uint8_t address;
-    (void)state;
     for (unsigned i = 0; i != 2; i++) {
         const fathom_a05_modbus_config_t config = {.modbus = &fake.modbus,
                                                    .clock = &fake.clock,
@@ -89,10 +85,9 @@ static void an_a05s_command_and_start_take_as_long_as_the_config_says(void **sta
     }
 }
 
-static void an_a05s_start_takes_as_long_with_55_aa(void **state)
+TEST(an_a05s_start_takes_as_long_with_55_aa)
 {
     static const uint32_t starts_us[] = {0, START_US};
-    (void)state;
     for (unsigned i = 0; i != 2; i++) {
         fathom_a05_dyp_t a05;
         fathom_sample_t sample;
@@ -113,9 +108,8 @@ static void an_a05s_start_takes_as_long_with_55_aa(void **state)
     }
 }
 
-static void an_hps167s_command_takes_as_long_as_the_config_says(void **state)
+TEST(an_hps167s_command_takes_as_long_as_the_config_says)
 {
-    (void)state;
     for (unsigned i = 0; i != 2; i++) {
         fathom_hps167s_t hps;
         fathom_hps167s_version_t version;
@@ -133,9 +127,8 @@ static void an_hps167s_command_takes_as_long_as_the_config_says(void **state)
 /* FF H L SUM by hand: FF + FF + FD = 2FB, FF + FF + FE = 2FC, FF + 0 + 0 = FF. */
 static const uint8_t codes[][4] = {{0xFF, 0xFF, 0xFD, 0xFB}, {0xFF, 0xFF, 0xFE, 0xFC}, {0xFF, 0, 0, 0xFF}};
 
-static void the_codes_of_sister_models_are_refused_where_a_module_does_not_send_them(void **state)
+TEST(the_codes_of_sister_models_are_refused_where_a_module_does_not_send_them)
 {
-    (void)state;
     for (unsigned no_codes = 0; no_codes != 2; no_codes++) {
         for (size_t i = 0; i != sizeof codes / sizeof codes[0]; i++) {
             fathom_a16_auto_t a16;
@@ -152,14 +145,13 @@ static void the_codes_of_sister_models_are_refused_where_a_module_does_not_send_
     }
 }
 
-static void without_codes_they_are_distances_if_the_window_lets_them_pass(void **state)
+TEST(without_codes_they_are_distances_if_the_window_lets_them_pass)
 {
     fathom_a16_modbus_t a16;
     fathom_sample_t sample;
     static const uint16_t value = 0xFFFE;
     const fathom_a16_modbus_config_t config = {
         .modbus = &fake.modbus, .clock = &fake.clock, .window = {.max_mm = 65535, .no_codes = true}};
-    (void)state;
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
@@ -168,18 +160,4 @@ static void without_codes_they_are_distances_if_the_window_lets_them_pass(void *
     assert_int_equal(sample.kind, FATHOM_TARGET);
     assert_int_equal(sample.distance_mm, 65534);
     assert_false(sample.interference);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(an_a16s_command_and_start_take_as_long_as_the_config_says, set_up),
-        cmocka_unit_test_setup(an_a05s_command_and_start_take_as_long_as_the_config_says, set_up),
-        cmocka_unit_test_setup(an_a05s_start_takes_as_long_with_55_aa, set_up),
-        cmocka_unit_test_setup(an_hps167s_command_takes_as_long_as_the_config_says, set_up),
-        cmocka_unit_test_setup(the_codes_of_sister_models_are_refused_where_a_module_does_not_send_them,
-                               set_up),
-        cmocka_unit_test_setup(without_codes_they_are_distances_if_the_window_lets_them_pass, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

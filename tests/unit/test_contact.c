@@ -36,20 +36,20 @@ static void start(void) { start_at(START_US, false); }
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&timing, 0, sizeof timing);
     near_is_high = true;
     start();
     return 0;
 }
 
+static const suite_t suite = {.set_up = set_up};
+
 static uint32_t due_us(void) { return fathom_due_us(&pins.sensor, 1); }
 
 /* ---- readings ---- */
 
-static void the_first_level_is_a_sample_when_it_has_stood_for_20_ms(void **state)
+TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
 {
-    (void)state;
     assert_int_equal(pins_poll(), FATHOM_PENDING);
     pins.fake.now_us += SETTLE_US - 1;
     assert_int_equal(pins_poll(), FATHOM_PENDING);
@@ -70,9 +70,8 @@ static void the_first_level_is_a_sample_when_it_has_stood_for_20_ms(void **state
     assert_int_equal(pins.stales, 0);
 }
 
-static void each_new_level_is_one_sample_in_any_loop_and_across_the_wrap(void **state)
+TEST(each_new_level_is_one_sample_in_any_loop_and_across_the_wrap)
 {
-    (void)state;
     for (unsigned s = 0; s != STEPS; s++) {
         for (unsigned at = 0; at != STARTS; at++) {
             const uint32_t step_us = steps_us[s];
@@ -95,9 +94,8 @@ static void each_new_level_is_one_sample_in_any_loop_and_across_the_wrap(void **
     }
 }
 
-static void a_contact_that_bounces_is_one_change(void **state)
+TEST(a_contact_that_bounces_is_one_change)
 {
-    (void)state;
     for (unsigned s = 0; s != STEPS; s++) {
         start();
         pins_run(100 * MS, steps_us[s]);
@@ -110,9 +108,8 @@ static void a_contact_that_bounces_is_one_change(void **state)
     }
 }
 
-static void a_level_that_does_not_stand_for_20_ms_is_nothing(void **state)
+TEST(a_level_that_does_not_stand_for_20_ms_is_nothing)
 {
-    (void)state;
     pins_run(100 * MS, 1000);
     for (uint32_t i = 0; i != 5; i++) {
         pins_turn(1000 + i * 50000);
@@ -130,9 +127,8 @@ static void a_level_that_does_not_stand_for_20_ms_is_nothing(void **state)
     pins_expect(3, FATHOM_FAR);
 }
 
-static void how_long_a_level_stands_is_an_option(void **state)
+TEST(how_long_a_level_stands_is_an_option)
 {
-    (void)state;
     timing.settle_us = 1;
     start();
     assert_int_equal(pins_poll(), FATHOM_PENDING); /* no time has passed */
@@ -149,9 +145,8 @@ static void how_long_a_level_stands_is_an_option(void **state)
     assert_int_equal(pins.samples, 1);
 }
 
-static void what_a_high_level_means_is_an_option(void **state)
+TEST(what_a_high_level_means_is_an_option)
 {
-    (void)state;
     near_is_high = false;
     start();
     pins_run(20 * MS, 1000);
@@ -165,9 +160,8 @@ static void what_a_high_level_means_is_an_option(void **state)
 
 /* ---- the meaning changes ---- */
 
-static void a_meaning_and_a_level_that_turn_together_are_no_change(void **state)
+TEST(a_meaning_and_a_level_that_turn_together_are_no_change)
 {
-    (void)state;
     pins_run(50 * MS, 1000);
     pins_expect(1, FATHOM_FAR);
     fathom_contact_set_near_is_high(&contact, false);
@@ -180,9 +174,8 @@ static void a_meaning_and_a_level_that_turn_together_are_no_change(void **state)
     assert_int_equal(pins.sample.raw, 0);
 }
 
-static void a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_settled(void **state)
+TEST(a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_settled)
 {
-    (void)state;
     pins_run(50 * MS, 1000);
     fathom_contact_set_near_is_high(&contact, false);
     pins_run(19 * MS, 1000);
@@ -193,9 +186,8 @@ static void a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_s
 
 /* ---- repeated ---- */
 
-static void with_a_period_the_level_is_repeated(void **state)
+TEST(with_a_period_the_level_is_repeated)
 {
-    (void)state;
     for (unsigned at = 0; at != STARTS; at++) {
         timing.period_us = 50000;
         start_at(starts_us[at], true);
@@ -218,9 +210,8 @@ static void with_a_period_the_level_is_repeated(void **state)
     }
 }
 
-static void a_level_that_is_settling_is_not_repeated(void **state)
+TEST(a_level_that_is_settling_is_not_repeated)
 {
-    (void)state;
     timing.period_us = 50000;
     start();
     pins_run(20 * MS, 1000);
@@ -235,9 +226,8 @@ static void a_level_that_is_settling_is_not_repeated(void **state)
 
 /* ---- stale ---- */
 
-static void a_level_that_never_stands_still_is_stale_every_2_s(void **state)
+TEST(a_level_that_never_stands_still_is_stale_every_2_s)
 {
-    (void)state;
     pins_run(50 * MS, 1000);
     pins_expect(1, FATHOM_FAR);
     for (unsigned i = 0; i != 5900; i++) {
@@ -253,9 +243,8 @@ static void a_level_that_never_stands_still_is_stale_every_2_s(void **state)
     assert_int_equal(pins.stales, 2);
 }
 
-static void when_it_is_stale_is_an_option(void **state)
+TEST(when_it_is_stale_is_an_option)
 {
-    (void)state;
     timing.stale_us = 100000;
     start();
     for (unsigned i = 0; i != 110; i++) {
@@ -267,9 +256,8 @@ static void when_it_is_stale_is_an_option(void **state)
 }
 
 /* A change that is first seen after a long pause has not flickered for that long. */
-static void a_loop_slower_than_the_limit_does_not_make_a_level_stale(void **state)
+TEST(a_loop_slower_than_the_limit_does_not_make_a_level_stale)
 {
-    (void)state;
     pins_run(9000 * MS, 3000 * MS);
     for (unsigned i = 0; i != 10; i++) {
         pins_turn(1000);
@@ -286,9 +274,8 @@ static void a_loop_slower_than_the_limit_does_not_make_a_level_stale(void **stat
 
 /* ---- when to look ---- */
 
-static void the_next_look_is_due_in_10_ms_or_when_the_level_has_settled(void **state)
+TEST(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled)
 {
-    (void)state;
     assert_int_equal(due_us(), 10000);
     pins_run(14 * MS, 7000);
     assert_int_equal(due_us(), 6000);
@@ -302,9 +289,8 @@ static void the_next_look_is_due_in_10_ms_or_when_the_level_has_settled(void **s
     assert_int_equal(due_us(), 0);
 }
 
-static void where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands(void **state)
+TEST(where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands)
 {
-    (void)state;
     timing.look_us = FATHOM_NO_DEADLINE;
     start();
     assert_int_equal(due_us(), 20000);
@@ -322,9 +308,8 @@ static void where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_
     assert_int_equal(due_us(), 500000);
 }
 
-static void a_loop_that_sleeps_until_it_is_due_misses_nothing(void **state)
+TEST(a_loop_that_sleeps_until_it_is_due_misses_nothing)
 {
-    (void)state;
     timing.period_us = 45000;
     start_at(UINT32_MAX - 500 * MS, false);
     pins_turn(100 * MS);
@@ -343,10 +328,9 @@ static void a_loop_that_sleeps_until_it_is_due_misses_nothing(void **state)
 
 /* ---- init ---- */
 
-static void init_refuses_what_it_cannot_read(void **state)
+TEST(init_refuses_what_it_cannot_read)
 {
     const fathom_pin_t output = {NULL, NULL, NULL};
-    (void)state;
     contact.pin = NULL;
     assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
     contact.pin = &output;
@@ -377,9 +361,8 @@ static uint8_t refer(unsigned levels, unsigned n, uint32_t step_us)
     return 0;
 }
 
-static void every_sequence_of_levels_at_14_looks_is_right(void **state)
+TEST(every_sequence_of_levels_at_14_looks_is_right)
 {
-    (void)state;
     for (unsigned s = 0; s != STEPS; s++) {
         const uint32_t step_us = steps_us[s];
         for (unsigned levels = 0; levels != 1u << LOOKS; levels++) {
@@ -393,31 +376,4 @@ static void every_sequence_of_levels_at_14_looks_is_right(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_first_level_is_a_sample_when_it_has_stood_for_20_ms, set_up),
-        cmocka_unit_test_setup(each_new_level_is_one_sample_in_any_loop_and_across_the_wrap, set_up),
-        cmocka_unit_test_setup(a_contact_that_bounces_is_one_change, set_up),
-        cmocka_unit_test_setup(a_level_that_does_not_stand_for_20_ms_is_nothing, set_up),
-        cmocka_unit_test_setup(how_long_a_level_stands_is_an_option, set_up),
-        cmocka_unit_test_setup(what_a_high_level_means_is_an_option, set_up),
-        cmocka_unit_test_setup(a_meaning_and_a_level_that_turn_together_are_no_change, set_up),
-        cmocka_unit_test_setup(a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_settled,
-                               set_up),
-        cmocka_unit_test_setup(with_a_period_the_level_is_repeated, set_up),
-        cmocka_unit_test_setup(a_level_that_is_settling_is_not_repeated, set_up),
-        cmocka_unit_test_setup(a_level_that_never_stands_still_is_stale_every_2_s, set_up),
-        cmocka_unit_test_setup(when_it_is_stale_is_an_option, set_up),
-        cmocka_unit_test_setup(a_loop_slower_than_the_limit_does_not_make_a_level_stale, set_up),
-        cmocka_unit_test_setup(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled, set_up),
-        cmocka_unit_test_setup(where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands,
-                               set_up),
-        cmocka_unit_test_setup(a_loop_that_sleeps_until_it_is_due_misses_nothing, set_up),
-        cmocka_unit_test_setup(init_refuses_what_it_cannot_read, set_up),
-        cmocka_unit_test_setup(every_sequence_of_levels_at_14_looks_is_right, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 /* Both sources at once, each under a name of its own; the library's is linked beside them. */
 uint16_t crc16_256(const uint8_t *bytes, uint8_t length);
@@ -63,21 +60,19 @@ static void fill(uint8_t *bytes, unsigned length)
     }
 }
 
-static void the_definition_gives_the_published_examples(void **state)
+TEST(the_definition_gives_the_published_examples)
 {
     /* MODBUS over Serial Line V1.02, 6.2.2: 02 07 gives 1241. The catalogues' check value: 4B37. */
     static const uint8_t message[] = {0x02, 0x07};
     static const uint8_t check[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
-    (void)state;
     assert_int_equal(by_definition(message, 2), 0x1241);
     assert_int_equal(by_definition(check, 9), 0x4B37);
 }
 
-static void messages_of_two_bytes_reach_every_state(void **state)
+TEST(messages_of_two_bytes_reach_every_state)
 {
     static uint8_t reached[65536 / 8]; /* a bit a state */
     uint32_t states = 0;
-    (void)state;
     memset(reached, 0, sizeof reached);
     for (uint32_t message = 0; message != 65536; message++) {
         const uint8_t bytes[] = {(uint8_t)(message >> 8), (uint8_t)message};
@@ -152,28 +147,22 @@ static void the_published_examples_come_out(void **state)
     assert_int_equal(crc16(data4, 3), 0x4523);
 }
 
-#define FOR(source, test)                                                                                    \
-    {                                                                                                        \
-        .name = #test "_with_" #source, .test_func = test, .initial_state = &source                          \
-    }
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_definition_gives_the_published_examples),
-        cmocka_unit_test(messages_of_two_bytes_reach_every_state),
-        FOR(table_of_256, every_byte_in_every_state_does_what_the_definition_says),
-        FOR(table_of_256, every_length_to_255_does_what_the_definition_says),
-        FOR(table_of_256, no_byte_at_all_gives_FFFF),
-        FOR(table_of_256, over_a_frame_and_its_crc_low_byte_first_it_is_0),
-        FOR(table_of_256, the_published_examples_come_out),
-        FOR(table_of_16, every_byte_in_every_state_does_what_the_definition_says),
-        FOR(table_of_16, every_length_to_255_does_what_the_definition_says),
-        FOR(table_of_16, no_byte_at_all_gives_FFFF),
-        FOR(table_of_16, over_a_frame_and_its_crc_low_byte_first_it_is_0),
-        FOR(table_of_16, the_published_examples_come_out),
-        FOR(linked, every_length_to_255_does_what_the_definition_says),
-        FOR(linked, the_published_examples_come_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_ROW(every_byte_in_every_state_does_what_the_definition_says_with_table_of_256,
+         every_byte_in_every_state_does_what_the_definition_says, &table_of_256)
+TEST_ROW(every_length_to_255_does_what_the_definition_says_with_table_of_256,
+         every_length_to_255_does_what_the_definition_says, &table_of_256)
+TEST_ROW(no_byte_at_all_gives_FFFF_with_table_of_256, no_byte_at_all_gives_FFFF, &table_of_256)
+TEST_ROW(over_a_frame_and_its_crc_low_byte_first_it_is_0_with_table_of_256,
+         over_a_frame_and_its_crc_low_byte_first_it_is_0, &table_of_256)
+TEST_ROW(the_published_examples_come_out_with_table_of_256, the_published_examples_come_out, &table_of_256)
+TEST_ROW(every_byte_in_every_state_does_what_the_definition_says_with_table_of_16,
+         every_byte_in_every_state_does_what_the_definition_says, &table_of_16)
+TEST_ROW(every_length_to_255_does_what_the_definition_says_with_table_of_16,
+         every_length_to_255_does_what_the_definition_says, &table_of_16)
+TEST_ROW(no_byte_at_all_gives_FFFF_with_table_of_16, no_byte_at_all_gives_FFFF, &table_of_16)
+TEST_ROW(over_a_frame_and_its_crc_low_byte_first_it_is_0_with_table_of_16,
+         over_a_frame_and_its_crc_low_byte_first_it_is_0, &table_of_16)
+TEST_ROW(the_published_examples_come_out_with_table_of_16, the_published_examples_come_out, &table_of_16)
+TEST_ROW(every_length_to_255_does_what_the_definition_says_with_linked,
+         every_length_to_255_does_what_the_definition_says, &linked)
+TEST_ROW(the_published_examples_come_out_with_linked, the_published_examples_come_out, &linked)

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/debounce.h"
 
@@ -23,12 +20,13 @@ static void start(void)
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&config, 0, sizeof config);
     now_us = UINT32_MAX - 2 * HALF_S; /* every test goes through the wrap */
     start();
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 /* A measurement every 500 ms, as the A16's (A16 4(2)). */
 static bool distance(uint16_t mm)
@@ -43,81 +41,72 @@ static void expect_changes(const char *changes, const uint16_t *mm)
     for (; *changes != 0; changes++, mm++) assert_int_equal(distance(*mm), *changes == '!');
 }
 
-static void three_nearer_in_a_row_make_near_and_five_farther_far(void **state)
+TEST(three_nearer_in_a_row_make_near_and_five_farther_far)
 {
     static const uint16_t mm[] = {999, 999, 999, 999, 1001, 1001, 1001, 1001, 1001, 1001, 1, 999, 500};
-    (void)state;
     expect_changes("..!.....!...!", mm);
     assert_int_equal(gate.level, FATHOM_NEAR);
 }
 
-static void the_first_level_is_far_after_five(void **state)
+TEST(the_first_level_is_far_after_five)
 {
     static const uint16_t mm[] = {2000, 2000, 2000, 2000, 2000};
-    (void)state;
     expect_changes("....!", mm);
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
-static void a_row_that_is_broken_begins_anew(void **state)
+TEST(a_row_that_is_broken_begins_anew)
 {
     static const uint16_t mm[] = {999, 999, 1001, 999, 999, 1001, 999, 999, 999};
-    (void)state;
     expect_changes("........!", mm);
 }
 
 /* ---- Decision: equality holds the level ---- */
 
-static void a_distance_that_equals_the_threshold_holds_the_level_and_breaks_the_row(void **state)
+TEST(a_distance_that_equals_the_threshold_holds_the_level_and_breaks_the_row)
 {
     static const uint16_t mm[] = {999,  999,  1000, 999,  999,  1000, 1000, 999,  999,  999,
                                   1001, 1001, 1001, 1001, 1000, 1001, 1001, 1001, 1001, 1001};
-    (void)state;
     expect_changes(".........!.........!", mm);
     for (int i = 0; i != 300; i++) assert_false(distance(1000));
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
-static void equality_can_be_made_near(void **state)
+TEST(equality_can_be_made_near)
 {
     static const uint16_t mm[] = {1000, 999, 1000, 1001, 1001, 1001, 1001, 1000, 1001};
-    (void)state;
     config.equal = FATHOM_EQUAL_IS_NEAR;
     start();
     expect_changes("..!......", mm);
 }
 
-static void equality_can_be_made_far(void **state)
+TEST(equality_can_be_made_far)
 {
     static const uint16_t mm[] = {999, 999, 1000, 999, 1000, 1000, 1001, 1000, 1000};
-    (void)state;
     config.equal = FATHOM_EQUAL_IS_FAR;
     start();
     expect_changes("........!", mm);
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
-static void a_config_without_sense_is_refused(void **state)
+TEST(a_config_without_sense_is_refused)
 {
-    (void)state;
     config.equal = FATHOM_EQUAL_IS_FAR + 1;
     assert_int_equal(fathom_debounce_init(&gate, &config), FATHOM_ERR_ARGUMENT);
 }
 
 /* ---- options ---- */
 
-static void threshold_and_counts_are_options(void **state)
+TEST(threshold_and_counts_are_options)
 {
     static const uint16_t mm[] = {299, 301, 301, 299, 301};
-    (void)state;
     config = (fathom_debounce_config_t){.threshold_mm = 300, .near_count = 1, .far_count = 2};
     start();
     expect_changes("!.!!.", mm);
 }
 
-static void rows_of_255_are_counted_and_longer_ones_do_not_wrap(void **state)
+TEST(rows_of_255_are_counted_and_longer_ones_do_not_wrap)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.near_count = 255, .far_count = 255};
     start();
     for (int i = 1; i <= 1000; i++) assert_int_equal(distance(1), i == 255);
@@ -126,9 +115,8 @@ static void rows_of_255_are_counted_and_longer_ones_do_not_wrap(void **state)
 
 /* ---- a level lasts a while ---- */
 
-static void a_level_lasts_at_least_hold_us(void **state)
+TEST(a_level_lasts_at_least_hold_us)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1};
     start();
     assert_true(fathom_debounce_distance(&gate, 999, now_us));
@@ -139,17 +127,15 @@ static void a_level_lasts_at_least_hold_us(void **state)
     assert_true(fathom_debounce_distance(&gate, 999, now_us + 2000000));
 }
 
-static void the_first_level_need_not_wait(void **state)
+TEST(the_first_level_need_not_wait)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1};
     start();
     assert_true(fathom_debounce_distance(&gate, 999, now_us));
 }
 
-static void what_is_held_back_comes_only_if_its_row_is_unbroken(void **state)
+TEST(what_is_held_back_comes_only_if_its_row_is_unbroken)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 2};
     start();
     assert_true(fathom_debounce_distance(&gate, 999, now_us));
@@ -160,9 +146,8 @@ static void what_is_held_back_comes_only_if_its_row_is_unbroken(void **state)
     assert_true(fathom_debounce_distance(&gate, 1001, now_us + 1500000));
 }
 
-static void a_row_that_is_held_back_for_long_is_not_forgotten(void **state)
+TEST(a_row_that_is_held_back_for_long_is_not_forgotten)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.hold_us = 258 * HALF_S, .near_count = 1, .far_count = 5};
     start();
     assert_true(distance(999));
@@ -170,9 +155,8 @@ static void a_row_that_is_held_back_for_long_is_not_forgotten(void **state)
 }
 
 /* 71.58 minutes are one turn of the clock: 2 * 2147.48 s and a little would look like a little. */
-static void a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again(void **state)
+TEST(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1};
     start();
     assert_true(fathom_debounce_distance(&gate, 999, now_us));
@@ -188,9 +172,8 @@ static bool sample(uint8_t kind, uint16_t mm)
     return fathom_debounce_sample(&gate, &s);
 }
 
-static void samples_of_every_kind_count_as_the_header_says(void **state)
+TEST(samples_of_every_kind_count_as_the_header_says)
 {
-    (void)state;
     config = (fathom_debounce_config_t){.near_count = 2, .far_count = 2};
     start();
     assert_false(sample(FATHOM_TARGET, 999));
@@ -203,17 +186,15 @@ static void samples_of_every_kind_count_as_the_header_says(void **state)
     assert_true(sample(FATHOM_FAR, 0));
 }
 
-static void interference_counts_as_farther(void **state)
+TEST(interference_counts_as_farther)
 {
     const fathom_sample_t disturbed = {.kind = FATHOM_NO_TARGET, .interference = true};
-    (void)state;
     for (int i = 1; i <= 5; i++) assert_int_equal(fathom_debounce_sample(&gate, &disturbed), i == 5);
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
-static void a_fault_holds_the_level_and_the_row_goes_on_behind_it(void **state)
+TEST(a_fault_holds_the_level_and_the_row_goes_on_behind_it)
 {
-    (void)state;
     assert_false(sample(FATHOM_TARGET, 999));
     assert_false(sample(FATHOM_FAULT, 0));
     assert_false(sample(FATHOM_TARGET, 999));
@@ -281,13 +262,12 @@ static void go_on(const fathom_debounce_t *before, const reference_t *until, uns
     }
 }
 
-static void every_sequence_of_up_to_ten_measurements_is_right(void **state)
+TEST(every_sequence_of_up_to_ten_measurements_is_right)
 {
     /* counts and hold_us; the A16, the A05's relay, and between */
     static const fathom_debounce_config_t configs[] = {
         {0, 0, 3, 5, 0}, {1000000, 0, 1, 1, 0}, {1000000, 0, 2, 1, 0}, {2000000, 0, 3, 2, 0}};
     const reference_t empty = {{0}, 0, 0, 0};
-    (void)state;
     for (unsigned i = 0; i != sizeof configs / sizeof *configs; i++) {
         config = configs[i];
         start();
@@ -296,30 +276,4 @@ static void every_sequence_of_up_to_ten_measurements_is_right(void **state)
         go_on(&gate, &empty, LONGEST, UINT64_C(0x100000000) - 5 * 300000, 300000);
         assert_int_equal(compared, 1398100); /* 4 + 4^2 + .. + 4^10 = (4^11 - 4) / 3 */
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(three_nearer_in_a_row_make_near_and_five_farther_far, set_up),
-        cmocka_unit_test_setup(the_first_level_is_far_after_five, set_up),
-        cmocka_unit_test_setup(a_row_that_is_broken_begins_anew, set_up),
-        cmocka_unit_test_setup(a_distance_that_equals_the_threshold_holds_the_level_and_breaks_the_row,
-                               set_up),
-        cmocka_unit_test_setup(equality_can_be_made_near, set_up),
-        cmocka_unit_test_setup(equality_can_be_made_far, set_up),
-        cmocka_unit_test_setup(a_config_without_sense_is_refused, set_up),
-        cmocka_unit_test_setup(threshold_and_counts_are_options, set_up),
-        cmocka_unit_test_setup(rows_of_255_are_counted_and_longer_ones_do_not_wrap, set_up),
-        cmocka_unit_test_setup(a_level_lasts_at_least_hold_us, set_up),
-        cmocka_unit_test_setup(the_first_level_need_not_wait, set_up),
-        cmocka_unit_test_setup(what_is_held_back_comes_only_if_its_row_is_unbroken, set_up),
-        cmocka_unit_test_setup(a_row_that_is_held_back_for_long_is_not_forgotten, set_up),
-        cmocka_unit_test_setup(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again, set_up),
-        cmocka_unit_test_setup(samples_of_every_kind_count_as_the_header_says, set_up),
-        cmocka_unit_test_setup(interference_counts_as_farther, set_up),
-        cmocka_unit_test_setup(a_fault_holds_the_level_and_the_row_goes_on_behind_it, set_up),
-        cmocka_unit_test_setup(every_sequence_of_up_to_ten_measurements_is_right, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

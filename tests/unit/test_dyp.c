@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/dyp.h"
 
@@ -16,7 +13,6 @@ static fathom_sample_t sample;
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(values, 0, sizeof values);
     memset(&answer, 0, sizeof answer);
     memset(&sample, GUARD, sizeof sample);
@@ -27,6 +23,8 @@ static int set_up(void **state)
     assert_int_equal(fathom_dyp_answer_init(&answer, FATHOM_A05_MAX_MM), FATHOM_READY);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void assert_sample_untouched(void)
 {
@@ -96,9 +94,8 @@ static const window_case_t windows[] = {
     {65535, 65535, 6000, 65535, 65535, 1},
 };
 
-static void every_value_means_what_the_rule_says(void **state)
+TEST(every_value_means_what_the_rule_says)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof windows / sizeof *windows; i++) {
         const window_case_t *const w = &windows[i];
         unsigned targets = 0;
@@ -115,19 +112,17 @@ static void every_value_means_what_the_rule_says(void **state)
     }
 }
 
-static void the_default_windows_are_16350_and_6000_mm(void **state)
+TEST(the_default_windows_are_16350_and_6000_mm)
 {
-    (void)state;
     assert_int_equal(FATHOM_A16_MAX_MM, 16350);
     assert_int_equal(FATHOM_A05_MAX_MM, 6000);
     assert_int_equal(answer.window.min_mm, 1);
     assert_int_equal(answer.window.max_mm, 6000);
 }
 
-static void a_window_upside_down_is_refused(void **state)
+TEST(a_window_upside_down_is_refused)
 {
     static const uint16_t refused[][2] = {{1000, 999}, {65535, 1}, {6001, 0}};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         answer.window.min_mm = refused[i][0];
         answer.window.max_mm = refused[i][1];
@@ -135,17 +130,15 @@ static void a_window_upside_down_is_refused(void **state)
     }
 }
 
-static void nothing_is_there_before_an_answer(void **state)
+TEST(nothing_is_there_before_an_answer)
 {
-    (void)state;
     assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_PENDING);
     assert_sample_untouched();
 }
 
-static void an_answer_gives_one_sample_a_probe_in_their_order(void **state)
+TEST(an_answer_gives_one_sample_a_probe_in_their_order)
 {
     static const uint8_t order[] = {1, 2, 4};
-    (void)state;
     values[0] = 1000;
     values[1] = 0xFFFD;
     values[2] = 1953;
@@ -169,9 +162,8 @@ static void an_answer_gives_one_sample_a_probe_in_their_order(void **state)
     assert_sample_untouched();
 }
 
-static void the_values_begin_with_the_first_probe_that_was_read(void **state)
+TEST(the_values_begin_with_the_first_probe_that_was_read)
 {
-    (void)state;
     answer.first = 3;
     values[0] = 333;
     values[1] = 444;
@@ -184,9 +176,8 @@ static void the_values_begin_with_the_first_probe_that_was_read(void **state)
     assert_int_equal(sample.distance_mm, 444);
 }
 
-static void after_a_value_that_cannot_be_the_next_probe_follows(void **state)
+TEST(after_a_value_that_cannot_be_the_next_probe_follows)
 {
-    (void)state;
     values[0] = 6001;
     values[1] = 2000;
     fathom_dyp_answer(&answer, 0x03, 0);
@@ -198,9 +189,8 @@ static void after_a_value_that_cannot_be_the_next_probe_follows(void **state)
     assert_int_equal(answer.implausible, 1);
 }
 
-static void a_new_answer_replaces_what_was_left_of_the_old_one(void **state)
+TEST(a_new_answer_replaces_what_was_left_of_the_old_one)
 {
-    (void)state;
     values[0] = 1000;
     values[1] = 2000;
     fathom_dyp_answer(&answer, 0x03, 1);
@@ -213,9 +203,8 @@ static void a_new_answer_replaces_what_was_left_of_the_old_one(void **state)
     assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_PENDING);
 }
 
-static void the_sequence_wraps_and_the_counter_stops(void **state)
+TEST(the_sequence_wraps_and_the_counter_stops)
 {
-    (void)state;
     answer.sequence = 65535;
     answer.implausible = 65534;
     for (unsigned i = 0; i != 3; i++) {
@@ -225,22 +214,4 @@ static void the_sequence_wraps_and_the_counter_stops(void **state)
         assert_int_equal(fathom_dyp_next(&answer, &sample), FATHOM_ERR_MALFORMED);
         assert_int_equal(answer.implausible, 65535);
     }
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(every_value_means_what_the_rule_says),
-        FRESH(the_default_windows_are_16350_and_6000_mm),
-        FRESH(a_window_upside_down_is_refused),
-        FRESH(nothing_is_there_before_an_answer),
-        FRESH(an_answer_gives_one_sample_a_probe_in_their_order),
-        FRESH(the_values_begin_with_the_first_probe_that_was_read),
-        FRESH(after_a_value_that_cannot_be_the_next_probe_follows),
-        FRESH(a_new_answer_replaces_what_was_left_of_the_old_one),
-        FRESH(the_sequence_wraps_and_the_counter_stops),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,7 +58,9 @@ static const request_t requests[] = {
     {254, 0x0109, 1, {0x55, 0xAA, 0xFE, 0x13, 0x10}}, {255, 0x0106, 1, {0x55, 0xAA, 0xFF, 0x10, 0x0E}},
 };
 
-static void each_read_is_its_command(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(each_read_is_its_command)
 {
     for (size_t i = 0; i != COUNT_OF(requests); i++) {
         set_up(state);
@@ -69,7 +71,7 @@ static void each_read_is_its_command(void **state)
     }
 }
 
-static void each_probe_is_answered_by_its_own_command(void **state)
+TEST(each_probe_is_answered_by_its_own_command)
 {
     for (uint8_t probe = 0; probe != 4; probe++)
         for (uint8_t command = 0x10; command != 0x14; command++) {
@@ -93,9 +95,8 @@ static void each_probe_is_answered_by_its_own_command(void **state)
         }
 }
 
-static void the_example_with_four_distances_is_read(void **state)
+TEST(the_example_with_four_distances_is_read)
 {
-    (void)state;
     ask_four();
     receive(four, sizeof four);
     run(100);
@@ -108,9 +109,8 @@ static void the_example_with_four_distances_is_read(void **state)
     assert_int_equal(bench.request.message.head[0], 1);
 }
 
-static void setting_the_address_is_acknowledged_by_its_own_words(void **state)
+TEST(setting_the_address_is_acknowledged_by_its_own_words)
 {
-    (void)state;
     bench.request.exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
     run(T3_5_US + 5 * BYTE_US + 400);
@@ -126,7 +126,7 @@ static void setting_the_address_is_acknowledged_by_its_own_words(void **state)
 
 /* ---- refusals ---- */
 
-static void reads_without_a_command_are_unsupported(void **state)
+TEST(reads_without_a_command_are_unsupported)
 {
     static const struct {
         uint16_t first;
@@ -134,7 +134,6 @@ static void reads_without_a_command_are_unsupported(void **state)
     } none[] = {{0x0105, 1}, {0x010A, 1}, {0x0105, 4}, {0x0107, 4}, {0x0109, 4}, {0x0106, 0},
                 {0x0106, 2}, {0x0106, 3}, {0x0106, 5}, {0x0107, 3}, {0x0010, 1}, {0x0010, 4},
                 {0x0200, 1}, {0x0006, 1}, {0x0206, 4}, {0x0000, 1}, {0xFFFF, 1}};
-    (void)state;
     for (size_t i = 0; i != COUNT_OF(none); i++) {
         fill(1, none[i].first, none[i].count);
         bench.request.exchange.status = 77;
@@ -149,9 +148,8 @@ static void reads_without_a_command_are_unsupported(void **state)
 }
 
 /* The command that sets the address has a name of its own: through the seam no driver can reach it. */
-static void writes_are_unsupported(void **state)
+TEST(writes_are_unsupported)
 {
-    (void)state;
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
     assert_int_equal(submit(), FATHOM_ERR_UNSUPPORTED);
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0106, 1);
@@ -162,9 +160,8 @@ static void writes_are_unsupported(void **state)
     assert_int_equal(bench.fake.written, 0);
 }
 
-static void wrong_units_and_addresses_are_refused(void **state)
+TEST(wrong_units_and_addresses_are_refused)
 {
-    (void)state;
     fill(0, 0x0106, 4);
     assert_int_equal(submit(), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 0),
@@ -175,7 +172,7 @@ static void wrong_units_and_addresses_are_refused(void **state)
     assert_int_equal(bench.fake.written, 0);
 }
 
-static void a_line_without_room_for_the_longest_answer_is_refused(void **state)
+TEST(a_line_without_room_for_the_longest_answer_is_refused)
 {
     for (uint8_t size = 12; size != 14; size++) {
         const fathom_status_t expected = size == 12 ? FATHOM_ERR_CAPACITY : FATHOM_PENDING;
@@ -187,9 +184,8 @@ static void a_line_without_room_for_the_longest_answer_is_refused(void **state)
     }
 }
 
-static void a_request_under_way_is_busy(void **state)
+TEST(a_request_under_way_is_busy)
 {
-    (void)state;
     ask_four();
     assert_int_equal(submit(), FATHOM_ERR_BUSY);
     receive(four, sizeof four);
@@ -201,10 +197,9 @@ static void a_request_under_way_is_busy(void **state)
 
 /* ---- what comes back ---- */
 
-static void an_answer_of_another_unit_is_a_stray(void **state)
+TEST(an_answer_of_another_unit_is_a_stray)
 {
     uint8_t of_unit_2[sizeof four];
-    (void)state;
     memcpy(of_unit_2, four, sizeof four);
     of_unit_2[2]++;
     of_unit_2[12]++;
@@ -219,7 +214,7 @@ static void an_answer_of_another_unit_is_a_stray(void **state)
     assert_int_equal(values[0], 1000);
 }
 
-static void an_answer_to_another_command_is_malformed_unless_the_right_one_follows(void **state)
+TEST(an_answer_to_another_command_is_malformed_unless_the_right_one_follows)
 {
     for (unsigned follows = 0; follows != 2; follows++) {
         set_up(state);
@@ -237,7 +232,7 @@ static void an_answer_to_another_command_is_malformed_unless_the_right_one_follo
 
 /* One bit makes the command 03 of 01, and 1H = 03 the right sum of what is then a whole frame. Every other bit spoils
  * the sum or the shape. */
-static void an_answer_with_one_wrong_bit_is_never_taken(void **state)
+TEST(an_answer_with_one_wrong_bit_is_never_taken)
 {
     uint8_t damaged[sizeof four];
     for (unsigned bit = 0; bit != 8 * sizeof four; bit++) {
@@ -255,10 +250,9 @@ static void an_answer_with_one_wrong_bit_is_never_taken(void **state)
     }
 }
 
-static void a_wrong_sum_is_a_checksum_error_after_a_gap(void **state)
+TEST(a_wrong_sum_is_a_checksum_error_after_a_gap)
 {
     uint8_t printed[sizeof four]; /* the sum that A05 2(3)3 prints */
-    (void)state;
     memcpy(printed, four, sizeof four);
     printed[12] = 0x60;
     ask_four();
@@ -268,7 +262,7 @@ static void a_wrong_sum_is_a_checksum_error_after_a_gap(void **state)
     assert_values_untouched();
 }
 
-static void an_answer_that_breaks_off_is_a_checksum_error(void **state)
+TEST(an_answer_that_breaks_off_is_a_checksum_error)
 {
     for (size_t length = 3; length != sizeof four; length++) {
         set_up(state);
@@ -280,7 +274,7 @@ static void an_answer_that_breaks_off_is_a_checksum_error(void **state)
     }
 }
 
-static void an_answer_glued_to_noise_is_found(void **state)
+TEST(an_answer_glued_to_noise_is_found)
 {
     static const uint8_t noises[][4] = {{0x55, 0x55, 0x55, 0x55},
                                         {0x00, 0xFF, 0xAA, 0x55},
@@ -301,7 +295,7 @@ static void an_answer_glued_to_noise_is_found(void **state)
         }
 }
 
-static void every_cut_of_an_answer_into_two_reads_is_put_together(void **state)
+TEST(every_cut_of_an_answer_into_two_reads_is_put_together)
 {
     for (size_t cut = 1; cut != sizeof four; cut++) {
         set_up(state);
@@ -313,7 +307,7 @@ static void every_cut_of_an_answer_into_two_reads_is_put_together(void **state)
     }
 }
 
-static void a_late_answer_serves_the_retry_and_no_other_request(void **state)
+TEST(a_late_answer_serves_the_retry_and_no_other_request)
 {
     for (uint8_t retries = 0; retries != 2; retries++) {
         set_up(state);
@@ -334,10 +328,9 @@ static void a_late_answer_serves_the_retry_and_no_other_request(void **state)
     }
 }
 
-static void a_late_answer_of_another_unit_is_known_as_such(void **state)
+TEST(a_late_answer_of_another_unit_is_known_as_such)
 {
     uint8_t of_unit_2[sizeof first_1953];
-    (void)state;
     memcpy(of_unit_2, first_1953, sizeof first_1953);
     of_unit_2[2]++;
     of_unit_2[6]++;
@@ -358,10 +351,9 @@ static void a_late_answer_of_another_unit_is_known_as_such(void **state)
 
 /* ---- the seam ---- */
 
-static void the_seam_does_what_the_functions_do(void **state)
+TEST(the_seam_does_what_the_functions_do)
 {
     const fathom_modbus_t seam = fathom_dyp_client(&bench.line);
-    (void)state;
     assert_ptr_equal(seam.ctx, &bench.line);
     fill(0, 0x0106, 4);
     assert_int_equal(seam.submit(seam.ctx, &bench.request), FATHOM_ERR_ARGUMENT);
@@ -378,30 +370,4 @@ static void the_seam_does_what_the_functions_do(void **state)
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
     bench.fake.read_fails = true;
     assert_int_equal(seam.poll(seam.ctx), FATHOM_ERR_PORT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(each_read_is_its_command),
-        TEST(each_probe_is_answered_by_its_own_command),
-        TEST(the_example_with_four_distances_is_read),
-        TEST(setting_the_address_is_acknowledged_by_its_own_words),
-        TEST(reads_without_a_command_are_unsupported),
-        TEST(writes_are_unsupported),
-        TEST(wrong_units_and_addresses_are_refused),
-        TEST(a_line_without_room_for_the_longest_answer_is_refused),
-        TEST(a_request_under_way_is_busy),
-        TEST(an_answer_of_another_unit_is_a_stray),
-        TEST(an_answer_to_another_command_is_malformed_unless_the_right_one_follows),
-        TEST(an_answer_with_one_wrong_bit_is_never_taken),
-        TEST(a_wrong_sum_is_a_checksum_error_after_a_gap),
-        TEST(an_answer_that_breaks_off_is_a_checksum_error),
-        TEST(an_answer_glued_to_noise_is_found),
-        TEST(every_cut_of_an_answer_into_two_reads_is_put_together),
-        TEST(a_late_answer_serves_the_retry_and_no_other_request),
-        TEST(a_late_answer_of_another_unit_is_known_as_such),
-        TEST(the_seam_does_what_the_functions_do),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

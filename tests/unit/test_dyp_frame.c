@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/dyp_frame.h"
 
@@ -15,11 +12,10 @@ static const uint8_t a16_frame[] = {0xFF, 0x07, 0xA1, 0xA7};
 static const uint8_t a05_frame[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
 static const uint16_t a05_values[] = {1000, 2000, 1953, 3562};
 
-static void the_examples_of_the_datasheets_go_both_ways(void **state)
+TEST(the_examples_of_the_datasheets_go_both_ways)
 {
     uint8_t frame[11];
     uint16_t values[5];
-    (void)state;
     memset(frame, GUARD, sizeof frame);
     memset(values, GUARD, sizeof values);
     assert_true(fathom_dyp_frame_valid(a05_frame, 10));
@@ -42,9 +38,8 @@ static void the_examples_of_the_datasheets_go_both_ways(void **state)
 }
 
 /* A16 2(4): SUM = (FF + H + L) & FF, mm = H * 256 + L. */
-static void every_value_of_an_A16_goes_both_ways(void **state)
+TEST(every_value_of_an_A16_goes_both_ways)
 {
-    (void)state;
     for (uint32_t mm = 0; mm != 65536; mm++) {
         const uint8_t expected[] = {0xFF, (uint8_t)(mm / 256), (uint8_t)(mm % 256),
                                     (uint8_t)((255 + mm / 256 + mm % 256) % 256)};
@@ -59,9 +54,8 @@ static void every_value_of_an_A16_goes_both_ways(void **state)
     }
 }
 
-static void every_value_of_every_probe_of_an_A05_goes_both_ways(void **state)
+TEST(every_value_of_every_probe_of_an_A05_goes_both_ways)
 {
-    (void)state;
     for (unsigned probe = 0; probe != 4; probe++) {
         for (uint32_t mm = 0; mm < 65536; mm += 7) {
             uint16_t values[4] = {0, 0, 0, 0};
@@ -81,9 +75,8 @@ static void every_value_of_every_probe_of_an_A05_goes_both_ways(void **state)
     }
 }
 
-static void every_other_start_and_every_other_sum_is_refused(void **state)
+TEST(every_other_start_and_every_other_sum_is_refused)
 {
-    (void)state;
     for (unsigned byte = 0; byte != 256; byte++) {
         /* The sum is made right for the wrong start, so that the start alone is at fault. */
         const uint8_t start[] = {(uint8_t)byte, 0x07, 0xA1, (uint8_t)(byte + 0x07 + 0xA1)};
@@ -98,10 +91,9 @@ static void every_other_start_and_every_other_sum_is_refused(void **state)
 }
 
 /* 255 bytes of FF are 65025 = FE01; of n bytes of FF the sum is 256 - n. What lies behind does not count. */
-static void the_sum_of_0_to_255_bytes_is_the_low_byte(void **state)
+TEST(the_sum_of_0_to_255_bytes_is_the_low_byte)
 {
     uint8_t bytes[256];
-    (void)state;
     memset(bytes, 0xFF, sizeof bytes);
     assert_int_equal(fathom_dyp_sum(bytes, 0), 0);
     for (unsigned n = 1; n != 256; n++) assert_int_equal(fathom_dyp_sum(bytes, (uint8_t)n), 256 - n);
@@ -110,7 +102,7 @@ static void the_sum_of_0_to_255_bytes_is_the_low_byte(void **state)
 }
 
 /* Why stream.h has further rules. Each of these is a valid frame that no sensor sent. */
-static void a_good_sum_does_not_prove_where_a_frame_begins(void **state)
+TEST(a_good_sum_does_not_prove_where_a_frame_begins)
 {
     /* 511 mm held still is FF 01 FF FF, FF + 01 + FF = 1FF; a byte early it is FF FF 01 FF, 65281 mm. */
     static const uint8_t shifted_by_one[] = {0xFF, 0xFF, 0x01, 0xFF};
@@ -120,7 +112,6 @@ static void a_good_sum_does_not_prove_where_a_frame_begins(void **state)
     static const uint8_t shifted_by_six[] = {0xFF, 0x05, 0x3B, 0x07, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07};
     static const uint16_t permuted[] = {1339, 2047, 1000, 2000};
     uint16_t values[4];
-    (void)state;
     assert_true(fathom_dyp_frame_valid(shifted_by_one, 4));
     fathom_dyp_frame_decode(shifted_by_one, values, 1);
     assert_int_equal(values[0], 65281);
@@ -131,26 +122,11 @@ static void a_good_sum_does_not_prove_where_a_frame_begins(void **state)
 }
 
 /* "No object" is FF FF FD FB: FF + FF + FD = 2FB. No rule such as "the second byte is not FF" may be made. */
-static void FF_may_follow_the_start(void **state)
+TEST(FF_may_follow_the_start)
 {
     static const uint8_t frame[] = {0xFF, 0xFF, 0xFD, 0xFB};
     uint16_t value = 0;
-    (void)state;
     assert_true(fathom_dyp_frame_valid(frame, 4));
     fathom_dyp_frame_decode(frame, &value, 1);
     assert_int_equal(value, 0xFFFD);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_examples_of_the_datasheets_go_both_ways),
-        cmocka_unit_test(every_value_of_an_A16_goes_both_ways),
-        cmocka_unit_test(every_value_of_every_probe_of_an_A05_goes_both_ways),
-        cmocka_unit_test(every_other_start_and_every_other_sum_is_refused),
-        cmocka_unit_test(the_sum_of_0_to_255_bytes_is_the_low_byte),
-        cmocka_unit_test(a_good_sum_does_not_prove_where_a_frame_begins),
-        cmocka_unit_test(FF_may_follow_the_start),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

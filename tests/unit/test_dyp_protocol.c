@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/dyp_protocol.h"
 
@@ -39,10 +36,9 @@ static const uint8_t address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07};
 
 /* ---- commands ---- */
 
-static void every_command_has_the_length_and_the_values_of_the_datasheet(void **state)
+TEST(every_command_has_the_length_and_the_values_of_the_datasheet)
 {
     unsigned known = 0;
-    (void)state;
     for (unsigned command = 0; command != BYTES; command++) {
         const uint8_t length = length_by_the_datasheet(command);
         const uint8_t values = length == 13 ? 4 : length == 7 ? 1 : 0;
@@ -54,10 +50,9 @@ static void every_command_has_the_length_and_the_values_of_the_datasheet(void **
 }
 
 /* 55 + AA = FF, so the sum is address + command - 1. */
-static void every_request_is_55_AA_address_command_and_the_sum(void **state)
+TEST(every_request_is_55_AA_address_command_and_the_sum)
 {
     unsigned tried = 0;
-    (void)state;
     for (unsigned address = 0; address != BYTES; address++) {
         for (unsigned command = 0; command != BYTES; command++, tried++) {
             const uint8_t expected[] = {
@@ -92,10 +87,9 @@ static uint8_t length_of(const uint8_t *bytes, uint8_t have)
     return length;
 }
 
-static void the_length_of_every_answer_is_known_from_its_fourth_byte(void **state)
+TEST(the_length_of_every_answer_is_known_from_its_fourth_byte)
 {
     unsigned tried = 0;
-    (void)state;
     for (unsigned command = 0; command != BYTES; command++) {
         uint8_t bytes[MOST];
         memset(bytes, 0, sizeof bytes);
@@ -107,9 +101,8 @@ static void the_length_of_every_answer_is_known_from_its_fourth_byte(void **stat
     assert_int_equal(tried, 256 * 13);
 }
 
-static void no_address_changes_the_length(void **state)
+TEST(no_address_changes_the_length)
 {
-    (void)state;
     for (unsigned address = 0; address != BYTES; address++) {
         uint8_t bytes[MOST];
         memcpy(bytes, all_probes, MOST);
@@ -119,10 +112,9 @@ static void no_address_changes_the_length(void **state)
     }
 }
 
-static void what_does_not_begin_with_55_AA_is_no_answer_from_any_prefix(void **state)
+TEST(what_does_not_begin_with_55_AA_is_no_answer_from_any_prefix)
 {
     unsigned refused = 0;
-    (void)state;
     for (unsigned byte = 0; byte != BYTES; byte++) {
         uint8_t first[MOST];
         uint8_t second[MOST];
@@ -144,9 +136,8 @@ static void what_does_not_begin_with_55_AA_is_no_answer_from_any_prefix(void **s
 /* ---- sums ---- */
 
 /* One length after the other, every last byte: just the one that the formula gives is right. */
-static void of_256_last_bytes_one_is_the_sum_at_every_length(void **state)
+TEST(of_256_last_bytes_one_is_the_sum_at_every_length)
 {
-    (void)state;
     for (uint8_t length = 1; length <= MOST; length++) {
         uint8_t frame[MOST];
         unsigned right = 0;
@@ -161,9 +152,8 @@ static void of_256_last_bytes_one_is_the_sum_at_every_length(void **state)
     }
 }
 
-static void what_lies_behind_a_frame_does_not_count(void **state)
+TEST(what_lies_behind_a_frame_does_not_count)
 {
-    (void)state;
     uint8_t *const alone = malloc(sizeof address_5);
     assert_non_null(alone);
     memcpy(alone, address_5, sizeof address_5);
@@ -179,12 +169,11 @@ static void what_lies_behind_a_frame_does_not_count(void **state)
 
 /* ---- answers ---- */
 
-static void the_answers_of_the_datasheet_go_both_ways(void **state)
+TEST(the_answers_of_the_datasheet_go_both_ways)
 {
     static const uint16_t mm_1953[] = {1953};
     uint8_t frame[MOST + 1];
     uint16_t values[5];
-    (void)state;
     memset(frame, GUARD, sizeof frame);
     assert_int_equal(fathom_dyp_protocol_encode_answer(frame, 1, FATHOM_DYP_ALL_PROBES, all_values), 13);
     assert_memory_equal(frame, all_probes, 13);
@@ -212,11 +201,10 @@ static void the_answers_of_the_datasheet_go_both_ways(void **state)
     assert_int_equal(values[0], GUARD16);
 }
 
-static void every_command_from_every_address_goes_both_ways(void **state)
+TEST(every_command_from_every_address_goes_both_ways)
 {
     static const uint8_t commands[] = {0x01, 0x03, 0x10, 0x11, 0x12, 0x13};
     unsigned tried = 0;
-    (void)state;
     for (unsigned i = 0; i != sizeof commands; i++) {
         const uint8_t length = length_by_the_datasheet(commands[i]);
         const unsigned count = (length - 5u) / 2;
@@ -248,9 +236,8 @@ static void every_command_from_every_address_goes_both_ways(void **state)
 }
 
 /* SUM = 00 + 10 + H + L for address 1: 55 + AA + 01 is 100. */
-static void every_value_of_one_probe_goes_both_ways(void **state)
+TEST(every_value_of_one_probe_goes_both_ways)
 {
-    (void)state;
     for (uint32_t mm = 0; mm != 65536; mm++) {
         const uint8_t high = (uint8_t)(mm / 256);
         const uint8_t low = (uint8_t)(mm % 256);
@@ -270,10 +257,9 @@ static void every_value_of_one_probe_goes_both_ways(void **state)
 
 /* A05 2(3)3 prints 60 for the answer with four distances, which is the sum of the UART frame of 1(3). By its own
  * formula: 55 + AA + 01 + 01 + 03 + E8 + 07 + D0 + 07 + A1 + 0D + EA = 462. */
-static void A05_2_3_3_the_printed_sum_60_is_refused_and_62_is_right(void **state)
+TEST(A05_2_3_3_the_printed_sum_60_is_refused_and_62_is_right)
 {
     uint8_t frame[MOST];
-    (void)state;
     memcpy(frame, all_probes, MOST);
     frame[12] = 0x60;
     assert_false(fathom_dyp_protocol_valid(frame, MOST));
@@ -283,10 +269,9 @@ static void A05_2_3_3_the_printed_sum_60_is_refused_and_62_is_right(void **state
 
 /* A05 2(3)5 prints the command of set-address as 10 and its answer with Data_H and Data_L, 7 bytes; its example and
  * the list of commands have 03 and 5 bytes. 55 + AA + 05 + 03 = 107. */
-static void A05_2_3_5_command_10_with_7_bytes_is_not_the_answer_to_set_address(void **state)
+TEST(A05_2_3_5_command_10_with_7_bytes_is_not_the_answer_to_set_address)
 {
     uint8_t frame[MOST];
-    (void)state;
     assert_int_equal(FATHOM_DYP_SET_ADDRESS, 0x03);
     assert_int_equal(fathom_dyp_protocol_encode_request(frame, 5, FATHOM_DYP_SET_ADDRESS), 5);
     assert_memory_equal(frame, address_5, 5);
@@ -299,11 +284,10 @@ static void A05_2_3_5_command_10_with_7_bytes_is_not_the_answer_to_set_address(v
 }
 
 /* A05 2(3)3's table prints "Data_1H Data_1H" and "Data_2H Data_2H"; its example has 03 E8 for 1000 mm. */
-static void A05_2_3_3_the_table_has_the_high_byte_twice_but_high_and_then_low_is_right(void **state)
+TEST(A05_2_3_3_the_table_has_the_high_byte_twice_but_high_and_then_low_is_right)
 {
     uint16_t values[4] = {0};
     uint8_t frame[MOST];
-    (void)state;
     fathom_dyp_protocol_decode(all_probes, values);
     assert_int_equal(values[0], 1000); /* not 0303, not E803 */
     assert_int_equal(values[1], 2000);
@@ -312,24 +296,4 @@ static void A05_2_3_3_the_table_has_the_high_byte_twice_but_high_and_then_low_is
     assert_int_equal(frame[5], 0xE8);
     assert_int_equal(frame[6], 0x07);
     assert_int_equal(frame[7], 0xD0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_command_has_the_length_and_the_values_of_the_datasheet),
-        cmocka_unit_test(every_request_is_55_AA_address_command_and_the_sum),
-        cmocka_unit_test(the_length_of_every_answer_is_known_from_its_fourth_byte),
-        cmocka_unit_test(no_address_changes_the_length),
-        cmocka_unit_test(what_does_not_begin_with_55_AA_is_no_answer_from_any_prefix),
-        cmocka_unit_test(of_256_last_bytes_one_is_the_sum_at_every_length),
-        cmocka_unit_test(what_lies_behind_a_frame_does_not_count),
-        cmocka_unit_test(the_answers_of_the_datasheet_go_both_ways),
-        cmocka_unit_test(every_command_from_every_address_goes_both_ways),
-        cmocka_unit_test(every_value_of_one_probe_goes_both_ways),
-        cmocka_unit_test(A05_2_3_3_the_printed_sum_60_is_refused_and_62_is_right),
-        cmocka_unit_test(A05_2_3_5_command_10_with_7_bytes_is_not_the_answer_to_set_address),
-        cmocka_unit_test(A05_2_3_3_the_table_has_the_high_byte_twice_but_high_and_then_low_is_right),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/edges.h"
 
@@ -19,13 +16,14 @@ static const fathom_pin_t pin = {NULL, get, &level};
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&edges, 0x5A, sizeof edges);
     fathom_edges_init(&edges, NULL);
     capture = fathom_edges_capture(&edges);
     capture.arm(capture.ctx);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void rise(uint32_t at_us) { fathom_edges_feed(&edges, true, at_us); }
 static void fall(uint32_t at_us) { fathom_edges_feed(&edges, false, at_us); }
@@ -39,9 +37,8 @@ static void assert_pulse(uint32_t width_us, uint32_t end_us)
     assert_int_equal(pulse.end_us, end_us);
 }
 
-static void a_rise_and_a_fall_are_a_pulse(void **state)
+TEST(a_rise_and_a_fall_are_a_pulse)
 {
-    (void)state;
     assert_int_equal(take(), 0);
     assert_false(pulse.is_high);
     rise(1000);
@@ -53,9 +50,8 @@ static void a_rise_and_a_fall_are_a_pulse(void **state)
     assert_int_equal(take(), 0);
 }
 
-static void nothing_but_the_level_is_written_without_a_pulse(void **state)
+TEST(nothing_but_the_level_is_written_without_a_pulse)
 {
-    (void)state;
     rise(100);
     fall(200);
     pulse = (fathom_pulse_t){7, 8, true};
@@ -66,9 +62,8 @@ static void nothing_but_the_level_is_written_without_a_pulse(void **state)
     assert_false(pulse.is_high);
 }
 
-static void pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted(void **state)
+TEST(pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted)
 {
-    (void)state;
     for (uint32_t i = 1; i <= 6; i++) {
         rise(i * 1000);
         fall(i * 1000 + i);
@@ -81,9 +76,8 @@ static void pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted(
     assert_pulse(9, 9009);
 }
 
-static void widths_are_right_across_the_wrap_and_up_to_71_minutes(void **state)
+TEST(widths_are_right_across_the_wrap_and_up_to_71_minutes)
 {
-    (void)state;
     rise(UINT32_MAX - 4999);
     fall(5000);
     assert_pulse(10000, 5000);
@@ -92,9 +86,8 @@ static void widths_are_right_across_the_wrap_and_up_to_71_minutes(void **state)
     assert_pulse(UINT32_MAX, 5999);
 }
 
-static void many_pulses_go_through_as_the_counts_wrap(void **state)
+TEST(many_pulses_go_through_as_the_counts_wrap)
 {
-    (void)state;
     for (uint32_t i = 0; i != 1000; i++) {
         if (i % 50 == 0) arm();
         rise(i * 100);
@@ -107,9 +100,8 @@ static void many_pulses_go_through_as_the_counts_wrap(void **state)
 
 /* ---- arm ---- */
 
-static void arm_forgets_what_was_captured(void **state)
+TEST(arm_forgets_what_was_captured)
 {
-    (void)state;
     rise(100);
     fall(200);
     rise(300);
@@ -121,9 +113,8 @@ static void arm_forgets_what_was_captured(void **state)
     assert_pulse(100, 600);
 }
 
-static void arm_makes_room(void **state)
+TEST(arm_makes_room)
 {
-    (void)state;
     for (uint32_t i = 1; i <= 4; i++) {
         rise(i * 1000);
         fall(i * 1000 + i);
@@ -135,9 +126,8 @@ static void arm_makes_room(void **state)
     assert_int_equal(edges.lost, 0);
 }
 
-static void a_pulse_that_began_before_arm_does_not_count(void **state)
+TEST(a_pulse_that_began_before_arm_does_not_count)
 {
-    (void)state;
     rise(100);
     arm();
     fall(20100);
@@ -148,9 +138,8 @@ static void a_pulse_that_began_before_arm_does_not_count(void **state)
 }
 
 /* A line that is stuck high for long sees arm more often than a byte can count. */
-static void a_pulse_that_began_before_257_arms_does_not_count(void **state)
+TEST(a_pulse_that_began_before_257_arms_does_not_count)
 {
-    (void)state;
     for (unsigned arms = 255; arms <= 257; arms++) {
         rise(100);
         for (unsigned i = 0; i != arms; i++) arm();
@@ -160,9 +149,8 @@ static void a_pulse_that_began_before_257_arms_does_not_count(void **state)
 }
 
 /* 128 rises after arm cannot be told from what was before it: they are lost, never wrong. */
-static void after_127_rises_without_arm_pulses_are_lost(void **state)
+TEST(after_127_rises_without_arm_pulses_are_lost)
 {
-    (void)state;
     for (uint32_t i = 1; i <= 300; i++) {
         rise(i * 100);
         fall(i * 100 + 50);
@@ -172,9 +160,8 @@ static void after_127_rises_without_arm_pulses_are_lost(void **state)
 
 /* ---- doubled and missed edges ---- */
 
-static void a_rise_seen_twice_within_50_us_is_one_and_the_first_counts(void **state)
+TEST(a_rise_seen_twice_within_50_us_is_one_and_the_first_counts)
 {
-    (void)state;
     rise(UINT32_MAX - 20);
     rise(10);
     rise(29); /* 50 us after the first */
@@ -183,9 +170,8 @@ static void a_rise_seen_twice_within_50_us_is_one_and_the_first_counts(void **st
     assert_int_equal(edges.missed, 0);
 }
 
-static void a_fall_seen_twice_is_one_and_the_first_counts(void **state)
+TEST(a_fall_seen_twice_is_one_and_the_first_counts)
 {
-    (void)state;
     rise(1000);
     fall(11000);
     fall(11010);
@@ -196,9 +182,8 @@ static void a_fall_seen_twice_is_one_and_the_first_counts(void **state)
 
 /* The level was high at 1000 and again at 5000: when it was low in between nobody knows, so neither 10000 nor 6000 us
  * may be said. */
-static void a_fall_that_was_missed_makes_no_pulse_of_two(void **state)
+TEST(a_fall_that_was_missed_makes_no_pulse_of_two)
 {
-    (void)state;
     rise(1000);
     rise(5000);
     fall(11000);
@@ -209,9 +194,8 @@ static void a_fall_that_was_missed_makes_no_pulse_of_two(void **state)
     assert_pulse(100, 20100);
 }
 
-static void rises_without_a_fall_are_counted_once(void **state)
+TEST(rises_without_a_fall_are_counted_once)
 {
-    (void)state;
     rise(1000);
     rise(1051);
     rise(1052);
@@ -221,9 +205,8 @@ static void rises_without_a_fall_are_counted_once(void **state)
     assert_int_equal(edges.missed, 1);
 }
 
-static void a_rise_that_was_missed_loses_its_pulse_and_no_other(void **state)
+TEST(a_rise_that_was_missed_loses_its_pulse_and_no_other)
 {
-    (void)state;
     fall(1000);
     rise(2000);
     fall(2500);
@@ -235,9 +218,8 @@ static void a_rise_that_was_missed_loses_its_pulse_and_no_other(void **state)
     assert_int_equal(take(), 0);
 }
 
-static void the_time_within_which_edges_are_the_same_is_the_users(void **state)
+TEST(the_time_within_which_edges_are_the_same_is_the_users)
 {
-    (void)state;
     edges.same_us = 10;
     rise(1000);
     rise(1010);
@@ -249,9 +231,8 @@ static void the_time_within_which_edges_are_the_same_is_the_users(void **state)
     assert_int_equal(take(), 0);
 }
 
-static void the_counts_of_what_went_wrong_stop_at_255(void **state)
+TEST(the_counts_of_what_went_wrong_stop_at_255)
 {
-    (void)state;
     for (uint32_t i = 0; i != 300; i++) {
         rise(i * 1000);
         rise(i * 1000 + 100);
@@ -265,9 +246,8 @@ static void the_counts_of_what_went_wrong_stop_at_255(void **state)
 
 /* ---- the level ---- */
 
-static void with_a_pin_the_level_is_its_and_not_that_of_the_last_edge(void **state)
+TEST(with_a_pin_the_level_is_its_and_not_that_of_the_last_edge)
 {
-    (void)state;
     level = false;
     fathom_edges_init(&edges, &pin);
     arm();
@@ -279,9 +259,8 @@ static void with_a_pin_the_level_is_its_and_not_that_of_the_last_edge(void **sta
     assert_true(pulse.is_high);
 }
 
-static void a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen(void **state)
+TEST(a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen)
 {
-    (void)state;
     level = true;
     fathom_edges_init(&edges, &pin);
     arm();
@@ -292,32 +271,4 @@ static void a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen(void *
     rise(2000);
     fall(3000);
     assert_pulse(1000, 3000);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(a_rise_and_a_fall_are_a_pulse),
-        FRESH(nothing_but_the_level_is_written_without_a_pulse),
-        FRESH(pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted),
-        FRESH(widths_are_right_across_the_wrap_and_up_to_71_minutes),
-        FRESH(many_pulses_go_through_as_the_counts_wrap),
-        FRESH(arm_forgets_what_was_captured),
-        FRESH(arm_makes_room),
-        FRESH(a_pulse_that_began_before_arm_does_not_count),
-        FRESH(a_pulse_that_began_before_257_arms_does_not_count),
-        FRESH(after_127_rises_without_arm_pulses_are_lost),
-        FRESH(a_rise_seen_twice_within_50_us_is_one_and_the_first_counts),
-        FRESH(a_fall_seen_twice_is_one_and_the_first_counts),
-        FRESH(a_fall_that_was_missed_makes_no_pulse_of_two),
-        FRESH(rises_without_a_fall_are_counted_once),
-        FRESH(a_rise_that_was_missed_loses_its_pulse_and_no_other),
-        FRESH(the_time_within_which_edges_are_the_same_is_the_users),
-        FRESH(the_counts_of_what_went_wrong_stop_at_255),
-        FRESH(with_a_pin_the_level_is_its_and_not_that_of_the_last_edge),
-        FRESH(a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #define _GNU_SOURCE /* REG_EFL */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 #include <signal.h>
 #include <sys/time.h>
 #include <ucontext.h>
@@ -38,7 +35,7 @@ static void on_signal(int number)
     }
 }
 
-static void pulses_that_an_interrupt_feeds_are_whole_and_in_order(void **state)
+TEST(pulses_that_an_interrupt_feeds_are_whole_and_in_order)
 {
     const struct itimerval every = {{0, PERIOD_US}, {0, PERIOD_US}};
     const struct itimerval never = {{0, 0}, {0, 0}};
@@ -47,7 +44,6 @@ static void pulses_that_an_interrupt_feeds_are_whole_and_in_order(void **state)
     uint32_t before_us = start_us;
     unsigned taken = 0;
     unsigned arms = 0;
-    (void)state;
     end_us = start_us;
     fathom_edges_init(&edges, NULL);
     memset(&action, 0, sizeof action);
@@ -106,13 +102,12 @@ static inline void trap(bool on)
                 : "memory", "cc");
 }
 
-static void an_interrupt_at_any_instruction_of_take_leaves_pulses_whole_and_in_order(void **state)
+TEST(an_interrupt_at_any_instruction_of_take_leaves_pulses_whole_and_in_order)
 {
     const fathom_capture_t capture = fathom_edges_capture(&edges);
     struct sigaction action;
     unsigned step = 0;
     bool was_within = true;
-    (void)state;
     memset(&action, 0, sizeof action);
     action.sa_sigaction = on_trap;
     action.sa_flags = SA_SIGINFO;
@@ -144,14 +139,3 @@ static void an_interrupt_at_any_instruction_of_take_leaves_pulses_whole_and_in_o
     assert_true(step > 20);
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pulses_that_an_interrupt_feeds_are_whole_and_in_order),
-#if defined(__x86_64__) && defined(__linux__)
-        cmocka_unit_test(an_interrupt_at_any_instruction_of_take_leaves_pulses_whole_and_in_order),
-#endif
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/hps167s_info.h"
@@ -27,7 +24,6 @@ static const uint16_t detailed[11] = {0xB000, 0x3900, 0x2542, 0x3457, 0x1420, 0x
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     memset(&config, 0, sizeof config);
     config.modbus = &fake.modbus;
@@ -41,7 +37,6 @@ static int set_up(void **state)
 static int nothing_else_was_sent(void **state)
 {
     static const uint8_t allowed[3][5] = {{3, 0, 1, 0, 3}, {3, 0, 3, 0, 11}, {3, 0, 8, 0, 4}};
-    (void)state;
     for (unsigned i = 0; i != fake.submits; i++) {
         unsigned found = 0;
         for (unsigned n = 0; n != 3; n++) found += memcmp(fake.log[i] + 1, allowed[n], 5) == 0;
@@ -51,6 +46,8 @@ static int nothing_else_was_sent(void **state)
     }
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = nothing_else_was_sent};
 
 static void start(void)
 {
@@ -92,9 +89,8 @@ static void assert_nothing_after(uint32_t us)
 
 /* ---- measurements ---- */
 
-static void by_default_it_asks_unit_1_to_measure_with_500_ms_and_no_retry(void **state)
+TEST(by_default_it_asks_unit_1_to_measure_with_500_ms_and_no_retry)
 {
-    (void)state;
     start();
     assert_nothing_after(0);
     fake_modbus_assert_asked(&fake, 1, 1, 0x0008, 4);
@@ -102,9 +98,8 @@ static void by_default_it_asks_unit_1_to_measure_with_500_ms_and_no_retry(void *
     assert_int_equal(fake.request->exchange.retries, 0);
 }
 
-static void the_config_is_asked_as_it_says(void **state)
+TEST(the_config_is_asked_as_it_says)
 {
-    (void)state;
     config.address = 32;
     config.timeout_us = 170000;
     config.retries = 5;
@@ -118,9 +113,8 @@ static void the_config_is_asked_as_it_says(void **state)
     assert_int_equal(sample.unit, 32);
 }
 
-static void wrong_arguments_are_refused(void **state)
+TEST(wrong_arguments_are_refused)
 {
-    (void)state;
     config.modbus = NULL;
     assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_ERR_ARGUMENT);
     set_up(NULL);
@@ -135,11 +129,10 @@ static void wrong_arguments_are_refused(void **state)
     assert_int_equal(fake.submits + fake.polls, 0);
 }
 
-static void the_pace_is_the_period_but_at_most_54_a_second(void **state)
+TEST(the_pace_is_the_period_but_at_most_54_a_second)
 {
     static const uint32_t periods[][2] = {
         {0, 18519}, {1, 18519}, {18518, 18519}, {18520, 18520}, {1000000, 1000000}};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         set_up(NULL);
         config.period_us = periods[i][0];
@@ -157,9 +150,8 @@ static void the_pace_is_the_period_but_at_most_54_a_second(void **state)
 }
 
 /* Command #5: 2.083 m, (DCB2 << 7) / 10000 = 723.1744, ambient 1, precision 0. */
-static void the_example_of_command_5_has_all_its_members(void **state)
+TEST(the_example_of_command_5_has_all_its_members)
 {
-    (void)state;
     start();
     assert_nothing_after(0);
     fake.heard_us = 98765;
@@ -181,10 +173,9 @@ static void the_example_of_command_5_has_all_its_members(void **state)
 }
 
 /* Command #5: distance, ambient and precision all FF, magnitude 00; what the exponent is stands nowhere. */
-static void the_abnormal_packet_is_a_fault(void **state)
+TEST(the_abnormal_packet_is_a_fault)
 {
     static const uint16_t exponents[] = {0x0000, 0x1100, 0xFF00};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         const uint16_t registers[4] = {0xFFFF, 0x0000, (uint16_t)(exponents[i] | 0xFF), 0xFFFF};
         set_up(NULL);
@@ -201,11 +192,10 @@ static void the_abnormal_packet_is_a_fault(void **state)
     }
 }
 
-static void figures_that_it_cannot_mean_are_an_error_and_no_sample(void **state)
+TEST(figures_that_it_cannot_mean_are_an_error_and_no_sample)
 {
     static const uint16_t wrong[][4] = {
         {0, 0xDCB2, 0x0701, 0}, {30001, 0xDCB2, 0x0701, 0}, {65529, 0, 0x0701, 0}, {2083, 0xDCB2, 0x1101, 0}};
-    (void)state;
     start();
     for (unsigned i = 0; i != 4; i++) {
         assert_nothing_after(PACE_US);
@@ -219,12 +209,11 @@ static void figures_that_it_cannot_mean_are_an_error_and_no_sample(void **state)
     assert_int_equal(sample.sequence, 1);
 }
 
-static void every_error_passes_through_and_leaves_all_outputs_alone(void **state)
+TEST(every_error_passes_through_and_leaves_all_outputs_alone)
 {
     /* No answer comes last: after three of them the unit is left alone for a while. */
     static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION, FATHOM_ERR_MALFORMED,
                                              FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED, FATHOM_ERR_NO_ANSWER};
-    (void)state;
     start();
     for (unsigned i = 0; i != sizeof errors / sizeof *errors; i++) {
         fake.exception = 2;
@@ -246,9 +235,8 @@ static void every_error_passes_through_and_leaves_all_outputs_alone(void **state
 
 /* ---- commands ---- */
 
-static void the_interface_version_is_read_byte_by_byte(void **state)
+TEST(the_interface_version_is_read_byte_by_byte)
 {
-    (void)state;
     config.retries = 3;
     start();
     assert_int_equal(version_after(0), FATHOM_PENDING);
@@ -267,11 +255,10 @@ static void the_interface_version_is_read_byte_by_byte(void **state)
 }
 
 /* Command #3 reads 13 09 17 as "19/09/27" and 03 09 as "Ver. 2.1"; the bytes say 2019-09-23 and 3.9. */
-static void the_details_are_what_the_bytes_say_and_not_the_text(void **state)
+TEST(the_details_are_what_the_bytes_say_and_not_the_text)
 {
     static const uint8_t uuid[16] = {0x00, 0x39, 0x00, 0x25, 0x42, 0x34, 0x57, 0x14,
                                      0x20, 0x34, 0x38, 0x35, 0x01, 0x06, 0x07, 0x05};
-    (void)state;
     start();
     assert_int_equal(details_after(0), FATHOM_PENDING);
     assert_guard(&details, sizeof details);
@@ -287,10 +274,9 @@ static void the_details_are_what_the_bytes_say_and_not_the_text(void **state)
     assert_int_equal(details.minor, 9);
 }
 
-static void details_with_any_other_ack_byte_are_malformed(void **state)
+TEST(details_with_any_other_ack_byte_are_malformed)
 {
     uint16_t registers[11];
-    (void)state;
     memcpy(registers, detailed, sizeof registers);
     start();
     for (unsigned ack = 0; ack != 256; ack++) {
@@ -304,9 +290,8 @@ static void details_with_any_other_ack_byte_are_malformed(void **state)
     }
 }
 
-static void a_command_takes_its_turn_after_a_measurement_under_way(void **state)
+TEST(a_command_takes_its_turn_after_a_measurement_under_way)
 {
-    (void)state;
     start();
     assert_nothing_after(0);
     assert_int_equal(details_after(1000), FATHOM_PENDING);
@@ -345,17 +330,15 @@ static unsigned ms_until_details_are_asked(bool poll_first)
 }
 
 /* hps167s.h: "A command takes its turn after a measurement that is under way", "with the loop going on". */
-static void a_command_is_not_starved_by_a_loop_that_goes_on_polling(void **state)
+TEST(a_command_is_not_starved_by_a_loop_that_goes_on_polling)
 {
-    (void)state;
     assert_in_range(ms_until_details_are_asked(false), 0, 60);
     set_up(NULL);
     assert_in_range(ms_until_details_are_asked(true), 0, 60);
 }
 
-static void measurements_wait_until_the_outcome_of_a_command_was_taken(void **state)
+TEST(measurements_wait_until_the_outcome_of_a_command_was_taken)
 {
-    (void)state;
     start();
     assert_int_equal(version_after(0), FATHOM_PENDING);
     assert_nothing_after(1000);
@@ -371,9 +354,8 @@ static void measurements_wait_until_the_outcome_of_a_command_was_taken(void **st
     assert_int_equal(sample.distance_mm, 2083);
 }
 
-static void a_second_command_is_told_busy(void **state)
+TEST(a_second_command_is_told_busy)
 {
-    (void)state;
     start();
     assert_int_equal(version_after(0), FATHOM_PENDING);
     assert_int_equal(details_after(1000), FATHOM_ERR_BUSY);
@@ -385,9 +367,8 @@ static void a_second_command_is_told_busy(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void cancel_and_deinit_give_up_what_is_under_way(void **state)
+TEST(cancel_and_deinit_give_up_what_is_under_way)
 {
-    (void)state;
     start();
     assert_int_equal(version_after(0), FATHOM_PENDING);
     fathom_hps167s_cancel(&hps);
@@ -397,29 +378,4 @@ static void cancel_and_deinit_give_up_what_is_under_way(void **state)
     fathom_hps167s_deinit(&hps);
     assert_int_equal(fake.cancels, 2);
     assert_null(fake.request);
-}
-
-#define FRESH(test) cmocka_unit_test_setup_teardown(test, set_up, nothing_else_was_sent)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(by_default_it_asks_unit_1_to_measure_with_500_ms_and_no_retry),
-        FRESH(the_config_is_asked_as_it_says),
-        FRESH(wrong_arguments_are_refused),
-        FRESH(the_pace_is_the_period_but_at_most_54_a_second),
-        FRESH(the_example_of_command_5_has_all_its_members),
-        FRESH(the_abnormal_packet_is_a_fault),
-        FRESH(figures_that_it_cannot_mean_are_an_error_and_no_sample),
-        FRESH(every_error_passes_through_and_leaves_all_outputs_alone),
-        FRESH(the_interface_version_is_read_byte_by_byte),
-        FRESH(the_details_are_what_the_bytes_say_and_not_the_text),
-        FRESH(details_with_any_other_ack_byte_are_malformed),
-        FRESH(a_command_takes_its_turn_after_a_measurement_under_way),
-        FRESH(a_command_is_not_starved_by_a_loop_that_goes_on_polling),
-        FRESH(measurements_wait_until_the_outcome_of_a_command_was_taken),
-        FRESH(a_second_command_is_told_busy),
-        FRESH(cancel_and_deinit_give_up_what_is_under_way),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fathom/hps167s_auto.h"
@@ -53,13 +50,21 @@ static void make(uint8_t *frame, uint8_t address, uint16_t a, uint16_t b, uint16
 
 static int set_up(void **state)
 {
-    (void)state;
     rig_start(start_us);
     memset(&config, 0, sizeof config);
     config.line = &rig.line;
     memset(&hps, 0x5A, sizeof hps);
     return 0;
 }
+
+/* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
+static void begin_round(unsigned round)
+{
+    start_us = round / 2 != 0 ? 0xFFFF8000u : RIG_START_US;
+    loop_us = round % 2 != 0 ? 20000 : 1000;
+}
+
+static const suite_t suite = {.set_up = set_up, .begin_round = begin_round, .rounds = 4};
 
 static void begin(void)
 {
@@ -85,9 +90,8 @@ static void ask_too(void)
 
 /* ---- frames ---- */
 
-static void a_frame_is_a_sample_with_all_its_members(void **state)
+TEST(a_frame_is_a_sample_with_all_its_members)
 {
-    (void)state;
     begin();
     rig_send(example, LENGTH, loop_us);
     assert_int_equal(rig.samples, 1);
@@ -107,9 +111,8 @@ static void a_frame_is_a_sample_with_all_its_members(void **state)
     assert_int_equal(rig.sample.sequence, 2);
 }
 
-static void no_target_and_the_abnormal_packet_are_samples_too(void **state)
+TEST(no_target_and_the_abnormal_packet_are_samples_too)
 {
-    (void)state;
     begin();
     send(1, 65530, 0, 0, 0);
     assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
@@ -118,9 +121,8 @@ static void no_target_and_the_abnormal_packet_are_samples_too(void **state)
     assert_int_equal(rig.sample.kind, FATHOM_FAULT);
 }
 
-static void figures_that_it_cannot_mean_are_malformed_and_counted(void **state)
+TEST(figures_that_it_cannot_mean_are_malformed_and_counted)
 {
-    (void)state;
     begin();
     hps.implausible = 65533;
     for (unsigned i = 0; i != 3; i++) send(1, 31000, 0, 0, 0);
@@ -129,9 +131,8 @@ static void figures_that_it_cannot_mean_are_malformed_and_counted(void **state)
     assert_int_equal(rig.samples, 0);
 }
 
-static void the_limits_are_options(void **state)
+TEST(the_limits_are_options)
 {
-    (void)state;
     config.limits.max_mm = 18000;
     config.limits.over_range_mm = 65500;
     begin();
@@ -141,9 +142,8 @@ static void the_limits_are_options(void **state)
     assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
 }
 
-static void only_its_address_counts(void **state)
+TEST(only_its_address_counts)
 {
-    (void)state;
     config.address = 32;
     begin();
     send(31, 1000, 0, 0, 0);
@@ -154,10 +154,9 @@ static void only_its_address_counts(void **state)
     assert_int_equal(rig.sample.unit, 32);
 }
 
-static void what_is_not_of_this_shape_is_passed_over(void **state)
+TEST(what_is_not_of_this_shape_is_passed_over)
 {
     uint8_t frame[LENGTH];
-    (void)state;
     begin();
     make(frame, 1, 1000, 0, 0, 0);
     frame[1] = 0x04;
@@ -172,9 +171,8 @@ static void what_is_not_of_this_shape_is_passed_over(void **state)
     assert_int_equal(rig.samples, 1);
 }
 
-static void no_single_wrong_bit_makes_a_sample(void **state)
+TEST(no_single_wrong_bit_makes_a_sample)
 {
-    (void)state;
     begin();
     for (unsigned bit = 0; bit != LENGTH * 8; bit++) {
         uint8_t frame[LENGTH];
@@ -189,9 +187,8 @@ static void no_single_wrong_bit_makes_a_sample(void **state)
 }
 
 /* Up to 12 bytes of a frame that broke off, and at once a whole one. */
-static void a_frame_is_found_behind_the_beginning_of_another(void **state)
+TEST(a_frame_is_found_behind_the_beginning_of_another)
 {
-    (void)state;
     begin();
     for (unsigned torn = 0; torn != LENGTH; torn++) {
         uint8_t bytes[2 * LENGTH];
@@ -203,11 +200,10 @@ static void a_frame_is_found_behind_the_beginning_of_another(void **state)
 }
 
 /* 03 01 03 08 and the like: what looks like its beginning is none. */
-static void a_frame_is_found_behind_noise_that_looks_like_its_head(void **state)
+TEST(a_frame_is_found_behind_noise_that_looks_like_its_head)
 {
     static const uint8_t noises[][4] = {{1, 1, 3, 8}, {1, 3, 1, 3}, {1, 3, 8, 1}, {0, 0, 0, 0},
                                         {8, 3, 1, 1}, {1, 3, 8, 8}, {1, 1, 1, 1}};
-    (void)state;
     begin();
     for (unsigned i = 0; i != sizeof noises / sizeof *noises; i++) {
         uint8_t bytes[4 + LENGTH];
@@ -218,10 +214,9 @@ static void a_frame_is_found_behind_noise_that_looks_like_its_head(void **state)
     }
 }
 
-static void lost_bytes_end_a_frame(void **state)
+TEST(lost_bytes_end_a_frame)
 {
     const fathom_rx_t lost = {0, FATHOM_RX_OVERRUN};
-    (void)state;
     begin();
     fake_receive(&rig.fake, 0, example, 6);
     rig_run(1000, 1000);
@@ -234,10 +229,9 @@ static void lost_bytes_end_a_frame(void **state)
     assert_int_equal(rig.samples, 1);
 }
 
-static void of_several_frames_the_newest_is_told_and_the_others_are_counted(void **state)
+TEST(of_several_frames_the_newest_is_told_and_the_others_are_counted)
 {
     uint8_t frame[LENGTH];
-    (void)state;
     begin();
     hps.missed = 65533;
     for (uint16_t i = 1; i != 6; i++) {
@@ -252,9 +246,8 @@ static void of_several_frames_the_newest_is_told_and_the_others_are_counted(void
 
 /* ---- time ---- */
 
-static void without_a_frame_it_is_stale_once_every_2_s(void **state)
+TEST(without_a_frame_it_is_stale_once_every_2_s)
 {
-    (void)state;
     begin();
     rig_run(1980000, 20000);
     assert_int_equal(rig.stales, 0);
@@ -270,9 +263,8 @@ static void without_a_frame_it_is_stale_once_every_2_s(void **state)
     assert_int_equal(rig.stales, 4);
 }
 
-static void the_deadline_is_an_option_and_due_tells_it(void **state)
+TEST(the_deadline_is_an_option_and_due_tells_it)
 {
-    (void)state;
     config.stale_us = 700000;
     begin();
     rig_run(500000, 20000);
@@ -289,10 +281,9 @@ static void the_deadline_is_an_option_and_due_tells_it(void **state)
     assert_int_equal(rig_poll(), FATHOM_READY);
 }
 
-static void a_request_of_another_is_due_before_it_is_stale(void **state)
+TEST(a_request_of_another_is_due_before_it_is_stale)
 {
     fathom_sample_t sample;
-    (void)state;
     ask_too();
     begin();
     const fathom_sensor_t measuring = fathom_hps167s_sensor(&asking);
@@ -301,9 +292,8 @@ static void a_request_of_another_is_due_before_it_is_stale(void **state)
     assert_in_range(fathom_due_us(&rig.sensor, 1), 0, 300000);
 }
 
-static void a_broken_port_is_told_until_it_works_again(void **state)
+TEST(a_broken_port_is_told_until_it_works_again)
 {
-    (void)state;
     begin();
     rig.fake.read_fails = true;
     rig_run(3000, 1000);
@@ -316,9 +306,8 @@ static void a_broken_port_is_told_until_it_works_again(void **state)
 
 /* ---- setting up ---- */
 
-static void wrong_configs_are_refused(void **state)
+TEST(wrong_configs_are_refused)
 {
-    (void)state;
     config.address = 33;
     assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_ERR_ARGUMENT);
     config.address = 0;
@@ -330,10 +319,9 @@ static void wrong_configs_are_refused(void **state)
     assert_null(rig.line.listener);
 }
 
-static void it_listens_until_it_is_told_to_stop(void **state)
+TEST(it_listens_until_it_is_told_to_stop)
 {
     fathom_listener_t other;
-    (void)state;
     begin();
     assert_ptr_equal(rig.line.listener, &hps.listener);
     fathom_hps167s_auto_deinit(&hps);
@@ -346,9 +334,8 @@ static void it_listens_until_it_is_told_to_stop(void **state)
 
 /* ---- beside asking ---- */
 
-static void its_address_can_be_that_of_the_driver_that_asks(void **state)
+TEST(its_address_can_be_that_of_the_driver_that_asks)
 {
-    (void)state;
     ask_too();
     begin();
     send(1, 1000, 0, 0, 0);
@@ -384,10 +371,9 @@ static fathom_status_t ask_2(void) { return fathom_hps167s_configuration(&asking
 static fathom_hps167s_version_t version;
 static fathom_status_t ask_1(void) { return fathom_hps167s_interface_version(&asking, &version); }
 
-static void an_answer_to_2_that_comes_by_itself_is_no_measurement(void **state)
+TEST(an_answer_to_2_that_comes_by_itself_is_no_measurement)
 {
     fathom_status_t status = FATHOM_PENDING;
-    (void)state;
     ask_too();
     begin();
     send(1, LOOKS_LIKE_2); /* 255 mm, while nobody asks */
@@ -406,10 +392,9 @@ static void an_answer_to_2_that_comes_by_itself_is_no_measurement(void **state)
     assert_int_equal(rig.samples, 3);
 }
 
-static void what_was_told_last_is_no_measurement_at_any_time(void **state)
+TEST(what_was_told_last_is_no_measurement_at_any_time)
 {
     static const uint16_t told[4] = {LOOKS_LIKE_2};
-    (void)state;
     ask_too();
     begin();
     memcpy(asking.told, told, sizeof told);
@@ -421,11 +406,10 @@ static void what_was_told_last_is_no_measurement_at_any_time(void **state)
 }
 
 /* A target that stays at 255 mm, with figures that stay as well, sent every 100 ms while #2 is asked. */
-static void a_held_value_is_never_taken_for_the_configuration(void **state)
+TEST(a_held_value_is_never_taken_for_the_configuration)
 {
     uint8_t frame[LENGTH];
     fathom_status_t status = FATHOM_PENDING;
-    (void)state;
     ask_too();
     begin();
     make(frame, 1, LOOKS_LIKE_2);
@@ -439,11 +423,10 @@ static void a_held_value_is_never_taken_for_the_configuration(void **state)
     assert_int_equal(asking.unit.answers, 8);
 }
 
-static void commands_are_answered_while_frames_arrive(void **state)
+TEST(commands_are_answered_while_frames_arrive)
 {
     static const uint8_t answer_1[] = {0x01, 0x03, 0x06, 0x14, 0x09, 0x1B, 0x02, 0x01, 0x00, 0x58, 0xD4};
     fathom_status_t status = FATHOM_PENDING;
-    (void)state;
     ask_too();
     begin();
     rig_run(10000, 1000);
@@ -456,49 +439,4 @@ static void commands_are_answered_while_frames_arrive(void **state)
     assert_int_equal(status, FATHOM_READY);
     assert_int_equal(version.year, 2020);
     assert_int_equal(rig.samples, 2);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-static int group(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(a_frame_is_a_sample_with_all_its_members),
-        FRESH(no_target_and_the_abnormal_packet_are_samples_too),
-        FRESH(figures_that_it_cannot_mean_are_malformed_and_counted),
-        FRESH(the_limits_are_options),
-        FRESH(only_its_address_counts),
-        FRESH(what_is_not_of_this_shape_is_passed_over),
-        FRESH(no_single_wrong_bit_makes_a_sample),
-        FRESH(a_frame_is_found_behind_the_beginning_of_another),
-        FRESH(a_frame_is_found_behind_noise_that_looks_like_its_head),
-        FRESH(lost_bytes_end_a_frame),
-        FRESH(of_several_frames_the_newest_is_told_and_the_others_are_counted),
-        FRESH(without_a_frame_it_is_stale_once_every_2_s),
-        FRESH(the_deadline_is_an_option_and_due_tells_it),
-        FRESH(a_request_of_another_is_due_before_it_is_stale),
-        FRESH(a_broken_port_is_told_until_it_works_again),
-        FRESH(wrong_configs_are_refused),
-        FRESH(it_listens_until_it_is_told_to_stop),
-        FRESH(its_address_can_be_that_of_the_driver_that_asks),
-        FRESH(an_answer_to_2_that_comes_by_itself_is_no_measurement),
-        FRESH(what_was_told_last_is_no_measurement_at_any_time),
-        FRESH(a_held_value_is_never_taken_for_the_configuration),
-        FRESH(commands_are_answered_while_frames_arrive),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-/* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
-int main(void)
-{
-    static const uint32_t starts_us[] = {RIG_START_US, 0xFFFF8000u};
-    static const uint32_t loops_us[] = {1000, 20000};
-    int failed = 0;
-    for (unsigned i = 0; i != 4; i++) {
-        start_us = starts_us[i / 2];
-        loop_us = loops_us[i % 2];
-        failed += group();
-    }
-    return failed;
 }

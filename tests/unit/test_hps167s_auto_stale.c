@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "auto_rig.h"
 #include "fathom/hps167s_auto.h"
@@ -37,7 +34,6 @@ static void seal(uint8_t *frame)
 
 static int set_up(void **state)
 {
-    (void)state;
     rig_start(start_us);
     const fathom_hps167s_auto_config_t config = {.line = &rig.line};
     memset(&hps, 0x5A, sizeof hps);
@@ -46,9 +42,21 @@ static int set_up(void **state)
     return 0;
 }
 
-static void it_is_stale_2_s_after_its_last_frame_and_once_every_2_s(void **state)
+/* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
+static void begin_round(unsigned round)
 {
-    (void)state;
+    static const uint32_t starts_us[] = {RIG_START_US, 0xFFFFFFFFu - 50000, 0xFFFFFFFFu - 1000000};
+    start_us = starts_us[round / 2];
+    loop_us = round % 2 != 0 ? 20000 : 1000;
+    if (round != 0) return;
+    seal(impossible);
+    seal(of_unit_2);
+}
+
+static const suite_t suite = {.set_up = set_up, .begin_round = begin_round, .rounds = 6};
+
+TEST(it_is_stale_2_s_after_its_last_frame_and_once_every_2_s)
+{
     for (unsigned i = 0; i != 3; i++) rig_send(example, LENGTH, loop_us);
     assert_int_equal(rig.samples, 3);
     rig_run(1900000, loop_us);
@@ -60,9 +68,8 @@ static void it_is_stale_2_s_after_its_last_frame_and_once_every_2_s(void **state
     assert_int_equal(rig.samples, 3);
 }
 
-static void a_frame_after_that_begins_the_deadline_anew(void **state)
+TEST(a_frame_after_that_begins_the_deadline_anew)
 {
-    (void)state;
     rig_send(example, LENGTH, loop_us);
     rig_run(2100000, loop_us);
     assert_int_equal(rig.stales, 1);
@@ -74,9 +81,8 @@ static void a_frame_after_that_begins_the_deadline_anew(void **state)
     assert_int_equal(rig.stales, 2);
 }
 
-static void frames_that_are_no_samples_do_not_keep_it_from_turning_stale(void **state)
+TEST(frames_that_are_no_samples_do_not_keep_it_from_turning_stale)
 {
-    (void)state;
     rig_send(example, LENGTH, loop_us);
     for (unsigned i = 0; i != 10; i++) {
         rig_send(impossible, LENGTH, loop_us);
@@ -87,27 +93,4 @@ static void frames_that_are_no_samples_do_not_keep_it_from_turning_stale(void **
     assert_int_equal(rig.samples, 1);
     assert_int_equal(rig.malformed, 10);
     assert_int_equal(rig.stales, 1);
-}
-
-/* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
-int main(void)
-{
-    static const uint32_t starts_us[] = {RIG_START_US, 0xFFFFFFFFu - 50000, 0xFFFFFFFFu - 1000000};
-    static const uint32_t loops_us[] = {1000, 20000};
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(it_is_stale_2_s_after_its_last_frame_and_once_every_2_s, set_up),
-        cmocka_unit_test_setup(a_frame_after_that_begins_the_deadline_anew, set_up),
-        cmocka_unit_test_setup(frames_that_are_no_samples_do_not_keep_it_from_turning_stale, set_up),
-    };
-    int failed = 0;
-    seal(impossible);
-    seal(of_unit_2);
-    for (unsigned i = 0; i != 3; i++) {
-        for (unsigned k = 0; k != 2; k++) {
-            start_us = starts_us[i];
-            loop_us = loops_us[k];
-            failed += cmocka_run_group_tests(tests, NULL, NULL);
-        }
-    }
-    return failed;
 }

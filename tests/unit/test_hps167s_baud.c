@@ -25,10 +25,11 @@ static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&desk.hps
         {unit, 6, 0, 0x11, 0, code}, ends, {2}, baud                                                         \
     }
 
-static void the_driver_follows_the_device_to_its_rate(void **state)
+DESK_SUITE;
+
+TEST(the_driver_follows_the_device_to_its_rate)
 {
     static const uint32_t bauds[] = {57600, 115200, 230400};
-    (void)state;
     for (uint8_t i = 0; i != 3; i++) {
         const uint8_t code = (uint8_t)(i + 2);
         desk_start_at(1, &factory);
@@ -54,10 +55,9 @@ static void the_driver_follows_the_device_to_its_rate(void **state)
     }
 }
 
-static void only_the_four_rates_are_taken_and_only_where_the_settings_are_named(void **state)
+TEST(only_the_four_rates_are_taken_and_only_where_the_settings_are_named)
 {
     static const uint32_t wrong[] = {0, 1, 2, 3, 4, 9600, 19201, 38400, 115201, 460800};
-    (void)state;
     desk_start_at(1, &factory);
     for (unsigned i = 0; i != sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(fathom_hps167s_set_baud(&desk.hps, wrong[i]), FATHOM_ERR_ARGUMENT);
@@ -66,9 +66,8 @@ static void only_the_four_rates_are_taken_and_only_where_the_settings_are_named(
     assert_int_equal(desk.fake.submits + desk.fake.polls, 0);
 }
 
-static void the_rate_that_it_has_is_not_written(void **state)
+TEST(the_rate_that_it_has_is_not_written)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 19200;
     assert_int_equal(desk_play(set_baud, ROWS(IS(1, 1, 19200))), FATHOM_READY);
@@ -76,9 +75,8 @@ static void the_rate_that_it_has_is_not_written(void **state)
     desk_asks(1, 19200);
 }
 
-static void a_rate_that_the_port_cannot_do_is_not_set(void **state)
+TEST(a_rate_that_the_port_cannot_do_is_not_set)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 230400;
     assert_int_equal(desk_play(set_baud, ROWS(IS(1, 1, 19200), TWO(1, FATHOM_ERR_UNSUPPORTED, 0, 230400))),
@@ -87,9 +85,8 @@ static void a_rate_that_the_port_cannot_do_is_not_set(void **state)
 }
 
 /* Another device of this address at the new rate. */
-static void a_rate_where_somebody_answers_is_in_use(void **state)
+TEST(a_rate_where_somebody_answers_is_in_use)
 {
-    (void)state;
     desk_start_at(3, &factory);
     desk.argument = 57600;
     assert_int_equal(desk_play(set_baud, ROWS(IS(3, 1, 19200), IS(3, 2, 57600))), FATHOM_ERR_IN_USE);
@@ -100,9 +97,8 @@ static void a_rate_where_somebody_answers_is_in_use(void **state)
     IS(1, 1, 19200), TWO(1, NOBODY, 0, baud), RATE(1, code, OK, 19200), TWO(1, NOBODY, 0, baud),             \
         IS(1, code, 19200)
 
-static void a_rate_from_the_next_power_on_is_asked_at_then(void **state)
+TEST(a_rate_from_the_next_power_on_is_asked_at_then)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 115200;
     assert_int_equal(desk_play(set_baud, ROWS(LATER(3, 115200))), FATHOM_READY);
@@ -119,9 +115,8 @@ static void a_rate_from_the_next_power_on_is_asked_at_then(void **state)
     }
 }
 
-static void after_power_on_both_rates_are_asked_in_turns_until_it_answers(void **state)
+TEST(after_power_on_both_rates_are_asked_in_turns_until_it_answers)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 115200;
     assert_int_equal(desk_play(set_baud, ROWS(LATER(3, 115200))), FATHOM_READY);
@@ -145,9 +140,8 @@ static void after_power_on_both_rates_are_asked_in_turns_until_it_answers(void *
 }
 
 /* Whatever it says, it says it there. */
-static void any_word_of_the_device_tells_where_it_is(void **state)
+TEST(any_word_of_the_device_tells_where_it_is)
 {
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         desk_start_at(1, &factory);
         desk.config.warm_up_s = 1;
@@ -177,9 +171,8 @@ static void any_word_of_the_device_tells_where_it_is(void **state)
 }
 
 /* The application was started anew: the device says 115200 and answers at 19200. */
-static void a_rate_that_waits_for_power_on_is_known_from_the_device(void **state)
+TEST(a_rate_that_waits_for_power_on_is_known_from_the_device)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 115200;
     assert_int_equal(desk_play(set_baud, ROWS(IS(1, 3, 19200))), FATHOM_READY);
@@ -196,9 +189,8 @@ static void a_rate_that_waits_for_power_on_is_known_from_the_device(void **state
     IS(1, 1, 19200), TWO(1, NOBODY, 0, 57600), RATE(1, 2, NOBODY, 19200), TWO(1, NOBODY, 0, 57600),          \
         TWO(1, NOBODY, 0, 19200)
 
-static void an_unconfirmed_rate_is_looked_for_at_both(void **state)
+TEST(an_unconfirmed_rate_is_looked_for_at_both)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 57600;
     assert_int_equal(desk_play(set_baud, ROWS(LOST)), FATHOM_ERR_UNCONFIRMED);
@@ -210,9 +202,8 @@ static void an_unconfirmed_rate_is_looked_for_at_both(void **state)
 }
 
 /* The next setting begins with finding it. */
-static void a_setting_waits_until_the_device_is_found(void **state)
+TEST(a_setting_waits_until_the_device_is_found)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 57600;
     assert_int_equal(desk_play(set_baud, ROWS(LOST)), FATHOM_ERR_UNCONFIRMED);
@@ -224,9 +215,8 @@ static void a_setting_waits_until_the_device_is_found(void **state)
     desk_asks(1, 230400);
 }
 
-static void an_unconfirmed_code_at_the_same_rate_is_not_looked_for_elsewhere(void **state)
+TEST(an_unconfirmed_code_at_the_same_rate_is_not_looked_for_elsewhere)
 {
-    (void)state;
     desk_start_at(1, &factory);
     desk.argument = 19200;
     assert_int_equal(
@@ -237,9 +227,8 @@ static void an_unconfirmed_code_at_the_same_rate_is_not_looked_for_elsewhere(voi
     desk_asks(1, 19200);
 }
 
-static void another_setting_does_not_touch_the_rate_that_is_being_set(void **state)
+TEST(another_setting_does_not_touch_the_rate_that_is_being_set)
 {
-    (void)state;
     desk_start_at(1, &factory);
     assert_int_equal(fathom_hps167s_set_baud(&desk.hps, 57600), FATHOM_PENDING);
     assert_int_equal(fathom_hps167s_set_baud(&desk.hps, 115200), FATHOM_ERR_BUSY);
@@ -251,27 +240,3 @@ static void another_setting_does_not_touch_the_rate_that_is_being_set(void **sta
                                               RATE(1, 2, OK, 19200), IS(1, 2, 57600))),
                      FATHOM_READY);
 }
-
-#define FRESH(test) cmocka_unit_test_setup(test, desk_set_up)
-
-static int group(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_driver_follows_the_device_to_its_rate),
-        FRESH(only_the_four_rates_are_taken_and_only_where_the_settings_are_named),
-        FRESH(the_rate_that_it_has_is_not_written),
-        FRESH(a_rate_that_the_port_cannot_do_is_not_set),
-        FRESH(a_rate_where_somebody_answers_is_in_use),
-        FRESH(a_rate_from_the_next_power_on_is_asked_at_then),
-        FRESH(after_power_on_both_rates_are_asked_in_turns_until_it_answers),
-        FRESH(any_word_of_the_device_tells_where_it_is),
-        FRESH(a_rate_that_waits_for_power_on_is_known_from_the_device),
-        FRESH(an_unconfirmed_rate_is_looked_for_at_both),
-        FRESH(a_setting_waits_until_the_device_is_found),
-        FRESH(an_unconfirmed_code_at_the_same_rate_is_not_looked_for_elsewhere),
-        FRESH(another_setting_does_not_touch_the_rate_that_is_being_set),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(void) { return desk_main(group); }

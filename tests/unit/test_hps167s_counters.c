@@ -1,22 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/hps167s.h"
 
 /* A distance of 31000 mm is none that an HPS-167S can mean (its range ends at 18 m). */
-static void refused_values_are_counted_and_the_count_stops_at_65535(void **state)
+TEST(refused_values_are_counted_and_the_count_stops_at_65535)
 {
     static const uint16_t refused[] = {31000, 0xDCB2, 0x0701, 0};
     static fathom_hps167s_t hps;
     fake_modbus_t fake;
     fathom_sample_t sample;
-    (void)state;
     fake_modbus_init(&fake);
     const fathom_hps167s_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
     assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_READY);
@@ -30,12 +26,4 @@ static void refused_values_are_counted_and_the_count_stops_at_65535(void **state
         assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_ERR_MALFORMED);
         assert_int_equal(hps.implausible, i == 0 ? 65534 : 65535);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refused_values_are_counted_and_the_count_stops_at_65535),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

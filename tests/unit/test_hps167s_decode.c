@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/hps167s.h"
 
@@ -29,10 +26,9 @@ static int kind_of(uint32_t raw)
     return raw <= 30000 ? FATHOM_TARGET : 0;
 }
 
-static void every_distance_is_what_the_rule_says(void **state)
+TEST(every_distance_is_what_the_rule_says)
 {
     unsigned counted[4] = {0, 0, 0, 0};
-    (void)state;
     for (uint32_t raw = 0; raw != 65536; raw++) {
         const uint16_t registers[4] = {(uint16_t)raw, 0xDCB2, 0x0742, 0x1234};
         const int kind = kind_of(raw);
@@ -57,9 +53,8 @@ static void every_distance_is_what_the_rule_says(void **state)
     assert_int_equal(counted[FATHOM_FAULT], 1);
 }
 
-static void decode_leaves_the_members_that_are_not_the_devices(void **state)
+TEST(decode_leaves_the_members_that_are_not_the_devices)
 {
-    (void)state;
     memset(&sample, GUARD, sizeof sample);
     assert_int_equal(fathom_hps167s_decode(measured, &sample), FATHOM_READY);
     assert_int_equal(sample.time_us, 0xA5A5A5A5);
@@ -69,9 +64,8 @@ static void decode_leaves_the_members_that_are_not_the_devices(void **state)
     assert_int_equal(sample.probe, GUARD);
 }
 
-static void the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond(void **state)
+TEST(the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond)
 {
-    (void)state;
     for (unsigned exponent = 0; exponent != 256; exponent++) {
         const uint16_t registers[4] = {2083, 0xFFFF, (uint16_t)(exponent * 256), 0};
         const uint16_t over_range[4] = {65530, 0, (uint16_t)(exponent * 256), 0};
@@ -86,14 +80,4 @@ static void the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond(vo
             assert_guard(&sample, sizeof sample);
         assert_int_equal(fathom_hps167s_decode(over_range, &sample), expected);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_distance_is_what_the_rule_says),
-        cmocka_unit_test(decode_leaves_the_members_that_are_not_the_devices),
-        cmocka_unit_test(the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

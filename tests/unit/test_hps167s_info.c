@@ -33,11 +33,12 @@ static fathom_status_t read_temperature(void)
 #define TELLS_2  0xFF00, 0x0500, 0x0000, 0xB402
 #define MEASURES 0x0823, 0xDCB2, 0x0701, 0x0000 /* the example of #5 */
 
+DESK_SUITE;
+
 /* ---- #2 ---- */
 
-static void the_configuration_is_believed_when_two_answers_agree(void **state)
+TEST(the_configuration_is_believed_when_two_answers_agree)
 {
-    (void)state;
     desk_start();
     assert_int_equal(
         desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {TELLS}, 0}, {ASK_2, FATHOM_READY, {TELLS}, 0})),
@@ -49,7 +50,7 @@ static void the_configuration_is_believed_when_two_answers_agree(void **state)
     assert_int_equal(is.baud, 19200);
 }
 
-static void every_member_of_the_configuration_is_its_own_bytes(void **state)
+TEST(every_member_of_the_configuration_is_its_own_bytes)
 {
     static const struct {
         uint16_t registers[4];
@@ -65,7 +66,6 @@ static void every_member_of_the_configuration_is_its_own_bytes(void **state)
         /* The highest bit of each byte set: FEDCBA98 = 4275878552 = 18 * 237548808 + 8, so FEDCBA90 */
         {{0x00FF, 0x05FE, 0xDCBA, 0x9001}, false, true, 5, 0xFEDCBA90, 19200},
     };
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         const uint16_t *const r = rows[i].registers;
         desk_set_up(NULL);
@@ -81,9 +81,8 @@ static void every_member_of_the_configuration_is_its_own_bytes(void **state)
     }
 }
 
-static void a_measurement_in_its_place_is_passed_over(void **state)
+TEST(a_measurement_in_its_place_is_passed_over)
 {
-    (void)state;
     desk_start();
     assert_int_equal(
         desk_play(configuration,
@@ -95,9 +94,8 @@ static void a_measurement_in_its_place_is_passed_over(void **state)
     assert_int_equal(is.baud, 57600);
 }
 
-static void two_answers_that_differ_are_not_enough(void **state)
+TEST(two_answers_that_differ_are_not_enough)
 {
-    (void)state;
     desk_start();
     assert_int_equal(
         desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {TELLS}, 0}, {ASK_2, FATHOM_READY, {TELLS_2}, 0},
@@ -109,9 +107,8 @@ static void two_answers_that_differ_are_not_enough(void **state)
 #define TWICE                                                                                                \
     {ASK_2, FATHOM_READY, {TELLS}, 0}, { ASK_2, FATHOM_READY, {TELLS_2}, 0 }
 
-static void after_eight_answers_without_agreement_it_gives_up(void **state)
+TEST(after_eight_answers_without_agreement_it_gives_up)
 {
-    (void)state;
     desk_start();
     assert_int_equal(desk_play(configuration, ROWS(TWICE, TWICE, TWICE, TWICE)), FATHOM_ERR_MALFORMED);
     desk_assert_guard(&is, sizeof is);
@@ -122,7 +119,7 @@ static void after_eight_answers_without_agreement_it_gives_up(void **state)
 }
 
 /* Each differs from an answer to #2 in one thing. */
-static void what_cannot_be_an_answer_to_2_never_counts(void **state)
+TEST(what_cannot_be_an_answer_to_2_never_counts)
 {
     static const uint16_t wrong[][4] = {
         {0x01FF, 0x0500, 0x0000, 0xB401},
@@ -139,7 +136,6 @@ static void what_cannot_be_an_answer_to_2_never_counts(void **state)
         /* the abnormal packet of #5 */
         {0xFFFF, 0x0000, 0x00FF, 0xFFFF},
     };
-    (void)state;
     for (unsigned i = 0; i != sizeof wrong / sizeof *wrong; i++) {
         const uint16_t *const r = wrong[i];
         const row_t row = {ASK_2, FATHOM_READY, {r[0], r[1], r[2], r[3]}, 0};
@@ -152,10 +148,9 @@ static void what_cannot_be_an_answer_to_2_never_counts(void **state)
     }
 }
 
-static void an_error_ends_it_and_the_next_time_begins_anew(void **state)
+TEST(an_error_ends_it_and_the_next_time_begins_anew)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION};
-    (void)state;
     desk_start();
     for (unsigned i = 0; i != 3; i++) {
         assert_int_equal(desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {TELLS}, 0},
@@ -169,11 +164,10 @@ static void an_error_ends_it_and_the_next_time_begins_anew(void **state)
 }
 
 /* A target at exactly 255 mm with just these figures, sent unasked: it was measured just before. */
-static void what_was_measured_last_is_no_configuration(void **state)
+TEST(what_was_measured_last_is_no_configuration)
 {
     static const uint16_t near[4] = {0x00FF, 0x0100, 0x0000, 0xB401};
     const row_t row = {ASK_2, FATHOM_READY, {0x00FF, 0x0100, 0x0000, 0xB401}, 0};
-    (void)state;
     desk_start();
     assert_int_equal(desk_poll(), FATHOM_PENDING);
     fake_modbus_answer(&desk.fake, near, 4);
@@ -185,11 +179,10 @@ static void what_was_measured_last_is_no_configuration(void **state)
 }
 
 /* An unasked frame was taken for the answer, and the answer comes when a measurement is being waited for. */
-static void what_was_told_last_is_no_measurement(void **state)
+TEST(what_was_told_last_is_no_measurement)
 {
     static const uint16_t told[4] = {0x00FF, 0x0500, 0x0000, 0xB401}; /* termination off; or 255 mm */
     static const uint16_t other[4] = {0x00FF, 0x0500, 0x0000, 0xB402};
-    (void)state;
     desk_start();
     assert_int_equal(
         desk_play(configuration, ROWS({ASK_2, FATHOM_READY, {0x00FF, 0x0500, 0x0000, 0xB401}, 0},
@@ -208,9 +201,8 @@ static void what_was_told_last_is_no_measurement(void **state)
     assert_int_equal(desk.sample.distance_mm, 255);
 }
 
-static void the_configuration_given_up_begins_anew(void **state)
+TEST(the_configuration_given_up_begins_anew)
 {
-    (void)state;
     desk_start();
     assert_int_equal(configuration(), FATHOM_PENDING);
     fake_modbus_answer(&desk.fake, (const uint16_t[]){TELLS}, 4);
@@ -223,9 +215,8 @@ static void the_configuration_given_up_begins_anew(void **state)
         FATHOM_READY);
 }
 
-static void a_second_command_does_not_disturb_it(void **state)
+TEST(a_second_command_does_not_disturb_it)
 {
-    (void)state;
     desk_start();
     assert_int_equal(read_temperature(), FATHOM_PENDING);
     assert_int_equal(configuration(), FATHOM_ERR_BUSY);
@@ -237,10 +228,9 @@ static void a_second_command_does_not_disturb_it(void **state)
 
 /* ---- its options ---- */
 
-static void how_many_answers_have_to_agree_is_an_option(void **state)
+TEST(how_many_answers_have_to_agree_is_an_option)
 {
     const row_t row = {ASK_2, FATHOM_READY, {TELLS}, 0};
-    (void)state;
     desk.config.same_answers = 1;
     desk_start();
     assert_int_equal(desk_play(configuration, &row, 1), FATHOM_READY);
@@ -257,10 +247,9 @@ static void how_many_answers_have_to_agree_is_an_option(void **state)
 }
 
 /* #9: "the others are all 19200bps". */
-static void other_baud_codes_can_be_19200(void **state)
+TEST(other_baud_codes_can_be_19200)
 {
     static const uint16_t codes[] = {0x00, 0x05, 0xFF};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         const uint16_t last = (uint16_t)(0xB400 + codes[i]);
         desk_set_up(NULL);
@@ -275,9 +264,8 @@ static void other_baud_codes_can_be_19200(void **state)
 }
 
 /* 0001 0012 is 65554 the one way, 18 * 65536 + 1 the other; 0012 0000 the other way is 18. */
-static void the_reconnect_time_can_have_its_low_word_first(void **state)
+TEST(the_reconnect_time_can_have_its_low_word_first)
 {
-    (void)state;
     desk.config.low_word_first = true;
     desk_start();
     assert_int_equal(
@@ -290,7 +278,7 @@ static void the_reconnect_time_can_have_its_low_word_first(void **state)
 /* ---- #4 ---- */
 
 /* By hand: (F - 32) * 50 / 9. */
-static void the_temperature_is_fahrenheit_and_tenths_of_celsius(void **state)
+TEST(the_temperature_is_fahrenheit_and_tenths_of_celsius)
 {
     static const struct {
         uint16_t raw;
@@ -311,7 +299,6 @@ static void the_temperature_is_fahrenheit_and_tenths_of_celsius(void **state)
         {0xE916, -5866, -32767},
         {0xE917, -5865, -32761},
     };
-    (void)state;
     desk_start();
     for (unsigned i = 0; i != sizeof rows / sizeof *rows; i++) {
         assert_int_equal(desk_play(read_temperature, ROWS({ASK_4, FATHOM_READY, {rows[i].raw, 0, 0, 0}, 0})),
@@ -322,10 +309,9 @@ static void the_temperature_is_fahrenheit_and_tenths_of_celsius(void **state)
 }
 
 /* 5931 degF are 32771.7 tenths, -5867 are -32772.2, and the ends of int16. */
-static void a_temperature_that_does_not_fit_is_refused(void **state)
+TEST(a_temperature_that_does_not_fit_is_refused)
 {
     static const uint16_t wrong[] = {5931, 0x7FFF, 0xE915, 0x8000};
-    (void)state;
     desk_start();
     for (unsigned i = 0; i != 4; i++) {
         assert_int_equal(desk_play(read_temperature, ROWS({ASK_4, FATHOM_READY, {wrong[i], 0, 0, 0}, 0})),
@@ -334,9 +320,8 @@ static void a_temperature_that_does_not_fit_is_refused(void **state)
     }
 }
 
-static void the_temperature_can_count_in_finer_steps(void **state)
+TEST(the_temperature_can_count_in_finer_steps)
 {
-    (void)state;
     desk.config.steps_per_degree = 10;
     desk_start();
     assert_int_equal(desk_play(read_temperature, ROWS({ASK_4, FATHOM_READY, {770, 0, 0, 0}, 0})),
@@ -348,40 +333,10 @@ static void the_temperature_can_count_in_finer_steps(void **state)
     assert_int_equal(temperature.temperature_dc, -178); /* (-0.1 - 32) * 50 / 9 = -178.3 */
 }
 
-static void an_error_of_the_temperature_writes_nothing(void **state)
+TEST(an_error_of_the_temperature_writes_nothing)
 {
-    (void)state;
     desk_start();
     assert_int_equal(desk_play(read_temperature, ROWS({ASK_4, FATHOM_ERR_CHECKSUM, {0, 0, 0, 0}, 0})),
                      FATHOM_ERR_CHECKSUM);
     desk_assert_guard(&temperature, sizeof temperature);
 }
-
-#define FRESH(test) cmocka_unit_test_setup(test, desk_set_up)
-
-static int group(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_configuration_is_believed_when_two_answers_agree),
-        FRESH(every_member_of_the_configuration_is_its_own_bytes),
-        FRESH(a_measurement_in_its_place_is_passed_over),
-        FRESH(two_answers_that_differ_are_not_enough),
-        FRESH(after_eight_answers_without_agreement_it_gives_up),
-        FRESH(what_cannot_be_an_answer_to_2_never_counts),
-        FRESH(an_error_ends_it_and_the_next_time_begins_anew),
-        FRESH(what_was_measured_last_is_no_configuration),
-        FRESH(what_was_told_last_is_no_measurement),
-        FRESH(the_configuration_given_up_begins_anew),
-        FRESH(a_second_command_does_not_disturb_it),
-        FRESH(how_many_answers_have_to_agree_is_an_option),
-        FRESH(other_baud_codes_can_be_19200),
-        FRESH(the_reconnect_time_can_have_its_low_word_first),
-        FRESH(the_temperature_is_fahrenheit_and_tenths_of_celsius),
-        FRESH(a_temperature_that_does_not_fit_is_refused),
-        FRESH(the_temperature_can_count_in_finer_steps),
-        FRESH(an_error_of_the_temperature_writes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(void) { return desk_main(group); }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake.h"
 #include "fathom/hps167s_info.h"
@@ -17,7 +14,7 @@ static fathom_sample_t sample;
 static fathom_hps167s_version_t version;
 static fathom_hps167s_details_t details;
 
-static void commands_3_and_5_go_over_a_line_byte_for_byte(void **state)
+TEST(commands_3_and_5_go_over_a_line_byte_for_byte)
 {
     static const uint8_t ask_5[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* table 17 */
     static const uint8_t say_5[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
@@ -30,7 +27,6 @@ static void commands_3_and_5_go_over_a_line_byte_for_byte(void **state)
     uint8_t frame[27];
     fathom_line_t line;
     fathom_status_t status = FATHOM_PENDING;
-    (void)state;
     fake_init(&uart);
     uart.byte_us = 573;
     const fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, 27, FATHOM_LINE_ECHO_AUTO,
@@ -63,12 +59,11 @@ static void commands_3_and_5_go_over_a_line_byte_for_byte(void **state)
 }
 
 /* 27 bytes for the details (hps167s.h), 13 for a measurement. */
-static void a_line_with_less_room_than_an_answer_says_capacity(void **state)
+TEST(a_line_with_less_room_than_an_answer_says_capacity)
 {
     static fake_t uart;
     uint8_t frame[26];
     fathom_line_t line;
-    (void)state;
     fake_init(&uart);
     fathom_line_config_t line_config = {&uart.uart, &uart.clock, frame, 26, FATHOM_LINE_ECHO_AUTO,
                                         2006,       5000};
@@ -83,13 +78,4 @@ static void a_line_with_less_room_than_an_answer_says_capacity(void **state)
     line_config.frame_size = 13;
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
     assert_int_equal(fathom_hps167s_interface_version(&hps, &version), FATHOM_PENDING);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(commands_3_and_5_go_over_a_line_byte_for_byte),
-        cmocka_unit_test(a_line_with_less_room_than_an_answer_says_capacity),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,11 +35,12 @@ static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_setti
         {unit, 3, 0, 9, 0, 1}, ends, {says}, baud                                                            \
     }
 
+DESK_SUITE;
+
 /* ---- #8 ---- */
 
-static void the_driver_follows_the_device_to_its_address(void **state)
+TEST(the_driver_follows_the_device_to_its_address)
 {
-    (void)state;
     desk_start();
     desk.argument = 32;
     assert_int_equal(
@@ -52,9 +53,8 @@ static void the_driver_follows_the_device_to_its_address(void **state)
     assert_int_equal(desk.sample.unit, 32);
 }
 
-static void addresses_are_1_to_32(void **state)
+TEST(addresses_are_1_to_32)
 {
-    (void)state;
     desk_start();
     for (unsigned address = 0; address != 256; address++) {
         const fathom_status_t status = fathom_hps167s_set_address(&desk.hps, (uint8_t)address);
@@ -65,17 +65,15 @@ static void addresses_are_1_to_32(void **state)
     }
 }
 
-static void the_address_that_it_has_is_not_written(void **state)
+TEST(the_address_that_it_has_is_not_written)
 {
-    (void)state;
     desk_start();
     desk.argument = 1;
     assert_int_equal(desk_play(set_address, ROWS(ONE(1, OK, 0))), FATHOM_READY);
 }
 
-static void an_address_where_somebody_answers_is_in_use(void **state)
+TEST(an_address_where_somebody_answers_is_in_use)
 {
-    (void)state;
     desk_start();
     desk.argument = 5;
     assert_int_equal(desk_play(set_address, ROWS(ONE(1, OK, 0), ONE(5, OK, 0))), FATHOM_ERR_IN_USE);
@@ -83,9 +81,8 @@ static void an_address_where_somebody_answers_is_in_use(void **state)
 }
 
 /* It may acknowledge from the new address, where nobody was asked. */
-static void an_acknowledgement_from_the_new_address_is_as_good(void **state)
+TEST(an_acknowledgement_from_the_new_address_is_as_good)
 {
-    (void)state;
     desk_start();
     desk.argument = 5;
     assert_int_equal(
@@ -94,9 +91,8 @@ static void an_acknowledgement_from_the_new_address_is_as_good(void **state)
     desk_asks(5, 0);
 }
 
-static void a_device_that_answers_at_neither_address_is_unconfirmed(void **state)
+TEST(a_device_that_answers_at_neither_address_is_unconfirmed)
 {
-    (void)state;
     desk_start();
     desk.argument = 5;
     assert_int_equal(desk_play(set_address, ROWS(ONE(1, OK, 0), ONE(5, NOBODY, 0), MOVE(1, 5, OK),
@@ -107,9 +103,8 @@ static void a_device_that_answers_at_neither_address_is_unconfirmed(void **state
 
 /* ---- #6 ---- */
 
-static void a_reset_device_is_followed_to_address_1(void **state)
+TEST(a_reset_device_is_followed_to_address_1)
 {
-    (void)state;
     desk_start_at(7, NULL);
     assert_int_equal(
         desk_play(reset, ROWS(IS(7, 1, 0), TWO(1, NOBODY, 0, 0), RESET(7, OK, 1, 0), IS(1, 1, 0))),
@@ -119,9 +114,8 @@ static void a_reset_device_is_followed_to_address_1(void **state)
     desk_asks(1, 0);
 }
 
-static void a_reset_device_is_followed_to_19200(void **state)
+TEST(a_reset_device_is_followed_to_19200)
 {
-    (void)state;
     desk_start_at(7, &fast);
     assert_int_equal(desk_play(reset, ROWS(IS(7, 3, 115200), TWO(1, NOBODY, 0, 19200),
                                            RESET(7, OK, 1, 115200), IS(1, 1, 19200))),
@@ -135,9 +129,8 @@ static void a_reset_device_is_followed_to_19200(void **state)
     desk_asks(1, 19200);
 }
 
-static void where_it_is_at_home_already_its_word_and_a_reading_are_enough(void **state)
+TEST(where_it_is_at_home_already_its_word_and_a_reading_are_enough)
 {
-    (void)state;
     desk_start_at(1, &factory);
     assert_int_equal(desk_play(reset, ROWS(IS(1, 1, 19200), RESET(1, OK, 1, 19200), IS(1, 1, 19200))),
                      FATHOM_READY);
@@ -148,9 +141,8 @@ static void where_it_is_at_home_already_its_word_and_a_reading_are_enough(void *
         FATHOM_ERR_UNCONFIRMED);
 }
 
-static void a_reset_whose_rate_waits_for_power_on_is_followed_then(void **state)
+TEST(a_reset_whose_rate_waits_for_power_on_is_followed_then)
 {
-    (void)state;
     desk_start_at(1, &fast);
     assert_int_equal(
         desk_play(reset, ROWS(IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200), RESET(1, OK, 1, 115200),
@@ -162,9 +154,8 @@ static void a_reset_whose_rate_waits_for_power_on_is_followed_then(void **state)
     desk_asks(1, 19200);
 }
 
-static void nobody_else_may_be_at_address_1(void **state)
+TEST(nobody_else_may_be_at_address_1)
 {
-    (void)state;
     desk_start_at(7, NULL);
     assert_int_equal(desk_play(reset, ROWS(IS(7, 1, 0), IS(1, 1, 0))), FATHOM_ERR_IN_USE);
     assert_int_equal(desk.hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
@@ -172,10 +163,9 @@ static void nobody_else_may_be_at_address_1(void **state)
 }
 
 /* Table 20: "otherwise an error code will be returned". */
-static void the_devices_own_error_code_is_kept(void **state)
+TEST(the_devices_own_error_code_is_kept)
 {
     static const uint16_t codes[] = {0, 2, 0x00FF, 0x0100};
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         desk_start_at(7, NULL);
         assert_int_equal(desk_play(reset, ROWS(IS(7, 1, 0), TWO(1, NOBODY, 0, 0), RESET(7, OK, codes[i], 0))),
@@ -189,18 +179,16 @@ static void the_devices_own_error_code_is_kept(void **state)
     }
 }
 
-static void a_modbus_exception_is_told_from_that(void **state)
+TEST(a_modbus_exception_is_told_from_that)
 {
-    (void)state;
     desk_start_at(1, NULL);
     assert_int_equal(desk_play(reset, ROWS(IS(1, 1, 0), RESET(1, EXCEPTION, 4, 0))), FATHOM_ERR_EXCEPTION);
     assert_int_equal(desk.hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
     assert_int_equal(desk.hps.unit.request.message.exception, 4);
 }
 
-static void a_reset_without_an_answer_shows_in_where_the_device_is(void **state)
+TEST(a_reset_without_an_answer_shows_in_where_the_device_is)
 {
-    (void)state;
     desk_start_at(7, NULL);
     assert_int_equal(
         desk_play(reset, ROWS(IS(7, 1, 0), TWO(1, NOBODY, 0, 0), RESET(7, NOBODY, 0, 0), IS(1, 1, 0))),
@@ -218,9 +206,8 @@ static void a_reset_without_an_answer_shows_in_where_the_device_is(void **state)
     desk_asks(7, 0);
 }
 
-static void a_reset_without_an_answer_shows_in_its_rate_too(void **state)
+TEST(a_reset_without_an_answer_shows_in_its_rate_too)
 {
-    (void)state;
     desk_start_at(1, &fast);
     assert_int_equal(desk_play(reset, ROWS(IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200),
                                            RESET(1, NOBODY, 0, 115200), IS(1, 1, 19200))),
@@ -229,9 +216,8 @@ static void a_reset_without_an_answer_shows_in_its_rate_too(void **state)
 }
 
 /* It is where it was, which shows nothing. */
-static void a_reset_without_an_answer_at_address_1_is_unconfirmed(void **state)
+TEST(a_reset_without_an_answer_at_address_1_is_unconfirmed)
 {
-    (void)state;
     desk_start_at(1, NULL);
     assert_int_equal(desk_play(reset, ROWS(IS(1, 1, 0), RESET(1, NOBODY, 0, 0), IS(1, 1, 0))),
                      FATHOM_ERR_UNCONFIRMED);
@@ -242,18 +228,16 @@ static void a_reset_without_an_answer_at_address_1_is_unconfirmed(void **state)
         FATHOM_ERR_UNCONFIRMED);
 }
 
-static void a_device_that_is_not_there_is_not_reset(void **state)
+TEST(a_device_that_is_not_there_is_not_reset)
 {
-    (void)state;
     desk_start_at(1, NULL);
     desk.config.retries = 2;
     desk_start();
     assert_int_equal(desk_play(reset, ROWS(TWO(1, NOBODY, 0, 0))), FATHOM_ERR_NO_ANSWER);
 }
 
-static void a_reset_is_never_retried_and_can_be_done_again(void **state)
+TEST(a_reset_is_never_retried_and_can_be_done_again)
 {
-    (void)state;
     desk_start_at(1, NULL);
     desk.config.retries = 2;
     desk_start();
@@ -274,32 +258,3 @@ static void a_reset_is_never_retried_and_can_be_done_again(void **state)
         assert_int_equal(resets, 1);
     }
 }
-
-#define FRESH(test) cmocka_unit_test_setup(test, desk_set_up)
-
-static int group(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_driver_follows_the_device_to_its_address),
-        FRESH(addresses_are_1_to_32),
-        FRESH(the_address_that_it_has_is_not_written),
-        FRESH(an_address_where_somebody_answers_is_in_use),
-        FRESH(an_acknowledgement_from_the_new_address_is_as_good),
-        FRESH(a_device_that_answers_at_neither_address_is_unconfirmed),
-        FRESH(a_reset_device_is_followed_to_address_1),
-        FRESH(a_reset_device_is_followed_to_19200),
-        FRESH(where_it_is_at_home_already_its_word_and_a_reading_are_enough),
-        FRESH(a_reset_whose_rate_waits_for_power_on_is_followed_then),
-        FRESH(nobody_else_may_be_at_address_1),
-        FRESH(the_devices_own_error_code_is_kept),
-        FRESH(a_modbus_exception_is_told_from_that),
-        FRESH(a_reset_without_an_answer_shows_in_where_the_device_is),
-        FRESH(a_reset_without_an_answer_shows_in_its_rate_too),
-        FRESH(a_reset_without_an_answer_at_address_1_is_unconfirmed),
-        FRESH(a_device_that_is_not_there_is_not_reset),
-        FRESH(a_reset_is_never_retried_and_can_be_done_again),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(void) { return desk_main(group); }

@@ -31,11 +31,12 @@ static fathom_status_t says(const uint16_t *registers)
     return as;
 }
 
+DESK_SUITE;
+
 /* ---- warm-up ---- */
 
-static void silence_damage_refusal_and_the_abnormal_packet_are_warming_up(void **state)
+TEST(silence_damage_refusal_and_the_abnormal_packet_are_warming_up)
 {
-    (void)state;
     desk_start();
     fathom_hps167s_power_on(&desk.hps);
     assert_int_equal(ends_after(10000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_WARMING_UP);
@@ -50,9 +51,8 @@ static void silence_damage_refusal_and_the_abnormal_packet_are_warming_up(void *
     assert_int_equal(says(abnormal), FATHOM_ERR_WARMING_UP);
 }
 
-static void without_power_on_they_are_what_they_are(void **state)
+TEST(without_power_on_they_are_what_they_are)
 {
-    (void)state;
     desk_start();
     assert_int_equal(ends_after(10000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(ends_after(10000, FATHOM_ERR_EXCEPTION), FATHOM_ERR_EXCEPTION);
@@ -61,11 +61,10 @@ static void without_power_on_they_are_what_they_are(void **state)
 }
 
 /* Until when is silence no error: seconds of the config and one time-out. 0 is the factory's 5. */
-static void the_warm_up_is_an_option_and_its_last_question_counts(void **state)
+TEST(the_warm_up_is_an_option_and_its_last_question_counts)
 {
     static const uint32_t rows[][3] = {
         {0, 0, 5500000}, {1, 0, 1500000}, {9, 0, 9500000}, {255, 0, 255500000}, {2, 170000, 2170000}};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         for (unsigned late = 0; late != 2; late++) {
             desk_set_up(NULL);
@@ -90,9 +89,8 @@ static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_setti
         {1, 3, 0, 2, 0, 4}, FATHOM_READY, {0xFFFF, warm_up * 256, 0x0000, 0xB401}, 0                         \
     }
 
-static void a_warm_up_that_was_set_counts_from_then_on(void **state)
+TEST(a_warm_up_that_was_set_counts_from_then_on)
 {
-    (void)state;
     desk.config.warm_up_s = 1;
     desk_start();
     assert_int_equal(desk_play(nine, ROWS(IS(1), {{1, 6, 0, 0x0A, 0, 9}, FATHOM_READY, {0}, 0}, IS(9))),
@@ -108,10 +106,9 @@ static void a_warm_up_that_was_set_counts_from_then_on(void **state)
     assert_int_equal(ends_after(100000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_NO_ANSWER);
 }
 
-static void power_forgets_what_was_under_way(void **state)
+TEST(power_forgets_what_was_under_way)
 {
     fathom_hps167s_configuration_t is;
-    (void)state;
     desk_start();
     assert_int_equal(fathom_hps167s_configuration(&desk.hps, &is), FATHOM_PENDING);
     fathom_hps167s_power_on(&desk.hps);
@@ -128,9 +125,8 @@ static int kind_of(uint16_t raw)
     return says(registers) == FATHOM_READY ? desk.sample.kind : 0;
 }
 
-static void the_largest_distance_is_an_option(void **state)
+TEST(the_largest_distance_is_an_option)
 {
-    (void)state;
     desk_start();
     assert_int_equal(kind_of(30000), FATHOM_TARGET);
     assert_int_equal(kind_of(30001), 0);
@@ -143,9 +139,8 @@ static void the_largest_distance_is_an_option(void **state)
     assert_int_equal(desk.hps.implausible, 1);
 }
 
-static void where_over_range_begins_is_an_option(void **state)
+TEST(where_over_range_begins_is_an_option)
 {
-    (void)state;
     desk_start();
     assert_int_equal(kind_of(65529), 0);
     assert_int_equal(kind_of(65530), FATHOM_NO_TARGET);
@@ -158,10 +153,9 @@ static void where_over_range_begins_is_an_option(void **state)
     assert_int_equal(kind_of(65535), FATHOM_FAULT);
 }
 
-static void limits_that_make_no_sense_are_refused(void **state)
+TEST(limits_that_make_no_sense_are_refused)
 {
     static const uint16_t wrong[][2] = {{0, 65535}, {0, 30000}, {65530, 0}, {100, 100}, {65534, 65534}};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         desk.config.limits.max_mm = wrong[i][0];
         desk.config.limits.over_range_mm = wrong[i][1];
@@ -173,13 +167,12 @@ static void limits_that_make_no_sense_are_refused(void **state)
 }
 
 /* Never a distance, whatever the rest of the packet says. */
-static void all_ones_are_a_fault_without_the_full_pattern_too(void **state)
+TEST(all_ones_are_a_fault_without_the_full_pattern_too)
 {
     static const uint16_t packets[][4] = {{0xFFFF, 0x0001, 0x00FF, 0xFFFF},
                                           {0xFFFF, 0x0000, 0x0000, 0xFFFF},
                                           {0xFFFF, 0x0000, 0x00FF, 0x0000},
                                           {0xFFFF, 0xDCB2, 0x0701, 0x0000}};
-    (void)state;
     desk_start();
     for (unsigned i = 0; i != 4; i++) {
         assert_int_equal(says(packets[i]), FATHOM_READY);
@@ -187,23 +180,3 @@ static void all_ones_are_a_fault_without_the_full_pattern_too(void **state)
         assert_int_equal(desk.sample.distance_mm, 0);
     }
 }
-
-#define FRESH(test) cmocka_unit_test_setup(test, desk_set_up)
-
-static int group(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(silence_damage_refusal_and_the_abnormal_packet_are_warming_up),
-        FRESH(without_power_on_they_are_what_they_are),
-        FRESH(the_warm_up_is_an_option_and_its_last_question_counts),
-        FRESH(a_warm_up_that_was_set_counts_from_then_on),
-        FRESH(power_forgets_what_was_under_way),
-        FRESH(the_largest_distance_is_an_option),
-        FRESH(where_over_range_begins_is_an_option),
-        FRESH(limits_that_make_no_sense_are_refused),
-        FRESH(all_ones_are_a_fault_without_the_full_pattern_too),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(void) { return desk_main(group); }

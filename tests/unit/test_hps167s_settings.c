@@ -67,9 +67,10 @@ static const struct {
 
 enum { CHANGES = sizeof changes / sizeof *changes };
 
-static void each_value_is_read_written_once_and_read_back(void **state)
+DESK_SUITE;
+
+TEST(each_value_is_read_written_once_and_read_back)
 {
-    (void)state;
     for (unsigned i = 0; i != CHANGES; i++) {
         const uint16_t *const r = changes[i].after;
         desk_set_up(NULL);
@@ -81,9 +82,8 @@ static void each_value_is_read_written_once_and_read_back(void **state)
     }
 }
 
-static void what_is_so_already_is_not_written(void **state)
+TEST(what_is_so_already_is_not_written)
 {
-    (void)state;
     for (unsigned i = 0; i != CHANGES; i++) {
         const uint16_t *const r = changes[i].after;
         desk_set_up(NULL);
@@ -93,9 +93,8 @@ static void what_is_so_already_is_not_written(void **state)
     }
 }
 
-static void on_is_ff(void **state)
+TEST(on_is_ff)
 {
-    (void)state;
     desk_start();
     desk.argument = 1;
     assert_int_equal(desk_play(measures, ROWS(IS(0xFF00, 0x0500, 0x0000, 0xB401),
@@ -106,10 +105,9 @@ static void on_is_ff(void **state)
                      FATHOM_READY);
 }
 
-static void a_reconnect_time_is_a_multiple_of_18(void **state)
+TEST(a_reconnect_time_is_a_multiple_of_18)
 {
     static const uint32_t wrong[] = {1, 17, 19, 181, 0xFFFFFFFF};
-    (void)state;
     desk_start();
     for (unsigned i = 0; i != 5; i++)
         assert_int_equal(fathom_hps167s_set_reconnect_time_ms(hps(), wrong[i]), FATHOM_ERR_ARGUMENT);
@@ -118,9 +116,8 @@ static void a_reconnect_time_is_a_multiple_of_18(void **state)
     assert_int_equal(fathom_hps167s_set_reconnect_time_ms(hps(), 0xFFFFFFFC), FATHOM_PENDING);
 }
 
-static void the_reconnect_time_goes_with_its_low_word_first_as_an_option(void **state)
+TEST(the_reconnect_time_goes_with_its_low_word_first_as_an_option)
 {
-    (void)state;
     desk.config.low_word_first = true;
     desk_start();
     desk.argument = 65556;
@@ -130,9 +127,8 @@ static void the_reconnect_time_goes_with_its_low_word_first_as_an_option(void **
                      FATHOM_READY);
 }
 
-static void a_write_is_not_retried_and_the_readings_are(void **state)
+TEST(a_write_is_not_retried_and_the_readings_are)
 {
-    (void)state;
     desk.config.retries = 3;
     desk_start();
     desk.argument = 9;
@@ -159,12 +155,11 @@ static void a_write_is_not_retried_and_the_readings_are(void **state)
     assert_int_equal(reads, 4);
 }
 
-static void what_goes_wrong_is_told_as_it_is(void **state)
+TEST(what_goes_wrong_is_told_as_it_is)
 {
     static const row_t write = {{1, 6, 0, 0x0A, 0, 9}, FATHOM_READY, {0}, 0};
     static const row_t refused = {{1, 6, 0, 0x0A, 0, 9}, FATHOM_ERR_EXCEPTION, {3}, 0};
     static const row_t lost = {{1, 6, 0, 0x0A, 0, 9}, FATHOM_ERR_NO_ANSWER, {0}, 0};
-    (void)state;
     desk_start();
     desk.argument = 9;
     assert_int_equal(desk_play(warm_up, ROWS(FAILS(FATHOM_ERR_NO_ANSWER))), FATHOM_ERR_NO_ANSWER);
@@ -181,13 +176,12 @@ static void what_goes_wrong_is_told_as_it_is(void **state)
 /* ---- write-only ---- */
 
 /* #12: "-15 = 0xFFF1". */
-static void the_offset_and_the_filter_go_as_int16(void **state)
+TEST(the_offset_and_the_filter_go_as_int16)
 {
     static const struct {
         int32_t value;
         uint8_t high, low;
     } rows[] = {{-15, 0xFF, 0xF1}, {15, 0, 15}, {-32768, 0x80, 0}, {32767, 0x7F, 0xFF}, {-100, 0xFF, 0x9C}};
-    (void)state;
     desk_start();
     for (unsigned i = 0; i != 5; i++) {
         const row_t twelve = {{1, 6, 0, 0x14, rows[i].high, rows[i].low}, FATHOM_READY, {0}, 0};
@@ -203,17 +197,15 @@ static void the_offset_and_the_filter_go_as_int16(void **state)
         {1, 6, 0, 0x15, 0, value}, ends, {2}, 0                                                              \
     }
 
-static void the_users_and_the_factorys_settings_are_loaded_by_functions_of_their_own(void **state)
+TEST(the_users_and_the_factorys_settings_are_loaded_by_functions_of_their_own)
 {
-    (void)state;
     desk_start();
     assert_int_equal(desk_play(load_user, ROWS(ASK_1, LOAD(0, FATHOM_READY))), FATHOM_READY);
     assert_int_equal(desk_play(load_factory, ROWS(ASK_1, LOAD(0xFF, FATHOM_READY))), FATHOM_READY);
 }
 
-static void one_is_not_taken_for_the_other_while_it_is_under_way(void **state)
+TEST(one_is_not_taken_for_the_other_while_it_is_under_way)
 {
-    (void)state;
     desk_start();
     assert_int_equal(load_user(), FATHOM_PENDING);
     fake_modbus_answer(&desk.fake, (const uint16_t[]){0x1409, 0x1B02, 0x0100}, 3);
@@ -231,9 +223,8 @@ static void one_is_not_taken_for_the_other_while_it_is_under_way(void **state)
     assert_int_equal(desk.fake.submits, 2);
 }
 
-static void a_setting_under_way_is_not_mixed_with_another_value(void **state)
+TEST(a_setting_under_way_is_not_mixed_with_another_value)
 {
-    (void)state;
     desk_start();
     desk.argument = 9;
     assert_int_equal(warm_up(), FATHOM_PENDING);
@@ -247,19 +238,17 @@ static void a_setting_under_way_is_not_mixed_with_another_value(void **state)
 }
 
 /* Words that differ in the second place only: 65556 and 65574 ms. */
-static void both_words_tell_a_reconnect_time_from_another(void **state)
+TEST(both_words_tell_a_reconnect_time_from_another)
 {
-    (void)state;
     desk_start();
     assert_int_equal(fathom_hps167s_set_reconnect_time_ms(hps(), 65556), FATHOM_PENDING);
     assert_int_equal(fathom_hps167s_set_reconnect_time_ms(hps(), 65574), FATHOM_ERR_BUSY);
     assert_int_equal(fathom_hps167s_set_reconnect_time_ms(hps(), 65556), FATHOM_PENDING);
 }
 
-static void a_device_that_is_not_there_is_told_nothing(void **state)
+TEST(a_device_that_is_not_there_is_told_nothing)
 {
     static const row_t silence = {{1, 3, 0, 1, 0, 3}, FATHOM_ERR_NO_ANSWER, {0}, 0};
-    (void)state;
     desk_start();
     desk.argument = -15;
     assert_int_equal(desk_play(offset, &silence, 1), FATHOM_ERR_NO_ANSWER);
@@ -268,11 +257,10 @@ static void a_device_that_is_not_there_is_told_nothing(void **state)
     assert_int_equal(desk_play(load_factory, &silence, 1), FATHOM_ERR_NO_ANSWER);
 }
 
-static void an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again(void **state)
+TEST(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
                                              FATHOM_ERR_ECHO, FATHOM_ERR_MALFORMED};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         desk_set_up(NULL);
         desk.config.retries = 3;
@@ -283,28 +271,3 @@ static void an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again(vo
         fake_modbus_assert_asked(&desk.fake, desk.fake.submits, 1, 0x0008, 4);
     }
 }
-
-#define FRESH(test) cmocka_unit_test_setup(test, desk_set_up)
-
-static int group(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(each_value_is_read_written_once_and_read_back),
-        FRESH(what_is_so_already_is_not_written),
-        FRESH(on_is_ff),
-        FRESH(a_reconnect_time_is_a_multiple_of_18),
-        FRESH(the_reconnect_time_goes_with_its_low_word_first_as_an_option),
-        FRESH(a_write_is_not_retried_and_the_readings_are),
-        FRESH(what_goes_wrong_is_told_as_it_is),
-        FRESH(the_offset_and_the_filter_go_as_int16),
-        FRESH(the_users_and_the_factorys_settings_are_loaded_by_functions_of_their_own),
-        FRESH(one_is_not_taken_for_the_other_while_it_is_under_way),
-        FRESH(a_setting_under_way_is_not_mixed_with_another_value),
-        FRESH(both_words_tell_a_reconnect_time_from_another),
-        FRESH(a_device_that_is_not_there_is_told_nothing),
-        FRESH(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-int main(void) { return desk_main(group); }

@@ -11,11 +11,12 @@ static bench_t *with_clock_at(uint32_t now_us)
 
 static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71}; /* A16 6(4) ex 3 */
 
+static const suite_t suite = {.set_up = set_up};
+
 /* ---- setting up ---- */
 
-static void a_config_without_uart_clock_or_frame_is_refused(void **state)
+TEST(a_config_without_uart_clock_or_frame_is_refused)
 {
-    (void)state;
     fathom_line_config_t config = bench.config;
     config.uart = NULL;
     assert_int_equal(fathom_line_init(&bench.line, &config), FATHOM_ERR_ARGUMENT);
@@ -32,18 +33,16 @@ static void a_config_without_uart_clock_or_frame_is_refused(void **state)
     assert_int_equal(fathom_line_init(&bench.line, &config), FATHOM_READY);
 }
 
-static void t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above(void **state)
+TEST(t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above)
 {
-    (void)state;
     assert_int_equal(FATHOM_T3_5_US(9600, 10), 3646);  /* 35 bits / 9600 = 3645.8 us */
     assert_int_equal(FATHOM_T3_5_US(19200, 11), 2006); /* 38.5 / 19200 = 2005.2 */
     assert_int_equal(FATHOM_T3_5_US(57600, 11), 1750);
     assert_int_equal(FATHOM_T3_5_US(230400, 11), 1750);
 }
 
-static void zero_in_the_config_means_the_default_silence_and_gap(void **state)
+TEST(zero_in_the_config_means_the_default_silence_and_gap)
 {
-    (void)state;
     bench.config.silence_us = 0;
     bench.config.gap_us = 0;
     ask(&bench.request, 1, &bench.value, 0);
@@ -61,9 +60,8 @@ static void zero_in_the_config_means_the_default_silence_and_gap(void **state)
 
 /* ---- asking ---- */
 
-static void a_request_is_sent_after_the_silence_and_not_before(void **state)
+TEST(a_request_is_sent_after_the_silence_and_not_before)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 0);
     run_in_steps(T3_5_US - 6, 10); /* 3640 */
     assert_int_equal(bench.fake.written, 0);
@@ -73,9 +71,8 @@ static void a_request_is_sent_after_the_silence_and_not_before(void **state)
     assert_memory_equal(bench.fake.writes[0].bytes, ask_1_processed, sizeof ask_1_processed);
 }
 
-static void received_bytes_put_the_silence_off(void **state)
+TEST(received_bytes_put_the_silence_off)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 0);
     run_in_steps(3000, 10);
     receive(answer_1_754, 1);
@@ -85,9 +82,8 @@ static void received_bytes_put_the_silence_off(void **state)
     assert_int_equal(bench.fake.written, 1);
 }
 
-static void the_answer_is_ready_in_the_poll_that_brings_its_last_byte(void **state)
+TEST(the_answer_is_ready_in_the_poll_that_brings_its_last_byte)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_754, sizeof answer_1_754);
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
@@ -97,9 +93,8 @@ static void the_answer_is_ready_in_the_poll_that_brings_its_last_byte(void **sta
     assert_int_equal(counter(FATHOM_LINE_ANSWERS), 1);
 }
 
-static void an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last(void **state)
+TEST(an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last)
 {
-    (void)state;
     ask_1_and_send(0);
     for (size_t i = 0; i != sizeof answer_1_754; i++) {
         assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
@@ -111,7 +106,7 @@ static void an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last(void
     assert_int_equal(bench.value, 754);
 }
 
-static void every_cut_of_an_answer_into_two_reads_is_put_together(void **state)
+TEST(every_cut_of_an_answer_into_two_reads_is_put_together)
 {
     for (size_t cut = 1; cut != sizeof answer_1_754; cut++) {
         set_up(state);
@@ -124,7 +119,7 @@ static void every_cut_of_an_answer_into_two_reads_is_put_together(void **state)
     }
 }
 
-static void a_loop_of_20_ms_reads_an_answer_that_is_spread_over_its_rounds(void **state)
+TEST(a_loop_of_20_ms_reads_an_answer_that_is_spread_over_its_rounds)
 {
     for (uint32_t start_us = 0; start_us < 40000; start_us += 700) {
         set_up(state);
@@ -139,9 +134,8 @@ static void a_loop_of_20_ms_reads_an_answer_that_is_spread_over_its_rounds(void 
     }
 }
 
-static void a_write_is_acknowledged_by_its_own_words(void **state)
+TEST(a_write_is_acknowledged_by_its_own_words)
 {
-    (void)state;
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     fathom_modbus_client_submit(&bench.line, &bench.request);
@@ -152,9 +146,8 @@ static void a_write_is_acknowledged_by_its_own_words(void **state)
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
 }
 
-static void an_exception_ends_the_exchange_and_keeps_its_number(void **state)
+TEST(an_exception_ends_the_exchange_and_keeps_its_number)
 {
-    (void)state;
     ask_1_and_send(3);
     receive(exception_1_2, sizeof exception_1_2);
     run(100);
@@ -164,9 +157,8 @@ static void an_exception_ends_the_exchange_and_keeps_its_number(void **state)
     assert_int_equal(counter(FATHOM_LINE_EXCEPTIONS), 1);
 }
 
-static void exchanges_are_served_first_come_first_served(void **state)
+TEST(exchanges_are_served_first_come_first_served)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 0);
     ask(&bench.other, 2, &bench.other_value, 0);
     run(T3_5_US + 9 * BYTE_US);
@@ -180,9 +172,8 @@ static void exchanges_are_served_first_come_first_served(void **state)
     assert_int_equal(bench.other_value, 222);
 }
 
-static void an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before(void **state)
+TEST(an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before)
 {
-    (void)state;
     ask_1_and_send(0);
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_BUSY);
     receive_answer(1, 111);
@@ -198,9 +189,8 @@ static void an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before(
 
 /* ---- time ---- */
 
-static void no_answer_is_said_when_the_time_out_has_passed_since_the_request_left(void **state)
+TEST(no_answer_is_said_when_the_time_out_has_passed_since_the_request_left)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US - 500); /* up to 400 us have passed since the last bit */
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
@@ -210,9 +200,8 @@ static void no_answer_is_said_when_the_time_out_has_passed_since_the_request_lef
     assert_int_equal(bench.value, 0xDEAD);
 }
 
-static void an_answer_that_began_in_time_may_end_after_the_time_out(void **state)
+TEST(an_answer_that_began_in_time_may_end_after_the_time_out)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US - 2000);
     fake_trickle(&bench.fake, 0, BYTE_US, answer_1_754, sizeof answer_1_754);
@@ -221,11 +210,10 @@ static void an_answer_that_began_in_time_may_end_after_the_time_out(void **state
     assert_int_equal(bench.value, 754);
 }
 
-static void a_flood_of_noise_does_not_keep_an_exchange_for_ever(void **state)
+TEST(a_flood_of_noise_does_not_keep_an_exchange_for_ever)
 {
     static const uint8_t noise[] = {0x01, 0x03, 0x02, 0x11, 0x22, 0x33, 0x44, 0x99};
     uint32_t waited_us = 0;
-    (void)state;
     ask_1_and_send(0);
     while (status_of(&bench.request) == FATHOM_PENDING && waited_us < 10 * TIMEOUT_US) {
         receive(noise + waited_us / BYTE_US % sizeof noise, 1);
@@ -236,7 +224,7 @@ static void a_flood_of_noise_does_not_keep_an_exchange_for_ever(void **state)
     assert_true(waited_us < TIMEOUT_US + 20 * BYTE_US);
 }
 
-static void a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clock(void **state)
+TEST(a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clock)
 {
     for (uint32_t before_us = 0; before_us < 140000; before_us += 1700) {
         set_up(state);
@@ -254,9 +242,8 @@ static void a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clo
     }
 }
 
-static void a_single_poll_across_the_wrap_sees_all_the_time_that_passed(void **state)
+TEST(a_single_poll_across_the_wrap_sees_all_the_time_that_passed)
 {
-    (void)state;
     with_clock_at((uint32_t)0 - 20000);
     ask_1_and_send(0);
     assert_true(bench.fake.now_us > 0x80000000u);
@@ -265,9 +252,8 @@ static void a_single_poll_across_the_wrap_sees_all_the_time_that_passed(void **s
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
 }
 
-static void a_late_poll_finds_the_answer_before_it_looks_at_the_time(void **state)
+TEST(a_late_poll_finds_the_answer_before_it_looks_at_the_time)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_754, sizeof answer_1_754);
     run_in_steps(3 * TIMEOUT_US, 3 * TIMEOUT_US);
@@ -276,9 +262,8 @@ static void a_late_poll_finds_the_answer_before_it_looks_at_the_time(void **stat
 
 /* ---- cancel ---- */
 
-static void cancelling_what_is_not_queued_does_nothing(void **state)
+TEST(cancelling_what_is_not_queued_does_nothing)
 {
-    (void)state;
     bench.request.exchange.status = FATHOM_READY;
     fathom_modbus_client_cancel(&bench.line, &bench.request);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
@@ -288,9 +273,8 @@ static void cancelling_what_is_not_queued_does_nothing(void **state)
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_CANCELLED);
 }
 
-static void an_exchange_cancelled_before_it_is_sent_is_never_sent(void **state)
+TEST(an_exchange_cancelled_before_it_is_sent_is_never_sent)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 0);
     ask(&bench.other, 2, &bench.other_value, 0);
     fathom_modbus_client_cancel(&bench.line, &bench.request);
@@ -299,9 +283,8 @@ static void an_exchange_cancelled_before_it_is_sent_is_never_sent(void **state)
     assert_int_equal(bench.fake.writes[0].bytes[0], 2);
 }
 
-static void an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes(void **state)
+TEST(an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes)
 {
-    (void)state;
     ask_1_and_send(0);
     fathom_modbus_client_cancel(&bench.line, &bench.request);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_CANCELLED);
@@ -318,9 +301,8 @@ static void an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes(v
     assert_int_equal(bench.other_value, 751);
 }
 
-static void an_exchange_cancelled_while_it_leaves_owes_no_longer_than_any_other(void **state)
+TEST(an_exchange_cancelled_while_it_leaves_owes_no_longer_than_any_other)
 {
-    (void)state;
     bench.fake.never_sent = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(T3_5_US + 200);
@@ -333,9 +315,8 @@ static void an_exchange_cancelled_while_it_leaves_owes_no_longer_than_any_other(
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled(void **state)
+TEST(a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled)
 {
-    (void)state;
     bench.fake.write_busy = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(10000);
@@ -348,9 +329,8 @@ static void a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled(vo
 
 /* ---- broadcast ---- */
 
-static void a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer(void **state)
+TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer)
 {
-    (void)state;
     fathom_modbus_write_single_register(&bench.request.message, FATHOM_MODBUS_BROADCAST, 0x0012, 0);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
@@ -365,9 +345,8 @@ static void a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer(void
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void a_broadcast_may_be_cancelled_in_flight_and_nobody_owes(void **state)
+TEST(a_broadcast_may_be_cancelled_in_flight_and_nobody_owes)
 {
-    (void)state;
     fathom_modbus_write_single_register(&bench.request.message, FATHOM_MODBUS_BROADCAST, 0x0012, 0);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     fathom_modbus_client_submit(&bench.line, &bench.request);
@@ -379,9 +358,8 @@ static void a_broadcast_may_be_cancelled_in_flight_and_nobody_owes(void **state)
 
 /* ---- due ---- */
 
-static void due_says_when_something_can_happen_without_new_bytes(void **state)
+TEST(due_says_when_something_can_happen_without_new_bytes)
 {
-    (void)state;
     fathom_line_poll(&bench.line);
     assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
     ask(&bench.request, 1, &bench.value, 0);
@@ -407,9 +385,8 @@ static void due_says_when_something_can_happen_without_new_bytes(void **state)
 
 /* Sleeping as long as due says, and no longer, must never miss anything: every outcome comes at the same time
  * as with polling all the time. */
-static void sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause(void **state)
+TEST(sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause)
 {
-    (void)state;
     uint32_t ended_us[2];
     for (int sleeps = 0; sleeps != 2; sleeps++) {
         set_up(state);
@@ -428,9 +405,8 @@ static void sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pau
     assert_in_range(ended_us[1], ended_us[0], ended_us[0] + 3 * 1000);
 }
 
-static void counters_stop_at_their_end(void **state)
+TEST(counters_stop_at_their_end)
 {
-    (void)state;
     bench.line.counters[FATHOM_LINE_ANSWERS] = 65534;
     bench.line.counters[FATHOM_LINE_DROPPED_BYTES] = 65530;
     for (int i = 0; i != 3; i++) {
@@ -445,48 +421,10 @@ static void counters_stop_at_their_end(void **state)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 65535);
 }
 
-static void a_poll_reads_the_port_a_bounded_number_of_times(void **state)
+TEST(a_poll_reads_the_port_a_bounded_number_of_times)
 {
-    (void)state;
     for (int i = 0; i != 100; i++) receive(answer_1_754, 1);
     fathom_line_poll(&bench.line);
     assert_int_equal(bench.fake.reads, 16);
     assert_false(fake_drained(&bench.fake));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_config_without_uart_clock_or_frame_is_refused),
-        TEST(t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above),
-        TEST(zero_in_the_config_means_the_default_silence_and_gap),
-        TEST(a_request_is_sent_after_the_silence_and_not_before),
-        TEST(received_bytes_put_the_silence_off),
-        TEST(the_answer_is_ready_in_the_poll_that_brings_its_last_byte),
-        TEST(an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last),
-        TEST(every_cut_of_an_answer_into_two_reads_is_put_together),
-        TEST(a_loop_of_20_ms_reads_an_answer_that_is_spread_over_its_rounds),
-        TEST(a_write_is_acknowledged_by_its_own_words),
-        TEST(an_exception_ends_the_exchange_and_keeps_its_number),
-        TEST(exchanges_are_served_first_come_first_served),
-        TEST(an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before),
-        TEST(no_answer_is_said_when_the_time_out_has_passed_since_the_request_left),
-        TEST(an_answer_that_began_in_time_may_end_after_the_time_out),
-        TEST(a_flood_of_noise_does_not_keep_an_exchange_for_ever),
-        TEST(a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clock),
-        TEST(a_late_poll_finds_the_answer_before_it_looks_at_the_time),
-        TEST(cancelling_what_is_not_queued_does_nothing),
-        TEST(an_exchange_cancelled_before_it_is_sent_is_never_sent),
-        TEST(an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes),
-        TEST(an_exchange_cancelled_while_it_leaves_owes_no_longer_than_any_other),
-        TEST(a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled),
-        TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer),
-        TEST(a_broadcast_may_be_cancelled_in_flight_and_nobody_owes),
-        TEST(due_says_when_something_can_happen_without_new_bytes),
-        TEST(sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause),
-        TEST(counters_stop_at_their_end),
-        TEST(a_poll_reads_the_port_a_bounded_number_of_times),
-        TEST(a_single_poll_across_the_wrap_sees_all_the_time_that_passed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,9 +3,10 @@
 
 /* A break of the line: TX as the trigger or the mode select of a module. */
 
-static void a_break_holds_tx_low_until_it_is_ended(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(a_break_holds_tx_low_until_it_is_ended)
 {
-    (void)state;
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
     assert_true(bench.fake.in_break);
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
@@ -15,9 +16,8 @@ static void a_break_holds_tx_low_until_it_is_ended(void **state)
     assert_false(bench.fake.in_break);
 }
 
-static void nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it(void **state)
+TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it)
 {
-    (void)state;
     run(100000);
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
     ask(&bench.request, 1, &bench.value, 0);
@@ -37,9 +37,8 @@ static void nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it(void **s
     assert_int_equal(bench.value, 111);
 }
 
-static void with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes(void **state)
+TEST(with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 0);
     run(T3_5_US + 100);
     assert_int_equal(bench.fake.written, 1);
@@ -54,9 +53,8 @@ static void with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes(void **s
     assert_int_equal(bench.fake.breaks, 1);
 }
 
-static void while_bytes_of_the_port_leave_it_is_pending(void **state)
+TEST(while_bytes_of_the_port_leave_it_is_pending)
 {
-    (void)state;
     bench.fake.never_sent = true;
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_PENDING);
     assert_false(bench.fake.in_break);
@@ -66,9 +64,8 @@ static void while_bytes_of_the_port_leave_it_is_pending(void **state)
 }
 
 /* The port was busy with a request; after the break it gets its time anew. */
-static void a_request_that_the_port_refused_waits_for_the_end_of_the_break(void **state)
+TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break)
 {
-    (void)state;
     bench.fake.write_busy = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(T3_5_US + 900000);
@@ -96,10 +93,9 @@ static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t coun
 }
 
 /* A module that is triggered by the break answers in frames that begin after a silence. */
-static void the_end_of_a_break_does_not_hide_a_silence_from_the_listener(void **state)
+TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
 {
     fathom_listener_t listener = {hear, 5000};
-    (void)state;
     for (unsigned silent_us = 4900; silent_us <= 5000; silent_us += 100) {
         set_up(state);
         fathom_line_listen(&bench.line, &listener);
@@ -115,11 +111,10 @@ static void the_end_of_a_break_does_not_hide_a_silence_from_the_listener(void **
 }
 
 /* Unit 1 still owes; of its late answer a part has come, right behind a byte of noise. */
-static void the_end_of_a_break_is_no_gap_within_what_has_come(void **state)
+TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
 {
     static const uint8_t noise_and_part[] = {0x55, 0x01, 0x03, 0x02};
     fathom_listener_t listener = {hear, 500};
-    (void)state;
     fathom_line_listen(&bench.line, &listener);
     ask_1_and_send(0);
     run(TIMEOUT_US + 1000);
@@ -144,9 +139,8 @@ static int broken(void *ctx, bool on)
     return -1;
 }
 
-static void a_port_that_cannot_or_is_broken_says_so(void **state)
+TEST(a_port_that_cannot_or_is_broken_says_so)
 {
-    (void)state;
     bench.fake.uart.set_break = broken;
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_PORT);
     bench.fake.uart.set_break = NULL;
@@ -156,9 +150,8 @@ static void a_port_that_cannot_or_is_broken_says_so(void **state)
     assert_int_equal(bench.fake.written, 1);
 }
 
-static void a_port_that_breaks_in_a_break_comes_back_without_it(void **state)
+TEST(a_port_that_breaks_in_a_break_comes_back_without_it)
 {
-    (void)state;
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
     bench.fake.read_fails = true;
     bench.fake.now_us += 100;
@@ -167,20 +160,4 @@ static void a_port_that_breaks_in_a_break_comes_back_without_it(void **state)
     ask(&bench.request, 1, &bench.value, 0);
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_break_holds_tx_low_until_it_is_ended),
-        TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it),
-        TEST(with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes),
-        TEST(while_bytes_of_the_port_leave_it_is_pending),
-        TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break),
-        TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener),
-        TEST(the_end_of_a_break_is_no_gap_within_what_has_come),
-        TEST(a_port_that_cannot_or_is_broken_says_so),
-        TEST(a_port_that_breaks_in_a_break_comes_back_without_it),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,10 +22,11 @@ static void assert_statuses(fathom_status_t first, fathom_status_t second, fatho
     assert_int_equal(status_of(&requests[3]), fourth);
 }
 
-static void all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order)
 {
     static const uint8_t units[4] = {3, 2, 3, 4};
-    (void)state;
     ask_all(units);
     fathom_line_cancel_unit(&bench.line, 3);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
@@ -42,10 +43,9 @@ static void all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order(vo
     assert_int_equal(bench.fake.writes[1].bytes[0], 4);
 }
 
-static void one_on_its_way_ends_too_and_its_answer_is_late(void **state)
+TEST(one_on_its_way_ends_too_and_its_answer_is_late)
 {
     static const uint8_t units[4] = {1, 1, 2, 1};
-    (void)state;
     ask_all(units);
     run(T3_5_US + 8 * BYTE_US + 400);
     assert_int_equal(bench.fake.written, 1);
@@ -61,10 +61,9 @@ static void one_on_its_way_ends_too_and_its_answer_is_late(void **state)
     assert_int_equal(values[0], 0xDEAD);
 }
 
-static void one_on_its_way_to_another_is_answered(void **state)
+TEST(one_on_its_way_to_another_is_answered)
 {
     static const uint8_t units[4] = {1, 2, 2, 2};
-    (void)state;
     ask_all(units);
     run(T3_5_US + 8 * BYTE_US + 400);
     fathom_line_cancel_unit(&bench.line, 2);
@@ -76,10 +75,9 @@ static void one_on_its_way_to_another_is_answered(void **state)
     assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
 }
 
-static void a_question_to_everybody_or_to_anybody_is_no_units_own(void **state)
+TEST(a_question_to_everybody_or_to_anybody_is_no_units_own)
 {
     static const uint8_t units[4] = {5, 6, 7, 8};
-    (void)state;
     ask_all(units);
     requests[0].exchange.unit = FATHOM_LINE_ANY_UNIT;
     requests[1].exchange.unit = FATHOM_LINE_ALL_UNITS;
@@ -87,23 +85,12 @@ static void a_question_to_everybody_or_to_anybody_is_no_units_own(void **state)
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
 }
 
-static void a_unit_of_which_nothing_was_asked_changes_nothing(void **state)
+TEST(a_unit_of_which_nothing_was_asked_changes_nothing)
 {
     static const uint8_t units[4] = {2, 3, 5, 8};
-    (void)state;
     fathom_line_cancel_unit(&bench.line, 4);
     ask_all(units);
     fathom_line_cancel_unit(&bench.line, 4);
     fathom_line_cancel_unit(&bench.line, 18); /* 2, but for a bit that the debts of units do not tell */
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING);
 }
-
-static const struct CMUnitTest tests[] = {
-    TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order),
-    TEST(one_on_its_way_ends_too_and_its_answer_is_late),
-    TEST(one_on_its_way_to_another_is_answered),
-    TEST(a_question_to_everybody_or_to_anybody_is_no_units_own),
-    TEST(a_unit_of_which_nothing_was_asked_changes_nothing),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

@@ -10,10 +10,11 @@ static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
 static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static uint16_t values[4];
 
+static const suite_t suite = {.set_up = set_up};
+
 /* dyp_client.h: FATHOM_ERR_BUSY; line.h: "it is queued already; nothing changed". */
-static void a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address(void **state)
+TEST(a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address)
 {
-    (void)state;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     bench.request.exchange.retries = 1;
@@ -25,9 +26,8 @@ static void a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_addr
 }
 
 /* the same for an answer that comes. */
-static void a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone(void **state)
+TEST(a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone)
 {
-    (void)state;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
@@ -40,9 +40,8 @@ static void a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone(vo
 }
 
 /* line.h: "A late answer does serve a retry of the same exchange." */
-static void a_late_answer_serves_the_retry_of_a_question_to_anyone(void **state)
+TEST(a_late_answer_serves_the_retry_of_a_question_to_anyone)
 {
-    (void)state;
     fathom_modbus_read_holding_registers(&bench.request.message, 255, 0x0106, 1, values);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     bench.request.exchange.retries = 1;
@@ -56,9 +55,8 @@ static void a_late_answer_serves_the_retry_of_a_question_to_anyone(void **state)
 }
 
 /* line.h: FATHOM_LINE_ANY_UNIT: "the first answer is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast address. */
-static void modbus_to_unit_255_takes_any_units_answer(void **state)
+TEST(modbus_to_unit_255_takes_any_units_answer)
 {
-    (void)state;
     ask(&bench.request, 255, &bench.value, 0);
     run_until_written(1, 100);
     run(20000);
@@ -75,11 +73,10 @@ static void hear(fathom_listener_t *l, const uint8_t *bytes, uint8_t count, bool
     if (count != 0) calls++;
     if (count != 0 && after_gap) gaps++;
 }
-static void bytes_after_an_overrun_are_not_the_first_after_a_silence(void **state)
+TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence)
 {
     static const uint8_t rest[] = {0xA1, 0xA7};
     fathom_listener_t ear = {hear, 5000};
-    (void)state;
     gaps = calls = 0;
     fathom_line_listen(&bench.line, &ear);
     run(10000);
@@ -90,13 +87,12 @@ static void bytes_after_an_overrun_are_not_the_first_after_a_silence(void **stat
 }
 static uint8_t storage[20];
 /* what follows from it: 1000 2000 2047 1339 permuted to 1339 2047 1000 2000, with plausible values. */
-static void an_overrun_after_a_silence_does_not_permute_the_probes(void **state)
+TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
 {
     static const uint8_t good[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
     static const fathom_stream_config_t config = {storage, 0, 0, 10};
     fathom_stream_t stream;
     const uint8_t *frame = NULL;
-    (void)state;
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
     fathom_line_listen(&bench.line, &stream.listener);
     run(10000);
@@ -107,10 +103,9 @@ static void an_overrun_after_a_silence_does_not_permute_the_probes(void **state)
 }
 
 /* line.h: "An answer is complete by its length, at once". */
-static void after_a_broken_port_an_answer_is_complete_at_once(void **state)
+TEST(after_a_broken_port_an_answer_is_complete_at_once)
 {
     static const uint8_t long_one[] = {0x01, 0x03, 0x14, 0x00};
-    (void)state;
     ask_1_and_send(0);
     receive(long_one, sizeof long_one);
     run(100);
@@ -144,7 +139,7 @@ static void write_with_echo(void **state)
 }
 
 /* line.h: cancel: "the unit then owes an answer, which no later exchange takes for its own". The echo is no answer. */
-static void the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed(void **state)
+TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed)
 {
     write_with_echo(state);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
@@ -155,7 +150,7 @@ static void the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed(void **
 }
 
 /* After the echo the next copy is the answer that is owed. */
-static void the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt(void **state)
+TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt)
 {
     write_with_echo(state);
     run(9 * BYTE_US);
@@ -169,13 +164,12 @@ static void the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt(void *
 }
 
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
-static void a_command_goes_out_at_once_when_the_pace_has_passed(void **state)
+TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
 {
     static fake_modbus_t fake;
     static fathom_modbus_unit_t unit;
     const fathom_modbus_question_t measure = {300000, 100000, 0, NULL, values, 0x0100, 1, 0, false, 0};
     const fathom_modbus_question_t version = {1000000, 100000, 0, NULL, values, 0x0001, 3, 0, true, 0};
-    (void)state;
     fake_modbus_init(&fake);
     assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, 9), FATHOM_READY);
     for (unsigned n = 0; n != 3; n++) {
@@ -191,10 +185,9 @@ static void a_command_goes_out_at_once_when_the_pace_has_passed(void **state)
 }
 
 /* line.h, FATHOM_LINE_SEND_US: "how long a port may ... take to send it, before it counts as broken". */
-static void a_port_that_never_sends_is_broken_on_a_noisy_line_too(void **state)
+TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
 {
     static const uint8_t noise[] = {0x00};
-    (void)state;
     bench.fake.never_sent = true;
     ask(&bench.request, 1, &bench.value, 0);
     run_until_written(1, 100);
@@ -207,10 +200,9 @@ static void a_port_that_never_sends_is_broken_on_a_noisy_line_too(void **state)
 
 /* two A05 answer FF; the second one's answer, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the answer to
  * the next request. */
-static void the_second_answer_to_anyone_is_not_the_next_requests(void **state)
+TEST(the_second_answer_to_anyone_is_not_the_next_requests)
 {
     static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
-    (void)state;
     fathom_modbus_read_holding_registers(&bench.request.message, 255, 0x0106, 1, values);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
@@ -227,23 +219,4 @@ static void the_second_answer_to_anyone_is_not_the_next_requests(void **state)
     receive(from_254, sizeof from_254);
     run(100);
     assert_int_equal(bench.other_value, 0xDEAD);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address),
-        TEST(a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone),
-        TEST(a_late_answer_serves_the_retry_of_a_question_to_anyone),
-        TEST(modbus_to_unit_255_takes_any_units_answer),
-        TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence),
-        TEST(an_overrun_after_a_silence_does_not_permute_the_probes),
-        TEST(after_a_broken_port_an_answer_is_complete_at_once),
-        TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed),
-        TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt),
-        TEST(a_command_goes_out_at_once_when_the_pace_has_passed),
-        TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too),
-        TEST(the_second_answer_to_anyone_is_not_the_next_requests),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

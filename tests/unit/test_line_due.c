@@ -3,10 +3,11 @@
 
 /* A program that sleeps for as long as fathom_line_due_us says makes progress with every sleep. */
 
+static const suite_t suite = {.set_up = set_up};
+
 /* Of an answer that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
-static void an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap(void **state)
+TEST(an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US - 2000);
     receive(answer_1_754, 4);
@@ -18,9 +19,8 @@ static void an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_t
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
 }
 
-static void one_that_breaks_off_ends_with_the_gap(void **state)
+TEST(one_that_breaks_off_ends_with_the_gap)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US - 2000);
     receive(answer_1_754, 4);
@@ -37,11 +37,10 @@ static void one_that_breaks_off_ends_with_the_gap(void **state)
 }
 
 /* A request that does not wait: between the poll that sees it leave and the next one it is due at once. */
-static void without_a_time_out_it_is_due_at_once(void **state)
+TEST(without_a_time_out_it_is_due_at_once)
 {
     uint16_t value = 0;
     fathom_modbus_request_t request = {.exchange = {.timeout_us = 0}};
-    (void)state;
     fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &value);
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &request), FATHOM_PENDING);
     for (unsigned i = 0; request.exchange.status == FATHOM_PENDING && fathom_line_due_us(&bench.line) != 0;
@@ -54,14 +53,4 @@ static void without_a_time_out_it_is_due_at_once(void **state)
     assert_int_equal(request.exchange.attempts, 1);
     run_in_steps(1, 1);
     assert_int_equal(request.exchange.status, FATHOM_ERR_NO_ANSWER);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap),
-        TEST(one_that_breaks_off_ends_with_the_gap),
-        TEST(without_a_time_out_it_is_due_at_once),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

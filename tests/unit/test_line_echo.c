@@ -39,10 +39,9 @@ static void echoed_read(void **state, uint8_t mode, unsigned seed, uint32_t paus
     assert_int_equal(counter(FATHOM_LINE_STRAYS) + counter(FATHOM_LINE_MALFORMED), 0);
 }
 
-static void a_read_on_an_echoing_line_is_answered_and_shows_the_echo(void **state)
-{
-    in_every_way(state, echoed_read);
-}
+static const suite_t suite = {.set_up = set_up};
+
+TEST(a_read_on_an_echoing_line_is_answered_and_shows_the_echo) { in_every_way(state, echoed_read); }
 
 static void clean_read(void **state, uint8_t mode, unsigned seed, uint32_t pause_us, uint32_t step_us)
 {
@@ -54,7 +53,7 @@ static void clean_read(void **state, uint8_t mode, unsigned seed, uint32_t pause
     assert_int_equal(known_echo(), mode == FATHOM_LINE_ECHO_AUTO ? FATHOM_LINE_ECHO_OFF : mode);
 }
 
-static void a_read_without_echo_shows_that_there_is_none(void **state)
+TEST(a_read_without_echo_shows_that_there_is_none)
 {
     assert_int_equal(known_echo(), FATHOM_LINE_ECHO_OFF); /* the bench says so */
     in_every_way(state, clean_read);
@@ -72,12 +71,12 @@ static void echoed_late_sent(void **state, uint8_t mode, unsigned seed, uint32_t
 }
 
 /* hal.h: sent may turn true late; what was read before still counts. */
-static void echo_and_answer_count_before_the_port_says_that_the_request_has_left(void **state)
+TEST(echo_and_answer_count_before_the_port_says_that_the_request_has_left)
 {
     in_every_way(state, echoed_late_sent);
 }
 
-static void nothing_is_known_before_the_first_answer(void **state)
+TEST(nothing_is_known_before_the_first_answer)
 {
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
     assert_int_equal(known_echo(), FATHOM_LINE_ECHO_AUTO);
@@ -87,7 +86,7 @@ static void nothing_is_known_before_the_first_answer(void **state)
     assert_int_equal(known_echo(), FATHOM_LINE_ECHO_AUTO);
 }
 
-static void an_echo_without_an_answer_is_no_answer_and_shows_the_echo(void **state)
+TEST(an_echo_without_an_answer_is_no_answer_and_shows_the_echo)
 {
     for (size_t m = 0; m != COUNT_OF(modes); m++) {
         set_up_with(state, modes[m]);
@@ -103,7 +102,7 @@ static void an_echo_without_an_answer_is_no_answer_and_shows_the_echo(void **sta
     }
 }
 
-static void an_exception_behind_an_echo_ends_the_exchange_and_keeps_its_number(void **state)
+TEST(an_exception_behind_an_echo_ends_the_exchange_and_keeps_its_number)
 {
     for (size_t p = 0; p != COUNT_OF(pauses_us); p++) {
         set_up_with(state, FATHOM_LINE_ECHO_AUTO);
@@ -118,7 +117,7 @@ static void an_exception_behind_an_echo_ends_the_exchange_and_keeps_its_number(v
 }
 
 /* Register 0200: 01 03 02 begins an answer of 7 bytes; register 1400: one of 25. */
-static void an_echo_that_begins_like_an_answer_is_an_echo(void **state)
+TEST(an_echo_that_begins_like_an_answer_is_an_echo)
 {
     static const uint8_t echoes[][8] = {{0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2},
                                         {0x01, 0x03, 0x14, 0x00, 0x00, 0x01, 0x81, 0xFA}};
@@ -141,7 +140,7 @@ static void an_echo_that_begins_like_an_answer_is_an_echo(void **state)
 
 /* ---- what teaches nothing ---- */
 
-static void a_damaged_echo_never_shows_that_there_is_none(void **state)
+TEST(a_damaged_echo_never_shows_that_there_is_none)
 {
     uint8_t echo[sizeof ask_1_processed];
     for (unsigned bit = 0; bit != 8 * sizeof echo; bit++)
@@ -160,7 +159,7 @@ static void a_damaged_echo_never_shows_that_there_is_none(void **state)
         }
 }
 
-static void an_echo_that_lost_bytes_never_shows_that_there_is_none(void **state)
+TEST(an_echo_that_lost_bytes_never_shows_that_there_is_none)
 {
     for (size_t lost = 1; lost != sizeof ask_1_processed; lost++)
         for (size_t from = 0; from <= lost; from += lost) { /* the last ones, or the first */
@@ -175,7 +174,7 @@ static void an_echo_that_lost_bytes_never_shows_that_there_is_none(void **state)
 }
 
 /* What came before the answer may have been a rest of the echo. */
-static void an_answer_that_anything_precedes_shows_nothing(void **state)
+TEST(an_answer_that_anything_precedes_shows_nothing)
 {
     static const fathom_rx_t marks[] = {
         {0, FATHOM_RX_PARITY}, {0, FATHOM_RX_FRAMING}, {0, FATHOM_RX_OVERRUN}};
@@ -200,7 +199,7 @@ static void an_answer_that_anything_precedes_shows_nothing(void **state)
     }
 }
 
-static void another_units_answer_shows_nothing(void **state)
+TEST(another_units_answer_shows_nothing)
 {
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
     ask_1(0, 100);
@@ -222,7 +221,7 @@ static void read_once(bool echoes)
     assert_answered(754);
 }
 
-static void what_was_found_out_follows_the_newest_evidence(void **state)
+TEST(what_was_found_out_follows_the_newest_evidence)
 {
     static const bool echoes[] = {true, false, false, true, true, false};
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
@@ -232,7 +231,7 @@ static void what_was_found_out_follows_the_newest_evidence(void **state)
     }
 }
 
-static void a_broken_port_forgets_what_was_found_out_and_keeps_what_was_told(void **state)
+TEST(a_broken_port_forgets_what_was_found_out_and_keeps_what_was_told)
 {
     for (size_t m = 0; m != COUNT_OF(modes); m++)
         for (unsigned echoes = 0; echoes != 2; echoes++) {
@@ -243,24 +242,4 @@ static void a_broken_port_forgets_what_was_found_out_and_keeps_what_was_told(voi
             bench.fake.read_fails = false;
             assert_int_equal(known_echo(), modes[m]);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_read_on_an_echoing_line_is_answered_and_shows_the_echo),
-        TEST(a_read_without_echo_shows_that_there_is_none),
-        TEST(echo_and_answer_count_before_the_port_says_that_the_request_has_left),
-        TEST(nothing_is_known_before_the_first_answer),
-        TEST(an_echo_without_an_answer_is_no_answer_and_shows_the_echo),
-        TEST(an_exception_behind_an_echo_ends_the_exchange_and_keeps_its_number),
-        TEST(an_echo_that_begins_like_an_answer_is_an_echo),
-        TEST(a_damaged_echo_never_shows_that_there_is_none),
-        TEST(an_echo_that_lost_bytes_never_shows_that_there_is_none),
-        TEST(an_answer_that_anything_precedes_shows_nothing),
-        TEST(another_units_answer_shows_nothing),
-        TEST(what_was_found_out_follows_the_newest_evidence),
-        TEST(a_broken_port_forgets_what_was_found_out_and_keeps_what_was_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

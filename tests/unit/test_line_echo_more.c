@@ -78,12 +78,11 @@ static void dyp_read(void **state, uint8_t mode, unsigned seed, uint32_t pause_u
         }
 }
 
-static void an_answer_that_begins_like_its_request_is_told_from_the_echo(void **state)
-{
-    in_every_way(state, dyp_read);
-}
+static const suite_t suite = {.set_up = set_up};
 
-static void the_echo_of_a_dyp_read_is_no_answer(void **state)
+TEST(an_answer_that_begins_like_its_request_is_told_from_the_echo) { in_every_way(state, dyp_read); }
+
+TEST(the_echo_of_a_dyp_read_is_no_answer)
 {
     for (size_t i = 0; i != COUNT_OF(probes); i++)
         for (size_t s = 0; s != COUNT_OF(steps_us); s++) {
@@ -99,7 +98,7 @@ static void the_echo_of_a_dyp_read_is_no_answer(void **state)
 
 /* ---- attempts ---- */
 
-static void a_retry_on_an_echoing_line_takes_the_answer_behind_its_own_echo(void **state)
+TEST(a_retry_on_an_echoing_line_takes_the_answer_behind_its_own_echo)
 {
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
     ask(&bench.request, 1, &bench.value, 1);
@@ -114,7 +113,7 @@ static void a_retry_on_an_echoing_line_takes_the_answer_behind_its_own_echo(void
     assert_int_equal(bench.value, 754);
 }
 
-static void a_late_answer_on_an_echoing_line_is_no_other_requests(void **state)
+TEST(a_late_answer_on_an_echoing_line_is_no_other_requests)
 {
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
     ask(&bench.request, 1, &bench.value, 0);
@@ -138,7 +137,7 @@ static void a_late_answer_on_an_echoing_line_is_no_other_requests(void **state)
 /* Unit 0, register 0200, 5. */
 static const uint8_t tell_all[] = {0x00, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xA0};
 
-static void a_broadcast_on_an_echoing_line_is_over_when_its_time_is(void **state)
+TEST(a_broadcast_on_an_echoing_line_is_over_when_its_time_is)
 {
     for (size_t m = 0; m != COUNT_OF(modes); m++) {
         set_up_with(state, modes[m]);
@@ -183,7 +182,7 @@ static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t coun
 
 static const uint8_t auto_frame[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 2(4) */
 
-static void a_listener_does_not_hear_the_echo_of_a_read(void **state)
+TEST(a_listener_does_not_hear_the_echo_of_a_read)
 {
     for (unsigned seed = BY_BYTE; seed != SEEDS; seed++) {
         ear_t ear = {.listener = {hear, GAP_US}};
@@ -203,17 +202,4 @@ static void a_listener_does_not_hear_the_echo_of_a_read(void **state)
         assert_memory_equal(ear.bytes + 4, auto_frame, 4);
         assert_int_equal(known_echo(), FATHOM_LINE_ECHO_ON);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(an_answer_that_begins_like_its_request_is_told_from_the_echo),
-        TEST(the_echo_of_a_dyp_read_is_no_answer),
-        TEST(a_retry_on_an_echoing_line_takes_the_answer_behind_its_own_echo),
-        TEST(a_late_answer_on_an_echoing_line_is_no_other_requests),
-        TEST(a_broadcast_on_an_echoing_line_is_over_when_its_time_is),
-        TEST(a_listener_does_not_hear_the_echo_of_a_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,12 +44,11 @@ static void echoed_prefix(void **state, uint8_t mode, unsigned seed, uint32_t pa
     }
 }
 
-static void an_echo_that_begins_with_a_whole_answer_is_no_answer(void **state)
-{
-    in_every_way(state, echoed_prefix);
-}
+static const suite_t suite = {.set_up = set_up};
 
-static void an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure(void **state)
+TEST(an_echo_that_begins_with_a_whole_answer_is_no_answer) { in_every_way(state, echoed_prefix); }
+
+TEST(an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure)
 {
     for (size_t i = 0; i != COUNT_OF(prefixes); i++)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {
@@ -64,7 +63,7 @@ static void an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failur
         }
 }
 
-static void without_echo_the_same_bytes_are_the_answer(void **state)
+TEST(without_echo_the_same_bytes_are_the_answer)
 {
     for (size_t i = 0; i != COUNT_OF(prefixes); i++) {
         set_up_with(state, FATHOM_LINE_ECHO_OFF);
@@ -74,14 +73,4 @@ static void without_echo_the_same_bytes_are_the_answer(void **state)
         assert_int_equal(status_of(&bench.request), FATHOM_READY);
         assert_int_equal(bench.value, 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(an_echo_that_begins_with_a_whole_answer_is_no_answer),
-        TEST(an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure),
-        TEST(without_echo_the_same_bytes_are_the_answer),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -117,7 +117,9 @@ static void exchange(bool echoes, uint32_t step_us)
     run_in_steps(4 * TIMEOUT_US, 1000); /* all debts are over */
 }
 
-static void no_traffic_makes_an_echo_an_acknowledgement(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(no_traffic_makes_an_echo_an_acknowledgement)
 {
     seed = 1;
     memset(ready, 0, sizeof ready);
@@ -128,12 +130,4 @@ static void no_traffic_makes_an_echo_an_acknowledgement(void **state)
         for (unsigned n = 0; n != EXCHANGES; n++) exchange(echoes, step_us);
     }
     for (unsigned kind = 0; kind != KINDS; kind++) assert_true(ready[kind] > RUNS); /* it was no idle talk */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(no_traffic_makes_an_echo_an_acknowledgement),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,10 +72,9 @@ static void one_copy(void **state, uint8_t mode, unsigned seed, uint32_t pause_u
         }
 }
 
-static void one_copy_of_a_write_acknowledges_it_only_where_there_is_no_echo(void **state)
-{
-    in_every_way(state, one_copy);
-}
+static const suite_t suite = {.set_up = set_up};
+
+TEST(one_copy_of_a_write_acknowledges_it_only_where_there_is_no_echo) { in_every_way(state, one_copy); }
 
 static void two_copies(void **state, uint8_t mode, unsigned seed, uint32_t pause_us, uint32_t step_us)
 {
@@ -94,9 +93,9 @@ static void two_copies(void **state, uint8_t mode, unsigned seed, uint32_t pause
         }
 }
 
-static void two_copies_of_a_write_acknowledge_it(void **state) { in_every_way(state, two_copies); }
+TEST(two_copies_of_a_write_acknowledge_it) { in_every_way(state, two_copies); }
 
-static void the_first_copy_alone_never_ends_a_write_where_an_echo_is_known(void **state)
+TEST(the_first_copy_alone_never_ends_a_write_where_an_echo_is_known)
 {
     static const uint8_t answer_1[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
@@ -113,7 +112,7 @@ static void the_first_copy_alone_never_ends_a_write_where_an_echo_is_known(void 
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER); /* the device is dead, and the line says so */
 }
 
-static void after_a_read_without_echo_one_copy_acknowledges_a_write(void **state)
+TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
 {
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
     ask(&bench.request, 1, &bench.value, 0);
@@ -127,7 +126,7 @@ static void after_a_read_without_echo_one_copy_acknowledges_a_write(void **state
     assert_int_equal(status(), FATHOM_READY);
 }
 
-static void a_write_that_nothing_answers_is_no_answer_whatever_is_known(void **state)
+TEST(a_write_that_nothing_answers_is_no_answer_whatever_is_known)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {
@@ -140,7 +139,7 @@ static void a_write_that_nothing_answers_is_no_answer_whatever_is_known(void **s
 }
 
 /* A copy with a wrong checksum is no copy: of the two that came one was hit. */
-static void a_damaged_copy_does_not_count(void **state)
+TEST(a_damaged_copy_does_not_count)
 {
     uint8_t damaged[8];
     for (size_t w = 0; w != COUNT_OF(writes); w++)
@@ -162,7 +161,7 @@ static void a_damaged_copy_does_not_count(void **state)
 
 /* ---- attempts ---- */
 
-static void each_attempt_of_a_write_needs_its_own_two_copies(void **state)
+TEST(each_attempt_of_a_write_needs_its_own_two_copies)
 {
     wanted = &writes[0];
     set_up_with(state, FATHOM_LINE_ECHO_ON);
@@ -179,7 +178,7 @@ static void each_attempt_of_a_write_needs_its_own_two_copies(void **state)
     assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 1);
 }
 
-static void the_last_attempt_of_an_unknown_echo_says_echo(void **state)
+TEST(the_last_attempt_of_an_unknown_echo_says_echo)
 {
     wanted = &writes[0];
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
@@ -194,7 +193,7 @@ static void the_last_attempt_of_an_unknown_echo_says_echo(void **state)
     assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 3);
 }
 
-static void a_late_second_copy_serves_the_retry_of_a_write(void **state)
+TEST(a_late_second_copy_serves_the_retry_of_a_write)
 {
     wanted = &writes[0];
     set_up_with(state, FATHOM_LINE_ECHO_ON);
@@ -209,7 +208,7 @@ static void a_late_second_copy_serves_the_retry_of_a_write(void **state)
     assert_int_equal(bench.fake.written, 1);
 }
 
-static void a_refused_write_on_an_echoing_line_is_an_exception(void **state)
+TEST(a_refused_write_on_an_echoing_line_is_an_exception)
 {
     static const uint8_t refusal[] = {0x01, 0x86, 0x03, 0x02, 0x61};
     for (size_t m = 0; m != COUNT_OF(modes); m++) {
@@ -258,12 +257,9 @@ static void write_of_many(void **state, uint8_t mode, unsigned seed, uint32_t pa
     }
 }
 
-static void a_write_of_many_registers_is_told_from_its_echo(void **state)
-{
-    in_every_way(state, write_of_many);
-}
+TEST(a_write_of_many_registers_is_told_from_its_echo) { in_every_way(state, write_of_many); }
 
-static void the_echo_of_a_write_of_many_is_no_answer(void **state)
+TEST(the_echo_of_a_write_of_many_is_no_answer)
 {
     set_up_with(state, FATHOM_LINE_ECHO_AUTO);
     start_write_of_many(100);
@@ -271,23 +267,4 @@ static void the_echo_of_a_write_of_many_is_no_answer(void **state)
     run(2 * TIMEOUT_US);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(known_echo(), FATHOM_LINE_ECHO_ON);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(one_copy_of_a_write_acknowledges_it_only_where_there_is_no_echo),
-        TEST(two_copies_of_a_write_acknowledge_it),
-        TEST(the_first_copy_alone_never_ends_a_write_where_an_echo_is_known),
-        TEST(after_a_read_without_echo_one_copy_acknowledges_a_write),
-        TEST(a_write_that_nothing_answers_is_no_answer_whatever_is_known),
-        TEST(a_damaged_copy_does_not_count),
-        TEST(each_attempt_of_a_write_needs_its_own_two_copies),
-        TEST(the_last_attempt_of_an_unknown_echo_says_echo),
-        TEST(a_late_second_copy_serves_the_retry_of_a_write),
-        TEST(a_refused_write_on_an_echoing_line_is_an_exception),
-        TEST(a_write_of_many_registers_is_told_from_its_echo),
-        TEST(the_echo_of_a_write_of_many_is_no_answer),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

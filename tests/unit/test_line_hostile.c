@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
+static const suite_t suite = {.set_up = set_up};
+
 /* ---- what is not the answer ---- */
 
-static void noise_before_an_answer_is_dropped_in_the_same_poll(void **state)
+TEST(noise_before_an_answer_is_dropped_in_the_same_poll)
 {
     static const uint8_t noise[] = {0x00, 0xFF, 0x81, 0x00, 0x55};
     uint8_t glued[sizeof noise + sizeof answer_1_754];
-    (void)state;
     memcpy(glued, noise, sizeof noise);
     memcpy(glued + sizeof noise, answer_1_754, sizeof answer_1_754);
     ask_1_and_send(0);
@@ -18,10 +19,9 @@ static void noise_before_an_answer_is_dropped_in_the_same_poll(void **state)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), sizeof noise);
 }
 
-static void noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_most(void **state)
+TEST(noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_most)
 {
     static const uint8_t begun[] = {0x01, 0x03, 0x14}; /* 25 bytes are promised */
-    (void)state;
     ask_1_and_send(0);
     receive(begun, sizeof begun);
     receive(answer_1_754, sizeof answer_1_754);
@@ -30,9 +30,8 @@ static void noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_mo
     assert_int_equal(bench.value, 754);
 }
 
-static void another_units_answer_is_a_stray_and_the_wait_goes_on(void **state)
+TEST(another_units_answer_is_a_stray_and_the_wait_goes_on)
 {
-    (void)state;
     ask_1_and_send(0);
     receive_answer(2, 222);
     run(1000);
@@ -45,9 +44,8 @@ static void another_units_answer_is_a_stray_and_the_wait_goes_on(void **state)
     assert_int_equal(bench.value, 111);
 }
 
-static void an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows(void **state)
+TEST(an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_three, sizeof answer_1_three);
     run(1000);
@@ -65,10 +63,9 @@ static void an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follo
     assert_int_equal(counter(FATHOM_LINE_MALFORMED), 1);
 }
 
-static void a_damaged_answer_ends_the_attempt_at_the_first_gap(void **state)
+TEST(a_damaged_answer_ends_the_attempt_at_the_first_gap)
 {
     uint8_t damaged[sizeof answer_1_754];
-    (void)state;
     memcpy(damaged, answer_1_754, sizeof damaged);
     damaged[4] ^= 0x10;
     ask_1_and_send(0);
@@ -82,10 +79,9 @@ static void a_damaged_answer_ends_the_attempt_at_the_first_gap(void **state)
 }
 
 /* USB adapters say up to 16 ms late that a request has left; the answer may be here by then. */
-static void a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_left(void **state)
+TEST(a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_left)
 {
     uint8_t damaged[sizeof answer_1_754];
-    (void)state;
     memcpy(damaged, answer_1_754, sizeof damaged);
     damaged[4] ^= 0x10;
     bench.fake.never_sent = true;
@@ -102,7 +98,7 @@ static void a_damaged_answer_counts_although_the_port_says_late_that_the_request
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void an_answer_that_breaks_off_is_a_checksum_error(void **state)
+TEST(an_answer_that_breaks_off_is_a_checksum_error)
 {
     for (size_t length = 3; length != sizeof answer_1_754; length++) {
         set_up(state);
@@ -114,9 +110,8 @@ static void an_answer_that_breaks_off_is_a_checksum_error(void **state)
     }
 }
 
-static void less_than_three_bytes_are_noise_and_end_nothing(void **state)
+TEST(less_than_three_bytes_are_noise_and_end_nothing)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_754, 2);
     run(GAP_US + 400);
@@ -126,10 +121,9 @@ static void less_than_three_bytes_are_noise_and_end_nothing(void **state)
     assert_int_equal(bench.value, 754);
 }
 
-static void a_frame_longer_than_the_memory_is_dropped_without_overrun(void **state)
+TEST(a_frame_longer_than_the_memory_is_dropped_without_overrun)
 {
     uint8_t flood[201];
-    (void)state;
     memset(flood, 0x01, sizeof flood);
     for (size_t i = 1; i < sizeof flood; i += 3)
         flood[i] = 0x03, flood[i + 1] = 0xF8; /* promises 253 bytes */
@@ -144,7 +138,7 @@ static void a_frame_longer_than_the_memory_is_dropped_without_overrun(void **sta
 /* ---- late answers ---- */
 
 /* The shape of both answers is the same, so only the quarantine can tell them apart. */
-static void a_late_answer_is_never_the_reading_of_the_next_request(void **state)
+TEST(a_late_answer_is_never_the_reading_of_the_next_request)
 {
     for (uint32_t late_us = TIMEOUT_US + 300; late_us < 2 * TIMEOUT_US - 1000; late_us += 1000) {
         set_up(state);
@@ -166,9 +160,8 @@ static void a_late_answer_is_never_the_reading_of_the_next_request(void **state)
     }
 }
 
-static void a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out(void **state)
+TEST(a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US + 200);
     ask(&bench.other, 1, &bench.other_value, 0);
@@ -178,9 +171,8 @@ static void a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out(v
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void other_units_are_asked_while_one_owes(void **state)
+TEST(other_units_are_asked_while_one_owes)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US + 200);
     ask(&bench.request, 1, &bench.value, 0);
@@ -194,9 +186,8 @@ static void other_units_are_asked_while_one_owes(void **state)
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
 }
 
-static void a_late_answer_during_another_units_exchange_is_counted_and_harmless(void **state)
+TEST(a_late_answer_during_another_units_exchange_is_counted_and_harmless)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US + 200);
     ask(&bench.other, 2, &bench.other_value, 0);
@@ -210,9 +201,8 @@ static void a_late_answer_during_another_units_exchange_is_counted_and_harmless(
     assert_int_equal(bench.other_value, 222);
 }
 
-static void a_late_answer_serves_the_retry_that_waits_for_it(void **state)
+TEST(a_late_answer_serves_the_retry_that_waits_for_it)
 {
-    (void)state;
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
@@ -225,10 +215,9 @@ static void a_late_answer_serves_the_retry_that_waits_for_it(void **state)
     assert_int_equal(counter(FATHOM_LINE_ANSWERS), 1);
 }
 
-static void a_damaged_answer_owes_for_what_is_left_of_the_time_out(void **state)
+TEST(a_damaged_answer_owes_for_what_is_left_of_the_time_out)
 {
     uint8_t damaged[sizeof answer_1_754];
-    (void)state;
     memcpy(damaged, answer_1_754, sizeof damaged);
     damaged[5] ^= 1;
     ask_1_and_send(1);
@@ -242,9 +231,8 @@ static void a_damaged_answer_owes_for_what_is_left_of_the_time_out(void **state)
 }
 
 /* What broke off may have been noise, and the answer come late. */
-static void an_answer_that_broke_off_owes_for_twice_the_time_out(void **state)
+TEST(an_answer_that_broke_off_owes_for_twice_the_time_out)
 {
-    (void)state;
     ask_1_and_send(1);
     receive(answer_1_754, 5);
     run(GAP_US + 300);
@@ -255,9 +243,8 @@ static void an_answer_that_broke_off_owes_for_twice_the_time_out(void **state)
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void retries_are_the_callers_number_and_the_last_error_stays(void **state)
+TEST(retries_are_the_callers_number_and_the_last_error_stays)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 2);
     run(8 * TIMEOUT_US);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
@@ -266,9 +253,8 @@ static void retries_are_the_callers_number_and_the_last_error_stays(void **state
     assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 3);
 }
 
-static void a_stray_while_nothing_is_asked_is_dropped(void **state)
+TEST(a_stray_while_nothing_is_asked_is_dropped)
 {
-    (void)state;
     receive_answer(1, 111);
     run(100);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 7);
@@ -277,9 +263,8 @@ static void a_stray_while_nothing_is_asked_is_dropped(void **state)
 
 /* ---- a port that fails ---- */
 
-static void a_port_that_cannot_be_read_ends_every_exchange_and_recovers(void **state)
+TEST(a_port_that_cannot_be_read_ends_every_exchange_and_recovers)
 {
-    (void)state;
     ask_1_and_send(0);
     ask(&bench.other, 2, &bench.other_value, 0);
     bench.fake.read_fails = true;
@@ -295,9 +280,8 @@ static void a_port_that_cannot_be_read_ends_every_exchange_and_recovers(void **s
     assert_int_equal(bench.other_value, 222);
 }
 
-static void a_unit_that_was_asked_when_the_port_broke_still_owes(void **state)
+TEST(a_unit_that_was_asked_when_the_port_broke_still_owes)
 {
-    (void)state;
     ask_1_and_send(0);
     bench.fake.read_fails = true;
     assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
@@ -313,9 +297,8 @@ static void a_unit_that_was_asked_when_the_port_broke_still_owes(void **state)
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void what_was_received_before_the_port_broke_is_forgotten(void **state)
+TEST(what_was_received_before_the_port_broke_is_forgotten)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_754, 3);
     run(100);
@@ -328,9 +311,8 @@ static void what_was_received_before_the_port_broke_is_forgotten(void **state)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 4);
 }
 
-static void a_port_that_cannot_write_or_tears_a_request_ends_the_exchange(void **state)
+TEST(a_port_that_cannot_write_or_tears_a_request_ends_the_exchange)
 {
-    (void)state;
     bench.fake.write_fails = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(5000);
@@ -343,9 +325,8 @@ static void a_port_that_cannot_write_or_tears_a_request_ends_the_exchange(void *
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
 }
 
-static void a_busy_port_gets_the_request_when_it_is_free(void **state)
+TEST(a_busy_port_gets_the_request_when_it_is_free)
 {
-    (void)state;
     bench.fake.write_busy = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(50000);
@@ -355,9 +336,8 @@ static void a_busy_port_gets_the_request_when_it_is_free(void **state)
     assert_memory_equal(bench.fake.writes[0].bytes, ask_1_processed, sizeof ask_1_processed);
 }
 
-static void a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken(void **state)
+TEST(a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken)
 {
-    (void)state;
     bench.fake.write_busy = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(FATHOM_LINE_SEND_US);
@@ -374,45 +354,12 @@ static void a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken(vo
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
 }
 
-static void an_answer_counts_although_the_port_does_not_say_yet_that_the_request_has_left(void **state)
+TEST(an_answer_counts_although_the_port_does_not_say_yet_that_the_request_has_left)
 {
-    (void)state;
     bench.fake.never_sent = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(20000);
     receive(answer_1_754, sizeof answer_1_754);
     run(100);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(noise_before_an_answer_is_dropped_in_the_same_poll),
-        TEST(noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_most),
-        TEST(another_units_answer_is_a_stray_and_the_wait_goes_on),
-        TEST(an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows),
-        TEST(a_damaged_answer_ends_the_attempt_at_the_first_gap),
-        TEST(a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_left),
-        TEST(an_answer_that_breaks_off_is_a_checksum_error),
-        TEST(less_than_three_bytes_are_noise_and_end_nothing),
-        TEST(a_frame_longer_than_the_memory_is_dropped_without_overrun),
-        TEST(a_late_answer_is_never_the_reading_of_the_next_request),
-        TEST(a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out),
-        TEST(other_units_are_asked_while_one_owes),
-        TEST(a_late_answer_during_another_units_exchange_is_counted_and_harmless),
-        TEST(a_late_answer_serves_the_retry_that_waits_for_it),
-        TEST(a_damaged_answer_owes_for_what_is_left_of_the_time_out),
-        TEST(an_answer_that_broke_off_owes_for_twice_the_time_out),
-        TEST(retries_are_the_callers_number_and_the_last_error_stays),
-        TEST(a_stray_while_nothing_is_asked_is_dropped),
-        TEST(a_port_that_cannot_be_read_ends_every_exchange_and_recovers),
-        TEST(a_port_that_cannot_write_or_tears_a_request_ends_the_exchange),
-        TEST(a_busy_port_gets_the_request_when_it_is_free),
-        TEST(a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken),
-        TEST(an_answer_counts_although_the_port_does_not_say_yet_that_the_request_has_left),
-        TEST(a_unit_that_was_asked_when_the_port_broke_still_owes),
-        TEST(what_was_received_before_the_port_broke_is_forgotten),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,9 +5,10 @@
 
 static bool is_idle(void) { return fathom_line_is_idle(&bench.line); }
 
-static void a_new_line_and_one_with_a_waiting_request_are_idle(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(a_new_line_and_one_with_a_waiting_request_are_idle)
 {
-    (void)state;
     assert_true(is_idle());
     ask(&bench.request, 1, &bench.value, 0);
     assert_true(is_idle());
@@ -17,9 +18,8 @@ static void a_new_line_and_one_with_a_waiting_request_are_idle(void **state)
     assert_false(is_idle());
 }
 
-static void it_is_busy_from_the_request_to_the_answer(void **state)
+TEST(it_is_busy_from_the_request_to_the_answer)
 {
-    (void)state;
     bench.fake.byte_us = BYTE_US;
     run(10000);
     ask(&bench.request, 1, &bench.value, 0);
@@ -37,9 +37,8 @@ static void it_is_busy_from_the_request_to_the_answer(void **state)
     assert_true(is_idle());
 }
 
-static void a_unit_that_owes_an_answer_does_not_keep_it_busy(void **state)
+TEST(a_unit_that_owes_an_answer_does_not_keep_it_busy)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US + 1000);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
@@ -56,9 +55,8 @@ static void a_unit_that_owes_an_answer_does_not_keep_it_busy(void **state)
     assert_true(is_idle());
 }
 
-static void a_port_that_takes_no_request_leaves_it_idle(void **state)
+TEST(a_port_that_takes_no_request_leaves_it_idle)
 {
-    (void)state;
     bench.fake.write_busy = true;
     run(10000);
     ask(&bench.request, 1, &bench.value, 0);
@@ -67,15 +65,4 @@ static void a_port_that_takes_no_request_leaves_it_idle(void **state)
     bench.fake.write_busy = false;
     run(100);
     assert_false(is_idle());
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_new_line_and_one_with_a_waiting_request_are_idle),
-        TEST(it_is_busy_from_the_request_to_the_answer),
-        TEST(a_unit_that_owes_an_answer_does_not_keep_it_busy),
-        TEST(a_port_that_takes_no_request_leaves_it_idle),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
+static const suite_t suite = {.set_up = set_up};
+
 /* ---- what the port knows about bytes ---- */
 
-static void a_silence_that_the_port_saw_ends_a_frame(void **state)
+TEST(a_silence_that_the_port_saw_ends_a_frame)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_754, 4);
     fake_receive_rx(&bench.fake, 0, answer_1_754, sizeof answer_1_754, (fathom_rx_t){0, FATHOM_RX_SILENCE});
@@ -15,7 +16,7 @@ static void a_silence_that_the_port_saw_ends_a_frame(void **state)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 4);
 }
 
-static void bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer(void **state)
+TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING};
     for (size_t i = 0; i != sizeof flags; i++) {
@@ -29,9 +30,8 @@ static void bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer(void
     }
 }
 
-static void an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it(void **state)
+TEST(an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
 {
-    (void)state;
     ask_1_and_send(0);
     receive(answer_1_754, 4);
     fake_receive_rx(&bench.fake, 0, answer_1_754, sizeof answer_1_754, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
@@ -39,9 +39,8 @@ static void an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it(voi
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
 }
 
-static void with_time_stamps_the_next_request_need_not_wait_for_the_loop(void **state)
+TEST(with_time_stamps_the_next_request_need_not_wait_for_the_loop)
 {
-    (void)state;
     ask_1_and_send(0);
     ask(&bench.other, 2, &bench.other_value, 0);
     const fathom_rx_t rx = {bench.fake.now_us + 1000, FATHOM_RX_TIMED};
@@ -89,9 +88,8 @@ static ear_t ear_of(uint16_t gap_us)
 
 static const uint8_t auto_frame[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 2(4): 1953 mm */
 
-static void a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen(void **state)
+TEST(a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     run(2000);
@@ -111,9 +109,8 @@ static void a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen(v
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
 }
 
-static void a_pause_between_polls_is_no_gap(void **state)
+TEST(a_pause_between_polls_is_no_gap)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     fathom_line_poll(&bench.line);
@@ -125,9 +122,8 @@ static void a_pause_between_polls_is_no_gap(void **state)
     assert_int_equal(ear.gaps, 0);
 }
 
-static void a_silence_that_the_port_saw_is_a_gap(void **state)
+TEST(a_silence_that_the_port_saw_is_a_gap)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_SILENCE});
@@ -135,9 +131,8 @@ static void a_silence_that_the_port_saw_is_a_gap(void **state)
     assert_int_equal(ear.gaps, 1);
 }
 
-static void unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not(void **state)
+TEST(unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     ask_1_and_send(0);
@@ -153,9 +148,8 @@ static void unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_doe
     assert_memory_equal(ear.bytes + 4, auto_frame, 4);
 }
 
-static void only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap(void **state)
+TEST(only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     ask_1_and_send(0);
@@ -168,9 +162,8 @@ static void only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap(
     assert_int_equal(ear.gap_at, 0);
 }
 
-static void our_own_request_is_no_silence(void **state)
+TEST(our_own_request_is_no_silence)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     ask_1_and_send(0); /* 8 ms of it */
@@ -180,9 +173,8 @@ static void our_own_request_is_no_silence(void **state)
     assert_int_equal(ear.gaps, 0);
 }
 
-static void whole_foreign_frames_go_to_the_listener(void **state)
+TEST(whole_foreign_frames_go_to_the_listener)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     ask_1_and_send(0);
@@ -199,7 +191,7 @@ static void whole_foreign_frames_go_to_the_listener(void **state)
 
 /* ---- bytes that the port knows to be wrong or missing ---- */
 
-static void a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one(void **state)
+TEST(a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING,
                                     FATHOM_RX_PARITY | FATHOM_RX_OVERRUN};
@@ -221,9 +213,8 @@ static void a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one
     }
 }
 
-static void a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before(void **state)
+TEST(a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     receive(auto_frame, 1);
@@ -237,9 +228,8 @@ static void a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before(
 }
 
 /* What waited as the possible beginning of an answer comes before the loss, in the order in which it came. */
-static void what_an_exchange_held_back_goes_to_the_listener_before_the_loss(void **state)
+TEST(what_an_exchange_held_back_goes_to_the_listener_before_the_loss)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     ask_1_and_send(0);
@@ -257,7 +247,7 @@ static void what_an_exchange_held_back_goes_to_the_listener_before_the_loss(void
 }
 
 /* The same read before and after: only together would they be an answer. */
-static void an_answer_is_never_put_together_across_lost_bytes(void **state)
+TEST(an_answer_is_never_put_together_across_lost_bytes)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN};
     for (size_t i = 0; i != sizeof flags; i++)
@@ -280,7 +270,7 @@ static void an_answer_is_never_put_together_across_lost_bytes(void **state)
         }
 }
 
-static void a_whole_answer_after_lost_bytes_is_taken(void **state)
+TEST(a_whole_answer_after_lost_bytes_is_taken)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN};
     for (size_t i = 0; i != sizeof flags; i++) {
@@ -296,9 +286,8 @@ static void a_whole_answer_after_lost_bytes_is_taken(void **state)
     }
 }
 
-static void lost_bytes_while_nothing_is_asked_are_only_counted(void **state)
+TEST(lost_bytes_while_nothing_is_asked_are_only_counted)
 {
-    (void)state;
     fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_FRAMING});
     fake_receive_rx(&bench.fake, 0, auto_frame, 4, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
     run(100);
@@ -310,9 +299,8 @@ static void lost_bytes_while_nothing_is_asked_are_only_counted(void **state)
     assert_int_equal(bench.value, 754);
 }
 
-static void due_makes_room_for_the_listener_to_see_its_gap(void **state)
+TEST(due_makes_room_for_the_listener_to_see_its_gap)
 {
-    (void)state;
     ear_t ear = ear_of(5000);
     fathom_line_listen(&bench.line, &ear.listener);
     receive(auto_frame, 4);
@@ -320,29 +308,4 @@ static void due_makes_room_for_the_listener_to_see_its_gap(void **state)
     assert_int_equal(fathom_line_due_us(&bench.line), 5000);
     run_in_steps(5000, 5000);
     assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_silence_that_the_port_saw_ends_a_frame),
-        TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer),
-        TEST(an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it),
-        TEST(with_time_stamps_the_next_request_need_not_wait_for_the_loop),
-        TEST(a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen),
-        TEST(a_pause_between_polls_is_no_gap),
-        TEST(a_silence_that_the_port_saw_is_a_gap),
-        TEST(unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not),
-        TEST(whole_foreign_frames_go_to_the_listener),
-        TEST(a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one),
-        TEST(a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before),
-        TEST(what_an_exchange_held_back_goes_to_the_listener_before_the_loss),
-        TEST(an_answer_is_never_put_together_across_lost_bytes),
-        TEST(a_whole_answer_after_lost_bytes_is_taken),
-        TEST(lost_bytes_while_nothing_is_asked_are_only_counted),
-        TEST(due_makes_room_for_the_listener_to_see_its_gap),
-        TEST(only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap),
-        TEST(our_own_request_is_no_silence),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

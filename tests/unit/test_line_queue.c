@@ -3,9 +3,10 @@
 
 /* Exchanges that wait: for their turn, for a retry, for what is owed; and how long that is. */
 
-static void one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire)
 {
-    (void)state;
     ask_1_and_send(0);
     ask(&bench.other, 2, &bench.other_value, 0);
     fathom_line_cancel(&bench.line, &bench.other.exchange);
@@ -23,11 +24,10 @@ static void one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire(
     assert_int_equal(bench.fake.written, 3);
 }
 
-static void one_in_the_middle_of_the_queue_can_be_cancelled(void **state)
+TEST(one_in_the_middle_of_the_queue_can_be_cancelled)
 {
     fathom_modbus_request_t third;
     uint16_t third_value;
-    (void)state;
     memset(&third, 0, sizeof third);
     ask_1_and_send(0);
     ask(&bench.other, 2, &bench.other_value, 0);
@@ -43,9 +43,8 @@ static void one_in_the_middle_of_the_queue_can_be_cancelled(void **state)
 }
 
 /* From the unit that owes one, but three registers instead of one. */
-static void a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more(void **state)
+TEST(a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more)
 {
-    (void)state;
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
     receive(answer_1_three, sizeof answer_1_three);
@@ -61,9 +60,8 @@ static void a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_m
     assert_int_equal(bench.value, 111);
 }
 
-static void a_late_exception_ends_the_retry(void **state)
+TEST(a_late_exception_ends_the_retry)
 {
-    (void)state;
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
     receive(exception_1_2, sizeof exception_1_2);
@@ -74,9 +72,8 @@ static void a_late_exception_ends_the_retry(void **state)
 
 /* ---- how long until poll has something to do ---- */
 
-static void after_a_long_silence_a_request_is_due_at_once(void **state)
+TEST(after_a_long_silence_a_request_is_due_at_once)
 {
-    (void)state;
     run(20000);
     assert_true(fathom_line_due_us(&bench.line) == FATHOM_NO_DEADLINE);
     ask(&bench.request, 1, &bench.value, 0);
@@ -86,10 +83,9 @@ static void after_a_long_silence_a_request_is_due_at_once(void **state)
     assert_int_equal(fathom_line_due_us(&bench.line), 1000); /* while it leaves */
 }
 
-static void the_end_of_a_damaged_answer_is_due_at_its_gap(void **state)
+TEST(the_end_of_a_damaged_answer_is_due_at_its_gap)
 {
     static const uint8_t damaged[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00}; /* the CRC is 38 A1 */
-    (void)state;
     ask_1_and_send(0);
     receive(damaged, sizeof damaged);
     fathom_line_poll(&bench.line);
@@ -99,9 +95,8 @@ static void the_end_of_a_damaged_answer_is_due_at_its_gap(void **state)
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
 }
 
-static void what_only_waits_for_a_debt_is_due_when_that_is_forgotten(void **state)
+TEST(what_only_waits_for_a_debt_is_due_when_that_is_forgotten)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US + 200);
     ask(&bench.request, 1, &bench.value, 0);
@@ -109,18 +104,4 @@ static void what_only_waits_for_a_debt_is_due_when_that_is_forgotten(void **stat
     assert_true(due_us > TIMEOUT_US - 1000 && due_us <= TIMEOUT_US);
     run_in_steps(due_us, due_us);
     assert_int_equal(bench.fake.written, 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire),
-        TEST(one_in_the_middle_of_the_queue_can_be_cancelled),
-        TEST(a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more),
-        TEST(a_late_exception_ends_the_retry),
-        TEST(after_a_long_silence_a_request_is_due_at_once),
-        TEST(the_end_of_a_damaged_answer_is_due_at_its_gap),
-        TEST(what_only_waits_for_a_debt_is_due_when_that_is_forgotten),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

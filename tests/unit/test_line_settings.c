@@ -20,9 +20,10 @@ static void assert_set_to(const fathom_line_settings_t *settings)
     assert_int_equal(bench.fake.settings.stop_bits, settings->stop_bits);
 }
 
-static void an_exchange_without_settings_leaves_the_line_as_it_is(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(an_exchange_without_settings_leaves_the_line_as_it_is)
 {
-    (void)state;
     ask_1_and_send(0);
     receive_answer(1, 111);
     run(100);
@@ -30,9 +31,8 @@ static void an_exchange_without_settings_leaves_the_line_as_it_is(void **state)
     assert_int_equal(bench.fake.set_lines, 0);
 }
 
-static void settings_hold_before_the_request_is_written(void **state)
+TEST(settings_hold_before_the_request_is_written)
 {
-    (void)state;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     run(T3_5_US - 200);
     assert_int_equal(bench.fake.set_lines, 0); /* what still comes is at the settings before */
@@ -45,9 +45,8 @@ static void settings_hold_before_the_request_is_written(void **state)
     assert_int_equal(bench.value, 111);
 }
 
-static void two_sensors_with_their_own_settings_share_a_line(void **state)
+TEST(two_sensors_with_their_own_settings_share_a_line)
 {
-    (void)state;
     for (unsigned round = 0; round != 5; round++) {
         ask_with(&bench.request, 1, &bench.value, &n9600);
         ask_with(&bench.other, 2, &bench.other_value, &e19200);
@@ -71,9 +70,8 @@ static void two_sensors_with_their_own_settings_share_a_line(void **state)
     }
 }
 
-static void each_attempt_sets_its_settings_again(void **state)
+TEST(each_attempt_sets_its_settings_again)
 {
-    (void)state;
     bench.request.exchange.settings = &e19200;
     ask(&bench.request, 1, &bench.value, 2);
     ask_with(&bench.other, 2, &bench.other_value, &n9600);
@@ -85,9 +83,8 @@ static void each_attempt_sets_its_settings_again(void **state)
 }
 
 /* hal.h: 0 means that bytes are still leaving. */
-static void a_port_that_cannot_change_yet_is_asked_again(void **state)
+TEST(a_port_that_cannot_change_yet_is_asked_again)
 {
-    (void)state;
     bench.fake.never_sent = true;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     run(50000);
@@ -104,9 +101,8 @@ static void a_port_that_cannot_change_yet_is_asked_again(void **state)
     assert_int_equal(bench.value, 111);
 }
 
-static void a_port_that_never_changes_is_broken_after_a_second(void **state)
+TEST(a_port_that_never_changes_is_broken_after_a_second)
 {
-    (void)state;
     bench.fake.never_sent = true;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     run(FATHOM_LINE_SEND_US);
@@ -117,9 +113,8 @@ static void a_port_that_never_changes_is_broken_after_a_second(void **state)
     assert_int_equal(bench.fake.written, 0);
 }
 
-static void settings_that_the_port_cannot_do_end_that_exchange_alone(void **state)
+TEST(settings_that_the_port_cannot_do_end_that_exchange_alone)
 {
-    (void)state;
     bench.fake.unsupported_baud = 19200;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     ask_with(&bench.other, 2, &bench.other_value, &n9600);
@@ -135,9 +130,8 @@ static void settings_that_the_port_cannot_do_end_that_exchange_alone(void **stat
     assert_int_equal(bench.value, 0xDEAD);
 }
 
-static void retries_do_not_help_against_settings_that_the_port_cannot_do(void **state)
+TEST(retries_do_not_help_against_settings_that_the_port_cannot_do)
 {
-    (void)state;
     bench.fake.unsupported_baud = 19200;
     bench.request.exchange.settings = &e19200;
     ask(&bench.request, 1, &bench.value, 5);
@@ -149,9 +143,8 @@ static void retries_do_not_help_against_settings_that_the_port_cannot_do(void **
     assert_int_equal(bench.fake.written, 1);
 }
 
-static void settings_on_a_port_whose_settings_are_fixed_are_unsupported(void **state)
+TEST(settings_on_a_port_whose_settings_are_fixed_are_unsupported)
 {
-    (void)state;
     bench.fake.uart.set_line = NULL;
     ask_with(&bench.request, 1, &bench.value, &n9600);
     ask_with(&bench.other, 2, &bench.other_value, NULL);
@@ -163,9 +156,8 @@ static void settings_on_a_port_whose_settings_are_fixed_are_unsupported(void **s
     assert_int_equal(bench.other_value, 222);
 }
 
-static void settings_that_turn_out_unsupported_after_a_busy_port_end_the_exchange(void **state)
+TEST(settings_that_turn_out_unsupported_after_a_busy_port_end_the_exchange)
 {
-    (void)state;
     bench.fake.never_sent = true;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     run(20000);
@@ -177,9 +169,8 @@ static void settings_that_turn_out_unsupported_after_a_busy_port_end_the_exchang
 }
 
 /* The port took the settings and is then too busy for the request. */
-static void a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free(void **state)
+TEST(a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free)
 {
-    (void)state;
     bench.fake.write_busy = true;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     run(20000);
@@ -190,9 +181,8 @@ static void a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_i
     assert_int_equal(bench.fake.writes[0].baud, 19200);
 }
 
-static void an_exchange_that_waits_for_its_settings_can_be_cancelled_and_owes_nothing(void **state)
+TEST(an_exchange_that_waits_for_its_settings_can_be_cancelled_and_owes_nothing)
 {
-    (void)state;
     bench.fake.never_sent = true;
     ask_with(&bench.request, 1, &bench.value, &e19200);
     run(20000);
@@ -203,23 +193,4 @@ static void an_exchange_that_waits_for_its_settings_can_be_cancelled_and_owes_no
     run(100);
     assert_int_equal(bench.fake.written, 1);
     assert_int_equal(bench.fake.writes[0].baud, 9600);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(an_exchange_without_settings_leaves_the_line_as_it_is),
-        TEST(settings_hold_before_the_request_is_written),
-        TEST(two_sensors_with_their_own_settings_share_a_line),
-        TEST(each_attempt_sets_its_settings_again),
-        TEST(a_port_that_cannot_change_yet_is_asked_again),
-        TEST(a_port_that_never_changes_is_broken_after_a_second),
-        TEST(settings_that_the_port_cannot_do_end_that_exchange_alone),
-        TEST(retries_do_not_help_against_settings_that_the_port_cannot_do),
-        TEST(settings_on_a_port_whose_settings_are_fixed_are_unsupported),
-        TEST(settings_that_turn_out_unsupported_after_a_busy_port_end_the_exchange),
-        TEST(a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free),
-        TEST(an_exchange_that_waits_for_its_settings_can_be_cancelled_and_owes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

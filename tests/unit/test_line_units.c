@@ -34,7 +34,9 @@ static void ask_any(uint8_t retries)
     run(5 * BYTE_US + 100);
 }
 
-static void any_unit_may_answer_who_asked_them_all(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(any_unit_may_answer_who_asked_them_all)
 {
     for (unsigned unit = 1; unit != 255; unit++) {
         set_up(state);
@@ -47,10 +49,9 @@ static void any_unit_may_answer_who_asked_them_all(void **state)
     }
 }
 
-static void what_is_damaged_is_nobodys_answer(void **state)
+TEST(what_is_damaged_is_nobodys_answer)
 {
     uint8_t frame[7];
-    (void)state;
     ask_any(0);
     receive(frame, make_first_probe(frame, 9, 0xA1) - 2);
     run(GAP_US + 300);
@@ -59,7 +60,7 @@ static void what_is_damaged_is_nobodys_answer(void **state)
     assert_int_equal(bench.request.message.head[0], 255);
 }
 
-static void after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out(void **state)
+TEST(after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out)
 {
     for (unsigned unit = 1; unit != 255; unit++) {
         set_up(state);
@@ -74,9 +75,8 @@ static void after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out(
     }
 }
 
-static void nobody_is_asked_for_anyone_while_somebody_owes(void **state)
+TEST(nobody_is_asked_for_anyone_while_somebody_owes)
 {
-    (void)state;
     ask_1_and_send(0);
     run(TIMEOUT_US + 200);
     fathom_modbus_read_holding_registers(&bench.other.message, 255, 0x0106, 1, &bench.other_value);
@@ -88,9 +88,8 @@ static void nobody_is_asked_for_anyone_while_somebody_owes(void **state)
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void a_late_answer_to_a_question_to_anyone_is_no_other_requests(void **state)
+TEST(a_late_answer_to_a_question_to_anyone_is_no_other_requests)
 {
-    (void)state;
     ask_any(0);
     run(TIMEOUT_US + 200);
     fathom_modbus_read_holding_registers(&bench.other.message, 9, 0x0106, 1, &bench.other_value);
@@ -105,9 +104,8 @@ static void a_late_answer_to_a_question_to_anyone_is_no_other_requests(void **st
     assert_int_equal(status_of(&bench.other), FATHOM_PENDING);
 }
 
-static void a_cancelled_question_to_anyone_is_owed_by_all(void **state)
+TEST(a_cancelled_question_to_anyone_is_owed_by_all)
 {
-    (void)state;
     ask_any(0);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
     ask(&bench.other, 77, &bench.other_value, 0);
@@ -117,9 +115,8 @@ static void a_cancelled_question_to_anyone_is_owed_by_all(void **state)
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void what_all_are_told_none_owes_an_answer_to(void **state)
+TEST(what_all_are_told_none_owes_an_answer_to)
 {
-    (void)state;
     fathom_modbus_write_single_register(&bench.request.message, 0, 0x0200, 5);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
@@ -135,9 +132,8 @@ static void what_all_are_told_none_owes_an_answer_to(void **state)
     assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS) + counter(FATHOM_LINE_ANSWERS), 0);
 }
 
-static void a_cancelled_broadcast_is_owed_by_none(void **state)
+TEST(a_cancelled_broadcast_is_owed_by_none)
 {
-    (void)state;
     fathom_modbus_write_single_register(&bench.request.message, 0, 0x0200, 5);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
@@ -148,9 +144,8 @@ static void a_cancelled_broadcast_is_owed_by_none(void **state)
     assert_int_equal(bench.fake.written, 2);
 }
 
-static void a_request_that_was_cancelled_on_its_way_is_owed_from_then_on(void **state)
+TEST(a_request_that_was_cancelled_on_its_way_is_owed_from_then_on)
 {
-    (void)state;
     ask(&bench.request, 1, &bench.value, 0);
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, 1);
@@ -160,20 +155,4 @@ static void a_request_that_was_cancelled_on_its_way_is_owed_from_then_on(void **
     assert_int_equal(bench.fake.written, 1);
     run(2000);
     assert_int_equal(bench.fake.written, 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(any_unit_may_answer_who_asked_them_all),
-        TEST(what_is_damaged_is_nobodys_answer),
-        TEST(after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out),
-        TEST(nobody_is_asked_for_anyone_while_somebody_owes),
-        TEST(a_late_answer_to_a_question_to_anyone_is_no_other_requests),
-        TEST(a_cancelled_question_to_anyone_is_owed_by_all),
-        TEST(what_all_are_told_none_owes_an_answer_to),
-        TEST(a_cancelled_broadcast_is_owed_by_none),
-        TEST(a_request_that_was_cancelled_on_its_way_is_owed_from_then_on),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,9 +8,10 @@ static fathom_status_t submit_read(uint8_t unit, uint8_t count, uint16_t *values
     return fathom_modbus_client_submit(&bench.line, &bench.request);
 }
 
-static void a_count_out_of_range_is_refused(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(a_count_out_of_range_is_refused)
 {
-    (void)state;
     uint16_t values[4] = {0};
     assert_int_equal(submit_read(1, 0, values), FATHOM_ERR_ARGUMENT);
     assert_int_equal(submit_read(1, 126, values), FATHOM_ERR_ARGUMENT);
@@ -19,17 +20,15 @@ static void a_count_out_of_range_is_refused(void **state)
     assert_null(bench.line.head);
 }
 
-static void a_read_from_everybody_is_refused(void **state)
+TEST(a_read_from_everybody_is_refused)
 {
-    (void)state;
     uint16_t value = 0;
     assert_int_equal(submit_read(FATHOM_MODBUS_BROADCAST, 1, &value), FATHOM_ERR_ARGUMENT);
 }
 
 /* 13 registers are 31 bytes of answer, 14 are 33; the frame has 32. 11 written are 31 bytes, 12 are 33. */
-static void what_does_not_fit_the_frame_is_refused(void **state)
+TEST(what_does_not_fit_the_frame_is_refused)
 {
-    (void)state;
     uint16_t values[14] = {0};
     assert_int_equal(submit_read(1, 14, values), FATHOM_ERR_CAPACITY);
     assert_int_equal(submit_read(1, 13, values), FATHOM_PENDING);
@@ -41,10 +40,9 @@ static void what_does_not_fit_the_frame_is_refused(void **state)
 }
 
 /* A05 3(4)1 example 3. */
-static void several_registers_are_read_in_one_exchange(void **state)
+TEST(several_registers_are_read_in_one_exchange)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
-    (void)state;
     uint16_t values[3] = {0};
     bench.request.exchange.timeout_us = TIMEOUT_US;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0107, 3, values);
@@ -61,11 +59,10 @@ static void several_registers_are_read_in_one_exchange(void **state)
 }
 
 /* HPS-167S table 38: the answer to 01 10 00 20 00 02 04 .. is 01 10 00 20 00 02 40 02. */
-static void a_write_of_many_is_acknowledged_by_start_and_count(void **state)
+TEST(a_write_of_many_is_acknowledged_by_start_and_count)
 {
     static const uint8_t answer[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02};
     static const uint8_t head[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24};
-    (void)state;
     const uint16_t values[] = {0, 36};
     bench.request.exchange.timeout_us = TIMEOUT_US;
     fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0020, 2, values);
@@ -78,7 +75,7 @@ static void a_write_of_many_is_acknowledged_by_start_and_count(void **state)
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
 }
 
-static void every_byte_of_an_acknowledgement_counts(void **state)
+TEST(every_byte_of_an_acknowledgement_counts)
 {
     static const uint8_t answer[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71}; /* A16 6(4) example 3 */
     uint16_t values[5] = {0};
@@ -99,9 +96,8 @@ static void every_byte_of_an_acknowledgement_counts(void **state)
     }
 }
 
-static void the_seam_is_the_same_client(void **state)
+TEST(the_seam_is_the_same_client)
 {
-    (void)state;
     const fathom_modbus_t modbus = fathom_modbus_client(&bench.line);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
@@ -118,18 +114,4 @@ static void the_seam_is_the_same_client(void **state)
     modbus.submit(modbus.ctx, &bench.request);
     modbus.cancel(modbus.ctx, &bench.request);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_CANCELLED);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(a_count_out_of_range_is_refused),
-        TEST(a_read_from_everybody_is_refused),
-        TEST(what_does_not_fit_the_frame_is_refused),
-        TEST(several_registers_are_read_in_one_exchange),
-        TEST(a_write_of_many_is_acknowledged_by_start_and_count),
-        TEST(every_byte_of_an_acknowledgement_counts),
-        TEST(the_seam_is_the_same_client),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

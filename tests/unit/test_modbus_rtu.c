@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/modbus_rtu.h"
 
@@ -20,12 +17,13 @@ static uint16_t values[VALUES];
 
 static int set_up(void **state)
 {
-    (void)state;
     memset(&message, GUARD, sizeof message);
     memset(frame, GUARD, sizeof frame);
     memset(values, GUARD, sizeof values);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static void assert_frame(uint8_t length, const uint8_t *expected, uint8_t expected_length)
 {
@@ -49,9 +47,8 @@ static void ask(uint8_t function, uint8_t count)
 /* ---- the client's side ---- */
 
 /* 8 bytes, and where it is longer: a read's answer is 5 + 2 n (6.3), a write's request 9 + 2 n (6.12). */
-static void the_room_of_every_count(void **state)
+TEST(the_room_of_every_count)
 {
-    (void)state;
     for (unsigned n = 0; n != 256; n++) {
         ask(READ, (uint8_t)n);
         assert_int_equal(fathom_modbus_rtu_room(&message), n == 0 || n > 125 ? 0 : n == 1 ? 8 : 5 + 2 * n);
@@ -62,9 +59,8 @@ static void the_room_of_every_count(void **state)
     }
 }
 
-static void a_read_of_every_count_is_8_bytes(void **state)
+TEST(a_read_of_every_count_is_8_bytes)
 {
-    (void)state;
     for (unsigned n = 1; n <= 125; n++) {
         const uint8_t head[] = {0x01, 0x03, 0x00, 0x20, 0x00, (uint8_t)n};
         ask(READ, (uint8_t)n);
@@ -75,20 +71,19 @@ static void a_read_of_every_count_is_8_bytes(void **state)
 }
 
 /* modbus_rtu.h: "what is outside is refused when it is submitted or encoded (..., length 0)". */
-static void a_count_out_of_range_has_no_room(void **state)
+TEST(a_count_out_of_range_has_no_room)
 {
     static const struct {
         uint8_t function;
         uint8_t count;
     } refused[] = {{READ, 0}, {READ, 126}, {READ, 255}, {WRITE_MANY, 0}, {WRITE_MANY, 124}};
-    (void)state;
     for (unsigned i = 0; i != sizeof refused / sizeof *refused; i++) {
         ask(refused[i].function, refused[i].count);
         assert_int_equal(fathom_modbus_rtu_room(&message), 0);
     }
 }
 
-static void a_write_of_one_carries_0000_8000_and_FFFF(void **state)
+TEST(a_write_of_one_carries_0000_8000_and_FFFF)
 {
     static const uint8_t expected[][8] = {
         {0x01, 0x06, 0x00, 0x14, 0x00, 0x00, 0xC9, 0xCE},
@@ -96,7 +91,6 @@ static void a_write_of_one_carries_0000_8000_and_FFFF(void **state)
         {0x01, 0x06, 0x00, 0x14, 0xFF, 0xFF, 0xC8, 0x7E},
     };
     static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         fathom_modbus_write_single_register(&message, 1, 0x0014, written[i]);
         assert_frame(fathom_modbus_rtu_encode_request(&message, frame), expected[i], 8);
@@ -108,9 +102,8 @@ static const uint8_t three_values[] = {0x01, 0x03, 0x06, 0x00, 0x00, 0x80, 0x00,
 static const uint8_t write_three[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 0x00,
                                       0x00, 0x80, 0x00, 0xFF, 0xFF, 0xCF, 0x9A};
 
-static void an_answer_brings_0000_8000_and_FFFF(void **state)
+TEST(an_answer_brings_0000_8000_and_FFFF)
 {
-    (void)state;
     ask(READ, 3);
     assert_int_equal(fathom_modbus_rtu_parse_response(&message, three_values), FATHOM_READY);
     assert_int_equal(values[0], 0x0000);
@@ -121,11 +114,10 @@ static void an_answer_brings_0000_8000_and_FFFF(void **state)
     assert_frame(fathom_modbus_rtu_encode_response(&message, frame), three_values, sizeof three_values);
 }
 
-static void a_write_of_many_carries_0000_8000_and_FFFF(void **state)
+TEST(a_write_of_many_carries_0000_8000_and_FFFF)
 {
     static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
     static const uint8_t answer[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x00, 0x00};
-    (void)state;
     fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 3, written);
     assert_frame(fathom_modbus_rtu_encode_request(&message, frame), write_three, sizeof write_three);
     assert_int_equal(fathom_modbus_rtu_parse_response(&message, answer), FATHOM_READY);
@@ -150,10 +142,9 @@ static void set_pattern(unsigned count)
     for (unsigned i = 0; i != count; i++) values[i] = (uint16_t)(256 * i + 255 - i);
 }
 
-static void the_largest_answer_is_255_bytes_and_fits(void **state)
+TEST(the_largest_answer_is_255_bytes_and_fits)
 {
     static const uint8_t head[] = {0x01, 0x03, 250};
-    (void)state;
     ask(READ, 125);
     set_pattern(125);
     assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 255);
@@ -170,10 +161,9 @@ static void the_largest_answer_is_255_bytes_and_fits(void **state)
     for (unsigned i = 125; i != VALUES; i++) assert_int_equal(values[i], GUARD16);
 }
 
-static void the_largest_request_is_255_bytes_and_fits(void **state)
+TEST(the_largest_request_is_255_bytes_and_fits)
 {
     static const uint8_t head[] = {0x01, 0x10, 0x00, 0x20, 0x00, 123, 246};
-    (void)state;
     ask(WRITE_MANY, 123);
     set_pattern(123);
     assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 255);
@@ -191,9 +181,8 @@ static void the_largest_request_is_255_bytes_and_fits(void **state)
 }
 
 /* Every first three bytes. A byte count of 0 is a whole frame that answers nothing. */
-static void the_length_of_an_answer_for_every_function_and_third_byte(void **state)
+TEST(the_length_of_an_answer_for_every_function_and_third_byte)
 {
-    (void)state;
     for (unsigned function = 0; function != 256; function++) {
         for (unsigned third = 0; third != 256; third++) {
             const uint8_t bytes[] = {0x20, (uint8_t)function, (uint8_t)third};
@@ -206,18 +195,16 @@ static void the_length_of_an_answer_for_every_function_and_third_byte(void **sta
     }
 }
 
-static void no_answer_begins_with_the_broadcast_unit(void **state)
+TEST(no_answer_begins_with_the_broadcast_unit)
 {
     static const uint8_t bytes[] = {0x00, 0x03, 0x02, 0x00, 0x00, 0x00, 0x00};
-    (void)state;
     for (uint8_t have = 1; have <= sizeof bytes; have++)
         assert_int_equal(fathom_modbus_rtu_response_length(bytes, have), 0);
 }
 
-static void an_exception_of_any_code_is_kept_as_a_number(void **state)
+TEST(an_exception_of_any_code_is_kept_as_a_number)
 {
     static const uint8_t functions[] = {READ, WRITE, WRITE_MANY};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         for (unsigned code = 0; code != 256; code++) {
             const uint8_t answer[] = {0x01, (uint8_t)(functions[i] | 0x80), (uint8_t)code, 0x00, 0x00};
@@ -266,9 +253,8 @@ static const other_t others[] = {
     {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x20, 0x80, 0x03}},
 };
 
-static void an_answer_to_something_else_writes_nothing(void **state)
+TEST(an_answer_to_something_else_writes_nothing)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof others / sizeof *others; i++) {
         set_up(NULL);
         ask(others[i].function, 3);
@@ -283,9 +269,8 @@ static void an_answer_to_something_else_writes_nothing(void **state)
 
 /* ---- the server's side ---- */
 
-static void the_length_of_a_request_for_every_function_and_byte_count(void **state)
+TEST(the_length_of_a_request_for_every_function_and_byte_count)
 {
-    (void)state;
     for (unsigned function = 0; function != 256; function++) {
         for (unsigned size = 0; size != 256; size++) {
             const uint8_t bytes[] = {0x01, (uint8_t)function, 0, 0, 0, 0, (uint8_t)size};
@@ -325,9 +310,8 @@ static const refused_t refusals[] = {
     {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 8}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
 };
 
-static void a_request_that_cannot_be_served_is_refused_by_its_number(void **state)
+TEST(a_request_that_cannot_be_served_is_refused_by_its_number)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof refusals / sizeof *refusals; i++) {
         const refused_t *const refused = &refusals[i];
         message.values = values;
@@ -339,11 +323,10 @@ static void a_request_that_cannot_be_served_is_refused_by_its_number(void **stat
     }
 }
 
-static void a_request_as_long_as_the_capacity_is_served(void **state)
+TEST(a_request_as_long_as_the_capacity_is_served)
 {
     static const uint8_t read_five[] = {0x01, 0x03, 0x00, 0x20, 0x00, 5};
     static const uint8_t write_one[] = {0x01, 0x06, 0x00, 0x20, 0xFF, 0xFF};
-    (void)state;
     message.values = values;
     assert_int_equal(fathom_modbus_rtu_parse_request(&message, read_five, 5), FATHOM_READY);
     assert_int_equal(message.exception, 0);
@@ -353,36 +336,10 @@ static void a_request_as_long_as_the_capacity_is_served(void **state)
 }
 
 /* modbus_rtu.h: the frame holds 8 bytes at least, for a refused read of 0 registers too. */
-static void the_refusal_of_a_read_of_0_registers_fits_in_8_bytes(void **state)
+TEST(the_refusal_of_a_read_of_0_registers_fits_in_8_bytes)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x00, 0x20, 0x00, 0};
-    (void)state;
     assert_int_equal(fathom_modbus_rtu_parse_request(&message, request, 4), FATHOM_ERR_EXCEPTION);
     assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 5);
     assert_untouched_from(frame, 8, ROOM);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_room_of_every_count),
-        FRESH(a_read_of_every_count_is_8_bytes),
-        FRESH(a_count_out_of_range_has_no_room),
-        FRESH(a_write_of_one_carries_0000_8000_and_FFFF),
-        FRESH(an_answer_brings_0000_8000_and_FFFF),
-        FRESH(a_write_of_many_carries_0000_8000_and_FFFF),
-        FRESH(the_largest_answer_is_255_bytes_and_fits),
-        FRESH(the_largest_request_is_255_bytes_and_fits),
-        FRESH(the_length_of_an_answer_for_every_function_and_third_byte),
-        FRESH(no_answer_begins_with_the_broadcast_unit),
-        FRESH(an_exception_of_any_code_is_kept_as_a_number),
-        FRESH(an_answer_to_something_else_writes_nothing),
-        FRESH(the_length_of_a_request_for_every_function_and_byte_count),
-        FRESH(a_request_that_cannot_be_served_is_refused_by_its_number),
-        FRESH(a_request_as_long_as_the_capacity_is_served),
-        FRESH(the_refusal_of_a_read_of_0_registers_fits_in_8_bytes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

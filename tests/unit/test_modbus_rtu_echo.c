@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/modbus_rtu.h"
 
@@ -36,9 +33,8 @@ static void fill(size_t which)
     if (which == 2) fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 2, values);
 }
 
-static void every_beginning_of_a_request_has_its_length(void **state)
+TEST(every_beginning_of_a_request_has_its_length)
 {
-    (void)state;
     for (size_t which = 0; which != 3; which++) {
         fill(which);
         for (uint8_t have = 1; have <= requests[which].length; have++)
@@ -47,10 +43,9 @@ static void every_beginning_of_a_request_has_its_length(void **state)
     }
 }
 
-static void more_bytes_behind_a_request_do_not_matter(void **state)
+TEST(more_bytes_behind_a_request_do_not_matter)
 {
     uint8_t bytes[32];
-    (void)state;
     for (size_t which = 0; which != 3; which++) {
         fill(which);
         memset(bytes, 0xFF, sizeof bytes);
@@ -61,10 +56,9 @@ static void more_bytes_behind_a_request_do_not_matter(void **state)
 }
 
 /* Of a write of many the byte count belongs to the beginning too; what follows is for the CRC to check. */
-static void one_other_bit_in_the_beginning_makes_it_no_request(void **state)
+TEST(one_other_bit_in_the_beginning_makes_it_no_request)
 {
     uint8_t bytes[13];
-    (void)state;
     for (size_t which = 0; which != 3; which++)
         for (unsigned bit = 0; bit != (which == 2 ? 56 : 48); bit++)
             for (uint8_t have = 1; have <= requests[which].length; have++) {
@@ -76,10 +70,9 @@ static void one_other_bit_in_the_beginning_makes_it_no_request(void **state)
             }
 }
 
-static void the_longest_write_has_255_bytes(void **state)
+TEST(the_longest_write_has_255_bytes)
 {
     uint8_t frame[FATHOM_MODBUS_MAX_FRAME];
-    (void)state;
     fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 123, values);
     assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 255);
     assert_int_equal(frame[6], 246);
@@ -88,25 +81,12 @@ static void the_longest_write_has_255_bytes(void **state)
 }
 
 /* HPS-167S table 38: the acknowledgement of a write of many has the request's head and then its CRC. */
-static void the_answer_to_a_write_of_many_is_not_its_request(void **state)
+TEST(the_answer_to_a_write_of_many_is_not_its_request)
 {
     static const uint8_t done[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02};
-    (void)state;
     fill(2);
     for (uint8_t have = 1; have <= 6; have++)
         assert_int_equal(fathom_modbus_rtu_begun_request(&message, done, have), 13);
     assert_int_equal(fathom_modbus_rtu_begun_request(&message, done, 7), 0);
     assert_int_equal(fathom_modbus_rtu_begun_request(&message, done, 8), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_beginning_of_a_request_has_its_length),
-        cmocka_unit_test(more_bytes_behind_a_request_do_not_matter),
-        cmocka_unit_test(one_other_bit_in_the_beginning_makes_it_no_request),
-        cmocka_unit_test(the_longest_write_has_255_bytes),
-        cmocka_unit_test(the_answer_to_a_write_of_many_is_not_its_request),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/modbus_setting.h"
@@ -35,7 +32,6 @@ static fathom_status_t read_it(void *driver, uint32_t *value)
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     fake.now_us = 0xFFFFF000u; /* the clock wraps soon */
     memset(&unit, 0x5A, sizeof unit);
@@ -45,6 +41,8 @@ static int set_up(void **state)
     found = 0;
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static fathom_status_t set(void)
 {
@@ -99,16 +97,14 @@ static void ends(fathom_status_t status, unsigned submits, uint8_t address)
 
 /* ---- where it is ---- */
 
-static void what_is_so_already_is_not_written(void **state)
+TEST(what_is_so_already_is_not_written)
 {
-    (void)state;
     answers(HERE, NEW);
     ends(FATHOM_READY, 1, HERE);
 }
 
-static void a_value_is_read_written_once_and_read_back(void **state)
+TEST(a_value_is_read_written_once_and_read_back)
 {
-    (void)state;
     answers(HERE, OLD);
     acknowledges(HERE);
     answers(HERE, NEW);
@@ -116,14 +112,14 @@ static void a_value_is_read_written_once_and_read_back(void **state)
     assert_int_equal(fake.unit_cancels, 0);
 }
 
-static void a_setting_can_be_made_again(void **state)
+TEST(a_setting_can_be_made_again)
 {
     a_value_is_read_written_once_and_read_back(state);
     fake.submits = 0;
     a_value_is_read_written_once_and_read_back(state);
 }
 
-static void what_cannot_be_looked_at_is_not_written(void **state)
+TEST(what_cannot_be_looked_at_is_not_written)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
                                              FATHOM_ERR_EXCEPTION, FATHOM_ERR_PORT};
@@ -134,15 +130,14 @@ static void what_cannot_be_looked_at_is_not_written(void **state)
     }
 }
 
-static void a_refusal_ends_it(void **state)
+TEST(a_refusal_ends_it)
 {
-    (void)state;
     answers(HERE, OLD);
     fails(HERE, WRITE, FATHOM_ERR_EXCEPTION);
     ends(FATHOM_ERR_EXCEPTION, 2, HERE);
 }
 
-static void what_is_never_sent_ends_it(void **state)
+TEST(what_is_never_sent_ends_it)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY,
                                              FATHOM_ERR_UNSUPPORTED};
@@ -154,16 +149,15 @@ static void what_is_never_sent_ends_it(void **state)
     }
 }
 
-static void a_device_that_acknowledges_and_does_not_obey_is_found_out(void **state)
+TEST(a_device_that_acknowledges_and_does_not_obey_is_found_out)
 {
-    (void)state;
     answers(HERE, OLD);
     acknowledges(HERE);
     answers(HERE, OLD);
     ends(FATHOM_ERR_MALFORMED, 3, HERE);
 }
 
-static void a_lost_acknowledgement_is_no_failure_if_the_value_holds(void **state)
+TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
                                              FATHOM_ERR_ECHO};
@@ -176,27 +170,24 @@ static void a_lost_acknowledgement_is_no_failure_if_the_value_holds(void **state
     }
 }
 
-static void a_write_that_was_not_heard_is_told_as_it_failed(void **state)
+TEST(a_write_that_was_not_heard_is_told_as_it_failed)
 {
-    (void)state;
     answers(HERE, OLD);
     fails(HERE, WRITE, FATHOM_ERR_NO_ANSWER);
     answers(HERE, OLD);
     ends(FATHOM_ERR_NO_ANSWER, 3, HERE);
 }
 
-static void without_a_reading_afterwards_it_is_unconfirmed(void **state)
+TEST(without_a_reading_afterwards_it_is_unconfirmed)
 {
-    (void)state;
     answers(HERE, OLD);
     acknowledges(HERE);
     fails(HERE, READ, FATHOM_ERR_NO_ANSWER);
     ends(FATHOM_ERR_UNCONFIRMED, 3, HERE);
 }
 
-static void what_cannot_be_read_is_acknowledged_or_not(void **state)
+TEST(what_cannot_be_read_is_acknowledged_or_not)
 {
-    (void)state;
     setting.read = NULL;
     acknowledges(HERE);
     ends(FATHOM_READY, 1, HERE);
@@ -206,9 +197,8 @@ static void what_cannot_be_read_is_acknowledged_or_not(void **state)
 
 /* ---- to another address ---- */
 
-static void an_address_is_looked_at_first_and_followed(void **state)
+TEST(an_address_is_looked_at_first_and_followed)
 {
-    (void)state;
     setting.address = THERE;
     answers(HERE, OLD);
     fails(THERE, READ, FATHOM_ERR_NO_ANSWER);
@@ -220,10 +210,9 @@ static void an_address_is_looked_at_first_and_followed(void **state)
     ends(FATHOM_READY, 4, THERE);
 }
 
-static void an_address_that_answers_is_in_use(void **state)
+TEST(an_address_that_answers_is_in_use)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED, FATHOM_ERR_EXCEPTION};
-    (void)state;
     setting.address = THERE;
     answers(HERE, OLD);
     answers(THERE, OLD);
@@ -236,18 +225,16 @@ static void an_address_that_answers_is_in_use(void **state)
     }
 }
 
-static void a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed(void **state)
+TEST(a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed)
 {
-    (void)state;
     setting.address = THERE;
     answers(HERE, OLD);
     fails(THERE, READ, FATHOM_ERR_PORT);
     ends(FATHOM_ERR_PORT, 2, HERE);
 }
 
-static void an_address_that_was_not_taken_is_found_at_the_old_one(void **state)
+TEST(an_address_that_was_not_taken_is_found_at_the_old_one)
 {
-    (void)state;
     setting.address = THERE;
     answers(HERE, OLD);
     fails(THERE, READ, FATHOM_ERR_NO_ANSWER);
@@ -257,9 +244,8 @@ static void an_address_that_was_not_taken_is_found_at_the_old_one(void **state)
     ends(FATHOM_ERR_CHECKSUM, 5, HERE);
 }
 
-static void a_device_that_answers_at_neither_is_at_one_of_the_two(void **state)
+TEST(a_device_that_answers_at_neither_is_at_one_of_the_two)
 {
-    (void)state;
     setting.address = THERE;
     answers(HERE, OLD);
     fails(THERE, READ, FATHOM_ERR_NO_ANSWER);
@@ -273,9 +259,8 @@ static void a_device_that_answers_at_neither_is_at_one_of_the_two(void **state)
 
 static const fathom_line_settings_t *asked_at(void) { return fake.request->exchange.settings; }
 
-static void line_settings_are_followed_without_a_look_at_the_new_ones(void **state)
+TEST(line_settings_are_followed_without_a_look_at_the_new_ones)
 {
-    (void)state;
     setting.settings = &fast;
     answers(HERE, OLD);
     assert_null(asked_at());
@@ -288,9 +273,8 @@ static void line_settings_are_followed_without_a_look_at_the_new_ones(void **sta
     assert_ptr_equal(unit.settings, &fast);
 }
 
-static void settings_that_take_effect_later_are_read_at_the_old_ones(void **state)
+TEST(settings_that_take_effect_later_are_read_at_the_old_ones)
 {
-    (void)state;
     setting.settings = &fast;
     answers(HERE, OLD);
     acknowledges(HERE);
@@ -303,9 +287,8 @@ static void settings_that_take_effect_later_are_read_at_the_old_ones(void **stat
 
 /* ---- meanwhile ---- */
 
-static void measurements_rest_and_other_commands_are_refused_meanwhile(void **state)
+TEST(measurements_rest_and_other_commands_are_refused_meanwhile)
 {
-    (void)state;
     static const fathom_modbus_question_t other = {1000, 0, 0, NULL, &wanted, 0x0205, 1, 0, true, WRITE};
     const fathom_modbus_setting_t another = {.read = read_it, .driver = &unit, .write = &other, .value = 1};
     answers(HERE, OLD);
@@ -321,9 +304,8 @@ static void measurements_rest_and_other_commands_are_refused_meanwhile(void **st
 }
 
 /* The application asks for the same register as the setting does: the answer is the setting's. */
-static void the_outcome_of_a_settings_own_question_is_kept_for_it(void **state)
+TEST(the_outcome_of_a_settings_own_question_is_kept_for_it)
 {
-    (void)state;
     answers(HERE, OLD);
     assert_int_equal(fathom_modbus_unit_ask(&unit, &look), FATHOM_ERR_BUSY);
     assert_null(fake.request); /* it has ended */
@@ -335,9 +317,8 @@ static void the_outcome_of_a_settings_own_question_is_kept_for_it(void **state)
     ends(FATHOM_READY, 3, HERE);
 }
 
-static void a_setting_waits_for_no_command_of_somebody_else(void **state)
+TEST(a_setting_waits_for_no_command_of_somebody_else)
 {
-    (void)state;
     assert_int_equal(fathom_modbus_unit_ask(&unit, &command), FATHOM_PENDING);
     assert_int_equal(set(), FATHOM_ERR_BUSY);
     fake_modbus_answer(&fake, (const uint16_t[]){3}, 1);
@@ -346,10 +327,9 @@ static void a_setting_waits_for_no_command_of_somebody_else(void **state)
     a_value_is_read_written_once_and_read_back(state);
 }
 
-static void the_same_register_measured_is_another_question(void **state)
+TEST(the_same_register_measured_is_another_question)
 {
     static const fathom_modbus_question_t same = {1000, 0, 0, NULL, &wanted, 0x0206, 1, 0, false, 0};
-    (void)state;
     assert_int_equal(fathom_modbus_unit_ask(&unit, &same), FATHOM_PENDING);
     assert_int_equal(set(), FATHOM_PENDING);
     fake_modbus_answer(&fake, (const uint16_t[]){NEW}, 1);
@@ -357,9 +337,8 @@ static void the_same_register_measured_is_another_question(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void what_is_given_up_in_the_middle_leaves_the_driver_where_it_was(void **state)
+TEST(what_is_given_up_in_the_middle_leaves_the_driver_where_it_was)
 {
-    (void)state;
     setting.address = THERE;
     setting.settings = &fast;
     answers(HERE, OLD);
@@ -374,7 +353,7 @@ static void what_is_given_up_in_the_middle_leaves_the_driver_where_it_was(void *
 
 /* ---- after power-on ---- */
 
-static void after_power_on_silence_refusal_and_damage_are_warming_up(void **state)
+TEST(after_power_on_silence_refusal_and_damage_are_warming_up)
 {
     static const struct {
         fathom_status_t is, told;
@@ -383,7 +362,6 @@ static void after_power_on_silence_refusal_and_damage_are_warming_up(void **stat
                 {FATHOM_ERR_EXCEPTION, FATHOM_ERR_WARMING_UP},
                 {FATHOM_ERR_MALFORMED, FATHOM_ERR_MALFORMED},
                 {FATHOM_ERR_PORT, FATHOM_ERR_PORT}};
-    (void)state;
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         set_up(state);
         fathom_modbus_unit_power_on(&unit, 50000);
@@ -397,9 +375,8 @@ static void after_power_on_silence_refusal_and_damage_are_warming_up(void **stat
     }
 }
 
-static void a_unit_that_warms_up_is_not_left_alone(void **state)
+TEST(a_unit_that_warms_up_is_not_left_alone)
 {
-    (void)state;
     fathom_modbus_unit_power_on(&unit, 10000000);
     for (unsigned i = 0; i != 10; i++) {
         assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_PENDING);
@@ -409,9 +386,8 @@ static void a_unit_that_warms_up_is_not_left_alone(void **state)
     }
 }
 
-static void power_ends_what_was_under_way(void **state)
+TEST(power_ends_what_was_under_way)
 {
-    (void)state;
     setting.address = THERE;
     answers(HERE, OLD);
     assert_asks(THERE, READ);
@@ -419,37 +395,4 @@ static void power_ends_what_was_under_way(void **state)
     assert_null(fake.request);
     assert_int_equal(unit.address, HERE);
     assert_false(fathom_modbus_unit_is_warming_up(&unit));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(what_is_so_already_is_not_written, set_up),
-        cmocka_unit_test_setup(a_value_is_read_written_once_and_read_back, set_up),
-        cmocka_unit_test_setup(a_setting_can_be_made_again, set_up),
-        cmocka_unit_test_setup(what_cannot_be_looked_at_is_not_written, set_up),
-        cmocka_unit_test_setup(a_refusal_ends_it, set_up),
-        cmocka_unit_test_setup(what_is_never_sent_ends_it, set_up),
-        cmocka_unit_test_setup(a_device_that_acknowledges_and_does_not_obey_is_found_out, set_up),
-        cmocka_unit_test_setup(a_lost_acknowledgement_is_no_failure_if_the_value_holds, set_up),
-        cmocka_unit_test_setup(a_write_that_was_not_heard_is_told_as_it_failed, set_up),
-        cmocka_unit_test_setup(without_a_reading_afterwards_it_is_unconfirmed, set_up),
-        cmocka_unit_test_setup(what_cannot_be_read_is_acknowledged_or_not, set_up),
-        cmocka_unit_test_setup(an_address_is_looked_at_first_and_followed, set_up),
-        cmocka_unit_test_setup(an_address_that_answers_is_in_use, set_up),
-        cmocka_unit_test_setup(a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed, set_up),
-        cmocka_unit_test_setup(an_address_that_was_not_taken_is_found_at_the_old_one, set_up),
-        cmocka_unit_test_setup(a_device_that_answers_at_neither_is_at_one_of_the_two, set_up),
-        cmocka_unit_test_setup(line_settings_are_followed_without_a_look_at_the_new_ones, set_up),
-        cmocka_unit_test_setup(settings_that_take_effect_later_are_read_at_the_old_ones, set_up),
-        cmocka_unit_test_setup(measurements_rest_and_other_commands_are_refused_meanwhile, set_up),
-        cmocka_unit_test_setup(the_outcome_of_a_settings_own_question_is_kept_for_it, set_up),
-        cmocka_unit_test_setup(a_setting_waits_for_no_command_of_somebody_else, set_up),
-        cmocka_unit_test_setup(the_same_register_measured_is_another_question, set_up),
-        cmocka_unit_test_setup(what_is_given_up_in_the_middle_leaves_the_driver_where_it_was, set_up),
-        cmocka_unit_test_setup(after_power_on_silence_refusal_and_damage_are_warming_up, set_up),
-        cmocka_unit_test_setup(a_unit_that_warms_up_is_not_left_alone, set_up),
-        cmocka_unit_test_setup(power_ends_what_was_under_way, set_up),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/modbus_unit.h"
@@ -34,11 +31,9 @@ static int set_up_at(uint32_t now_us)
     return 0;
 }
 
-static int set_up(void **state)
-{
-    (void)state;
-    return set_up_at(5000);
-}
+static int set_up(void **state) { return set_up_at(5000); }
+
+static const suite_t suite = {.set_up = set_up};
 
 static fathom_status_t read_after(uint32_t us, const fathom_modbus_question_t *question)
 {
@@ -65,10 +60,9 @@ static uint32_t due(void) { return fathom_modbus_unit_due_us(&unit); }
 
 /* ---- setting up ---- */
 
-static void a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device(void **state)
+TEST(a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device)
 {
     fathom_modbus_unit_t other;
-    (void)state;
     assert_int_equal(fathom_modbus_unit_init(&other, NULL, &fake.clock, 1), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_modbus_unit_init(&other, &fake.modbus, NULL, 1), FATHOM_ERR_ARGUMENT);
     for (unsigned address = 0; address != 256; address++)
@@ -77,9 +71,8 @@ static void a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device(void **s
     assert_int_equal(fake.polls + fake.submits, 0);
 }
 
-static void the_first_question_goes_out_at_once_just_as_it_was_asked(void **state)
+TEST(the_first_question_goes_out_at_once_just_as_it_was_asked)
 {
-    (void)state;
     pending_after(0, &measure);
     fake_modbus_assert_asked(&fake, 1, UNIT, 0x0100, 1);
     assert_int_equal(fake.request->exchange.timeout_us, TIMEOUT_US);
@@ -89,9 +82,8 @@ static void the_first_question_goes_out_at_once_just_as_it_was_asked(void **stat
 
 /* ---- outcomes ---- */
 
-static void an_answer_is_handed_over_once(void **state)
+TEST(an_answer_is_handed_over_once)
 {
-    (void)state;
     ask_and_send(&measure);
     fake.heard_us = 4711;
     fake_modbus_answer(&fake, one_value, 1);
@@ -104,11 +96,10 @@ static void an_answer_is_handed_over_once(void **state)
     assert_int_equal(fake.submits, 1);
 }
 
-static void every_error_is_handed_over_once_and_the_next_attempt_follows(void **state)
+TEST(every_error_is_handed_over_once_and_the_next_attempt_follows)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
                                              FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED};
-    (void)state;
     for (unsigned i = 0; i != sizeof errors / sizeof *errors; i++) {
         ask_and_send(&measure);
         fake.exception = 4;
@@ -124,19 +115,17 @@ static void every_error_is_handed_over_once_and_the_next_attempt_follows(void **
     assert_int_equal(unit.request.message.exception, 0);
 }
 
-static void the_number_of_an_exception_stands_in_the_request(void **state)
+TEST(the_number_of_an_exception_stands_in_the_request)
 {
-    (void)state;
     ask_and_send(&measure);
     fake_modbus_refuse(&fake, 171);
     assert_int_equal(read_after(10, &measure), FATHOM_ERR_EXCEPTION);
     assert_int_equal(unit.request.message.exception, 171);
 }
 
-static void a_request_that_the_carrier_does_not_take_is_tried_again_each_time(void **state)
+TEST(a_request_that_the_carrier_does_not_take_is_tried_again_each_time)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY, FATHOM_ERR_BUSY};
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         fake.refuses = errors[i];
         assert_int_equal(read_after(1, &measure), errors[i]);
@@ -148,9 +137,8 @@ static void a_request_that_the_carrier_does_not_take_is_tried_again_each_time(vo
     assert_int_equal(unit.failures, 0);
 }
 
-static void the_counters_stop_at_65535(void **state)
+TEST(the_counters_stop_at_65535)
 {
-    (void)state;
     unit.answers = 65534;
     unit.failures = 65534;
     for (unsigned i = 0; i != 3; i++) {
@@ -167,9 +155,8 @@ static void the_counters_stop_at_65535(void **state)
 
 /* ---- pace ---- */
 
-static void the_pace_counts_from_the_request_on_the_wire(void **state)
+TEST(the_pace_counts_from_the_request_on_the_wire)
 {
-    (void)state;
     pending_after(0, &measure);
     for (unsigned i = 0; i != 100; i++) pending_after(PACE_US, &measure); /* in a long queue */
     fake_modbus_send(&fake);
@@ -182,9 +169,8 @@ static void the_pace_counts_from_the_request_on_the_wire(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void the_pace_does_not_count_what_passed_before_the_poll_that_sent_it(void **state)
+TEST(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it)
 {
-    (void)state;
     pending_after(0, &measure);
     fake_modbus_answer(&fake, one_value, 1); /* a slow loop: sent and answered since the last poll */
     assert_int_equal(read_after(3 * PACE_US, &measure), FATHOM_READY);
@@ -195,9 +181,8 @@ static void the_pace_does_not_count_what_passed_before_the_poll_that_sent_it(voi
 }
 
 /* modbus_unit.h: "from this request to the next one to the unit, at least"; a retry is a request too. */
-static void the_pace_counts_from_the_last_attempt(void **state)
+TEST(the_pace_counts_from_the_last_attempt)
 {
-    (void)state;
     ask_and_send(&measure);
     pending_after(6 * PACE_US, &measure);
     fake_modbus_send(&fake);
@@ -211,9 +196,8 @@ static void the_pace_counts_from_the_last_attempt(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void an_answer_slower_than_the_pace_is_followed_at_once(void **state)
+TEST(an_answer_slower_than_the_pace_is_followed_at_once)
 {
-    (void)state;
     ask_and_send(&measure);
     fake_modbus_answer(&fake, one_value, 1);
     assert_int_equal(read_after(PACE_US, &measure), FATHOM_READY);
@@ -221,9 +205,8 @@ static void an_answer_slower_than_the_pace_is_followed_at_once(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void the_pace_holds_across_the_wrap_of_the_clock(void **state)
+TEST(the_pace_holds_across_the_wrap_of_the_clock)
 {
-    (void)state;
     for (uint32_t before_us = 0; before_us <= PACE_US; before_us += 10000) {
         set_up_at(UINT32_MAX - before_us);
         ask_and_send(&measure);
@@ -239,9 +222,8 @@ static void the_pace_holds_across_the_wrap_of_the_clock(void **state)
 
 /* ---- commands beside the repeated question ---- */
 
-static void a_command_waits_for_a_measurement_and_takes_its_place(void **state)
+TEST(a_command_waits_for_a_measurement_and_takes_its_place)
 {
-    (void)state;
     ask_and_send(&measure);
     pending_after(10, &version);
     assert_int_equal(fake.submits, 1);
@@ -257,9 +239,8 @@ static void a_command_waits_for_a_measurement_and_takes_its_place(void **state)
     assert_memory_equal(values, three_values, sizeof three_values);
 }
 
-static void a_measurement_waits_until_the_outcome_of_a_command_was_taken(void **state)
+TEST(a_measurement_waits_until_the_outcome_of_a_command_was_taken)
 {
-    (void)state;
     ask_and_send(&version);
     pending_after(10, &measure);
     fake_modbus_answer(&fake, three_values, 3);
@@ -272,9 +253,8 @@ static void a_measurement_waits_until_the_outcome_of_a_command_was_taken(void **
     fake_modbus_assert_asked(&fake, 2, UNIT, 0x0100, 1);
 }
 
-static void an_error_of_a_command_waits_for_who_asked_too(void **state)
+TEST(an_error_of_a_command_waits_for_who_asked_too)
 {
-    (void)state;
     ask_and_send(&version);
     fake_modbus_refuse(&fake, 2);
     pending_after(PACE_US, &measure);
@@ -283,9 +263,8 @@ static void an_error_of_a_command_waits_for_who_asked_too(void **state)
     assert_int_equal(unit.request.message.exception, 2);
 }
 
-static void a_second_command_is_told_busy_until_the_first_was_taken(void **state)
+TEST(a_second_command_is_told_busy_until_the_first_was_taken)
 {
-    (void)state;
     ask_and_send(&version);
     assert_int_equal(read_after(10, &details), FATHOM_ERR_BUSY);
     fake_modbus_answer(&fake, three_values, 3);
@@ -297,10 +276,9 @@ static void a_second_command_is_told_busy_until_the_first_was_taken(void **state
     fake_modbus_assert_asked(&fake, 2, UNIT, 0x0003, 11);
 }
 
-static void another_repeated_question_replaces_the_first_when_that_has_ended(void **state)
+TEST(another_repeated_question_replaces_the_first_when_that_has_ended)
 {
     const fathom_modbus_question_t other = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false, 0};
-    (void)state;
     ask_and_send(&measure);
     pending_after(10, &other);
     fake_modbus_answer(&fake, one_value, 1);
@@ -308,11 +286,10 @@ static void another_repeated_question_replaces_the_first_when_that_has_ended(voi
     fake_modbus_assert_asked(&fake, 2, UNIT, 0x0101, 1);
 }
 
-static void registers_with_one_equal_byte_are_two_questions(void **state)
+TEST(registers_with_one_equal_byte_are_two_questions)
 {
     const fathom_modbus_question_t high = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0000, 1, 0, false, 0};
     const fathom_modbus_question_t low = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false, 0};
-    (void)state;
     ask_and_send(&version); /* 0001 */
     fake_modbus_answer(&fake, three_values, 3);
     pending_after(PACE_US, &high);
@@ -323,9 +300,8 @@ static void registers_with_one_equal_byte_are_two_questions(void **state)
 
 /* ---- cancel ---- */
 
-static void cancel_ends_a_request_under_way_once(void **state)
+TEST(cancel_ends_a_request_under_way_once)
 {
-    (void)state;
     ask_and_send(&version);
     fathom_modbus_unit_cancel(&unit);
     fathom_modbus_unit_cancel(&unit);
@@ -337,9 +313,8 @@ static void cancel_ends_a_request_under_way_once(void **state)
     fake_modbus_assert_asked(&fake, 2, UNIT, 0x0100, 1);
 }
 
-static void cancel_forgets_an_outcome_that_nobody_took(void **state)
+TEST(cancel_forgets_an_outcome_that_nobody_took)
 {
-    (void)state;
     ask_and_send(&version);
     fake_modbus_answer(&fake, three_values, 3);
     pending_after(10, &measure);
@@ -349,9 +324,8 @@ static void cancel_forgets_an_outcome_that_nobody_took(void **state)
     assert_int_equal(fake.submits, 2);
 }
 
-static void cancel_of_nothing_does_nothing(void **state)
+TEST(cancel_of_nothing_does_nothing)
 {
-    (void)state;
     fathom_modbus_unit_cancel(&unit);
     assert_int_equal(fake.cancels, 0);
     ask_and_send(&measure);
@@ -359,17 +333,15 @@ static void cancel_of_nothing_does_nothing(void **state)
 
 /* ---- due ---- */
 
-static void it_is_due_at_once_when_it_may_ask(void **state)
+TEST(it_is_due_at_once_when_it_may_ask)
 {
-    (void)state;
     assert_int_equal(due(), 0);
     fake.now_us += 1000000;
     assert_int_equal(due(), 0);
 }
 
-static void it_is_due_when_the_carrier_is_while_it_waits(void **state)
+TEST(it_is_due_when_the_carrier_is_while_it_waits)
 {
-    (void)state;
     ask_and_send(&measure);
     fake.due_us = 1234;
     assert_int_equal(due(), 1234);
@@ -377,9 +349,8 @@ static void it_is_due_when_the_carrier_is_while_it_waits(void **state)
     assert_true(due() == FATHOM_NO_DEADLINE);
 }
 
-static void it_is_due_after_the_pause_counted_from_now(void **state)
+TEST(it_is_due_after_the_pause_counted_from_now)
 {
-    (void)state;
     ask_and_send(&measure);
     fake_modbus_answer(&fake, one_value, 1);
     assert_int_equal(read_after(30000, &measure), FATHOM_READY);
@@ -392,9 +363,8 @@ static void it_is_due_after_the_pause_counted_from_now(void **state)
     assert_int_equal(due(), 0);
 }
 
-static void it_is_due_at_once_with_an_outcome_to_take(void **state)
+TEST(it_is_due_at_once_with_an_outcome_to_take)
 {
-    (void)state;
     ask_and_send(&version);
     fake_modbus_answer(&fake, three_values, 3);
     pending_after(10, &measure);
@@ -402,9 +372,8 @@ static void it_is_due_at_once_with_an_outcome_to_take(void **state)
 }
 
 /* Several drivers share a carrier, so that one driver's poll may end another's request. */
-static void it_is_due_at_once_when_anothers_poll_has_ended_its_request(void **state)
+TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 {
-    (void)state;
     ask_and_send(&measure);
     fake_modbus_answer(&fake, one_value, 1);
     fake.modbus.poll(fake.modbus.ctx);
@@ -413,9 +382,8 @@ static void it_is_due_at_once_when_anothers_poll_has_ended_its_request(void **st
 
 /* ---- a broken carrier ---- */
 
-static void a_broken_carrier_is_said_by_every_read_and_nothing_is_asked(void **state)
+TEST(a_broken_carrier_is_said_by_every_read_and_nothing_is_asked)
 {
-    (void)state;
     fake.carrier = FATHOM_ERR_PORT;
     assert_int_equal(read_after(0, &measure), FATHOM_ERR_PORT);
     assert_int_equal(read_after(0, &version), FATHOM_ERR_PORT);
@@ -425,9 +393,8 @@ static void a_broken_carrier_is_said_by_every_read_and_nothing_is_asked(void **s
     assert_int_equal(fake.submits, 1);
 }
 
-static void what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first(void **state)
+TEST(what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first)
 {
-    (void)state;
     ask_and_send(&measure);
     fake.carrier = FATHOM_ERR_PORT;
     fake_modbus_answer(&fake, one_value, 1);
@@ -437,9 +404,8 @@ static void what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first(
 
 /* ---- whose turn it is ---- */
 
-static void a_command_that_waits_for_the_pause_comes_before_the_repeated_question(void **state)
+TEST(a_command_that_waits_for_the_pause_comes_before_the_repeated_question)
 {
-    (void)state;
     ask_and_send(&measure);
     fake_modbus_answer(&fake, one_value, 1);
     assert_int_equal(read_after(1000, &measure), FATHOM_READY);
@@ -451,9 +417,8 @@ static void a_command_that_waits_for_the_pause_comes_before_the_repeated_questio
     fake_modbus_assert_asked(&fake, 2, UNIT, 0x0001, 3);
 }
 
-static void cancel_gives_up_a_command_that_waits(void **state)
+TEST(cancel_gives_up_a_command_that_waits)
 {
-    (void)state;
     ask_and_send(&measure);
     fake_modbus_answer(&fake, one_value, 1);
     assert_int_equal(read_after(1000, &measure), FATHOM_READY);
@@ -461,43 +426,4 @@ static void cancel_gives_up_a_command_that_waits(void **state)
     fathom_modbus_unit_cancel(&unit);
     pending_after(PACE_US, &measure);
     fake_modbus_assert_asked(&fake, 2, UNIT, 0x0100, 1);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device),
-        FRESH(the_first_question_goes_out_at_once_just_as_it_was_asked),
-        FRESH(an_answer_is_handed_over_once),
-        FRESH(every_error_is_handed_over_once_and_the_next_attempt_follows),
-        FRESH(the_number_of_an_exception_stands_in_the_request),
-        FRESH(a_request_that_the_carrier_does_not_take_is_tried_again_each_time),
-        FRESH(the_counters_stop_at_65535),
-        FRESH(the_pace_counts_from_the_request_on_the_wire),
-        FRESH(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it),
-        FRESH(the_pace_counts_from_the_last_attempt),
-        FRESH(an_answer_slower_than_the_pace_is_followed_at_once),
-        FRESH(the_pace_holds_across_the_wrap_of_the_clock),
-        FRESH(a_command_waits_for_a_measurement_and_takes_its_place),
-        FRESH(a_measurement_waits_until_the_outcome_of_a_command_was_taken),
-        FRESH(an_error_of_a_command_waits_for_who_asked_too),
-        FRESH(a_second_command_is_told_busy_until_the_first_was_taken),
-        FRESH(another_repeated_question_replaces_the_first_when_that_has_ended),
-        FRESH(registers_with_one_equal_byte_are_two_questions),
-        FRESH(cancel_ends_a_request_under_way_once),
-        FRESH(cancel_forgets_an_outcome_that_nobody_took),
-        FRESH(cancel_of_nothing_does_nothing),
-        FRESH(it_is_due_at_once_when_it_may_ask),
-        FRESH(it_is_due_when_the_carrier_is_while_it_waits),
-        FRESH(it_is_due_after_the_pause_counted_from_now),
-        FRESH(it_is_due_at_once_with_an_outcome_to_take),
-        FRESH(it_is_due_at_once_when_anothers_poll_has_ended_its_request),
-        FRESH(a_broken_carrier_is_said_by_every_read_and_nothing_is_asked),
-        FRESH(what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first),
-        FRESH(a_command_that_waits_for_the_pause_comes_before_the_repeated_question),
-        FRESH(cancel_gives_up_a_command_that_waits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

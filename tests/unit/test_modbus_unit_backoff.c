@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/modbus_unit.h"
@@ -33,10 +30,11 @@ static void set_up_at(uint32_t now_us)
 
 static int set_up(void **state)
 {
-    (void)state;
     set_up_at(5000);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static fathom_status_t read_after(uint32_t us, const fathom_modbus_question_t *question)
 {
@@ -91,10 +89,9 @@ static void silences(unsigned count)
     }
 }
 
-static void the_third_silence_pauses_one_time_out_and_the_next_twice_as_much_up_to_16(void **state)
+TEST(the_third_silence_pauses_one_time_out_and_the_next_twice_as_much_up_to_16)
 {
     static const uint8_t time_outs[] = {0, 0, 1, 2, 4, 8, 16, 16, 16, 16};
-    (void)state;
     ask_first();
     for (unsigned n = 0; n != sizeof time_outs; n++) {
         silence();
@@ -102,9 +99,8 @@ static void the_third_silence_pauses_one_time_out_and_the_next_twice_as_much_up_
     }
 }
 
-static void many_silences_go_on_at_16(void **state)
+TEST(many_silences_go_on_at_16)
 {
-    (void)state;
     silences(7);
     for (unsigned n = 0; n != 50; n++) {
         assert_paused_for(16 * TIMEOUT_US);
@@ -113,10 +109,9 @@ static void many_silences_go_on_at_16(void **state)
     assert_paused_for(16 * TIMEOUT_US);
 }
 
-static void the_config_caps_the_pause(void **state)
+TEST(the_config_caps_the_pause)
 {
     static const uint32_t pauses_us[] = {0, 0, 300000, 600000, 700000, 700000, 700000};
-    (void)state;
     measure.backoff_us = 700000;
     ask_first();
     for (unsigned n = 0; n != sizeof pauses_us / sizeof *pauses_us; n++) {
@@ -125,9 +120,8 @@ static void the_config_caps_the_pause(void **state)
     }
 }
 
-static void a_cap_below_the_time_out_is_the_pause(void **state)
+TEST(a_cap_below_the_time_out_is_the_pause)
 {
-    (void)state;
     measure.backoff_us = 250000;
     ask_first();
     for (unsigned n = 0; n != 6; n++) {
@@ -137,9 +131,8 @@ static void a_cap_below_the_time_out_is_the_pause(void **state)
 }
 
 /* a05_modbus.h: less than the period is never less often. */
-static void a_cap_of_less_than_the_pace_does_not_shorten_it(void **state)
+TEST(a_cap_of_less_than_the_pace_does_not_shorten_it)
 {
-    (void)state;
     measure.backoff_us = 1;
     measure.pace_us = 1000000;
     ask_first();
@@ -149,10 +142,9 @@ static void a_cap_of_less_than_the_pace_does_not_shorten_it(void **state)
     }
 }
 
-static void a_pause_shorter_than_the_pace_keeps_the_pace(void **state)
+TEST(a_pause_shorter_than_the_pace_keeps_the_pace)
 {
     static const uint32_t pauses_us[] = {700000, 700000, 700000, 700000, 1200000};
-    (void)state;
     measure.pace_us = 1000000;
     ask_first();
     for (unsigned n = 0; n != sizeof pauses_us / sizeof *pauses_us; n++) {
@@ -162,9 +154,8 @@ static void a_pause_shorter_than_the_pace_keeps_the_pace(void **state)
 }
 
 /* 16 time-outs of five minutes would not fit into 32 bits; 2^31 us is the most. */
-static void the_longest_pause_is_half_the_clock(void **state)
+TEST(the_longest_pause_is_half_the_clock)
 {
-    (void)state;
     measure.timeout_us = 300000000;
     measure.backoff_us = 0x80000000u;
     ask_first();
@@ -178,7 +169,7 @@ static void the_longest_pause_is_half_the_clock(void **state)
     }
 }
 
-static void the_first_thing_that_it_says_ends_that(void **state)
+TEST(the_first_thing_that_it_says_ends_that)
 {
     static const fathom_status_t said[] = {FATHOM_READY, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
                                            FATHOM_ERR_MALFORMED};
@@ -198,9 +189,8 @@ static void the_first_thing_that_it_says_ends_that(void **state)
         }
 }
 
-static void the_pause_holds_across_the_wrap_of_the_clock(void **state)
+TEST(the_pause_holds_across_the_wrap_of_the_clock)
 {
-    (void)state;
     for (uint32_t before_us = 0; before_us < 12 * TIMEOUT_US; before_us += 50000) {
         set_up_at(UINT32_MAX - before_us);
         silences(6);
@@ -209,9 +199,8 @@ static void the_pause_holds_across_the_wrap_of_the_clock(void **state)
 }
 
 /* A command of the user goes out at once, and is no reason to pause more. */
-static void a_command_is_not_held_back(void **state)
+TEST(a_command_is_not_held_back)
 {
-    (void)state;
     silences(7);
     (void)read_after(1000, &measure);
     assert_int_equal(fake.submits, 7);
@@ -221,9 +210,8 @@ static void a_command_is_not_held_back(void **state)
     assert_paused_for(0); /* it has answered */
 }
 
-static void a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits(void **state)
+TEST(a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits)
 {
-    (void)state;
     silences(6);
     assert_paused_for(8 * TIMEOUT_US);
     fake_modbus_send(&fake);
@@ -235,10 +223,9 @@ static void a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits(vo
 }
 
 /* The device's own pace holds for it all the same, and due says how long that is. */
-static void a_command_waits_for_the_pace_and_not_for_the_back_off(void **state)
+TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
 {
     enum { SLOW_US = 4 * TIMEOUT_US };
-    (void)state;
     silences(6);
     measure.pace_us = SLOW_US;
     assert_paused_for(8 * TIMEOUT_US);
@@ -252,9 +239,8 @@ static void a_command_waits_for_the_pace_and_not_for_the_back_off(void **state)
     assert_int_equal(fake.submits, before + 1);
 }
 
-static void a_command_that_nobody_answers_counts_too(void **state)
+TEST(a_command_that_nobody_answers_counts_too)
 {
-    (void)state;
     silences(2);
     assert_int_equal(read_after(0, &version), FATHOM_PENDING);
     fake_modbus_assert_asked(&fake, 3, UNIT, 0x0001, 3);
@@ -262,33 +248,9 @@ static void a_command_that_nobody_answers_counts_too(void **state)
     assert_paused_for(1000000); /* its own time-out */
 }
 
-static void cancel_does_not_end_the_pause(void **state)
+TEST(cancel_does_not_end_the_pause)
 {
-    (void)state;
     silences(4);
     fathom_modbus_unit_cancel(&unit);
     assert_paused_for(2 * TIMEOUT_US);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_third_silence_pauses_one_time_out_and_the_next_twice_as_much_up_to_16),
-        FRESH(many_silences_go_on_at_16),
-        FRESH(the_config_caps_the_pause),
-        FRESH(a_cap_below_the_time_out_is_the_pause),
-        FRESH(a_cap_of_less_than_the_pace_does_not_shorten_it),
-        FRESH(a_pause_shorter_than_the_pace_keeps_the_pace),
-        FRESH(the_longest_pause_is_half_the_clock),
-        FRESH(the_first_thing_that_it_says_ends_that),
-        FRESH(the_pause_holds_across_the_wrap_of_the_clock),
-        FRESH(a_command_is_not_held_back),
-        FRESH(a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits),
-        FRESH(a_command_waits_for_the_pace_and_not_for_the_back_off),
-        FRESH(a_command_that_nobody_answers_counts_too),
-        FRESH(cancel_does_not_end_the_pause),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

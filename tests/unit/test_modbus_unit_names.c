@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/modbus_unit.h"
@@ -29,7 +26,6 @@ static const fathom_modbus_question_t two_written = {
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     read_value = 0;
     wanted[0] = 0x07D0;
@@ -38,6 +34,8 @@ static int set_up(void **state)
     assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, 1), FATHOM_READY);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up};
 
 static fathom_status_t ask(const fathom_modbus_question_t *question)
 {
@@ -51,9 +49,8 @@ static void assert_asked(uint8_t function, uint8_t fourth, uint8_t fifth)
     assert_memory_equal(fake.log[fake.submits - 1], head, sizeof head);
 }
 
-static void a_read_of_a_register_that_is_being_written_is_told_busy(void **state)
+TEST(a_read_of_a_register_that_is_being_written_is_told_busy)
 {
-    (void)state;
     assert_int_equal(ask(&one_write), FATHOM_PENDING);
     assert_asked(6, 0x07, 0xD0);
     assert_int_equal(ask(&reading), FATHOM_ERR_BUSY);
@@ -65,10 +62,9 @@ static void a_read_of_a_register_that_is_being_written_is_told_busy(void **state
     assert_asked(3, 0, 1);
 }
 
-static void a_write_of_a_register_that_is_being_read_is_told_busy(void **state)
+TEST(a_write_of_a_register_that_is_being_read_is_told_busy)
 {
     static const uint16_t is[] = {1000};
-    (void)state;
     assert_int_equal(ask(&reading), FATHOM_PENDING);
     assert_asked(3, 0, 1);
     assert_int_equal(ask(&one_write), FATHOM_ERR_BUSY);
@@ -83,9 +79,8 @@ static void a_write_of_a_register_that_is_being_read_is_told_busy(void **state)
     assert_asked(16, 0, 2);
 }
 
-static void a_measurement_of_a_register_that_is_being_written_waits(void **state)
+TEST(a_measurement_of_a_register_that_is_being_written_waits)
 {
-    (void)state;
     assert_int_equal(ask(&one_write), FATHOM_PENDING);
     assert_int_equal(ask(&measurement), FATHOM_PENDING);
     fake_modbus_acknowledge(&fake);
@@ -96,11 +91,3 @@ static void a_measurement_of_a_register_that_is_being_written_waits(void **state
     assert_int_equal(ask(&measurement), FATHOM_PENDING);
     assert_asked(3, 0, 1);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test_setup(a_read_of_a_register_that_is_being_written_is_told_busy, set_up),
-    cmocka_unit_test_setup(a_write_of_a_register_that_is_being_read_is_told_busy, set_up),
-    cmocka_unit_test_setup(a_measurement_of_a_register_that_is_being_written_waits, set_up),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

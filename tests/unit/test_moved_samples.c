@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fake_modbus.h"
 #include "fathom/a05_modbus.h"
@@ -73,7 +70,6 @@ static void moves(fathom_sensor_t sensor, fathom_status_t (*set)(uint8_t), const
 
 static int set_up(void **state)
 {
-    (void)state;
     fake_modbus_init(&fake);
     const fathom_a16_modbus_config_t a16_config = {.modbus = &fake.modbus, .clock = &fake.clock};
     const fathom_a05_modbus_config_t a05_config = {.modbus = &fake.modbus, .clock = &fake.clock};
@@ -83,21 +79,14 @@ static int set_up(void **state)
     return fathom_a05_modbus_init(&a05, &a05_config) == FATHOM_READY ? 0 : -1;
 }
 
-static void an_a16_that_has_moved_measures_at_its_new_address(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(an_a16_that_has_moved_measures_at_its_new_address)
 {
-    (void)state;
     moves(fathom_a16_modbus_sensor(&a16), set_a16, one_mm, 1);
 }
 
-static void an_a05_that_has_moved_measures_at_its_new_address(void **state)
+TEST(an_a05_that_has_moved_measures_at_its_new_address)
 {
-    (void)state;
     moves(fathom_a05_modbus_sensor(&a05), set_a05, four_mm, 4);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test_setup(an_a16_that_has_moved_measures_at_its_new_address, set_up),
-    cmocka_unit_test_setup(an_a05_that_has_moved_measures_at_its_new_address, set_up),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

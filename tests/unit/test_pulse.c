@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "pulse_rig.h"
 
+static const suite_t suite = {.set_up = pulse_rig_set_up};
+
 /* ---- what the pulse means ---- */
 
-static void a_pulse_is_a_target_with_its_width_and_end(void **state)
+TEST(a_pulse_is_a_target_with_its_width_and_end)
 {
-    (void)state;
     stand.pin.answer_after_us = 110 * MS;
     stand.pin.answer_width_us = 10 * MS; /* A16 1(4) */
     pulse_rig_run_to_trigger();
@@ -45,9 +43,8 @@ static const struct {
     {105001, FATHOM_FAULT},
 };
 
-static void widths_are_noise_target_no_target_or_a_fault(void **state)
+TEST(widths_are_noise_target_no_target_or_a_fault)
 {
-    (void)state;
     for (unsigned i = 0; i != sizeof widths / sizeof *widths; i++) {
         pulse_rig_start(1000);
         pulse_rig_run_to_trigger();
@@ -62,11 +59,10 @@ static void widths_are_noise_target_no_target_or_a_fault(void **state)
     }
 }
 
-static void the_three_widths_are_options(void **state)
+TEST(the_three_widths_are_options)
 {
     static const uint8_t kinds[] = {0, FATHOM_TARGET, FATHOM_NO_TARGET, FATHOM_NO_TARGET, FATHOM_FAULT};
     static const uint32_t us[] = {999, 1000, 50000, 60000, 60001};
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         stand.config.noise_us = 1000;
         stand.config.no_target_us = 50000;
@@ -81,10 +77,9 @@ static void the_three_widths_are_options(void **state)
 }
 
 /* "T1 = 110ms" is information: a module that answers at once, or late, is right too. */
-static void a_pulse_anywhere_after_the_trigger_counts(void **state)
+TEST(a_pulse_anywhere_after_the_trigger_counts)
 {
     static const uint32_t after_us[] = {0, 1, 1000, 2500, 90000, 110000, 130000, 200000, 217999};
-    (void)state;
     for (unsigned i = 0; i != sizeof after_us / sizeof *after_us; i++) {
         pulse_rig_start(1000);
         pulse_rig_run_to_trigger();
@@ -96,9 +91,8 @@ static void a_pulse_anywhere_after_the_trigger_counts(void **state)
     }
 }
 
-static void noise_is_passed_over_and_the_pulse_behind_it_counts(void **state)
+TEST(noise_is_passed_over_and_the_pulse_behind_it_counts)
 {
-    (void)state;
     pulse_rig_run_to_trigger();
     for (uint32_t i = 0; i != 20; i++) fake_pulse(&stand.pin, 5 * MS + i * 4 * MS, 10 + i * 100);
     fake_pulse(&stand.pin, 110 * MS, 10 * MS);
@@ -108,9 +102,8 @@ static void noise_is_passed_over_and_the_pulse_behind_it_counts(void **state)
     assert_int_equal(stand.meter.noises, 20);
 }
 
-static void more_noise_than_one_poll_takes_is_taken_by_the_next_ones(void **state)
+TEST(more_noise_than_one_poll_takes_is_taken_by_the_next_ones)
 {
-    (void)state;
     pulse_rig_run_to_trigger();
     for (uint32_t i = 0; i != 20; i++) fake_pulse(&stand.pin, 5 * MS + i * MS, 100);
     fake_pulse(&stand.pin, 110 * MS, 10 * MS);
@@ -123,9 +116,8 @@ static void more_noise_than_one_poll_takes_is_taken_by_the_next_ones(void **stat
     assert_int_equal(stand.last.width_us, 10 * MS);
 }
 
-static void the_count_of_noise_stops_at_65535(void **state)
+TEST(the_count_of_noise_stops_at_65535)
 {
-    (void)state;
     stand.meter.noises = 65534;
     pulse_rig_run_to_trigger();
     for (uint32_t i = 0; i != 3; i++) fake_pulse(&stand.pin, 5 * MS + i * MS, 100);
@@ -133,9 +125,8 @@ static void the_count_of_noise_stops_at_65535(void **state)
     assert_int_equal(stand.meter.noises, 65535);
 }
 
-static void a_pulse_that_began_before_the_trigger_does_not_count(void **state)
+TEST(a_pulse_that_began_before_the_trigger_does_not_count)
 {
-    (void)state;
     fake_pulse(&stand.pin, 500, 20 * MS);
     pulse_rig_run_to_trigger();
     pulse_rig_run(222 * MS, 100);
@@ -143,9 +134,8 @@ static void a_pulse_that_began_before_the_trigger_does_not_count(void **state)
     assert_int_equal(stand.no_answers, 1);
 }
 
-static void no_pulse_at_all_is_no_answer_when_the_cycle_is_over_and_it_tries_again(void **state)
+TEST(no_pulse_at_all_is_no_answer_when_the_cycle_is_over_and_it_tries_again)
 {
-    (void)state;
     pulse_rig_run_to_trigger();
     pulse_rig_run(220900, 100);
     assert_int_equal(stand.no_answers, 0);
@@ -160,9 +150,8 @@ static void no_pulse_at_all_is_no_answer_when_the_cycle_is_over_and_it_tries_aga
     assert_int_equal(stand.readings, 1);
 }
 
-static void a_line_that_is_high_when_the_cycle_is_over_is_a_fault(void **state)
+TEST(a_line_that_is_high_when_the_cycle_is_over_is_a_fault)
 {
-    (void)state;
     stand.pin.stuck_high = true;
     pulse_rig_run_to_trigger();
     const uint32_t edge_us = stand.fake.now_us;
@@ -179,32 +168,11 @@ static void a_line_that_is_high_when_the_cycle_is_over_is_a_fault(void **state)
     assert_int_equal(stand.no_answers, 1);
 }
 
-static void a_pulse_that_never_ends_is_a_fault_when_the_cycle_is_over(void **state)
+TEST(a_pulse_that_never_ends_is_a_fault_when_the_cycle_is_over)
 {
-    (void)state;
     pulse_rig_run_to_trigger();
     fake_pulse(&stand.pin, 110 * MS, 5000 * MS);
     pulse_rig_run(221 * MS, 100);
     assert_int_equal(stand.readings, 1);
     assert_int_equal(stand.last.kind, FATHOM_FAULT);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, pulse_rig_set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(a_pulse_is_a_target_with_its_width_and_end),
-        FRESH(widths_are_noise_target_no_target_or_a_fault),
-        FRESH(the_three_widths_are_options),
-        FRESH(a_pulse_anywhere_after_the_trigger_counts),
-        FRESH(noise_is_passed_over_and_the_pulse_behind_it_counts),
-        FRESH(more_noise_than_one_poll_takes_is_taken_by_the_next_ones),
-        FRESH(the_count_of_noise_stops_at_65535),
-        FRESH(a_pulse_that_began_before_the_trigger_does_not_count),
-        FRESH(no_pulse_at_all_is_no_answer_when_the_cycle_is_over_and_it_tries_again),
-        FRESH(a_line_that_is_high_when_the_cycle_is_over_is_a_fault),
-        FRESH(a_pulse_that_never_ends_is_a_fault_when_the_cycle_is_over),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/pulse.h"
 
@@ -103,23 +100,14 @@ static void assert_every_trigger_is_answered(const fathom_pulse_config_t *config
     }
 }
 
-static void a_pulse_that_begins_with_the_edge_counts(void **state)
+TEST(a_pulse_that_begins_with_the_edge_counts)
 {
     const fathom_pulse_config_t config = {.clock = &hal_clock, .capture = &capture, .trigger = &trigger};
-    (void)state;
     assert_every_trigger_is_answered(&config);
 }
 
-static void a_pulse_that_begins_with_a_break_counts(void **state)
+TEST(a_pulse_that_begins_with_a_break_counts)
 {
     const fathom_pulse_config_t config = {.clock = &hal_clock, .capture = &capture, .uart = &uart};
-    (void)state;
     assert_every_trigger_is_answered(&config);
 }
-
-static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_pulse_that_begins_with_the_edge_counts),
-    cmocka_unit_test(a_pulse_that_begins_with_a_break_counts),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

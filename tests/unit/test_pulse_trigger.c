@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "pulse_rig.h"
 
+static const suite_t suite = {.set_up = pulse_rig_set_up};
+
 /* ---- the trigger ---- */
 
-static void the_pin_is_high_for_2_ms_then_low_for_2_ms_and_then_high(void **state)
+TEST(the_pin_is_high_for_2_ms_then_low_for_2_ms_and_then_high)
 {
-    (void)state;
     assert_true(stand.pin.level);
     stand.fake.now_us += 1999;
     assert_int_equal(fathom_pulse_due_us(&stand.meter), 1);
@@ -33,9 +31,8 @@ static void the_pin_is_high_for_2_ms_then_low_for_2_ms_and_then_high(void **stat
     assert_int_equal(fathom_pulse_due_us(&stand.meter), 219 * MS);
 }
 
-static void the_low_time_is_an_option(void **state)
+TEST(the_low_time_is_an_option)
 {
-    (void)state;
     stand.config.low_us = 30000;
     pulse_rig_start(1000);
     pulse_rig_run(29900, 100);
@@ -47,9 +44,8 @@ static void the_low_time_is_an_option(void **state)
 }
 
 /* "This cycle period of the module must be greater than 220ms" (A16 1(2)) */
-static void a_cycle_is_221_ms_from_edge_to_edge(void **state)
+TEST(a_cycle_is_221_ms_from_edge_to_edge)
 {
-    (void)state;
     stand.pin.answer_after_us = 110 * MS;
     stand.pin.answer_width_us = 10 * MS;
     pulse_rig_run_to_trigger();
@@ -63,9 +59,8 @@ static void a_cycle_is_221_ms_from_edge_to_edge(void **state)
     assert_int_equal(stand.readings, 11);
 }
 
-static void a_longer_cycle_is_kept_and_a_shorter_one_is_not(void **state)
+TEST(a_longer_cycle_is_kept_and_a_shorter_one_is_not)
 {
-    (void)state;
     stand.config.cycle_us = 500 * MS;
     pulse_rig_start(1000);
     pulse_rig_run_to_trigger();
@@ -80,9 +75,8 @@ static void a_longer_cycle_is_kept_and_a_shorter_one_is_not(void **state)
 }
 
 /* An interrupt holds the program up for 5 ms between its look at the clock and the edge, and not in the next cycle. */
-static void the_cycle_counts_from_a_look_at_the_clock_after_the_edge(void **state)
+TEST(the_cycle_counts_from_a_look_at_the_clock_after_the_edge)
 {
-    (void)state;
     for (unsigned i = 0; i != 5; i++) {
         stand.pin.delay_us = 5 * MS;
         pulse_rig_run(2 * 221 * MS, 100);
@@ -91,9 +85,8 @@ static void the_cycle_counts_from_a_look_at_the_clock_after_the_edge(void **stat
     assert_int_equal(stand.pin.least_us, 221 * MS);
 }
 
-static void a_loop_of_300_ms_leaves_the_pin_high_for_2_ms_before_the_next_edge(void **state)
+TEST(a_loop_of_300_ms_leaves_the_pin_high_for_2_ms_before_the_next_edge)
 {
-    (void)state;
     stand.pin.answer_after_us = 110 * MS;
     stand.pin.answer_width_us = 10 * MS;
     pulse_rig_run(12000 * MS, 300 * MS);
@@ -113,7 +106,7 @@ static void a_loop_of_300_ms_leaves_the_pin_high_for_2_ms_before_the_next_edge(v
 
 /* ---- loops and the clock ---- */
 
-static void every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wrap(void **state)
+TEST(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wrap)
 {
     static const uint32_t steps_us[] = {50, 333, 1000, 20000, 33333, 200000};
     static const uint32_t starts_us[] = {0,
@@ -122,7 +115,6 @@ static void every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_
                                          UINT32_MAX - 130000,
                                          UINT32_MAX - 300000,
                                          UINT32_C(0x7FFFF000)};
-    (void)state;
     for (unsigned s = 0; s != sizeof steps_us / sizeof *steps_us; s++) {
         for (unsigned n = 0; n != sizeof starts_us / sizeof *starts_us; n++) {
             pulse_rig_start(starts_us[n]);
@@ -143,10 +135,9 @@ static void every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_
     }
 }
 
-static void what_is_over_stays_over_however_late_the_poll(void **state)
+TEST(what_is_over_stays_over_however_late_the_poll)
 {
     static const uint32_t late_us[] = {221000, 1000000, UINT32_C(0x80000000), UINT32_MAX - 5000};
-    (void)state;
     for (unsigned i = 0; i != 4; i++) {
         pulse_rig_start(1000);
         pulse_rig_run_to_trigger();
@@ -159,9 +150,8 @@ static void what_is_over_stays_over_however_late_the_poll(void **state)
     }
 }
 
-static void who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle(void **state)
+TEST(who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle)
 {
-    (void)state;
     stand.pin.answer_after_us = 110 * MS;
     stand.pin.answer_width_us = 10 * MS;
     for (unsigned polls = 0; polls != 31; polls++) { /* trigger, release and end of ten cycles */
@@ -173,9 +163,8 @@ static void who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle(void **state)
 }
 
 /* A module that answers at once. */
-static void a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept(void **state)
+TEST(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept)
 {
-    (void)state;
     stand.config.low_us = 30 * MS;
     pulse_rig_start(1000);
     stand.pin.answer_after_us = 500;
@@ -189,9 +178,8 @@ static void a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_i
 
 /* ---- the break ---- */
 
-static void without_a_pin_a_break_of_the_uart_triggers(void **state)
+TEST(without_a_pin_a_break_of_the_uart_triggers)
 {
-    (void)state;
     stand.config.trigger = NULL;
     stand.config.uart = &stand.fake.uart;
     pulse_rig_start(1000);
@@ -221,10 +209,9 @@ static int broken(void *ctx, bool on)
     return -1;
 }
 
-static void a_break_that_fails_is_said_by_every_poll_until_it_works_again(void **state)
+TEST(a_break_that_fails_is_said_by_every_poll_until_it_works_again)
 {
     int (*const works)(void *ctx, bool on) = stand.fake.uart.set_break;
-    (void)state;
     stand.config.trigger = NULL;
     stand.config.uart = &stand.fake.uart;
     pulse_rig_start(1000);
@@ -242,9 +229,8 @@ static void a_break_that_fails_is_said_by_every_poll_until_it_works_again(void *
     assert_false(stand.fake.in_break);
 }
 
-static void a_capture_that_fails_is_said_by_every_poll_until_it_works_again(void **state)
+TEST(a_capture_that_fails_is_said_by_every_poll_until_it_works_again)
 {
-    (void)state;
     pulse_rig_run_to_trigger();
     fake_pulse(&stand.pin, 110 * MS, 10 * MS);
     pulse_rig_run(100 * MS, 100);
@@ -260,11 +246,10 @@ static void a_capture_that_fails_is_said_by_every_poll_until_it_works_again(void
 
 /* ---- setting up ---- */
 
-static void a_config_without_what_it_needs_is_refused(void **state)
+TEST(a_config_without_what_it_needs_is_refused)
 {
     fathom_pulse_config_t bad;
     fathom_uart_t uart = stand.fake.uart;
-    (void)state;
     bad = stand.config;
     bad.clock = NULL;
     assert_int_equal(fathom_pulse_init(&stand.meter, &bad), FATHOM_ERR_ARGUMENT);
@@ -290,9 +275,8 @@ static void a_config_without_what_it_needs_is_refused(void **state)
     assert_int_equal(fathom_pulse_init(&stand.meter, &bad), FATHOM_READY);
 }
 
-static void deinit_lets_the_trigger_go_high(void **state)
+TEST(deinit_lets_the_trigger_go_high)
 {
-    (void)state;
     pulse_rig_run_to_trigger();
     assert_false(stand.pin.level);
     fathom_pulse_deinit(&stand.meter);
@@ -300,28 +284,4 @@ static void deinit_lets_the_trigger_go_high(void **state)
     const unsigned sets = stand.pin.sets;
     fathom_pulse_deinit(&stand.meter);
     assert_int_equal(stand.pin.sets, sets);
-}
-
-#define FRESH(test) cmocka_unit_test_setup(test, pulse_rig_set_up)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        FRESH(the_pin_is_high_for_2_ms_then_low_for_2_ms_and_then_high),
-        FRESH(the_low_time_is_an_option),
-        FRESH(a_cycle_is_221_ms_from_edge_to_edge),
-        FRESH(a_longer_cycle_is_kept_and_a_shorter_one_is_not),
-        FRESH(the_cycle_counts_from_a_look_at_the_clock_after_the_edge),
-        FRESH(a_loop_of_300_ms_leaves_the_pin_high_for_2_ms_before_the_next_edge),
-        FRESH(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wrap),
-        FRESH(what_is_over_stays_over_however_late_the_poll),
-        FRESH(who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle),
-        FRESH(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept),
-        FRESH(without_a_pin_a_break_of_the_uart_triggers),
-        FRESH(a_break_that_fails_is_said_by_every_poll_until_it_works_again),
-        FRESH(a_capture_that_fails_is_said_by_every_poll_until_it_works_again),
-        FRESH(a_config_without_what_it_needs_is_refused),
-        FRESH(deinit_lets_the_trigger_go_high),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

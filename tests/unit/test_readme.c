@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/fathom.h"
 #include "sim/a05.h"
@@ -80,9 +77,8 @@ static fathom_line_t *desk(desk_t *desk, uint32_t baud, uint8_t parity, fathom_s
     return &desk->line;
 }
 
-static void the_program_of_the_readme_reads_three_sensors(void **state)
+TEST(the_program_of_the_readme_reads_three_sensors)
 {
-    (void)state;
     fathom_sim_fixed_t a16_scene = {{A16_MM}};
     fathom_sim_fixed_t a05_scene = {{a05_mm[0], a05_mm[1], a05_mm[2], a05_mm[3]}};
     fathom_sim_fixed_t hps_scene = {{HPS167S_MM}};
@@ -104,10 +100,4 @@ static void the_program_of_the_readme_reads_three_sensors(void **state)
     assert_true(heard[FATHOM_A16][0] >= 1);
     for (int probe = 0; probe != 4; probe++) assert_true(heard[FATHOM_A05][probe] >= 1);
     assert_true(heard[FATHOM_HPS167S][0] >= 10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_program_of_the_readme_reads_three_sensors)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/hal.h"
 #include "fathom/sensor.h"
@@ -33,14 +30,13 @@ static uint32_t due_us(void *ctx)
     return driver->due_us;
 }
 
-static void poll_hands_on_what_the_driver_says(void **state)
+TEST(poll_hands_on_what_the_driver_says)
 {
     static const fathom_status_t all[] = {
         FATHOM_READY,         FATHOM_PENDING,       FATHOM_ERR_ARGUMENT,  FATHOM_ERR_PORT,
         FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM,  FATHOM_ERR_EXCEPTION, FATHOM_ERR_MALFORMED,
         FATHOM_ERR_STALE,     FATHOM_ERR_CANCELLED, FATHOM_ERR_BUSY,      FATHOM_ERR_CAPACITY,
     };
-    (void)state;
     for (unsigned i = 0; i != sizeof all / sizeof *all; i++) {
         driver_t driver = {all[i], 0, NULL, 0, 0};
         const fathom_sensor_t sensor = {poll, due_us, &driver};
@@ -59,13 +55,9 @@ static void poll_hands_on_what_the_driver_says(void **state)
     }
 }
 
-static void no_sensor_has_no_deadline(void **state)
-{
-    (void)state;
-    assert_true(fathom_due_us(NULL, 0) == FATHOM_NO_DEADLINE);
-}
+TEST(no_sensor_has_no_deadline) { assert_true(fathom_due_us(NULL, 0) == FATHOM_NO_DEADLINE); }
 
-static void the_first_to_have_something_to_do_decides(void **state)
+TEST(the_first_to_have_something_to_do_decides)
 {
     static const uint32_t cases[][4] = {
         {5, 7, 9, 5},
@@ -76,7 +68,6 @@ static void the_first_to_have_something_to_do_decides(void **state)
         {FATHOM_NO_DEADLINE, 4294967294u, FATHOM_NO_DEADLINE, 4294967294u},
         {FATHOM_NO_DEADLINE, FATHOM_NO_DEADLINE, FATHOM_NO_DEADLINE, FATHOM_NO_DEADLINE},
     };
-    (void)state;
     for (unsigned i = 0; i != sizeof cases / sizeof *cases; i++) {
         driver_t drivers[3];
         fathom_sensor_t sensors[3];
@@ -93,9 +84,8 @@ static void the_first_to_have_something_to_do_decides(void **state)
 }
 
 /* What fathom_due_us and all time-outs are built on (hal.h). */
-static void elapsed_is_right_across_the_wrap(void **state)
+TEST(elapsed_is_right_across_the_wrap)
 {
-    (void)state;
     assert_int_equal(fathom_elapsed_us(10, 4), 6);
     assert_int_equal(fathom_elapsed_us(4, 4), 0);
     assert_int_equal(fathom_elapsed_us(0, UINT32_MAX), 1);
@@ -103,10 +93,9 @@ static void elapsed_is_right_across_the_wrap(void **state)
     assert_true(fathom_elapsed_us(3, 4) == UINT32_MAX);
 }
 
-static void a_count_down_stops_at_0(void **state)
+TEST(a_count_down_stops_at_0)
 {
     uint32_t left_us = 10;
-    (void)state;
     assert_false(fathom_run_down(&left_us, 0));
     assert_int_equal(left_us, 10);
     assert_false(fathom_run_down(&left_us, 9));
@@ -117,16 +106,4 @@ static void a_count_down_stops_at_0(void **state)
     left_us = 3;
     assert_true(fathom_run_down(&left_us, UINT32_MAX));
     assert_int_equal(left_us, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(poll_hands_on_what_the_driver_says),
-        cmocka_unit_test(no_sensor_has_no_deadline),
-        cmocka_unit_test(the_first_to_have_something_to_do_decides),
-        cmocka_unit_test(elapsed_is_right_across_the_wrap),
-        cmocka_unit_test(a_count_down_stops_at_0),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/stream.h"
 
@@ -35,9 +32,8 @@ static void feed(const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t t
     fathom_stream_feed(&stream, bytes, count, after_gap, time_us);
 }
 
-static void a_config_without_storage_or_with_another_length_is_refused(void **state)
+TEST(a_config_without_storage_or_with_another_length_is_refused)
 {
-    (void)state;
     config = (fathom_stream_config_t){.storage = NULL, .length = 4};
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_ERR_ARGUMENT);
     config = (fathom_stream_config_t){.storage = storage, .length = 5};
@@ -50,9 +46,8 @@ static void a_config_without_storage_or_with_another_length_is_refused(void **st
     assert_int_equal(stream.listener.gap_us, 25000);
 }
 
-static void the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it(void **state)
+TEST(the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it)
 {
-    (void)state;
     begin(4, 1000);
     feed(mm_1953, 4, true, 1500);
     assert_int_equal(poll(6499), FATHOM_PENDING);
@@ -67,9 +62,8 @@ static void the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it(void *
     assert_memory_equal(frame, four, 10);
 }
 
-static void a_frame_may_come_in_any_two_pieces(void **state)
+TEST(a_frame_may_come_in_any_two_pieces)
 {
-    (void)state;
     for (uint8_t cut = 1; cut != 10; cut++) {
         begin(10, 0);
         feed(four, cut, true, 10);
@@ -81,9 +75,8 @@ static void a_frame_may_come_in_any_two_pieces(void **state)
     }
 }
 
-static void without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins(void **state)
+TEST(without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, false, 10);
     assert_int_equal(poll(10), FATHOM_PENDING);
@@ -97,9 +90,8 @@ static void without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_th
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
 }
 
-static void a_silence_ends_a_frame_as_well_as_the_next_one_does(void **state)
+TEST(a_silence_ends_a_frame_as_well_as_the_next_one_does)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, false, 10);
     feed(mm_1953, 4, false, 20);
@@ -110,10 +102,9 @@ static void a_silence_ends_a_frame_as_well_as_the_next_one_does(void **state)
 
 /* A byte of FF 80 xx 80 is lost, and what is left makes a right sum with the FF of the next frame: FF + 80 + 80 =
  * 1FF. What follows it, 07, begins nothing. */
-static void a_right_sum_that_no_frame_follows_is_not_believed(void **state)
+TEST(a_right_sum_that_no_frame_follows_is_not_believed)
 {
     static const uint8_t lost_a_byte[] = {0xFF, 0x80, 0x80};
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 10);
     feed(lost_a_byte, 3, false, 20);
@@ -124,9 +115,8 @@ static void a_right_sum_that_no_frame_follows_is_not_believed(void **state)
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
 }
 
-static void frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step(void **state)
+TEST(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 10);
     assert_int_equal(poll(10), FATHOM_PENDING);
@@ -143,9 +133,8 @@ static void frames_that_follow_without_a_pause_are_believed_while_they_stay_in_s
     assert_int_equal(stream.time_us, 40);
 }
 
-static void a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap(void **state)
+TEST(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap)
 {
-    (void)state;
     begin(4, 0);
     for (int i = 0; i != 100; i++) feed(mm_511, 4, false, 10);
     assert_int_equal(poll(20), FATHOM_PENDING);
@@ -159,9 +148,8 @@ static void a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
 }
 
-static void the_same_value_is_shown_rightly_where_gaps_are_seen(void **state)
+TEST(the_same_value_is_shown_rightly_where_gaps_are_seen)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_511 + 2, 2, false, 5); /* the end of a frame that had begun before */
     for (int i = 0; i != 100; i++) {
@@ -177,9 +165,8 @@ static void the_same_value_is_shown_rightly_where_gaps_are_seen(void **state)
     }
 }
 
-static void a_frame_that_broke_off_before_a_gap_leaves_no_trace(void **state)
+TEST(a_frame_that_broke_off_before_a_gap_leaves_no_trace)
 {
-    (void)state;
     for (uint8_t length = 1; length != 4; length++) {
         begin(4, 0);
         feed(mm_511, length, true, 10);
@@ -190,9 +177,8 @@ static void a_frame_that_broke_off_before_a_gap_leaves_no_trace(void **state)
     }
 }
 
-static void a_wrong_sum_is_dropped(void **state)
+TEST(a_wrong_sum_is_dropped)
 {
-    (void)state;
     uint8_t damaged[4];
     memcpy(damaged, mm_1953, 4);
     damaged[2] ^= 1;
@@ -203,10 +189,9 @@ static void a_wrong_sum_is_dropped(void **state)
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
 }
 
-static void the_newest_frame_wins_and_the_older_is_counted(void **state)
+TEST(the_newest_frame_wins_and_the_older_is_counted)
 {
     static const uint8_t mm_1000[] = {0xFF, 0x03, 0xE8, 0xEA}; /* FF + 03 + E8 = 1EA */
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 10);
     feed(mm_1000, 4, true, 20);
@@ -217,9 +202,8 @@ static void the_newest_frame_wins_and_the_older_is_counted(void **state)
     assert_int_equal(poll(5040), FATHOM_PENDING);
 }
 
-static void a_silent_stream_is_stale_once_every_deadline(void **state)
+TEST(a_silent_stream_is_stale_once_every_deadline)
 {
-    (void)state;
     begin(4, 1000);
     config.stale_us = 500000;
     fathom_stream_init(&stream, &config, 1000);
@@ -231,17 +215,15 @@ static void a_silent_stream_is_stale_once_every_deadline(void **state)
     assert_int_equal(stream.counters[FATHOM_STREAM_STALES], 2);
 }
 
-static void the_deadline_is_two_seconds_unless_told_otherwise(void **state)
+TEST(the_deadline_is_two_seconds_unless_told_otherwise)
 {
-    (void)state;
     begin(4, 0);
     assert_int_equal(poll(1999999), FATHOM_PENDING);
     assert_int_equal(poll(2000000), FATHOM_ERR_STALE);
 }
 
-static void only_a_good_frame_moves_the_deadline(void **state)
+TEST(only_a_good_frame_moves_the_deadline)
 {
-    (void)state;
     begin(4, 0);
     for (uint32_t now_us = 0; now_us != 1900000; now_us += 100000) {
         feed(mm_1953, 3, true, now_us);
@@ -254,26 +236,23 @@ static void only_a_good_frame_moves_the_deadline(void **state)
     assert_int_equal(poll(5000000), FATHOM_ERR_STALE);
 }
 
-static void a_frame_in_hand_comes_before_the_deadline(void **state)
+TEST(a_frame_in_hand_comes_before_the_deadline)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 10);
     assert_int_equal(poll(60000000), FATHOM_READY);
 }
 
-static void the_deadline_holds_across_the_wrap_of_the_clock(void **state)
+TEST(the_deadline_holds_across_the_wrap_of_the_clock)
 {
-    (void)state;
     const uint32_t start_us = UINT32_MAX - 1000000;
     begin(4, start_us);
     assert_int_equal(poll(start_us + 1999999), FATHOM_PENDING);
     assert_int_equal(poll(start_us + 2000000), FATHOM_ERR_STALE);
 }
 
-static void due_is_the_deadline_or_when_a_silence_ends_the_frame_or_at_once(void **state)
+TEST(due_is_the_deadline_or_when_a_silence_ends_the_frame_or_at_once)
 {
-    (void)state;
     begin(4, 1000);
     assert_int_equal(fathom_stream_due_us(&stream, 1000), 2000000);
     assert_int_equal(fathom_stream_due_us(&stream, 501000), 1500000);
@@ -291,9 +270,8 @@ static void due_is_the_deadline_or_when_a_silence_ends_the_frame_or_at_once(void
     assert_int_equal(fathom_stream_due_us(&stream, 1999000), 3000);
 }
 
-static void counters_stop_at_their_end(void **state)
+TEST(counters_stop_at_their_end)
 {
-    (void)state;
     begin(4, 0);
     stream.counters[FATHOM_STREAM_BYTES] = 65533;
     stream.counters[FATHOM_STREAM_FRAMES] = 65535;
@@ -304,10 +282,9 @@ static void counters_stop_at_their_end(void **state)
 }
 
 /* 300 bytes without an FF: the counters of bytes stop at 255 and do not come round to a wrong 4. */
-static void a_long_run_of_noise_does_not_come_round_to_a_frame(void **state)
+TEST(a_long_run_of_noise_does_not_come_round_to_a_frame)
 {
     static const uint8_t noise[250];
-    (void)state;
     begin(4, 0);
     feed(noise, 250, true, 10);
     for (int i = 0; i != 10; i++) feed(noise, 1, false, 10);
@@ -320,9 +297,8 @@ static void a_long_run_of_noise_does_not_come_round_to_a_frame(void **state)
 
 /* ---- bytes that were lost ---- */
 
-static void no_frame_is_built_across_a_lost_byte(void **state)
+TEST(no_frame_is_built_across_a_lost_byte)
 {
-    (void)state;
     for (uint8_t cut = 1; cut != 4; cut++) {
         begin(4, 0);
         feed(mm_1953, cut, true, 10);
@@ -335,9 +311,8 @@ static void no_frame_is_built_across_a_lost_byte(void **state)
     }
 }
 
-static void a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost(void **state)
+TEST(a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, false, 10);
     feed(mm_1953, 4, false, 20); /* believed if FF follows, but what follows is not known */
@@ -353,9 +328,8 @@ static void a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost(
 }
 
 /* The first after the loss is in step with nothing, the second with the first. */
-static void after_a_loss_two_frames_in_step_or_a_silence_are_needed_again(void **state)
+TEST(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 10);
     assert_int_equal(poll(5010), FATHOM_READY);
@@ -372,9 +346,8 @@ static void after_a_loss_two_frames_in_step_or_a_silence_are_needed_again(void *
 }
 
 /* 511 mm held still, FF 01 FF FF: without the two bytes FF 01 it reads FF FF FF 01, FF FF 01 FF. */
-static void a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value(void **state)
+TEST(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value)
 {
-    (void)state;
     for (uint8_t lost = 0; lost != 4; lost++) {
         begin(4, 0);
         feed(mm_511, 4, true, 0);
@@ -386,35 +359,4 @@ static void a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value(void **st
             if (poll(20 + i) == FATHOM_READY) assert_memory_equal(frame, mm_511, 4);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_config_without_storage_or_with_another_length_is_refused),
-        cmocka_unit_test(the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it),
-        cmocka_unit_test(a_frame_may_come_in_any_two_pieces),
-        cmocka_unit_test(without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins),
-        cmocka_unit_test(a_silence_ends_a_frame_as_well_as_the_next_one_does),
-        cmocka_unit_test(a_right_sum_that_no_frame_follows_is_not_believed),
-        cmocka_unit_test(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step),
-        cmocka_unit_test(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap),
-        cmocka_unit_test(the_same_value_is_shown_rightly_where_gaps_are_seen),
-        cmocka_unit_test(a_frame_that_broke_off_before_a_gap_leaves_no_trace),
-        cmocka_unit_test(a_wrong_sum_is_dropped),
-        cmocka_unit_test(the_newest_frame_wins_and_the_older_is_counted),
-        cmocka_unit_test(a_silent_stream_is_stale_once_every_deadline),
-        cmocka_unit_test(the_deadline_is_two_seconds_unless_told_otherwise),
-        cmocka_unit_test(only_a_good_frame_moves_the_deadline),
-        cmocka_unit_test(a_frame_in_hand_comes_before_the_deadline),
-        cmocka_unit_test(the_deadline_holds_across_the_wrap_of_the_clock),
-        cmocka_unit_test(due_is_the_deadline_or_when_a_silence_ends_the_frame_or_at_once),
-        cmocka_unit_test(counters_stop_at_their_end),
-        cmocka_unit_test(no_frame_is_built_across_a_lost_byte),
-        cmocka_unit_test(a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost),
-        cmocka_unit_test(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again),
-        cmocka_unit_test(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value),
-        cmocka_unit_test(a_long_run_of_noise_does_not_come_round_to_a_frame),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/stream.h"
 
@@ -37,10 +34,9 @@ static void feed(const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t t
 /* 4321 mm is FF 10 E1 F0 (FF + 10 + E1 = 1F0). Behind a silence its third byte is lost, and the next frame follows
  * without a pause: FF 10 F0 | FF ... FF + 10 + F0 = 1FF, so that the next one's FF is a right sum, of 4336 mm (10F0),
  * which the sensor has not said. */
-static void a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame(void **state)
+TEST(a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame)
 {
     static const uint8_t bytes[] = {0xFF, 0x10, 0xF0, 0xFF, 0x10, 0xE1, 0xF0};
-    (void)state;
     begin(4, 0);
     feed(bytes, sizeof bytes, true, 1000);
     assert_int_equal(poll(1000), FATHOM_PENDING);
@@ -50,10 +46,9 @@ static void a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame(vo
 }
 
 /* FF + 07 + 9B = 1A1: with 9B too many before the A1, the A1 is a right sum, and the A7 behind it begins nothing. */
-static void a_byte_too_many_does_not_make_the_last_value_a_sum(void **state)
+TEST(a_byte_too_many_does_not_make_the_last_value_a_sum)
 {
     static const uint8_t bytes[] = {0xFF, 0x07, 0x9B, 0xA1, 0xA7};
-    (void)state;
     begin(4, 0);
     feed(bytes, sizeof bytes, true, 10);
     assert_int_equal(poll(10 + GAP_US), FATHOM_PENDING);
@@ -61,9 +56,8 @@ static void a_byte_too_many_does_not_make_the_last_value_a_sum(void **state)
 }
 
 /* Every byte behind a frame that is first after a silence: FF alone begins another one. */
-static void of_all_bytes_behind_a_frame_only_FF_lets_it_pass(void **state)
+TEST(of_all_bytes_behind_a_frame_only_FF_lets_it_pass)
 {
-    (void)state;
     for (unsigned next = 0; next != 256; next++) {
         const uint8_t byte = (uint8_t)next;
         begin(4, 0);
@@ -76,9 +70,8 @@ static void of_all_bytes_behind_a_frame_only_FF_lets_it_pass(void **state)
     }
 }
 
-static void a_silence_lets_it_pass_when_it_has_lasted_from_its_last_byte_on(void **state)
+TEST(a_silence_lets_it_pass_when_it_has_lasted_from_its_last_byte_on)
 {
-    (void)state;
     begin(4, 0);
     config.gap_us = 25000;
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
@@ -90,10 +83,9 @@ static void a_silence_lets_it_pass_when_it_has_lasted_from_its_last_byte_on(void
 }
 
 /* Pauses of 20 ms with gap_us 25 ms: after the first, no gap is seen and no poll comes late enough. */
-static void where_gap_us_is_longer_than_the_pauses_the_next_frame_decides(void **state)
+TEST(where_gap_us_is_longer_than_the_pauses_the_next_frame_decides)
 {
     unsigned readings = 0;
-    (void)state;
     begin(4, 0);
     config.gap_us = 25000;
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
@@ -108,10 +100,9 @@ static void where_gap_us_is_longer_than_the_pauses_the_next_frame_decides(void *
     assert_int_equal(poll(180000 + 25000), FATHOM_READY);
 }
 
-static void the_silence_is_measured_across_the_wrap_of_the_clock(void **state)
+TEST(the_silence_is_measured_across_the_wrap_of_the_clock)
 {
     const uint32_t came_us = UINT32_MAX - 1999; /* 2000 us before the wrap */
-    (void)state;
     begin(4, came_us - 100);
     feed(mm_1953, 4, true, came_us);
     assert_int_equal(fathom_stream_due_us(&stream, came_us), GAP_US);
@@ -122,9 +113,8 @@ static void the_silence_is_measured_across_the_wrap_of_the_clock(void **state)
 }
 
 /* Due at the end of the silence, and what is due then is the frame. */
-static void who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes(void **state)
+TEST(who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 1000);
     assert_int_equal(poll(2500), FATHOM_PENDING);
@@ -135,9 +125,8 @@ static void who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes(void **stat
 }
 
 /* A deadline that passes while the silence lasts says STALE, and the frame is no older for that. */
-static void a_frame_that_waits_when_the_deadline_passes_is_still_shown(void **state)
+TEST(a_frame_that_waits_when_the_deadline_passes_is_still_shown)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, true, 1998000);
     assert_int_equal(fathom_stream_due_us(&stream, 1998000), 2000);
@@ -148,9 +137,8 @@ static void a_frame_that_waits_when_the_deadline_passes_is_still_shown(void **st
 }
 
 /* The frame ended long ago, and nobody has polled since: it is shown before the deadline is told. */
-static void a_frame_whose_silence_has_passed_comes_before_the_deadline(void **state)
+TEST(a_frame_whose_silence_has_passed_comes_before_the_deadline)
 {
-    (void)state;
     begin(4, 0);
     feed(mm_1953, 4, false, 10);
     feed(mm_1953, 4, false, 20);
@@ -158,20 +146,4 @@ static void a_frame_whose_silence_has_passed_comes_before_the_deadline(void **st
     assert_int_equal(stream.time_us, 20);
     feed(mm_1953, 2, true, 600000000);
     assert_int_equal(poll(600000000), FATHOM_ERR_STALE); /* each frame once */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame),
-        cmocka_unit_test(a_byte_too_many_does_not_make_the_last_value_a_sum),
-        cmocka_unit_test(of_all_bytes_behind_a_frame_only_FF_lets_it_pass),
-        cmocka_unit_test(a_silence_lets_it_pass_when_it_has_lasted_from_its_last_byte_on),
-        cmocka_unit_test(where_gap_us_is_longer_than_the_pauses_the_next_frame_decides),
-        cmocka_unit_test(the_silence_is_measured_across_the_wrap_of_the_clock),
-        cmocka_unit_test(who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes),
-        cmocka_unit_test(a_frame_that_waits_when_the_deadline_passes_is_still_shown),
-        cmocka_unit_test(a_frame_whose_silence_has_passed_comes_before_the_deadline),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/hal.h"
 #include "fathom/wait.h"
@@ -43,24 +40,22 @@ static void idle(void *ctx, uint32_t max_us)
     assert_int_equal(driver->idles, driver->polls); /* once after each poll */
 }
 
-static void a_reading_that_is_there_is_returned_without_idling(void **state)
+TEST(a_reading_that_is_there_is_returned_without_idling)
 {
     driver_t driver = {.status = FATHOM_READY};
     const fathom_sensor_t sensor = {poll, due_us, &driver};
     fathom_sample_t sample = {0};
-    (void)state;
     assert_int_equal(fathom_wait(&sensor, &sample, idle, &driver), FATHOM_READY);
     assert_int_equal(sample.distance_mm, 754);
     assert_int_equal(driver.polls, 1);
     assert_int_equal(driver.idles, 0);
 }
 
-static void it_idles_until_the_driver_is_due_and_no_longer(void **state)
+TEST(it_idles_until_the_driver_is_due_and_no_longer)
 {
     driver_t driver = {.pendings = 3, .status = FATHOM_READY, .due_us = 1000};
     const fathom_sensor_t sensor = {poll, due_us, &driver};
     fathom_sample_t sample = {0};
-    (void)state;
     assert_int_equal(fathom_wait(&sensor, &sample, idle, &driver), FATHOM_READY);
     assert_int_equal(sample.distance_mm, 754);
     assert_int_equal(driver.polls, 4);
@@ -70,9 +65,8 @@ static void it_idles_until_the_driver_is_due_and_no_longer(void **state)
     assert_int_equal(driver.told_us[2], 1003);
 }
 
-static void every_error_ends_it_and_leaves_the_sample_alone(void **state)
+TEST(every_error_ends_it_and_leaves_the_sample_alone)
 {
-    (void)state;
     for (int error = FATHOM_ERR_CAPACITY; error <= FATHOM_ERR_ARGUMENT; error++) {
         driver_t driver = {.pendings = 1, .status = (fathom_status_t)error};
         const fathom_sensor_t sensor = {poll, due_us, &driver};
@@ -86,24 +80,12 @@ static void every_error_ends_it_and_leaves_the_sample_alone(void **state)
     }
 }
 
-static void without_an_idle_hook_it_spins(void **state)
+TEST(without_an_idle_hook_it_spins)
 {
     driver_t driver = {.pendings = 1000, .status = FATHOM_READY};
     const fathom_sensor_t sensor = {poll, due_us, &driver};
     fathom_sample_t sample = {0};
-    (void)state;
     assert_int_equal(fathom_wait(&sensor, &sample, NULL, NULL), FATHOM_READY);
     assert_int_equal(driver.polls, 1001);
     assert_int_equal(sample.distance_mm, 754);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_reading_that_is_there_is_returned_without_idling),
-        cmocka_unit_test(it_idles_until_the_driver_is_due_and_no_longer),
-        cmocka_unit_test(every_error_ends_it_and_leaves_the_sample_alone),
-        cmocka_unit_test(without_an_idle_hook_it_spins),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,11 +35,12 @@ static uint8_t asked(fathom_status_t (*set)(void), uint8_t retries_by_function[7
     return function;
 }
 
-static void over_modbus_reads_are_repeated_and_writes_are_not(void **state)
+static const suite_t suite = {.set_up = set_up};
+
+TEST(over_modbus_reads_are_repeated_and_writes_are_not)
 {
     static fathom_status_t (*const settings[])(void) = {set_a16_threshold, set_a16_mode, set_a05_address};
     static const uint16_t one[] = {1}; /* the address, and another threshold than 2000 */
-    (void)state;
     for (unsigned i = 0; i != 3; i++) {
         uint8_t retries[7];
         memset(retries, 0xFF, sizeof retries);
@@ -75,13 +76,12 @@ static unsigned sent(uint8_t address, uint8_t command)
     return n;
 }
 
-static void over_55_aa_questions_are_repeated_and_the_command_to_all_is_not(void **state)
+TEST(over_55_aa_questions_are_repeated_and_the_command_to_all_is_not)
 {
     static fathom_a05_dyp_t dyp;
     const fathom_a05_dyp_config_t config = {.line = &bench.line, .retries = RETRIES};
     fathom_status_t status = FATHOM_PENDING;
     bool is_answered = false;
-    (void)state;
     assert_int_equal(fathom_a05_dyp_init(&dyp, &config), FATHOM_READY);
     for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
         assert_true(ms < 30000);
@@ -98,10 +98,3 @@ static void over_55_aa_questions_are_repeated_and_the_command_to_all_is_not(void
     assert_int_equal(sent(1, 0x10), 1 + 1 + RETRIES);   /* the first was answered */
     assert_int_equal(bench.fake.written, 1 + 2 * (1 + RETRIES) + 1 + 1 + RETRIES);
 }
-
-static const struct CMUnitTest tests[] = {
-    TEST(over_modbus_reads_are_repeated_and_writes_are_not),
-    TEST(over_55_aa_questions_are_repeated_and_the_command_to_all_is_not),
-};
-
-int main(void) { return cmocka_run_group_tests(tests, NULL, NULL); }

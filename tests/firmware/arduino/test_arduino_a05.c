@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The sketch a05_auto, which hears an A05 by SoftwareSerial, bit by bit on pin 10 (PB2), and prints. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "printed.h"
 
@@ -74,21 +71,12 @@ static void expect_frames(const char *image)
     board_end(&bench.board);
 }
 
-static void four_distances_are_printed_a_frame(void **state)
-{
-    (void)state;
-    expect_frames("a05_auto");
-}
+TEST(four_distances_are_printed_a_frame) { expect_frames("a05_auto"); }
 
-static void four_distances_are_printed_a_frame_in_a_loop_of_20_ms(void **state)
-{
-    (void)state;
-    expect_frames("a05_slow");
-}
+TEST(four_distances_are_printed_a_frame_in_a_loop_of_20_ms) { expect_frames("a05_slow"); }
 
-static void a_damaged_frame_is_not_printed(void **state)
+TEST(a_damaged_frame_is_not_printed)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "a05_auto");
     for (size_t i = 0; i < sizeof frame; i++) {
@@ -100,9 +88,8 @@ static void a_damaged_frame_is_not_printed(void **state)
     board_end(&bench.board);
 }
 
-static void silence_is_stale_after_two_seconds(void **state)
+TEST(silence_is_stale_after_two_seconds)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "a05_auto");
     send(&bench, 0, 0);
@@ -112,15 +99,4 @@ static void silence_is_stale_after_two_seconds(void **state)
     assert_non_null(text);
     assert_string_equal(text, "error -7"); /* FATHOM_ERR_STALE */
     board_end(&bench.board);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(four_distances_are_printed_a_frame),
-        cmocka_unit_test(four_distances_are_printed_a_frame_in_a_loop_of_20_ms),
-        cmocka_unit_test(a_damaged_frame_is_not_printed),
-        cmocka_unit_test(silence_is_stale_after_two_seconds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

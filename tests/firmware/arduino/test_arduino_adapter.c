@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 
-static void the_adapter_keeps_what_its_header_says(void **state)
+TEST(the_adapter_keeps_what_its_header_says)
 {
-    (void)state;
     board_t board;
     unsigned held = 0;
     assert_true(board_start(&board, "adapter"));
@@ -25,10 +21,4 @@ static void the_adapter_keeps_what_its_header_says(void **state)
     assert_int_equal(held, 45);
     assert_int_equal(board.usart.overruns, 0);
     board_end(&board);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_adapter_keeps_what_its_header_says)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

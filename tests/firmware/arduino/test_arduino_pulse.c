@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The sketch a16_pulse against a module that answers the trigger with pulses of known width (A16 1). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "printed.h"
 
@@ -130,9 +127,8 @@ static double off_us(bench_t *bench)
 
 static double magnitude(double value) { return value < 0 ? -value : value; }
 
-static void pulses_become_distances(void **state)
+TEST(pulses_become_distances)
 {
-    (void)state;
     static const uint32_t widths_us[] = {3000, 10100, 86250, 3000};
     bench_t bench;
     begin(&bench, "a16_pulse");
@@ -149,9 +145,8 @@ static void pulses_become_distances(void **state)
     board_end(&bench.board);
 }
 
-static void nothing_in_range_no_answer_and_a_stuck_line_are_told_apart(void **state)
+TEST(nothing_in_range_no_answer_and_a_stuck_line_are_told_apart)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "a16_pulse");
     bench.width_cycles = 94000 * BOARD_CYCLES_PER_US;
@@ -186,9 +181,8 @@ static double most_off_us(bench_t *bench, uint64_t first, uint64_t end, uint64_t
     return most_us;
 }
 
-static void a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most(void **state)
+TEST(a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "a16_pulse");
     bench.width_cycles = 20000 * BOARD_CYCLES_PER_US;
@@ -203,9 +197,8 @@ static void a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most(void **
     board_end(&bench.board);
 }
 
-static void a_loop_of_20_ms_loses_no_precision(void **state)
+TEST(a_loop_of_20_ms_loses_no_precision)
 {
-    (void)state;
     static const uint32_t widths_us[] = {3000, 10100, 50003, 86250};
     bench_t bench;
     begin(&bench, "a16_slow");
@@ -224,9 +217,8 @@ static void a_loop_of_20_ms_loses_no_precision(void **state)
 
 /* The core counts overflows of Timer0, of 1024 us each, in 32 bits, and micros() is 1024 times that: 2^22 of them are
  * its wrap. */
-static void a_pulse_across_the_wrap_of_micros_is_right(void **state)
+TEST(a_pulse_across_the_wrap_of_micros_is_right)
 {
-    (void)state;
     static const uint32_t wrap = UINT32_C(1) << 22;
     bench_t bench;
     begin(&bench, "a16_pulse");
@@ -242,16 +234,4 @@ static void a_pulse_across_the_wrap_of_micros_is_right(void **state)
     assert_int_equal(bench.triggers, 1);
     assert_true(magnitude(off_us(&bench)) <= BOUND_US);
     board_end(&bench.board);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pulses_become_distances),
-        cmocka_unit_test(nothing_in_range_no_answer_and_a_stuck_line_are_told_apart),
-        cmocka_unit_test(a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most),
-        cmocka_unit_test(a_loop_of_20_ms_loses_no_precision),
-        cmocka_unit_test(a_pulse_across_the_wrap_of_micros_is_right),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The sketch hps167s_rs485 against the simulated HPS-167S behind a transceiver. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 #include "sim/hps167s.h"
@@ -68,9 +65,8 @@ static void settle(bench_t *bench)
     bench->board.taken = bench->board.recorded;
 }
 
-static void the_led_shows_what_is_nearer_than_a_meter(void **state)
+TEST(the_led_shows_what_is_nearer_than_a_meter)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "hps167s_rs485", false, false);
     board_run_us(&bench.board, 100000);
@@ -94,9 +90,8 @@ static void the_led_shows_what_is_nearer_than_a_meter(void **state)
     board_end(&bench.board);
 }
 
-static void the_line_is_19200_8e1(void **state)
+TEST(the_line_is_19200_8e1)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "hps167s_rs485", false, false);
     board_run_us(&bench.board, 50000);
@@ -147,9 +142,8 @@ static uint32_t check_driver(const board_t *board, uint32_t most_late_us)
     return most_us;
 }
 
-static void driver_enable_covers_each_request_to_its_last_stop_bit(void **state)
+TEST(driver_enable_covers_each_request_to_its_last_stop_bit)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "hps167s_rs485", false, false);
     board_run_us(&bench.board, A_SECOND_US);
@@ -158,9 +152,8 @@ static void driver_enable_covers_each_request_to_its_last_stop_bit(void **state)
     board_end(&bench.board);
 }
 
-static void distances_arrive_as_they_were_sent(void **state)
+TEST(distances_arrive_as_they_were_sent)
 {
-    (void)state;
     static const uint16_t distances_mm[] = {80, 316, 1953, 9084, 18000};
     bench_t bench;
     begin(&bench, "hps_probe", false, false);
@@ -175,9 +168,8 @@ static void distances_arrive_as_they_were_sent(void **state)
     board_end(&bench.board);
 }
 
-static void a_loop_of_20_ms_talks_into_the_answers(void **state)
+TEST(a_loop_of_20_ms_talks_into_the_answers)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "hps_probe", true, false);
     board_run_us(&bench.board, 2 * A_SECOND_US);
@@ -189,9 +181,8 @@ static void a_loop_of_20_ms_talks_into_the_answers(void **state)
     board_end(&bench.board);
 }
 
-static void a_loop_of_20_ms_reads_when_timer0_drops_driver_enable(void **state)
+TEST(a_loop_of_20_ms_reads_when_timer0_drops_driver_enable)
 {
-    (void)state;
     bench_t bench;
     begin(&bench, "hps_probe", true, true);
     board_run_us(&bench.board, A_SECOND_US);
@@ -203,9 +194,8 @@ static void a_loop_of_20_ms_reads_when_timer0_drops_driver_enable(void **state)
     board_end(&bench.board);
 }
 
-static void the_wrap_of_micros_disturbs_nothing(void **state)
+TEST(the_wrap_of_micros_disturbs_nothing)
 {
-    (void)state;
     static const uint32_t wrap = UINT32_C(1) << 22; /* of 1024 us */
     bench_t bench;
     begin(&bench, "hps_probe", false, false);
@@ -217,18 +207,4 @@ static void the_wrap_of_micros_disturbs_nothing(void **state)
     assert_true((bytes[2] & 0x40) != 0); /* 2^22 has been passed */
     check_driver(&bench.board, MOST_LATE_US);
     board_end(&bench.board);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_led_shows_what_is_nearer_than_a_meter),
-        cmocka_unit_test(the_line_is_19200_8e1),
-        cmocka_unit_test(driver_enable_covers_each_request_to_its_last_stop_bit),
-        cmocka_unit_test(distances_arrive_as_they_were_sent),
-        cmocka_unit_test(a_loop_of_20_ms_talks_into_the_answers),
-        cmocka_unit_test(a_loop_of_20_ms_reads_when_timer0_drops_driver_enable),
-        cmocka_unit_test(the_wrap_of_micros_disturbs_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

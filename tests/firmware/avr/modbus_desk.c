@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "modbus_desk.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/sample.h"
 

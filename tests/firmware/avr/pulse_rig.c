@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "pulse_rig.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include <simavr/sim_cycle_timers.h>
 #include <simavr/sim_interrupts.h>

@@ -2,12 +2,9 @@
 
 /* Frames that A16 and A05 send by themselves, at their true spacing, with noise and lost bytes: each good one gives its
  * reading, and no other reading is ever given. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 #include "fathom/hal.h"
@@ -82,11 +79,12 @@ static void order(uint8_t orders, uint32_t clock_us)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.finished);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.tear_down = stop};
 
 typedef struct {
     uint32_t samples, errors, wrong;
@@ -136,9 +134,8 @@ static void assert_time_of_last_byte(uint8_t length)
     }
 }
 
-static void every_frame_of_an_a16_gives_its_reading(void **state)
+TEST(every_frame_of_an_a16_gives_its_reading)
 {
-    (void)state;
     order(ORDER_A16, 0);
     const result_t result = run(1, FRAMES);
     assert_int_equal(result.wrong, 0);
@@ -147,9 +144,8 @@ static void every_frame_of_an_a16_gives_its_reading(void **state)
     assert_true(board.asleep_cycles > board.avr->cycle / 100 * 98);
 }
 
-static void every_frame_of_an_a05_gives_its_four_readings(void **state)
+TEST(every_frame_of_an_a05_gives_its_four_readings)
 {
-    (void)state;
     order(ORDER_A05, 0);
     const result_t result = run(4, FRAMES);
     assert_int_equal(result.wrong, 0);
@@ -157,9 +153,8 @@ static void every_frame_of_an_a05_gives_its_four_readings(void **state)
     assert_true(result.samples >= 4 * (FRAMES - 1));
 }
 
-static void across_the_wrap_of_the_clock_nothing_is_lost(void **state)
+TEST(across_the_wrap_of_the_clock_nothing_is_lost)
 {
-    (void)state;
     for (int a16_first = 0; a16_first < 2; a16_first++) {
         order(a16_first != 0 ? ORDER_A16 : ORDER_A05, 0xFFC00000); /* the wrap comes after 4.2 s */
         const result_t result = run(a16_first != 0 ? 1 : 4, FRAMES);
@@ -170,9 +165,8 @@ static void across_the_wrap_of_the_clock_nothing_is_lost(void **state)
     }
 }
 
-static void in_a_loop_that_comes_round_every_20_ms_too(void **state)
+TEST(in_a_loop_that_comes_round_every_20_ms_too)
 {
-    (void)state;
     order(ORDER_A16 | ORDER_20_MS, 0);
     const result_t result = run(1, FRAMES_AWAKE);
     assert_int_equal(result.wrong, 0);
@@ -183,9 +177,8 @@ static void in_a_loop_that_comes_round_every_20_ms_too(void **state)
     assert_int_equal(run(4, FRAMES_AWAKE).wrong, 0);
 }
 
-static void a_reading_has_the_time_of_its_last_byte(void **state)
+TEST(a_reading_has_the_time_of_its_last_byte)
 {
-    (void)state;
     order(ORDER_A16, 0);
     assert_time_of_last_byte(4);
     stop(state);
@@ -194,7 +187,7 @@ static void a_reading_has_the_time_of_its_last_byte(void **state)
 }
 
 /* Of the frames that were hit none gives a reading, and of the others all do. */
-static void with_noise_and_lost_bytes_no_reading_is_wrong(void **state)
+TEST(with_noise_and_lost_bytes_no_reading_is_wrong)
 {
     static const struct {
         uint8_t kind;
@@ -225,17 +218,4 @@ static void with_noise_and_lost_bytes_no_reading_is_wrong(void **state)
         }
     }
     order(ORDER_A16, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(every_frame_of_an_a16_gives_its_reading, stop),
-        cmocka_unit_test_teardown(every_frame_of_an_a05_gives_its_four_readings, stop),
-        cmocka_unit_test_teardown(across_the_wrap_of_the_clock_nothing_is_lost, stop),
-        cmocka_unit_test_teardown(in_a_loop_that_comes_round_every_20_ms_too, stop),
-        cmocka_unit_test_teardown(a_reading_has_the_time_of_its_last_byte, stop),
-        cmocka_unit_test_teardown(with_noise_and_lost_bytes_no_reading_is_wrong, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The bench against the ATmega328P's datasheet, with an image of which every cycle is known (images/bench.c). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "profile.h"
 #include "sim/a16.h"
@@ -18,7 +15,6 @@ static profile_t profile;
 
 static int start(void **state)
 {
-    (void)state;
     assert_true(board_start(&board, "bench"));
     board_drive(&board, 'D', 2, false);
     board_drive(&board, 'D', 3, false);
@@ -28,11 +24,12 @@ static int start(void **state)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 /* Runs until it reports a record of that kind. */
 static board_record_t reported(char kind)
@@ -44,9 +41,8 @@ static board_record_t reported(char kind)
     }
 }
 
-static void functions_cost_what_the_instruction_set_says(void **state)
+TEST(functions_cost_what_the_instruction_set_says)
 {
-    (void)state;
     profile_begin(&profile, &board);
     const profile_cost_t *const forty = profile_function(&profile, "forty_cycles");
     const profile_cost_t *const pushes = profile_function(&profile, "three_pushes");
@@ -67,9 +63,8 @@ static void functions_cost_what_the_instruction_set_says(void **state)
 }
 
 /* Between the reports 1 and 2 the functions run, after 2 come 400 nops. */
-static void interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt(void **state)
+TEST(interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt)
 {
-    (void)state;
     reported('1');
     profile_begin(&profile, &board);
     const profile_cost_t *const forty = profile_function(&profile, "forty_cycles");
@@ -92,7 +87,7 @@ static uint64_t cycles_to_the_first_byte(void)
     return reported('d').cycle - cycle;
 }
 
-static void an_interrupt_costs_its_cycles_and_four_of_entry(void **state)
+TEST(an_interrupt_costs_its_cycles_and_four_of_entry)
 {
     const uint64_t without = cycles_to_the_first_byte();
     stop(state);
@@ -111,9 +106,8 @@ static void an_interrupt_costs_its_cycles_and_four_of_entry(void **state)
     profile_end(&profile);
 }
 
-static void an_interrupt_that_is_interrupted_is_charged_its_own_cycles(void **state)
+TEST(an_interrupt_that_is_interrupted_is_charged_its_own_cycles)
 {
-    (void)state;
     reported('2');
     const uint64_t begin_cycle = board.avr->cycle;
     profile_begin(&profile, &board);
@@ -130,9 +124,8 @@ static void an_interrupt_that_is_interrupted_is_charged_its_own_cycles(void **st
 
 /* ATmega328P 20.6: the second byte is taken while the first leaves, the third one character later, and transmit
  * complete comes once, behind the third. */
-static void the_transmitter_has_a_second_buffer(void **state)
+TEST(the_transmitter_has_a_second_buffer)
 {
-    (void)state;
     const uint32_t character = 10 * 104 * 16; /* UBRR 103, 8N1 */
     const uint64_t first = reported('d').cycle;
     const uint64_t second = reported('d').cycle;
@@ -151,9 +144,8 @@ static void the_transmitter_has_a_second_buffer(void **state)
 
 /* 20.7.3 and 20.7.4: two are buffered, one waits in the shift register; the next one's start bit throws that out, and
  * the first that is buffered after the loss has DOR0. */
-static void the_receiver_keeps_three_bytes_and_tells_what_was_lost(void **state)
+TEST(the_receiver_keeps_three_bytes_and_tells_what_was_lost)
 {
-    (void)state;
     static const uint8_t bytes[] = {1, 2, 3, 4, 5};
     static const uint8_t marks[] = {0, FATHOM_RX_FRAMING, 0, 0, FATHOM_RX_FRAMING | FATHOM_RX_PARITY};
     reported('3');
@@ -168,9 +160,8 @@ static void the_receiver_keeps_three_bytes_and_tells_what_was_lost(void **state)
     assert_int_equal(board.usart.overruns, 2);
 }
 
-static void receive_complete_interrupts_as_long_as_a_byte_waits(void **state)
+TEST(receive_complete_interrupts_as_long_as_a_byte_waits)
 {
-    (void)state;
     static const uint8_t byte = 0x77;
     reported('3');
     board_drive(&board, 'D', 4, true);
@@ -187,9 +178,8 @@ static void receive_complete_interrupts_as_long_as_a_byte_waits(void **state)
 }
 
 /* A16 1: S[cm] = T[us] / 57.5, so 1739 mm are 9999 us. The loop of the image sees an edge within 40 cycles. */
-static void a_device_on_the_pins_answers_the_trigger_with_its_pulse(void **state)
+TEST(a_device_on_the_pins_answers_the_trigger_with_its_pulse)
 {
-    (void)state;
     fathom_sim_a16_t a16;
     fathom_sim_line_t line;
     fathom_sim_pins_t pins;
@@ -214,9 +204,8 @@ static void a_device_on_the_pins_answers_the_trigger_with_its_pulse(void **state
     assert_int_equal(a16.device.counters.measurements, 1);
 }
 
-static void a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code(void **state)
+TEST(a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code)
 {
-    (void)state;
     board_drive(&board, 'D', 4, true);
     reported('b');
     board_run_us(&board, 3000);
@@ -237,23 +226,4 @@ static void a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code(void
     assert_true(board.finished);
     assert_int_equal(board.exit_code, 7);
     profile_end(&profile);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(functions_cost_what_the_instruction_set_says, start, stop),
-        cmocka_unit_test_setup_teardown(
-            interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt, start, stop),
-        cmocka_unit_test_setup_teardown(an_interrupt_costs_its_cycles_and_four_of_entry, start, stop),
-        cmocka_unit_test_setup_teardown(an_interrupt_that_is_interrupted_is_charged_its_own_cycles, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(the_transmitter_has_a_second_buffer, start, stop),
-        cmocka_unit_test_setup_teardown(the_receiver_keeps_three_bytes_and_tells_what_was_lost, start, stop),
-        cmocka_unit_test_setup_teardown(receive_complete_interrupts_as_long_as_a_byte_waits, start, stop),
-        cmocka_unit_test_setup_teardown(a_device_on_the_pins_answers_the_trigger_with_its_pulse, start, stop),
-        cmocka_unit_test_setup_teardown(a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code,
-                                        start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The two CRCs of port/avr, with its table in program memory and without, against the definition. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 #include "crcs.h"
@@ -16,7 +13,6 @@ static board_t board;
 
 static int start(void **state)
 {
-    (void)state;
     assert_true(board_start(&board, "crcs"));
     assert_true(board_run_us(&board, 1000)); /* its memory has been cleared */
     return 0;
@@ -24,11 +20,12 @@ static int start(void **state)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 /* MODBUS over Serial Line V1.02, 6.2.2 */
 static uint16_t defined(const uint8_t *bytes, uint8_t length)
@@ -55,9 +52,8 @@ static void assert_crc(const uint8_t *bytes, uint8_t length, uint16_t expected)
     assert_int_equal(record->bytes[2] | record->bytes[3] << 8, expected); /* by the table */
 }
 
-static void the_examples_of_the_datasheets_have_their_crc(void **state)
+TEST(the_examples_of_the_datasheets_have_their_crc)
 {
-    (void)state;
     static const uint8_t a16[] = {0x01, 0x03, 0x01, 0x01,
                                   0x00, 0x01, 0xD4, 0x36}; /* A16 6(4), the low byte first */
     static const uint8_t hps[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* HPS-167S #5 */
@@ -67,9 +63,8 @@ static void the_examples_of_the_datasheets_have_their_crc(void **state)
     assert_crc(hps, 8, 0);
 }
 
-static void every_byte_alone_and_none(void **state)
+TEST(every_byte_alone_and_none)
 {
-    (void)state;
     assert_crc((const uint8_t *)"", 0, 0xFFFF);
     for (int i = 0; i < 256; i++) {
         const uint8_t byte = (uint8_t)i;
@@ -77,9 +72,8 @@ static void every_byte_alone_and_none(void **state)
     }
 }
 
-static void frames_of_every_length(void **state)
+TEST(frames_of_every_length)
 {
-    (void)state;
     uint8_t bytes[CRCS_BYTES];
     uint32_t random = 1;
     for (uint8_t length = 0; length <= CRCS_BYTES; length++) {
@@ -87,14 +81,4 @@ static void frames_of_every_length(void **state)
             bytes[i] = (uint8_t)((random = random * 1103515245u + 12345u) >> 16);
         assert_crc(bytes, length, defined(bytes, length));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(the_examples_of_the_datasheets_have_their_crc, start, stop),
-        cmocka_unit_test_setup_teardown(every_byte_alone_and_none, start, stop),
-        cmocka_unit_test_setup_teardown(frames_of_every_length, start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

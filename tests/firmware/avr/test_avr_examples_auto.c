@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 #include "console.h"
@@ -70,7 +67,6 @@ static void start(uint32_t a16_period_us, uint32_t a05_period_us)
 
 static int set_up(void **state)
 {
-    (void)state;
     a16_scene.value[0] = 1234;
     memcpy(a05_scene.value, (const int32_t[4]){1000, 2000, 2047, 1339}, sizeof a05_scene.value);
     start(0, 0);
@@ -79,20 +75,20 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
 
 static void assert_says(const char *expected)
 {
     assert_string_equal(console_line(&console, PATIENCE_US), expected);
 }
 
-static void both_are_printed_in_turn(void **state)
+TEST(both_are_printed_in_turn)
 {
-    (void)state;
     for (int i = 0; i < 20; i++) {
         assert_says("A16 1234 mm");
         assert_says("A05 1 1000 mm");
@@ -107,9 +103,8 @@ static void both_are_printed_in_turn(void **state)
 
 /* 511 mm held still is FF 01 FF FF, which reads 65281 mm out of step; and these four permuted are four good ones. With
  * each phase of the two periods against each other a turn comes somewhere in the other's frame. */
-static void a_turn_in_the_middle_of_a_frame_gives_no_wrong_value(void **state)
+TEST(a_turn_in_the_middle_of_a_frame_gives_no_wrong_value)
 {
-    (void)state;
     static const uint32_t periods_us[][2] = {
         {13000, 29000}, {17100, 21700}, {33333, 27001}, {100000, 300000}};
     a16_scene.value[0] = 511;
@@ -137,9 +132,8 @@ static void a_turn_in_the_middle_of_a_frame_gives_no_wrong_value(void **state)
 
 /* Where frames follow each other without a pause, those of the A05 read 1339 2047 1000 2000 out of step by six, with a
  * right sum. A turn in their midst is not the silence that would tell one from the other. */
-static void sensors_that_never_pause_are_silent_rather_than_wrong(void **state)
+TEST(sensors_that_never_pause_are_silent_rather_than_wrong)
 {
-    (void)state;
     board_end(&board);
     a16_scene.value[0] = 511;
     start(4167, 10417); /* 4 and 10 characters of 10 bits at 9600 baud, rounded up */
@@ -149,9 +143,8 @@ static void sensors_that_never_pause_are_silent_rather_than_wrong(void **state)
     }
 }
 
-static void what_is_not_in_range_is_said_for_each_probe(void **state)
+TEST(what_is_not_in_range_is_said_for_each_probe)
 {
-    (void)state;
     a16_scene.value[0] = FATHOM_SIM_NO_TARGET;
     a05_scene.value[2] = FATHOM_SIM_INTERFERENCE;
     assert_says("A16 nothing in range");
@@ -167,9 +160,8 @@ static void power_off(fathom_sim_line_t *line, fathom_sim_device_t *device, uint
     board_plan(&board);
 }
 
-static void a_dead_one_is_said_to_be_silent_and_the_other_goes_on(void **state)
+TEST(a_dead_one_is_said_to_be_silent_and_the_other_goes_on)
 {
-    (void)state;
     assert_says("A16 1234 mm");
     power_off(&a05_line, &a05.device, 20000000);
     unsigned of_a16 = 0;
@@ -191,9 +183,8 @@ static void a_dead_one_is_said_to_be_silent_and_the_other_goes_on(void **state)
     while (strcmp(console_line(&console, PATIENCE_US), "A05 4 1339 mm") != 0) assert_true(++lines < 12);
 }
 
-static void both_dead_are_both_said_to_be_silent(void **state)
+TEST(both_dead_are_both_said_to_be_silent)
 {
-    (void)state;
     power_off(&a16_line, &a16.device, 60000000);
     power_off(&a05_line, &a05.device, 60000000);
     for (int i = 0; i < 3; i++) {
@@ -204,20 +195,4 @@ static void both_dead_are_both_said_to_be_silent(void **state)
         assert_string_equal(is_a16_first ? first : second, "A16 error -7: silent");
         assert_string_equal(is_a16_first ? second : first, "A05 error -7: silent");
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(both_are_printed_in_turn, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_turn_in_the_middle_of_a_frame_gives_no_wrong_value, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(sensors_that_never_pause_are_silent_rather_than_wrong, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(what_is_not_in_range_is_said_for_each_probe, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_dead_one_is_said_to_be_silent_and_the_other_goes_on, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(both_dead_are_both_said_to_be_silent, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

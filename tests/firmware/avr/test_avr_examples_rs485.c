@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 #include "sim/hps167s.h"
@@ -62,7 +59,6 @@ static void start(uint8_t warm_up_s)
 
 static int set_up(void **state)
 {
-    (void)state;
     start(0);
     assert_true(board_run_us(&board, 200000));
     return 0;
@@ -70,13 +66,14 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     assert_int_equal(board.cut_bytes, 0);
     assert_int_equal(board.talked_over, 0);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
 
 static void assert_lit(bool near, bool far, bool error)
 {
@@ -85,9 +82,8 @@ static void assert_lit(bool near, bool far, bool error)
     assert_int_equal(lit[ERROR], error);
 }
 
-static void far_is_lit_while_nothing_is_near(void **state)
+TEST(far_is_lit_while_nothing_is_near)
 {
-    (void)state;
     assert_lit(false, true, false);
     scene.value[0] = FATHOM_SIM_NO_TARGET;
     assert_true(board_run_us(&board, 1000000));
@@ -104,9 +100,8 @@ static unsigned periods_until_change(void)
     return (unsigned)((changed_cycle - begin_cycle) / (BOARD_CYCLES_PER_US * PERIOD_US));
 }
 
-static void near_is_lit_after_three_nearer_ones_and_far_after_five_farther_ones(void **state)
+TEST(near_is_lit_after_three_nearer_ones_and_far_after_five_farther_ones)
 {
-    (void)state;
     scene.value[0] = 1499;
     assert_in_range(periods_until_change(), 2, 3);
     assert_lit(true, false, false);
@@ -123,9 +118,8 @@ static int32_t two_of_three(void *ctx, uint8_t probe, uint32_t now_us)
     return (*asked)++ % 3 == 2 ? 3000 : 100;
 }
 
-static void two_nearer_ones_light_nothing(void **state)
+TEST(two_nearer_ones_light_nothing)
 {
-    (void)state;
     unsigned asked = 0;
     hps.device.scene = (fathom_sim_scene_t){two_of_three, &asked};
     changed_cycle = 0;
@@ -135,9 +129,8 @@ static void two_nearer_ones_light_nothing(void **state)
     assert_lit(false, true, false);
 }
 
-static void it_asks_54_times_a_second(void **state)
+TEST(it_asks_54_times_a_second)
 {
-    (void)state;
     const uint32_t before = hps.device.counters.answered;
     assert_true(board_run_us(&board, 1000000));
     assert_in_range(hps.device.counters.answered - before, 53, 54);
@@ -146,9 +139,8 @@ static void it_asks_54_times_a_second(void **state)
     assert_int_equal(hps.device.counters.unserved, 0);
 }
 
-static void a_dead_sensor_lights_the_error_alone_until_it_answers_again(void **state)
+TEST(a_dead_sensor_lights_the_error_alone_until_it_answers_again)
 {
-    (void)state;
     /* Beyond its warm-up, 5 s and a time-out, in which silence is no error. */
     assert_true(board_run_us(&board, 6000000));
     assert_lit(false, true, false);
@@ -161,9 +153,8 @@ static void a_dead_sensor_lights_the_error_alone_until_it_answers_again(void **s
     assert_lit(false, true, false);
 }
 
-static void a_sensor_that_says_it_is_broken_lights_the_error(void **state)
+TEST(a_sensor_that_says_it_is_broken_lights_the_error)
 {
-    (void)state;
     assert_true(board_run_us(&board, 6000000));
     scene.value[0] = FATHOM_SIM_FAULT;
     assert_true(board_run_us(&board, 100000));
@@ -173,9 +164,8 @@ static void a_sensor_that_says_it_is_broken_lights_the_error(void **state)
     assert_lit(true, false, false);
 }
 
-static void while_it_warms_up_nothing_is_lit(void **state)
+TEST(while_it_warms_up_nothing_is_lit)
 {
-    (void)state;
     board_end(&board);
     start(5);
     for (int i = 0; i < 49; i++) {
@@ -186,9 +176,8 @@ static void while_it_warms_up_nothing_is_lit(void **state)
     assert_lit(false, true, false);
 }
 
-static void a_single_damaged_answer_is_no_error(void **state)
+TEST(a_single_damaged_answer_is_no_error)
 {
-    (void)state;
     assert_true(board_run_us(&board, 6000000));
     for (int i = 0; i < 10; i++) {
         /* A byte that nobody sent, somewhere in the cycle. */
@@ -200,29 +189,10 @@ static void a_single_damaged_answer_is_no_error(void **state)
     }
 }
 
-static void it_sleeps_most_of_the_time(void **state)
+TEST(it_sleeps_most_of_the_time)
 {
-    (void)state;
     const uint64_t asleep_cycles = board.asleep_cycles;
     const uint64_t begin_cycle = board.avr->cycle;
     assert_true(board_run_us(&board, 1000000));
     assert_true((board.asleep_cycles - asleep_cycles) * 10 > (board.avr->cycle - begin_cycle) * 8);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(far_is_lit_while_nothing_is_near, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(near_is_lit_after_three_nearer_ones_and_far_after_five_farther_ones,
-                                        set_up, tear_down),
-        cmocka_unit_test_setup_teardown(two_nearer_ones_light_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(it_asks_54_times_a_second, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_dead_sensor_lights_the_error_alone_until_it_answers_again, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(a_sensor_that_says_it_is_broken_lights_the_error, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(while_it_warms_up_nothing_is_lit, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_single_damaged_answer_is_no_error, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(it_sleeps_most_of_the_time, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

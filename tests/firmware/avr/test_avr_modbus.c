@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 
 /* HPS-167S over RS-485: the driver-enable pin, the silences, readings in any loop and across the wrap. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/status.h"
 #include "modbus_desk.h"
@@ -26,9 +23,8 @@ static void assert_all_well(void)
     assert_int_equal(desk.hps[0].device.counters.wrong_settings, 0);
 }
 
-static void every_request_has_its_answer_and_the_wire_its_silences(void **state)
+TEST(every_request_has_its_answer_and_the_wire_its_silences)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN, 0);
     desk_run(&desk, 60);
@@ -40,9 +36,8 @@ static void every_request_has_its_answer_and_the_wire_its_silences(void **state)
 
 /* Where two units wait to be asked, one request follows upon the other's answer as soon as it may: t3.5 are 2005 us,
  * and the processor wakes and looks for less than half a millisecond. */
-static void the_next_request_comes_t3_5_after_the_answer_before_and_not_much_later(void **state)
+TEST(the_next_request_comes_t3_5_after_the_answer_before_and_not_much_later)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN | ORDER_TWO_UNITS, 0);
     desk_run(&desk, 100);
@@ -56,9 +51,8 @@ static void the_next_request_comes_t3_5_after_the_answer_before_and_not_much_lat
     desk_end(&desk);
 }
 
-static void at_115200_too(void **state)
+TEST(at_115200_too)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN | ORDER_TWO_UNITS | ORDER_115200, 0);
     desk_run(&desk, 100);
@@ -71,9 +65,8 @@ static void at_115200_too(void **state)
     desk_end(&desk);
 }
 
-static void in_a_loop_that_comes_round_every_20_ms(void **state)
+TEST(in_a_loop_that_comes_round_every_20_ms)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN | ORDER_TWO_UNITS | ORDER_SLOW_LOOP, 0);
     desk_run(&desk, 40);
@@ -84,9 +77,8 @@ static void in_a_loop_that_comes_round_every_20_ms(void **state)
 }
 
 /* 40 periods of Timer1 before the wrap: 1.3 s. */
-static void across_the_wrap_of_the_clock(void **state)
+TEST(across_the_wrap_of_the_clock)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN, UINT32_C(0) - 40 * 32768);
     desk_run(&desk, 100);
@@ -98,9 +90,8 @@ static void across_the_wrap_of_the_clock(void **state)
 }
 
 /* An adapter, or a transceiver whose receiver stays on, hands back what is sent. */
-static void with_the_echo_of_the_line(void **state)
+TEST(with_the_echo_of_the_line)
 {
-    (void)state;
     uint64_t silence_cycles;
     for (int slow = 0; slow < 2; slow++) {
         desk_start(&desk, (uint8_t)(ORDER_BEGIN | (slow != 0 ? ORDER_SLOW_LOOP : 0)), 0);
@@ -113,9 +104,8 @@ static void with_the_echo_of_the_line(void **state)
     }
 }
 
-static void a_unit_that_is_not_there_costs_its_time_outs_and_nothing_else(void **state)
+TEST(a_unit_that_is_not_there_costs_its_time_outs_and_nothing_else)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN | ORDER_TWO_UNITS, 0);
     fathom_sim_detach(&desk.line, &desk.hps[1].device, desk.board.clock.now_us);
@@ -127,18 +117,4 @@ static void a_unit_that_is_not_there_costs_its_time_outs_and_nothing_else(void *
     assert_true(desk.samples[0] > 80);
     assert_in_range(desk_assert_wire(&desk, &silence_cycles), 100, 102);
     desk_end(&desk);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_request_has_its_answer_and_the_wire_its_silences),
-        cmocka_unit_test(the_next_request_comes_t3_5_after_the_answer_before_and_not_much_later),
-        cmocka_unit_test(at_115200_too),
-        cmocka_unit_test(in_a_loop_that_comes_round_every_20_ms),
-        cmocka_unit_test(across_the_wrap_of_the_clock),
-        cmocka_unit_test(with_the_echo_of_the_line),
-        cmocka_unit_test(a_unit_that_is_not_there_costs_its_time_outs_and_nothing_else),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,12 +2,9 @@
 
 /* HPS-167S over RS-485 when things go wrong: no reading is wrong, everything is told and counted, and the next exchange
  * is as before. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/status.h"
 #include "modbus_desk.h"
@@ -17,9 +14,8 @@ static uint16_t line[FATHOM_LINE_COUNTERS], port[3];
 
 enum { PARITY = 0, FRAMING = 1, OVERRUNS = 2 }; /* of the port */
 
-static void a_byte_with_wrong_parity_fails_its_answer_and_is_counted(void **state)
+TEST(a_byte_with_wrong_parity_fails_its_answer_and_is_counted)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN, 0);
     for (uint32_t frame = 5; frame <= 25; frame += 5)
@@ -37,9 +33,8 @@ static void a_byte_with_wrong_parity_fails_its_answer_and_is_counted(void **stat
     desk_end(&desk);
 }
 
-static void a_byte_without_a_stop_bit_fails_its_answer_and_is_counted(void **state)
+TEST(a_byte_without_a_stop_bit_fails_its_answer_and_is_counted)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN, 0);
     for (uint32_t frame = 5; frame <= 25; frame += 5)
@@ -54,9 +49,8 @@ static void a_byte_without_a_stop_bit_fails_its_answer_and_is_counted(void **sta
     desk_end(&desk);
 }
 
-static void with_a_retry_a_damaged_answer_is_asked_for_again(void **state)
+TEST(with_a_retry_a_damaged_answer_is_asked_for_again)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN | ORDER_RETRY, 0);
     for (uint32_t frame = 5; frame <= 25; frame += 5)
@@ -73,9 +67,8 @@ static void with_a_retry_a_damaged_answer_is_asked_for_again(void **state)
 }
 
 /* The time-out is 100 ms; an answer that comes within twice of it is known for what it is. */
-static void a_late_answer_is_recognised(void **state)
+TEST(a_late_answer_is_recognised)
 {
-    (void)state;
     uint64_t silence_cycles;
     desk_start(&desk, ORDER_BEGIN, 0);
     for (uint32_t frame = 5; frame <= 15; frame += 5)
@@ -92,9 +85,8 @@ static void a_late_answer_is_recognised(void **state)
 }
 
 /* On one pair of wires a late answer hits what goes on between the others; it delays its own unit alone. */
-static void a_late_answer_among_others_spoils_what_it_hits_and_nothing_else(void **state)
+TEST(a_late_answer_among_others_spoils_what_it_hits_and_nothing_else)
 {
-    (void)state;
     desk_start(&desk, ORDER_BEGIN | ORDER_TWO_UNITS, 0);
     for (uint32_t frame = 5; frame <= 15; frame += 5)
         fathom_sim_fault_add(&desk.faults[0], FATHOM_SIM_FAULT_LATE, FATHOM_SIM_FAULT_ALWAYS_PPM, frame)->us =
@@ -112,9 +104,8 @@ static void a_late_answer_among_others_spoils_what_it_hits_and_nothing_else(void
     desk_end(&desk);
 }
 
-static void damage_of_every_kind_never_makes_a_reading(void **state)
+TEST(damage_of_every_kind_never_makes_a_reading)
 {
-    (void)state;
     static const uint8_t kinds[] = {
         FATHOM_SIM_FAULT_FLIP_BIT, FATHOM_SIM_FAULT_FLIP_BYTE, FATHOM_SIM_FAULT_DROP,
         FATHOM_SIM_FAULT_INSERT,   FATHOM_SIM_FAULT_TRUNCATE,  FATHOM_SIM_FAULT_OVERRUN,
@@ -133,9 +124,8 @@ static void damage_of_every_kind_never_makes_a_reading(void **state)
 }
 
 /* Somebody else talks for 100 bytes while the main loop is away for 60 ms: the ring is full after 63. */
-static void a_full_ring_is_counted_and_the_next_exchange_is_as_before(void **state)
+TEST(a_full_ring_is_counted_and_the_next_exchange_is_as_before)
 {
-    (void)state;
     static uint8_t babble[100];
     for (size_t i = 0; i < sizeof babble; i++) babble[i] = (uint8_t)(0xC0 + i);
     desk_start(&desk, ORDER_BEGIN, 0);
@@ -157,9 +147,8 @@ static void a_full_ring_is_counted_and_the_next_exchange_is_as_before(void **sta
 }
 
 /* The sensor's settings are not the processor's: garbage is no reading, and what it has at its own rate is. */
-static void a_sensor_at_another_rate_is_never_read(void **state)
+TEST(a_sensor_at_another_rate_is_never_read)
 {
-    (void)state;
     desk_start(&desk, ORDER_BEGIN, 0);
     desk_run(&desk, 5);
     desk.hps[0].device.settings.baud = 57600;
@@ -173,19 +162,4 @@ static void a_sensor_at_another_rate_is_never_read(void **state)
         desk_run(&desk, desk.samples[0] + desk.errors[-FATHOM_ERR_NO_ANSWER] + 1);
     }
     desk_end(&desk);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_byte_with_wrong_parity_fails_its_answer_and_is_counted),
-        cmocka_unit_test(a_byte_without_a_stop_bit_fails_its_answer_and_is_counted),
-        cmocka_unit_test(with_a_retry_a_damaged_answer_is_asked_for_again),
-        cmocka_unit_test(a_late_answer_is_recognised),
-        cmocka_unit_test(a_late_answer_among_others_spoils_what_it_hits_and_nothing_else),
-        cmocka_unit_test(damage_of_every_kind_never_makes_a_reading),
-        cmocka_unit_test(a_full_ring_is_counted_and_the_next_exchange_is_as_before),
-        cmocka_unit_test(a_sensor_at_another_rate_is_never_read),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "pulse_rig.h"
 
@@ -33,17 +30,17 @@ static pulse_rig_t rig;
 
 static int set_up(void **state)
 {
-    (void)state;
     pulse_rig_start(&rig);
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    (void)state;
     pulse_rig_end(&rig);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
 
 static void keep(int64_t *largest, int64_t error)
 {
@@ -84,19 +81,16 @@ static void sweep(errors_t *errors)
     measure(errors, rig.board.avr->cycle + SPREAD_CYCLES, 94 * MS);
 }
 
-static void a_pulse_of_1_to_94_ms_is_measured_within_1_us_while_nothing_else_happens(void **state)
+TEST(a_pulse_of_1_to_94_ms_is_measured_within_1_us_while_nothing_else_happens)
 {
-    (void)state;
     errors_t errors = {0};
     sweep(&errors);
     check(&errors, "quiet");
     assert_true(errors.pulses - errors.masked > 80);
 }
 
-static void a_pulse_of_1_to_94_ms_is_measured_by_input_capture_within_1_us_while_bytes_come_and_go(
-    void **state)
+TEST(a_pulse_of_1_to_94_ms_is_measured_by_input_capture_within_1_us_while_bytes_come_and_go)
 {
-    (void)state;
     errors_t errors = {0};
     pulse_rig_traffic(&rig, BYTE_CYCLES);
     sweep(&errors);
@@ -121,9 +115,8 @@ static void sweep_overflow(errors_t *errors, int step, bool rising)
     }
 }
 
-static void an_edge_at_any_cycle_around_the_overflow_of_the_timer_has_its_right_time(void **state)
+TEST(an_edge_at_any_cycle_around_the_overflow_of_the_timer_has_its_right_time)
 {
-    (void)state;
     errors_t errors = {0};
     assert_true(board_run_us(&rig.board, 40000)); /* until there was one */
     assert_true(rig.overflow_cycle != 0);
@@ -132,9 +125,8 @@ static void an_edge_at_any_cycle_around_the_overflow_of_the_timer_has_its_right_
     check(&errors, "around the overflow");
 }
 
-static void so_has_one_while_bytes_come_and_go(void **state)
+TEST(so_has_one_while_bytes_come_and_go)
 {
-    (void)state;
     errors_t errors = {0};
     assert_true(board_run_us(&rig.board, 40000));
     pulse_rig_traffic(&rig, BYTE_CYCLES);
@@ -143,9 +135,8 @@ static void so_has_one_while_bytes_come_and_go(void **state)
     check(&errors, "around the overflow, with traffic");
 }
 
-static void a_pulse_across_the_wrap_of_the_clock_is_measured_within_1_us(void **state)
+TEST(a_pulse_across_the_wrap_of_the_clock_is_measured_within_1_us)
 {
-    (void)state;
     errors_t errors = {0};
     const uint64_t wrap = (1ull << 32) * US;
     measure(&errors, 0, 94 * MS); /* it works, so it will sleep */
@@ -158,9 +149,8 @@ static void a_pulse_across_the_wrap_of_the_clock_is_measured_within_1_us(void **
     check(&errors, "across the wrap");
 }
 
-static void pulses_down_to_60_us_are_measured_as_well(void **state)
+TEST(pulses_down_to_60_us_are_measured_as_well)
 {
-    (void)state;
     errors_t errors = {0};
     for (uint64_t width = 60 * US; width <= 3 * MS; width += 61 * US + 7)
         measure(&errors, rig.board.avr->cycle + MS + width, width);
@@ -168,9 +158,8 @@ static void pulses_down_to_60_us_are_measured_as_well(void **state)
 }
 
 /* Of glitches of any length, shorter than the interrupts and longer, at both ends of the pause before a pulse. */
-static void glitches_leave_the_pulse_after_them_as_it_is(void **state)
+TEST(glitches_leave_the_pulse_after_them_as_it_is)
 {
-    (void)state;
     errors_t errors = {0};
     for (uint64_t width = 1; width <= 70 * US; width += 11) {
         const uint64_t at = rig.board.avr->cycle + MS;
@@ -179,23 +168,4 @@ static void glitches_leave_the_pulse_after_them_as_it_is(void **state)
     }
     check(&errors, "after a glitch");
     assert_true(errors.pulses > 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(
-            a_pulse_of_1_to_94_ms_is_measured_within_1_us_while_nothing_else_happens, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(
-            a_pulse_of_1_to_94_ms_is_measured_by_input_capture_within_1_us_while_bytes_come_and_go, set_up,
-            tear_down),
-        cmocka_unit_test_setup_teardown(
-            an_edge_at_any_cycle_around_the_overflow_of_the_timer_has_its_right_time, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(so_has_one_while_bytes_come_and_go, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_pulse_across_the_wrap_of_the_clock_is_measured_within_1_us, set_up,
-                                        tear_down),
-        cmocka_unit_test_setup_teardown(pulses_down_to_60_us_are_measured_as_well, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(glitches_leave_the_pulse_after_them_as_it_is, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

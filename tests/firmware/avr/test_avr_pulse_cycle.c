@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 #include "console.h"
@@ -53,7 +50,6 @@ static void start(uint32_t no_target_us)
 
 static int set_up(void **state)
 {
-    (void)state;
     scene.value[0] = 1000;
     start(0);
     return 0;
@@ -61,11 +57,12 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
 
 /* The line of the first cycle that begins from now on. */
 static void assert_next(const char *expected)
@@ -74,9 +71,8 @@ static void assert_next(const char *expected)
     assert_string_equal(console_line(&console, PATIENCE_US), expected);
 }
 
-static void each_distance_is_printed_to_the_mm(void **state)
+TEST(each_distance_is_printed_to_the_mm)
 {
-    (void)state;
     /* The time of flight is mm * 5.75 us (A16 1(4)), and never under 3 ms: 522 mm (A16 1(3)). */
     static const struct {
         int32_t mm;
@@ -101,9 +97,8 @@ static void each_distance_is_printed_to_the_mm(void **state)
     assert_int_equal(a16.device.counters.unserved, 0); /* no trigger came too early */
 }
 
-static void the_trigger_is_low_for_2_ms_once_in_221_ms(void **state)
+TEST(the_trigger_is_low_for_2_ms_once_in_221_ms)
 {
-    (void)state;
     assert_next("1000 mm");
     for (int i = 0; i < 10; i++) assert_string_equal(console_line(&console, PATIENCE_US), "1000 mm");
     assert_true(triggered >= 20);
@@ -121,9 +116,8 @@ static void the_trigger_is_low_for_2_ms_once_in_221_ms(void **state)
     }
 }
 
-static void a_cut_wire_is_an_error_and_no_reading(void **state)
+TEST(a_cut_wire_is_an_error_and_no_reading)
 {
-    (void)state;
     assert_next("1000 mm");
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
     board_plan(&board);
@@ -134,9 +128,8 @@ static void a_cut_wire_is_an_error_and_no_reading(void **state)
     assert_next("1000 mm");
 }
 
-static void a_line_that_is_stuck_high_is_a_fault(void **state)
+TEST(a_line_that_is_stuck_high_is_a_fault)
 {
-    (void)state;
     assert_next("1000 mm");
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
     board_plan(&board);
@@ -155,9 +148,8 @@ static void noise(uint32_t us)
     board_plan(&board);
 }
 
-static void short_pulses_before_the_right_one_are_noise(void **state)
+TEST(short_pulses_before_the_right_one_are_noise)
 {
-    (void)state;
     assert_next("1000 mm");
     for (int i = 0; i < 5; i++) {
         /* The line came with its pulse, 110 ms after the trigger: the next one falls 105 ms from here. */
@@ -170,9 +162,8 @@ static void short_pulses_before_the_right_one_are_noise(void **state)
     }
 }
 
-static void a_pulse_of_more_than_105_ms_is_a_fault(void **state)
+TEST(a_pulse_of_more_than_105_ms_is_a_fault)
 {
-    (void)state;
     board_end(&board);
     scene.value[0] = FATHOM_SIM_NO_TARGET;
     start(105900);
@@ -182,9 +173,8 @@ static void a_pulse_of_more_than_105_ms_is_a_fault(void **state)
     assert_next("nothing in range");
 }
 
-static void the_line_of_text_comes_right_after_the_pulse(void **state)
+TEST(the_line_of_text_comes_right_after_the_pulse)
 {
-    (void)state;
     assert_next("1000 mm");
     /* 110 ms to the pulse, 5.75 ms of it, 9 characters at 115200 baud: 0.78 ms. */
     const uint64_t fell = triggers[(triggered - 2) % EDGES].cycle;
@@ -193,9 +183,8 @@ static void the_line_of_text_comes_right_after_the_pulse(void **state)
 }
 
 /* Its UART only prints; a byte of noise on RXD is no reason to stay awake. */
-static void it_sleeps_also_after_a_byte_of_noise(void **state)
+TEST(it_sleeps_also_after_a_byte_of_noise)
 {
-    (void)state;
     static const uint8_t noise = 0x55;
     board_feed(&board, &noise, NULL, 1, board.avr->cycle + 16000, 0);
     assert_true(board_run_us(&board, 300000));
@@ -203,19 +192,4 @@ static void it_sleeps_also_after_a_byte_of_noise(void **state)
     assert_true(board_run_us(&board, 1000000));
     const uint64_t cycles = board.avr->cycle - begin_cycle;
     assert_true(board.asleep_cycles - asleep_cycles > cycles / 100 * 95);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(each_distance_is_printed_to_the_mm, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_trigger_is_low_for_2_ms_once_in_221_ms, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_cut_wire_is_an_error_and_no_reading, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_line_that_is_stuck_high_is_a_fault, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(short_pulses_before_the_right_one_are_noise, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_pulse_of_more_than_105_ms_is_a_fault, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_line_of_text_comes_right_after_the_pulse, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(it_sleeps_also_after_a_byte_of_noise, set_up, tear_down),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 
 /* What input capture makes of edges that come while its own interrupt runs; and INT0 by itself. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "board.h"
 
@@ -18,7 +15,6 @@ static uint64_t rise_cycle; /* of the next edge that is placed */
 
 static int start(void **state)
 {
-    (void)state;
     assert_true(board_start(&board, "pulses"));
     board_drive(&board, 'B', 0, false);
     board_drive(&board, 'D', 2, false);
@@ -28,11 +24,12 @@ static int start(void **state)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 /* `offset` cycles after rise_cycle. */
 static void edge(bool high, uint64_t offset) { board_drive_at(&board, 'B', 0, high, rise_cycle + offset); }
@@ -62,9 +59,8 @@ static void assert_told(uint32_t us, uint64_t least_cycles, uint64_t most_cycles
 
 /* Its fall is captured from 72 cycles on, when the interrupt has turned to it. Before that the interrupt finds the pin
  * low again, and what it tells is as long as itself. Either way the pulse after it is right. */
-static void a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right(void **state)
+TEST(a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right)
 {
-    (void)state;
     enum { TURNED = 72, INTERRUPT = 190 };
     for (uint64_t width = 1; width < 2 * INTERRUPT; width++) {
         place();
@@ -83,9 +79,8 @@ static void a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right(voi
 }
 
 /* Low again for some cycles, both edges while the interrupt gets at the first one: the pulse begins before or after. */
-static void a_bounce_in_the_interrupt_costs_no_more_than_itself(void **state)
+TEST(a_bounce_in_the_interrupt_costs_no_more_than_itself)
 {
-    (void)state;
     for (uint64_t high = 1; high < 60; high += 3) {
         for (uint64_t low = 1; low < 60; low += 3) {
             place();
@@ -99,24 +94,12 @@ static void a_bounce_in_the_interrupt_costs_no_more_than_itself(void **state)
 }
 
 /* With nothing else to delay it. */
-static void int0_tells_a_pulse_alone_within_1_us(void **state)
+TEST(int0_tells_a_pulse_alone_within_1_us)
 {
-    (void)state;
     for (uint64_t more = 0; more < 8 * US; more += 5) {
         place();
         board_drive_at(&board, 'D', 2, true, rise_cycle);
         board_drive_at(&board, 'D', 2, false, rise_cycle + PULSE_CYCLES + more);
         assert_told(told_us(BY_INT0), PULSE_CYCLES + more, PULSE_CYCLES + more);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_pulse_that_ends_in_the_interrupt_is_no_longer_than_it_or_right,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(a_bounce_in_the_interrupt_costs_no_more_than_itself, start, stop),
-        cmocka_unit_test_setup_teardown(int0_tells_a_pulse_alone_within_1_us, start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The clock of port/avr against the cycles of the processor. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "remote.h"
 
@@ -16,18 +13,18 @@ static board_t board;
 
 static int start(void **state)
 {
-    (void)state;
     remote_start(&board);
     return 0;
 }
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 typedef struct {
     uint64_t cycle; /* just before it */
@@ -89,9 +86,8 @@ static int64_t set_off(void)
 }
 
 /* The main loop sleeps as a device on a battery does, to the next overflow at most. */
-static void it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap(void **state)
+TEST(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap)
 {
-    (void)state;
     const int64_t zero = set_off();
     const uint64_t wrap_cycle = (uint64_t)BOARD_CYCLES_PER_US << 32; /* 71.6 minutes */
     uint32_t readings = 0;
@@ -147,23 +143,14 @@ static void sweep_the_overflow(uint8_t masked, int64_t interrupt_cycles)
 }
 
 /* The timer overflows at every cycle of the reading, while its interrupt is held back. */
-static void an_overflow_at_any_cycle_of_a_reading_is_counted_once(void **state)
-{
-    (void)state;
-    sweep_the_overflow(1, 0);
-}
+TEST(an_overflow_at_any_cycle_of_a_reading_is_counted_once) { sweep_the_overflow(1, 0); }
 
 /* Its interrupt, which comes before the reading then or after it, takes less than 80 cycles. */
-static void with_interrupts_on_it_is_counted_once_too(void **state)
-{
-    (void)state;
-    sweep_the_overflow(0, 80);
-}
+TEST(with_interrupts_on_it_is_counted_once_too) { sweep_the_overflow(0, 80); }
 
 /* With interrupts off for 16 ms at a time, most overflows are counted late; each reading looks at them itself. */
-static void overflows_that_wait_for_16_ms_are_in_each_reading(void **state)
+TEST(overflows_that_wait_for_16_ms_are_in_each_reading)
 {
-    (void)state;
     const int64_t zero = set_off();
     uint32_t last_us = 0, pending = 0;
     watch(255); /* 261120 cycles */
@@ -179,9 +166,8 @@ static void overflows_that_wait_for_16_ms_are_in_each_reading(void **state)
 
 /* ---- sleep ---- */
 
-static void idle_returns_when_its_time_is_up(void **state)
+TEST(idle_returns_when_its_time_is_up)
 {
-    (void)state;
     static const uint32_t most_us[] = {100, 1000, 5000, 20000, 32000};
     for (size_t i = 0; i < sizeof most_us / sizeof most_us[0]; i++) {
         const uint64_t begin_cycle = board.avr->cycle, asleep_cycles = board.asleep_cycles;
@@ -192,9 +178,8 @@ static void idle_returns_when_its_time_is_up(void **state)
     }
 }
 
-static void idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time(void **state)
+TEST(idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time)
 {
-    (void)state;
     uint64_t begin_cycle = board.avr->cycle;
     remote_idle(&board, UINT32_MAX);
     assert_in_range(board.avr->cycle - begin_cycle, 32000 * BOARD_CYCLES_PER_US, 32768 * BOARD_CYCLES_PER_US);
@@ -205,9 +190,8 @@ static void idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_n
     }
 }
 
-static void a_byte_ends_the_sleep_and_one_that_waits_prevents_it(void **state)
+TEST(a_byte_ends_the_sleep_and_one_that_waits_prevents_it)
 {
-    (void)state;
     static const uint8_t byte = 0x5A;
     static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
     uint8_t got, flags;
@@ -227,9 +211,8 @@ static void a_byte_ends_the_sleep_and_one_that_waits_prevents_it(void **state)
     }
 }
 
-static void the_last_stop_bit_ends_the_sleep(void **state)
+TEST(the_last_stop_bit_ends_the_sleep)
 {
-    (void)state;
     static const uint8_t request[] = {1, 2, 3};
     static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
     assert_true(remote_begin(&board, &line, false, 8));
@@ -242,21 +225,4 @@ static void the_last_stop_bit_ends_the_sleep(void **state)
     const uint64_t begin_cycle = board.avr->cycle;
     remote_idle(&board, 20000); /* it ends one */
     assert_true(board.avr->cycle - begin_cycle > 20000 * BOARD_CYCLES_PER_US);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(an_overflow_at_any_cycle_of_a_reading_is_counted_once, start, stop),
-        cmocka_unit_test_setup_teardown(with_interrupts_on_it_is_counted_once_too, start, stop),
-        cmocka_unit_test_setup_teardown(overflows_that_wait_for_16_ms_are_in_each_reading, start, stop),
-        cmocka_unit_test_setup_teardown(idle_returns_when_its_time_is_up, start, stop),
-        cmocka_unit_test_setup_teardown(
-            idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time, start, stop),
-        cmocka_unit_test_setup_teardown(a_byte_ends_the_sleep_and_one_that_waits_prevents_it, start, stop),
-        cmocka_unit_test_setup_teardown(the_last_stop_bit_ends_the_sleep, start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

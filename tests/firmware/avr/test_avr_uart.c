@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 
 /* What port/avr sends: its bits, its driver-enable pin, `sent`, refusals, breaks. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "remote.h"
 
@@ -21,7 +18,6 @@ static board_t board;
 
 static int start(void **state)
 {
-    (void)state;
     remote_start(&board);
     board_join_driver(&board, 'D', 3);
     assert_true(remote_begin(&board, &at_19200, true, REMOTE_REQUEST));
@@ -30,11 +26,12 @@ static int start(void **state)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 static bool all_out(void *ctx)
 {
@@ -72,9 +69,8 @@ static void forget(void)
     board.driver_edges_seen = 0;
 }
 
-static void a_request_leaves_without_a_gap_and_the_driver_is_on_around_it(void **state)
+TEST(a_request_leaves_without_a_gap_and_the_driver_is_on_around_it)
 {
-    (void)state;
     assert_false(board.driver_on);
     assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
     wait_until_out();
@@ -82,9 +78,8 @@ static void a_request_leaves_without_a_gap_and_the_driver_is_on_around_it(void *
     assert_driver_around(sizeof request);
 }
 
-static void the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length(void **state)
+TEST(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length)
 {
-    (void)state;
     static const struct {
         fathom_line_settings_t line;
         uint32_t character_cycles;
@@ -109,9 +104,8 @@ static void the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length(vo
 }
 
 /* A byte that is received while the last one leaves has its interrupt first. */
-static void a_receive_interrupt_delays_the_driver_by_no_more_than_itself(void **state)
+TEST(a_receive_interrupt_delays_the_driver_by_no_more_than_itself)
 {
-    (void)state;
     static const uint8_t noise = 0x55;
     const uint32_t length_cycles = 11 * 52 * 16;
     for (int phase = -80; phase <= 20; phase++) {
@@ -132,9 +126,8 @@ static void a_receive_interrupt_delays_the_driver_by_no_more_than_itself(void **
 }
 
 /* With interrupts off for 5 ms at a time the bytes have pauses, and transmit complete comes before the last of them. */
-static void the_driver_stays_on_through_a_pause_that_other_interrupts_make(void **state)
+TEST(the_driver_stays_on_through_a_pause_that_other_interrupts_make)
 {
-    (void)state;
     remote_write(&board, request, sizeof request);
     remote_watch_clock(&board, true, 80);
     wait_until_out();
@@ -161,9 +154,8 @@ static bool first_has_begun(void *ctx)
 
 /* The interrupt that gives the second byte is late by a character, so that the first one ends at any cycle of it: before
  * the byte is given transmit complete comes of that, and means nothing. */
-static void a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on(void **state)
+TEST(a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on)
 {
-    (void)state;
     int pauses = 0;
     for (uint64_t before_cycles = 0; before_cycles < 240; before_cycles++) {
         forget();
@@ -184,9 +176,8 @@ static void a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_
 }
 
 /* The interrupt writes the driver's register, and so does the main loop. */
-static void a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall(void **state)
+TEST(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall)
 {
-    (void)state;
     enum { PORTD_AT = 0x2B, PD4 = 0x10, NEAR = 1500 };
     for (uint64_t phase = 0; phase < 160; phase++) {
         const bool high = phase % 2 != 0;
@@ -208,9 +199,8 @@ static void a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall(v
     }
 }
 
-static void sent_is_exact_to_the_stop_bit(void **state)
+TEST(sent_is_exact_to_the_stop_bit)
 {
-    (void)state;
     assert_true(remote_sent(&board));
     remote_write(&board, request, sizeof request);
     uint64_t last_false_cycle = 0, first_true_cycle = 0;
@@ -229,9 +219,8 @@ static void sent_is_exact_to_the_stop_bit(void **state)
     assert_true(first_true_cycle - last_false_cycle < 1000); /* so near did we look */
 }
 
-static void a_write_is_refused_while_bytes_leave_and_does_not_touch_them(void **state)
+TEST(a_write_is_refused_while_bytes_leave_and_does_not_touch_them)
 {
-    (void)state;
     static const uint8_t other[] = {0xAA, 0xAA, 0xAA, 0xAA};
     assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
     /* A call takes some hundred cycles: one that begins in the last bit may find it over. */
@@ -243,9 +232,8 @@ static void a_write_is_refused_while_bytes_leave_and_does_not_touch_them(void **
     assert_driver_around(sizeof request);
 }
 
-static void a_write_of_nothing_or_more_than_its_memory_is_an_error_and_nothing_leaves(void **state)
+TEST(a_write_of_nothing_or_more_than_its_memory_is_an_error_and_nothing_leaves)
 {
-    (void)state;
     const uint8_t bytes[REMOTE_REQUEST + 1] = {0};
     assert_true(remote_write(&board, bytes, REMOTE_REQUEST + 1) < 0);
     assert_true(remote_begin(&board, &at_19200, true, 8));
@@ -259,9 +247,8 @@ static void a_write_of_nothing_or_more_than_its_memory_is_an_error_and_nothing_l
     assert_sent(request, 8, 11 * 52 * 16);
 }
 
-static void without_a_driver_pin_none_is_driven(void **state)
+TEST(without_a_driver_pin_none_is_driven)
 {
-    (void)state;
     assert_true(remote_begin(&board, &at_19200, false, 8));
     board.has_driver = false;
     remote_write(&board, request, sizeof request);
@@ -270,9 +257,8 @@ static void without_a_driver_pin_none_is_driven(void **state)
     assert_int_equal(board.driver_edges_seen, 0);
 }
 
-static void begin_refuses_what_it_cannot_do(void **state)
+TEST(begin_refuses_what_it_cannot_do)
 {
-    (void)state;
     static const fathom_line_settings_t too_fast = {230400, FATHOM_PARITY_EVEN, 1};
     const uint8_t ubrr = board.avr->data[0xC4];
     assert_false(remote_begin(&board, &too_fast, true, 8));
@@ -285,9 +271,8 @@ static void begin_refuses_what_it_cannot_do(void **state)
 
 /* ---- breaks ---- */
 
-static void a_break_holds_txd_low_for_its_time_with_the_driver_on(void **state)
+TEST(a_break_holds_txd_low_for_its_time_with_the_driver_on)
 {
-    (void)state;
     fathom_sim_line_t line;
     fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
     board_join_line(&board, &line);
@@ -309,9 +294,8 @@ static void a_break_holds_txd_low_for_its_time_with_the_driver_on(void **state)
     assert_driver_around(sizeof request);
 }
 
-static void a_break_waits_for_the_last_stop_bit(void **state)
+TEST(a_break_waits_for_the_last_stop_bit)
 {
-    (void)state;
     fathom_sim_line_t line;
     fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
     board_join_line(&board, &line);
@@ -327,32 +311,4 @@ static void a_break_waits_for_the_last_stop_bit(void **state)
     assert_int_equal(board.bytes_seen, sizeof request);
     assert_true(board.avr->cycle > board.bytes[sizeof request - 1].end_cycle);
     assert_int_equal(remote_set_break(&board, false), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_request_leaves_without_a_gap_and_the_driver_is_on_around_it, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(a_receive_interrupt_delays_the_driver_by_no_more_than_itself, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(the_driver_stays_on_through_a_pause_that_other_interrupts_make, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(
-            a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on, start, stop),
-        cmocka_unit_test_setup_teardown(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(sent_is_exact_to_the_stop_bit, start, stop),
-        cmocka_unit_test_setup_teardown(a_write_is_refused_while_bytes_leave_and_does_not_touch_them, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(
-            a_write_of_nothing_or_more_than_its_memory_is_an_error_and_nothing_leaves, start, stop),
-        cmocka_unit_test_setup_teardown(without_a_driver_pin_none_is_driven, start, stop),
-        cmocka_unit_test_setup_teardown(begin_refuses_what_it_cannot_do, start, stop),
-        cmocka_unit_test_setup_teardown(a_break_holds_txd_low_for_its_time_with_the_driver_on, start, stop),
-        cmocka_unit_test_setup_teardown(a_break_waits_for_the_last_stop_bit, start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

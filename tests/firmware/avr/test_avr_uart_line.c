@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The rates and formats of port/avr: ATmega328P 20.10 at 16 MHz, by hand. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "remote.h"
 
@@ -18,7 +15,6 @@ static board_t board;
 
 static int start(void **state)
 {
-    (void)state;
     remote_start(&board);
     assert_true(remote_begin(&board, &at_19200, false, 8));
     return 0;
@@ -26,11 +22,12 @@ static int start(void **state)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 static uint16_t ubrr(void) { return (uint16_t)(board.avr->data[UBRR0L] | board.avr->data[UBRR0H] << 8); }
 
@@ -38,9 +35,8 @@ static bool u2x(void) { return (board.avr->data[UCSR0A] & U2X) != 0; }
 
 /* 2000000 / baud, to the nearest, is what divides with U2X0; half of that, where it is even, does without, and that is
  * to be preferred, as the receiver looks at a bit 16 times then. */
-static void every_rate_has_the_divisor_that_the_arithmetic_says(void **state)
+TEST(every_rate_has_the_divisor_that_the_arithmetic_says)
 {
-    (void)state;
     static const struct {
         uint32_t baud;
         uint16_t ubrr;
@@ -75,9 +71,8 @@ static void every_rate_has_the_divisor_that_the_arithmetic_says(void **state)
     }
 }
 
-static void rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing(void **state)
+TEST(rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing)
 {
-    (void)state;
     /* 230400: 8.7, 3.5 % off; 300000: 6.7, 4.8 %; 3000000: 0.7; 100: 20000, more than 4096 */
     static const uint32_t bauds[] = {230400, 300000, 3000000, UINT32_MAX, 100, 0};
     for (size_t i = 0; i < sizeof bauds / sizeof bauds[0]; i++) {
@@ -90,9 +85,8 @@ static void rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing(v
 }
 
 /* ATmega328P 20.11.4: UPM01 0x20, UPM00 0x10, USBS0 0x08, UCSZ01 and UCSZ00 0x06. */
-static void every_format_has_its_bits(void **state)
+TEST(every_format_has_its_bits)
 {
-    (void)state;
     static const uint8_t parities[] = {0x00, 0x20, 0x30};
     /* Once parity, once stop bits are what changes from one to the next. */
     for (uint8_t i = 0; i < 12; i++) {
@@ -109,9 +103,8 @@ static void every_format_has_its_bits(void **state)
     }
 }
 
-static void settings_wait_until_all_bytes_have_left(void **state)
+TEST(settings_wait_until_all_bytes_have_left)
 {
-    (void)state;
     static const uint8_t request[] = {1, 2, 3};
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     const fathom_line_settings_t never = {230400, FATHOM_PARITY_NONE, 1};
@@ -137,9 +130,8 @@ static void settings_wait_until_all_bytes_have_left(void **state)
     assert_int_equal(board.bytes[3].end_cycle - board.bytes[3].begin_cycle, 10 * 104 * 16);
 }
 
-static void settings_that_hold_already_do_so_at_once_also_while_bytes_leave(void **state)
+TEST(settings_that_hold_already_do_so_at_once_also_while_bytes_leave)
 {
-    (void)state;
     static const uint8_t request[] = {1, 2, 3};
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     assert_int_equal(remote_write(&board, request, sizeof request), 3);
@@ -154,9 +146,8 @@ static void settings_that_hold_already_do_so_at_once_also_while_bytes_leave(void
     assert_int_equal(ubrr(), 103);
 }
 
-static void what_was_received_before_is_kept(void **state)
+TEST(what_was_received_before_is_kept)
 {
-    (void)state;
     static const uint8_t bytes[] = {5, 6, 7};
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     uint8_t got[8], flags;
@@ -166,19 +157,4 @@ static void what_was_received_before_is_kept(void **state)
     assert_int_equal(remote_read(&board, got, 8, &flags), 3);
     assert_int_equal(flags, 0);
     assert_memory_equal(got, bytes, 3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_rate_has_the_divisor_that_the_arithmetic_says, start, stop),
-        cmocka_unit_test_setup_teardown(rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(every_format_has_its_bits, start, stop),
-        cmocka_unit_test_setup_teardown(settings_wait_until_all_bytes_have_left, start, stop),
-        cmocka_unit_test_setup_teardown(settings_that_hold_already_do_so_at_once_also_while_bytes_leave,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(what_was_received_before_is_kept, start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 
 /* What port/avr receives: each byte once, in order, with what the USART says of it. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #include "fathom/hal.h"
 #include "profile.h"
@@ -26,7 +23,6 @@ static uint8_t pattern[1024];
 
 static int start(void **state)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof pattern; i++) pattern[i] = (uint8_t)(i * 7 + i / 256);
     remote_start(&board);
     assert_true(remote_begin(&board, &at_115200, false, 8));
@@ -35,11 +31,12 @@ static int start(void **state)
 
 static int stop(void **state)
 {
-    (void)state;
     assert_false(board.crashed);
     board_end(&board);
     return 0;
 }
+
+static const suite_t suite = {.set_up = start, .tear_down = stop};
 
 typedef struct {
     uint16_t parity, framing, overruns;
@@ -74,9 +71,8 @@ static uint16_t read_all(uint8_t *bytes, uint8_t capacity)
     }
 }
 
-static void a_frame_of_32_bytes_at_115200_comes_whole_with_no_gap_between_bytes(void **state)
+TEST(a_frame_of_32_bytes_at_115200_comes_whole_with_no_gap_between_bytes)
 {
-    (void)state;
     uint8_t bytes[64];
     board_feed(&board, pattern, NULL, 32, board.avr->cycle, CHARACTER_115200);
     board_run_us(&board, 3000);
@@ -85,9 +81,8 @@ static void a_frame_of_32_bytes_at_115200_comes_whole_with_no_gap_between_bytes(
     assert_counters(0, 0, 0);
 }
 
-static void a_thousand_bytes_come_whole_while_they_are_read_in_pieces_of_any_size(void **state)
+TEST(a_thousand_bytes_come_whole_while_they_are_read_in_pieces_of_any_size)
 {
-    (void)state;
     static uint8_t bytes[1024 + 64];
     for (uint8_t capacity = 1; capacity <= 64; capacity = (uint8_t)(capacity * 2 + 1)) {
         uint16_t count = 0;
@@ -110,9 +105,8 @@ static void a_thousand_bytes_come_whole_while_they_are_read_in_pieces_of_any_siz
 /* The index of the ring is looked at by the main loop while the interrupt moves it on: read in two halves it would be
  * wrong when the low half overflows in between. So a byte comes at every cycle of a read, and of the bytes before it
  * there are as many as bring an index, however it counts, to the end of its low half. */
-static void a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is(void **state)
+TEST(a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is)
 {
-    (void)state;
     uint8_t bytes[64];
     uint16_t sent = 0, seen[2] = {0, 0};
     for (uint16_t phase = 0; phase < 240; phase++) {
@@ -147,9 +141,8 @@ static void a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_el
 
 /* ---- errors ---- */
 
-static void errors_are_told_of_their_byte_and_counted(void **state)
+TEST(errors_are_told_of_their_byte_and_counted)
 {
-    (void)state;
     static const uint8_t bytes[] = {1, 2, 3, 4, 5, 6, 7};
     static const uint8_t marks[] = {
         0, 0, FATHOM_RX_PARITY, 0, FATHOM_RX_FRAMING | FATHOM_RX_PARITY, FATHOM_RX_OVERRUN, 0};
@@ -176,9 +169,8 @@ static void errors_are_told_of_their_byte_and_counted(void **state)
     assert_counters(2, 1, 1);
 }
 
-static void without_parity_no_byte_has_a_wrong_one(void **state)
+TEST(without_parity_no_byte_has_a_wrong_one)
 {
-    (void)state;
     static const uint8_t byte = 9, mark = FATHOM_RX_PARITY;
     uint8_t bytes[4];
     board_feed(&board, &byte, &mark, 1, board.avr->cycle, 0);
@@ -187,9 +179,8 @@ static void without_parity_no_byte_has_a_wrong_one(void **state)
     assert_counters(0, 0, 0);
 }
 
-static void counters_stop_at_their_end(void **state)
+TEST(counters_stop_at_their_end)
 {
-    (void)state;
     const counters_t nearly = {65534, 65534, 65534};
     static const uint8_t bytes[3] = {1, 2, 3};
     static const uint8_t marks[3] = {28, 28, 28};
@@ -206,9 +197,8 @@ static void counters_stop_at_their_end(void **state)
     assert_counters(65535, 65535, 65535);
 }
 
-static void a_full_ring_keeps_what_it_has_and_the_next_byte_tells_of_the_loss(void **state)
+TEST(a_full_ring_keeps_what_it_has_and_the_next_byte_tells_of_the_loss)
 {
-    (void)state;
     for (int round = 0; round < 3; round++) { /* wherever the ring begins */
         uint8_t bytes[128], flags;
         board_feed(&board, pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
@@ -226,9 +216,8 @@ static void a_full_ring_keeps_what_it_has_and_the_next_byte_tells_of_the_loss(vo
     }
 }
 
-static void a_ring_that_is_just_full_has_lost_nothing(void **state)
+TEST(a_ring_that_is_just_full_has_lost_nothing)
 {
-    (void)state;
     uint8_t bytes[64];
     for (int round = 0; round < 3; round++) {
         board_feed(&board, pattern, NULL, RING, board.avr->cycle, CHARACTER_115200);
@@ -240,9 +229,8 @@ static void a_ring_that_is_just_full_has_lost_nothing(void **state)
 }
 
 /* With interrupts off for 16 ms, the USART keeps three of ten bytes; those that come afterwards are behind a loss. */
-static void bytes_that_the_interrupt_comes_too_late_for_are_told_of(void **state)
+TEST(bytes_that_the_interrupt_comes_too_late_for_are_told_of)
 {
-    (void)state;
     uint8_t bytes[64], flags;
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     assert_true(remote_begin(&board, &at_9600, false, 8));
@@ -266,9 +254,8 @@ static void bytes_that_the_interrupt_comes_too_late_for_are_told_of(void **state
 }
 
 /* The bound; 4 more of entry. Here with a full ring too, in which the interrupt has to remember the loss. */
-static void the_receive_interrupt_takes_at_most_60_cycles(void **state)
+TEST(the_receive_interrupt_takes_at_most_60_cycles)
 {
-    (void)state;
     profile_t profile;
     profile_begin(&profile, &board);
     board_feed(&board, pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
@@ -279,25 +266,4 @@ static void the_receive_interrupt_takes_at_most_60_cycles(void **state)
                   (unsigned)profile.interrupts[PROFILE_USART_RECEIVE].shortest_cycles,
                   (unsigned)profile.interrupts[PROFILE_USART_RECEIVE].longest_cycles);
     profile_end(&profile);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_frame_of_32_bytes_at_115200_comes_whole_with_no_gap_between_bytes,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(a_thousand_bytes_come_whole_while_they_are_read_in_pieces_of_any_size,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(
-            a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is, start, stop),
-        cmocka_unit_test_setup_teardown(errors_are_told_of_their_byte_and_counted, start, stop),
-        cmocka_unit_test_setup_teardown(without_parity_no_byte_has_a_wrong_one, start, stop),
-        cmocka_unit_test_setup_teardown(counters_stop_at_their_end, start, stop),
-        cmocka_unit_test_setup_teardown(a_full_ring_keeps_what_it_has_and_the_next_byte_tells_of_the_loss,
-                                        start, stop),
-        cmocka_unit_test_setup_teardown(a_ring_that_is_just_full_has_lost_nothing, start, stop),
-        cmocka_unit_test_setup_teardown(bytes_that_the_interrupt_comes_too_late_for_are_told_of, start, stop),
-        cmocka_unit_test_setup_teardown(the_receive_interrupt_takes_at_most_60_cycles, start, stop),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,8 @@
 
 #include "console.h"
 
+const char *stand_in_left_out = "";
+
 static jmp_buf failed;
 static int is_running; /* a test, its set-up or what comes after it: there is somewhere to go */
 
@@ -97,7 +99,7 @@ void stand_in_string(const char *a, const char *b, const char *file, int line)
 }
 
 /* True when it passed. volatile: changed after setjmp, read after longjmp. */
-static int passes(const CMUnitTest *test)
+static int passes(const struct CMUnitTest *test)
 {
     void *volatile state = test->initial_state;
     volatile int is_set_up = 0;
@@ -132,8 +134,10 @@ static int is_in(const char *list, const char *name)
     return 0;
 }
 
-int stand_in_run(const CMUnitTest *tests, size_t count, const char *left_out)
+int _cmocka_run_group_tests(const char *group, const struct CMUnitTest *tests, size_t count,
+                            int (*set_up)(void **state), int (*tear_down)(void **state))
 {
+    const char *const left_out = stand_in_left_out;
     unsigned run = 0;
     unsigned passed = 0;
     unsigned to_leave_out = 0;

@@ -10,34 +10,22 @@
  * the lines that tests/checks/count.py counts. It needs setjmp and a stdout, and no heap. cmocka compares numbers as
  * uintmax_t, and so does this: -1 of an int16_t and -1 of an int are equal.
  */
-typedef struct CMUnitTest {
+struct CMUnitTest {
     const char *name;
     void (*test_func)(void **state);
     int (*setup_func)(void **state);
     int (*teardown_func)(void **state);
     void *initial_state;
-} CMUnitTest;
+};
 
-#define cmocka_unit_test(test)              cmocka_unit_test_setup_teardown(test, NULL, NULL)
-#define cmocka_unit_test_setup(test, setup) cmocka_unit_test_setup_teardown(test, setup, NULL)
-#define cmocka_unit_test_setup_teardown(test, setup, teardown)                                               \
-    {                                                                                                        \
-#test, test, setup, teardown, NULL                                                                   \
-    }
-
-/* The names of cases that this target leaves out, each with a space behind it. */
-#ifndef FATHOM_LEFT_OUT
-#define FATHOM_LEFT_OUT ""
-#endif
+/* The names of cases that this target leaves out, each with a space behind it. The program's main() sets it. */
+extern const char *stand_in_left_out;
 
 /* Runs them in order, but for those to leave out, and prints how many passed. Returns how many did not, and one more
  * when not all that are to be left out are there. A set-up that fails, with an assertion or by what it returns, fails
- * its test, which is then not run. None of our tests has a set-up of its group: one would be a division by zero, which
- * does not compile. */
-#define cmocka_run_group_tests(tests, setup, teardown)                                                       \
-    stand_in_run(tests, sizeof(tests) / sizeof(tests)[0] / ((setup) == NULL && (teardown) == NULL),          \
-                 FATHOM_LEFT_OUT)
-int stand_in_run(const CMUnitTest *tests, size_t count, const char *left_out);
+ * its test, which is then not run. A set-up of the group there is none. */
+int _cmocka_run_group_tests(const char *group, const struct CMUnitTest *tests, size_t count,
+                            int (*set_up)(void **state), int (*tear_down)(void **state));
 
 /* The first that does not hold ends its test. */
 #define assert_int_equal(a, b)                                                                               \

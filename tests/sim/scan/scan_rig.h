@@ -2,12 +2,8 @@
 #ifndef FATHOM_TESTS_SCAN_RIG_H
 #define FATHOM_TESTS_SCAN_RIG_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "suite.h"
 #include <stdint.h>
-/* cmocka wants the four above first */
-#include <cmocka.h>
 
 #include "scan_walk.h"
 #include "sim/a05.h"

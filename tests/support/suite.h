@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_SUITE_H
+#define FATHOM_TESTS_SUITE_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+/* cmocka wants those above first */
+#include <cmocka.h>
+
+/*
+ * A file of tests is a suite, and TEST(a_sentence) {...} is one of its tests, which needs no list: it is known when the
+ * program starts. All suites of a folder are one program: PROGRAM [FILE ...] runs those of the files named, without
+ * ".c", or all. With FATHOM_FIRST_FAILURE in the environment the first test that fails is the last.
+ *
+ * A file whose tests share a set-up says so once, before them: static const suite_t suite = {.set_up = set_up};
+ */
+typedef struct {
+    int (*set_up)(void **state);    /* before each test; may be NULL */
+    int (*tear_down)(void **state); /* after each test; may be NULL */
+    /* Called before each of `rounds` runs of all tests, with 0, 1, ...: where the clock starts, how slow the loop is. */
+    void (*begin_round)(unsigned round);
+    unsigned rounds; /* 0: one */
+} suite_t;
+
+/* A file without a suite of its own has this one. */
+static const suite_t suite;
+
+typedef struct suite_test {
+    struct CMUnitTest test;
+    const suite_t *suite;
+    const char *file; /* its path */
+    struct suite_test *next;
+} suite_test_t;
+
+/* Adds a test, which runs with `row` in *state; the node is the program's from then on. */
+void suite_add(suite_test_t *node, const suite_t *of, const char *file, const char *name,
+               void (*function)(void **state), const void *row);
+
+extern bool suite_ends_at_failure; /* false from the start */
+
+/* Runs the suites of these files, or all when count is 0. Returns how many tests failed, and one more for each file that
+ * there is not. */
+int suite_run(int count, char *const *names);
+
+#define SUITE_ADD(of, name, function, row)                                                                   \
+    __attribute__((constructor)) static void add_##name(void)                                                \
+    {                                                                                                        \
+        static suite_test_t node;                                                                            \
+        suite_add(&node, &of, __FILE__, #name, function, row);                                               \
+    }
+
+/* A test with another suite_t of its file than `suite`. */
+#define TEST_IN(of, name)                                                                                    \
+    static void name(void **state);                                                                          \
+    SUITE_ADD(of, name, name, NULL)                                                                          \
+    static void name(void **state)
+
+#define TEST(name) TEST_IN(suite, name)
+
+/* A test that is this function of a void **state, with `row`, a pointer, in *state. */
+#define TEST_ROW(name, function, row) SUITE_ADD(suite, name, function, row)
+
+#endif
