@@ -16,7 +16,7 @@ void pin_interrupt(void);
 void port_begin(void);
 fathom_capture_t port_capture(void);
 
-#include "port_page.c" /* all blocks of C of port/README.md, cut out by CMake */
+#include "port_page.c" /* all blocks of C of port/README.md, cut out by support/cut.py */
 
 /* ---- the chip, and an A16 at the end of its line ---- */
 

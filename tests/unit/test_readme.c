@@ -17,7 +17,7 @@ static void use(const fathom_sample_t *sample);
 void read_three_sensors(fathom_line_t *a16, fathom_line_t *a05, fathom_line_t *hps,
                         const fathom_clock_t *clock);
 
-#include "readme_example.c" /* cut out of README.md by CMake */
+#include "readme_example.c" /* cut out of README.md by support/cut.py */
 
 /* What the simulated sensors see. */
 enum { A16_MM = 1953, HPS167S_MM = 2083, SAMPLES = 32 };
