@@ -1,18 +1,25 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# Everything that has to pass, on Debian 12: installs what is missing, builds with gcc and clang, runs all
-# tests in both and under the sanitizers, builds the firmware of every machine and runs it on simulators,
-# measures the coverage of src/, runs the checks of the sources, and prints the number of test cases by kind.
-# The last line is "N passed, 0 failed", and the exit status 0, when all is well. With the packages in place it
-# needs no root, and of the network only the one npm package that tests/firmware/rp2040 names.
+# Everything that has to pass, on Debian 12, in three steps; tests/README.md says what is in each.
 #
-# It takes some minutes on two cores; one preset alone: cmake --preset gcc, then build and test the same way.
+#     sh tests/run.sh         before a change is believed: 8 minutes on two idle cores
+#     sh tests/run.sh long    before it is merged: 20 minutes more
+#     sh tests/run.sh full    once for a larger piece of work: an hour or more; keeps its figures in CSV files
+#
+# It installs what is missing. With the packages in place it needs no root, and of the network only the one npm
+# package that tests/firmware/rp2040 names. It ends with a table of its stages: what each may take, and what it took.
+# The last line is "N passed, 0 failed", and the exit status 0, when all is well.
 set -eu
 cd "$(dirname "$0")/.."
-export LC_ALL=C.UTF-8
+export LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1
+step=${1:-short}
+jobs=$(nproc)
+python=/usr/bin/python3
+logs=build-logs
+mkdir -p "$logs"
 
-packages='gcc g++ libc6-dev make patch cmake pkg-config python3 libcmocka-dev gcovr
+packages='gcc g++ libc6-dev make cmake pkg-config python3 python3-clang-14 libcmocka-dev gcovr
 clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
@@ -22,67 +29,124 @@ libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asynci
 # Any node and npm will do.
 command -v node >/dev/null && command -v npm >/dev/null || packages="$packages nodejs npm"
 
-missing=
-for package in $packages; do
-    case $(dpkg-query -W -f '${Status}' "$package" 2>/dev/null) in
-    *' ok installed') ;;
-    *) missing="$missing $package" ;;
-    esac
-done
-if [ -n "$missing" ]; then
+install_packages() {
+    missing=
+    for package in $packages; do
+        case $(dpkg-query -W -f '${Status}' "$package" 2>/dev/null) in
+        *' ok installed') ;;
+        *) missing="$missing $package" ;;
+        esac
+    done
+    [ -n "$missing" ] || return 0
     echo "installing$missing"
     if [ "$(id -u)" -eq 0 ]; then as_root=env; else as_root='sudo env'; fi
     $as_root DEBIAN_FRONTEND=noninteractive apt-get -q update
     # shellcheck disable=SC2086 # a list of words
     $as_root DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends $missing
-fi
+}
 
-jobs=$(nproc)
-results=
-gates=0 # that were not met
-begin() { printf '\n== %s\n' "$*"; }
-stop() {
-    printf '%s\n0 passed, 1 failed\n' "$*"
+# stage BUDGET NAME COMMAND...: goes on when it fails, and counts that. What a stage prints last may be its cases.
+table=
+gates=0
+stage() {
+    budget=$1 name=$2
+    shift 2
+    printf '\n== %s\n' "$name"
+    began=$(date +%s)
+    verdict=
+    "$@" || { gates=$((gates + 1)) verdict=failed; }
+    took=$(($(date +%s) - began))
+    [ -n "$verdict" ] || [ "$took" -le "$budget" ] || verdict='over its budget'
+    table=$(printf '%s\n%-34s %7d %7d  %s' "$table" "$name" "$budget" "$took" "$verdict")
+}
+show_stages() { printf '\n%-34s %7s %7s%s\n' stage 'budget' 'seconds' "$table"; }
+
+build() { # PRESET
+    if cmake --preset "$1" >"$logs/$1.configure" 2>&1 && cmake --build "build-$1" --parallel "$jobs" >"$logs/$1.build" 2>&1
+    then return 0; fi
+    tail -n 40 "$logs/$1.configure" "$logs/$1.build"
+    printf '%s is not built\n0 passed, 1 failed\n' "$1"
     exit 1
 }
 
-build() {
-    begin "$1: build"
-    cmake --preset "$1" || stop "$1: not configured"
-    cmake --build "build-$1" --parallel "$jobs" || stop "$1: not built"
-    begin "$1: test"
-}
-run_tests() { # PRESET [OPTION...]
-    folder=build-$1
-    shift
+results=
+run_tests() { # PRESET RESULTS [OPTION...]
+    folder=build-$1 output=$PWD/$logs/$2.xml
+    results="$results $logs/$2.xml"
+    shift 2
     # Half of them wait for a serial line most of the time.
     ctest --test-dir "$folder" --parallel "$((2 * jobs))" --timeout 120 --output-on-failure --no-tests=error \
-        --test-output-size-passed 1000000 --test-output-size-failed 1000000 --output-junit results.xml "$@"
+        --quiet --output-log "$output.log" --test-output-size-passed 1000000 --test-output-size-failed 1000000 \
+        --output-junit "$output" "$@" || { grep -A 200 'tests failed out of\|\*\*\*Failed' "$output.log"; return 1; }
 }
 
-# The programs that wait for serial lines run with gcc, and with clang under its sanitizers.
-for preset in gcc clang gcc-sanitize clang-sanitize; do
-    case $preset in
-    clang | gcc-sanitize) without='e2e|interop' ;;
-    *) without=none ;;
-    esac
-    build "$preset"
-    run_tests "$preset" --label-exclude "$without" || echo "$preset: see the failures above"
-    results="$results build-$preset/results.xml"
-done
+# Every line and every branch of src/, by the tests in C alone; what an earlier run counted is not this run's.
+measure_coverage() {
+    find build-coverage -name '*.gcda' -exec rm {} +
+    run_tests coverage coverage --label-exclude "$slow" &&
+        gcovr --root . --object-directory build-coverage --filter src/ --print-summary \
+            --fail-under-line 100 --fail-under-branch 100
+}
 
-# The tests in C alone reach everything; what an earlier run counted is not this run's coverage.
-build coverage
-find build-coverage -name '*.gcda' -exec rm {} +
-run_tests coverage --label-exclude 'e2e|interop' || gates=$((gates + 1))
+show_costs() {
+    cat build-gcc/bench.csv tests/firmware/figures.csv
+}
 
-begin 'coverage of src/: every line and every branch'
-gcovr --root . --object-directory build-coverage --filter src/ --print-summary \
-    --fail-under-line 100 --fail-under-branch 100 || gates=$((gates + 1))
+slow='e2e|interop|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
+run_short() {
+    stage 70 'gcc: build, firmware too' build gcc
+    stage 170 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
+    stage 70 'planted faults' run_tests gcc faults --label-regex faults
+    for preset in clang gcc-sanitize clang-sanitize; do
+        stage 30 "$preset: build" build "$preset"
+        stage 20 "$preset: tests in C" run_tests "$preset" "$preset" --label-exclude "$slow"
+    done
+    stage 15 'coverage: build' build coverage
+    stage 20 'coverage: tests in C, every branch' measure_coverage
+    stage 1 'what it costs' show_costs
+}
 
-begin 'what it costs: the library (cmake --build build-gcc --target bench shows it as tables), and the ports'
-cat build-gcc/bench.csv tests/firmware/figures.csv || gates=$((gates + 1))
+run_long() {
+    stage 300 'gcc and clang-sanitize: build' build_two
+    stage 300 'mutants: changed files, 400 more' mutants --changed --sample 400
+    stage 150 'end to end, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop'
+    stage 200 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
+    export FATHOM_LONG=1
+    stage 250 'exhaustive forms' run_tests gcc long --label-exclude 'e2e|interop|check|selfcheck|faults'
+}
+build_two() { build gcc && build clang-sanitize; }
+mutants() {
+    results="$results $logs/mutants.txt"
+    $python tests/mutation/run.py "$@" >"$logs/mutants.txt" 2>&1
+    status=$?
+    tail -n 60 "$logs/mutants.txt"
+    return "$status"
+}
 
-begin 'test cases by kind'
+run_full() {
+    run_long
+    stage 5400 'mutants: all' mutants --all --record
+    stage 1800 'mutants: a sample of the ports' mutants --ports
+    stage 60 'soak: ten million exchanges' soak
+}
+soak() {
+    results="$results $logs/soak.txt"
+    cmake --build build-gcc --target soak >"$logs/soak.txt" 2>&1
+    status=$?
+    tail -n 20 "$logs/soak.txt"
+    return "$status"
+}
+
+install_packages
+case $step in
+short) run_short ;;
+long) run_long ;;
+full) run_full ;;
+*)
+    echo "usage: sh tests/run.sh [long | full]" >&2
+    exit 2
+    ;;
+esac
+show_stages
 # shellcheck disable=SC2086 # a list of words
-exec /usr/bin/python3 tests/checks/count.py --gates "$gates" $results
+exec $python tests/checks/count.py --gates "$gates" $results # --update: keeps the numbers in tests/counts.txt
