@@ -91,11 +91,15 @@ class Copy:
             else:
                 shutil.copy(source, target)
         folders = {kind: os.path.join(root, 'tests', kind) for kind in KINDS}
-        self.programs = [name[:-2] for kind in KINDS for name in sorted(os.listdir(folders[kind]))
-                         if name.startswith('test_') and name.endswith('.c')]
+        kinds = {name[:-2]: kind for kind in KINDS for name in sorted(os.listdir(folders[kind]))
+                 if name.startswith('test_') and name.endswith('.c')}
+        self.programs = list(kinds)
         switch = 'ON' if with_firmware else 'OFF'  # the tool is the far end of some
         self.command(['cmake', '-S', root, '-B', self.build_root, *CONFIGURE, f'-DFATHOM_FIRMWARE={switch}',
                       f'-DFATHOM_EXAMPLES={switch}'], 'not configured')
+        targets = os.path.join(self.build_root, 'tests', 'CMakeFiles')
+        self.targets = {name: name if os.path.isdir(os.path.join(targets, name + '.dir')) else 'test_' + kind
+                        for name, kind in kinds.items()}  # a test is a program of its own, or in that of its kind
         self.build(self.programs)
 
     def firmware_tests(self):
@@ -112,12 +116,12 @@ class Copy:
             raise Broken('\n    '.join([words, *errors[:5]]))
 
     def build(self, programs):
-        targets = [name.removeprefix(FIRMWARE) for name in programs] or ['help']
+        targets = {self.targets.get(name, name.removeprefix(FIRMWARE)): None for name in programs} or ['help']
         self.command(['cmake', '--build', self.build_root, '--target', *targets], 'it does not compile')
 
     def seen_by(self, program, limit_s):
         """What the test program says against the sources as they are; None when it passes."""
-        command = [os.path.join(self.build_root, 'tests', program)]
+        command = [os.path.join(self.build_root, 'tests', self.targets.get(program, '')), program]
         if program.startswith(FIRMWARE):
             name = program.removeprefix(FIRMWARE)
             command = ['ctest', '--output-on-failure', '--no-tests=error', '-R', rf'^firmware\.{name}$']
