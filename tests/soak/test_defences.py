@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Switches off one defence of the library at a time and sees that the soak turns bad without it.
 
-A defence that is no option is switched off by patches of tests/faults; tests/CMakeLists.txt builds the soak's
+A defence that is no option is switched off by rows of tests/mutation; tests/CMakeLists.txt builds the soak's
 program once more for each, as SOAK_DIR/soak_NAME, beside SOAK_DIR/fathom_soak with all defences. Prints what the
 same exchanges give with and without it."""
 import os

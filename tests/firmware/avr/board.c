@@ -170,7 +170,8 @@ bool board_start(board_t *board, const char *name)
 {
     char path[512];
     memset(board, 0, sizeof *board);
-    snprintf(path, sizeof path, "%s/%s.elf", FATHOM_IMAGES, name);
+    const char *const images = getenv("FATHOM_IMAGES");
+    snprintf(path, sizeof path, "%s/%s.elf", images != NULL ? images : FATHOM_IMAGES, name);
     avr_global_logger_set(complain);
     if (elf_read_firmware(path, &board->image) != 0) {
         fprintf(stderr, "%s cannot be read\n", path);

@@ -144,7 +144,8 @@ struct board {
     } joined;
 };
 
-/* FATHOM_IMAGES (a compile definition) is the folder of images. false, with a message: no such image. */
+/* FATHOM_IMAGES of the environment, or else of the compiler, is the folder of images. false, with a message: no such
+ * image. */
 bool board_start(board_t *board, const char *name);
 void board_end(board_t *board);
 

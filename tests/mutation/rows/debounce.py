@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: MIT
+ROWS = (
+    ('fault-is-far', 'debounce.h: a fault holds the level', 'unit/test_debounce',
+     ('src/debounce.c', 'fathom_debounce_sample',
+      'case FATHOM_NO_TARGET:',
+      'case FATHOM_NO_TARGET: case FATHOM_FAULT:')),
+)

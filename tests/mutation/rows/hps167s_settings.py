@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+ROWS = (
+    ('offset-without-sign', 'hps167s_settings.h #12: int16, -15 is FFF1', 'unit/test_hps167s_settings',
+     ('src/hps167s_settings.c', 'fathom_hps167s_set_distance_offset_mm',
+      'return set_register(sensor, OFFSET, (uint16_t)offset_mm, false);',
+      'return set_register(sensor, OFFSET, (uint16_t)(offset_mm < 0 ? -offset_mm : offset_mm), false);')),
+    ('reset-silence-is-done', 'hps167s_settings.h #6: without a word of the device FATHOM_ERR_UNCONFIRMED',
+     'unit/test_hps167s_moves',
+     ('src/hps167s_settings.c', 'look_for_reset',
+      'sensor->reset_answer == RESET_DONE',
+      'sensor->reset_answer != 0'),
+     ('src/hps167s_settings.c', 'is_reset_refused',
+      'sensor->reset_answer != FATHOM_HPS167S_NO_RESET_ANSWER &&', '')),
+    ('reset-error-is-done', 'hps167s_settings.h #6: FATHOM_ERR_EXCEPTION, reset_answer has the code',
+     'unit/test_hps167s_moves',
+     ('src/hps167s_settings.c', 'look_for_reset',
+      'sensor->reset_answer == RESET_DONE',
+      'sensor->reset_answer != FATHOM_HPS167S_NO_RESET_ANSWER'),
+     ('src/hps167s_settings.c', 'look',
+      'if (wanted->command == FACTORY_RESET && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;', '')),
+)
