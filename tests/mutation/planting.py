@@ -15,8 +15,8 @@ from relink import Build, Overlay, command
 KINDS = ('unit', 'golden', 'property', 'port', 'sim', 'libmodbus')
 # A case; by cmocka, the runner in JavaScript, unittest.
 FAILED = r'^(?:\[  FAILED  \]|FAILED|FAIL:|ERROR:) +(\w+.*)$'
-LIMIT_S = 20  # for one test that a row names
-LONG_LIMIT_S = 90  # for all the others of one program
+LIMIT_S = 60  # for one test that a row names
+LONG_LIMIT_S = 120  # for all the others of one program
 CONFIGURE = ['-G', 'Unix Makefiles', '-DCMAKE_BUILD_TYPE=Debug', '-DCMAKE_C_FLAGS_DEBUG=-O1', '-DFATHOM_STRICT=OFF',
              '-DFATHOM_CHECKS=OFF', '-DFATHOM_INSTALL=OFF', '-DCMAKE_C_COMPILER=' + os.environ.get('CC', 'gcc')]
 
