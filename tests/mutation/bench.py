@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: MIT
+"""What mutants are tried on: the tests, built once and linked with a shared library, and a map that says which of them
+execute which lines. A mutant is one object in a library of its own, which the loader puts before the other."""
+import concurrent.futures
+import dataclasses
+import glob
+import hashlib
+import json
+import os
+import re
+import select
+import shutil
+import signal
+import subprocess
+import time
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+KINDS = ('unit', 'golden', 'property', 'sim', 'soak', 'port', 'libmodbus')
+IN_REAL_TIME = ('port', 'libmodbus')  # what they see may depend on how busy the machine is
+TWINS = {'src/crc16_small.c': 'src/crc16.c'}  # linked in the place of
+CONFIGURE = ['-DCMAKE_BUILD_TYPE=Release', '-DBUILD_SHARED_LIBS=ON', '-DFATHOM_EXAMPLES=OFF', '-DFATHOM_STRICT=OFF',
+             '-DFATHOM_CHECKS=OFF', '-DFATHOM_INSTALL=OFF']
+COMPILER = os.environ.get('CC', 'gcc')
+FLAGS = ['-std=c99', '-fPIC', '-w', '-pipe']
+HASHED = ('CMakeLists.txt', 'README.md', 'include', 'src', 'port', 'examples', 'tests')
+LEAST_LIMIT_S, MOST_OF_USUAL = 0.5, 10  # of the processor
+LEAST_WALL_S = 20
+
+
+class Broken(Exception):
+    """It cannot be tried at all."""
+
+
+@dataclasses.dataclass(frozen=True, order=True)
+class Test:
+    kind: str
+    program: str  # relative to the build folder
+    names: tuple  # of its source files that are to run; none: all
+
+    def __str__(self):
+        return ' '.join([os.path.basename(self.program), *self.names])
+
+
+def command(words, cwd=None, error='', env=None):
+    done = subprocess.run(words, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+                          env=env)
+    if done.returncode != 0:
+        found = [line for line in done.stdout.splitlines() if re.search('error|FAILED|undefined', line)]
+        raise Broken('\n    '.join([error or ' '.join(words[:3]), *found[:5]]))
+    return done.stdout
+
+
+def processor_s(pid):
+    """What the process and those it has waited for have used so far."""
+    try:
+        with open(f'/proc/{pid}/stat', encoding='ascii', errors='replace') as file:
+            fields = file.read().rpartition(')')[2].split()
+        return sum(int(field) for field in fields[11:15]) / os.sysconf('SC_CLK_TCK')
+    except OSError:
+        return 0.0
+
+
+class Bench:
+    def __init__(self, folder, jobs):
+        self.folder = folder
+        self.jobs = jobs
+        self.tests = []
+        self.seconds = {}  # by test
+        self.lines = {}  # {file: {line: {test, ...}}}
+        self.originals = {}  # their objects, by (file, options)
+
+    # ---- what is built once ----
+
+    def prepare(self, say=print):
+        began = time.time()
+        command(['cmake', '-S', ROOT, '-B', self.folder, f'-DCMAKE_C_COMPILER={COMPILER}', *CONFIGURE],
+                error='not configured')
+        self.tests = self.find_tests()
+        targets = sorted({os.path.basename(test.program) for test in self.tests})
+        command(['cmake', '--build', self.folder, '-j', str(self.jobs), '--target', *targets], error='not built')
+        say(f'{len(self.tests)} tests in {len(targets)} programs, built in {time.time() - began:.0f} s')
+        self.read_map(say)
+
+    def find_tests(self):
+        """All that are programs in C, from what ctest runs."""
+        with open(os.path.join(self.folder, 'tests', 'CTestTestfile.cmake'), encoding='utf-8') as file:
+            listed = re.findall(r'^add_test\(\[?=?\[?(\w+)\.\w+\]?=?\]? (.*)\)$', file.read(), re.M)
+        found = []
+        for kind, words in listed:
+            program, *names = re.findall(r'"([^"]*)"', words)
+            program = os.path.relpath(program, self.folder)
+            if kind in KINDS and program.startswith('tests'):
+                found.append(Test(kind, program, tuple(names)))
+        return found
+
+    def key(self):
+        """A hash of all that the map depends on."""
+        digest = hashlib.sha256(repr((COMPILER, FLAGS)).encode())
+        for name in HASHED:
+            top = os.path.join(ROOT, name)
+            paths = [top] if os.path.isfile(top) else sorted(
+                path for path in glob.glob(os.path.join(top, '**'), recursive=True)
+                if os.path.isfile(path) and path.endswith(('.c', '.h', 'CMakeLists.txt', '.csv')))
+            for path in paths:
+                with open(path, 'rb') as file:
+                    digest.update(path.encode() + file.read())
+        return digest.hexdigest()
+
+    def read_map(self, say):
+        path, key = os.path.join(self.folder, 'map.json'), self.key()
+        stored = {}
+        if os.path.exists(path):
+            with open(path, encoding='utf-8') as file:
+                stored = json.load(file)
+        if stored.get('key') != key:
+            began = time.time()
+            stored = {'key': key, 'tests': self.make_map()}
+            with open(path, 'w', encoding='utf-8') as file:
+                json.dump(stored, file)
+            say(f'a map of the lines that each test executes, in {time.time() - began:.0f} s')
+        for test in self.tests:
+            of_test = stored['tests'][str(test)]
+            self.seconds[test] = of_test['seconds']
+            for name, lines in of_test['lines'].items():
+                for line in lines:
+                    self.lines.setdefault(name, {}).setdefault(line, set()).add(test)
+
+    def make_map(self):
+        root = os.path.join(self.folder, 'coverage')
+        shutil.rmtree(root, ignore_errors=True)
+        os.makedirs(root)
+        sources = [path for path in sorted(glob.glob(os.path.join(ROOT, 'src', '*.c')))
+                   if os.path.relpath(path, ROOT) not in TWINS]
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            list(pool.map(lambda path: command(
+                [COMPILER, *FLAGS, '-O0', '--coverage', f'-I{ROOT}/include', '-c', path,
+                 '-o', os.path.join(root, os.path.basename(path)[:-2] + '.o')], cwd=root), sources))
+            library = os.path.join(root, 'covered.so')
+            command([COMPILER, '-shared', '--coverage', '-o', library, *glob.glob(os.path.join(root, '*.o'))])
+            return dict(zip(map(str, self.tests), pool.map(lambda test: self.covered(test, root, library), self.tests)))
+
+    def covered(self, test, root, library):
+        """How long a test takes, on the library as it is, and which lines it executes."""
+        folder = os.path.join(root, re.sub(r'\W+', '_', str(test)))
+        os.makedirs(folder)
+        outcome, seconds = self.run(test, None, 120, 120)
+        if outcome:
+            raise Broken(f'without a mutant: {test} {outcome}')
+        outcome = self.run(test, library, 120, 120, {'GCOV_PREFIX': folder, 'GCOV_PREFIX_STRIP': '99'})[0]
+        if outcome:
+            raise Broken(f'with the library built for coverage: {test} {outcome}')
+        data = sorted(glob.glob(os.path.join(folder, '*.gcda')))
+        for path in data:
+            name = os.path.basename(path)[:-5] + '.gcno'
+            os.symlink(os.path.join(root, name), os.path.join(folder, name))
+        lines = {}
+        if data:
+            for text in command(['gcov', '--json-format', '--stdout', *data], cwd=folder).splitlines():
+                for file in json.loads(text)['files']:
+                    name = os.path.relpath(os.path.join(root, file['file']), ROOT)
+                    if name.startswith(('src/', 'include/')):
+                        found = lines.setdefault(name, set())
+                        found.update(line['line_number'] for line in file['lines'] if line['count'])
+        shutil.rmtree(folder)
+        return {'seconds': seconds, 'lines': {name: sorted(found) for name, found in lines.items()}}
+
+    # ---- a mutant ----
+
+    def reached_by(self, mutant):
+        """The tests that execute its lines; all that execute the file, where none of them has code."""
+        lines = self.lines.get(TWINS.get(mutant.file, mutant.file), {})
+        found = set()
+        if mutant.file not in TWINS:
+            for line in range(mutant.first_line, mutant.last_line + 1):
+                found |= lines.get(line, set())
+        if not found:
+            for name in (self.users(mutant.file) if mutant.file.endswith('.h') else [mutant.file]):
+                found.update(*self.lines.get(TWINS.get(name, name), {}).values())
+        return found
+
+    @staticmethod
+    def users(header):
+        """The sources of the library that include a header of its own, through others too."""
+        names, files = {os.path.basename(header)}, {}
+        for path in glob.glob(os.path.join(ROOT, 'src', '*.[ch]')):
+            with open(path, encoding='utf-8') as file:
+                files[os.path.basename(path)] = set(re.findall(r'^#include "(\w+\.h)"', file.read(), re.M))
+        while True:
+            more = {name for name, included in files.items() if included & names} - names
+            if not more:
+                return sorted(f'src/{name}' for name in names if name.endswith('.c'))
+            names |= more
+
+    def compile(self, mutant, text, scratch, options):
+        """The objects of a file with this text in the place of its own; None when it is not C."""
+        folder = os.path.join(scratch, 'src')
+        os.makedirs(folder, exist_ok=True)
+        for name in os.listdir(folder):
+            os.remove(os.path.join(folder, name))
+        sources = self.users(mutant.file) if mutant.file.endswith('.h') else [mutant.file]
+        for name in sources:
+            if name != mutant.file:
+                shutil.copy(os.path.join(ROOT, name), folder)
+        with open(os.path.join(folder, os.path.basename(mutant.file)), 'w', encoding='ascii') as file:
+            file.write(text)
+        objects = []
+        for name in sources:
+            target = os.path.join(folder, os.path.basename(name)[:-2] + '.o')
+            words = [COMPILER, *FLAGS, *options, f'-I{ROOT}/include', f'-I{ROOT}/src', '-c', os.path.basename(name)]
+            done = subprocess.run([*words, '-o', target], cwd=folder, stderr=subprocess.DEVNULL, check=False)
+            if done.returncode != 0:
+                return None
+            objects.append(target)
+        return objects
+
+    @staticmethod
+    def contents(objects):
+        found = []
+        for path in objects:
+            with open(path, 'rb') as file:
+                found.append(file.read())
+        return found
+
+    @staticmethod
+    def link(objects, scratch):
+        library = os.path.join(scratch, 'mutant.so')
+        command(['ld', '-shared', '-o', library, *objects])
+        return library
+
+    def limits_s(self, test):
+        usual = self.seconds[test]
+        return LEAST_LIMIT_S + MOST_OF_USUAL * usual, LEAST_WALL_S + MOST_OF_USUAL * usual
+
+    def run(self, test, library, processor_limit_s, wall_limit_s, environment=None):
+        """(None when it passes, else how it fails; seconds of the processor, or of the clock for one in real time)"""
+        env = {**os.environ, 'FATHOM_FIRST_FAILURE': '1', **(environment or {})}
+        if library:
+            env['LD_PRELOAD'] = library
+        began = time.monotonic()
+        process = subprocess.Popen([os.path.join(self.folder, test.program), *test.names], env=env,
+                                   cwd=os.path.join(self.folder, 'tests'), stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        handle = os.pidfd_open(process.pid)
+        hangs = True
+        try:
+            ready = select.poll()
+            ready.register(handle, select.POLLIN)
+            while hangs and time.monotonic() - began < wall_limit_s and processor_s(process.pid) < processor_limit_s:
+                hangs = not ready.poll(100)
+        finally:
+            os.close(handle)
+            try:
+                os.killpg(process.pid, signal.SIGKILL)  # one that fails may leave a child behind
+            except ProcessLookupError:
+                pass
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        how = 'hangs' if hangs else 'crashes' if process.returncode < 0 else 'fails' if process.returncode else None
+        wall_s = time.monotonic() - began
+        return how, wall_s if test.kind in IN_REAL_TIME else used.ru_utime + used.ru_stime
