@@ -6,15 +6,16 @@
     run.py --changed --sample 400    those of the files that changed since the figures were kept, and some of the others
     run.py FILE ...                  all of these
     run.py --only src/line.c:220     those of one line, or the one of an identity, with what sees them
-    run.py --ports                   a sample of the ports', of which only the figures count: ports.py
+    run.py --ports 10                so many of each port, of which only the figures are told
     run.py --list [FILE ...]         only lists them
     run.py --self-test               shows that it can fail
 
-A mutant is killed when a test that executes its line fails, crashes or takes ten times as long as it usually does. One
+A mutant is killed when a test that executes its line fails, crashes or takes some times as long as it usually does. One
 whose optimised object is the same as before is not counted, and one that is no C is not made. What survives fails,
 unless survivors.py lists it with the reason why it means the same."""
 import argparse
 import collections
+import concurrent.futures
 import csv
 import difflib
 import glob
@@ -23,11 +24,14 @@ import os
 import random
 import subprocess
 import sys
+import tempfile
 import time
 
+import firmware
 import survivors
 from bench import ROOT, Bench, Broken
 from mutants import mutants_of, tokens
+from ports import HOST, PortBench
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -55,6 +59,11 @@ def key_of(mutant):
     """Its identity, as far as space between tokens does not matter."""
     file, function, change, *rest = mutant.identity.split(' | ', 3)
     return ' | '.join([file, function, tokens(change), *rest])
+
+
+def module_of(mutant):
+    """Its file; of a port's the folder."""
+    return '/'.join(mutant.file.split('/')[:2])
 
 
 def digest(path):
@@ -120,7 +129,7 @@ class Report:
         for result in self.results:
             if result.status == NOT_C:
                 continue
-            row = rows[result.mutant.file]
+            row = rows[module_of(result.mutant)]
             row[0] += 1
             row[1] += result.status == SAME_CODE
             row[2] += result.status == KILLED
@@ -153,6 +162,10 @@ class Report:
                 writer.writerow([commit(), today, module, digest(module), *row[:5], round(row[5])])
 
 
+def seed_of(options):
+    return options.seed if options.seed is not None else int(commit() or time.strftime('%Y%m%d'), 16)
+
+
 def chosen(options, mutants, is_listed):
     """What the options say is to be tried."""
     files = set(options.files)
@@ -168,12 +181,42 @@ def chosen(options, mutants, is_listed):
                 (mutant.file == place[0] and place[2] == str(mutant.line))]
     found = [mutant for mutant in mutants if mutant.file in files]
     if options.sample:
-        seed = options.seed if options.seed is not None else int(commit() or time.strftime('%Y%m%d'), 16)
+        seed = seed_of(options)
         rest = [mutant for mutant in mutants if mutant.file not in files and not is_listed(mutant)]
         sample = random.Random(seed).sample(rest, min(options.sample, len(rest)))
         print(f'a sample of {len(sample)} of {len(rest)}: --seed {seed}')
         found += sorted(sample, key=lambda mutant: (mutant.file, mutant.start))
     return found
+
+
+def try_ports(options):
+    """Some of the ports' mutants, whose figures are told and fail nothing."""
+    report = Report(None)
+    report.listed = {}
+    seed = seed_of(options)
+    print(f'{options.ports} mutants a port: --seed {seed}')
+
+    def sample(mutants):
+        return random.Random(seed).sample(mutants, min(options.ports, len(mutants)))
+    bench = PortBench(os.path.abspath(options.build), options.jobs)
+    bench.prepare()
+    report.trial = Trial(bench)
+    files = bench.files()
+    chosen_ones = [mutant for port in HOST for mutant in sample(
+        [mutant for path in files if path.startswith(port + '/') for mutant in mutants_of(path)])]
+    for result in report.trial.attempt_all(chosen_ones):
+        report.add(result)
+    with tempfile.TemporaryDirectory(prefix='fathom-firmware.') as folder, \
+            concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        of_machines = pool.map(lambda name: firmware.results(name, folder, sample), firmware.TARGETS)
+        for name, found in zip(firmware.TARGETS, of_machines):
+            if found is None:
+                print(f'{name}: left out, since its tools are missing')
+            for result in found or []:
+                report.add(result)
+    report.table()
+    print(f'{len(report.results)} passed, 0 failed')
+    return 0 if report.results else 1
 
 
 def try_them(options):
@@ -187,7 +230,7 @@ def try_them(options):
         return 0
     bench = Bench(os.path.abspath(options.build), options.jobs)
     bench.prepare()
-    report.trial = Trial(bench)
+    report.trial = Trial(bench, options.quick)
     report.look_for_listed(all_of_them)
     began = time.time()
     for count, result in enumerate(report.trial.attempt_all(mutants), 1):
@@ -214,8 +257,9 @@ def main():
     parser.add_argument('--seed', type=int, help='of the sample; else the commit is')
     parser.add_argument('--only', metavar='FILE:LINE', help='these, or the one of an identity, and what sees them')
     parser.add_argument('--list', action='store_true', help='only list them')
+    parser.add_argument('--quick', action='store_true', help='without the slow tests, which may see what survives')
     parser.add_argument('--record', action='store_true', help='keep the figures of a full run')
-    parser.add_argument('--ports', type=int, metavar='N', default=0, help='a sample of so many a port')
+    parser.add_argument('--ports', type=int, metavar='N', default=0, help='instead: a sample of so many a port')
     parser.add_argument('--self-test', action='store_true', help='show that it can fail')
     parser.add_argument('--build', default=os.path.join(ROOT, 'build-mutation'), help='the build folder')
     parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count() or 1)
@@ -225,7 +269,7 @@ def main():
         import self_test  # pylint: disable=import-outside-toplevel
         return self_test.main()
     try:
-        return try_them(options)
+        return try_ports(options) if options.ports else try_them(options)
     except Broken as error:
         print(f'{error}\n0 passed, 1 failed')
         return 1

@@ -311,11 +311,13 @@ class Source:
         if text in ('true', 'false'):
             self.make('constant', start, end, 'false' if text == 'true' else 'true')
         elif number:
-            value = int(number[1], 0)
+            digits = number[1].lower()
+            base, form = (16, f'0x{{:0{len(digits) - 2}X}}') if digits[:2] == '0x' else \
+                (8, '0{:o}') if digits[0] == '0' and len(digits) > 1 else (10, '{}')
+            value = int(digits, base)
             for other in (value + 1, value - 1, 0):
                 if other >= 0:
-                    digits = f'0x{other:0{len(number[1]) - 2}X}' if number[1][:2] in ('0x', '0X') else str(other)
-                    self.make('constant', start, end, digits + number[2])
+                    self.make('constant', start, end, form.format(other) + number[2])
         elif NAME.fullmatch(text) and text != 'NULL' and cursor.type.get_canonical().kind not in (
                 TypeKind.POINTER, TypeKind.RECORD, TypeKind.FUNCTIONPROTO):
             for other in (f'({text} + 1)', f'({text} - 1)', '0'):

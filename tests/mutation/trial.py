@@ -26,8 +26,9 @@ class Result:
 
 
 class Trial:
-    def __init__(self, bench):
+    def __init__(self, bench, quick=False):
         self.bench = bench
+        self.quick = quick  # leaves the slow tests out
         self.texts = {}
         self.kills = collections.Counter()  # by test, (test, file) and (test, file, function)
         self.path = os.path.join(bench.folder, 'killers.json')  # of the runs before, by identity
@@ -58,7 +59,7 @@ class Trial:
         return sorted(tests, key=lambda test: (-worth(test), test))
 
     def same_code(self, mutant, scratch):
-        """(Is the optimised object the same as without the mutant?, its library)"""
+        """(Is the optimised object the same as without the mutant?, what to run if not)"""
         before = self.bench.originals.get(mutant.file)
         if before is None:
             before = self.bench.contents(self.bench.compile(mutant, self.text_of(mutant.file), scratch, ['-O2']))
@@ -66,12 +67,12 @@ class Trial:
         objects = self.bench.compile(mutant, mutant.applied(self.text_of(mutant.file)), scratch, ['-O2'])
         if self.bench.contents(objects) == before:
             return True, None
-        return False, self.bench.link(objects, scratch)
+        return False, self.bench.plant(mutant, objects, scratch)
 
-    def kill(self, test, library):
-        how = self.bench.run(test, library, *self.bench.limits_s(test))[0]
+    def kill(self, test, planted):
+        how = self.bench.run(test, planted, *self.bench.limits_s(test))[0]
         if how and test.kind in IN_REAL_TIME:
-            how = self.bench.run(test, library, *self.bench.limits_s(test))[0]
+            how = self.bench.run(test, planted, *self.bench.limits_s(test))[0]
         return how
 
     def attempt(self, mutant, scratch):
@@ -79,19 +80,19 @@ class Trial:
         objects = self.bench.compile(mutant, mutant.applied(self.text_of(mutant.file)), scratch, ['-O0'])
         if objects is None:
             return Result(mutant, NOT_C)
-        library = self.bench.link(objects, scratch)
+        planted = self.bench.plant(mutant, objects, scratch)
         tests = self.order(mutant, self.bench.reached_by(mutant))
         first = tests[:1] + [test for test in tests[1:] if self.is_quick(test)]
-        rest = [test for test in tests if test not in first]
+        rest = [] if self.quick else [test for test in tests if test not in first]
         count = 0
         for optimised in (False, True):
             if optimised:
-                same, library = self.same_code(mutant, scratch)
+                same, planted = self.same_code(mutant, scratch)
                 if same:
                     return Result(mutant, SAME_CODE)
             for test in rest if optimised else first:
                 count += 1
-                how = self.kill(test, library)
+                how = self.kill(test, planted)
                 if how:
                     for key in (test, (test, mutant.file), (test, mutant.file, mutant.function)):
                         self.kills[key] += 1
