@@ -47,13 +47,13 @@ class Machine:
                 shutil.copytree(source, target, ignore=shutil.ignore_patterns('__pycache__', '*.patch'))
             else:
                 shutil.copy(source, target)
-        command(['cmake', '-S', self.root, '-B', self.build, *CONFIGURE], error=f'{self.name}: not configured',
-                env={**os.environ, 'CMAKE_EXPORT_COMPILE_COMMANDS': 'ON'})
+        env = {**os.environ, 'CMAKE_EXPORT_COMPILE_COMMANDS': 'ON'}  # the images are configured when they are built
+        command(['cmake', '-S', self.root, '-B', self.build, *CONFIGURE], error=f'{self.name}: not configured', env=env)
         listed = command(['ctest', '-N', '-L', 'firmware'], cwd=self.build)
         names = [name for name in re.findall(r': firmware\.(\w+)$', listed, re.M) if machine_of(name) == self.name]
         if not names:
             return False
-        command(['cmake', '--build', self.build, '--target', *names], error=f'{self.name}: not built')
+        command(['cmake', '--build', self.build, '--target', *names], error=f'{self.name}: not built', env=env)
         for name in names:
             began = time.monotonic()
             if self.fails(name, 4 * LIMIT_S):
@@ -62,8 +62,8 @@ class Machine:
         return True
 
     def fails(self, test, limit_s):
-        done = subprocess.run(['ctest', '-R', rf'^firmware\.{test}$', '--timeout', str(round(limit_s)), '--no-tests=error'],
-                              cwd=self.build, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False,
+        words = ['ctest', '-R', rf'^firmware\.{test}$', '--timeout', str(round(limit_s)), '--no-tests=error']
+        done = subprocess.run(words, cwd=self.build, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False,
                               stdin=subprocess.DEVNULL, env={**os.environ, 'FATHOM_FIRST_FAILURE': '1'})
         return done.returncode != 0
 

@@ -26,9 +26,9 @@ class Result:
 
 
 class Trial:
-    def __init__(self, bench, quick=False):
+    def __init__(self, bench, is_brief=lambda mutant: False):
         self.bench = bench
-        self.quick = quick  # leaves the slow tests out
+        self.is_brief = is_brief  # without the slow tests
         self.texts = {}
         self.kills = collections.Counter()  # by test, (test, file) and (test, file, function)
         self.path = os.path.join(bench.folder, 'killers.json')  # of the runs before, by identity
@@ -83,7 +83,7 @@ class Trial:
         planted = self.bench.plant(mutant, objects, scratch)
         tests = self.order(mutant, self.bench.reached_by(mutant))
         first = tests[:1] + [test for test in tests[1:] if self.is_quick(test)]
-        rest = [] if self.quick else [test for test in tests if test not in first]
+        rest = [] if self.is_brief(mutant) else [test for test in tests if test not in first]
         count = 0
         for optimised in (False, True):
             if optimised:
