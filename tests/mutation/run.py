@@ -6,7 +6,7 @@
     run.py --changed --sample 400    those of the files that changed since the figures were kept, and some of the others
     run.py FILE ...                  all of these
     run.py --only src/line.c:220     those of one line, or the one of an identity, with what sees them
-    run.py --ports 10                so many of each port, of which only the figures are told
+    run.py --ports [N]               some of each port, of which only the figures are told
     run.py --list [FILE ...]         only lists them
     run.py --self-test               shows that it can fail
 
@@ -264,7 +264,8 @@ def main():
     parser.add_argument('--list', action='store_true', help='only list them')
     parser.add_argument('--quick', action='store_true', help='without the slow tests, which may see what survives')
     parser.add_argument('--record', action='store_true', help='keep the figures of a full run')
-    parser.add_argument('--ports', type=int, metavar='N', default=0, help='instead: a sample of so many a port')
+    parser.add_argument('--ports', type=int, metavar='N', nargs='?', const=10, default=0,
+                        help='instead: a sample of so many a port')
     parser.add_argument('--self-test', action='store_true', help='show that it can fail')
     parser.add_argument('--build', default=os.path.join(ROOT, 'build-mutation'), help='the build folder')
     parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count() or 1)
