@@ -45,20 +45,19 @@ def sources():
 
 
 def listed():
-    """{identity: reason}"""
+    """{key_of(mutant): reason}"""
     rows = {}
-    for file, function, change, statement, ordinal, reason in survivors.ROWS:
-        identity = f'{file} | {function} | {tokens(change)} | {tokens(statement)} | {ordinal}'
-        if identity in rows:
-            raise SystemExit(f'survivors.py has this twice: {identity}')
-        rows[identity] = reason
+    for reason, *identities in survivors.ROWS:
+        for identity in identities:
+            if tokens(identity) in rows:
+                raise SystemExit(f'survivors.py has this twice: {identity}')
+            rows[tokens(identity)] = reason
     return rows
 
 
 def key_of(mutant):
-    """Its identity, as far as space between tokens does not matter."""
-    file, function, change, *rest = mutant.identity.split(' | ', 3)
-    return ' | '.join([file, function, tokens(change), *rest])
+    """Its identity; space between tokens does not matter."""
+    return tokens(mutant.identity)
 
 
 def processor_s():
@@ -121,12 +120,12 @@ class Report:
 
     def look_for_listed(self, mutants):
         """Rows of survivors.py that are not made any more."""
-        files = {mutant.file for mutant in mutants}
         made = {key_of(mutant) for mutant in mutants}
-        for identity in self.listed:
-            if identity not in made and identity.partition(' | ')[0] in files:
-                self.problems.append(identity)
-                print(f'survivors.py lists what is not made any more:\n    {identity}', flush=True)
+        for _, *identities in survivors.ROWS:
+            for identity in identities:
+                if tokens(identity) not in made:
+                    self.problems.append(identity)
+                    print(f'survivors.py lists what is not made any more:\n    {identity}', flush=True)
 
     def figures(self):
         """A row a module: made, same code, killed, survived, listed, seconds."""

@@ -85,10 +85,10 @@ int main(void)
 }
 ''',
 }
-FAR = [('src/tiny.c', 'tiny_is_far', f'{operator}: {change}', 'return x > 100', 1, 'no test is at the limit')
-       for operator, change in (('relational', '> -> >='), ('constant', '100->101'), ('constant', '100 -> 99'))]
-GONE = ('src/tiny.c', 'tiny_is_far', 'relational: > -> >=', 'return x > 300', 1, 'was once')
-KILLED = ('src/tiny.c', 'tiny_is_far', 'relational: > -> <=', 'return x > 100', 1, 'says who?')
+FAR = ('no test is at the limit', *(f'src/tiny.c | tiny_is_far | {change} | return x > 100 | 1' for change in (
+    'relational: > -> >=', 'constant: 100->101', 'constant: 100 -> 99')))
+GONE = ('was once', 'src/tiny.c | tiny_is_far | relational: > -> >= | return x > 300 | 1')
+KILLED = ('says who?', 'src/tiny.c | tiny_is_far | relational: > -> <= | return x > 100 | 1')
 
 
 class Checks:
@@ -159,22 +159,22 @@ def runner(checks, root):
     status, said = run(root, [], '--only', 'src/tiny.c:7')
     checks.check('a mutant that hangs is ended by its limit', 'killed by test_tiny, which hangs: src/tiny.c | tiny_log '
                  '| statement dropped' in said and time.monotonic() - began < 30 and status == 0, said)
-    status, said = run(root, FAR, '--all')
+    status, said = run(root, [FAR], '--all')
     checks.check('what is listed passes', status == 0 and said.endswith(' 0 failed\n'), said)
-    status, said = run(root, [*FAR, GONE], '--all')
+    status, said = run(root, [FAR, GONE], '--all')
     checks.check('a listed one that is not made any more fails', status == 1 and said.endswith(' 1 failed\n') and
-                 'made any more:\n    src/tiny.c | tiny_is_far | relational : > -> >= | return x > 300' in said, said)
-    status, said = run(root, [*FAR, KILLED], '--all')
+                 'made any more:\n    src/tiny.c | tiny_is_far | relational: > -> >= | return x > 300' in said, said)
+    status, said = run(root, [FAR, KILLED], '--all')
     checks.check('a listed one that a test kills fails', status == 1 and said.endswith(' 1 failed\n') and
                  'survivors.py lists it, but: test_tiny fails' in said, said)
-    said = run(root, FAR, '--sample', '4', '--seed', '7')[1], run(root, FAR, '--sample', '4', '--seed', '7')[1]
+    said = run(root, [FAR], '--sample', '4', '--seed', '7')[1], run(root, [FAR], '--sample', '4', '--seed', '7')[1]
     first, second = (re.sub(r' +\d+\n|.* s( of the processors)?\n', '\n', text) for text in said)
     checks.check('one seed makes one sample', 'a sample of 4 of' in first and first == second and
                  re.search(r'^all +4 ', first, re.M) is not None, first + second)
     test = os.path.join(root, 'tests', 'unit', 'test_tiny.c')
     with open(test, 'w', encoding='ascii') as file:
         file.write(PROJECT['tests/unit/test_tiny.c'].replace('== 6', '== 7'))
-    status, said = run(root, FAR, '--all')
+    status, said = run(root, [FAR], '--all')
     checks.check('a test that fails without a mutant is told', status == 1 and
                  'without a mutant: test_tiny fails\n0 passed, 1 failed\n' in said, said)
 
