@@ -30,7 +30,8 @@ class Mutant:
     first_line: int  # of what has to be executed
     last_line: int
     statement: str  # its tokens; of a switch or a loop those before its body
-    ordinal: int  # among those of which all of the above is equal
+    ordinal: int  # among those that are the same in all that the identity has
+    names: frozenset = frozenset()  # of what is local to the function
 
     @property
     def change(self):
@@ -59,7 +60,8 @@ def mutants_of(path, root=ROOT, arguments=None):
     for (start, end, new), (operator, function, (first, last, name)) in sorted(
             source.made.items(), key=lambda item: (item[0], item[1][0])):
         mutant = Mutant(path, function, operator, start, end, source.text[start:end], new, source.line(start),
-                        source.line(first), source.line(last - 1), name or tokens(source.code[first:last]), 0)
+                        source.line(first), source.line(last - 1), name or tokens(source.code[first:last]), 0,
+                        source.names.get(function, frozenset()))
         number = counts[mutant.identity] = counts[mutant.identity] + 1
         found.append(dataclasses.replace(mutant, ordinal=number))
     return found

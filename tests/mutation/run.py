@@ -28,9 +28,9 @@ import tempfile
 import time
 
 import firmware
-import survivors
 from bench import ROOT, Bench, Broken
-from mutants import mutants_of, tokens
+from listed import Listed
+from mutants import mutants_of
 from ports import HOST, PortBench
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
@@ -42,22 +42,6 @@ SHARE = 95  # percent of what can be killed in src/
 
 def sources():
     return [os.path.relpath(path, ROOT) for path in sorted(glob.glob(os.path.join(ROOT, 'src', '*.[ch]')))]
-
-
-def listed():
-    """{key_of(mutant): reason}"""
-    rows = {}
-    for reason, *identities in survivors.ROWS:
-        for identity in identities:
-            if tokens(identity) in rows:
-                raise SystemExit(f'survivors.py has this twice: {identity}')
-            rows[tokens(identity)] = reason
-    return rows
-
-
-def key_of(mutant):
-    """Its identity; space between tokens does not matter."""
-    return tokens(mutant.identity)
 
 
 def processor_s():
@@ -99,15 +83,15 @@ def diff(mutant, text):
 class Report:
     """What came of each mutant, by module."""
 
-    def __init__(self, trial):
-        self.trial = trial
-        self.listed = listed()
+    def __init__(self, listed):
+        self.listed = listed
+        self.trial = None
         self.results = []
         self.problems = []
 
     def add(self, result):
         self.results.append(result)
-        mutant, is_listed = result.mutant, key_of(result.mutant) in self.listed
+        mutant, is_listed = result.mutant, result.mutant in self.listed
         where = f'{mutant.file}:{mutant.line}'
         if result.status == SURVIVED and not is_listed:
             self.problems.append(result)
@@ -118,14 +102,11 @@ class Report:
             how = f'{result.killer} {result.how}' if result.status == KILLED else result.status
             print(f'{where}: survivors.py lists it, but: {how}\n    {mutant.identity}', flush=True)
 
-    def look_for_listed(self, mutants):
+    def tell_gone(self):
         """Rows of survivors.py that are not made any more."""
-        made = {key_of(mutant) for mutant in mutants}
-        for _, *identities in survivors.ROWS:
-            for identity in identities:
-                if tokens(identity) not in made:
-                    self.problems.append(identity)
-                    print(f'survivors.py lists what is not made any more:\n    {identity}', flush=True)
+        for identity in self.listed.gone:
+            self.problems.append(identity)
+            print(f'survivors.py lists what is not made any more:\n    {identity}', flush=True)
 
     def figures(self):
         """A row a module: made, same code, killed, survived, listed, seconds."""
@@ -138,7 +119,7 @@ class Report:
             row[1] += result.status == SAME_CODE
             row[2] += result.status == KILLED
             row[3] += result.status == SURVIVED
-            row[4] += result.status == SURVIVED and key_of(result.mutant) in self.listed
+            row[4] += result.status == SURVIVED and result.mutant in self.listed
             row[5] += result.seconds
         return dict(sorted(rows.items()))
 
@@ -170,7 +151,7 @@ def seed_of(options):
     return options.seed if options.seed is not None else int(commit() or time.strftime('%Y%m%d'), 16)
 
 
-def chosen(options, mutants, is_listed):
+def chosen(options, mutants, listed):
     """What the options say is to be tried."""
     files = set(options.files)
     if options.all:
@@ -186,7 +167,7 @@ def chosen(options, mutants, is_listed):
     found = [mutant for mutant in mutants if mutant.file in files]
     if options.sample:
         seed = seed_of(options)
-        rest = [mutant for mutant in mutants if mutant.file not in files and not is_listed(mutant)]
+        rest = [mutant for mutant in mutants if mutant.file not in files and mutant not in listed]
         sample = random.Random(seed).sample(rest, min(options.sample, len(rest)))
         print(f'a sample of {len(sample)} of {len(rest)}: --seed {seed}')
         found += sorted(sample, key=lambda mutant: (mutant.file, mutant.start))
@@ -195,8 +176,7 @@ def chosen(options, mutants, is_listed):
 
 def try_ports(options):
     """Some of the ports' mutants, whose figures are told and fail nothing."""
-    report = Report(None)
-    report.listed = {}
+    report = Report(Listed([]))
     seed = seed_of(options)
     print(f'{options.ports} mutants a port: --seed {seed}')
 
@@ -224,18 +204,18 @@ def try_ports(options):
 
 
 def try_them(options):
-    report = Report(None)
     paths = sorted(set(sources()) | set(options.files))
     all_of_them = [mutant for path in paths for mutant in mutants_of(path)]
-    mutants = chosen(options, all_of_them, lambda mutant: key_of(mutant) in report.listed)
+    report = Report(Listed(all_of_them))
+    mutants = chosen(options, all_of_them, report.listed)
     if options.list:
         for mutant in mutants if len(options.files) or options.all else all_of_them:
             print(f'{mutant.file}:{mutant.line}: {mutant.identity}')
         return 0
     bench = Bench(os.path.abspath(options.build), options.jobs)
     bench.prepare()
-    report.trial = Trial(bench, lambda mutant: options.quick or key_of(mutant) in report.listed)
-    report.look_for_listed(all_of_them)
+    report.trial = Trial(bench, lambda mutant: options.quick or mutant in report.listed)
+    report.tell_gone()
     began, used_before = time.time(), processor_s()
     for count, result in enumerate(report.trial.attempt_all(mutants), 1):
         report.add(result)

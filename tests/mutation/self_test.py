@@ -135,6 +135,15 @@ def run(root, rows, *options):
     return done.returncode, done.stdout
 
 
+def change(root, name, old, new):
+    with open(os.path.join(root, name), 'r+', encoding='ascii') as file:
+        text = file.read()
+        assert old in text
+        file.seek(0)
+        file.write(text.replace(old, new))
+        file.truncate()
+
+
 def runner(checks, root):
     for name, text in PROJECT.items():
         path = os.path.join(root, name)
@@ -164,6 +173,10 @@ def runner(checks, root):
     status, said = run(root, [FAR, GONE], '--all')
     checks.check('a listed one that is not made any more fails', status == 1 and said.endswith(' 1 failed\n') and
                  'made any more:\n    src/tiny.c | tiny_is_far | relational: > -> >= | return x > 300' in said, said)
+    change(root, 'src/tiny.c', 'int x) { return x > 100', 'int mm) { return mm > 100')
+    status, said = run(root, [FAR], '--all')
+    checks.check('a listed one outlives a new name for what is local', status == 0, said)
+    change(root, 'src/tiny.c', 'int mm) { return mm > 100', 'int x) { return x > 100')
     status, said = run(root, [FAR, KILLED], '--all')
     checks.check('a listed one that a test kills fails', status == 1 and said.endswith(' 1 failed\n') and
                  'survivors.py lists it, but: test_tiny fails' in said, said)
@@ -171,9 +184,7 @@ def runner(checks, root):
     first, second = (re.sub(r' +\d+\n|.* s( of the processors)?\n', '\n', text) for text in said)
     checks.check('one seed makes one sample', 'a sample of 4 of' in first and first == second and
                  re.search(r'^all +4 ', first, re.M) is not None, first + second)
-    test = os.path.join(root, 'tests', 'unit', 'test_tiny.c')
-    with open(test, 'w', encoding='ascii') as file:
-        file.write(PROJECT['tests/unit/test_tiny.c'].replace('== 6', '== 7'))
+    change(root, 'tests/unit/test_tiny.c', '== 6', '== 7')
     status, said = run(root, [FAR], '--all')
     checks.check('a test that fails without a mutant is told', status == 1 and
                  'without a mutant: test_tiny fails\n0 passed, 1 failed\n' in said, said)
