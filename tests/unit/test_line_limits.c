@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* The figures of line.h and hal.h, to the microsecond and to the byte. */
+
+static const suite_t suite = {.set_up = set_up};
+
+/* Time passes in one step, which a poll ends. */
+static fathom_status_t after(uint32_t us)
+{
+    bench.fake.now_us += us;
+    return fathom_line_poll(&bench.line);
+}
+
+/* fathom_line_config_t: "silence_us ... 0: 4011". */
+TEST(the_default_silence_is_4011_us)
+{
+    bench.config.silence_us = 0;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(4010);
+    assert_int_equal(bench.fake.written, 0);
+    after(1);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+/* silent_us stops at 65535, which is the longest silence that a config can name. */
+TEST(the_longest_silence_of_a_config_is_kept_and_over)
+{
+    bench.config.silence_us = 65535;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(65534);
+    assert_int_equal(bench.fake.written, 0);
+    after(1);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+TEST(the_longest_silence_is_over_after_a_longer_one)
+{
+    bench.config.silence_us = 65535;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(70000);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+/* 65536 does not fit in 16 bits: it must not become 0. */
+TEST(a_first_poll_after_65536_us_has_seen_the_silence)
+{
+    ask(&bench.request, 1, &bench.value, 0);
+    after(65536);
+    assert_int_equal(bench.fake.written, 1);
+}
+
+/* fathom_line_config_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
+TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_an_answer)
+{
+    bench.config.gap_us = 25000;
+    ask_1_and_send(0);
+    receive(answer_1_754, 4);
+    after(100);
+    after(24999);
+    receive(answer_1_754 + 4, 3);
+    after(0);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+/* The silence counts from the poll that finds the request sent, also where nothing is to be waited for. */
+TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
+{
+    fathom_modbus_write_single_register(&bench.request.message, 0, 0x0200, 5);
+    bench.request.exchange.timeout_us = 0;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    ask(&bench.other, 2, &bench.other_value, 0);
+    after(T3_5_US);
+    assert_int_equal(bench.fake.written, 1);
+    after(8 * BYTE_US); /* sent */
+    after(T3_5_US - 1);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(bench.fake.written, 1);
+    after(1);
+    assert_int_equal(bench.fake.written, 2);
+}
+
+/* FATHOM_LINE_SEND_US: "how long a port may refuse a request, or take to send it, before it counts as broken"; and
+ * fathom_line_poll: "FATHOM_ERR_PORT: the port is broken", in that very call. */
+TEST(a_port_has_a_second_to_take_a_request)
+{
+    bench.fake.write_busy = true;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(T3_5_US);
+    assert_int_equal(after(999999), FATHOM_PENDING);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    assert_int_equal(after(1), FATHOM_ERR_PORT);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
+}
+
+TEST(a_port_has_a_second_to_send_a_request)
+{
+    bench.fake.never_sent = true;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(T3_5_US);
+    assert_int_equal(bench.fake.written, 1);
+    assert_int_equal(after(999999), FATHOM_PENDING);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    assert_int_equal(after(1), FATHOM_ERR_PORT);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
+}
+
+/* "Counters; each stops at 65535": not at 255. */
+TEST(a_counter_counts_beyond_255)
+{
+    static const uint8_t noise[30] = {0};
+    for (unsigned i = 0; i != 10; i++) receive(noise, sizeof noise);
+    after(100);
+    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 300); /* 10 * 30 */
+}
+
+/* A poll is cheap while nothing comes: of the 16 reads that it may do the first tells it. */
+TEST(a_poll_that_finds_nothing_reads_the_port_once)
+{
+    after(100);
+    assert_int_equal(bench.fake.reads, 1);
+    ask_1_and_send(0);
+    bench.fake.reads = 0;
+    after(100);
+    assert_int_equal(bench.fake.reads, 1);
+}
+
+/* ---- long frames ---- */
+
+static uint8_t long_frame[255];
+static uint16_t registers[125];
+
+static void set_up_long(void)
+{
+    bench.config.frame = long_frame;
+    bench.config.frame_size = sizeof long_frame;
+    bench.request.exchange.timeout_us = TIMEOUT_US;
+}
+
+static void add_crc(uint8_t *frame, size_t length)
+{
+    uint16_t crc = 0xFFFF;
+    for (size_t i = 0; i != length; i++) {
+        crc ^= frame[i];
+        for (unsigned bit = 0; bit != 8; bit++)
+            crc = (uint16_t)((crc & 1) != 0 ? crc >> 1 ^ 0xA001 : crc >> 1);
+    }
+    frame[length] = (uint8_t)crc;
+    frame[length + 1] = (uint8_t)(crc >> 8);
+}
+
+/* 125 registers: 3 + 250 + 2 bytes. One read of the port may bring so many: no flag is made of the count. */
+TEST(the_longest_answer_may_come_in_one_read)
+{
+    static uint8_t answer[255] = {1, 0x03, 250};
+    set_up_long();
+    for (unsigned i = 0; i != 250; i++) answer[3 + i] = (uint8_t)i;
+    add_crc(answer, 253);
+    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0000, 125, registers);
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    after(T3_5_US);
+    after(8 * BYTE_US);
+    receive(answer, sizeof answer);
+    after(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(registers[0], 0x0001);
+    assert_int_equal(registers[124], 0xF8F9); /* bytes 248 and 249 */
+    assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 0);
+}
+
+/* 60 registers: 9 + 120 = 129 bytes; 123 registers: 9 + 246 = 255. hal.h: write returns the length, which is an int. */
+static void write_many(uint8_t count, size_t length)
+{
+    uint8_t acknowledged[8] = {1, 0x10, 0x01, 0x00, 0x00, count};
+    set_up_long();
+    add_crc(acknowledged, 6);
+    fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0100, count, registers);
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    assert_int_equal(after(T3_5_US), FATHOM_PENDING);
+    assert_int_equal(bench.fake.written, 1);
+    assert_int_equal(bench.fake.writes[0].length, length);
+    after((uint32_t)length * BYTE_US);
+    receive(acknowledged, sizeof acknowledged);
+    after(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+}
+
+TEST(a_request_of_129_bytes_goes_out_and_is_acknowledged) { write_many(60, 129); }
+TEST(a_request_of_255_bytes_goes_out_and_is_acknowledged) { write_many(123, 255); }
+
+/* ---- a port of the test's own ---- */
+
+static fathom_uart_t uart;
+
+static void set_up_uart(void)
+{
+    uart = bench.fake.uart;
+    bench.config.uart = &uart;
+}
+
+/* hal.h: "< 0", of an int: -256 is 0 in its low byte. */
+static int set_line_fails(void *ctx, const fathom_line_settings_t *settings)
+{
+    (void)ctx, (void)settings;
+    return -256;
+}
+
+TEST(every_negative_result_of_set_line_means_unsupported)
+{
+    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    set_up_uart();
+    uart.set_line = set_line_fails;
+    bench.request.exchange.settings = &settings;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(T3_5_US);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_UNSUPPORTED);
+    assert_int_equal(bench.fake.written, 0);
+}
+
+static int set_break_fails(void *ctx, bool on)
+{
+    (void)ctx, (void)on;
+    return -256;
+}
+
+TEST(every_negative_result_of_set_break_means_a_broken_port)
+{
+    set_up_uart();
+    uart.set_break = set_break_fails;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_PORT);
+}
+
+/* hal.h, read: "rx comes zeroed". */
+static unsigned rx_reads;
+
+static int read_and_look(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    (void)ctx, (void)bytes, (void)capacity;
+    assert_int_equal(rx->last_us, 0);
+    assert_int_equal(rx->flags, 0);
+    rx_reads++;
+    return 0;
+}
+
+TEST(a_port_gets_rx_zeroed)
+{
+    rx_reads = 0;
+    set_up_uart();
+    uart.read = read_and_look;
+    after(100);
+    assert_int_equal(rx_reads, 1);
+}
