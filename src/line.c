@@ -164,7 +164,6 @@ static fathom_status_t send(fathom_line_t *line)
             line->state = SENDING;
         } else if (n == FATHOM_ERR_UNSUPPORTED) {
             fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);
-            break;
         } else if (n == 0 && line->state == IDLE) {
             line->state = REFUSED;
         } else if (n != 0 || line->left_us == 0) {
