@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "suite.h"
+
+#include "fake_modbus.h"
+#include "fathom/modbus_unit.h"
+
+/* modbus_unit.h: whose turn it is, and when, where requests are cancelled, wait behind others, or the port breaks. */
+enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, WRITE = FATHOM_MODBUS_WRITE_SINGLE_REGISTER };
+
+static fake_modbus_t fake;
+static fathom_modbus_unit_t unit;
+static uint16_t values[3];
+static const uint16_t answer[3] = {1, 2, 3};
+
+static const fathom_modbus_question_t measure = {TIMEOUT_US, PACE_US, 0, NULL,  values,
+                                                 0x0100,     1,       0, false, 0};
+static const fathom_modbus_question_t version = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0001, 3, 0, true, 0};
+/* Commands whose names have the same lower byte, or differ in the lowest bit alone. */
+static const fathom_modbus_question_t read_200 = {TIMEOUT_US, PACE_US, 0, NULL, values,
+                                                  0x0200,     1,       0, true, 0};
+static const fathom_modbus_question_t read_100 = {TIMEOUT_US, PACE_US, 0, NULL, values,
+                                                  0x0100,     1,       0, true, 0};
+static const fathom_modbus_question_t write_200 = {TIMEOUT_US, PACE_US, 0, NULL, values,
+                                                   0x0200,     1,       0, true, WRITE};
+static const fathom_modbus_question_t write_201 = {TIMEOUT_US, PACE_US, 0, NULL, values,
+                                                   0x0201,     1,       0, true, WRITE};
+
+static int set_up(void **state)
+{
+    fake_modbus_init(&fake);
+    memset(&unit, 0, sizeof unit);
+    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, UNIT), FATHOM_READY);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+static fathom_status_t ask_after(uint32_t us, const fathom_modbus_question_t *question)
+{
+    fake.now_us += us;
+    return fathom_modbus_unit_ask(&unit, question);
+}
+
+static void pending_after(uint32_t us, const fathom_modbus_question_t *question)
+{
+    assert_int_equal(ask_after(us, question), FATHOM_PENDING);
+}
+
+static void ask_and_send(const fathom_modbus_question_t *question)
+{
+    const unsigned before = fake.submits;
+    pending_after(0, question);
+    assert_int_equal(fake.submits, before + 1);
+    fake_modbus_send(&fake);
+    pending_after(0, question);
+}
+
+/* Is the question asked after the time, and not one microsecond sooner? */
+static void asked_after(uint32_t us, const fathom_modbus_question_t *question)
+{
+    const unsigned before = fake.submits;
+    pending_after(us - 1, question);
+    assert_int_equal(fake.submits, before);
+    pending_after(1, question);
+    assert_int_equal(fake.submits, before + 1);
+}
+
+/* ---- the pace: "from this request to the next one to the unit, at least" ---- */
+
+/* It has not left, so nothing was counted down; another driver's requests may hold it for long. */
+TEST(the_pace_begins_when_a_question_ends_that_was_never_sent)
+{
+    pending_after(0, &measure);
+    for (unsigned n = 0; n != 10; n++) pending_after(PACE_US, &measure);
+    fathom_modbus_unit_cancel(&unit);
+    asked_after(PACE_US, &measure);
+}
+
+/* Settings that the port cannot do, or a port that breaks, end a request before it is sent. */
+TEST(a_question_that_the_line_ends_unsent_is_not_asked_again_before_its_pace)
+{
+    static const fathom_status_t ends[] = {FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_PORT};
+    for (unsigned i = 0; i != 2; i++) {
+        set_up(state);
+        pending_after(0, &measure);
+        fake.ends = ends[i];
+        assert_int_equal(ask_after(0, &measure), ends[i]);
+        asked_after(PACE_US, &measure);
+    }
+}
+
+/* The request leaves within the poll of another user of the line; its unit hears of that by being cancelled. */
+TEST(a_cancelled_question_does_not_begin_its_pace_anew_at_the_next_call)
+{
+    pending_after(0, &measure);
+    fake_modbus_send(&fake);
+    fake.modbus.poll(fake.modbus.ctx);
+    fathom_modbus_unit_cancel(&unit);
+    asked_after(PACE_US, &measure);
+}
+
+/* ---- commands and the repeated question ---- */
+
+/* "A command waits for nothing but another command and for what is on its way; the repeated question lets commands
+ * pass": whatever its register is. */
+TEST(the_repeated_question_lets_every_command_pass_that_waits)
+{
+    static const fathom_modbus_question_t *const commands[] = {&version, &read_200, &write_200};
+    for (unsigned i = 0; i != 3; i++) {
+        set_up(state);
+        ask_and_send(&measure);
+        pending_after(0, commands[i]);
+        fake_modbus_answer(&fake, answer, 1);
+        assert_int_equal(ask_after(PACE_US, &measure), FATHOM_READY);
+        pending_after(0, &measure);
+        assert_int_equal(fake.submits, 1);
+        pending_after(0, commands[i]);
+        assert_int_equal(fake.submits, 2);
+    }
+}
+
+TEST(a_command_is_told_busy_while_another_with_the_same_lower_byte_waits)
+{
+    ask_and_send(&measure);
+    pending_after(0, &read_100);
+    assert_int_equal(ask_after(0, &read_200), FATHOM_ERR_BUSY);
+}
+
+/* "FATHOM_ERR_BUSY: another command ... is not finished, or nobody has taken its outcome." */
+TEST(writes_of_neighbouring_registers_are_two_commands)
+{
+    ask_and_send(&write_200);
+    assert_int_equal(ask_after(0, &write_201), FATHOM_ERR_BUSY);
+    fake_modbus_acknowledge(&fake);
+    assert_int_equal(ask_after(0, &write_201), FATHOM_ERR_BUSY);
+    assert_int_equal(ask_after(0, &write_200), FATHOM_READY);
+    pending_after(PACE_US, &write_201);
+    assert_int_equal(fake.submits, 2);
+}
+
+/* "nobody minds if an outcome is replaced by a newer one": once it has given way it is not handed over. */
+TEST(an_outcome_that_gave_way_to_a_command_is_not_handed_over)
+{
+    ask_and_send(&measure);
+    fake_modbus_answer(&fake, answer, 1);
+    pending_after(0, &version); /* within the pace */
+    pending_after(0, &measure);
+    assert_int_equal(fake.submits, 1);
+    pending_after(PACE_US, &version);
+    assert_int_equal(fake.submits, 2);
+}
+
+/* ---- "FATHOM_ERR_PORT: ... and nothing was asked" ---- */
+
+static void break_port(void)
+{
+    fake_modbus_fail(&fake, FATHOM_ERR_PORT);
+    fake.carrier = FATHOM_ERR_PORT;
+}
+
+TEST(a_waiting_command_that_was_told_of_a_broken_port_keeps_no_turn)
+{
+    ask_and_send(&measure);
+    pending_after(0, &version);
+    break_port();
+    assert_int_equal(ask_after(0, &version), FATHOM_ERR_PORT);
+    fake.carrier = FATHOM_PENDING;
+    assert_int_equal(ask_after(PACE_US, &measure), FATHOM_ERR_PORT); /* its own outcome */
+    pending_after(0, &measure);
+    assert_int_equal(fake.submits, 2);
+}
+
+TEST(a_waiting_command_keeps_its_turn_when_another_question_is_told_of_a_broken_port)
+{
+    ask_and_send(&measure);
+    pending_after(0, &version);
+    break_port();
+    assert_int_equal(ask_after(0, &measure), FATHOM_ERR_PORT); /* its own outcome */
+    assert_int_equal(ask_after(0, &measure), FATHOM_ERR_PORT);
+    assert_int_equal(ask_after(0, &read_200), FATHOM_ERR_PORT);
+    fake.carrier = FATHOM_PENDING;
+    pending_after(PACE_US, &measure);
+    assert_int_equal(ask_after(0, &read_200), FATHOM_ERR_BUSY);
+    assert_int_equal(fake.submits, 1);
+    pending_after(0, &version);
+    assert_int_equal(fake.submits, 2);
+}
