@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+#include "fathom/hps167s_auto.h"
+
+/* hps167s_auto.h: where a frame begins, and when there has been none. */
+
+static fathom_hps167s_auto_t hps;
+static fathom_hps167s_auto_config_t config;
+static fathom_sensor_t sensor;
+static fathom_sample_t sample;
+
+/* The example of #5. Without its first byte, the address, it is no frame. */
+static const uint8_t example[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
+                                  0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
+
+static int begin(void **state)
+{
+    set_up(state);
+    config = (fathom_hps167s_auto_config_t){.line = &bench.line};
+    memset(&hps, 0x01, sizeof hps);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
+    sensor = fathom_hps167s_auto_sensor(&hps);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = begin};
+
+static fathom_status_t poll_after(uint32_t us)
+{
+    bench.fake.now_us += us;
+    return fathom_poll(&sensor, &sample);
+}
+
+static fathom_status_t comes(const uint8_t *bytes, size_t length)
+{
+    receive(bytes, length);
+    return poll_after(100);
+}
+
+TEST(the_first_frame_needs_its_address_whatever_stood_in_the_memory)
+{
+    assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
+    assert_int_equal(comes(example, 13), FATHOM_READY);
+}
+
+TEST(every_frame_needs_its_own_address)
+{
+    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
+    assert_int_equal(comes(example, 13), FATHOM_READY);
+}
+
+TEST(after_lost_bytes_a_frame_needs_its_address)
+{
+    assert_int_equal(comes(example, 5), FATHOM_PENDING);
+    fake_receive_rx(&bench.fake, 0, example + 1, 12, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    assert_int_equal(poll_after(100), FATHOM_PENDING);
+    assert_int_equal(comes(example, 13), FATHOM_READY);
+}
+
+/* It asks the line for no silence: the CRC tells where a frame is. Then only the deadline is due. */
+TEST(nothing_is_due_but_the_deadline)
+{
+    assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
+    assert_int_equal(sensor.due_us(sensor.ctx), 2000000);
+}
+
+/* "stale_us; 0: 2 s". */
+TEST(without_a_frame_it_is_stale_after_2_s_by_default)
+{
+    assert_int_equal(poll_after(1999999), FATHOM_PENDING);
+    assert_int_equal(poll_after(1), FATHOM_ERR_STALE);
+}
