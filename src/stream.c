@@ -79,7 +79,6 @@ void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t c
     if (after_gap) {
         decide(stream, true);
         stream->run = 0;
-        stream->since = UINT8_MAX;
         stream->gap = true;
     } else if (count_of_bytes == 0) { /* some were lost: the next one is in no known place */
         stream->gap = false;
