@@ -5,18 +5,19 @@ const uint8_t modes[3] = {FATHOM_LINE_ECHO_AUTO, FATHOM_LINE_ECHO_OFF, FATHOM_LI
 const uint32_t pauses_us[3] = {0, 2000, 20000};
 const uint32_t steps_us[3] = {100, 1000, 20000};
 
-void in_every_way(void **state, case_t test)
+void in_every_way(void (*test)(const way_t *way))
 {
     for (size_t m = 0; m != COUNT_OF(modes); m++)
         for (unsigned seed = BY_BYTE; seed != SEEDS; seed++)
             for (size_t p = 0; p != COUNT_OF(pauses_us); p++)
                 for (size_t s = 0; s != COUNT_OF(steps_us); s++)
-                    test(state, modes[m], seed, pauses_us[p], steps_us[s]);
+                    test(&(way_t){modes[m], seed, pauses_us[p], steps_us[s]});
 }
 
-void set_up_with(void **state, uint8_t echo)
+void set_up_with(uint8_t echo)
 {
-    set_up(state);
+    void *state;
+    set_up(&state);
     bench.config.echo = echo;
 }
 
@@ -26,6 +27,13 @@ void run_until_written(size_t written, uint32_t step_us)
         assert_true(i < 10000);
         run_in_steps(step_us, step_us);
     }
+}
+
+void send_1(uint8_t retries, uint32_t step_us)
+{
+    const size_t before = bench.fake.written;
+    ask_1(retries);
+    run_until_written(before + 1, step_us);
 }
 
 void come(unsigned seed, uint32_t in_us, const uint8_t *bytes, size_t length)
@@ -43,4 +51,15 @@ void come(unsigned seed, uint32_t in_us, const uint8_t *bytes, size_t length)
     }
 }
 
+void read_once(bool echoes)
+{
+    send_1(0, 100);
+    if (echoes) come_all(0, ask_1_processed);
+    come_all(20000, answer_1_754);
+    run(60000);
+    expect_mm(754);
+}
+
 uint8_t known_echo(void) { return fathom_line_echo(&bench.line); }
+
+void expect_learned(uint8_t mode, uint8_t echo) { expect_echo(mode == FATHOM_LINE_ECHO_AUTO ? echo : mode); }

@@ -30,31 +30,30 @@ TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order)
     ask_all(units);
     fathom_line_cancel_unit(&bench.line, 3);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
-    run(T3_5_US + 8 * BYTE_US + 400);
+    run(REQUEST_US);
     receive_answer(2, 222);
-    run(T3_5_US + 8 * BYTE_US + 400);
-    receive_answer(4, 444);
-    run(400);
+    run(REQUEST_US);
+    deliver_answer(4, 444);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_READY, FATHOM_ERR_CANCELLED, FATHOM_READY);
     assert_int_equal(values[1], 222);
     assert_int_equal(values[3], 444);
-    assert_int_equal(bench.fake.written, 2);
-    assert_int_equal(bench.fake.writes[0].bytes[0], 2);
-    assert_int_equal(bench.fake.writes[1].bytes[0], 4);
+    expect_written(2);
+    expect_unit(0, 2);
+    expect_unit(1, 4);
 }
 
 TEST(one_on_its_way_ends_too_and_its_answer_is_late)
 {
     static const uint8_t units[4] = {1, 1, 2, 1};
     ask_all(units);
-    run(T3_5_US + 8 * BYTE_US + 400);
-    assert_int_equal(bench.fake.written, 1);
+    run(REQUEST_US);
+    expect_written(1);
     fathom_line_cancel_unit(&bench.line, 1);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED);
-    receive(answer_1_754, sizeof answer_1_754);
-    run(T3_5_US + 8 * BYTE_US + 400);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
-    assert_int_equal(bench.fake.written, 2);
+    receive_all(answer_1_754);
+    run(REQUEST_US);
+    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_written(2);
     receive_answer(2, 222);
     run(400);
     assert_int_equal(status_of(&requests[2]), FATHOM_READY);
@@ -65,14 +64,14 @@ TEST(one_on_its_way_to_another_is_answered)
 {
     static const uint8_t units[4] = {1, 2, 2, 2};
     ask_all(units);
-    run(T3_5_US + 8 * BYTE_US + 400);
+    run(REQUEST_US);
     fathom_line_cancel_unit(&bench.line, 2);
     assert_statuses(FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED);
-    receive(answer_1_754, sizeof answer_1_754);
+    receive_all(answer_1_754);
     run(400);
     assert_int_equal(status_of(&requests[0]), FATHOM_READY);
     assert_int_equal(values[0], 754);
-    assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
+    expect_due(FATHOM_NO_DEADLINE);
 }
 
 TEST(a_question_to_everybody_or_to_anybody_is_no_units_own)

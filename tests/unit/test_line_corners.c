@@ -1,57 +1,51 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 #include "fake_modbus.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/dyp_client.h"
 #include "fathom/modbus_unit.h"
 #include "fathom/stream.h"
 
 static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
-static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static uint16_t values[4];
 
 static const suite_t suite = {.set_up = set_up};
 
+static void refuse_set_address(void)
+{
+    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
+}
+
 /* dyp_client.h: FATHOM_ERR_BUSY; line.h: "it is queued already; nothing changed". */
 TEST(a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address)
 {
-    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
     bench.request.exchange.retries = 1;
-    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    ask_dyp(&bench.request, 1, 4, values);
     run_until_written(1, 100);
-    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
+    refuse_set_address();
     run_until_written(2, 100); /* the retry */
-    assert_memory_equal(bench.fake.writes[1].bytes, bench.fake.writes[0].bytes, 5);
+    expect_bytes(1, bench.fake.writes[0].bytes, 5);
 }
 
 /* the same for an answer that comes. */
 TEST(a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone)
 {
-    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    ask_dyp(&bench.request, 1, 4, values);
     run_until_written(1, 100);
-    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
+    refuse_set_address();
     run(20000);
-    receive(four, sizeof four);
-    run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    deliver_all(dyp_four);
+    expect(FATHOM_READY);
 }
 
 /* line.h: "A late answer does serve a retry of the same exchange." */
 TEST(a_late_answer_serves_the_retry_of_a_question_to_anyone)
 {
-    fathom_modbus_read_holding_registers(&bench.request.message, 255, 0x0106, 1, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
     bench.request.exchange.retries = 1;
-    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);
     run(TIMEOUT_US + 10000);
-    receive(from_5, sizeof from_5);
-    run(100);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    deliver_all(from_5);
+    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect(FATHOM_READY);
 }
 
 /* line.h: FATHOM_LINE_ANY_UNIT: "the first answer is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast address. */
@@ -60,31 +54,24 @@ TEST(modbus_to_unit_255_takes_any_units_answer)
     ask(&bench.request, 255, &bench.value, 0);
     run_until_written(1, 100);
     run(20000);
-    receive_answer(5, 111);
-    run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    deliver_answer(5, 111);
+    expect_mm(111);
+    assert_int_equal(bench.request.message.head[0], 5);
 }
 
 /* line.h: after_gap: "the line was seen to be silent ... before the first of them": but bytes were lost between. */
-static unsigned gaps, calls;
-static void hear(fathom_listener_t *l, const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t time_us)
-{
-    (void)l, (void)bytes, (void)time_us;
-    if (count != 0) calls++;
-    if (count != 0 && after_gap) gaps++;
-}
 TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence)
 {
     static const uint8_t rest[] = {0xA1, 0xA7};
-    fathom_listener_t ear = {hear, 5000};
-    gaps = calls = 0;
-    fathom_line_listen(&bench.line, &ear);
+    listen_for(5000);
     run(10000);
-    fake_receive_rx(&bench.fake, 0, rest, 2, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    receive_rx(rest, sizeof rest, FATHOM_RX_OVERRUN);
     run(100);
-    assert_int_equal(calls, 1);
-    assert_int_equal(gaps, 0);
+    assert_int_equal(ear.length, sizeof rest);
+    assert_int_equal(ear.losses, 1);
+    assert_int_equal(ear.gaps, 0);
 }
+
 static uint8_t storage[20];
 /* what follows from it: 1000 2000 2047 1339 permuted to 1339 2047 1000 2000, with plausible values. */
 TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
@@ -96,9 +83,8 @@ TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
     fathom_line_listen(&bench.line, &stream.listener);
     run(10000);
-    fake_receive_rx(&bench.fake, 0, good + 6, 4, (fathom_rx_t){0, FATHOM_RX_OVERRUN}); /* six were lost */
-    receive(good, 10);
-    run(100);
+    receive_rx(good + 6, 4, FATHOM_RX_OVERRUN); /* six were lost */
+    deliver(good, 10);
     if (fathom_stream_poll(&stream, 0, &frame) == FATHOM_READY) assert_memory_equal(frame, good, 10);
 }
 
@@ -107,60 +93,47 @@ TEST(after_a_broken_port_an_answer_is_complete_at_once)
 {
     static const uint8_t long_one[] = {0x01, 0x03, 0x14, 0x00};
     ask_1_and_send(0);
-    receive(long_one, sizeof long_one);
-    run(100);
-    bench.fake.read_fails = true;
-    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
-    bench.fake.read_fails = false;
-    ask(&bench.other, 2, &bench.other_value, 0);
+    deliver_all(long_one);
+    break_port();
+    ask_other(2);
     run_until_written(2, 100);
     run(9 * BYTE_US);
     receive_answer(2, 222);
-    fathom_line_poll(&bench.line);
-    assert_int_equal(status_of(&bench.other), FATHOM_READY);
+    poll_line();
+    expect_other(FATHOM_READY);
 }
 
 /* A write on an echoing line, whose request has been handed over. */
-static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
-
-static void start_write(fathom_modbus_request_t *request)
+static void write_with_echo(void)
 {
-    fathom_modbus_write_single_register(&request->message, 1, 0x0200, 5);
-    request->exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, request), FATHOM_PENDING);
-}
-
-static void write_with_echo(void **state)
-{
-    set_up_with(state, FATHOM_LINE_ECHO_ON);
-    start_write(&bench.request);
+    set_up_with(FATHOM_LINE_ECHO_ON);
+    ask_to_write(&bench.request, 1);
     run_until_written(1, 100);
-    come(BY_BYTE, 0, set_address_5, 8);
+    come_all(0, set_address_5);
 }
 
 /* line.h: cancel: "the unit then owes an answer, which no later exchange takes for its own". The echo is no answer. */
 TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed)
 {
-    write_with_echo(state);
-    fathom_line_cancel(&bench.line, &bench.request.exchange);
+    write_with_echo();
+    cancel(&bench.request);
     run(9 * BYTE_US);
-    start_write(&bench.other);
+    ask_to_write(&bench.other, 1);
     run(20000);
-    assert_int_equal(bench.fake.written, 1); /* the unit still owes */
+    expect_written(1); /* the unit still owes */
 }
 
 /* After the echo the next copy is the answer that is owed. */
 TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt)
 {
-    write_with_echo(state);
+    write_with_echo();
     run(9 * BYTE_US);
-    fathom_line_cancel(&bench.line, &bench.request.exchange);
-    receive(set_address_5, 8);
-    run(100);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
-    ask(&bench.other, 1, &bench.other_value, 0);
+    cancel(&bench.request);
+    deliver(set_address_5, 8);
+    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    ask_other(1);
     run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 2);
+    expect_written(2);
 }
 
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
@@ -189,13 +162,13 @@ TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
 {
     static const uint8_t noise[] = {0x00};
     bench.fake.never_sent = true;
-    ask(&bench.request, 1, &bench.value, 0);
+    ask_1(0);
     run_until_written(1, 100);
     for (unsigned i = 0; i != 60; i++) {
         receive(noise, 1);
         run_in_steps(20000, 20000);
     }
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
+    expect(FATHOM_ERR_PORT);
 }
 
 /* two A05 answer FF; the second one's answer, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the answer to
@@ -203,20 +176,13 @@ TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
 TEST(the_second_answer_to_anyone_is_not_the_next_requests)
 {
     static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
-    fathom_modbus_read_holding_registers(&bench.request.message, 255, 0x0106, 1, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);
     run(65000);
-    receive(from_5, sizeof from_5);
-    run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
-    fathom_modbus_read_holding_registers(&bench.other.message, 254, 0x0106, 1, &bench.other_value);
-    bench.other.exchange.timeout_us = TIMEOUT_US;
-    bench.other_value = 0xDEAD;
-    assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.other), FATHOM_PENDING);
+    deliver_all(from_5);
+    expect(FATHOM_READY);
+    ask_dyp(&bench.other, 254, 1, &bench.other_value);
     run(10000);
-    receive(from_254, sizeof from_254);
-    run(100);
+    deliver_all(from_254);
     assert_int_equal(bench.other_value, 0xDEAD);
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
-#include "fathom/dyp_client.h"
 
 /*
  * Random traffic with one unit, on lines with and without echo that nobody told of: reads and writes in both
@@ -27,7 +26,7 @@ static void damage(uint8_t *bytes, size_t length)
     bytes[below((uint32_t)length)] ^= (uint8_t)(1u << below(8));
 }
 
-static void submit(kind_t kind, uint16_t value)
+static void ask_for(kind_t kind, uint16_t value)
 {
     fathom_modbus_request_t *const request = &bench.request;
     fathom_status_t status = FATHOM_PENDING;
@@ -101,7 +100,7 @@ static void exchange(bool echoes, uint32_t step_us)
     const uint16_t value = (uint16_t)(below(4) == 0 ? 0x0100 + below(256) : 1 + below(6000));
     size_t seen = bench.fake.written;
     bool is_answered = false;
-    submit(kind, value);
+    ask_for(kind, value);
     for (uint32_t i = 0; status_of(&bench.request) == FATHOM_PENDING; i++) {
         assert_true(i < 100000);
         run_in_steps(step_us, step_us);
@@ -126,7 +125,7 @@ TEST(no_traffic_makes_an_echo_an_acknowledgement)
     for (unsigned runs = 0; runs != RUNS; runs++) {
         const bool echoes = below(2) != 0;
         const uint32_t step_us = steps_us[below(2)];
-        set_up_with(state, FATHOM_LINE_ECHO_AUTO);
+        set_up_with(FATHOM_LINE_ECHO_AUTO);
         for (unsigned n = 0; n != EXCHANGES; n++) exchange(echoes, step_us);
     }
     for (unsigned kind = 0; kind != KINDS; kind++) assert_true(ready[kind] > RUNS); /* it was no idle talk */

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
-#include "fathom/dyp_client.h"
 
 /* Local echo on writes: the answer to function 06 and to 55 AA 03 is the request again. */
 
-static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00,
-                                        0x00, 0x05, 0x48, 0x71};       /* A16 6(4) example 3 */
 static const uint8_t dyp_address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07}; /* A05 2(3)5 */
 
 /* Two protocols, one rule. */
@@ -19,28 +16,30 @@ static const write_t writes[] = {{set_address_5, sizeof set_address_5, false},
                                  {dyp_address_5, sizeof dyp_address_5, true}};
 static const write_t *wanted;
 
+/* A new line, and what is written on it. */
+static void set_up_for(size_t which, uint8_t mode)
+{
+    wanted = &writes[which];
+    set_up_with(mode);
+}
+
 /* The write is on its way from now on. */
 static void start_write(uint8_t retries, uint32_t step_us)
 {
     const size_t before = bench.fake.written;
     bench.request.exchange.timeout_us = TIMEOUT_US;
     bench.request.exchange.retries = retries;
-    if (wanted->is_dyp) {
+    if (wanted->is_dyp)
         assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
-    } else {
-        fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
-        assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    }
+    else
+        ask_to_write(&bench.request, 1);
     run_until_written(before + 1, step_us);
-    assert_int_equal(bench.fake.writes[before].length, wanted->length);
-    assert_memory_equal(bench.fake.writes[before].bytes, wanted->bytes, wanted->length);
+    expect_bytes(before, wanted->bytes, wanted->length);
 }
 
 static uint32_t leaves_us(void) { return (uint32_t)wanted->length * BYTE_US; }
 
 static void copy_in(unsigned seed, uint32_t in_us) { come(seed, in_us, wanted->bytes, wanted->length); }
-
-static fathom_status_t status(void) { return status_of(&bench.request); }
 
 /* What one copy of the request means where nothing else comes. */
 static fathom_status_t of_one_copy(uint8_t mode)
@@ -49,92 +48,79 @@ static fathom_status_t of_one_copy(uint8_t mode)
     return mode == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_ANSWER : FATHOM_ERR_ECHO;
 }
 
-static void one_copy(void **state, uint8_t mode, unsigned seed, uint32_t pause_us, uint32_t step_us)
+static void one_copy(const way_t *way)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (unsigned is_answer = 0; is_answer != 2; is_answer++) { /* while it leaves, or after that */
-            wanted = &writes[w];
-            set_up_with(state, mode);
-            start_write(0, step_us);
-            copy_in(seed, is_answer != 0 ? leaves_us() + pause_us : 0);
-            run_in_steps(80000, step_us);
-            if (mode == FATHOM_LINE_ECHO_OFF) {
-                assert_int_equal(status(), FATHOM_READY);
+            set_up_for(w, way->mode);
+            start_write(0, way->step_us);
+            copy_in(way->seed, is_answer != 0 ? leaves_us() + way->pause_us : 0);
+            run_in_steps(80000, way->step_us);
+            if (way->mode == FATHOM_LINE_ECHO_OFF) {
+                expect(FATHOM_READY);
                 continue;
             }
-            assert_int_equal(status(), FATHOM_PENDING);
-            assert_int_equal(counter(FATHOM_LINE_ANSWERS), 0);
-            run_in_steps(60000, step_us);
-            assert_int_equal(status(), of_one_copy(mode));
-            assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 1);
-            assert_int_equal(counter(FATHOM_LINE_ANSWERS), 0);
-            assert_int_equal(known_echo(), mode); /* it proves nothing */
+            expect(FATHOM_PENDING);
+            expect_count(FATHOM_LINE_ANSWERS, 0);
+            run_in_steps(60000, way->step_us);
+            expect(of_one_copy(way->mode));
+            expect_count(FATHOM_LINE_NO_ANSWERS, 1);
+            expect_count(FATHOM_LINE_ANSWERS, 0);
+            expect_echo(way->mode); /* it proves nothing */
         }
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-TEST(one_copy_of_a_write_acknowledges_it_only_where_there_is_no_echo) { in_every_way(state, one_copy); }
+TEST(one_copy_of_a_write_acknowledges_it_only_where_there_is_no_echo) { in_every_way(one_copy); }
 
-static void two_copies(void **state, uint8_t mode, unsigned seed, uint32_t pause_us, uint32_t step_us)
+static void two_copies(const way_t *way)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (unsigned is_late = 0; is_late != 2; is_late++) { /* what the port says of the request */
-            wanted = &writes[w];
-            set_up_with(state, mode);
+            set_up_for(w, way->mode);
             bench.fake.never_sent = is_late != 0;
-            start_write(0, step_us);
-            copy_in(seed, 0);
-            copy_in(seed, leaves_us() + pause_us);
-            run_in_steps(80000, step_us);
-            assert_int_equal(status(), FATHOM_READY);
-            assert_int_equal(counter(FATHOM_LINE_ANSWERS), 1);
+            start_write(0, way->step_us);
+            copy_in(way->seed, 0);
+            copy_in(way->seed, leaves_us() + way->pause_us);
+            run_in_steps(80000, way->step_us);
+            expect(FATHOM_READY);
+            expect_count(FATHOM_LINE_ANSWERS, 1);
             assert_int_equal(counter(FATHOM_LINE_STRAYS) + counter(FATHOM_LINE_LATE_ANSWERS), 0);
         }
 }
 
-TEST(two_copies_of_a_write_acknowledge_it) { in_every_way(state, two_copies); }
+TEST(two_copies_of_a_write_acknowledge_it) { in_every_way(two_copies); }
 
 TEST(the_first_copy_alone_never_ends_a_write_where_an_echo_is_known)
 {
-    static const uint8_t answer_1[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
-    set_up_with(state, FATHOM_LINE_ECHO_AUTO);
-    ask(&bench.request, 1, &bench.value, 0);
-    run_until_written(1, 100);
-    come(BY_BYTE, 0, ask_1_processed, sizeof ask_1_processed);
-    come(BY_BYTE, 20000, answer_1, sizeof answer_1);
-    run(60000);
-    assert_int_equal(known_echo(), FATHOM_LINE_ECHO_ON);
-    wanted = &writes[0];
+    set_up_for(0, FATHOM_LINE_ECHO_AUTO);
+    read_once(true);
+    expect_echo(FATHOM_LINE_ECHO_ON);
     start_write(0, 100);
     copy_in(BY_BYTE, 0);
     run(TIMEOUT_US + 10000);
-    assert_int_equal(status(), FATHOM_ERR_NO_ANSWER); /* the device is dead, and the line says so */
+    expect(FATHOM_ERR_NO_ANSWER); /* the device is dead, and the line says so */
 }
 
 TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
 {
-    set_up_with(state, FATHOM_LINE_ECHO_AUTO);
-    ask(&bench.request, 1, &bench.value, 0);
-    run_until_written(1, 100);
-    come(BY_BYTE, 20000, answer_1_754, sizeof answer_1_754);
-    run(60000);
-    wanted = &writes[0];
+    set_up_for(0, FATHOM_LINE_ECHO_AUTO);
+    read_once(false);
     start_write(0, 100);
     copy_in(BY_BYTE, 20000);
     run(30000);
-    assert_int_equal(status(), FATHOM_READY);
+    expect(FATHOM_READY);
 }
 
 TEST(a_write_that_nothing_answers_is_no_answer_whatever_is_known)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {
-            wanted = &writes[w];
-            set_up_with(state, modes[m]);
+            set_up_for(w, modes[m]);
             start_write(0, 100);
             run(2 * TIMEOUT_US);
-            assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
+            expect(FATHOM_ERR_NO_ANSWER);
         }
 }
 
@@ -145,17 +131,16 @@ TEST(a_damaged_copy_does_not_count)
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (size_t m = 0; m != COUNT_OF(modes); m++)
             for (unsigned bit = 0; bit != 8 * writes[w].length; bit++) {
-                wanted = &writes[w];
-                set_up_with(state, modes[m]);
+                set_up_for(w, modes[m]);
                 memcpy(damaged, wanted->bytes, wanted->length);
                 damaged[bit / 8] ^= (uint8_t)(1u << bit % 8);
                 start_write(0, 100);
                 come(BY_BYTE, 0, damaged, wanted->length);
                 run(2 * TIMEOUT_US);
-                assert_int_not_equal(status(), FATHOM_READY);
-                assert_int_not_equal(status(), FATHOM_ERR_ECHO);
-                assert_int_equal(counter(FATHOM_LINE_ANSWERS), 0);
-                assert_int_equal(known_echo(), modes[m]);
+                assert_int_not_equal(status_of(&bench.request), FATHOM_READY);
+                assert_int_not_equal(status_of(&bench.request), FATHOM_ERR_ECHO);
+                expect_count(FATHOM_LINE_ANSWERS, 0);
+                expect_echo(modes[m]);
             }
 }
 
@@ -163,49 +148,46 @@ TEST(a_damaged_copy_does_not_count)
 
 TEST(each_attempt_of_a_write_needs_its_own_two_copies)
 {
-    wanted = &writes[0];
-    set_up_with(state, FATHOM_LINE_ECHO_ON);
+    set_up_for(0, FATHOM_LINE_ECHO_ON);
     start_write(1, 100);
     copy_in(BY_BYTE, 0);
     run_until_written(2, 100); /* twice the time-out later */
     copy_in(BY_BYTE, 0);
     run(9 * BYTE_US);
-    assert_int_equal(status(), FATHOM_PENDING);
+    expect(FATHOM_PENDING);
     copy_in(BY_BYTE, 0);
     run(9 * BYTE_US);
-    assert_int_equal(status(), FATHOM_READY);
+    expect(FATHOM_READY);
     assert_int_equal(bench.request.exchange.attempts, 2);
-    assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 1);
+    expect_count(FATHOM_LINE_NO_ANSWERS, 1);
 }
 
 TEST(the_last_attempt_of_an_unknown_echo_says_echo)
 {
-    wanted = &writes[0];
-    set_up_with(state, FATHOM_LINE_ECHO_AUTO);
+    set_up_for(0, FATHOM_LINE_ECHO_AUTO);
     start_write(2, 100);
     for (unsigned attempt = 1; attempt <= 3; attempt++) {
         run_until_written(attempt, 100);
-        assert_int_equal(status(), FATHOM_PENDING);
+        expect(FATHOM_PENDING);
         copy_in(BY_BYTE, 0);
     }
     run(TIMEOUT_US + 10000);
-    assert_int_equal(status(), FATHOM_ERR_ECHO);
-    assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 3);
+    expect(FATHOM_ERR_ECHO);
+    expect_count(FATHOM_LINE_NO_ANSWERS, 3);
 }
 
 TEST(a_late_second_copy_serves_the_retry_of_a_write)
 {
-    wanted = &writes[0];
-    set_up_with(state, FATHOM_LINE_ECHO_ON);
+    set_up_for(0, FATHOM_LINE_ECHO_ON);
     start_write(1, 100);
     copy_in(BY_BYTE, 0);
     run(TIMEOUT_US + 20000);
-    assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 1);
+    expect_count(FATHOM_LINE_NO_ANSWERS, 1);
     copy_in(BY_BYTE, 0);
     run(9 * BYTE_US);
-    assert_int_equal(status(), FATHOM_READY);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
-    assert_int_equal(bench.fake.written, 1);
+    expect(FATHOM_READY);
+    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_written(1);
 }
 
 TEST(a_refused_write_on_an_echoing_line_is_an_exception)
@@ -213,58 +195,48 @@ TEST(a_refused_write_on_an_echoing_line_is_an_exception)
     static const uint8_t refusal[] = {0x01, 0x86, 0x03, 0x02, 0x61};
     for (size_t m = 0; m != COUNT_OF(modes); m++) {
         if (modes[m] == FATHOM_LINE_ECHO_OFF) continue;
-        wanted = &writes[0];
-        set_up_with(state, modes[m]);
+        set_up_for(0, modes[m]);
         start_write(0, 100);
         copy_in(BY_BYTE, 0);
-        come(BY_BYTE, 20000, refusal, sizeof refusal);
+        come_all(20000, refusal);
         run(30000);
-        assert_int_equal(status(), FATHOM_ERR_EXCEPTION);
+        expect(FATHOM_ERR_EXCEPTION);
         assert_int_equal(bench.request.message.exception, 3);
-        assert_int_equal(known_echo(), modes[m]); /* not OFF, above all */
+        expect_echo(modes[m]); /* not OFF, above all */
     }
 }
 
 /* ---- a write of many, whose answer is shorter than the request ---- */
 
-/* HPS-167S #15, tables 37 and 38: 36 ms. */
-static const uint8_t set_36_ms[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04,
-                                    0x00, 0x00, 0x00, 0x24, 0xF1, 0xAC};
-static const uint8_t set_ms_done[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02};
-
 static void start_write_of_many(uint32_t step_us)
 {
-    static const uint16_t values[] = {0, 36};
-    fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0020, 2, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    ask_to_write_36_ms();
     run_until_written(1, step_us);
-    assert_memory_equal(bench.fake.writes[0].bytes, set_36_ms, sizeof set_36_ms);
+    expect_bytes(0, set_36_ms, sizeof set_36_ms);
 }
 
-static void write_of_many(void **state, uint8_t mode, unsigned seed, uint32_t pause_us, uint32_t step_us)
+static void write_of_many(const way_t *way)
 {
     for (unsigned echoes = 0; echoes != 2; echoes++) {
-        const uint8_t learned = echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF;
-        set_up_with(state, mode);
-        start_write_of_many(step_us);
-        if (echoes != 0) come(seed, 0, set_36_ms, sizeof set_36_ms);
-        come(seed, sizeof set_36_ms * BYTE_US + pause_us, set_ms_done, sizeof set_ms_done);
-        run_in_steps(80000, step_us);
-        assert_int_equal(status(), FATHOM_READY);
-        assert_int_equal(known_echo(), mode == FATHOM_LINE_ECHO_AUTO ? learned : mode);
-        assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
+        set_up_with(way->mode);
+        start_write_of_many(way->step_us);
+        if (echoes != 0) come(way->seed, 0, set_36_ms, sizeof set_36_ms);
+        come(way->seed, sizeof set_36_ms * BYTE_US + way->pause_us, set_ms_done, sizeof set_ms_done);
+        run_in_steps(80000, way->step_us);
+        expect(FATHOM_READY);
+        expect_learned(way->mode, echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
+        expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
     }
 }
 
-TEST(a_write_of_many_registers_is_told_from_its_echo) { in_every_way(state, write_of_many); }
+TEST(a_write_of_many_registers_is_told_from_its_echo) { in_every_way(write_of_many); }
 
 TEST(the_echo_of_a_write_of_many_is_no_answer)
 {
-    set_up_with(state, FATHOM_LINE_ECHO_AUTO);
+    set_up_with(FATHOM_LINE_ECHO_AUTO);
     start_write_of_many(100);
-    come(BY_BYTE, 0, set_36_ms, sizeof set_36_ms);
+    come_all(0, set_36_ms);
     run(2 * TIMEOUT_US);
-    assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(known_echo(), FATHOM_LINE_ECHO_ON);
+    expect(FATHOM_ERR_NO_ANSWER);
+    expect_echo(FATHOM_LINE_ECHO_ON);
 }

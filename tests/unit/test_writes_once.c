@@ -96,5 +96,5 @@ TEST(over_55_aa_questions_are_repeated_and_the_command_to_all_is_not)
     assert_int_equal(sent(7, 0x03), 1);
     assert_int_equal(sent(7, 0x10), 2 * (1 + RETRIES)); /* before it and after it */
     assert_int_equal(sent(1, 0x10), 1 + 1 + RETRIES);   /* the first was answered */
-    assert_int_equal(bench.fake.written, 1 + 2 * (1 + RETRIES) + 1 + 1 + RETRIES);
+    expect_written(1 + 2 * (1 + RETRIES) + 1 + 1 + RETRIES);
 }
