@@ -11,93 +11,129 @@ static const uint8_t mm_511[] = {0xFF, 0x01, 0xFF, 0xFF}; /* FF + 01 + FF = 1FF;
 static const uint8_t permutable[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0,
                                      0x07, 0xFF, 0x05, 0x3B, 0x07}; /* 407 hex */
 
+enum { GAP_US = 5000 };
+
 static fathom_stream_t stream;
 static fathom_stream_config_t config;
 static uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_MAX_LENGTH)];
 static const uint8_t *frame;
 
-static void begin(uint8_t length, uint32_t now_us)
+/* A stream that begins at this time, with this gap_us; 0: 5 ms. */
+static void begin_with(uint8_t length, uint32_t now_us, uint16_t gap_us)
 {
-    config = (fathom_stream_config_t){.storage = storage, .length = length};
+    config = (fathom_stream_config_t){.storage = storage, .length = length, .gap_us = gap_us};
     memset(&stream, 0xA5, sizeof stream);
     memset(storage, 0xFF, sizeof storage);
     frame = NULL;
     assert_int_equal(fathom_stream_init(&stream, &config, now_us), FATHOM_READY);
 }
 
-static fathom_status_t poll(uint32_t now_us) { return fathom_stream_poll(&stream, now_us, &frame); }
+static void begin(uint8_t length) { begin_with(length, 0, 0); }
 
 static void feed(const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t time_us)
 {
     fathom_stream_feed(&stream, bytes, count, after_gap, time_us);
 }
 
+/* mm_1953, in step with what came before it or after a gap; its beginning; and bytes that were lost. */
+static void feed_frame(uint32_t time_us) { feed(mm_1953, 4, false, time_us); }
+static void feed_first(uint32_t time_us) { feed(mm_1953, 4, true, time_us); }
+static void feed_start(uint32_t time_us) { feed(mm_1953, 1, false, time_us); }
+static void feed_loss(uint32_t time_us) { feed(NULL, 0, false, time_us); }
+
+static fathom_status_t poll_at(uint32_t now_us) { return fathom_stream_poll(&stream, now_us, &frame); }
+
+#define expect(now_us, status)     assert_int_equal(poll_at(now_us), status)
+#define expect_due(now_us, us)     assert_int_equal(fathom_stream_due_us(&stream, now_us), us)
+#define expect_counted(counter, n) assert_int_equal(stream.counters[counter], n)
+
+/* A poll gives this frame, whose last byte came then. */
+static void expect_frame(uint32_t now_us, const uint8_t *bytes, uint32_t came_us)
+{
+    expect(now_us, FATHOM_READY);
+    assert_memory_equal(frame, bytes, config.length);
+    assert_int_equal(stream.time_us, came_us);
+}
+
+/* Every test begins with a stream of frames of 4 bytes, at 0. */
+static int set_up(void **state)
+{
+    begin(4);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+static void expect_init(fathom_status_t status)
+{
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), status);
+}
+
 TEST(a_config_without_storage_or_with_another_length_is_refused)
 {
     config = (fathom_stream_config_t){.storage = NULL, .length = 4};
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_ERR_ARGUMENT);
     config = (fathom_stream_config_t){.storage = storage, .length = 5};
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_ERR_ARGUMENT);
     config.length = 10;
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    expect_init(FATHOM_READY);
     assert_int_equal(stream.listener.gap_us, 5000);
     config.gap_us = 25000;
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    expect_init(FATHOM_READY);
     assert_int_equal(stream.listener.gap_us, 25000);
 }
 
 TEST(the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it)
 {
-    begin(4, 1000);
-    feed(mm_1953, 4, true, 1500);
-    assert_int_equal(poll(6499), FATHOM_PENDING);
-    assert_int_equal(poll(6500), FATHOM_READY);
-    assert_memory_equal(frame, mm_1953, 4);
-    assert_int_equal(stream.time_us, 1500);
-    assert_int_equal(poll(6600), FATHOM_PENDING); /* each frame once */
+    begin_with(4, 1000, 0);
+    feed_first(1500);
+    expect(6499, FATHOM_PENDING);
+    expect_frame(6500, mm_1953, 1500);
+    expect(6600, FATHOM_PENDING); /* each frame once */
 
-    begin(10, 1000);
+    begin_with(10, 1000, 0);
     feed(four, 10, true, 1500);
-    assert_int_equal(poll(6500), FATHOM_READY);
-    assert_memory_equal(frame, four, 10);
+    expect_frame(6500, four, 1500);
 }
 
 TEST(a_frame_may_come_in_any_two_pieces)
 {
     for (uint8_t cut = 1; cut != 10; cut++) {
-        begin(10, 0);
+        begin(10);
         feed(four, cut, true, 10);
-        assert_int_equal(poll(15), FATHOM_PENDING);
+        expect(15, FATHOM_PENDING);
         feed(four + cut, (uint8_t)(10 - cut), false, 20);
-        assert_int_equal(poll(5020), FATHOM_READY);
-        assert_memory_equal(frame, four, 10);
-        assert_int_equal(stream.time_us, 20);
+        expect_frame(5020, four, 20);
     }
 }
 
 TEST(without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins)
 {
-    begin(4, 0);
-    feed(mm_1953, 4, false, 10);
-    assert_int_equal(poll(10), FATHOM_PENDING);
-    assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 1);
-    feed(mm_1953, 4, false, 20);
-    assert_int_equal(poll(20), FATHOM_PENDING);
-    feed(mm_1953, 1, false, 30);
-    assert_int_equal(poll(30), FATHOM_READY);
-    assert_memory_equal(frame, mm_1953, 4);
-    assert_int_equal(stream.time_us, 20); /* when it came, not when it was believed */
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
+    feed_frame(10);
+    expect(10, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_UNSURE, 1);
+    feed_frame(20);
+    expect(20, FATHOM_PENDING);
+    feed_start(30);
+    expect_frame(30, mm_1953, 20); /* when it came, not when it was believed */
+    expect_counted(FATHOM_STREAM_FRAMES, 1);
 }
 
 TEST(a_silence_ends_a_frame_as_well_as_the_next_one_does)
 {
-    begin(4, 0);
-    feed(mm_1953, 4, false, 10);
-    feed(mm_1953, 4, false, 20);
+    feed_frame(10);
+    feed_frame(20);
     feed(mm_1953, 2, true, 30);
-    assert_int_equal(poll(30), FATHOM_READY);
-    assert_int_equal(stream.time_us, 20);
+    expect_frame(30, mm_1953, 20);
+}
+
+/* Not polled in between: what begins after the silence is no frame, and the one before it has ended all the same. */
+TEST(a_silence_that_no_poll_saw_ends_a_frame_whatever_comes_after_it)
+{
+    feed_first(10);
+    feed(mm_1953 + 1, 3, true, 20000);
+    expect_frame(20000, mm_1953, 10);
+    expect_counted(FATHOM_STREAM_UNSURE, 0);
 }
 
 /* A byte of FF 80 xx 80 is lost, and what is left makes a right sum with the FF of the next frame: FF + 80 + 80 =
@@ -105,193 +141,173 @@ TEST(a_silence_ends_a_frame_as_well_as_the_next_one_does)
 TEST(a_right_sum_that_no_frame_follows_is_not_believed)
 {
     static const uint8_t lost_a_byte[] = {0xFF, 0x80, 0x80};
-    begin(4, 0);
-    feed(mm_1953, 4, true, 10);
+    feed_first(10);
     feed(lost_a_byte, 3, false, 20);
-    assert_int_equal(poll(20), FATHOM_READY);
-    feed(mm_1953, 4, false, 30);
-    assert_int_equal(poll(30), FATHOM_PENDING);
+    expect(20, FATHOM_READY);
+    feed_frame(30);
+    expect(30, FATHOM_PENDING);
     assert_true(stream.counters[FATHOM_STREAM_UNSURE] + stream.counters[FATHOM_STREAM_AMBIGUOUS] >= 1);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
+    expect_counted(FATHOM_STREAM_FRAMES, 1);
 }
 
 TEST(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step)
 {
-    begin(4, 0);
-    feed(mm_1953, 4, true, 10);
-    assert_int_equal(poll(10), FATHOM_PENDING);
-    feed(mm_1953, 4, false, 20);
-    assert_int_equal(poll(20), FATHOM_READY);
-    assert_int_equal(stream.time_us, 10);
-    feed(mm_1953, 1, false, 25); /* the rest of this frame is lost */
-    assert_int_equal(poll(25), FATHOM_READY);
-    feed(mm_1953, 4, false, 30);
-    assert_int_equal(poll(30), FATHOM_PENDING); /* in step with nothing */
-    feed(mm_1953, 4, false, 40);
-    feed(mm_1953, 1, false, 50);
-    assert_int_equal(poll(50), FATHOM_READY);
-    assert_int_equal(stream.time_us, 40);
+    feed_first(10);
+    expect(10, FATHOM_PENDING);
+    feed_frame(20);
+    expect_frame(20, mm_1953, 10);
+    feed_start(25); /* the rest of this frame is lost */
+    expect(25, FATHOM_READY);
+    feed_frame(30);
+    expect(30, FATHOM_PENDING); /* in step with nothing */
+    feed_frame(40);
+    feed_start(50);
+    expect_frame(50, mm_1953, 40);
 }
 
 TEST(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap)
 {
-    begin(4, 0);
     for (int i = 0; i != 100; i++) feed(mm_511, 4, false, 10);
-    assert_int_equal(poll(20), FATHOM_PENDING);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+    expect(20, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_FRAMES, 0);
     /* 100 right windows and 99 across two frames; only the very first has no other before it. */
-    assert_int_equal(stream.counters[FATHOM_STREAM_AMBIGUOUS], 198);
+    expect_counted(FATHOM_STREAM_AMBIGUOUS, 198);
 
-    begin(10, 0);
+    begin(10);
     for (int i = 0; i != 100; i++) feed(permutable, 10, false, 10);
-    assert_int_equal(poll(20), FATHOM_PENDING);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+    expect(20, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_FRAMES, 0);
 }
 
 TEST(the_same_value_is_shown_rightly_where_gaps_are_seen)
 {
-    begin(4, 0);
     feed(mm_511 + 2, 2, false, 5); /* the end of a frame that had begun before */
     for (int i = 0; i != 100; i++) {
         feed(mm_511, 4, true, 10);
-        assert_int_equal(poll(5010), FATHOM_READY);
-        assert_memory_equal(frame, mm_511, 4);
+        expect_frame(5010, mm_511, 10);
     }
-    begin(10, 0);
+    begin(10);
     for (int i = 0; i != 100; i++) {
         feed(permutable, 10, true, 10);
-        assert_int_equal(poll(5010), FATHOM_READY);
-        assert_memory_equal(frame, permutable, 10);
+        expect_frame(5010, permutable, 10);
     }
 }
 
 TEST(a_frame_that_broke_off_before_a_gap_leaves_no_trace)
 {
     for (uint8_t length = 1; length != 4; length++) {
-        begin(4, 0);
+        begin(4);
         feed(mm_511, length, true, 10);
-        feed(mm_1953, 4, true, 20);
-        assert_int_equal(poll(5020), FATHOM_READY);
-        assert_memory_equal(frame, mm_1953, 4);
-        assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
+        feed_first(20);
+        expect_frame(5020, mm_1953, 20);
+        expect_counted(FATHOM_STREAM_FRAMES, 1);
     }
 }
 
 TEST(a_wrong_sum_is_dropped)
 {
-    uint8_t damaged[4];
-    memcpy(damaged, mm_1953, 4);
-    damaged[2] ^= 1;
-    begin(4, 0);
+    static const uint8_t damaged[] = {0xFF, 0x07, 0xA0, 0xA7};
     feed(damaged, 4, true, 10);
-    assert_int_equal(poll(5010), FATHOM_PENDING);
-    assert_int_equal(stream.counters[FATHOM_STREAM_BYTES], 4);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+    expect(5010, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_BYTES, 4);
+    expect_counted(FATHOM_STREAM_FRAMES, 0);
 }
 
 TEST(the_newest_frame_wins_and_the_older_is_counted)
 {
     static const uint8_t mm_1000[] = {0xFF, 0x03, 0xE8, 0xEA}; /* FF + 03 + E8 = 1EA */
-    begin(4, 0);
-    feed(mm_1953, 4, true, 10);
+    feed_first(10);
     feed(mm_1000, 4, true, 20);
-    assert_int_equal(poll(5020), FATHOM_READY);
-    assert_memory_equal(frame, mm_1000, 4);
-    assert_int_equal(stream.time_us, 20);
-    assert_int_equal(stream.counters[FATHOM_STREAM_MISSED], 1);
-    assert_int_equal(poll(5040), FATHOM_PENDING);
+    expect_frame(5020, mm_1000, 20);
+    expect_counted(FATHOM_STREAM_MISSED, 1);
+    expect(5040, FATHOM_PENDING);
 }
 
 TEST(a_silent_stream_is_stale_once_every_deadline)
 {
-    begin(4, 1000);
+    begin_with(4, 1000, 0);
     config.stale_us = 500000;
     fathom_stream_init(&stream, &config, 1000);
-    assert_int_equal(poll(500999), FATHOM_PENDING);
-    assert_int_equal(poll(501000), FATHOM_ERR_STALE);
-    assert_int_equal(poll(501001), FATHOM_PENDING);
-    assert_int_equal(poll(1000999), FATHOM_PENDING);
-    assert_int_equal(poll(1001000), FATHOM_ERR_STALE);
-    assert_int_equal(stream.counters[FATHOM_STREAM_STALES], 2);
+    expect(500999, FATHOM_PENDING);
+    expect(501000, FATHOM_ERR_STALE);
+    expect(501001, FATHOM_PENDING);
+    expect(1000999, FATHOM_PENDING);
+    expect(1001000, FATHOM_ERR_STALE);
+    expect_counted(FATHOM_STREAM_STALES, 2);
 }
 
 TEST(the_deadline_is_two_seconds_unless_told_otherwise)
 {
-    begin(4, 0);
-    assert_int_equal(poll(1999999), FATHOM_PENDING);
-    assert_int_equal(poll(2000000), FATHOM_ERR_STALE);
+    expect(1999999, FATHOM_PENDING);
+    expect(2000000, FATHOM_ERR_STALE);
 }
 
 TEST(only_a_good_frame_moves_the_deadline)
 {
-    begin(4, 0);
     for (uint32_t now_us = 0; now_us != 1900000; now_us += 100000) {
         feed(mm_1953, 3, true, now_us);
-        assert_int_equal(poll(now_us), FATHOM_PENDING);
+        expect(now_us, FATHOM_PENDING);
     }
-    assert_int_equal(poll(2000000), FATHOM_ERR_STALE);
-    feed(mm_1953, 4, true, 2995000);
-    assert_int_equal(poll(3000000), FATHOM_READY);
-    assert_int_equal(poll(4999999), FATHOM_PENDING);
-    assert_int_equal(poll(5000000), FATHOM_ERR_STALE);
+    expect(2000000, FATHOM_ERR_STALE);
+    feed_first(2995000);
+    expect(3000000, FATHOM_READY);
+    expect(4999999, FATHOM_PENDING);
+    expect(5000000, FATHOM_ERR_STALE);
 }
 
 TEST(a_frame_in_hand_comes_before_the_deadline)
 {
-    begin(4, 0);
-    feed(mm_1953, 4, true, 10);
-    assert_int_equal(poll(60000000), FATHOM_READY);
+    feed_first(10);
+    expect(60000000, FATHOM_READY);
 }
 
 TEST(the_deadline_holds_across_the_wrap_of_the_clock)
 {
     const uint32_t start_us = UINT32_MAX - 1000000;
-    begin(4, start_us);
-    assert_int_equal(poll(start_us + 1999999), FATHOM_PENDING);
-    assert_int_equal(poll(start_us + 2000000), FATHOM_ERR_STALE);
+    begin_with(4, start_us, 0);
+    expect(start_us + 1999999, FATHOM_PENDING);
+    expect(start_us + 2000000, FATHOM_ERR_STALE);
 }
 
 TEST(due_is_the_deadline_or_when_a_silence_ends_the_frame_or_at_once)
 {
-    begin(4, 1000);
-    assert_int_equal(fathom_stream_due_us(&stream, 1000), 2000000);
-    assert_int_equal(fathom_stream_due_us(&stream, 501000), 1500000);
-    assert_int_equal(fathom_stream_due_us(&stream, 3001000), 0);
-    feed(mm_1953, 4, true, 1000);
-    assert_int_equal(fathom_stream_due_us(&stream, 1000), 5000);
-    assert_int_equal(fathom_stream_due_us(&stream, 5999), 1);
-    assert_int_equal(fathom_stream_due_us(&stream, 6000), 0);
-    assert_int_equal(fathom_stream_due_us(&stream, 9000), 0);
-    feed(mm_1953, 1, false, 2000);
-    assert_int_equal(fathom_stream_due_us(&stream, 2000), 0);
-    assert_int_equal(poll(2000), FATHOM_READY);
-    assert_int_equal(fathom_stream_due_us(&stream, 2000), 2000000);
+    begin_with(4, 1000, 0);
+    expect_due(1000, 2000000);
+    expect_due(501000, 1500000);
+    expect_due(3001000, 0);
+    feed_first(1000);
+    expect_due(1000, 5000);
+    expect_due(5999, 1);
+    expect_due(6000, 0);
+    expect_due(9000, 0);
+    feed_start(2000);
+    expect_due(2000, 0);
+    expect(2000, FATHOM_READY);
+    expect_due(2000, 2000000);
     feed(mm_1953 + 1, 3, false, 1999000); /* the deadline, at 2002000, is nearer than 2004000 */
-    assert_int_equal(fathom_stream_due_us(&stream, 1999000), 3000);
+    expect_due(1999000, 3000);
 }
 
 TEST(counters_stop_at_their_end)
 {
-    begin(4, 0);
     stream.counters[FATHOM_STREAM_BYTES] = 65533;
     stream.counters[FATHOM_STREAM_FRAMES] = 65535;
-    feed(mm_1953, 4, true, 10);
-    assert_int_equal(stream.counters[FATHOM_STREAM_BYTES], 65535);
-    assert_int_equal(poll(5010), FATHOM_READY);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 65535);
+    feed_first(10);
+    expect_counted(FATHOM_STREAM_BYTES, 65535);
+    expect(5010, FATHOM_READY);
+    expect_counted(FATHOM_STREAM_FRAMES, 65535);
 }
 
 /* 300 bytes without an FF: the counters of bytes stop at 255 and do not come round to a wrong 4. */
 TEST(a_long_run_of_noise_does_not_come_round_to_a_frame)
 {
     static const uint8_t noise[250];
-    begin(4, 0);
     feed(noise, 250, true, 10);
     for (int i = 0; i != 10; i++) feed(noise, 1, false, 10);
     for (uint8_t more = 0; more != 12; more++) {
         feed(noise, 1, false, 10);
-        feed(mm_1953, 4, false, 20);
-        assert_int_equal(poll(5020), FATHOM_PENDING);
+        feed_frame(20);
+        expect(5020, FATHOM_PENDING);
     }
 }
 
@@ -300,63 +316,167 @@ TEST(a_long_run_of_noise_does_not_come_round_to_a_frame)
 TEST(no_frame_is_built_across_a_lost_byte)
 {
     for (uint8_t cut = 1; cut != 4; cut++) {
-        begin(4, 0);
+        begin(4);
         feed(mm_1953, cut, true, 10);
-        feed(NULL, 0, false, 20);
+        feed_loss(20);
         feed(mm_1953 + cut, (uint8_t)(4 - cut), false, 20);
-        assert_int_equal(poll(5020), FATHOM_PENDING); /* nor does a silence behind it help */
+        expect(5020, FATHOM_PENDING); /* nor does a silence behind it help */
         feed(mm_1953, 1, true, 5030);
-        assert_int_equal(poll(5030), FATHOM_PENDING);
-        assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
+        expect(5030, FATHOM_PENDING);
+        expect_counted(FATHOM_STREAM_FRAMES, 0);
     }
 }
 
 TEST(a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost)
 {
-    begin(4, 0);
-    feed(mm_1953, 4, false, 10);
-    feed(mm_1953, 4, false, 20); /* believed if FF follows, but what follows is not known */
-    feed(NULL, 0, false, 30);
-    assert_int_equal(poll(5030), FATHOM_PENDING);
-    feed(mm_1953, 1, false, 5030);
-    assert_int_equal(poll(5030), FATHOM_PENDING);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
-    begin(4, 0);
-    feed(mm_1953, 4, true, 10); /* the same behind a silence */
-    feed(NULL, 0, false, 20);
-    assert_int_equal(poll(5020), FATHOM_PENDING);
+    feed_frame(10);
+    feed_frame(20); /* believed if FF follows, but what follows is not known */
+    feed_loss(30);
+    expect(5030, FATHOM_PENDING);
+    feed_start(5030);
+    expect(5030, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_FRAMES, 0);
+    begin(4);
+    feed_first(10); /* the same behind a silence */
+    feed_loss(20);
+    expect(5020, FATHOM_PENDING);
 }
 
 /* The first after the loss is in step with nothing, the second with the first. */
 TEST(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again)
 {
-    begin(4, 0);
-    feed(mm_1953, 4, true, 10);
-    assert_int_equal(poll(5010), FATHOM_READY);
-    feed(NULL, 0, false, 6020);
-    feed(mm_1953, 4, false, 6020);
-    feed(mm_1953, 1, false, 6025);
-    assert_int_equal(poll(6025), FATHOM_PENDING);
+    feed_first(10);
+    expect(5010, FATHOM_READY);
+    feed_loss(6020);
+    feed_frame(6020);
+    feed_start(6025);
+    expect(6025, FATHOM_PENDING);
     feed(mm_1953 + 1, 3, false, 6030);
-    feed(mm_1953, 1, false, 6035);
-    assert_int_equal(poll(6035), FATHOM_READY);
-    feed(NULL, 0, false, 6040);
-    feed(mm_1953, 4, true, 6050);
-    assert_int_equal(poll(11050), FATHOM_READY);
+    feed_start(6035);
+    expect(6035, FATHOM_READY);
+    feed_loss(6040);
+    feed_first(6050);
+    expect(11050, FATHOM_READY);
 }
 
 /* 511 mm held still, FF 01 FF FF: without the two bytes FF 01 it reads FF FF FF 01, FF FF 01 FF. */
 TEST(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value)
 {
     for (uint8_t lost = 0; lost != 4; lost++) {
-        begin(4, 0);
+        begin(4);
         feed(mm_511, 4, true, 0);
-        assert_int_equal(poll(5000), FATHOM_READY);
-        feed(NULL, 0, false, 10);
+        expect(5000, FATHOM_READY);
+        feed_loss(10);
         feed(mm_511 + lost, (uint8_t)(4 - lost), false, 10);
         for (uint32_t i = 0; i != 20; i++) {
             feed(mm_511, 4, false, 20 + i);
-            if (poll(20 + i) == FATHOM_READY) assert_memory_equal(frame, mm_511, 4);
+            if (poll_at(20 + i) == FATHOM_READY) assert_memory_equal(frame, mm_511, 4);
         }
     }
+}
+
+/* ---- what comes behind a frame decides whether it was one: FF, or a silence of gap_us ---- */
+
+/* 4321 mm is FF 10 E1 F0 (FF + 10 + E1 = 1F0). Behind a silence its third byte is lost, and the next frame follows
+ * without a pause: FF 10 F0 | FF ... FF + 10 + F0 = 1FF, so that the next one's FF is a right sum, of 4336 mm (10F0),
+ * which the sensor has not said. */
+TEST(a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame)
+{
+    static const uint8_t bytes[] = {0xFF, 0x10, 0xF0, 0xFF, 0x10, 0xE1, 0xF0};
+    feed(bytes, sizeof bytes, true, 1000);
+    expect(1000, FATHOM_PENDING);
+    expect(1000 + GAP_US, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_FRAMES, 0);
+    expect_counted(FATHOM_STREAM_UNSURE, 1);
+}
+
+/* FF + 07 + 9B = 1A1: with 9B too many before the A1, the A1 is a right sum, and the A7 behind it begins nothing. */
+TEST(a_byte_too_many_does_not_make_the_last_value_a_sum)
+{
+    static const uint8_t bytes[] = {0xFF, 0x07, 0x9B, 0xA1, 0xA7};
+    feed(bytes, sizeof bytes, true, 10);
+    expect(10 + GAP_US, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_UNSURE, 1);
+}
+
+/* Every byte behind a frame that is first after a silence: FF alone begins another one. */
+TEST(of_all_bytes_behind_a_frame_only_FF_lets_it_pass)
+{
+    for (unsigned next = 0; next != 256; next++) {
+        const uint8_t byte = (uint8_t)next;
+        begin(4);
+        feed_first(10);
+        feed(&byte, 1, false, 20);
+        expect(20, next == 0xFF ? FATHOM_READY : FATHOM_PENDING);
+        expect(20 + GAP_US, FATHOM_PENDING);
+        expect_counted(FATHOM_STREAM_UNSURE, next != 0xFF);
+        if (next == 0xFF) assert_int_equal(stream.time_us, 10);
+    }
+}
+
+TEST(a_silence_lets_it_pass_when_it_has_lasted_from_its_last_byte_on)
+{
+    begin_with(4, 0, 25000);
+    feed(mm_1953, 3, true, 10);
+    feed(mm_1953 + 3, 1, false, 1000);
+    expect(25999, FATHOM_PENDING);
+    expect_frame(26000, mm_1953, 1000);
+}
+
+/* Pauses of 20 ms with gap_us 25 ms: after the first, no gap is seen and no poll comes late enough. */
+TEST(where_gap_us_is_longer_than_the_pauses_the_next_frame_decides)
+{
+    unsigned readings = 0;
+    begin_with(4, 0, 25000);
+    for (uint32_t now_us = 0; now_us != 200000; now_us += 20000) {
+        feed(mm_1953, 4, now_us == 0, now_us);
+        const bool is_ready = poll_at(now_us) == FATHOM_READY;
+        readings += is_ready;
+        if (is_ready) assert_int_equal(stream.time_us, now_us - 20000);
+        expect(now_us + 19999, FATHOM_PENDING);
+    }
+    assert_int_equal(readings, 9); /* of ten, all but the last */
+    expect(180000 + 25000, FATHOM_READY);
+}
+
+TEST(the_silence_is_measured_across_the_wrap_of_the_clock)
+{
+    const uint32_t came_us = UINT32_MAX - 1999; /* 2000 us before the wrap */
+    begin_with(4, came_us - 100, 0);
+    feed_first(came_us);
+    expect_due(came_us, GAP_US);
+    expect(2999, FATHOM_PENDING);
+    expect_due(2999, 1);
+    expect_frame(3000, mm_1953, came_us);
+}
+
+/* Due at the end of the silence, and what is due then is the frame. */
+TEST(who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes)
+{
+    feed_first(1000);
+    expect(2500, FATHOM_PENDING);
+    const uint32_t wake_us = 2500 + fathom_stream_due_us(&stream, 2500);
+    assert_int_equal(wake_us, 1000 + GAP_US);
+    expect(wake_us, FATHOM_READY);
+    expect_due(wake_us, 2000000);
+}
+
+/* A deadline that passes while the silence lasts says STALE, and the frame is no older for that. */
+TEST(a_frame_that_waits_when_the_deadline_passes_is_still_shown)
+{
+    feed_first(1998000);
+    expect_due(1998000, 2000);
+    expect(2000000, FATHOM_ERR_STALE);
+    expect(2002999, FATHOM_PENDING);
+    expect_frame(2003000, mm_1953, 1998000);
+}
+
+/* The frame ended long ago, and nobody has polled since: it is shown before the deadline is told. */
+TEST(a_frame_whose_silence_has_passed_comes_before_the_deadline)
+{
+    feed_frame(10);
+    feed_frame(20);
+    expect_frame(60000000, mm_1953, 20);
+    feed(mm_1953, 2, true, 600000000);
+    expect(600000000, FATHOM_ERR_STALE); /* each frame once */
 }
