@@ -147,22 +147,15 @@ static void the_published_examples_come_out(void **state)
     assert_int_equal(crc16(data4, 3), 0x4523);
 }
 
-TEST_ROW(every_byte_in_every_state_does_what_the_definition_says_with_table_of_256,
-         every_byte_in_every_state_does_what_the_definition_says, &table_of_256)
-TEST_ROW(every_length_to_255_does_what_the_definition_says_with_table_of_256,
-         every_length_to_255_does_what_the_definition_says, &table_of_256)
-TEST_ROW(no_byte_at_all_gives_FFFF_with_table_of_256, no_byte_at_all_gives_FFFF, &table_of_256)
-TEST_ROW(over_a_frame_and_its_crc_low_byte_first_it_is_0_with_table_of_256,
-         over_a_frame_and_its_crc_low_byte_first_it_is_0, &table_of_256)
-TEST_ROW(the_published_examples_come_out_with_table_of_256, the_published_examples_come_out, &table_of_256)
-TEST_ROW(every_byte_in_every_state_does_what_the_definition_says_with_table_of_16,
-         every_byte_in_every_state_does_what_the_definition_says, &table_of_16)
-TEST_ROW(every_length_to_255_does_what_the_definition_says_with_table_of_16,
-         every_length_to_255_does_what_the_definition_says, &table_of_16)
-TEST_ROW(no_byte_at_all_gives_FFFF_with_table_of_16, no_byte_at_all_gives_FFFF, &table_of_16)
-TEST_ROW(over_a_frame_and_its_crc_low_byte_first_it_is_0_with_table_of_16,
-         over_a_frame_and_its_crc_low_byte_first_it_is_0, &table_of_16)
-TEST_ROW(the_published_examples_come_out_with_table_of_16, the_published_examples_come_out, &table_of_16)
+#define TEST_OF_BOTH(name)                                                                                   \
+    TEST_ROW(name##_with_table_of_256, name, &table_of_256)                                                  \
+    TEST_ROW(name##_with_table_of_16, name, &table_of_16)
+
+TEST_OF_BOTH(every_byte_in_every_state_does_what_the_definition_says)
+TEST_OF_BOTH(every_length_to_255_does_what_the_definition_says)
+TEST_OF_BOTH(no_byte_at_all_gives_FFFF)
+TEST_OF_BOTH(over_a_frame_and_its_crc_low_byte_first_it_is_0)
+TEST_OF_BOTH(the_published_examples_come_out)
 TEST_ROW(every_length_to_255_does_what_the_definition_says_with_linked,
          every_length_to_255_does_what_the_definition_says, &linked)
 TEST_ROW(the_published_examples_come_out_with_linked, the_published_examples_come_out, &linked)

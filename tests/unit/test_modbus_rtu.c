@@ -10,6 +10,7 @@
 
 enum { READ = 0x03, WRITE = 0x06, WRITE_MANY = 0x10, GUARD = 0xA5, ROOM = 300, VALUES = 130 };
 enum { GUARD16 = 0xA5A5 };
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 static fathom_modbus_message_t message;
 static uint8_t frame[ROOM];
@@ -25,16 +26,35 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static void assert_frame(uint8_t length, const uint8_t *expected, uint8_t expected_length)
+static void expect_encoded_request(const uint8_t *expected, uint8_t length)
 {
-    assert_int_equal(length, expected_length);
-    assert_memory_equal(frame, expected, expected_length);
+    assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), length);
+    assert_memory_equal(frame, expected, length);
+}
+
+static void expect_encoded_response(const uint8_t *expected, uint8_t length)
+{
+    assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), length);
+    assert_memory_equal(frame, expected, length);
 }
 
 static void assert_untouched_from(const uint8_t *bytes, size_t from, size_t size)
 {
     for (size_t i = from; i != size; i++) assert_int_equal(bytes[i], GUARD);
 }
+
+static void assert_values_untouched_from(size_t from)
+{
+    for (; from != VALUES; from++) assert_int_equal(values[from], GUARD16);
+}
+
+#define expect_room(n) assert_int_equal(fathom_modbus_rtu_room(&message), n)
+#define expect_response(bytes, status)                                                                       \
+    assert_int_equal(fathom_modbus_rtu_parse_response(&message, bytes), status)
+#define expect_request(bytes, most, status)                                                                  \
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, bytes, most), status)
+#define expect_begun(bytes, have, length)                                                                    \
+    assert_int_equal(fathom_modbus_rtu_begun_request(&message, bytes, have), length)
 
 static void ask(uint8_t function, uint8_t count)
 {
@@ -46,16 +66,17 @@ static void ask(uint8_t function, uint8_t count)
 
 /* ---- the client's side ---- */
 
-/* 8 bytes, and where it is longer: a read's answer is 5 + 2 n (6.3), a write's request 9 + 2 n (6.12). */
+/* 8 bytes, and where it is longer: a read's answer is 5 + 2 n (6.3), a write's request 9 + 2 n (6.12). modbus_rtu.h:
+ * "what is outside is refused when it is submitted or encoded (..., length 0)". */
 TEST(the_room_of_every_count)
 {
     for (unsigned n = 0; n != 256; n++) {
         ask(READ, (uint8_t)n);
-        assert_int_equal(fathom_modbus_rtu_room(&message), n == 0 || n > 125 ? 0 : n == 1 ? 8 : 5 + 2 * n);
+        expect_room(n == 0 || n > 125 ? 0 : n == 1 ? 8 : 5 + 2 * n);
         ask(WRITE_MANY, (uint8_t)n);
-        assert_int_equal(fathom_modbus_rtu_room(&message), n == 0 || n > 123 ? 0 : 9 + 2 * n);
+        expect_room(n == 0 || n > 123 ? 0 : 9 + 2 * n);
         fathom_modbus_write_single_register(&message, 1, 0x0020, (uint16_t)n);
-        assert_int_equal(fathom_modbus_rtu_room(&message), 8);
+        expect_room(8);
     }
 }
 
@@ -70,19 +91,6 @@ TEST(a_read_of_every_count_is_8_bytes)
     }
 }
 
-/* modbus_rtu.h: "what is outside is refused when it is submitted or encoded (..., length 0)". */
-TEST(a_count_out_of_range_has_no_room)
-{
-    static const struct {
-        uint8_t function;
-        uint8_t count;
-    } refused[] = {{READ, 0}, {READ, 126}, {READ, 255}, {WRITE_MANY, 0}, {WRITE_MANY, 124}};
-    for (unsigned i = 0; i != sizeof refused / sizeof *refused; i++) {
-        ask(refused[i].function, refused[i].count);
-        assert_int_equal(fathom_modbus_rtu_room(&message), 0);
-    }
-}
-
 TEST(a_write_of_one_carries_0000_8000_and_FFFF)
 {
     static const uint8_t expected[][8] = {
@@ -93,8 +101,8 @@ TEST(a_write_of_one_carries_0000_8000_and_FFFF)
     static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
     for (unsigned i = 0; i != 3; i++) {
         fathom_modbus_write_single_register(&message, 1, 0x0014, written[i]);
-        assert_frame(fathom_modbus_rtu_encode_request(&message, frame), expected[i], 8);
-        assert_int_equal(fathom_modbus_rtu_parse_response(&message, expected[i]), FATHOM_READY);
+        expect_encoded_request(expected[i], 8);
+        expect_response(expected[i], FATHOM_READY);
     }
 }
 
@@ -105,13 +113,13 @@ static const uint8_t write_three[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 
 TEST(an_answer_brings_0000_8000_and_FFFF)
 {
     ask(READ, 3);
-    assert_int_equal(fathom_modbus_rtu_parse_response(&message, three_values), FATHOM_READY);
+    expect_response(three_values, FATHOM_READY);
     assert_int_equal(values[0], 0x0000);
     assert_int_equal(values[1], 0x8000);
     assert_int_equal(values[2], 0xFFFF);
-    assert_int_equal(values[3], GUARD16);
+    assert_values_untouched_from(3);
     assert_int_equal(message.exception, 0);
-    assert_frame(fathom_modbus_rtu_encode_response(&message, frame), three_values, sizeof three_values);
+    expect_encoded_response(three_values, sizeof three_values);
 }
 
 TEST(a_write_of_many_carries_0000_8000_and_FFFF)
@@ -119,27 +127,40 @@ TEST(a_write_of_many_carries_0000_8000_and_FFFF)
     static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
     static const uint8_t answer[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x00, 0x00};
     fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 3, written);
-    assert_frame(fathom_modbus_rtu_encode_request(&message, frame), write_three, sizeof write_three);
-    assert_int_equal(fathom_modbus_rtu_parse_response(&message, answer), FATHOM_READY);
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, write_three, 2), FATHOM_ERR_EXCEPTION);
+    expect_encoded_request(write_three, sizeof write_three);
+    expect_response(answer, FATHOM_READY);
+    expect_request(write_three, 2, FATHOM_ERR_EXCEPTION);
     message.values = values;
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, write_three, 3), FATHOM_READY);
+    expect_request(write_three, 3, FATHOM_READY);
     assert_memory_equal(values, written, sizeof written);
-    assert_int_equal(values[3], GUARD16);
+    assert_values_untouched_from(3);
 }
 
 /* Value i is 256 i + 255 - i, so that every byte of the frames is known. */
-static void assert_pattern(const uint8_t *bytes, unsigned count)
-{
-    for (unsigned i = 0; i != count; i++) {
-        assert_int_equal(bytes[2 * i], i);
-        assert_int_equal(bytes[2 * i + 1], 255 - i);
-    }
-}
+static uint16_t pattern(unsigned i) { return (uint16_t)(256 * i + 255 - i); }
 
 static void set_pattern(unsigned count)
 {
-    for (unsigned i = 0; i != count; i++) values[i] = (uint16_t)(256 * i + 255 - i);
+    for (unsigned i = 0; i != count; i++) values[i] = pattern(i);
+}
+
+/* And behind them the CRC, with which the frame ends; after that values is as before the test. */
+static void assert_pattern(const uint8_t *bytes, unsigned count, uint8_t crc_low, uint8_t crc_high)
+{
+    for (unsigned i = 0; i != count; i++, bytes += 2) {
+        assert_int_equal(bytes[0], i);
+        assert_int_equal(bytes[1], 255 - i);
+    }
+    assert_int_equal(bytes[0], crc_low);
+    assert_int_equal(bytes[1], crc_high);
+    assert_untouched_from(frame, (size_t)(bytes + 2 - frame), ROOM);
+    memset(values, GUARD, sizeof values);
+}
+
+static void assert_values(unsigned count)
+{
+    for (unsigned i = 0; i != count; i++) assert_int_equal(values[i], pattern(i));
+    assert_values_untouched_from(count);
 }
 
 TEST(the_largest_answer_is_255_bytes_and_fits)
@@ -149,16 +170,10 @@ TEST(the_largest_answer_is_255_bytes_and_fits)
     set_pattern(125);
     assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 255);
     assert_memory_equal(frame, head, sizeof head);
-    assert_pattern(frame + 3, 125);
-    assert_int_equal(frame[253], 0xEB);
-    assert_int_equal(frame[254], 0x7C);
-    assert_untouched_from(frame, 255, ROOM);
-
-    memset(values, GUARD, sizeof values);
+    assert_pattern(frame + 3, 125, 0xEB, 0x7C);
     assert_int_equal(fathom_modbus_rtu_response_length(frame, 255), 255);
-    assert_int_equal(fathom_modbus_rtu_parse_response(&message, frame), FATHOM_READY);
-    for (unsigned i = 0; i != 125; i++) assert_int_equal(values[i], 256 * i + 255 - i);
-    for (unsigned i = 125; i != VALUES; i++) assert_int_equal(values[i], GUARD16);
+    expect_response(frame, FATHOM_READY);
+    assert_values(125);
 }
 
 TEST(the_largest_request_is_255_bytes_and_fits)
@@ -168,16 +183,10 @@ TEST(the_largest_request_is_255_bytes_and_fits)
     set_pattern(123);
     assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 255);
     assert_memory_equal(frame, head, sizeof head);
-    assert_pattern(frame + 7, 123);
-    assert_int_equal(frame[253], 0x25);
-    assert_int_equal(frame[254], 0x87);
-    assert_untouched_from(frame, 255, ROOM);
-
-    memset(values, GUARD, sizeof values);
+    assert_pattern(frame + 7, 123, 0x25, 0x87);
     assert_int_equal(fathom_modbus_rtu_request_length(frame, 255), 255);
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, frame, 123), FATHOM_READY);
-    for (unsigned i = 0; i != 123; i++) assert_int_equal(values[i], 256 * i + 255 - i);
-    for (unsigned i = 123; i != VALUES; i++) assert_int_equal(values[i], GUARD16);
+    expect_request(frame, 123, FATHOM_READY);
+    assert_values(123);
 }
 
 /* Every first three bytes. A byte count of 0 is a whole frame that answers nothing. */
@@ -210,10 +219,22 @@ TEST(an_exception_of_any_code_is_kept_as_a_number)
             const uint8_t answer[] = {0x01, (uint8_t)(functions[i] | 0x80), (uint8_t)code, 0x00, 0x00};
             ask(READ, 3);
             message.head[1] = functions[i];
-            assert_int_equal(fathom_modbus_rtu_parse_response(&message, answer), FATHOM_ERR_EXCEPTION);
+            expect_response(answer, FATHOM_ERR_EXCEPTION);
             assert_int_equal(message.exception, code);
             assert_int_equal(values[0], GUARD16);
         }
+    }
+}
+
+/* modbus_rtu.h: "where one answers, message.head[0] becomes its address". */
+TEST(an_answer_to_any_unit_says_whose_it_is)
+{
+    for (unsigned unit = 1; unit != 256; unit++) {
+        const uint8_t answer[] = {(uint8_t)unit, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00};
+        fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, values);
+        expect_response(answer, FATHOM_READY);
+        assert_int_equal(message.head[0], unit);
+        assert_int_equal(values[0], 754);
     }
 }
 
@@ -255,15 +276,15 @@ static const other_t others[] = {
 
 TEST(an_answer_to_something_else_writes_nothing)
 {
-    for (unsigned i = 0; i != sizeof others / sizeof *others; i++) {
+    for (unsigned i = 0; i != COUNT_OF(others); i++) {
         set_up(NULL);
         ask(others[i].function, 3);
         if (others[i].function == WRITE) fathom_modbus_write_single_register(&message, 1, 0x0020, 3);
         fathom_modbus_message_t before;
         memcpy(&before, &message, sizeof before);
-        assert_int_equal(fathom_modbus_rtu_parse_response(&message, others[i].bytes), others[i].status);
+        expect_response(others[i].bytes, others[i].status);
         assert_memory_equal(&message, &before, sizeof before);
-        for (unsigned n = 0; n != VALUES; n++) assert_int_equal(values[n], GUARD16);
+        assert_values_untouched_from(0);
     }
 }
 
@@ -285,41 +306,39 @@ typedef struct {
     uint8_t capacity;
     uint8_t exception;
     uint8_t request[15];
-    uint8_t length; /* of the answer */
     uint8_t answer[5];
 } refused_t;
 
 static const refused_t refusals[] = {
     /* another function */
-    {125, 1, {0x01, 0x01, 0x00, 0x20, 0x00, 0x03}, 5, {0x01, 0x81, 0x01, 0x81, 0x90}},
-    {125, 1, {0x01, 0x02, 0x00, 0x20, 0x00, 0x03}, 5, {0x01, 0x82, 0x01, 0x81, 0x60}},
-    {125, 1, {0x01, 0x7F, 0x00, 0x20, 0x00, 0x03}, 5, {0x01, 0xFF, 0x01, 0xA0, 0x30}},
+    {125, 1, {0x01, 0x01, 0x00, 0x20, 0x00, 0x03}, {0x01, 0x81, 0x01, 0x81, 0x90}},
+    {125, 1, {0x01, 0x02, 0x00, 0x20, 0x00, 0x03}, {0x01, 0x82, 0x01, 0x81, 0x60}},
+    {125, 1, {0x01, 0x7F, 0x00, 0x20, 0x00, 0x03}, {0x01, 0xFF, 0x01, 0xA0, 0x30}},
     /* a count of 0, of 126, of 256 + 1, beyond the capacity, without any */
-    {125, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 0}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
-    {255, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 126}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
-    {255, 3, {0x01, 0x03, 0x00, 0x20, 0x01, 1}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
-    {4, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 5}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
-    {0, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 1}, 5, {0x01, 0x83, 0x03, 0x01, 0x31}},
-    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 0, 0}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
-    {255, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 124, 248}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
-    {255, 3, {0x01, 0x10, 0x00, 0x20, 0x01, 2, 4}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
-    {2, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 6}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {125, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 0}, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {255, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 126}, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {255, 3, {0x01, 0x03, 0x00, 0x20, 0x01, 1}, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {4, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 5}, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {0, 3, {0x01, 0x03, 0x00, 0x20, 0x00, 1}, {0x01, 0x83, 0x03, 0x01, 0x31}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 0, 0}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {255, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 124, 248}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {255, 3, {0x01, 0x10, 0x00, 0x20, 0x01, 2, 4}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {2, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 6}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
     /* a byte count that is not twice the count */
-    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 5}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
-    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 4}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
-    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 8}, 5, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 5}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 4}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
+    {125, 3, {0x01, 0x10, 0x00, 0x20, 0x00, 3, 8}, {0x01, 0x90, 0x03, 0x0C, 0x01}},
 };
 
 TEST(a_request_that_cannot_be_served_is_refused_by_its_number)
 {
-    for (unsigned i = 0; i != sizeof refusals / sizeof *refusals; i++) {
+    for (unsigned i = 0; i != COUNT_OF(refusals); i++) {
         const refused_t *const refused = &refusals[i];
         message.values = values;
-        assert_int_equal(fathom_modbus_rtu_parse_request(&message, refused->request, refused->capacity),
-                         FATHOM_ERR_EXCEPTION);
+        expect_request(refused->request, refused->capacity, FATHOM_ERR_EXCEPTION);
         assert_int_equal(message.exception, refused->exception);
-        for (unsigned n = 0; n != VALUES; n++) assert_int_equal(values[n], GUARD16);
-        assert_frame(fathom_modbus_rtu_encode_response(&message, frame), refused->answer, refused->length);
+        assert_values_untouched_from(0);
+        expect_encoded_response(refused->answer, 5);
     }
 }
 
@@ -328,9 +347,9 @@ TEST(a_request_as_long_as_the_capacity_is_served)
     static const uint8_t read_five[] = {0x01, 0x03, 0x00, 0x20, 0x00, 5};
     static const uint8_t write_one[] = {0x01, 0x06, 0x00, 0x20, 0xFF, 0xFF};
     message.values = values;
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, read_five, 5), FATHOM_READY);
+    expect_request(read_five, 5, FATHOM_READY);
     assert_int_equal(message.exception, 0);
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, write_one, 0), FATHOM_READY);
+    expect_request(write_one, 0, FATHOM_READY);
     assert_int_equal(message.exception, 0);
     assert_int_equal(values[0], GUARD16);
 }
@@ -339,7 +358,82 @@ TEST(a_request_as_long_as_the_capacity_is_served)
 TEST(the_refusal_of_a_read_of_0_registers_fits_in_8_bytes)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x00, 0x20, 0x00, 0};
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, request, 4), FATHOM_ERR_EXCEPTION);
+    expect_request(request, 4, FATHOM_ERR_EXCEPTION);
     assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 5);
     assert_untouched_from(frame, 8, ROOM);
+}
+
+/* ---- which bytes begin like the request itself? ---- */
+
+/* A16 6(4) examples 1 and 3; HPS-167S #15, table 37, with 36 ms; 123 registers have 255 bytes. */
+typedef struct {
+    uint8_t length;
+    uint8_t bytes[13];
+} request_t;
+
+static const request_t requests[] = {
+    {8, {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6}},
+    {8, {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71}},
+    {13, {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24, 0xF1, 0xAC}},
+};
+
+static void fill(size_t which)
+{
+    values[0] = 0;
+    values[1] = 36;
+    if (which == 0) fathom_modbus_read_holding_registers(&message, 1, 0x0100, 1, values);
+    if (which == 1) fathom_modbus_write_single_register(&message, 1, 0x0200, 5);
+    if (which == 2) fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 2, values);
+}
+
+TEST(every_beginning_of_a_request_has_its_length)
+{
+    for (size_t which = 0; which != 3; which++) {
+        fill(which);
+        for (uint8_t have = 1; have <= requests[which].length; have++)
+            expect_begun(requests[which].bytes, have, requests[which].length);
+    }
+}
+
+TEST(more_bytes_behind_a_request_do_not_matter)
+{
+    uint8_t bytes[32];
+    for (size_t which = 0; which != 3; which++) {
+        fill(which);
+        memset(bytes, 0xFF, sizeof bytes);
+        memcpy(bytes, requests[which].bytes, requests[which].length);
+        expect_begun(bytes, sizeof bytes, requests[which].length);
+    }
+}
+
+/* Of a write of many the byte count belongs to the beginning too; what follows is for the CRC to check. */
+TEST(one_other_bit_in_the_beginning_makes_it_no_request)
+{
+    uint8_t bytes[13];
+    for (size_t which = 0; which != 3; which++)
+        for (unsigned bit = 0; bit != (which == 2 ? 56 : 48); bit++)
+            for (uint8_t have = 1; have <= requests[which].length; have++) {
+                fill(which);
+                memcpy(bytes, requests[which].bytes, requests[which].length);
+                bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+                expect_begun(bytes, have, have <= bit / 8 ? requests[which].length : 0);
+            }
+}
+
+TEST(the_longest_write_has_255_bytes)
+{
+    fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 123, values);
+    assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 255);
+    assert_int_equal(frame[6], 246);
+    for (unsigned have = 1; have != 256; have++) expect_begun(frame, (uint8_t)have, 255);
+}
+
+/* HPS-167S table 38: the acknowledgement of a write of many has the request's head and then its CRC. */
+TEST(the_answer_to_a_write_of_many_is_not_its_request)
+{
+    static const uint8_t done[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02};
+    fill(2);
+    for (uint8_t have = 1; have <= 6; have++) expect_begun(done, have, 13);
+    expect_begun(done, 7, 0);
+    expect_begun(done, 8, 0);
 }
