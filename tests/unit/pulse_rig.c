@@ -3,13 +3,11 @@
 
 #include <string.h>
 
-#include "suite.h"
-
 enum { GUARD = 0xA5 };
 
 pulse_rig_t stand;
 
-void pulse_rig_start(uint32_t now_us)
+void start_meter_at(uint32_t now_us)
 {
     fake_init(&stand.fake);
     stand.fake.now_us = now_us;
@@ -23,15 +21,23 @@ void pulse_rig_start(uint32_t now_us)
     assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_READY);
 }
 
-int pulse_rig_set_up(void **state)
+void start_meter(void) { start_meter_at(1000); }
+
+void answer_with(uint32_t after_us, uint32_t width_us)
+{
+    stand.pin.answer_after_us = after_us;
+    stand.pin.answer_width_us = width_us;
+}
+
+int set_up_meter(void **state)
 {
     memset(&stand.config, 0, sizeof stand.config);
     stand.config.trigger = &stand.pin.trigger;
-    pulse_rig_start(1000);
+    start_meter();
     return 0;
 }
 
-fathom_status_t pulse_rig_poll(void)
+fathom_status_t poll_meter(void)
 {
     fathom_pulse_reading_t reading;
     uint8_t untouched[sizeof reading];
@@ -48,17 +54,35 @@ fathom_status_t pulse_rig_poll(void)
     return status;
 }
 
-void pulse_rig_run(uint32_t for_us, uint32_t step_us)
+void run_meter_in_steps(uint32_t for_us, uint32_t step_us)
 {
     for (uint32_t passed_us = 0; passed_us < for_us; passed_us += step_us) {
         stand.fake.now_us += step_us;
-        pulse_rig_poll();
+        poll_meter();
     }
 }
 
-void pulse_rig_run_to_trigger(void)
+void run_meter(uint32_t for_us) { run_meter_in_steps(for_us, 100); }
+
+void run_to_trigger(void)
 {
-    pulse_rig_run(2 * MS, 100);
-    assert_int_equal(stand.pin.falls, 1);
+    run_meter(2 * MS);
+    expect_falls(1);
     assert_int_equal(stand.pin.fall_us, stand.fake.now_us);
+}
+
+void pulse_in(uint32_t in_us, uint32_t width_us) { fake_pulse(&stand.pin, in_us, width_us); }
+
+void measure(uint32_t after_us, uint32_t width_us)
+{
+    start_meter();
+    run_to_trigger();
+    pulse_in(after_us, width_us);
+    run_meter(222 * MS);
+}
+
+void expect_last(uint8_t kind, uint32_t width_us)
+{
+    assert_int_equal(stand.last.kind, kind);
+    assert_int_equal(stand.last.width_us, width_us);
 }

@@ -2,8 +2,12 @@
 #ifndef FATHOM_TESTS_PULSE_RIG_H
 #define FATHOM_TESTS_PULSE_RIG_H
 
+#include "suite.h"
+
 #include "fake_pin.h"
 #include "fathom/pulse.h"
+
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 /* A meter on fake pins, with what its polls said. */
 #define MS ((int32_t)1000) /* an int may have 16 bits */
@@ -21,17 +25,35 @@ typedef struct {
 extern pulse_rig_t stand;
 
 /* For cmocka: the default config with a pin, at 1000 us. */
-int pulse_rig_set_up(void **state);
+int set_up_meter(void **state);
 
-/* All but the config begins anew, at this time. */
-void pulse_rig_start(uint32_t now_us);
+/* All but the config begins anew, at this time; start_meter: at 1000 us. */
+void start_meter_at(uint32_t now_us);
+void start_meter(void);
+
+/* The module answers each trigger so long after its edge with so wide a pulse. */
+void answer_with(uint32_t after_us, uint32_t width_us);
+
+/* One pulse that rises so long from now. */
+void pulse_in(uint32_t in_us, uint32_t width_us);
 
 /* Polls once; without a reading none may be written. */
-fathom_status_t pulse_rig_poll(void);
+fathom_status_t poll_meter(void);
 
-void pulse_rig_run(uint32_t for_us, uint32_t step_us);
+/* Time goes on with a poll after each step; run_meter: of 100 us; run_to_trigger: to the edge, 2 ms after the start;
+ * measure: from a new start, with a pulse so long after the edge, until its cycle is over. */
+void run_meter_in_steps(uint32_t for_us, uint32_t step_us);
+void run_meter(uint32_t for_us);
+void run_to_trigger(void);
+void measure(uint32_t after_us, uint32_t width_us);
 
-/* To the trigger, which comes 2 ms after the start. */
-void pulse_rig_run_to_trigger(void);
+#define expect_readings(n)   assert_int_equal(stand.readings, n)
+#define expect_no_answers(n) assert_int_equal(stand.no_answers, n)
+#define expect_falls(n)      assert_int_equal(stand.pin.falls, n)
+#define expect_poll(status)  assert_int_equal(poll_meter(), status)
+#define expect_due(us)       assert_int_equal(fathom_pulse_due_us(&stand.meter), us)
+
+/* The last reading. */
+void expect_last(uint8_t kind, uint32_t width_us);
 
 #endif

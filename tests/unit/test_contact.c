@@ -5,17 +5,19 @@
 #define MS ((int32_t)1000) /* an int may have 16 bits */
 enum { START_US = 1000, SETTLE_US = 20000 };
 
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
 /* A fine loop, one of 20 ms, and what lies between and beyond. */
 static const uint32_t steps_us[] = {50, 1000, 7000, 20000, 33000};
-enum { STEPS = sizeof steps_us / sizeof *steps_us };
 
 /* Nothing special, and the wrap in what follows. */
 static const uint32_t starts_us[] = {START_US, UINT32_MAX - 10000, UINT32_MAX - 60000, UINT32_MAX - 200000};
-enum { STARTS = sizeof starts_us / sizeof *starts_us };
 
 static fathom_contact_timing_t timing;
 static bool near_is_high;
 static fathom_contact_t contact;
+
+#define expect_init(status) assert_int_equal(fathom_contact_init(&contact, &timing), status)
 
 static void start_at(uint32_t now_us, bool level)
 {
@@ -28,7 +30,7 @@ static void start_at(uint32_t now_us, bool level)
     contact.near_is_high = near_is_high;
     contact.model = FATHOM_A05;
     contact.unit = 7;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
+    expect_init(FATHOM_READY);
     pins.sensor = fathom_contact_sensor(&contact);
 }
 
@@ -44,7 +46,19 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static uint32_t due_us(void) { return fathom_due_us(&pins.sensor, 1); }
+static void run(uint32_t ms) { pins_run(ms * MS, 1000); }
+
+/* The next sample comes after so many ms and not before. */
+static void expect_next(uint32_t ms, uint8_t kind)
+{
+    const unsigned samples = pins.samples;
+    run(ms - 1);
+    assert_int_equal(pins.samples, samples);
+    run(1);
+    pins_expect(samples + 1, kind);
+}
+
+#define expect_due(us) assert_int_equal(fathom_due_us(&pins.sensor, 1), us)
 
 /* ---- readings ---- */
 
@@ -72,8 +86,8 @@ TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
 
 TEST(each_new_level_is_one_sample_in_any_loop_and_across_the_wrap)
 {
-    for (unsigned s = 0; s != STEPS; s++) {
-        for (unsigned at = 0; at != STARTS; at++) {
+    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
+        for (unsigned at = 0; at != COUNT_OF(starts_us); at++) {
             const uint32_t step_us = steps_us[s];
             start_at(starts_us[at], true);
             pins_run(100 * MS, step_us);
@@ -96,7 +110,7 @@ TEST(each_new_level_is_one_sample_in_any_loop_and_across_the_wrap)
 
 TEST(a_contact_that_bounces_is_one_change)
 {
-    for (unsigned s = 0; s != STEPS; s++) {
+    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
         start();
         pins_run(100 * MS, steps_us[s]);
         const uint32_t from_us = pins.fake.now_us;
@@ -110,20 +124,17 @@ TEST(a_contact_that_bounces_is_one_change)
 
 TEST(a_level_that_does_not_stand_for_20_ms_is_nothing)
 {
-    pins_run(100 * MS, 1000);
+    run(100);
     for (uint32_t i = 0; i != 5; i++) {
         pins_turn(1000 + i * 50000);
         pins_turn(20000 + i * 50000);
     }
-    pins_run(300 * MS, 1000);
+    run(300);
     pins_expect(1, FATHOM_FAR);
     pins_turn(1000);
     pins_turn(22000);
-    pins_run(20 * MS, 1000);
-    pins_expect(1, FATHOM_FAR);
-    pins_run(1 * MS, 1000);
-    pins_expect(2, FATHOM_NEAR);
-    pins_run(30 * MS, 1000);
+    expect_next(21, FATHOM_NEAR);
+    run(30);
     pins_expect(3, FATHOM_FAR);
 }
 
@@ -139,21 +150,18 @@ TEST(how_long_a_level_stands_is_an_option)
     pins_expect(2, FATHOM_NEAR);
     timing.settle_us = 300000;
     start();
-    pins_run(299 * MS, 1000);
-    assert_int_equal(pins.samples, 0);
-    pins_run(1 * MS, 1000);
-    assert_int_equal(pins.samples, 1);
+    expect_next(300, FATHOM_FAR);
 }
 
 TEST(what_a_high_level_means_is_an_option)
 {
     near_is_high = false;
     start();
-    pins_run(20 * MS, 1000);
+    run(20);
     pins_expect(1, FATHOM_NEAR);
     assert_int_equal(pins.sample.raw, 0);
     pins_turn(0);
-    pins_run(21 * MS, 1000);
+    run(21);
     pins_expect(2, FATHOM_FAR);
     assert_int_equal(pins.sample.raw, 1);
 }
@@ -162,51 +170,42 @@ TEST(what_a_high_level_means_is_an_option)
 
 TEST(a_meaning_and_a_level_that_turn_together_are_no_change)
 {
-    pins_run(50 * MS, 1000);
+    run(50);
     pins_expect(1, FATHOM_FAR);
     fathom_contact_set_near_is_high(&contact, false);
     pins_turn(15 * MS);
-    pins_run(500 * MS, 1000);
+    run(500);
     pins_expect(1, FATHOM_FAR);
     pins_turn(0);
-    pins_run(50 * MS, 1000);
+    run(50);
     pins_expect(2, FATHOM_NEAR);
     assert_int_equal(pins.sample.raw, 0);
 }
 
 TEST(a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_settled)
 {
-    pins_run(50 * MS, 1000);
+    run(50);
     fathom_contact_set_near_is_high(&contact, false);
-    pins_run(19 * MS, 1000);
-    pins_expect(1, FATHOM_FAR);
-    pins_run(1 * MS, 1000);
-    pins_expect(2, FATHOM_NEAR);
+    expect_next(20, FATHOM_NEAR);
 }
 
 /* ---- repeated ---- */
 
 TEST(with_a_period_the_level_is_repeated)
 {
-    for (unsigned at = 0; at != STARTS; at++) {
+    for (unsigned at = 0; at != COUNT_OF(starts_us); at++) {
         timing.period_us = 50000;
         start_at(starts_us[at], true);
-        pins_run(20 * MS, 1000);
+        run(20);
         pins_expect(1, FATHOM_NEAR);
-        pins_run(49 * MS, 1000);
-        assert_int_equal(pins.samples, 1);
-        pins_run(1 * MS, 1000);
-        pins_expect(2, FATHOM_NEAR);
+        expect_next(50, FATHOM_NEAR);
         assert_int_equal(pins.sample.time_us, pins.fake.now_us); /* it is so now */
-        pins_run(500 * MS, 1000);
+        run(500);
         pins_expect(12, FATHOM_NEAR);
         pins_turn(10 * MS);
-        pins_run(30 * MS, 1000);
+        run(30);
         pins_expect(13, FATHOM_FAR); /* a change does not wait for the period, and begins it anew */
-        pins_run(49 * MS, 1000);
-        assert_int_equal(pins.samples, 13);
-        pins_run(1 * MS, 1000);
-        pins_expect(14, FATHOM_FAR);
+        expect_next(50, FATHOM_FAR);
     }
 }
 
@@ -214,32 +213,28 @@ TEST(a_level_that_is_settling_is_not_repeated)
 {
     timing.period_us = 50000;
     start();
-    pins_run(20 * MS, 1000);
+    run(20);
     pins_expect(1, FATHOM_FAR);
     /* it flickers from 40 ms after that to 80 ms */
     for (uint32_t i = 0; i != 20; i++) pins_turn(40 * MS + i * 2000);
-    pins_run(97 * MS, 1000);
-    assert_int_equal(pins.samples, 1);
-    pins_run(1 * MS, 1000);
-    pins_expect(2, FATHOM_FAR);
+    expect_next(98, FATHOM_FAR);
 }
 
 /* ---- stale ---- */
 
 TEST(a_level_that_never_stands_still_is_stale_every_2_s)
 {
-    pins_run(50 * MS, 1000);
+    run(50);
     pins_expect(1, FATHOM_FAR);
     for (unsigned i = 0; i != 5900; i++) {
         pins.level = !pins.level;
-        pins.fake.now_us += 1000;
-        pins_poll();
+        run(1);
         assert_int_equal(pins.stales, i / 2000);
     }
     pins_expect(1, FATHOM_FAR);
-    pins_run(100 * MS, 1000);
+    run(100);
     pins.level = !pins.level;
-    pins_run(2000 * MS, 1000);
+    run(2000);
     assert_int_equal(pins.stales, 2);
 }
 
@@ -249,8 +244,7 @@ TEST(when_it_is_stale_is_an_option)
     start();
     for (unsigned i = 0; i != 110; i++) {
         pins.level = !pins.level;
-        pins.fake.now_us += 1000;
-        pins_poll();
+        run(1);
         assert_int_equal(pins.stales, i >= 99);
     }
 }
@@ -276,36 +270,36 @@ TEST(a_loop_slower_than_the_limit_does_not_make_a_level_stale)
 
 TEST(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled)
 {
-    assert_int_equal(due_us(), 10000);
+    expect_due(10000);
     pins_run(14 * MS, 7000);
-    assert_int_equal(due_us(), 6000);
+    expect_due(6000);
     pins.fake.now_us += 2000;
-    assert_int_equal(due_us(), 4000);
+    expect_due(4000);
     pins.fake.now_us += 5000;
-    assert_int_equal(due_us(), 0);
+    expect_due(0);
     assert_int_equal(pins_poll(), FATHOM_READY);
-    assert_int_equal(due_us(), 10000);
+    expect_due(10000);
     pins.fake.now_us += 20000;
-    assert_int_equal(due_us(), 0);
+    expect_due(0);
 }
 
 TEST(where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands)
 {
     timing.look_us = FATHOM_NO_DEADLINE;
     start();
-    assert_int_equal(due_us(), 20000);
+    expect_due(20000);
     pins_run(20 * MS, 20000);
     assert_int_equal(pins.samples, 1);
-    assert_int_equal(due_us(), FATHOM_NO_DEADLINE);
+    expect_due(FATHOM_NO_DEADLINE);
     pins_turn(0);
     pins_poll();
-    assert_int_equal(due_us(), 20000);
+    expect_due(20000);
     pins_run(20 * MS, 20000);
     assert_int_equal(pins.samples, 2);
     timing.period_us = 500000;
     start();
     pins_run(20 * MS, 20000);
-    assert_int_equal(due_us(), 500000);
+    expect_due(500000);
 }
 
 TEST(a_loop_that_sleeps_until_it_is_due_misses_nothing)
@@ -317,7 +311,7 @@ TEST(a_loop_that_sleeps_until_it_is_due_misses_nothing)
     const uint32_t from_us = pins.fake.now_us;
     unsigned looks = 0;
     for (; fathom_elapsed_us(pins.fake.now_us, from_us) < 1000 * MS; looks++) {
-        pins.fake.now_us += due_us();
+        pins.fake.now_us += fathom_due_us(&pins.sensor, 1);
         pins_poll();
     }
     /* At 20, 65; changed by 130, 175, ..; and so on: one in 45 ms and the changes */
@@ -332,14 +326,14 @@ TEST(init_refuses_what_it_cannot_read)
 {
     const fathom_pin_t output = {NULL, NULL, NULL};
     contact.pin = NULL;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_ERR_ARGUMENT);
     contact.pin = &output;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_ERR_ARGUMENT);
     contact.pin = &pins.pin;
     contact.clock = NULL;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_ERR_ARGUMENT);
     contact.clock = &pins.fake.clock;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
+    expect_init(FATHOM_READY);
 }
 
 /* ---- everything, against a slow reference ---- */
@@ -363,7 +357,7 @@ static uint8_t refer(unsigned levels, unsigned n, uint32_t step_us)
 
 TEST(every_sequence_of_levels_at_14_looks_is_right)
 {
-    for (unsigned s = 0; s != STEPS; s++) {
+    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
         const uint32_t step_us = steps_us[s];
         for (unsigned levels = 0; levels != 1u << LOOKS; levels++) {
             start_at(UINT32_MAX - 3 * step_us, (levels & 1) != 0); /* init is the first look */

@@ -5,7 +5,7 @@
 
 #include "fathom/debounce.h"
 
-enum { HALF_S = 500000, HOUR_S = 3600 };
+enum { HALF_S = 500000 };
 
 static fathom_debounce_config_t config;
 static fathom_debounce_t gate;
@@ -27,6 +27,18 @@ static int set_up(void **state)
 }
 
 static const suite_t suite = {.set_up = set_up};
+
+static void start_with(fathom_debounce_config_t other)
+{
+    config = other;
+    start();
+}
+
+/* Does a measurement so long after the start change the level? */
+static void expect_at(uint32_t after_us, uint16_t mm, bool changes)
+{
+    assert_int_equal(fathom_debounce_distance(&gate, mm, now_us + after_us), changes);
+}
 
 /* A measurement every 500 ms, as the A16's (A16 4(2)). */
 static bool distance(uint16_t mm)
@@ -100,15 +112,13 @@ TEST(a_config_without_sense_is_refused)
 TEST(threshold_and_counts_are_options)
 {
     static const uint16_t mm[] = {299, 301, 301, 299, 301};
-    config = (fathom_debounce_config_t){.threshold_mm = 300, .near_count = 1, .far_count = 2};
-    start();
+    start_with((fathom_debounce_config_t){.threshold_mm = 300, .near_count = 1, .far_count = 2});
     expect_changes("!.!!.", mm);
 }
 
 TEST(rows_of_255_are_counted_and_longer_ones_do_not_wrap)
 {
-    config = (fathom_debounce_config_t){.near_count = 255, .far_count = 255};
-    start();
+    start_with((fathom_debounce_config_t){.near_count = 255, .far_count = 255});
     for (int i = 1; i <= 1000; i++) assert_int_equal(distance(1), i == 255);
     for (int i = 1; i <= 1000; i++) assert_int_equal(distance(2000), i == 255);
 }
@@ -117,39 +127,35 @@ TEST(rows_of_255_are_counted_and_longer_ones_do_not_wrap)
 
 TEST(a_level_lasts_at_least_hold_us)
 {
-    config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1};
-    start();
-    assert_true(fathom_debounce_distance(&gate, 999, now_us));
-    assert_false(fathom_debounce_distance(&gate, 1001, now_us + 999999));
+    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1});
+    expect_at(0, 999, true);
+    expect_at(999999, 1001, false);
     assert_int_equal(gate.level, FATHOM_NEAR);
-    assert_true(fathom_debounce_distance(&gate, 1001, now_us + 1000000));
-    assert_false(fathom_debounce_distance(&gate, 999, now_us + 1999999));
-    assert_true(fathom_debounce_distance(&gate, 999, now_us + 2000000));
+    expect_at(1000000, 1001, true);
+    expect_at(1999999, 999, false);
+    expect_at(2000000, 999, true);
 }
 
 TEST(the_first_level_need_not_wait)
 {
-    config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1};
-    start();
-    assert_true(fathom_debounce_distance(&gate, 999, now_us));
+    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1});
+    expect_at(0, 999, true);
 }
 
 TEST(what_is_held_back_comes_only_if_its_row_is_unbroken)
 {
-    config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 2};
-    start();
-    assert_true(fathom_debounce_distance(&gate, 999, now_us));
-    assert_false(fathom_debounce_distance(&gate, 1001, now_us + 300000));
-    assert_false(fathom_debounce_distance(&gate, 1001, now_us + 600000));
-    assert_false(fathom_debounce_distance(&gate, 999, now_us + 900000));
-    assert_false(fathom_debounce_distance(&gate, 1001, now_us + 1200000));
-    assert_true(fathom_debounce_distance(&gate, 1001, now_us + 1500000));
+    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 2});
+    expect_at(0, 999, true);
+    expect_at(300000, 1001, false);
+    expect_at(600000, 1001, false);
+    expect_at(900000, 999, false);
+    expect_at(1200000, 1001, false);
+    expect_at(1500000, 1001, true);
 }
 
 TEST(a_row_that_is_held_back_for_long_is_not_forgotten)
 {
-    config = (fathom_debounce_config_t){.hold_us = 258 * HALF_S, .near_count = 1, .far_count = 5};
-    start();
+    start_with((fathom_debounce_config_t){.hold_us = 258 * HALF_S, .near_count = 1, .far_count = 5});
     assert_true(distance(999));
     for (int i = 1; i <= 258; i++) assert_int_equal(distance(1001), i == 258);
 }
@@ -157,33 +163,31 @@ TEST(a_row_that_is_held_back_for_long_is_not_forgotten)
 /* 71.58 minutes are one turn of the clock: 2 * 2147.48 s and a little would look like a little. */
 TEST(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again)
 {
-    config = (fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1};
-    start();
-    assert_true(fathom_debounce_distance(&gate, 999, now_us));
-    assert_false(fathom_debounce_distance(&gate, 999, now_us + 0x80000000u));
-    assert_true(fathom_debounce_distance(&gate, 1001, now_us + 10));
+    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1});
+    expect_at(0, 999, true);
+    expect_at(0x80000000u, 999, false);
+    expect_at(10, 1001, true);
 }
 
 /* ---- samples ---- */
 
-static bool sample(uint8_t kind, uint16_t mm)
+static void expect_sample(uint8_t kind, uint16_t mm, bool changes)
 {
-    const fathom_sample_t s = {.time_us = now_us += HALF_S, .kind = kind, .distance_mm = mm};
-    return fathom_debounce_sample(&gate, &s);
+    const fathom_sample_t sample = {.time_us = now_us += HALF_S, .kind = kind, .distance_mm = mm};
+    assert_int_equal(fathom_debounce_sample(&gate, &sample), changes);
 }
 
 TEST(samples_of_every_kind_count_as_the_header_says)
 {
-    config = (fathom_debounce_config_t){.near_count = 2, .far_count = 2};
-    start();
-    assert_false(sample(FATHOM_TARGET, 999));
-    assert_true(sample(FATHOM_TARGET, 999));
-    assert_false(sample(FATHOM_NO_TARGET, 0));
-    assert_true(sample(FATHOM_NO_TARGET, 0));
-    assert_false(sample(FATHOM_NEAR, 0));
-    assert_true(sample(FATHOM_NEAR, 0));
-    assert_false(sample(FATHOM_FAR, 0));
-    assert_true(sample(FATHOM_FAR, 0));
+    start_with((fathom_debounce_config_t){.near_count = 2, .far_count = 2});
+    expect_sample(FATHOM_TARGET, 999, false);
+    expect_sample(FATHOM_TARGET, 999, true);
+    expect_sample(FATHOM_NO_TARGET, 0, false);
+    expect_sample(FATHOM_NO_TARGET, 0, true);
+    expect_sample(FATHOM_NEAR, 0, false);
+    expect_sample(FATHOM_NEAR, 0, true);
+    expect_sample(FATHOM_FAR, 0, false);
+    expect_sample(FATHOM_FAR, 0, true);
 }
 
 TEST(interference_counts_as_farther)
@@ -195,12 +199,12 @@ TEST(interference_counts_as_farther)
 
 TEST(a_fault_holds_the_level_and_the_row_goes_on_behind_it)
 {
-    assert_false(sample(FATHOM_TARGET, 999));
-    assert_false(sample(FATHOM_FAULT, 0));
-    assert_false(sample(FATHOM_TARGET, 999));
-    for (int i = 0; i != 20; i++) assert_false(sample(FATHOM_FAULT, 0));
-    assert_true(sample(FATHOM_TARGET, 999));
-    for (int i = 0; i != 20; i++) assert_false(sample(FATHOM_FAULT, 0));
+    expect_sample(FATHOM_TARGET, 999, false);
+    expect_sample(FATHOM_FAULT, 0, false);
+    expect_sample(FATHOM_TARGET, 999, false);
+    for (int i = 0; i != 20; i++) expect_sample(FATHOM_FAULT, 0, false);
+    expect_sample(FATHOM_TARGET, 999, true);
+    for (int i = 0; i != 20; i++) expect_sample(FATHOM_FAULT, 0, false);
     assert_int_equal(gate.level, FATHOM_NEAR);
 }
 

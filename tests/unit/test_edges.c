@@ -27,8 +27,16 @@ static const suite_t suite = {.set_up = set_up};
 
 static void rise(uint32_t at_us) { fathom_edges_feed(&edges, true, at_us); }
 static void fall(uint32_t at_us) { fathom_edges_feed(&edges, false, at_us); }
+static void feed(uint32_t rise_us, uint32_t fall_us)
+{
+    rise(rise_us);
+    fall(fall_us);
+}
+
 static int take(void) { return capture.take(capture.ctx, &pulse); }
 static void arm(void) { capture.arm(capture.ctx); }
+
+#define expect_none() assert_int_equal(take(), 0)
 
 static void assert_pulse(uint32_t width_us, uint32_t end_us)
 {
@@ -39,24 +47,23 @@ static void assert_pulse(uint32_t width_us, uint32_t end_us)
 
 TEST(a_rise_and_a_fall_are_a_pulse)
 {
-    assert_int_equal(take(), 0);
+    expect_none();
     assert_false(pulse.is_high);
     rise(1000);
-    assert_int_equal(take(), 0);
+    expect_none();
     assert_true(pulse.is_high);
     fall(11000);
     assert_pulse(10000, 11000);
     assert_false(pulse.is_high);
-    assert_int_equal(take(), 0);
+    expect_none();
 }
 
 TEST(nothing_but_the_level_is_written_without_a_pulse)
 {
-    rise(100);
-    fall(200);
+    feed(100, 200);
     pulse = (fathom_pulse_t){7, 8, true};
     arm();
-    assert_int_equal(take(), 0);
+    expect_none();
     assert_int_equal(pulse.width_us, 7);
     assert_int_equal(pulse.end_us, 8);
     assert_false(pulse.is_high);
@@ -64,25 +71,19 @@ TEST(nothing_but_the_level_is_written_without_a_pulse)
 
 TEST(pulses_come_out_in_their_order_and_the_fifth_is_dropped_and_counted)
 {
-    for (uint32_t i = 1; i <= 6; i++) {
-        rise(i * 1000);
-        fall(i * 1000 + i);
-    }
+    for (uint32_t i = 1; i <= 6; i++) feed(i * 1000, i * 1000 + i);
     assert_int_equal(edges.lost, 2);
     for (uint32_t i = 1; i <= 4; i++) assert_pulse(i, i * 1000 + i);
-    assert_int_equal(take(), 0);
-    rise(9000);
-    fall(9009);
+    expect_none();
+    feed(9000, 9009);
     assert_pulse(9, 9009);
 }
 
 TEST(widths_are_right_across_the_wrap_and_up_to_71_minutes)
 {
-    rise(UINT32_MAX - 4999);
-    fall(5000);
+    feed(UINT32_MAX - 4999, 5000);
     assert_pulse(10000, 5000);
-    rise(6000);
-    fall(5999);
+    feed(6000, 5999);
     assert_pulse(UINT32_MAX, 5999);
 }
 
@@ -90,8 +91,7 @@ TEST(many_pulses_go_through_as_the_counts_wrap)
 {
     for (uint32_t i = 0; i != 1000; i++) {
         if (i % 50 == 0) arm();
-        rise(i * 100);
-        fall(i * 100 + i % 90);
+        feed(i * 100, i * 100 + i % 90);
         assert_pulse(i % 90, i * 100 + i % 90);
     }
     assert_int_equal(edges.lost, 0);
@@ -102,26 +102,19 @@ TEST(many_pulses_go_through_as_the_counts_wrap)
 
 TEST(arm_forgets_what_was_captured)
 {
-    rise(100);
-    fall(200);
-    rise(300);
-    fall(400);
+    feed(100, 200);
+    feed(300, 400);
     arm();
-    assert_int_equal(take(), 0);
-    rise(500);
-    fall(600);
+    expect_none();
+    feed(500, 600);
     assert_pulse(100, 600);
 }
 
 TEST(arm_makes_room)
 {
-    for (uint32_t i = 1; i <= 4; i++) {
-        rise(i * 1000);
-        fall(i * 1000 + i);
-    }
+    for (uint32_t i = 1; i <= 4; i++) feed(i * 1000, i * 1000 + i);
     arm();
-    rise(9000);
-    fall(9009);
+    feed(9000, 9009);
     assert_pulse(9, 9009);
     assert_int_equal(edges.lost, 0);
 }
@@ -131,9 +124,8 @@ TEST(a_pulse_that_began_before_arm_does_not_count)
     rise(100);
     arm();
     fall(20100);
-    assert_int_equal(take(), 0);
-    rise(30000);
-    fall(30010);
+    expect_none();
+    feed(30000, 30010);
     assert_pulse(10, 30010);
 }
 
@@ -144,7 +136,7 @@ TEST(a_pulse_that_began_before_257_arms_does_not_count)
         rise(100);
         for (unsigned i = 0; i != arms; i++) arm();
         fall(20100);
-        assert_int_equal(take(), 0);
+        expect_none();
     }
 }
 
@@ -152,8 +144,7 @@ TEST(a_pulse_that_began_before_257_arms_does_not_count)
 TEST(after_127_rises_without_arm_pulses_are_lost)
 {
     for (uint32_t i = 1; i <= 300; i++) {
-        rise(i * 100);
-        fall(i * 100 + 50);
+        feed(i * 100, i * 100 + 50);
         assert_int_equal(take(), i % 256 >= 1 && i % 256 <= 127);
     }
 }
@@ -172,12 +163,11 @@ TEST(a_rise_seen_twice_within_50_us_is_one_and_the_first_counts)
 
 TEST(a_fall_seen_twice_is_one_and_the_first_counts)
 {
-    rise(1000);
-    fall(11000);
+    feed(1000, 11000);
     fall(11010);
     fall(15000);
     assert_pulse(10000, 11000);
-    assert_int_equal(take(), 0);
+    expect_none();
 }
 
 /* The level was high at 1000 and again at 5000: when it was low in between nobody knows, so neither 10000 nor 6000 us
@@ -185,12 +175,10 @@ TEST(a_fall_seen_twice_is_one_and_the_first_counts)
 TEST(a_fall_that_was_missed_makes_no_pulse_of_two)
 {
     rise(1000);
-    rise(5000);
-    fall(11000);
-    assert_int_equal(take(), 0);
+    feed(5000, 11000);
+    expect_none();
     assert_int_equal(edges.missed, 1);
-    rise(20000);
-    fall(20100);
+    feed(20000, 20100);
     assert_pulse(100, 20100);
 }
 
@@ -199,46 +187,39 @@ TEST(rises_without_a_fall_are_counted_once)
     rise(1000);
     rise(1051);
     rise(1052);
-    rise(9000);
-    fall(11000);
-    assert_int_equal(take(), 0);
+    feed(9000, 11000);
+    expect_none();
     assert_int_equal(edges.missed, 1);
 }
 
 TEST(a_rise_that_was_missed_loses_its_pulse_and_no_other)
 {
     fall(1000);
-    rise(2000);
-    fall(2500);
+    feed(2000, 2500);
     fall(4000);
-    rise(5000);
-    fall(5600);
+    feed(5000, 5600);
     assert_pulse(500, 2500);
     assert_pulse(600, 5600);
-    assert_int_equal(take(), 0);
+    expect_none();
 }
 
 TEST(the_time_within_which_edges_are_the_same_is_the_users)
 {
     edges.same_us = 10;
     rise(1000);
-    rise(1010);
-    fall(2000);
+    feed(1010, 2000);
     assert_pulse(1000, 2000);
     rise(3000);
-    rise(3011);
-    fall(4000);
-    assert_int_equal(take(), 0);
+    feed(3011, 4000);
+    expect_none();
 }
 
 TEST(the_counts_of_what_went_wrong_stop_at_255)
 {
     for (uint32_t i = 0; i != 300; i++) {
         rise(i * 1000);
-        rise(i * 1000 + 100);
-        fall(i * 1000 + 200);
-        rise(i * 1000 + 300);
-        fall(i * 1000 + 400);
+        feed(i * 1000 + 100, i * 1000 + 200);
+        feed(i * 1000 + 300, i * 1000 + 400);
     }
     assert_int_equal(edges.missed, 255);
     assert_int_equal(edges.lost, 255);
@@ -252,10 +233,10 @@ TEST(with_a_pin_the_level_is_its_and_not_that_of_the_last_edge)
     fathom_edges_init(&edges, &pin);
     arm();
     rise(1000); /* the fall is missed */
-    assert_int_equal(take(), 0);
+    expect_none();
     assert_false(pulse.is_high);
     level = true;
-    assert_int_equal(take(), 0);
+    expect_none();
     assert_true(pulse.is_high);
 }
 
@@ -266,9 +247,8 @@ TEST(a_pin_that_is_high_at_first_makes_no_pulse_until_it_has_risen)
     arm();
     rise(500); /* doubled, of a rise before init */
     fall(1000);
-    assert_int_equal(take(), 0);
+    expect_none();
     assert_int_equal(edges.missed, 0);
-    rise(2000);
-    fall(3000);
+    feed(2000, 3000);
     assert_pulse(1000, 3000);
 }

@@ -16,11 +16,7 @@ static bool is_waiting; /* the pulse, to be taken */
 static unsigned falls;
 static unsigned busy; /* so many times the port cannot begin a break yet */
 
-static uint32_t clock_now_us(void *ctx)
-{
-    (void)ctx;
-    return now_us;
-}
+static uint32_t clock_now_us(void *ctx) { return (void)ctx, now_us; }
 
 static void drive(bool low)
 {
