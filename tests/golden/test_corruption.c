@@ -43,23 +43,8 @@ TEST(every_modbus_frame_without_an_error_is_taken)
     assert_int_equal(bytes, ALL_BYTES);
 }
 
-TEST(every_single_bit_error_in_a_modbus_frame_is_refused)
-{
-    unsigned tried = 0;
-    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
-        const vector_t *const row = &modbus_vectors[i].frame;
-        uint8_t bytes[VECTOR_BYTES];
-        memcpy(bytes, row->bytes, sizeof bytes);
-        for (unsigned bit = 0; bit != row->length * 8u; bit++, tried++) {
-            bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
-            assert_int_equal(accepted(row, bytes, row->length), 0);
-            bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        }
-    }
-    assert_int_equal(tried, 8 * ALL_BYTES);
-}
-
-TEST(every_single_byte_error_in_a_modbus_frame_is_refused)
+/* Calls this with every frame that has one wrong byte, or only one wrong bit; returns how many there were. */
+static uint32_t for_each_error(bool of_one_bit, void (*look)(const vector_t *row, const uint8_t *bytes))
 {
     uint32_t tried = 0;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
@@ -67,37 +52,48 @@ TEST(every_single_byte_error_in_a_modbus_frame_is_refused)
         uint8_t bytes[VECTOR_BYTES];
         memcpy(bytes, row->bytes, sizeof bytes);
         for (unsigned at = 0; at != row->length; at++) {
-            for (unsigned change = 1; change != 256; change++, tried++) {
+            for (unsigned change = 1; change != 256; change += of_one_bit ? change : 1, tried++) {
                 bytes[at] = (uint8_t)(row->bytes[at] ^ change);
-                assert_int_equal(accepted(row, bytes, row->length), 0);
+                look(row, bytes);
             }
             bytes[at] = row->bytes[at];
         }
     }
-    assert_int_equal(tried, (uint32_t)255 * ALL_BYTES);
+    return tried;
+}
+
+static void refuse(const vector_t *row, const uint8_t *bytes)
+{
+    assert_int_equal(accepted(row, bytes, row->length), 0);
+}
+
+TEST(every_single_bit_error_in_a_modbus_frame_is_refused)
+{
+    assert_int_equal(for_each_error(true, refuse), 8 * ALL_BYTES);
+}
+
+TEST(every_single_byte_error_in_a_modbus_frame_is_refused)
+{
+    assert_int_equal(for_each_error(false, refuse), (uint32_t)255 * ALL_BYTES);
 }
 
 /* Whoever looks for requests on the line sees answers too, and one of their damaged beginnings in 65536 has a
  * right CRC by chance. In this table it is this one. */
-TEST(one_damaged_answer_looks_like_a_request_by_chance)
+static unsigned found;
+
+static void take_for_a_request(const vector_t *row, const uint8_t *bytes)
 {
     static const uint8_t chance[] = {0x01, 0x03, 0x16, 0xB0, 0x00, 0xFF, 0x00, 0x25};
-    unsigned found = 0;
-    for (unsigned i = 0; i != MODBUS_ROWS; i++) {
-        const vector_t *const row = &modbus_vectors[i].frame;
-        uint8_t bytes[VECTOR_BYTES];
-        memcpy(bytes, row->bytes, sizeof bytes);
-        for (unsigned at = 0; at != row->length; at++) {
-            for (unsigned change = 1; change != 256; change++) {
-                bytes[at] = (uint8_t)(row->bytes[at] ^ change);
-                assert_int_equal(is_accepted(fathom_modbus_rtu_response_length, bytes, row->length), 0);
-                if (is_accepted(fathom_modbus_rtu_request_length, bytes, row->length) == 0) continue;
-                assert_memory_equal(bytes, chance, sizeof chance);
-                found++;
-            }
-            bytes[at] = row->bytes[at];
-        }
-    }
+    assert_int_equal(is_accepted(fathom_modbus_rtu_response_length, bytes, row->length), 0);
+    if (is_accepted(fathom_modbus_rtu_request_length, bytes, row->length) == 0) return;
+    assert_memory_equal(bytes, chance, sizeof chance);
+    found++;
+}
+
+TEST(one_damaged_answer_looks_like_a_request_by_chance)
+{
+    found = 0;
+    assert_int_equal(for_each_error(false, take_for_a_request), (uint32_t)255 * ALL_BYTES);
     assert_int_equal(found, 1);
 }
 
@@ -145,14 +141,19 @@ static uint8_t length_of_prefix(length_of_t *length_of, const uint8_t *bytes, ui
     return length;
 }
 
+/* Of every beginning of a frame: below `least` bytes it is known that so many are needed, then the whole. */
+static void assert_lengths(length_of_t *length_of, const uint8_t *bytes, uint8_t length, uint8_t least)
+{
+    for (uint8_t have = 1; have <= length; have++)
+        assert_int_equal(length_of_prefix(length_of, bytes, have), have < least ? least : length);
+}
+
 TEST(the_length_of_an_answer_is_known_from_its_third_byte)
 {
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
-        if ((row->direction & VECTOR_ANSWER) == 0) continue;
-        for (uint8_t have = 1; have <= row->length; have++)
-            assert_int_equal(length_of_prefix(fathom_modbus_rtu_response_length, row->bytes, have),
-                             have < 3 ? 3 : row->length);
+        if ((row->direction & VECTOR_ANSWER) != 0)
+            assert_lengths(fathom_modbus_rtu_response_length, row->bytes, row->length, 3);
     }
 }
 
@@ -162,14 +163,11 @@ TEST(the_length_of_a_request_is_known_from_its_second_byte_or_its_byte_count)
     static const uint8_t write_many[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24};
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
-        if ((row->direction & VECTOR_REQUEST) == 0) continue;
-        for (uint8_t have = 1; have <= row->length; have++)
-            assert_int_equal(length_of_prefix(fathom_modbus_rtu_request_length, row->bytes, have),
-                             have < 2 ? 2 : row->length);
+        if ((row->direction & VECTOR_REQUEST) != 0)
+            assert_lengths(fathom_modbus_rtu_request_length, row->bytes, row->length, 2);
     }
-    for (uint8_t have = 1; have <= sizeof write_many; have++)
-        assert_int_equal(length_of_prefix(fathom_modbus_rtu_request_length, write_many, have), have < 2 ? 2
-                                                                                               : have < 7
-                                                                                                   ? 7
-                                                                                                   : 13);
+    for (uint8_t have = 1; have <= sizeof write_many; have++) {
+        const uint8_t length = length_of_prefix(fathom_modbus_rtu_request_length, write_many, have);
+        assert_int_equal(length, have < 2 ? 2 : have < 7 ? 7 : 13);
+    }
 }

@@ -5,24 +5,16 @@
 
 #include "fathom/a05_dyp.h"
 #include "fathom/a05_modbus.h"
-#include "fathom/dyp_frame.h"
 #include "fathom/dyp_protocol.h"
 
-/* The misprints in the datasheets of A05 and A16, one test each: what is printed is refused, what is right is taken.
- * That the two speeds of sound of A16 1(4) differ is in tests/property, with the pulse; the HPS-167S has a file of its
+/* The misprints in the datasheet of the A05, one test each: what is printed is refused, what is right is taken. Of the
+ * A16 the start byte is in test_frames.c; that the two speeds of sound of A16 1(4) differ is in tests/property, with the pulse; the HPS-167S has a file of its
  * own. */
-
-static uint8_t sum_of(const uint8_t *bytes, size_t count)
-{
-    unsigned sum = 0;
-    for (size_t i = 0; i != count; i++) sum += bytes[i];
-    return (uint8_t)(sum & 0xFF);
-}
 
 TEST(a05_2_3_3_prints_60_as_the_sum_of_the_answer_which_is_62)
 {
+    /* 55 + AA + 01 + 01 + 03 + E8 + 07 + D0 + 07 + A1 + 0D + EA = 462; 60 is the sum of the frame of 1(3) */
     uint8_t answer[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
-    assert_int_equal(sum_of(answer, 12), 0x62);
     assert_false(fathom_dyp_protocol_valid(answer, sizeof answer));
     answer[12] = 0x62;
     assert_true(fathom_dyp_protocol_valid(answer, sizeof answer));
@@ -56,8 +48,6 @@ TEST(a05_2_3_prints_data_1h_twice_and_the_second_is_data_1l)
     fathom_dyp_protocol_decode(answer, values);
     assert_int_equal(values[0], 1000);
     assert_int_equal(values[1], 2000);
-    assert_int_equal(values[2], 1953);
-    assert_int_equal(values[3], 3562);
 }
 
 /* ---- A05 3(3): asked through the driver, with a seam that answers at once ---- */
@@ -74,37 +64,16 @@ static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
     request->exchange.link.heard_us = 0;
     return FATHOM_PENDING;
 }
-static void cancel(void *ctx, fathom_modbus_request_t *request)
-{
-    (void)ctx;
-    (void)request;
-}
-static void cancel_unit(void *ctx, uint8_t unit)
-{
-    (void)ctx;
-    (void)unit;
-}
-static fathom_status_t poll(void *ctx)
-{
-    (void)ctx;
-    return FATHOM_PENDING;
-}
-static uint32_t due_us(void *ctx)
-{
-    (void)ctx;
-    return 0;
-}
-static uint32_t now_us(void *ctx)
-{
-    (void)ctx;
-    return 0;
-}
+static void cancel(void *ctx, fathom_modbus_request_t *request) { (void)ctx, (void)request; }
+static void cancel_unit(void *ctx, uint8_t unit) { (void)ctx, (void)unit; }
+static uint32_t zero(void *ctx) { return (void)ctx, (uint32_t)0; }
+static fathom_status_t poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
 
 /* The one wanted probe of an A05 whose registers begin there: what is asked, and as which probe it comes. */
 static uint8_t probe_of(uint8_t wanted, uint16_t registers)
 {
-    const fathom_modbus_t modbus = {submit, cancel, cancel_unit, poll, due_us, NULL};
-    const fathom_clock_t clock = {now_us, NULL};
+    const fathom_modbus_t modbus = {submit, cancel, cancel_unit, poll, zero, NULL};
+    const fathom_clock_t clock = {zero, NULL};
     const fathom_a05_modbus_config_t config = {
         .modbus = &modbus, .clock = &clock, .probes = wanted, .registers = registers};
     fathom_a05_modbus_t sensor;
@@ -132,19 +101,4 @@ TEST(a05_3_3_prints_that_four_registers_are_those_of_three)
         assert_int_equal(probe_of((uint8_t)(1u << (probe - 1)), FATHOM_A05_REGISTERS), probe);
         assert_int_equal(head[2] * 256 + head[3], 0x0106 + probe - 1);
     }
-}
-
-/* ---- A16 ---- */
-
-TEST(a16_2_to_5_print_two_start_bytes_and_it_is_one)
-{
-    static const uint8_t example[] = {0xFF, 0x07, 0xA1, 0xA7};
-    static const uint8_t printed[] = {0xFF, 0xFF, 0x07, 0xA1, 0xA6}; /* 2 * FF + 07 + A1 = 2A6 */
-    uint16_t value = 0;
-    assert_int_equal(FATHOM_DYP_A16_LENGTH, 4);
-    assert_true(fathom_dyp_frame_valid(example, 4));
-    fathom_dyp_frame_decode(example, &value, 1);
-    assert_int_equal(value, 1953);
-    assert_false(fathom_dyp_frame_valid(printed, 4));
-    assert_false(fathom_dyp_frame_valid(printed + 1, 4));
 }

@@ -1,161 +1,112 @@
 /* SPDX-License-Identifier: MIT */
 #include "vectors.h"
 
-#define BYTES(...)                                                                                           \
-    sizeof((const uint8_t[]){__VA_ARGS__}), { __VA_ARGS__ }
+#include <stdlib.h>
+
+/* A row's frame, and of a Modbus frame what was asked where it brings no values. */
+#define FRAME(source, name, note, direction, hex)                                                            \
+    {                                                                                                        \
+        source, name, note, direction, hex, 0, { 0 }                                                         \
+    }
+#define REQUEST(source, name, note, hex) FRAME(source, name, note, VECTOR_REQUEST, hex)
+#define ANSWER(source, name, note, hex)  FRAME(source, name, note, VECTOR_ANSWER, hex)
+#define BOTH(source, name, note, hex)    FRAME(source, name, note, VECTOR_BOTH, hex)
+#define ASKED(unit, function, first, operand)                                                                \
+    {                                                                                                        \
+        unit, function, first, operand, {0}, 0                                                               \
+    }
 
 enum { READ = 0x03, WRITE = 0x06, WRITE_MANY = 0x10 };
 
-const auto_vector_t auto_vectors[AUTO_ROWS] = {
-    {{"A16", "A16 2(4)", "auto frame", "1953 mm", VECTOR_ANSWER, BYTES(0xFF, 0x07, 0xA1, 0xA7)}, 1, {1953}},
-    {{"A05", "A05 1(3)", "auto frame", "1000 2000 1953 3562 mm", VECTOR_ANSWER,
-      BYTES(0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60)},
+auto_vector_t auto_vectors[AUTO_ROWS] = {
+    {ANSWER("A16 2(4)", "auto frame", "1953 mm", "FF 07 A1 A7"), 1, {1953}},
+    {ANSWER("A05 1(3)", "auto frame", "1000 2000 1953 3562 mm", "FF 03 E8 07 D0 07 A1 0D EA 60"),
      4,
      {1000, 2000, 1953, 3562}},
 };
 
 /* The request of the exception is the one that the datasheet's text gives with it. */
-const modbus_vector_t modbus_vectors[MODBUS_ROWS] = {
-    {{"A16", "A16 6(4) ex 1", "read processed", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6)},
-     {1, READ, 0x0100, 1, 0, {0}}},
-    {{"A16", "A16 6(4) ex 1", "read processed", "754 mm", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1)},
-     {1, READ, 0x0100, 1, 0, {754}}},
-    {{"A16", "A16 6(4) ex 2", "read real-time", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36)},
-     {1, READ, 0x0101, 1, 0, {0}}},
-    {{"A16", "A16 6(4) ex 2", "read real-time", "751 mm", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8)},
-     {1, READ, 0x0101, 1, 0, {751}}},
-    {{"A16", "A16 6(4) ex 3", "set address 5", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71)},
-     {1, WRITE, 0x0200, 5, 0, {0}}},
-    {{"A16", "A16 6(4) ex 4", "set automatic mode", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72)},
-     {1, WRITE, 0x0202, 1, 0, {0}}},
-    {{"A16", "A16 6(4) ex 5", "set real-time output", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73)},
-     {1, WRITE, 0x0207, 1, 0, {0}}},
-    {{"A16", "A16 6(4) ex 6", "set negative polarity", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73)},
-     {1, WRITE, 0x0205, 0, 0, {0}}},
-    {{"A16", "A16 6(4) last", "set threshold 2000 mm", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF)},
-     {1, WRITE, 0x0206, 2000, 0, {0}}},
-    {{"A05", "A05 3(4)1 ex 1", "read probe 1", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x01, 0x06, 0x00, 0x01, 0x65, 0xF7)},
-     {1, READ, 0x0106, 1, 0, {0}}},
-    {{"A05", "A05 3(4)1 ex 1", "read probe 1", "316 mm", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x02, 0x01, 0x3C, 0xB9, 0xC5)},
-     {1, READ, 0x0106, 1, 0, {316}}},
-    {{"A05", "A05 3(4)1 ex 2", "read probe 2", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x01, 0x07, 0x00, 0x01, 0x34, 0x37)},
-     {1, READ, 0x0107, 1, 0, {0}}},
-    {{"A05", "A05 3(4)1 ex 2", "read probe 2", "2331 mm", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x02, 0x09, 0x1B, 0xFE, 0x1F)},
-     {1, READ, 0x0107, 1, 0, {2331}}},
-    {{"A05", "A05 3(4)1 ex 3", "read probes 2 3 4", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6)},
-     {1, READ, 0x0107, 3, 0, {0}}},
-    {{"A05", "A05 3(4)1 ex 3", "read probes 2 3 4", "250 659 2426 mm", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47)},
-     {1, READ, 0x0107, 3, 0, {250, 659, 2426}}},
-    {{"A05", "A05 3(4)2", "set address 5", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71)},
-     {1, WRITE, 0x0200, 5, 0, {0}}},
-    {{"HPS-167S", "HPS table 9", "interface version", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x00, 0x01, 0x00, 0x03, 0x54, 0x0B)},
-     {1, READ, 0x0001, 3, 0, {0}}},
-    {{"HPS-167S", "HPS table 11", "interface configuration", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9)},
-     {1, READ, 0x0002, 4, 0, {0}}},
-    {{"HPS-167S", "HPS table 13", "sensor details", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x00, 0x03, 0x00, 0x0B, 0xF4, 0x0D)},
-     {1, READ, 0x0003, 11, 0, {0}}},
-    {{"HPS-167S", "HPS command #3", "sensor details",
-      "2019-09-23 version 3.9; the text says 19/09/27 and Ver. 2.1", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x16, 0xB0, 0x00, 0x39, 0x00, 0x25, 0x42, 0x34, 0x57, 0x14, 0x20, 0x34, 0x38, 0x35,
-            0x01, 0x06, 0x07, 0x05, 0x13, 0x09, 0x17, 0x03, 0x09, 0x1A, 0xDC)},
+modbus_vector_t modbus_vectors[MODBUS_ROWS] = {
+    {REQUEST("A16 6(4) ex 1", "read processed", "", "01 03 01 00 00 01 85 F6"), ASKED(1, READ, 0x0100, 1)},
+    {ANSWER("A16 6(4) ex 1", "read processed", "754 mm", "01 03 02 02 F2 38 A1"),
+     {1, READ, 0x0100, 1, {754}, 0}},
+    {REQUEST("A16 6(4) ex 2", "read real-time", "", "01 03 01 01 00 01 D4 36"), ASKED(1, READ, 0x0101, 1)},
+    {ANSWER("A16 6(4) ex 2", "read real-time", "751 mm", "01 03 02 02 EF F8 A8"),
+     {1, READ, 0x0101, 1, {751}, 0}},
+    {BOTH("A16 6(4) ex 3", "set address 5", "", "01 06 02 00 00 05 48 71"), ASKED(1, WRITE, 0x0200, 5)},
+    {BOTH("A16 6(4) ex 4", "set automatic mode", "", "01 06 02 02 00 01 E8 72"), ASKED(1, WRITE, 0x0202, 1)},
+    {BOTH("A16 6(4) ex 5", "set real-time output", "", "01 06 02 07 00 01 F8 73"),
+     ASKED(1, WRITE, 0x0207, 1)},
+    {BOTH("A16 6(4) ex 6", "set negative polarity", "", "01 06 02 05 00 00 98 73"),
+     ASKED(1, WRITE, 0x0205, 0)},
+    {BOTH("A16 6(4) last", "set threshold 2000 mm", "", "01 06 02 06 07 D0 6B DF"),
+     ASKED(1, WRITE, 0x0206, 2000)},
+    {REQUEST("A05 3(4)1 ex 1", "read probe 1", "", "01 03 01 06 00 01 65 F7"), ASKED(1, READ, 0x0106, 1)},
+    {ANSWER("A05 3(4)1 ex 1", "read probe 1", "316 mm", "01 03 02 01 3C B9 C5"),
+     {1, READ, 0x0106, 1, {316}, 0}},
+    {REQUEST("A05 3(4)1 ex 2", "read probe 2", "", "01 03 01 07 00 01 34 37"), ASKED(1, READ, 0x0107, 1)},
+    {ANSWER("A05 3(4)1 ex 2", "read probe 2", "2331 mm", "01 03 02 09 1B FE 1F"),
+     {1, READ, 0x0107, 1, {2331}, 0}},
+    {REQUEST("A05 3(4)1 ex 3", "read probes 2 3 4", "", "01 03 01 07 00 03 B5 F6"),
+     ASKED(1, READ, 0x0107, 3)},
+    {ANSWER("A05 3(4)1 ex 3", "read probes 2 3 4", "250 659 2426 mm", "01 03 06 00 FA 02 93 09 7A 8F 47"),
+     {1, READ, 0x0107, 3, {250, 659, 2426}, 0}},
+    {BOTH("A05 3(4)2", "set address 5", "", "01 06 02 00 00 05 48 71"), ASKED(1, WRITE, 0x0200, 5)},
+    {REQUEST("HPS table 9", "interface version", "", "01 03 00 01 00 03 54 0B"), ASKED(1, READ, 0x0001, 3)},
+    {REQUEST("HPS table 11", "interface configuration", "", "01 03 00 02 00 04 E5 C9"),
+     ASKED(1, READ, 0x0002, 4)},
+    {REQUEST("HPS table 13", "sensor details", "", "01 03 00 03 00 0B F4 0D"), ASKED(1, READ, 0x0003, 11)},
+    {ANSWER("HPS command #3", "sensor details", "2019-09-23 version 3.9; the text says 19/09/27 and Ver. 2.1",
+            "01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC"),
      {1,
       READ,
       0x0003,
       11,
-      0,
-      {0xB000, 0x3900, 0x2542, 0x3457, 0x1420, 0x3438, 0x3501, 0x0607, 0x0513, 0x0917, 0x0309}}},
-    {{"HPS-167S", "HPS table 15", "AFE temperature", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xCB)},
-     {1, READ, 0x0004, 1, 0, {0}}},
-    {{"HPS-167S", "HPS table 17", "single measurement", "the exception example misprints the CRC as C5 C8",
-      VECTOR_REQUEST, BYTES(0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB)},
-     {1, READ, 0x0008, 4, 0, {0}}},
-    {{"HPS-167S", "HPS command #5", "single measurement",
-      "2083 mm; magnitude 723.1744; ambient 1; precision 0", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xFD, 0x41)},
-     {1, READ, 0x0008, 4, 0, {2083, 0xDCB2, 0x0701, 0}}},
-    {{"HPS-167S", "HPS table 19", "factory reset", "", VECTOR_REQUEST,
-      BYTES(0x01, 0x03, 0x00, 0x09, 0x00, 0x01, 0x54, 0x08)},
-     {1, READ, 0x0009, 1, 0, {0}}},
-    {{"HPS-167S", "HPS table 20", "factory reset", "success", VECTOR_ANSWER,
-      BYTES(0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84)},
-     {1, READ, 0x0009, 1, 0, {1}}},
-    {{"HPS-167S", "HPS tables 21 22", "warm-up 5 s", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x00, 0x0A, 0x00, 0x05, 0x69, 0xCB)},
-     {1, WRITE, 0x000A, 5, 0, {0}}},
-    {{"HPS-167S", "HPS tables 25 26", "baud 19200", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x00, 0x11, 0x00, 0x01, 0x18, 0x0F)},
-     {1, WRITE, 0x0011, 1, 0, {0}}},
-    {{"HPS-167S", "HPS tables 27 28", "no measurement at power-on", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x00, 0x12, 0x00, 0x00, 0x29, 0xCF)},
-     {1, WRITE, 0x0012, 0, 0, {0}}},
-    {{"HPS-167S", "HPS tables 29 30", "termination on", "", VECTOR_BOTH,
-      BYTES(0x01, 0x06, 0x00, 0x13, 0x00, 0xFF, 0x38, 0x4F)},
-     {1, WRITE, 0x0013, 0x00FF, 0, {0}}},
-    {{"HPS-167S", "HPS table 38", "reconnect time", "", VECTOR_ANSWER,
-      BYTES(0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02)},
-     {1, WRITE_MANY, 0x0020, 2, 0, {0}}},
-    {{"HPS-167S", "HPS abnormal response", "exception 02 to 03", "illegal address", VECTOR_ANSWER,
-      BYTES(0x01, 0x83, 0x02, 0xC0, 0xF1)},
-     {1, READ, 0x0008, 4, 2, {0}}},
+      {0xB000, 0x3900, 0x2542, 0x3457, 0x1420, 0x3438, 0x3501, 0x0607, 0x0513, 0x0917, 0x0309},
+      0}},
+    {REQUEST("HPS table 15", "AFE temperature", "", "01 03 00 04 00 01 C5 CB"), ASKED(1, READ, 0x0004, 1)},
+    {REQUEST("HPS table 17", "single measurement", "the exception example misprints the CRC as C5 C8",
+             "01 03 00 08 00 04 C5 CB"),
+     ASKED(1, READ, 0x0008, 4)},
+    {ANSWER("HPS command #5", "single measurement", "2083 mm; magnitude 723.1744; ambient 1; precision 0",
+            "01 03 08 08 23 DC B2 07 01 00 00 FD 41"),
+     {1, READ, 0x0008, 4, {2083, 0xDCB2, 0x0701, 0}, 0}},
+    {REQUEST("HPS table 19", "factory reset", "", "01 03 00 09 00 01 54 08"), ASKED(1, READ, 0x0009, 1)},
+    {ANSWER("HPS table 20", "factory reset", "success", "01 03 02 00 01 79 84"),
+     {1, READ, 0x0009, 1, {1}, 0}},
+    {BOTH("HPS tables 21 22", "warm-up 5 s", "", "01 06 00 0A 00 05 69 CB"), ASKED(1, WRITE, 0x000A, 5)},
+    {BOTH("HPS tables 25 26", "baud 19200", "", "01 06 00 11 00 01 18 0F"), ASKED(1, WRITE, 0x0011, 1)},
+    {BOTH("HPS tables 27 28", "no measurement at power-on", "", "01 06 00 12 00 00 29 CF"),
+     ASKED(1, WRITE, 0x0012, 0)},
+    {BOTH("HPS tables 29 30", "termination on", "", "01 06 00 13 00 FF 38 4F"),
+     ASKED(1, WRITE, 0x0013, 0x00FF)},
+    {ANSWER("HPS table 38", "reconnect time", "", "01 10 00 20 00 02 40 02"),
+     ASKED(1, WRITE_MANY, 0x0020, 2)},
+    {ANSWER("HPS abnormal response", "exception 02 to 03", "illegal address", "01 83 02 C0 F1"),
+     {1, READ, 0x0008, 4, {0}, 2}},
 };
 
-const dyp_vector_t dyp_vectors[DYP_ROWS] = {
-    {{"A05", "A05 2(3)3", "all probes", "", VECTOR_REQUEST, BYTES(0x55, 0xAA, 0x01, 0x01, 0x01)},
-     1,
-     0x01,
-     {0}},
-    {{"A05", "A05 2(3)3", "all probes", "printed sum is 60", VECTOR_ANSWER,
-      BYTES(0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62)},
+dyp_vector_t dyp_vectors[DYP_ROWS] = {
+    {REQUEST("A05 2(3)3", "all probes", "", "55 AA 01 01 01"), 1, 0x01, {0}},
+    {ANSWER("A05 2(3)3", "all probes", "printed sum is 60", "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62"),
      1,
      0x01,
      {1000, 2000, 1953, 3562}},
-    {{"A05", "A05 2(3)4", "probe 1", "", VECTOR_REQUEST, BYTES(0x55, 0xAA, 0x01, 0x10, 0x10)}, 1, 0x10, {0}},
-    {{"A05", "A05 2(3)4", "probe 1", "", VECTOR_ANSWER, BYTES(0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8)},
-     1,
-     0x10,
-     {1953}},
-    {{"A05", "A05 2(3)5", "set address 5", "", VECTOR_BOTH, BYTES(0x55, 0xAA, 0x05, 0x03, 0x07)},
-     5,
-     0x03,
-     {0}},
+    {REQUEST("A05 2(3)4", "probe 1", "", "55 AA 01 10 10"), 1, 0x10, {0}},
+    {ANSWER("A05 2(3)4", "probe 1", "", "55 AA 01 10 07 A1 B8"), 1, 0x10, {1953}},
+    {BOTH("A05 2(3)5", "set address 5", "", "55 AA 05 03 07"), 5, 0x03, {0}},
 };
 
 /* The last is the check value that every catalogue of CRCs gives for "123456789". */
-const crc_vector_t crc_vectors[CRC_ROWS] = {
-    {"HPS-167S appendix data1", BYTES(0x63), 0x69FF, {0xFF, 0x69}},
-    {"HPS-167S appendix data2", BYTES(0x8C), 0xE5BE, {0xBE, 0xE5}},
-    {"HPS-167S appendix data3", BYTES(0x7D), 0x617F, {0x7F, 0x61}},
-    {"HPS-167S appendix data4", BYTES(0xAA, 0xBB, 0xCC), 0x4523, {0x23, 0x45}},
-    {"HPS-167S appendix data5", BYTES(0x00, 0x00, 0xAA, 0xBB, 0xCC), 0x8576, {0x76, 0x85}},
-    {"HPS-167S appendix data6", BYTES(0x01, 0x03, 0x00, 0x03, 0x00, 0x0B), 0x0DF4, {0xF4, 0x0D}},
-    {"HPS-167S appendix sample_data",
-     BYTES(0x01, 0x01, 0x01, 0x06, 0xD9, 0xFC, 0x8C, 0x02, 0x01, 0x00, 0x01),
-     0xF102,
-     {0x02, 0xF1}},
-    {"check value of 123456789",
-     BYTES(0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0x37, 0x38, 0x39),
-     0x4B37,
-     {0x37, 0x4B}},
+crc_vector_t crc_vectors[CRC_ROWS] = {
+    {"HPS-167S appendix data1", "63", 0x69FF, {0xFF, 0x69}, 0, {0}},
+    {"HPS-167S appendix data2", "8C", 0xE5BE, {0xBE, 0xE5}, 0, {0}},
+    {"HPS-167S appendix data3", "7D", 0x617F, {0x7F, 0x61}, 0, {0}},
+    {"HPS-167S appendix data4", "AA BB CC", 0x4523, {0x23, 0x45}, 0, {0}},
+    {"HPS-167S appendix data5", "00 00 AA BB CC", 0x8576, {0x76, 0x85}, 0, {0}},
+    {"HPS-167S appendix data6", "01 03 00 03 00 0B", 0x0DF4, {0xF4, 0x0D}, 0, {0}},
+    {"HPS-167S appendix sample_data", "01 01 01 06 D9 FC 8C 02 01 00 01", 0xF102, {0x02, 0xF1}, 0, {0}},
+    {"check value of 123456789", "31 32 33 34 35 36 37 38 39", 0x4B37, {0x37, 0x4B}, 0, {0}},
 };
 
 const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES] = {
@@ -172,3 +123,22 @@ const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES] = {
     0xC1, 0x81, 0x40, 0x00, 0xC1, 0x81, 0x40, 0x01, 0xC0, 0x80, 0x41, 0x00, 0xC1, 0x81, 0x40, 0x01, 0xC0,
     0x80, 0x41, 0x01, 0xC0, 0x80, 0x41, 0x00, 0xC1, 0x81, 0x40,
 };
+
+/* Two digits and a space a byte; returns how many. */
+static uint8_t parse(const char *hex, uint8_t *bytes)
+{
+    uint8_t length = 0;
+    for (; *hex != 0; hex += hex[2] != 0 ? 3 : 2) bytes[length++] = (uint8_t)strtol(hex, NULL, 16);
+    return length;
+}
+
+static void fill_in(vector_t *frame) { frame->length = parse(frame->hex, frame->bytes); }
+
+__attribute__((constructor)) static void fill_in_bytes(void)
+{
+    for (unsigned i = 0; i != AUTO_ROWS; i++) fill_in(&auto_vectors[i].frame);
+    for (unsigned i = 0; i != MODBUS_ROWS; i++) fill_in(&modbus_vectors[i].frame);
+    for (unsigned i = 0; i != DYP_ROWS; i++) fill_in(&dyp_vectors[i].frame);
+    for (unsigned i = 0; i != CRC_ROWS; i++)
+        crc_vectors[i].length = parse(crc_vectors[i].hex, crc_vectors[i].bytes);
+}

@@ -18,12 +18,12 @@ enum { VECTOR_BYTES = 27, VECTOR_VALUES = 11 };
 enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8, PRINTED_TABLE_ENTRIES = 197 };
 
 typedef struct {
-    const char *sensor;
     const char *source;
     const char *name;
     const char *note;
     uint8_t direction;
-    uint8_t length;
+    const char *hex;
+    uint8_t length; /* of what `hex` says, and its bytes: filled in before main() */
     uint8_t bytes[VECTOR_BYTES];
 } vector_t;
 
@@ -47,9 +47,9 @@ typedef struct {
     uint8_t unit;
     uint8_t function;
     uint16_t address;
-    uint16_t operand; /* the count of registers, or the value of a write to one */
-    uint8_t exception;
+    uint16_t operand;               /* the count of registers, or the value of a write to one */
     uint16_t values[VECTOR_VALUES]; /* registers of a read's answer */
+    uint8_t exception;
 } modbus_meaning_t;
 
 typedef struct {
@@ -59,16 +59,17 @@ typedef struct {
 
 typedef struct {
     const char *source;
-    uint8_t length;
-    uint8_t bytes[VECTOR_VALUES];
+    const char *hex;
     uint16_t value;
     uint8_t wire[2];
+    uint8_t length;
+    uint8_t bytes[VECTOR_VALUES];
 } crc_vector_t;
 
-extern const auto_vector_t auto_vectors[AUTO_ROWS];
-extern const dyp_vector_t dyp_vectors[DYP_ROWS];
-extern const modbus_vector_t modbus_vectors[MODBUS_ROWS];
-extern const crc_vector_t crc_vectors[CRC_ROWS];
+extern auto_vector_t auto_vectors[AUTO_ROWS];
+extern dyp_vector_t dyp_vectors[DYP_ROWS];
+extern modbus_vector_t modbus_vectors[MODBUS_ROWS];
+extern crc_vector_t crc_vectors[CRC_ROWS];
 
 /* auchCRCHi just as the appendix of the HPS-167S prints it. */
 extern const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES];
