@@ -6,6 +6,7 @@
 #include "suite.h"
 
 #include "fathom/modbus_client.h"
+#include "stream_rig.h"
 
 /*
  * Five units on a bad line, in simulated time: answers that come late (up to twice the time-out, which is as
@@ -23,15 +24,7 @@ enum {
     WIRE = 4096
 };
 
-static uint32_t random_state;
-
-static uint32_t random_below(uint32_t n)
-{
-    random_state = random_state * 1664525u + 1013904223u;
-    return (uint32_t)(((uint64_t)(random_state >> 8) * n) >> 24);
-}
-
-static bool one_in(uint32_t n) { return n != 0 && random_below(n) == 0; }
+static bool one_in(uint32_t n) { return n != 0 && rig_random_below(n) == 0; }
 
 typedef struct {
     unsigned late, flip, tear, lose; /* one in so many; 0: never */
@@ -90,10 +83,10 @@ static void hear_request(const uint8_t *request)
     /* The last byte of a late one comes just before twice the time-out. */
     const uint32_t latest_us =
         one_in(weather->late) ? 2 * TIMEOUT_US - (ANSWER + 2) * BYTE_US : TIMEOUT_US / 2;
-    unit->due_us = world.sent_us + random_below(latest_us) + ANSWER * BYTE_US;
+    unit->due_us = world.sent_us + rig_random_below(latest_us) + ANSWER * BYTE_US;
     unit->busy = !one_in(weather->lose);
-    if (one_in(weather->flip)) unit->bytes[random_below(ANSWER)] ^= (uint8_t)(1u << random_below(8));
-    if (one_in(weather->tear)) unit->length = (uint8_t)random_below(ANSWER);
+    if (one_in(weather->flip)) unit->bytes[rig_random_below(ANSWER)] ^= (uint8_t)(1u << rig_random_below(8));
+    if (one_in(weather->tear)) unit->length = (uint8_t)rig_random_below(ANSWER);
 }
 
 static bool is_due(uint32_t at_us, uint32_t until_us) { return (int32_t)(until_us - at_us) >= 0; }
@@ -101,9 +94,9 @@ static bool is_due(uint32_t at_us, uint32_t until_us) { return (int32_t)(until_u
 static void make_noise(uint32_t until_us)
 {
     while (world.weather.noise != 0 && is_due(world.noise_us, until_us)) {
-        const uint8_t noise[] = {(uint8_t)random_below(UNITS + 2), (uint8_t)random_below(256)};
-        to_host(noise, 1 + random_below(2));
-        world.noise_us += 1 + random_below(2 * world.weather.noise);
+        const uint8_t noise[] = {(uint8_t)rig_random_below(UNITS + 2), (uint8_t)rig_random_below(256)};
+        to_host(noise, 1 + rig_random_below(2));
+        world.noise_us += 1 + rig_random_below(2 * world.weather.noise);
     }
 }
 
@@ -126,11 +119,10 @@ static void live(uint32_t until_us)
 
 static int world_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
-    (void)ctx;
-    (void)rx;
+    (void)ctx, (void)rx;
     size_t length = world.last - world.first;
     if (length > capacity) length = capacity;
-    if (length > 1) length = 1 + random_below((uint32_t)length);
+    if (length > 1) length = 1 + rig_random_below((uint32_t)length);
     memcpy(bytes, world.wire + world.first, length);
     world.first += length;
     return (int)length;
@@ -145,17 +137,9 @@ static int world_write(void *ctx, const uint8_t *bytes, size_t length)
     return (int)length;
 }
 
-static bool world_sent(void *ctx)
-{
-    (void)ctx;
-    return (int32_t)(world.now_us - world.sent_us) >= 0;
-}
+static bool world_sent(void *ctx) { return (void)ctx, is_due(world.sent_us, world.now_us); }
 
-static uint32_t world_now_us(void *ctx)
-{
-    (void)ctx;
-    return world.now_us;
-}
+static uint32_t world_now_us(void *ctx) { return (void)ctx, world.now_us; }
 
 typedef struct {
     unsigned ready, failed, wrong;
@@ -176,7 +160,7 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
     fathom_line_t line;
     outcome_t outcome = {0, 0, 0, 0};
     memset(&world, 0, sizeof world);
-    random_state = seed;
+    rig_seed(seed);
     world.now_us = world.sent_us = world.noise_us = UINT32_MAX - 5000000; /* the clock wraps on the way */
     world.weather = *weather;
     fathom_line_init(&line, &config);
@@ -193,7 +177,7 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
                 else
                     outcome.ready++, outcome.wrong += values[id] != world.numbers[id];
             }
-            if (asked[id] || random_below(4) != 0) continue;
+            if (asked[id] || rig_random_below(4) != 0) continue;
             asked[id] = true;
             since_us[id] = world.now_us;
             values[id] = 0xDEAD;
@@ -203,7 +187,7 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
             fathom_modbus_read_holding_registers(&requests[id].message, id, 0x0100, 1, &values[id]);
             assert_int_equal(fathom_modbus_client_submit(&line, &requests[id]), FATHOM_PENDING);
         }
-        live(world.now_us + 2 + (one_in(20) ? random_below(25000) : random_below(700)));
+        live(world.now_us + 2 + (one_in(20) ? rig_random_below(25000) : rig_random_below(700)));
         fathom_line_poll(&line);
     }
     return outcome;

@@ -23,6 +23,7 @@ static struct {
     bool first[LONGEST];       /* of those of its frame */
     unsigned end[RUN];         /* the number of the byte behind the frame's own */
     unsigned count;
+    unsigned hit; /* the byte that was changed or added; of one that was lost the next */
 } wire;
 
 static void put(uint8_t byte, unsigned frame)
@@ -35,20 +36,28 @@ static void put(uint8_t byte, unsigned frame)
 
 typedef enum { LOST, CHANGED, ADDED } damage_t;
 
+/* A run, and whether there are gaps, which are seen. */
+typedef struct {
+    const uint8_t *sent;
+    uint8_t length;
+    bool gaps;
+} run_t;
+
 /* The run with byte `place` of frame `hit` lost or changed to `byte`, or with `byte` added before it; place may be
  * `length` then, behind the last. */
-static void send(const uint8_t *sent, uint8_t length, damage_t damage, unsigned hit, unsigned place,
-                 uint8_t byte)
+static void send(const run_t *run, damage_t damage, unsigned hit, unsigned place, uint8_t byte)
 {
+    const uint8_t *sent = run->sent;
     wire.count = 0;
     for (unsigned frame = 0; frame != RUN; frame++) {
-        for (unsigned at = 0; at != length; at++, sent++) {
+        for (unsigned at = 0; at <= run->length; at++) {
             const bool is_hit = frame == hit && at == place;
+            if (at == run->length) wire.end[frame] = wire.count;
+            if (is_hit) wire.hit = wire.count;
             if (is_hit && damage != LOST) put(byte, frame);
-            if (!is_hit || damage == ADDED) put(*sent, frame);
+            if (at != run->length && (!is_hit || damage == ADDED)) put(sent[at], frame);
         }
-        wire.end[frame] = wire.count;
-        if (frame == hit && place == length) put(byte, frame);
+        sent += run->length;
     }
 }
 
@@ -57,41 +66,59 @@ typedef struct {
     unsigned due; /* by the formula above, how many should be wrong */
 } tally_t;
 
-/* A reading after byte i: with gaps of the frame whose byte that is; without, of one whose bytes had all come before
- * it. Right ones come in order, each once. */
-static void look(tally_t *tally, const uint8_t *sent, const uint8_t *frame, uint8_t length, bool gaps,
-                 unsigned i, unsigned *next)
+static fathom_stream_config_t config;
+static struct receiver {
+    fathom_stream_t stream;
+    uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_MAX_LENGTH)];
+    unsigned next; /* the frame that may be read next */
+    unsigned right, wrong;
+} receiver;
+
+static void start(const run_t *run)
 {
-    unsigned at = gaps ? wire.frame_of[i] : RUN - 1;
-    while (!gaps && at > *next && (wire.end[at] > i || memcmp(frame, sent + at * length, length) != 0)) at--;
-    if (at >= *next && (gaps || wire.end[at] <= i) && memcmp(frame, sent + at * length, length) == 0) {
-        tally->right++;
-        *next = at + 1;
+    config = (fathom_stream_config_t){.storage = receiver.storage, .length = run->length};
+    receiver.next = receiver.right = receiver.wrong = 0;
+    assert_int_equal(fathom_stream_init(&receiver.stream, &config, 0), FATHOM_READY);
+}
+
+static bool is_frame(const run_t *run, const uint8_t *frame, unsigned which)
+{
+    return memcmp(frame, run->sent + which * run->length, run->length) == 0;
+}
+
+/* A poll after byte i. A reading is right, with gaps, if it is the frame whose byte that is; without, if it is one whose
+ * bytes had all come before it. Right ones come in order, each once. */
+static void poll(const run_t *run, unsigned i, uint32_t now_us)
+{
+    const uint8_t *frame;
+    if (fathom_stream_poll(&receiver.stream, now_us, &frame) != FATHOM_READY) return;
+    unsigned at = run->gaps ? wire.frame_of[i] : RUN - 1;
+    while (!run->gaps && at > receiver.next && (wire.end[at] > i || !is_frame(run, frame, at))) at--;
+    if (at >= receiver.next && (run->gaps || wire.end[at] <= i) && is_frame(run, frame, at)) {
+        receiver.right++;
+        receiver.next = at + 1;
     } else {
-        tally->wrong++;
+        receiver.wrong++;
     }
 }
 
 /* Byte by byte, so that a reading has one place. With gaps there is a silence of GAP_US behind the last byte of each
  * frame, and it is polled at its end. */
-static void receive(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+static void receive(const run_t *run, unsigned from, unsigned end)
 {
-    static fathom_stream_t stream;
-    static uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_MAX_LENGTH)];
-    const fathom_stream_config_t config = {.storage = storage, .length = length};
-    unsigned next = 0;
-    tally->runs++;
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
-    for (unsigned i = 0; i != wire.count; i++) {
-        const uint32_t now_us = gaps ? wire.frame_of[i] * (uint32_t)PERIOD_US : 0;
-        const bool is_last = i + 1 == wire.count || wire.first[i + 1];
-        const uint8_t *frame;
-        fathom_stream_feed(&stream, wire.bytes + i, 1, gaps && wire.first[i], now_us);
-        if (fathom_stream_poll(&stream, now_us, &frame) == FATHOM_READY)
-            look(tally, sent, frame, length, gaps, i, &next);
-        if (gaps && is_last && fathom_stream_poll(&stream, now_us + GAP_US, &frame) == FATHOM_READY)
-            look(tally, sent, frame, length, gaps, i, &next);
+    for (unsigned i = from; i != end; i++) {
+        const uint32_t now_us = run->gaps ? wire.frame_of[i] * (uint32_t)PERIOD_US : 0;
+        fathom_stream_feed(&receiver.stream, wire.bytes + i, 1, run->gaps && wire.first[i], now_us);
+        poll(run, i, now_us);
+        if (run->gaps && (i + 1 == wire.count || wire.first[i + 1])) poll(run, i, now_us + GAP_US);
     }
+}
+
+static void add_to(tally_t *tally)
+{
+    tally->runs++;
+    tally->right += receiver.right;
+    tally->wrong += receiver.wrong;
 }
 
 /* Is what then begins the frame's bytes a right frame with FF behind it, and not the one that was sent? */
@@ -104,51 +131,66 @@ static bool is_due(const uint8_t *frame, uint8_t length, unsigned place, uint8_t
     return rig_is_valid(bytes, length) && bytes[length] == 0xFF && memcmp(bytes, frame, length) != 0;
 }
 
-static void lose_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+/* With one byte in this place; ADDED: it adds to what is due. */
+static void damage_once(tally_t *tally, const run_t *run, damage_t damage, unsigned hit, unsigned place,
+                        uint8_t byte)
 {
-    for (unsigned i = 0; i != RUN * length; i++) {
-        send(sent, length, LOST, i / length, i % length, 0);
-        receive(tally, sent, length, gaps);
+    send(run, damage, hit, place, byte);
+    start(run);
+    receive(run, 0, wire.count);
+    add_to(tally);
+    if (damage == ADDED) tally->due += is_due(run->sent + hit * run->length, run->length, place, byte);
+}
+
+/* With every other byte in this place. What stands before it is received once for all. */
+static void damage_with_each(tally_t *tally, const run_t *run, damage_t damage, unsigned hit, unsigned place)
+{
+    const uint8_t *const frame = run->sent + hit * run->length;
+    send(run, damage, hit, place, 0);
+    start(run);
+    receive(run, 0, wire.hit);
+    const struct receiver before = receiver;
+    for (unsigned byte = 0; byte != 256; byte++) {
+        if (damage == CHANGED && byte == frame[place]) continue;
+        wire.bytes[wire.hit] = (uint8_t)byte;
+        receiver = before;
+        receive(run, wire.hit, wire.count);
+        add_to(tally);
+        if (damage == ADDED) tally->due += is_due(frame, run->length, place, (uint8_t)byte);
     }
 }
 
-static void change_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+static void lose_each(tally_t *tally, const run_t *run)
 {
-    for (unsigned i = 0; i != RUN * length; i++) {
-        for (unsigned change = 1; change != 256; change++) {
-            send(sent, length, CHANGED, i / length, i % length, (uint8_t)(sent[i] ^ change));
-            receive(tally, sent, length, gaps);
-        }
-    }
+    for (unsigned i = 0; i != RUN * run->length; i++)
+        damage_once(tally, run, LOST, i / run->length, i % run->length, 0);
 }
 
-static void add_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+static void change_each(tally_t *tally, const run_t *run)
 {
-    for (unsigned hit = 0; hit != RUN; hit++) {
-        for (unsigned place = 0; place <= length; place++) {
-            for (unsigned byte = 0; byte != 256; byte++) {
-                send(sent, length, ADDED, hit, place, (uint8_t)byte);
-                receive(tally, sent, length, gaps);
-                tally->due += is_due(sent + hit * length, length, place, (uint8_t)byte);
-            }
-        }
-    }
+    for (unsigned i = 0; i != RUN * run->length; i++)
+        damage_with_each(tally, run, CHANGED, i / run->length, i % run->length);
 }
 
-static void double_each(tally_t *tally, const uint8_t *sent, uint8_t length, bool gaps)
+static void add_each(tally_t *tally, const run_t *run)
 {
-    for (unsigned i = 0; i != RUN * length; i++) {
-        send(sent, length, ADDED, i / length, i % length, sent[i]);
-        receive(tally, sent, length, gaps);
-        tally->due += is_due(sent + i / length * length, length, i % length, sent[i]);
-    }
+    for (unsigned hit = 0; hit != RUN; hit++)
+        for (unsigned place = 0; place <= run->length; place++)
+            damage_with_each(tally, run, ADDED, hit, place);
+}
+
+static void double_each(tally_t *tally, const run_t *run)
+{
+    for (unsigned i = 0; i != RUN * run->length; i++)
+        damage_once(tally, run, ADDED, i / run->length, i % run->length, run->sent[i]);
 }
 
 /* ---- the runs ---- */
 
-enum { EXAMPLES = 2, MOVING = 40, RUNS = EXAMPLES + MOVING };
+/* Two that are held still, and so many that move; of those there are more with FATHOM_LONG. */
+static unsigned run_count(void) { return 2 + (suite_is_long ? 40 : 10); }
 
-typedef void damage_each_t(tally_t *, const uint8_t *, uint8_t, bool);
+typedef void damage_each_t(tally_t *, const run_t *);
 
 /* The first two of a length are an example of a datasheet and the frame that can be read out of step, held still
  * (A16 2(4), 511 mm; A05 1(3), 1000 2000 2047 1339 mm); in the others every frame is another, 250 to 4500 mm. */
@@ -172,21 +214,19 @@ static tally_t damage_all(damage_each_t *each, unsigned which, bool gaps)
 {
     tally_t tally = {0, 0, 0, 0};
     rig_seed(7);
-    for (unsigned number = 0; number != RUNS; number++) {
+    for (unsigned number = 0; number != run_count(); number++) {
         uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
         make_run(sent, lengths[which], number);
-        each(&tally, sent, lengths[which], gaps);
+        each(&tally, &(run_t){sent, lengths[which], gaps});
     }
-    print_message("  %2u bytes, gaps %s: %u runs, %u right readings, %u wrong, %u by the formula",
+    print_message("  %2u bytes, gaps %s: %u runs, %u right readings, %u wrong, %u by the formula\n",
                   lengths[which], gaps ? "seen" : "not seen", tally.runs, tally.right, tally.wrong,
                   tally.due);
-    if (tally.wrong != 0) print_message(", one run in %u", (tally.runs + tally.wrong / 2) / tally.wrong);
-    print_message("\n");
     return tally;
 }
 
 /* How many bytes the runs of one length have. */
-static unsigned bytes_of(unsigned which) { return RUNS * RUN * lengths[which]; }
+static unsigned bytes_of(unsigned which) { return run_count() * RUN * lengths[which]; }
 
 TEST(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else)
 {
@@ -214,10 +254,10 @@ TEST(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else)
 TEST(with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF)
 {
     for (unsigned which = 0; which != LENGTHS; which++) {
-        const unsigned frames = RUNS * RUN;
+        const unsigned frames = run_count() * RUN;
         unsigned ends_in_FF = 0;
         rig_seed(7);
-        for (unsigned number = 0; number != RUNS; number++) {
+        for (unsigned number = 0; number != run_count(); number++) {
             uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
             make_run(sent, lengths[which], number);
             for (unsigned i = 1; i <= RUN; i++) ends_in_FF += sent[i * lengths[which] - 1] == 0xFF;
@@ -237,7 +277,7 @@ TEST(of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes)
         uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
         tally_t added = {0, 0, 0, 0};
         make_run(sent, lengths[which], 0);
-        add_each(&added, sent, lengths[which], true);
+        add_each(&added, &(run_t){sent, lengths[which], true});
         assert_int_equal(added.wrong, 0);
         assert_int_equal(added.runs, RUN * 256 * (lengths[which] + 1));
     }
@@ -263,12 +303,8 @@ TEST(with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass)
         const uint16_t value = (uint16_t)(high * 256 + (256 - high) % 256);
         rig_make_frame(sent + 4, 4, &value);
         assert_int_equal(sent[7], 0xFF);
-        for (unsigned place = 0; place <= 4; place++) {
-            for (unsigned byte = 0; byte != 256; byte++) {
-                send(sent, 4, ADDED, 1, place, (uint8_t)byte);
-                receive(&tally, sent, 4, true);
-            }
-        }
+        for (unsigned place = 0; place <= 4; place++)
+            damage_with_each(&tally, &(run_t){sent, 4, true}, ADDED, 1, place);
     }
     assert_int_equal(tally.runs, 256 * 5 * 256);
     assert_int_equal(tally.wrong, PASS);
@@ -283,7 +319,7 @@ TEST(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass)
     tally_t tally = {0, 0, 0, 0};
     for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 10, 10, values);
     assert_int_equal(sent[9], 0xFF);
-    add_each(&tally, sent, 10, true);
+    add_each(&tally, &(run_t){sent, 10, true});
     assert_int_equal(tally.runs, RUN * 11 * 256);
     assert_int_equal(tally.wrong, RUN * 8);
 }
@@ -327,7 +363,7 @@ TEST(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_val
     for (unsigned which = 0; which != LENGTHS; which++) {
         tally_t tally = damage_all(add_each, which, false);
         assert_int_equal(tally.wrong, which == OF_FOUR ? ADDED_FF : 0);
-        assert_int_equal(tally.runs, 256 * RUNS * RUN * (lengths[which] + 1));
+        assert_int_equal(tally.runs, 256 * run_count() * RUN * (lengths[which] + 1));
         assert_true(tally.right > tally.runs / 2);
         tally = damage_all(double_each, which, false);
         assert_int_equal(tally.wrong, which == OF_FOUR ? DOUBLED_FF : 0);
@@ -350,11 +386,11 @@ TEST(without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_of_step
     uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
     tally_t tally = {0, 0, 0, 0};
     for (unsigned i = 0; i != RUN; i++) rig_make_frame(sent + i * 10, 10, values[i / 2]);
-    change_each(&tally, sent, 10, false);
+    change_each(&tally, &(run_t){sent, 10, false});
     assert_int_equal(tally.runs, 255 * RUN * 10);
     assert_int_equal(tally.wrong, 0);
     tally = (tally_t){0, 0, 0, 0};
-    change_each(&tally, sent, 10, true);
+    change_each(&tally, &(run_t){sent, 10, true});
     assert_int_equal(tally.runs, 255 * RUN * 10);
     assert_int_equal(tally.wrong, 0);
 }
@@ -383,9 +419,8 @@ TEST(without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target)
         const uint16_t value = (uint16_t)mm;
         rig_make_frame(sent + 4, 4, &value);
         for (unsigned place = 0; place != 4; place++) {
-            send(sent, 4, LOST, 1, place, 0);
-            receive(&tally, sent, 4, false);
-            receive(&with_gaps, sent, 4, true);
+            damage_once(&tally, &(run_t){sent, 4, false}, LOST, 1, place, 0);
+            damage_once(&with_gaps, &(run_t){sent, 4, true}, LOST, 1, place, 0);
         }
     }
     assert_int_equal(tally.runs, 4 * 65536);

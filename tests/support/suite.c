@@ -7,6 +7,7 @@
 enum { SUITE_TESTS = 256 }; /* of one file at most */
 
 bool suite_ends_at_failure;
+bool suite_is_long;
 
 static suite_test_t *first;
 static suite_test_t **end = &first;

@@ -41,6 +41,9 @@ void suite_add(suite_test_t *node, const suite_t *of, const char *file, const ch
 
 extern bool suite_ends_at_failure; /* false from the start */
 
+/* FATHOM_LONG is in the environment: what is sampled else is tried to the end. False from the start. */
+extern bool suite_is_long;
+
 /* Runs the suites of these files, or all when count is 0. Returns how many tests failed, and one more for each file that
  * there is not. */
 int suite_run(int count, char *const *names);
