@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "vectors.h"
 
-#include <stdlib.h>
+#include "hex.h"
 
 /* A row's frame, and of a Modbus frame what was asked where it brings no values. */
 #define FRAME(source, name, note, direction, hex)                                                            \
@@ -124,15 +124,7 @@ const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES] = {
     0x80, 0x41, 0x01, 0xC0, 0x80, 0x41, 0x00, 0xC1, 0x81, 0x40,
 };
 
-/* Two digits and a space a byte; returns how many. */
-static uint8_t parse(const char *hex, uint8_t *bytes)
-{
-    uint8_t length = 0;
-    for (; *hex != 0; hex += hex[2] != 0 ? 3 : 2) bytes[length++] = (uint8_t)strtol(hex, NULL, 16);
-    return length;
-}
-
-static void fill_in(vector_t *frame) { frame->length = parse(frame->hex, frame->bytes); }
+static void fill_in(vector_t *frame) { frame->length = hex_parse(frame->hex, frame->bytes); }
 
 __attribute__((constructor)) static void fill_in_bytes(void)
 {
@@ -140,5 +132,5 @@ __attribute__((constructor)) static void fill_in_bytes(void)
     for (unsigned i = 0; i != MODBUS_ROWS; i++) fill_in(&modbus_vectors[i].frame);
     for (unsigned i = 0; i != DYP_ROWS; i++) fill_in(&dyp_vectors[i].frame);
     for (unsigned i = 0; i != CRC_ROWS; i++)
-        crc_vectors[i].length = parse(crc_vectors[i].hex, crc_vectors[i].bytes);
+        crc_vectors[i].length = hex_parse(crc_vectors[i].hex, crc_vectors[i].bytes);
 }

@@ -6,7 +6,7 @@
 #include "stream_rig.h"
 
 /*
- * One byte of a run of frames is lost, changed, doubled, or one too many: every byte, every value. With gaps seen a
+ * One byte of a run of frames is lost, changed, or one too many: every byte, every value, so doubled ones too. With gaps seen a
  * frame that is a byte short or has one other byte is refused. Of one byte too many the sensor's last byte is left
  * over, its sum, and a frame is believed only if FF or a silence follows it: so only where the sum is FF can it pass.
  * Then the sum of what stands before it is compared with the last byte of the data, d. FF + all the data but d + the
@@ -43,9 +43,9 @@ typedef struct {
     bool gaps;
 } run_t;
 
-/* The run with byte `place` of frame `hit` lost or changed to `byte`, or with `byte` added before it; place may be
+/* The run with byte `place` of frame `hit` lost or changed to 0, or with a 0 added before it; place may be
  * `length` then, behind the last. */
-static void send(const run_t *run, damage_t damage, unsigned hit, unsigned place, uint8_t byte)
+static void send(const run_t *run, damage_t damage, unsigned hit, unsigned place)
 {
     const uint8_t *sent = run->sent;
     wire.count = 0;
@@ -54,7 +54,7 @@ static void send(const run_t *run, damage_t damage, unsigned hit, unsigned place
             const bool is_hit = frame == hit && at == place;
             if (at == run->length) wire.end[frame] = wire.count;
             if (is_hit) wire.hit = wire.count;
-            if (is_hit && damage != LOST) put(byte, frame);
+            if (is_hit && damage != LOST) put(0, frame);
             if (at != run->length && (!is_hit || damage == ADDED)) put(sent[at], frame);
         }
         sent += run->length;
@@ -131,22 +131,19 @@ static bool is_due(const uint8_t *frame, uint8_t length, unsigned place, uint8_t
     return rig_is_valid(bytes, length) && bytes[length] == 0xFF && memcmp(bytes, frame, length) != 0;
 }
 
-/* With one byte in this place; ADDED: it adds to what is due. */
-static void damage_once(tally_t *tally, const run_t *run, damage_t damage, unsigned hit, unsigned place,
-                        uint8_t byte)
+static void lose(tally_t *tally, const run_t *run, unsigned hit, unsigned place)
 {
-    send(run, damage, hit, place, byte);
+    send(run, LOST, hit, place);
     start(run);
     receive(run, 0, wire.count);
     add_to(tally);
-    if (damage == ADDED) tally->due += is_due(run->sent + hit * run->length, run->length, place, byte);
 }
 
 /* With every other byte in this place. What stands before it is received once for all. */
 static void damage_with_each(tally_t *tally, const run_t *run, damage_t damage, unsigned hit, unsigned place)
 {
     const uint8_t *const frame = run->sent + hit * run->length;
-    send(run, damage, hit, place, 0);
+    send(run, damage, hit, place);
     start(run);
     receive(run, 0, wire.hit);
     const struct receiver before = receiver;
@@ -162,8 +159,7 @@ static void damage_with_each(tally_t *tally, const run_t *run, damage_t damage, 
 
 static void lose_each(tally_t *tally, const run_t *run)
 {
-    for (unsigned i = 0; i != RUN * run->length; i++)
-        damage_once(tally, run, LOST, i / run->length, i % run->length, 0);
+    for (unsigned i = 0; i != RUN * run->length; i++) lose(tally, run, i / run->length, i % run->length);
 }
 
 static void change_each(tally_t *tally, const run_t *run)
@@ -177,12 +173,6 @@ static void add_each(tally_t *tally, const run_t *run)
     for (unsigned hit = 0; hit != RUN; hit++)
         for (unsigned place = 0; place <= run->length; place++)
             damage_with_each(tally, run, ADDED, hit, place);
-}
-
-static void double_each(tally_t *tally, const run_t *run)
-{
-    for (unsigned i = 0; i != RUN * run->length; i++)
-        damage_once(tally, run, ADDED, i / run->length, i % run->length, run->sent[i]);
 }
 
 /* ---- the runs ---- */
@@ -324,18 +314,6 @@ TEST(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass)
     assert_int_equal(tally.wrong, RUN * 8);
 }
 
-/* A byte that comes twice is one of the added ones: the first FF of 511 mm, and no other here. */
-TEST(with_gaps_seen_a_doubled_byte_passes_as_an_added_one_does)
-{
-    for (unsigned which = 0; which != LENGTHS; which++) {
-        const tally_t tally = damage_all(double_each, which, true);
-        assert_int_equal(tally.wrong, tally.due);
-        assert_int_equal(tally.wrong, which == OF_FOUR ? RUN : 0);
-        assert_int_equal(tally.runs, bytes_of(which));
-        assert_in_range(tally.right, tally.runs * (RUN - 1), tally.runs * RUN);
-    }
-}
-
 TEST(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading)
 {
     for (unsigned which = 0; which != LENGTHS; which++) {
@@ -355,19 +333,15 @@ TEST(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading)
  * frame. What passes is 511 mm held still with an FF too many behind the very first frame that is heard,
  * FF 01 FF FF (FF) FF 01 FF FF: from the added FF on it reads FF FF 01 FF, 65281 mm, right upon a valid frame and
  * with an FF behind it. That is beyond all that an A16 measures. Later frames are known to be ambiguous. The FF can
- * be added at 5 places between the 01 of the first frame and that of the second; doubled it can be at 3 of them.
+ * be added at 5 places between the 01 of the first frame and that of the second.
  */
 TEST(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_value)
 {
-    enum { ADDED_FF = 5, DOUBLED_FF = 3 };
+    enum { ADDED_FF = 5 };
     for (unsigned which = 0; which != LENGTHS; which++) {
-        tally_t tally = damage_all(add_each, which, false);
+        const tally_t tally = damage_all(add_each, which, false);
         assert_int_equal(tally.wrong, which == OF_FOUR ? ADDED_FF : 0);
         assert_int_equal(tally.runs, 256 * run_count() * RUN * (lengths[which] + 1));
-        assert_true(tally.right > tally.runs / 2);
-        tally = damage_all(double_each, which, false);
-        assert_int_equal(tally.wrong, which == OF_FOUR ? DOUBLED_FF : 0);
-        assert_int_equal(tally.runs, bytes_of(which));
         assert_true(tally.right > tally.runs / 2);
     }
 }
@@ -419,8 +393,8 @@ TEST(without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target)
         const uint16_t value = (uint16_t)mm;
         rig_make_frame(sent + 4, 4, &value);
         for (unsigned place = 0; place != 4; place++) {
-            damage_once(&tally, &(run_t){sent, 4, false}, LOST, 1, place, 0);
-            damage_once(&with_gaps, &(run_t){sent, 4, true}, LOST, 1, place, 0);
+            lose(&tally, &(run_t){sent, 4, false}, 1, place);
+            lose(&with_gaps, &(run_t){sent, 4, true}, 1, place);
         }
     }
     assert_int_equal(tally.runs, 4 * 65536);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
+#include "hex.h"
+
 const uint8_t ask_1_processed[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
 const uint8_t answer_1_754[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
 const uint8_t answer_1_751[] = {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8};
@@ -95,7 +97,28 @@ void ask_1_and_send(uint8_t retries)
     run(8 * BYTE_US + 100);
 }
 
+int set_up_asked(void **state)
+{
+    set_up(state);
+    ask_1_and_send(0);
+    return 0;
+}
+
+int set_up_owing(void **state)
+{
+    set_up_asked(state);
+    run(TIMEOUT_US + 200);
+    expect(FATHOM_ERR_NO_ANSWER);
+    return 0;
+}
+
 void receive(const uint8_t *bytes, size_t length) { fake_receive(&bench.fake, 0, bytes, length); }
+
+void receive_hex(const char *hex)
+{
+    uint8_t bytes[32];
+    receive(bytes, hex_parse(hex, bytes));
+}
 
 void receive_rx(const uint8_t *bytes, size_t length, uint8_t flags)
 {
@@ -119,6 +142,12 @@ void receive_answer(uint8_t unit, uint16_t value)
 void deliver(const uint8_t *bytes, size_t length)
 {
     receive(bytes, length);
+    run(100);
+}
+
+void deliver_hex(const char *hex)
+{
+    receive_hex(hex);
     run(100);
 }
 
@@ -185,6 +214,12 @@ void expect_bytes(size_t which, const uint8_t *bytes, size_t length)
     assert_true(which < bench.fake.written);
     assert_int_equal(bench.fake.writes[which].length, length);
     assert_memory_equal(bench.fake.writes[which].bytes, bytes, length);
+}
+
+void expect_hex(size_t which, const char *hex)
+{
+    uint8_t bytes[32];
+    expect_bytes(which, bytes, hex_parse(hex, bytes));
 }
 
 static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,

@@ -77,6 +77,10 @@ void ask_other(uint8_t unit);
 /* Asks unit 1 and runs until the last stop bit has left, which was at most 400 us ago. */
 void ask_1_and_send(uint8_t retries);
 
+/* Before each test or in its loop: a new bench, and unit 1 was asked, without retries; and it owes the answer. */
+int set_up_asked(void **state);
+int set_up_owing(void **state);
+
 /* ---- what comes ---- */
 
 /* Bytes that can be read at once; those with flags are one read. receive_answer makes a frame with one register. */
@@ -84,11 +88,13 @@ void receive(const uint8_t *bytes, size_t length);
 void receive_rx(const uint8_t *bytes, size_t length, uint8_t flags);
 void receive_answer(uint8_t unit, uint16_t value);
 #define receive_all(array) receive(array, sizeof(array))
+void receive_hex(const char *hex); /* "01 03 14" */
 
 /* The same, and a poll 100 us later. */
 void deliver(const uint8_t *bytes, size_t length);
 void deliver_answer(uint8_t unit, uint16_t value);
 #define deliver_all(array) deliver(array, sizeof(array))
+void deliver_hex(const char *hex);
 
 /* answer_1_754 with one wrong bit. */
 void receive_damaged(void);
@@ -125,6 +131,7 @@ void expect_sent(uint32_t after_us, uint32_t within_us);
 
 /* The write of this number had these bytes and no more. */
 void expect_bytes(size_t which, const uint8_t *bytes, size_t length);
+void expect_hex(size_t which, const char *hex);
 
 /* ---- a listener ---- */
 

@@ -11,6 +11,7 @@ static void set_clock(uint32_t now_us)
 }
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
 
 /* ---- setting up ---- */
 
@@ -80,9 +81,8 @@ TEST(received_bytes_put_the_silence_off)
     expect_written(1);
 }
 
-TEST(the_answer_is_ready_in_the_poll_that_brings_its_last_byte)
+TEST_IN(asked, the_answer_is_ready_in_the_poll_that_brings_its_last_byte)
 {
-    ask_1_and_send(0);
     receive_all(answer_1_754);
     expect(FATHOM_PENDING);
     poll_line();
@@ -90,9 +90,8 @@ TEST(the_answer_is_ready_in_the_poll_that_brings_its_last_byte)
     expect_count(FATHOM_LINE_ANSWERS, 1);
 }
 
-TEST(an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last)
+TEST_IN(asked, an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last)
 {
-    ask_1_and_send(0);
     for (size_t i = 0; i != sizeof answer_1_754; i++) {
         expect(FATHOM_PENDING);
         assert_int_equal(bench.value, 0xDEAD);
@@ -105,8 +104,7 @@ TEST(an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last)
 TEST(every_cut_of_an_answer_into_two_reads_is_put_together)
 {
     for (size_t cut = 1; cut != sizeof answer_1_754; cut++) {
-        set_up(state);
-        ask_1_and_send(0);
+        set_up_asked(state);
         receive(answer_1_754, cut);
         receive(answer_1_754 + cut, sizeof answer_1_754 - cut);
         poll_line();
@@ -160,9 +158,8 @@ TEST(exchanges_are_served_first_come_first_served)
     expect_mm(111);
 }
 
-TEST(an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before)
+TEST_IN(asked, an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before)
 {
-    ask_1_and_send(0);
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_BUSY);
     answer_1(111);
     ask_1(0);
@@ -173,9 +170,8 @@ TEST(an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before)
 
 /* ---- time ---- */
 
-TEST(no_answer_is_said_when_the_time_out_has_passed_since_the_request_left)
+TEST_IN(asked, no_answer_is_said_when_the_time_out_has_passed_since_the_request_left)
 {
-    ask_1_and_send(0);
     run(TIMEOUT_US - 500); /* up to 400 us have passed since the last bit */
     expect(FATHOM_PENDING);
     run(700);
@@ -184,9 +180,8 @@ TEST(no_answer_is_said_when_the_time_out_has_passed_since_the_request_left)
     assert_int_equal(bench.value, 0xDEAD);
 }
 
-TEST(an_answer_that_began_in_time_may_end_after_the_time_out)
+TEST_IN(asked, an_answer_that_began_in_time_may_end_after_the_time_out)
 {
-    ask_1_and_send(0);
     run(TIMEOUT_US - 2000);
     fake_trickle(&bench.fake, 0, BYTE_US, answer_1_754, sizeof answer_1_754);
     run(8 * BYTE_US);
@@ -233,9 +228,8 @@ TEST(a_single_poll_across_the_wrap_sees_all_the_time_that_passed)
     expect(FATHOM_ERR_NO_ANSWER);
 }
 
-TEST(a_late_poll_finds_the_answer_before_it_looks_at_the_time)
+TEST_IN(asked, a_late_poll_finds_the_answer_before_it_looks_at_the_time)
 {
-    ask_1_and_send(0);
     receive_all(answer_1_754);
     run_in_steps(3 * TIMEOUT_US, 3 * TIMEOUT_US);
     expect(FATHOM_READY);
@@ -264,9 +258,8 @@ TEST(an_exchange_cancelled_before_it_is_sent_is_never_sent)
     expect_unit(0, 2);
 }
 
-TEST(an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes)
+TEST_IN(asked, an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes)
 {
-    ask_1_and_send(0);
     cancel(&bench.request);
     expect(FATHOM_ERR_CANCELLED);
     memset(&bench.request, 0xA5, sizeof bench.request); /* the memory is the caller's again */
@@ -317,15 +310,6 @@ TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer)
     run(2000);
     expect(FATHOM_READY);
     expect_written(2);
-}
-
-TEST(a_broadcast_may_be_cancelled_in_flight_and_nobody_owes)
-{
-    ask_to_write(&bench.request, FATHOM_MODBUS_BROADCAST);
-    run(REQUEST_US - 200);
-    cancel(&bench.request);
-    expect(FATHOM_ERR_CANCELLED);
-    assert_int_equal(bench.line.owing, 0);
 }
 
 /* ---- due ---- */

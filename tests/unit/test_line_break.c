@@ -95,13 +95,12 @@ TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
 /* Unit 1 still owes; of its late answer a part has come, right behind a byte of noise. */
 TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
 {
-    static const uint8_t noise_and_part[] = {0x55, 0x01, 0x03, 0x02};
     listen_for(500);
     ask_1_and_send(0);
     run(TIMEOUT_US + 1000);
     expect(FATHOM_ERR_NO_ANSWER);
     assert_int_equal(ear.length, 0);
-    receive(noise_and_part, 4);
+    receive_hex("55 01 03 02");
     run(1000);
     assert_int_equal(bench.line.have, 3);
     assert_int_equal(ear.length, 1);

@@ -4,10 +4,10 @@
 #include "fathom/modbus_unit.h"
 #include "fathom/stream.h"
 
-static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
 static uint16_t values[4];
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
 
 static void refuse_set_address(void)
 {
@@ -43,7 +43,7 @@ TEST(a_late_answer_serves_the_retry_of_a_question_to_anyone)
     ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);
     run(TIMEOUT_US + 10000);
-    deliver_all(from_5);
+    deliver_hex("55 AA 05 10 07 A1 BC");
     expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
     expect(FATHOM_READY);
 }
@@ -89,11 +89,9 @@ TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
 }
 
 /* line.h: "An answer is complete by its length, at once". */
-TEST(after_a_broken_port_an_answer_is_complete_at_once)
+TEST_IN(asked, after_a_broken_port_an_answer_is_complete_at_once)
 {
-    static const uint8_t long_one[] = {0x01, 0x03, 0x14, 0x00};
-    ask_1_and_send(0);
-    deliver_all(long_one);
+    deliver_hex("01 03 14 00");
     break_port();
     ask_other(2);
     run_until_written(2, 100);
@@ -160,12 +158,11 @@ TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
 /* line.h, FATHOM_LINE_SEND_US: "how long a port may ... take to send it, before it counts as broken". */
 TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
 {
-    static const uint8_t noise[] = {0x00};
     bench.fake.never_sent = true;
     ask_1(0);
     run_until_written(1, 100);
     for (unsigned i = 0; i != 60; i++) {
-        receive(noise, 1);
+        receive_hex("00");
         run_in_steps(20000, 20000);
     }
     expect(FATHOM_ERR_PORT);
@@ -175,14 +172,13 @@ TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
  * the next request. */
 TEST(the_second_answer_to_anyone_is_not_the_next_requests)
 {
-    static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
     ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);
     run(65000);
-    deliver_all(from_5);
+    deliver_hex("55 AA 05 10 07 A1 BC");
     expect(FATHOM_READY);
     ask_dyp(&bench.other, 254, 1, &bench.other_value);
     run(10000);
-    deliver_all(from_254);
+    deliver_hex("55 AA FE 10 07 A1 B5");
     assert_int_equal(bench.other_value, 0xDEAD);
 }

@@ -14,6 +14,7 @@ static void receive_half_in_time(void)
 }
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
 
 /* Of an answer that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
 TEST(an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap)
@@ -39,12 +40,9 @@ TEST(one_that_breaks_off_ends_with_the_gap)
 }
 
 /* The CRC is 38 A1. None of it can begin an answer, so that it is dropped at once. */
-static const uint8_t damaged[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00};
-
-TEST(the_end_of_a_damaged_answer_is_due_at_its_gap)
+TEST_IN(asked, the_end_of_a_damaged_answer_is_due_at_its_gap)
 {
-    ask_1_and_send(0);
-    receive_all(damaged);
+    receive_hex("01 03 02 02 F2 00 00");
     poll_line();
     expect(FATHOM_PENDING);
     expect_due(GAP_US);
@@ -52,11 +50,10 @@ TEST(the_end_of_a_damaged_answer_is_due_at_its_gap)
     expect(FATHOM_ERR_CHECKSUM);
 }
 
-TEST(a_damaged_answer_at_the_end_of_the_time_out_does_not_put_that_off)
+TEST_IN(asked, a_damaged_answer_at_the_end_of_the_time_out_does_not_put_that_off)
 {
-    ask_1_and_send(0);
     run(TIMEOUT_US - 2000);
-    receive_all(damaged);
+    receive_hex("01 03 02 02 F2 00 00");
     poll_line();
     const uint32_t due_us = due();
     assert_in_range(due_us, 1000, 2000);

@@ -2,35 +2,29 @@
 #include "line_bench.h"
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
+static const suite_t owing = {.set_up = set_up_owing};
 
 /* ---- what is not the answer ---- */
 
-TEST(noise_before_an_answer_is_dropped_in_the_same_poll)
+TEST_IN(asked, noise_before_an_answer_is_dropped_in_the_same_poll)
 {
-    static const uint8_t noise[] = {0x00, 0xFF, 0x81, 0x00, 0x55};
-    uint8_t glued[sizeof noise + sizeof answer_1_754];
-    memcpy(glued, noise, sizeof noise);
-    memcpy(glued + sizeof noise, answer_1_754, sizeof answer_1_754);
-    ask_1_and_send(0);
-    receive_all(glued);
+    receive_hex("00 FF 81 00 55 01 03 02 02 F2 38 A1");
     run(GAP_US + 200);
     expect_mm(754);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, sizeof noise);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, 5);
 }
 
-TEST(noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_most)
+TEST_IN(asked, noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_most)
 {
-    static const uint8_t begun[] = {0x01, 0x03, 0x14}; /* 25 bytes are promised */
-    ask_1_and_send(0);
-    receive_all(begun);
+    receive_hex("01 03 14"); /* 25 bytes are promised */
     receive_all(answer_1_754);
     run(GAP_US + 200);
     expect_mm(754);
 }
 
-TEST(another_units_answer_is_a_stray_and_the_wait_goes_on)
+TEST_IN(asked, another_units_answer_is_a_stray_and_the_wait_goes_on)
 {
-    ask_1_and_send(0);
     receive_answer(2, 222);
     run(1000);
     expect(FATHOM_PENDING);
@@ -39,16 +33,14 @@ TEST(another_units_answer_is_a_stray_and_the_wait_goes_on)
     answer_1(111);
 }
 
-TEST(an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
+TEST_IN(asked, an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
 {
-    ask_1_and_send(0);
     receive_all(answer_1_three);
     run(1000);
     expect(FATHOM_PENDING);
     answer_1(111);
 
-    set_up(state);
-    ask_1_and_send(0);
+    set_up_asked(state);
     receive_all(answer_1_three);
     run(TIMEOUT_US);
     expect(FATHOM_ERR_MALFORMED);
@@ -56,9 +48,8 @@ TEST(an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
     expect_count(FATHOM_LINE_MALFORMED, 1);
 }
 
-TEST(a_damaged_answer_ends_the_attempt_at_the_first_gap)
+TEST_IN(asked, a_damaged_answer_ends_the_attempt_at_the_first_gap)
 {
-    ask_1_and_send(0);
     receive_damaged();
     run(GAP_US - 200);
     expect(FATHOM_PENDING);
@@ -86,8 +77,7 @@ TEST(a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_le
 TEST(an_answer_that_breaks_off_is_a_checksum_error)
 {
     for (size_t length = 3; length != sizeof answer_1_754; length++) {
-        set_up(state);
-        ask_1_and_send(0);
+        set_up_asked(state);
         receive(answer_1_754, length);
         run(GAP_US + 400);
         expect(FATHOM_ERR_CHECKSUM);
@@ -95,9 +85,8 @@ TEST(an_answer_that_breaks_off_is_a_checksum_error)
     }
 }
 
-TEST(less_than_three_bytes_are_noise_and_end_nothing)
+TEST_IN(asked, less_than_three_bytes_are_noise_and_end_nothing)
 {
-    ask_1_and_send(0);
     receive(answer_1_754, 2);
     run(GAP_US + 400);
     expect(FATHOM_PENDING);
@@ -124,8 +113,7 @@ TEST(a_frame_longer_than_the_memory_is_dropped_without_overrun)
 TEST(a_late_answer_is_never_the_reading_of_the_next_request)
 {
     for (uint32_t late_us = TIMEOUT_US + 300; late_us < 2 * TIMEOUT_US - 1000; late_us += 1000) {
-        set_up(state);
-        ask_1_and_send(0);
+        set_up_asked(state);
         fake_receive(&bench.fake, late_us, answer_1_754, sizeof answer_1_754);
         run(TIMEOUT_US + 200);
         expect(FATHOM_ERR_NO_ANSWER);
@@ -141,18 +129,14 @@ TEST(a_late_answer_is_never_the_reading_of_the_next_request)
     }
 }
 
-TEST(a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out)
+TEST_IN(owing, a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out)
 {
-    ask_1_and_send(0);
-    run(TIMEOUT_US + 200);
     ask_other(1);
     expect_sent(TIMEOUT_US - 1000, 1500);
 }
 
-TEST(other_units_are_asked_while_one_owes)
+TEST_IN(owing, other_units_are_asked_while_one_owes)
 {
-    ask_1_and_send(0);
-    run(TIMEOUT_US + 200);
     ask_1(0);
     ask_other(2);
     run(T3_5_US + 9 * BYTE_US);
@@ -162,10 +146,8 @@ TEST(other_units_are_asked_while_one_owes)
     expect(FATHOM_PENDING);
 }
 
-TEST(a_late_answer_during_another_units_exchange_is_counted_and_harmless)
+TEST_IN(owing, a_late_answer_during_another_units_exchange_is_counted_and_harmless)
 {
-    ask_1_and_send(0);
-    run(TIMEOUT_US + 200);
     ask_other(2);
     run(T3_5_US + 9 * BYTE_US);
     deliver_answer(1, 111);
@@ -223,9 +205,8 @@ TEST(a_stray_while_nothing_is_asked_is_dropped)
 
 /* ---- a port that fails ---- */
 
-TEST(a_port_that_cannot_be_read_ends_every_exchange_and_recovers)
+TEST_IN(asked, a_port_that_cannot_be_read_ends_every_exchange_and_recovers)
 {
-    ask_1_and_send(0);
     ask_other(2);
     break_port();
     expect(FATHOM_ERR_PORT);
@@ -236,9 +217,8 @@ TEST(a_port_that_cannot_be_read_ends_every_exchange_and_recovers)
     answer_other(2, 222);
 }
 
-TEST(a_unit_that_was_asked_when_the_port_broke_still_owes)
+TEST_IN(asked, a_unit_that_was_asked_when_the_port_broke_still_owes)
 {
-    ask_1_and_send(0);
     break_port();
     ask_1(0);
     run(20000);
@@ -250,9 +230,8 @@ TEST(a_unit_that_was_asked_when_the_port_broke_still_owes)
     expect_written(2);
 }
 
-TEST(what_was_received_before_the_port_broke_is_forgotten)
+TEST_IN(asked, what_was_received_before_the_port_broke_is_forgotten)
 {
-    ask_1_and_send(0);
     deliver(answer_1_754, 3);
     break_port();
     receive(answer_1_754 + 3, 4); /* no late answer: some of it may have been lost */

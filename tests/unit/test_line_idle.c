@@ -6,6 +6,7 @@
 static void expect_idle(bool is_idle) { assert_int_equal(fathom_line_is_idle(&bench.line), is_idle); }
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
 
 TEST(a_new_line_and_one_with_a_waiting_request_are_idle)
 {
@@ -34,9 +35,8 @@ TEST(it_is_busy_from_the_request_to_the_answer)
     expect_idle(true);
 }
 
-TEST(a_unit_that_owes_an_answer_does_not_keep_it_busy)
+TEST_IN(asked, a_unit_that_owes_an_answer_does_not_keep_it_busy)
 {
-    ask_1_and_send(0);
     run(TIMEOUT_US + 1000);
     expect(FATHOM_ERR_NO_ANSWER);
     expect_idle(true);

@@ -2,12 +2,12 @@
 #include "line_bench.h"
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
 
 /* ---- what the port knows about bytes ---- */
 
-TEST(a_silence_that_the_port_saw_ends_a_frame)
+TEST_IN(asked, a_silence_that_the_port_saw_ends_a_frame)
 {
-    ask_1_and_send(0);
     receive(answer_1_754, 4);
     receive_rx(answer_1_754, sizeof answer_1_754, FATHOM_RX_SILENCE);
     poll_line();
@@ -19,8 +19,7 @@ TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING};
     for (size_t i = 0; i != sizeof flags; i++) {
-        set_up(state);
-        ask_1_and_send(0);
+        set_up_asked(state);
         receive(answer_1_754, 4);
         receive_rx(answer_1_754 + 4, 3, flags[i]);
         run(GAP_US + 300);
@@ -29,18 +28,16 @@ TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer)
     }
 }
 
-TEST(an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
+TEST_IN(asked, an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
 {
-    ask_1_and_send(0);
     receive(answer_1_754, 4);
     receive_rx(answer_1_754, sizeof answer_1_754, FATHOM_RX_OVERRUN);
     run(100);
     expect_mm(754);
 }
 
-TEST(with_time_stamps_the_next_request_need_not_wait_for_the_loop)
+TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
 {
-    ask_1_and_send(0);
     ask_other(2);
     const fathom_rx_t rx = {bench.fake.now_us + 1000, FATHOM_RX_TIMED};
     fake_receive_rx(&bench.fake, 1000, answer_1_754, sizeof answer_1_754, rx);
@@ -217,8 +214,7 @@ TEST(an_answer_is_never_put_together_across_lost_bytes)
 {
     for (size_t i = 0; i != COUNT_OF(losses); i++)
         for (size_t cut = 1; cut != sizeof answer_1_754; cut++) {
-            set_up(state);
-            ask_1_and_send(0);
+            set_up_asked(state);
             receive(answer_1_754, cut);
             lose_and_receive(losses[i], answer_1_754 + cut, sizeof answer_1_754 - cut);
             run(TIMEOUT_US + 400);
@@ -230,8 +226,7 @@ TEST(an_answer_is_never_put_together_across_lost_bytes)
 TEST(a_whole_answer_after_lost_bytes_is_taken)
 {
     for (size_t i = 0; i != COUNT_OF(losses); i++) {
-        set_up(state);
-        ask_1_and_send(0);
+        set_up_asked(state);
         receive(answer_1_754, 5);
         lose_and_receive(losses[i], answer_1_751, sizeof answer_1_751);
         run(100);

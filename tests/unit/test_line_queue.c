@@ -4,10 +4,11 @@
 /* Exchanges that wait: for their turn, for a retry, for what is owed; and how long that is. */
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
+static const suite_t owing = {.set_up = set_up_owing};
 
-TEST(one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire)
+TEST_IN(asked, one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire)
 {
-    ask_1_and_send(0);
     ask_other(2);
     cancel(&bench.other);
     expect_other(FATHOM_ERR_CANCELLED);
@@ -76,10 +77,8 @@ TEST(after_a_long_silence_a_request_is_due_at_once)
     expect_due(1000); /* while it leaves */
 }
 
-TEST(what_only_waits_for_a_debt_is_due_when_that_is_forgotten)
+TEST_IN(owing, what_only_waits_for_a_debt_is_due_when_that_is_forgotten)
 {
-    ask_1_and_send(0);
-    run(TIMEOUT_US + 200);
     ask_1(0);
     const uint32_t due_us = due();
     assert_true(due_us > TIMEOUT_US - 1000 && due_us <= TIMEOUT_US);

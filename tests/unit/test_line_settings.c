@@ -35,10 +35,10 @@ static void expect_written_with(size_t which, uint8_t unit, const fathom_line_se
 }
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t asked = {.set_up = set_up_asked};
 
-TEST(an_exchange_without_settings_leaves_the_line_as_it_is)
+TEST_IN(asked, an_exchange_without_settings_leaves_the_line_as_it_is)
 {
-    ask_1_and_send(0);
     answer_1(111);
     assert_int_equal(bench.fake.set_lines, 0);
 }

@@ -4,6 +4,7 @@
 #include "suite.h"
 
 #include "fathom/stream.h"
+#include "hex.h"
 
 static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};                                  /* A16 2(4) */
 static const uint8_t four[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60}; /* A05 1(3) */
@@ -33,6 +34,12 @@ static void begin(uint8_t length) { begin_with(length, 0, 0); }
 static void feed(const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t time_us)
 {
     fathom_stream_feed(&stream, bytes, count, after_gap, time_us);
+}
+
+static void feed_hex(const char *hex, bool after_gap, uint32_t time_us)
+{
+    uint8_t bytes[16];
+    feed(bytes, hex_parse(hex, bytes), after_gap, time_us);
 }
 
 /* mm_1953, in step with what came before it or after a gap; its beginning; and bytes that were lost. */
@@ -140,9 +147,8 @@ TEST(a_silence_that_no_poll_saw_ends_a_frame_whatever_comes_after_it)
  * 1FF. What follows it, 07, begins nothing. */
 TEST(a_right_sum_that_no_frame_follows_is_not_believed)
 {
-    static const uint8_t lost_a_byte[] = {0xFF, 0x80, 0x80};
     feed_first(10);
-    feed(lost_a_byte, 3, false, 20);
+    feed_hex("FF 80 80", false, 20);
     expect(20, FATHOM_READY);
     feed_frame(30);
     expect(30, FATHOM_PENDING);
@@ -206,8 +212,7 @@ TEST(a_frame_that_broke_off_before_a_gap_leaves_no_trace)
 
 TEST(a_wrong_sum_is_dropped)
 {
-    static const uint8_t damaged[] = {0xFF, 0x07, 0xA0, 0xA7};
-    feed(damaged, 4, true, 10);
+    feed_hex("FF 07 A0 A7", true, 10);
     expect(5010, FATHOM_PENDING);
     expect_counted(FATHOM_STREAM_BYTES, 4);
     expect_counted(FATHOM_STREAM_FRAMES, 0);
@@ -382,8 +387,7 @@ TEST(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value)
  * which the sensor has not said. */
 TEST(a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame)
 {
-    static const uint8_t bytes[] = {0xFF, 0x10, 0xF0, 0xFF, 0x10, 0xE1, 0xF0};
-    feed(bytes, sizeof bytes, true, 1000);
+    feed_hex("FF 10 F0 FF 10 E1 F0", true, 1000);
     expect(1000, FATHOM_PENDING);
     expect(1000 + GAP_US, FATHOM_PENDING);
     expect_counted(FATHOM_STREAM_FRAMES, 0);
@@ -393,8 +397,7 @@ TEST(a_byte_lost_behind_a_silence_is_not_made_up_for_by_the_next_frame)
 /* FF + 07 + 9B = 1A1: with 9B too many before the A1, the A1 is a right sum, and the A7 behind it begins nothing. */
 TEST(a_byte_too_many_does_not_make_the_last_value_a_sum)
 {
-    static const uint8_t bytes[] = {0xFF, 0x07, 0x9B, 0xA1, 0xA7};
-    feed(bytes, sizeof bytes, true, 10);
+    feed_hex("FF 07 9B A1 A7", true, 10);
     expect(10 + GAP_US, FATHOM_PENDING);
     expect_counted(FATHOM_STREAM_UNSURE, 1);
 }
