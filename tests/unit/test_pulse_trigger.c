@@ -199,6 +199,48 @@ TEST(without_a_pin_a_break_of_the_uart_triggers)
     expect_readings(1);
 }
 
+/* ---- the capture looks for pulses before the trigger falls ---- */
+
+/* Or what an interrupt lets pass between the two would be lost. The sensor answers in the very moment of the edge. */
+static void expect_every_trigger_answered(void)
+{
+    static const uint32_t starts_us[] = {1000, UINT32_MAX - 300000};
+    static const uint32_t loops_us[] = {500, 20000};
+    int (*const set_break)(void *ctx, bool on) = stand.fake.uart.set_break;
+    for (unsigned i = 0; i != 4; i++) {
+        start_meter_at(starts_us[i / 2]);
+        stand.fake.uart.set_break = set_break;
+        stand.fake.busy_until_us = stand.fake.now_us + 5 * MS; /* a break cannot begin yet */
+        answer_with(0, 10 * MS);
+        run_meter_in_steps(2100 * MS, loops_us[i % 2]);
+        assert_in_range(stand.readings, 8, 10); /* cycles of 221 to 240 ms */
+        expect_readings(stand.pin.falls + stand.fake.breaks);
+        expect_no_answers(0);
+        expect_last(FATHOM_TARGET, 10 * MS);
+    }
+}
+
+TEST(a_pulse_that_begins_with_the_edge_counts) { expect_every_trigger_answered(); }
+
+static int break_and_answer(void *ctx, bool on)
+{
+    fake_t *const fake = ctx;
+    if (on && (int32_t)(fake->now_us - fake->busy_until_us) < 0) return 0;
+    if (on && !fake->in_break) pulse_in(0, 10 * MS);
+    fake->breaks += on && !fake->in_break;
+    fake->in_break = on;
+    return 1;
+}
+
+TEST(a_pulse_that_begins_with_a_break_counts)
+{
+    trigger_by_break();
+    stand.fake.uart.set_break = break_and_answer;
+    expect_every_trigger_answered();
+}
+
+/* ---- a port that fails ---- */
+
 static int broken(void *ctx, bool on) { return (void)ctx, (void)on, -1; }
 
 TEST(a_break_that_fails_is_said_by_every_poll_until_it_works_again)
