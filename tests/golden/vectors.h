@@ -7,7 +7,7 @@
 
 /*
  * Every frame that the datasheets print, as it must be on the wire. Where they misprint one, it stands here
- * corrected and the note says so. The bytes and what they mean are copied from the datasheets, nothing here was
+ * corrected and the name says so. The bytes and what they mean are copied from the datasheets, nothing here was
  * computed by Fathom. Sections: A16 6(4) ex 1 is section 6, subsection (4), example 1.
  */
 enum { VECTOR_REQUEST = 1, VECTOR_ANSWER = 2, VECTOR_BOTH = VECTOR_REQUEST | VECTOR_ANSWER };
@@ -20,7 +20,6 @@ enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8, PRINTED_TABL
 typedef struct {
     const char *source;
     const char *name;
-    const char *note;
     uint8_t direction;
     const char *hex;
     uint8_t length; /* of what `hex` says, and its bytes: filled in before main() */

@@ -200,6 +200,12 @@ void expect_mm(uint16_t value)
     assert_int_equal(bench.value, value);
 }
 
+void expect_failed(fathom_status_t status)
+{
+    expect(status);
+    assert_int_equal(bench.value, 0xDEAD);
+}
+
 void expect_sent(uint32_t after_us, uint32_t within_us)
 {
     const size_t before = bench.fake.written;

@@ -123,8 +123,23 @@ unsigned counter(unsigned which);
 #define expect_due(us)         assert_int_equal(due(), us)
 #define expect_unit(which, id) assert_int_equal(bench.fake.writes[which].bytes[0], id)
 
+/* The first two after a run of so many us. */
+#define expect_after(us, status)                                                                             \
+    do {                                                                                                     \
+        run(us);                                                                                             \
+        expect(status);                                                                                      \
+    } while (0)
+#define expect_written_after(us, n)                                                                          \
+    do {                                                                                                     \
+        run(us);                                                                                             \
+        expect_written(n);                                                                                   \
+    } while (0)
+
 /* bench.request is READY with this value. */
 void expect_mm(uint16_t value);
+
+/* It has ended so, or is PENDING, and its value is as it was. */
+void expect_failed(fathom_status_t status);
 
 /* Nothing is sent for so long, and one request within this time after it. */
 void expect_sent(uint32_t after_us, uint32_t within_us);

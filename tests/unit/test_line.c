@@ -93,8 +93,7 @@ TEST_IN(asked, the_answer_is_ready_in_the_poll_that_brings_its_last_byte)
 TEST_IN(asked, an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last)
 {
     for (size_t i = 0; i != sizeof answer_1_754; i++) {
-        expect(FATHOM_PENDING);
-        assert_int_equal(bench.value, 0xDEAD);
+        expect_failed(FATHOM_PENDING);
         receive(answer_1_754 + i, 1);
         run(BYTE_US);
     }
@@ -163,8 +162,7 @@ TEST_IN(asked, an_exchange_may_be_submitted_again_when_it_has_ended_and_not_befo
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_BUSY);
     answer_1(111);
     ask_1(0);
-    run(20000);
-    expect_written(2);
+    expect_written_after(20000, 2);
     answer_1(112);
 }
 
@@ -174,8 +172,7 @@ TEST_IN(asked, no_answer_is_said_when_the_time_out_has_passed_since_the_request_
 {
     run(TIMEOUT_US - 500); /* up to 400 us have passed since the last bit */
     expect(FATHOM_PENDING);
-    run(700);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(700, FATHOM_ERR_NO_ANSWER);
     expect_count(FATHOM_LINE_NO_ANSWERS, 1);
     assert_int_equal(bench.value, 0xDEAD);
 }
@@ -253,8 +250,7 @@ TEST(an_exchange_cancelled_before_it_is_sent_is_never_sent)
     ask_1(0);
     ask_other(2);
     cancel(&bench.request);
-    run(20000);
-    expect_written(1);
+    expect_written_after(20000, 1);
     expect_unit(0, 2);
 }
 
@@ -264,11 +260,9 @@ TEST_IN(asked, an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_take
     expect(FATHOM_ERR_CANCELLED);
     memset(&bench.request, 0xA5, sizeof bench.request); /* the memory is the caller's again */
     ask_other(1);
-    run(30000);
-    expect_written(1);
+    expect_written_after(30000, 1);
     receive_all(answer_1_754);
-    run(20000);
-    expect_written(2);
+    expect_written_after(20000, 2);
     assert_int_equal(bench.other_value, 0xDEAD);
     answer_other(1, 751);
 }
@@ -292,8 +286,7 @@ TEST(a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled)
     cancel(&bench.request);
     bench.fake.write_busy = false;
     ask_other(1);
-    run(T3_5_US + 200);
-    expect_written(1);
+    expect_written_after(T3_5_US + 200, 1);
 }
 
 /* ---- broadcast ---- */
@@ -302,13 +295,10 @@ TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer)
 {
     ask_to_write(&bench.request, FATHOM_MODBUS_BROADCAST);
     ask_other(2);
-    run(REQUEST_US - 200);
+    expect_written_after(REQUEST_US - 200, 1);
+    expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
     expect_written(1);
-    run(TIMEOUT_US - 1000);
-    expect(FATHOM_PENDING);
-    expect_written(1);
-    run(2000);
-    expect(FATHOM_READY);
+    expect_after(2000, FATHOM_READY);
     expect_written(2);
 }
 

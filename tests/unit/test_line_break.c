@@ -39,8 +39,7 @@ TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it)
 TEST(with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes)
 {
     ask_1(0);
-    run(T3_5_US + 100);
-    expect_written(1);
+    expect_written_after(T3_5_US + 100, 1);
     assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* it is leaving */
     run(8 * BYTE_US);
     assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* the answer may come */
@@ -56,8 +55,7 @@ TEST(while_bytes_of_the_port_leave_it_is_pending)
     assert_int_equal(hold_low(), FATHOM_PENDING);
     assert_false(bench.fake.in_break);
     ask_1(0);
-    run(T3_5_US + 100);
-    expect_written(1); /* so there was no break */
+    expect_written_after(T3_5_US + 100, 1); /* so there was no break */
 }
 
 /* The port was busy with a request; after the break it gets its time anew. */
@@ -69,11 +67,9 @@ TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break)
     hold(true);
     run(500000);
     hold(false);
-    run(T3_5_US + 500000);
-    expect(FATHOM_PENDING);
+    expect_after(T3_5_US + 500000, FATHOM_PENDING);
     bench.fake.write_busy = false;
-    run(1000);
-    expect_written(1);
+    expect_written_after(1000, 1);
 }
 
 /* A module that is triggered by the break answers in frames that begin after a silence. */
@@ -97,8 +93,7 @@ TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
 {
     listen_for(500);
     ask_1_and_send(0);
-    run(TIMEOUT_US + 1000);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_ANSWER);
     assert_int_equal(ear.length, 0);
     receive_hex("55 01 03 02");
     run(1000);
@@ -121,8 +116,7 @@ TEST(a_port_that_cannot_or_is_broken_says_so)
     bench.fake.uart.set_break = NULL;
     assert_int_equal(hold_low(), FATHOM_ERR_UNSUPPORTED);
     ask_1(0);
-    run(T3_5_US + 100);
-    expect_written(1);
+    expect_written_after(T3_5_US + 100, 1);
 }
 
 TEST(a_port_that_breaks_in_a_break_comes_back_without_it)
@@ -131,6 +125,5 @@ TEST(a_port_that_breaks_in_a_break_comes_back_without_it)
     bench.fake.now_us += 100;
     break_port();
     ask_1(0);
-    run(T3_5_US + 200);
-    expect_written(1);
+    expect_written_after(T3_5_US + 200, 1);
 }

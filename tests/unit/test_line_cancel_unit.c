@@ -46,8 +46,7 @@ TEST(one_on_its_way_ends_too_and_its_answer_is_late)
 {
     static const uint8_t units[4] = {1, 1, 2, 1};
     ask_all(units);
-    run(REQUEST_US);
-    expect_written(1);
+    expect_written_after(REQUEST_US, 1);
     fathom_line_cancel_unit(&bench.line, 1);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED);
     receive_all(answer_1_754);

@@ -117,8 +117,7 @@ TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed)
     cancel(&bench.request);
     run(9 * BYTE_US);
     ask_to_write(&bench.other, 1);
-    run(20000);
-    expect_written(1); /* the unit still owes */
+    expect_written_after(20000, 1); /* the unit still owes */
 }
 
 /* After the echo the next copy is the answer that is owed. */
@@ -130,8 +129,7 @@ TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt)
     deliver(set_address_5, 8);
     expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
     ask_other(1);
-    run(T3_5_US + 200);
-    expect_written(2);
+    expect_written_after(T3_5_US + 200, 2);
 }
 
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */

@@ -65,8 +65,7 @@ TEST_IN(asked, a_damaged_answer_at_the_end_of_the_time_out_does_not_put_that_off
 TEST(bytes_that_come_while_the_request_leaves_do_not_put_off_the_next_look)
 {
     ask_1(0);
-    run(T3_5_US + 200);
-    expect_written(1);
+    expect_written_after(T3_5_US + 200, 1);
     deliver(answer_1_754, 4);
     assert_int_equal(bench.line.have, 4);
     expect_due(1000);

@@ -61,8 +61,7 @@ TEST(nothing_is_known_before_the_first_answer)
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     expect_echo(FATHOM_LINE_ECHO_AUTO);
     send_1(0, 100);
-    run(3 * TIMEOUT_US);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(3 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
     expect_echo(FATHOM_LINE_ECHO_AUTO);
 }
 
@@ -72,11 +71,9 @@ TEST(an_echo_without_an_answer_is_no_answer_and_shows_the_echo)
         set_up_with(modes[m]);
         send_1(0, 100);
         come_all(0, ask_1_processed);
-        run(TIMEOUT_US);
-        expect(FATHOM_PENDING); /* the echo is no answer */
+        expect_after(TIMEOUT_US, FATHOM_PENDING); /* the echo is no answer */
         run(9 * BYTE_US);
-        expect(FATHOM_ERR_NO_ANSWER);
-        assert_int_equal(bench.value, 0xDEAD);
+        expect_failed(FATHOM_ERR_NO_ANSWER);
         expect_count(FATHOM_LINE_NO_ANSWERS, 1);
         expect_learned(modes[m], FATHOM_LINE_ECHO_ON);
     }
@@ -89,8 +86,7 @@ TEST(an_exception_behind_an_echo_ends_the_exchange_and_keeps_its_number)
         send_1(3, 100);
         come_all(0, ask_1_processed);
         come_all(8 * BYTE_US + pauses_us[p], exception_1_2);
-        run(60000);
-        expect(FATHOM_ERR_EXCEPTION);
+        expect_after(60000, FATHOM_ERR_EXCEPTION);
         assert_int_equal(bench.request.message.exception, 2);
         expect_echo(FATHOM_LINE_ECHO_ON);
         expect_written(1);
@@ -161,8 +157,7 @@ TEST(a_damaged_echo_never_shows_that_there_is_none)
             come_all(8 * BYTE_US + pauses_us[p], answer_1_754);
             run(60000);
             if (status_of(&bench.request) != FATHOM_READY) {
-                expect(FATHOM_ERR_CHECKSUM);
-                assert_int_equal(bench.value, 0xDEAD);
+                expect_failed(FATHOM_ERR_CHECKSUM);
             } else {
                 expect_mm(754);
             }
@@ -209,8 +204,7 @@ TEST(another_units_answer_shows_nothing)
     send_1(0, 100);
     run(10000);
     receive_answer(2, 222);
-    run(TIMEOUT_US);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
     expect_echo(FATHOM_LINE_ECHO_AUTO);
 }
 

@@ -136,8 +136,8 @@ TEST(an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure)
             if (modes[m] == FATHOM_LINE_ECHO_OFF) continue;
             ask_address(&prefixes[i], modes[m], 100);
             come_all(0, prefixes[i].request);
-            run(2 * TIMEOUT_US);
-            expect(modes[m] == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_ANSWER : FATHOM_ERR_ECHO);
+            expect_after(2 * TIMEOUT_US,
+                         modes[m] == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_ANSWER : FATHOM_ERR_ECHO);
             expect_count(FATHOM_LINE_ANSWERS, 0);
         }
 }
@@ -172,8 +172,7 @@ TEST(a_late_answer_on_an_echoing_line_is_no_other_requests)
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     send_1(0, 100);
     come_all(0, ask_1_processed);
-    run(TIMEOUT_US + 10000);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_NO_ANSWER);
     ask_other(1);
     receive_all(answer_1_754);
     run_until_written(2, 100);
@@ -197,10 +196,8 @@ TEST(a_broadcast_on_an_echoing_line_is_over_when_its_time_is)
         run_until_written(1, 100);
         expect_bytes(0, tell_all, sizeof tell_all);
         come_all(0, tell_all);
-        run(TIMEOUT_US + 8 * BYTE_US - 1000);
-        expect(FATHOM_PENDING);
-        run(2000);
-        expect(FATHOM_READY);
+        expect_after(TIMEOUT_US + 8 * BYTE_US - 1000, FATHOM_PENDING);
+        expect_after(2000, FATHOM_READY);
         expect_echo(modes[m]);
         run_until_written(2, 100);
         come_all(0, ask_1_processed);

@@ -99,8 +99,7 @@ TEST(the_first_copy_alone_never_ends_a_write_where_an_echo_is_known)
     expect_echo(FATHOM_LINE_ECHO_ON);
     start_write(0, 100);
     copy_in(BY_BYTE, 0);
-    run(TIMEOUT_US + 10000);
-    expect(FATHOM_ERR_NO_ANSWER); /* the device is dead, and the line says so */
+    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_NO_ANSWER); /* the device is dead, and the line says so */
 }
 
 TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
@@ -109,8 +108,7 @@ TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
     read_once(false);
     start_write(0, 100);
     copy_in(BY_BYTE, 20000);
-    run(30000);
-    expect(FATHOM_READY);
+    expect_after(30000, FATHOM_READY);
 }
 
 TEST(a_write_that_nothing_answers_is_no_answer_whatever_is_known)
@@ -119,8 +117,7 @@ TEST(a_write_that_nothing_answers_is_no_answer_whatever_is_known)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {
             set_up_for(w, modes[m]);
             start_write(0, 100);
-            run(2 * TIMEOUT_US);
-            expect(FATHOM_ERR_NO_ANSWER);
+            expect_after(2 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
         }
 }
 
@@ -153,11 +150,9 @@ TEST(each_attempt_of_a_write_needs_its_own_two_copies)
     copy_in(BY_BYTE, 0);
     run_until_written(2, 100); /* twice the time-out later */
     copy_in(BY_BYTE, 0);
-    run(9 * BYTE_US);
-    expect(FATHOM_PENDING);
+    expect_after(9 * BYTE_US, FATHOM_PENDING);
     copy_in(BY_BYTE, 0);
-    run(9 * BYTE_US);
-    expect(FATHOM_READY);
+    expect_after(9 * BYTE_US, FATHOM_READY);
     assert_int_equal(bench.request.exchange.attempts, 2);
     expect_count(FATHOM_LINE_NO_ANSWERS, 1);
 }
@@ -171,8 +166,7 @@ TEST(the_last_attempt_of_an_unknown_echo_says_echo)
         expect(FATHOM_PENDING);
         copy_in(BY_BYTE, 0);
     }
-    run(TIMEOUT_US + 10000);
-    expect(FATHOM_ERR_ECHO);
+    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_ECHO);
     expect_count(FATHOM_LINE_NO_ANSWERS, 3);
 }
 
@@ -184,8 +178,7 @@ TEST(a_late_second_copy_serves_the_retry_of_a_write)
     run(TIMEOUT_US + 20000);
     expect_count(FATHOM_LINE_NO_ANSWERS, 1);
     copy_in(BY_BYTE, 0);
-    run(9 * BYTE_US);
-    expect(FATHOM_READY);
+    expect_after(9 * BYTE_US, FATHOM_READY);
     expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
     expect_written(1);
 }
@@ -199,8 +192,7 @@ TEST(a_refused_write_on_an_echoing_line_is_an_exception)
         start_write(0, 100);
         copy_in(BY_BYTE, 0);
         come_all(20000, refusal);
-        run(30000);
-        expect(FATHOM_ERR_EXCEPTION);
+        expect_after(30000, FATHOM_ERR_EXCEPTION);
         assert_int_equal(bench.request.message.exception, 3);
         expect_echo(modes[m]); /* not OFF, above all */
     }
@@ -236,7 +228,6 @@ TEST(the_echo_of_a_write_of_many_is_no_answer)
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     start_write_of_many(100);
     come_all(0, set_36_ms);
-    run(2 * TIMEOUT_US);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(2 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
     expect_echo(FATHOM_LINE_ECHO_ON);
 }

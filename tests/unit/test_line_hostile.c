@@ -27,8 +27,7 @@ TEST_IN(asked, another_units_answer_is_a_stray_and_the_wait_goes_on)
 {
     receive_answer(2, 222);
     run(1000);
-    expect(FATHOM_PENDING);
-    assert_int_equal(bench.value, 0xDEAD);
+    expect_failed(FATHOM_PENDING);
     expect_count(FATHOM_LINE_STRAYS, 1);
     answer_1(111);
 }
@@ -36,26 +35,22 @@ TEST_IN(asked, another_units_answer_is_a_stray_and_the_wait_goes_on)
 TEST_IN(asked, an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
 {
     receive_all(answer_1_three);
-    run(1000);
-    expect(FATHOM_PENDING);
+    expect_after(1000, FATHOM_PENDING);
     answer_1(111);
 
     set_up_asked(state);
     receive_all(answer_1_three);
     run(TIMEOUT_US);
-    expect(FATHOM_ERR_MALFORMED);
-    assert_int_equal(bench.value, 0xDEAD);
+    expect_failed(FATHOM_ERR_MALFORMED);
     expect_count(FATHOM_LINE_MALFORMED, 1);
 }
 
 TEST_IN(asked, a_damaged_answer_ends_the_attempt_at_the_first_gap)
 {
     receive_damaged();
-    run(GAP_US - 200);
-    expect(FATHOM_PENDING);
+    expect_after(GAP_US - 200, FATHOM_PENDING);
     run(400);
-    expect(FATHOM_ERR_CHECKSUM);
-    assert_int_equal(bench.value, 0xDEAD);
+    expect_failed(FATHOM_ERR_CHECKSUM);
     expect_count(FATHOM_LINE_CHECKSUM_ERRORS, 1);
 }
 
@@ -80,16 +75,14 @@ TEST(an_answer_that_breaks_off_is_a_checksum_error)
         set_up_asked(state);
         receive(answer_1_754, length);
         run(GAP_US + 400);
-        expect(FATHOM_ERR_CHECKSUM);
-        assert_int_equal(bench.value, 0xDEAD);
+        expect_failed(FATHOM_ERR_CHECKSUM);
     }
 }
 
 TEST_IN(asked, less_than_three_bytes_are_noise_and_end_nothing)
 {
     receive(answer_1_754, 2);
-    run(GAP_US + 400);
-    expect(FATHOM_PENDING);
+    expect_after(GAP_US + 400, FATHOM_PENDING);
     answer_1(754);
 }
 
@@ -115,14 +108,11 @@ TEST(a_late_answer_is_never_the_reading_of_the_next_request)
     for (uint32_t late_us = TIMEOUT_US + 300; late_us < 2 * TIMEOUT_US - 1000; late_us += 1000) {
         set_up_asked(state);
         fake_receive(&bench.fake, late_us, answer_1_754, sizeof answer_1_754);
-        run(TIMEOUT_US + 200);
-        expect(FATHOM_ERR_NO_ANSWER);
+        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_ANSWER);
         ask_other(1);
-        run(late_us - TIMEOUT_US);
-        expect_written(1); /* it was not even asked */
+        expect_written_after(late_us - TIMEOUT_US, 1); /* it was not even asked */
         expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
-        run(T3_5_US + 9 * BYTE_US);
-        expect_written(2);
+        expect_written_after(T3_5_US + 9 * BYTE_US, 2);
         expect_other(FATHOM_PENDING);
         assert_int_equal(bench.other_value, 0xDEAD);
         answer_other(1, 751);
@@ -139,8 +129,7 @@ TEST_IN(owing, other_units_are_asked_while_one_owes)
 {
     ask_1(0);
     ask_other(2);
-    run(T3_5_US + 9 * BYTE_US);
-    expect_written(2);
+    expect_written_after(T3_5_US + 9 * BYTE_US, 2);
     expect_unit(1, 2);
     answer_other(2, 222);
     expect(FATHOM_PENDING);
@@ -159,8 +148,7 @@ TEST_IN(owing, a_late_answer_during_another_units_exchange_is_counted_and_harmle
 TEST(a_late_answer_serves_the_retry_that_waits_for_it)
 {
     ask_1_and_send(1);
-    run(TIMEOUT_US + 200);
-    expect(FATHOM_PENDING);
+    expect_after(TIMEOUT_US + 200, FATHOM_PENDING);
     answer_1(111);
     expect_written(1);
     expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
@@ -189,8 +177,7 @@ TEST(an_answer_that_broke_off_owes_for_twice_the_time_out)
 TEST(retries_are_the_callers_number_and_the_last_error_stays)
 {
     ask_1(2);
-    run(8 * TIMEOUT_US);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(8 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
     assert_int_equal(bench.request.exchange.attempts, 3);
     expect_written(3);
     expect_count(FATHOM_LINE_NO_ANSWERS, 3);
@@ -221,13 +208,11 @@ TEST_IN(asked, a_unit_that_was_asked_when_the_port_broke_still_owes)
 {
     break_port();
     ask_1(0);
-    run(20000);
-    expect_written(1);
+    expect_written_after(20000, 1);
     deliver_answer(1, 111); /* to the request of before */
     assert_int_equal(bench.value, 0xDEAD);
     expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
-    run(20000);
-    expect_written(2);
+    expect_written_after(20000, 2);
 }
 
 TEST_IN(asked, what_was_received_before_the_port_broke_is_forgotten)
@@ -272,8 +257,7 @@ TEST(a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken)
     for (size_t i = 0; i != COUNT_OF(failures); i++) {
         ask_while(state, failures[i], FATHOM_LINE_SEND_US);
         expect(FATHOM_PENDING);
-        run(T3_5_US + 1000);
-        expect(FATHOM_ERR_PORT);
+        expect_after(T3_5_US + 1000, FATHOM_ERR_PORT);
     }
 }
 
@@ -281,8 +265,7 @@ TEST(what_comes_while_the_port_refuses_the_request_is_no_answer)
 {
     ask_while(state, &bench.fake.write_busy, 50000);
     deliver_all(answer_1_754);
-    expect(FATHOM_PENDING);
-    assert_int_equal(bench.value, 0xDEAD);
+    expect_failed(FATHOM_PENDING);
 }
 
 TEST(a_request_that_the_port_never_took_is_not_owed_when_it_breaks)
@@ -292,8 +275,7 @@ TEST(a_request_that_the_port_never_took_is_not_owed_when_it_breaks)
     expect(FATHOM_ERR_PORT);
     bench.fake.write_busy = false;
     ask_1(0);
-    run(T3_5_US + 200);
-    expect_written(1);
+    expect_written_after(T3_5_US + 200, 1);
 }
 
 TEST(an_answer_counts_although_the_port_does_not_say_yet_that_the_request_has_left)

@@ -23,8 +23,7 @@ TEST(it_is_busy_from_the_request_to_the_answer)
 {
     run(10000);
     ask_1(0);
-    run(100);
-    expect_written(1);
+    expect_written_after(100, 1);
     expect_idle(false);
     run(50000);
     expect_idle(false);
@@ -37,12 +36,10 @@ TEST(it_is_busy_from_the_request_to_the_answer)
 
 TEST_IN(asked, a_unit_that_owes_an_answer_does_not_keep_it_busy)
 {
-    run(TIMEOUT_US + 1000);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_ANSWER);
     expect_idle(true);
     ask_1(0);
-    run(50000);
-    expect_written(1); /* it still may come */
+    expect_written_after(50000, 1); /* it still may come */
     expect_idle(true);
     deliver(answer_1_754, 3); /* and does */
     expect_idle(false);

@@ -101,10 +101,8 @@ TEST(a_port_that_never_changes_is_broken_after_a_second)
 {
     bench.fake.never_sent = true;
     ask_1_with(0, &e19200);
-    run(FATHOM_LINE_SEND_US);
-    expect(FATHOM_PENDING);
-    run(T3_5_US + 1000);
-    expect(FATHOM_ERR_PORT);
+    expect_after(FATHOM_LINE_SEND_US, FATHOM_PENDING);
+    expect_after(T3_5_US + 1000, FATHOM_ERR_PORT);
     expect_count(FATHOM_LINE_PORT_ERRORS, 1);
     expect_written(0);
 }
@@ -114,8 +112,7 @@ TEST(settings_that_the_port_cannot_do_end_that_exchange_alone)
     bench.fake.unsupported_baud = 19200;
     ask_1_with(0, &e19200);
     ask_2_with(&n9600);
-    run(REQUEST_US + 200);
-    expect(FATHOM_ERR_UNSUPPORTED);
+    expect_after(REQUEST_US + 200, FATHOM_ERR_UNSUPPORTED);
     assert_int_equal(bench.request.exchange.attempts, 0);
     expect_written(1);
     expect_unit(0, 2);
@@ -128,12 +125,10 @@ TEST(retries_do_not_help_against_settings_that_the_port_cannot_do)
 {
     bench.fake.unsupported_baud = 19200;
     ask_1_with(5, &e19200);
-    run(T3_5_US + 400);
-    expect(FATHOM_ERR_UNSUPPORTED);
+    expect_after(T3_5_US + 400, FATHOM_ERR_UNSUPPORTED);
     assert_int_equal(bench.fake.set_lines, 1);
     ask_1_with(0, &n9600); /* nothing was sent, so nothing is owed */
-    run(1000);
-    expect_written(1);
+    expect_written_after(1000, 1);
 }
 
 TEST(settings_on_a_port_whose_settings_are_fixed_are_unsupported)
@@ -141,8 +136,7 @@ TEST(settings_on_a_port_whose_settings_are_fixed_are_unsupported)
     bench.fake.uart.set_line = NULL;
     ask_1_with(0, &n9600);
     ask_2_with(NULL);
-    run(REQUEST_US + 200);
-    expect(FATHOM_ERR_UNSUPPORTED);
+    expect_after(REQUEST_US + 200, FATHOM_ERR_UNSUPPORTED);
     expect_written(1);
     answer_other(2, 222);
 }
@@ -154,8 +148,7 @@ TEST(settings_that_turn_out_unsupported_after_a_busy_port_end_the_exchange)
     run(20000);
     bench.fake.never_sent = false;
     bench.fake.unsupported_baud = 19200;
-    run(100);
-    expect(FATHOM_ERR_UNSUPPORTED);
+    expect_after(100, FATHOM_ERR_UNSUPPORTED);
     expect_due(FATHOM_NO_DEADLINE);
 }
 
@@ -164,8 +157,7 @@ TEST(a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free)
 {
     bench.fake.write_busy = true;
     ask_1_with(0, &e19200);
-    run(20000);
-    expect_written(0);
+    expect_written_after(20000, 0);
     bench.fake.write_busy = false;
     run(100);
     expect_written_with(0, 1, &e19200);

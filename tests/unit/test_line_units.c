@@ -41,8 +41,7 @@ TEST(what_is_damaged_is_nobodys_answer)
     ask_any();
     receive_first_probe(9, 0xA1, 5);
     run(GAP_US + 300);
-    expect(FATHOM_ERR_CHECKSUM);
-    assert_int_equal(bench.value, 0xDEAD);
+    expect_failed(FATHOM_ERR_CHECKSUM);
     assert_int_equal(bench.request.message.head[0], 255);
 }
 
@@ -51,13 +50,11 @@ TEST(after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out)
     for (unsigned unit = 1; unit != 255; unit++) {
         set_up(state);
         ask_any();
-        run(TIMEOUT_US + 200);
-        expect(FATHOM_ERR_NO_ANSWER);
+        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_ANSWER);
         ask_other((uint8_t)unit);
         run_in_steps(TIMEOUT_US - 1000, 500);
         expect_written(1);
-        run(1500);
-        expect_written(2);
+        expect_written_after(1500, 2);
     }
 }
 
@@ -94,11 +91,9 @@ TEST(what_all_are_told_none_owes_an_answer_to)
     run(REQUEST_US);
     ask_other(16);          /* modulo 16 the same */
     receive_answer(3, 333); /* a unit that answers all the same is not heard */
-    run(TIMEOUT_US - 1000);
-    expect(FATHOM_PENDING);
+    expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
     expect_written(1);
-    run(1500);
-    expect(FATHOM_READY);
+    expect_after(1500, FATHOM_READY);
     expect_written(2);
     assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS) + counter(FATHOM_LINE_ANSWERS), 0);
 }
@@ -110,6 +105,5 @@ TEST(a_cancelled_broadcast_is_owed_by_none)
     cancel(&bench.request);
     expect(FATHOM_ERR_CANCELLED);
     ask_other(16);
-    run(T3_5_US + 400);
-    expect_written(2);
+    expect_written_after(T3_5_US + 400, 2);
 }

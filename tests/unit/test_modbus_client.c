@@ -79,10 +79,8 @@ TEST(every_byte_of_an_acknowledgement_counts)
         submit(&bench.request);
         run(40000);
         receive_all(set_address_5);
-        run(200);
-        expect(FATHOM_PENDING);
-        run(TIMEOUT_US);
-        expect(FATHOM_ERR_MALFORMED);
+        expect_after(200, FATHOM_PENDING);
+        expect_after(TIMEOUT_US, FATHOM_ERR_MALFORMED);
     }
 }
 
