@@ -47,57 +47,53 @@ static bool distance(uint16_t mm)
     return fathom_debounce_distance(&gate, mm, now_us);
 }
 
-/* `changes` has a character a measurement: '!' where the level changed with it. */
-static void expect_changes(const char *changes, const uint16_t *mm)
+/* A character a measurement: n nearer than the threshold, f farther, e equal; a capital letter where the level changes
+ * with it. */
+static void expect_changes(const char *words)
 {
-    for (; *changes != 0; changes++, mm++) assert_int_equal(distance(*mm), *changes == '!');
+    const unsigned threshold_mm = config.threshold_mm != 0 ? config.threshold_mm : 1000;
+    for (; *words != 0; words++) {
+        const char word = (char)(*words | 0x20);
+        const unsigned mm = word == 'n' ? threshold_mm - 1 : word == 'f' ? threshold_mm + 1 : threshold_mm;
+        assert_int_equal(distance((uint16_t)mm), *words != word);
+    }
 }
 
 TEST(three_nearer_in_a_row_make_near_and_five_farther_far)
 {
-    static const uint16_t mm[] = {999, 999, 999, 999, 1001, 1001, 1001, 1001, 1001, 1001, 1, 999, 500};
-    expect_changes("..!.....!...!", mm);
+    expect_changes("nnNnffffFfnnN");
     assert_int_equal(gate.level, FATHOM_NEAR);
 }
 
 TEST(the_first_level_is_far_after_five)
 {
-    static const uint16_t mm[] = {2000, 2000, 2000, 2000, 2000};
-    expect_changes("....!", mm);
+    expect_changes("ffffF");
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
-TEST(a_row_that_is_broken_begins_anew)
-{
-    static const uint16_t mm[] = {999, 999, 1001, 999, 999, 1001, 999, 999, 999};
-    expect_changes("........!", mm);
-}
+TEST(a_row_that_is_broken_begins_anew) { expect_changes("nnfnnfnnN"); }
 
 /* ---- Decision: equality holds the level ---- */
 
 TEST(a_distance_that_equals_the_threshold_holds_the_level_and_breaks_the_row)
 {
-    static const uint16_t mm[] = {999,  999,  1000, 999,  999,  1000, 1000, 999,  999,  999,
-                                  1001, 1001, 1001, 1001, 1000, 1001, 1001, 1001, 1001, 1001};
-    expect_changes(".........!.........!", mm);
+    expect_changes("nnenneennNffffeffffF");
     for (int i = 0; i != 300; i++) assert_false(distance(1000));
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
 TEST(equality_can_be_made_near)
 {
-    static const uint16_t mm[] = {1000, 999, 1000, 1001, 1001, 1001, 1001, 1000, 1001};
     config.equal = FATHOM_EQUAL_IS_NEAR;
     start();
-    expect_changes("..!......", mm);
+    expect_changes("enEffffef");
 }
 
 TEST(equality_can_be_made_far)
 {
-    static const uint16_t mm[] = {999, 999, 1000, 999, 1000, 1000, 1001, 1000, 1000};
     config.equal = FATHOM_EQUAL_IS_FAR;
     start();
-    expect_changes("........!", mm);
+    expect_changes("nneneefeE");
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
@@ -111,9 +107,8 @@ TEST(a_config_without_sense_is_refused)
 
 TEST(threshold_and_counts_are_options)
 {
-    static const uint16_t mm[] = {299, 301, 301, 299, 301};
     start_with((fathom_debounce_config_t){.threshold_mm = 300, .near_count = 1, .far_count = 2});
-    expect_changes("!.!!.", mm);
+    expect_changes("NfFNf");
 }
 
 TEST(rows_of_255_are_counted_and_longer_ones_do_not_wrap)
