@@ -1,42 +1,37 @@
 # SPDX-License-Identifier: MIT
 """A TCP server that says what the test says, byte for byte."""
-import select
 import socket
 import struct
-import time
 
 import e2e
 
 
 class Server:
-    """Listens on the loopback interface, at a port that the system has chosen."""
+    """Listens on the loopback interface, at a port that the system has chosen (or that one); as text it is
+    what the tool takes for --port."""
 
-    def __init__(self, backlog=1, family=socket.AF_INET):
+    def __init__(self, backlog=1, family=socket.AF_INET, number=0):
         self.socket = socket.socket(family)
-        self.socket.bind(('127.0.0.1' if family == socket.AF_INET else '::1', 0))
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.socket.bind(('127.0.0.1' if family == socket.AF_INET else '::1', number))
         self.socket.listen(backlog)
         self.number = self.socket.getsockname()[1]
-        self.path = f'tcp:127.0.0.1:{self.number}'
+        self.host = '127.0.0.1' if family == socket.AF_INET else '[::1]'
         self.client = None
 
+    def __str__(self):
+        return f'tcp:{self.host}:{self.number}'
+
     def accept(self):
-        if not select.select([self.socket], [], [], e2e.PATIENCE)[0]:
+        if not e2e.is_ready(self.socket, e2e.PATIENCE):
             raise AssertionError('nobody connects')
         self.client = self.socket.accept()[0]
         self.client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-    def request(self, count=12, seconds=e2e.PATIENCE):
-        """Exactly so many bytes."""
-        deadline = time.monotonic() + seconds
-        got = b''
-        while len(got) < count:
-            if not select.select([self.client], [], [], max(0, deadline - time.monotonic()))[0]:
-                raise AssertionError(f'{count} bytes were expected, {got.hex(" ")} came')
-            part = self.client.recv(count - len(got))
-            if not part:
-                raise AssertionError('the client has gone')
-            got += part
-        return got
+    def request(self):
+        """Its transaction, its unit, and what follows the unit: five bytes."""
+        request = e2e.read_exactly(12, self.client, self.client.recv)
+        return int.from_bytes(request[:2], 'big'), request[6], request[7:]
 
     def say(self, *parts):
         self.client.sendall(b''.join(bytes(part) for part in parts))
@@ -54,6 +49,13 @@ class Server:
     def close(self):
         self.hang_up()
         self.socket.close()
+
+
+class Case(e2e.Case):
+    def server(self, **options):
+        server = Server(**options)
+        self.addCleanup(server.close)
+        return server
 
 
 def adu(transaction, unit, *pdu):

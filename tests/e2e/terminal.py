@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A terminal for tests: a pseudo terminal of a fixed size with a program in it, and a model of what its screen shows.
-The model knows the few sequences that the tool needs; any other one fails the test."""
+"""A terminal for tests: a pseudo terminal of a fixed size with a program in it, and a model of what its
+screen shows. The model knows the few sequences that the tool needs; any other one fails the test."""
 import fcntl
 import os
 import re
@@ -17,7 +17,7 @@ SEQUENCE = re.compile(rb'\x1b\[(\??)([\d;]*)([A-Za-z])')
 
 
 class Screen:
-    """Rows of characters, and beside each what the colour was."""
+    """Rows of characters, and which colours there were."""
 
     def __init__(self, rows, columns):
         self.is_other = False  # the alternate screen is shown
@@ -54,9 +54,8 @@ class Screen:
     def obey(self, mark, numbers, letter):
         words = [int(word) for word in numbers.split(';') if word]
         if mark == '?':
-            on = {'h': True, 'l': False}[letter]
             name = {1049: 'is_other', 25: 'has_cursor', 7: 'wraps'}[words[0]]
-            setattr(self, name, on)
+            setattr(self, name, {'h': True, 'l': False}[letter])
             if name == 'is_other':
                 self.clear()
         elif letter == 'H':
@@ -76,7 +75,7 @@ class Screen:
 class Terminal:
     """environment: added to what is there; None takes a name out."""
 
-    def __init__(self, command, rows=24, columns=80, environment=None, stdout=None):
+    def __init__(self, command, rows=24, columns=80, environment=None):
         self.master, self.slave = os.openpty()
         self.set_size(rows, columns)
         self.screen = Screen(rows, columns)
@@ -84,17 +83,18 @@ class Terminal:
         self.bytes = b''
         self.rest = b''
         wanted = {**os.environ, 'TERM': 'xterm', 'LC_ALL': 'C.UTF-8', 'NO_COLOR': None, **(environment or {})}
-        self.process = subprocess.Popen([str(word) for word in command], stdin=self.slave, stderr=self.slave,
-                                        stdout=self.slave if stdout is None else stdout, start_new_session=True,
-                                        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
-                                        env={name: value for name, value in wanted.items() if value is not None})
+        wanted = {name: value for name, value in wanted.items() if value is not None}
+        self.process = subprocess.Popen(['setsid', '--ctty', *command], env=wanted,
+                                        stdin=self.slave, stdout=self.slave, stderr=self.slave)
         self.pidfd = os.pidfd_open(self.process.pid)
 
     def set_size(self, rows, columns):
         """Tells the program too (SIGWINCH)."""
         fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack('HHHH', rows, columns, 0, 0))
 
-    def take(self, data):
+    def take(self):
+        """What has come; a sequence or character that is not whole waits for its rest."""
+        data = os.read(self.master, 65536)
         self.bytes += data
         data = self.rest + data
         at = 0
@@ -114,19 +114,23 @@ class Terminal:
             at += length
         self.rest = data[at:]
 
-    def wait(self, condition, seconds=e2e.PATIENCE):
+    def wait(self, condition):
         """Until condition(screen) holds; returns what it returned."""
-        deadline = time.monotonic() + seconds
-        while True:
-            got = condition(self.screen)
-            if got:
-                return got
-            if not select.select([self.master], [], [], max(0, deadline - time.monotonic()))[0]:
+        deadline = time.monotonic() + e2e.PATIENCE
+        while not (got := condition(self.screen)):
+            if not e2e.is_ready(self.master, deadline - time.monotonic()):
                 raise AssertionError(f'it did not come; the screen is\n{self.screen.text()}\n{self.screen.main}')
-            self.take(os.read(self.master, 65536))
+            self.take()
+        return got
+
+    def changes(self):
+        """Until the screen shows something else."""
+        before = self.screen.text()
+        self.wait(lambda screen: screen.text() != before)
 
     def resize(self, rows, columns):
-        """What is still on its way is for the old size; the first picture of the new one begins by clearing the screen."""
+        """What is still on its way is for the old size; the first picture of the new one begins by clearing
+        the screen."""
         self.screen.next_size = (rows, columns)
         self.set_size(rows, columns)
         self.wait(lambda screen: screen.next_size is None)
@@ -137,16 +141,16 @@ class Terminal:
     def send(self, number):
         signal.pidfd_send_signal(self.pidfd, number)
 
-    def finish(self, seconds=e2e.PATIENCE):
+    def finish(self):
         """Waits for its end, and takes the rest of what it said."""
-        deadline = time.monotonic() + seconds
-        while not select.select([self.pidfd], [], [], 0)[0]:
-            if time.monotonic() > deadline:
+        poller = select.poll()
+        poller.register(self.master, select.POLLIN)
+        poller.register(self.pidfd, select.POLLIN)
+        deadline = time.monotonic() + e2e.PATIENCE
+        while (ready := [fd for fd, _ in poller.poll(max(0, deadline - time.monotonic()) * 1000)]) != [self.pidfd]:
+            if not ready:
                 raise AssertionError(f'it still runs; the screen is\n{self.screen.text()}')
-            if select.select([self.master, self.pidfd], [], [], 0.5)[0][:1] == [self.master]:
-                self.take(os.read(self.master, 65536))
-        while select.select([self.master], [], [], 0)[0]:
-            self.take(os.read(self.master, 65536))
+            self.take()
         return self.process.wait()
 
     def discard(self):

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """fathom read against fathom sim: every sensor and mode, every format, counts and pace."""
 import datetime
-import json
 import re
+import termios
 import time
 
 import e2e
@@ -12,64 +12,62 @@ COMMON = ['sensor', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 's
           'distance_mm', 'raw']
 OPTICS = ['magnitude', 'ambient', 'precision']
 
-# sensor, mode, what sim is asked to see, what comes back: (status, interference, distance, raw) a probe
+
+def target(mm):
+    return 'target', False, mm, mm
+
+
+# sensor, mode, what sim is asked to see; what comes back: (status, interference, distance, raw) a probe
+NO_TARGET, INTERFERENCE = ('no_target', False, None, 0xFFFD), ('no_target', True, None, 0xFFFE)
 SEEN = [
-    ('a16', 'auto', '1953', [('target', False, 1953, 1953)]),
-    ('a16', 'auto', '511', [('target', False, 511, 511)]),  # FF 01 FF FF: out of step it would be 65281
-    ('a16', 'auto', 'no-target', [('no_target', False, None, 0xFFFD)]),
-    ('a16', 'auto', 'interference', [('no_target', True, None, 0xFFFE)]),
-    ('a16', 'modbus', '754', [('target', False, 754, 754)]),
-    ('a16', 'modbus', '0', [('no_target', False, None, 0)]),
-    ('a05', 'auto', '1000,2000,1953,3562',
-     [('target', False, mm, mm) for mm in (1000, 2000, 1953, 3562)]),
+    ('a16 auto 1953', [target(1953)]),
+    ('a16 auto 511', [target(511)]),  # FF 01 FF FF: out of step it would be 65281
+    ('a16 auto no-target', [NO_TARGET]),
+    ('a16 auto interference', [INTERFERENCE]),
+    ('a16 modbus 754', [target(754)]),
+    ('a16 modbus 0', [('no_target', False, None, 0)]),
+    ('a05 auto 1000,2000,1953,3562', [target(mm) for mm in (1000, 2000, 1953, 3562)]),
     # out of step by six it would be 1339 2047 1000 2000
-    ('a05', 'auto', '1000,2000,2047,1339', [('target', False, mm, mm) for mm in (1000, 2000, 2047, 1339)]),
-    ('a05', 'auto', '1000', [('target', False, 1000, 1000)] * 4),
-    ('a05', 'modbus', '316,no-target,interference,4500',
-     [('target', False, 316, 316), ('no_target', False, None, 0xFFFD), ('no_target', True, None, 0xFFFE),
-      ('target', False, 4500, 4500)]),
-    ('hps167s', 'modbus', '2083', [('target', False, 2083, 2083)]),
-    ('hps167s', 'modbus', 'no-target', [('no_target', False, None, 65530)]),
-    ('hps167s', 'modbus', 'fault', [('fault', False, None, 65535)]),
+    ('a05 auto 1000,2000,2047,1339', [target(mm) for mm in (1000, 2000, 2047, 1339)]),
+    ('a05 auto 1000', [target(1000)] * 4),
+    ('a05 modbus 316,no-target,interference,4500', [target(316), NO_TARGET, INTERFERENCE, target(4500)]),
+    ('hps167s modbus 2083', [target(2083)]),
+    ('hps167s modbus no-target', [('no_target', False, None, 65530)]),
+    ('hps167s modbus fault', [('fault', False, None, 65535)]),
 ]
 
 
 class Values(e2e.Case):
     """Exactly what the simulated sensor sees, in every mode; nothing in range and a fault are no failures."""
 
-    def check(self, sensor, mode, distance, expected):
-        sim = self.sim(f'{sensor}::{mode}', '--distance', distance)
-        objects = self.read_json(sensor, '--mode', mode, '--port', sim.port, '--count', '2')
-        got = [(o['probe'], o['sequence'], o['status'], o['interference'], o['distance_mm'], o['raw'])
-               for o in objects]
-        first = objects[0]['sequence']
+    @e2e.each(**{re.sub('[^a-z0-9]', '_', row[0]): row for row in SEEN})
+    def seen(self, words, expected):
+        sensor, mode, distance = words.split()
+        sim = self.sim(f'{sensor}::{mode} --distance {distance}')
+        got = [(one['probe'], one['sequence'], one['status'], one['interference'], one['distance_mm'],
+                one['raw'])
+               for one in self.read_json(f'{sensor} --mode {mode} --port {sim} --count 2')]
+        first = got[0][1]
         self.assertEqual(got, [(probe, sequence, *one) for sequence in (first, first + 1)
                                for probe, one in enumerate(expected, 1)])
 
 
-def add(row):
-    sensor, mode, distance, _ = row
-    name = f'test_{sensor}_{mode}_{re.sub("[^a-z0-9]", "_", distance)}'
-    setattr(Values, name, lambda self: self.check(*row))
-
-
-for each in SEEN:
-    add(each)
-
-
 class Json(e2e.Case):
+    @e2e.each(
+        a16_auto_has_no_address=('a16', 'auto', None),
+        a16_modbus_has_the_address=('a16', 'modbus', 254),
+        the_four_probes_of_an_a05_share_sequence_and_time=('a05', 'auto', None),
+        the_four_probes_of_an_a05_answer_share_sequence_and_time=('a05', 'modbus', 9),
+        an_hps167s_has_its_optics_too_and_the_magnitude_exactly=('hps167s', 'modbus', 32))
     def members(self, sensor, mode, address):
-        device = sensor if address is None else f'{sensor}:{address}:{mode}'
-        sim = self.sim(device, '--distance', '1234')
+        sim = self.sim(f'{sensor}:{address or ""}:{mode} --distance 1234')
         began = time.time()
-        options = [] if address is None else ['--mode', mode, '--address', address]
-        done = self.run_fathom('read', sensor, '--port', sim.port, '--count', '3', '--format', 'json', *options)
+        options = '' if address is None else f'--mode {mode} --address {address}'
+        done = self.ends(f'read {sensor} --port {sim} --count 3 --format json {options}', 0)
         ended = time.time()
-        self.assertEqual(done.code, 0, done.err)
-        objects = [json.loads(line) for line in done.out.splitlines()]
         probes = 4 if sensor == 'a05' else 1
-        self.assertEqual(len(objects), 3 * probes)
-        for one in objects:
+        self.assertEqual(len(done.json), 3 * probes)
+        for one in done.json:
             self.assertEqual(list(one), COMMON + (OPTICS if sensor == 'hps167s' else []))
             self.assertEqual((one['sensor'], one['mode'], one['address']), (sensor, mode, address))
             self.assertEqual((one['status'], one['distance_mm'], one['raw']), ('target', 1234, 1234))
@@ -80,142 +78,112 @@ class Json(e2e.Case):
             at = datetime.datetime.fromisoformat(one['utc'].replace('Z', '+00:00')).timestamp()
             self.assertTrue(began <= at <= ended, (began, one['utc'], ended))
             self.assertTrue(0 < one['time_us'] < (ended - began) * 1e6)
-        self.assertEqual([one['probe'] for one in objects], [1, 2, 3, 4][:probes] * 3)
-        times = sorted({one['time_us'] for one in objects})
-        self.assertEqual([(one['sequence'], one['time_us']) for one in objects],
-                         [(objects[0]['sequence'] + i, times[i]) for i in range(3) for _ in range(probes)])
-        return done.out
-
-    def test_a16_auto_has_no_address(self):
-        self.members('a16', 'auto', None)
-
-    def test_a16_modbus_has_the_address(self):
-        self.members('a16', 'modbus', 254)
-
-    def test_the_four_probes_of_an_a05_share_sequence_and_time(self):
-        self.members('a05', 'auto', None)
-
-    def test_the_four_probes_of_an_a05_answer_share_sequence_and_time(self):
-        self.members('a05', 'modbus', 9)
-
-    def test_an_hps167s_has_its_optics_too_and_the_magnitude_exactly(self):
-        out = self.members('hps167s', 'modbus', 32)
-        self.assertEqual(out.count('"magnitude":723.1744,"ambient":1,"precision":0}\n'), 3)
+        first = done.json[0]['sequence']
+        times = sorted({one['time_us'] for one in done.json})
+        self.assertEqual([(one['probe'], one['sequence'], one['time_us']) for one in done.json],
+                         [(probe, first + i, times[i]) for i in range(3) for probe in range(1, probes + 1)])
+        if sensor == 'hps167s':
+            self.assertEqual(done.out.count('"magnitude":723.1744,"ambient":1,"precision":0}\n'), 3)
 
 
 class Formats(e2e.Case):
     def test_csv_has_one_header_line_and_the_values_of_json(self):
-        sim = self.sim('a05::modbus', '--distance', '1000,no-target,interference,4500')
-        done = self.run_fathom('read', 'a05', '--mode', 'modbus', '--port', sim.port, '--count', '2', '--format', 'csv')
+        sim = self.sim('a05::modbus --distance 1000,no-target,interference,4500')
+        done = self.ends(f'read a05 --mode modbus --port {sim} --count 2 --format csv', 0)
         header, *rows = done.out.splitlines()
-        self.assertEqual(done.code, 0, done.err)
         self.assertEqual(header, ','.join(COMMON))
-        expected = ['a05,modbus,1,1,{0},T,U,target,false,1000,1000', 'a05,modbus,1,2,{0},T,U,no_target,false,,65533',
-                    'a05,modbus,1,3,{0},T,U,no_target,true,,65534', 'a05,modbus,1,4,{0},T,U,target,false,4500,4500']
+        expected = ['a05,modbus,1,1,{0},T,U,target,false,1000,1000',
+                    'a05,modbus,1,2,{0},T,U,no_target,false,,65533',
+                    'a05,modbus,1,3,{0},T,U,no_target,true,,65534',
+                    'a05,modbus,1,4,{0},T,U,target,false,4500,4500']
         got = [re.sub(r',\d+,[-\dT:.]+Z,', ',T,U,', row) for row in rows]
         self.assertEqual(got, [row.format(sequence) for sequence in (1, 2) for row in expected])
 
-    def test_csv_of_a_sensor_with_optics(self):
-        sim = self.sim('hps167s', '--distance', '2083')
-        done = self.run_fathom('read', 'hps167s', '--port', sim.port, '--count', '1', '--format', 'csv')
-        header, row = done.out.splitlines()
-        self.assertEqual(header, ','.join(COMMON + OPTICS))
-        self.assertRegex(row, r'^hps167s,modbus,1,1,1,\d+,[^,]+Z,target,false,2083,2083,723\.1744,1,0$')
+    @e2e.each(
+        csv_of_a_sensor_with_optics=('hps167s', 2083, OPTICS,
+                                     r'hps167s,modbus,1,1,1,\d+,[^,]+Z,target,false,2083,2083,723\.1744,1,0'),
+        csv_of_a_sensor_that_sends_by_itself_has_no_address=(
+            'a16', 754, [], r'a16,auto,,1,1,\d+,[^,]+Z,target,false,754,754'))
+    def csv(self, sensor, distance, more, expected):
+        sim = self.sim(f'{sensor} --distance {distance}')
+        header, row = self.ends(f'read {sensor} --port {sim} --count 1 --format csv', 0).out.splitlines()
+        self.assertEqual(header, ','.join(COMMON + more))
+        self.assertRegex(row, f'^{expected}$')
 
-    def test_csv_of_a_sensor_that_sends_by_itself_has_no_address(self):
-        sim = self.sim('a16', '--distance', '754')
-        done = self.run_fathom('read', 'a16', '--port', sim.port, '--count', '1', '--format', 'csv')
-        self.assertRegex(done.out.splitlines()[1], r'^a16,auto,,1,1,\d+,[^,]+Z,target,false,754,754$')
-
-    def text(self, device, distance, *arguments):
-        sim = self.sim(device, '--distance', distance)
-        done = self.run_fathom('read', device.split(':')[0], '--port', sim.port, '--count', '1', *arguments)
-        self.assertEqual(done.code, 0, done.err)
-        return re.sub(r'^ *\d+\.\d{3} s  ', '', done.out, flags=re.M).splitlines()
-
-    def test_text_is_the_default_and_in_mm_and_m(self):
-        self.assertEqual(self.text('a16', '754'), ['a16     754 mm    0.754 m'])
-
-    def test_text_of_four_probes(self):
-        self.assertEqual(self.text('a05', '1000,20,no-target,interference', '--format', 'text'),
-                         ['a05 probe 1    1000 mm    1.000 m', 'a05 probe 2      20 mm    0.020 m',
-                          'a05 probe 3  no target in range', 'a05 probe 4  no target in range (interference)'])
-
-    def test_text_of_an_hps167s(self):
-        self.assertEqual(self.text('hps167s', '17999'),
-                         ['hps167s   17999 mm   17.999 m  magnitude 723.1744  ambient 1  precision 0'])
-
-    def test_text_of_a_fault(self):
-        self.assertEqual(self.text('hps167s', 'fault'), ['hps167s  fault: the sensor says that it has failed'])
+    @e2e.each(
+        text_is_the_default_and_in_mm_and_m=('a16', '754', '', 'a16     754 mm    0.754 m'),
+        text_of_four_probes=('a05', '1000,20,no-target,interference', '--format text',
+                             'a05 probe 1    1000 mm    1.000 m', 'a05 probe 2      20 mm    0.020 m',
+                             'a05 probe 3  no target in range',
+                             'a05 probe 4  no target in range (interference)'),
+        text_of_an_hps167s=('hps167s', '17999', '',
+                            'hps167s   17999 mm   17.999 m  magnitude 723.1744  ambient 1  precision 0'),
+        text_of_a_fault=('hps167s', 'fault', '', 'hps167s  fault: the sensor says that it has failed'))
+    def text(self, sensor, distance, options, *expected):
+        sim = self.sim(f'{sensor} --distance {distance}')
+        done = self.ends(f'read {sensor} --port {sim} --count 1 {options}', 0)
+        self.assertEqual(re.sub(r'^ *\d+\.\d{3} s  ', '', done.out, flags=re.M).splitlines(), [*expected])
 
 
 class Pace(e2e.Case):
     def test_without_a_count_it_goes_on(self):
-        sim = self.sim('hps167s', '--distance', '500')
-        reader = self.fathom('read', 'hps167s', '--port', sim.port, '--format', 'json')
+        reader = self.fathom(f'read hps167s --port {self.sim("hps167s --distance 500")} --format json')
         for sequence in range(1, 21):  # 54 a second
             reader.expect(rf'"sequence":{sequence},')
-        done = reader.end()
-        self.assertEqual(done.code, 0, done.err)
+        self.ends(reader.end(), 0)
 
     def test_lines_are_flushed_at_once_to_a_pipe(self):
-        sim = self.sim('a16', '--distance', '500')
-        reader = self.fathom('read', 'a16', '--port', sim.port, '--interval', '3600000')
+        reader = self.fathom(f'read a16 --port {self.sim("a16 --distance 500")} --interval 3600000')
         reader.expect('500 mm')
-        self.assertIsNone(reader.process.poll())
+        self.assertFalse(reader.has_ended())
 
     def test_an_interval_between_requests_is_kept(self):
-        sim = self.sim('hps167s', '--distance', '500')
-        objects = self.read_json('hps167s', '--port', sim.port, '--count', '4', '--interval', '250')
-        times = [one['time_us'] for one in objects]
+        sim = self.sim('hps167s --distance 500')
+        objects = self.read_json(f'hps167s --port {sim} --count 4 --interval 250')
         self.assertEqual([one['sequence'] for one in objects], [1, 2, 3, 4])
-        self.assertGreaterEqual(times[3] - times[0], 2 * 250000)
+        self.assertGreaterEqual(objects[3]['time_us'] - objects[0]['time_us'], 2 * 250000)
 
     def test_an_interval_between_frames_drops_what_comes_meanwhile_and_counts_it(self):
-        sim = self.sim('a16', '--distance', '500')  # a frame every 100 ms
-        done = self.run_fathom('read', 'a16', '--port', sim.port, '--count', '3', '--interval', '400',
-                               '--format', 'json')
-        objects = [json.loads(line) for line in done.out.splitlines()]
-        self.assertEqual(len(objects), 3)
-        self.assertGreaterEqual(objects[2]['time_us'] - objects[0]['time_us'], 600000)
-        self.assertGreaterEqual(objects[2]['sequence'] - objects[0]['sequence'], 4)
+        sim = self.sim('a16 --distance 500')  # a frame every 100 ms
+        done = self.ends(f'read a16 --port {sim} --count 3 --interval 400 --format json', 0,
+                         'attempts 3, failed 0, readings 3')
+        self.assertEqual(len(done.json), 3)
+        first, _, last = done.json
+        self.assertGreaterEqual(last['time_us'] - first['time_us'], 600000)
+        self.assertGreaterEqual(last['sequence'] - first['sequence'], 4)
         self.assertGreater(int(re.search(r'line: frames (\d+)', done.err)[1]), 5)
-        self.assertIn('attempts 3, failed 0, readings 3', done.err)
 
     def test_a_frame_of_four_probes_is_one_attempt_and_never_torn_by_an_interval(self):
-        sim = self.sim('a05', '--distance', '1000,2000,1953,3562')
-        objects = self.read_json('a05', '--port', sim.port, '--count', '2', '--interval', '700')
+        sim = self.sim('a05 --distance 1000,2000,1953,3562')
+        objects = self.read_json(f'a05 --port {sim} --count 2 --interval 700')
         self.assertEqual([one['probe'] for one in objects], [1, 2, 3, 4, 1, 2, 3, 4])
         self.assertEqual(len({one['sequence'] for one in objects}), 2)
 
     def test_counters_are_told_on_stderr_at_the_end(self):
-        sim = self.sim('a05::modbus', '--distance', '1000')
-        done = self.run_fathom('read', 'a05', '--mode', 'modbus', '--port', sim.port, '--count', '2')
+        sim = self.sim('a05::modbus --distance 1000')
+        done = self.run_fathom(f'read a05 --mode modbus --port {sim} --count 2')
         self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 8\nfathom: line: answers 2\n')
 
 
 class Clients(e2e.Case):
     def test_a_simulated_sensor_outlives_its_clients(self):
-        sim = self.sim('hps167s:3', '--distance', '500')
+        sim = self.sim('hps167s:3 --distance 500')
         for _ in range(3):
-            self.assertEqual(len(self.read_json('hps167s', '--address', '3', '--port', sim.port, '--count', '1')), 1)
+            self.assertEqual(len(self.read_json(f'hps167s --address 3 --port {sim} --count 1')), 1)
         self.assertEqual(sim.end().code, 0)
 
     def test_a_modbus_request_ends_the_automatic_output_of_an_a16(self):
-        sim = self.sim('a16', '--distance', '754')
-        self.assertEqual(self.read_json('a16', '--port', sim.port, '--count', '1')[0]['mode'], 'auto')
-        asked = self.read_json('a16', '--mode', 'modbus', '--port', sim.port, '--count', '1')
-        self.assertEqual((asked[0]['mode'], asked[0]['distance_mm']), ('modbus', 754))
-        self.assertEqual(self.read_json('a16', '--port', sim.port, '--count', '1', '--timeout', '400', code=1), [])
+        sim = self.sim('a16 --distance 754')
+        self.assertEqual(self.read_json(f'a16 --port {sim} --count 1')[0]['mode'], 'auto')
+        asked, = self.read_json(f'a16 --mode modbus --port {sim} --count 1')
+        self.assertEqual((asked['mode'], asked['distance_mm']), ('modbus', 754))
+        self.assertEqual(self.read_json(f'a16 --port {sim} --count 1 --timeout 400', code=1), [])
 
     def test_settings_that_are_not_the_factorys_reach_the_port(self):
-        device = self.device()
-        reader = self.fathom('read', 'a16', '--port', device.path, '--baud', '115200', '--parity', 'odd',
-                             '--format', 'csv')
-        reader.expect('^sensor,')
-        self.assertEqual(device.baud(), e2e.termios.B115200)
+        device, _ = self.beside('read a16 --baud 115200 --parity odd --format csv')
+        self.assertEqual(device.baud(), termios.B115200)
         # a pseudo terminal keeps PARODD, though not PARENB
-        self.assertTrue(e2e.termios.tcgetattr(device.slave)[2] & e2e.termios.PARODD)
+        self.assertTrue(termios.tcgetattr(device.slave)[2] & termios.PARODD)
 
 
 if __name__ == '__main__':

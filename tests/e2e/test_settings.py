@@ -1,253 +1,225 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom info, get, set and reset, against simulated sensors: what they print, what they change, and what not."""
-import json
+"""fathom info, get, set and reset, against simulated sensors: what they print, what they change, and what
+not."""
 import signal
 
 import e2e
 
 
+def lost(first, end):
+    """Faults of a simulated sensor: these frames do not come."""
+    return ' '.join(f'--fault silence=1@{frame}' for frame in range(first, end))
+
+
 class Settings(e2e.Case):
-    def told(self, *arguments, code=0):
-        """Standard output; what it said on the standard error stands in self.err."""
-        done = self.run_fathom(*arguments)
-        self.err = done.err
-        self.assertEqual(done.code, code, done.out + done.err)
-        return done.out
+    def told(self, line, *said, code=0):
+        """Standard output; and this is on the standard error."""
+        return self.ends(line, code, *said).out
 
-    def json(self, *arguments, code=0):
-        return json.loads(self.told(*arguments, '--format', 'json', code=code))
+    def json(self, line):
+        return self.ends(f'{line} --format json', 0).json[0]
 
-    def counters(self, sim):
-        """What the simulated sensors have counted; ends them."""
-        done = sim.end(signal.SIGINT)
-        return [json.loads(line) for line in done.err.splitlines() if line.startswith('{')]
+    def counters(self, sim, *names):
+        """What each simulated sensor has counted, of these; ends them."""
+        return [tuple(one[name] for name in names) for one in sim.end(signal.SIGINT).told]
+
+    def reads(self, sensor, sim, count=1):
+        return self.read_json(f'{sensor} --port {sim} --count {count}')
 
 
 class What(Settings):
-    def test_the_settings_of_a_sensor_are_listed_without_a_port(self):
-        for sensor, words in (('a16', ['switch-threshold', '1 to 16350 mm', 'operating-mode (write-only)', '0x0202']),
-                              ('a05', ['address', '1 to 254', 'every-address', 'EVERY A05']),
-                              ('hps167s', ['19200, 57600, 115200, 230400', 'a multiple of 18', 'next power-on',
-                                           'distance-offset (write-only)', '(#14)'])):
-            out = self.told('get', sensor)
-            for word in words:
-                self.assertIn(word, out)
+    @e2e.each(**{f'the_settings_of_a_sensor_are_listed_without_a_port_{sensor}': (sensor, words) for sensor,
+                 words in (
+        ('a16', ['switch-threshold', '1 to 16350 mm', 'operating-mode (write-only)', '0x0202']),
+        ('a05', ['address', '1 to 254', 'every-address', 'EVERY A05']),
+        ('hps167s', ['19200, 57600, 115200, 230400', 'a multiple of 18', 'next power-on',
+                     'distance-offset (write-only)', '(#14)']))})
+    def listed(self, sensor, words):
+        out = self.told(f'get {sensor}')
+        for word in words:
+            self.assertIn(word, out)
 
-    def test_everything_that_an_hps167s_tells(self):
+    @e2e.each(
         # the examples of #3; a temperature of 77 degrees Fahrenheit is (77 - 32) * 5 / 9 = 25.0
-        sim = self.sim('hps167s:7')
-        self.assertEqual(self.json('info', 'hps167s:7', '--port', sim.port), {
+        everything_that_an_hps167s_tells=('hps167s:7', 'hps167s:7', {
             'sensor': 'hps167s', 'asked_at': 7, 'mode': 'modbus', 'line': '19200 8E1',
             'interface-version': '2.1.0 of 2020-09-27', 'sensor-version': '3.9 of 2019-09-23',
             'uuid': '00390025423457142034383501060705', 'temperature': 25.0, 'baud': 19200, 'warm-up': 0,
-            'measure-after-power-on': 'on', 'termination': 'on', 'reconnect-time': 180})
+            'measure-after-power-on': 'on', 'termination': 'on', 'reconnect-time': 180}),
+        everything_that_an_a16_tells=('a16:1:modbus --distance 754', 'a16', {
+            'sensor': 'a16', 'asked_at': 1, 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,
+            'switch-polarity': 'positive', 'switch-threshold': 1000, 'automatic-value': 'processed',
+            'distance': 754,
+            'real-time-distance': 754}),
+        everything_that_an_a05_tells=('a05:3:modbus --distance 1000,2000,1953,no-target', 'a05:3', {
+            'sensor': 'a05', 'asked_at': 3, 'mode': 'modbus', 'line': '9600 8N1', 'address': 3,
+            'distances': '1000, 2000, 1953, no target'}))
+    def everything(self, device, sensor, expected):
+        self.assertEqual(self.json(f'info {sensor} --port {self.sim(device)}'), expected)
 
     def test_a_termination_resistor_that_is_on_is_remarked(self):
         sim = self.sim('hps167s')
-        self.assertIn('termination                on', self.told('info', 'hps167s', '--port', sim.port))
-        self.assertIn('termination off', self.err)
-        self.told('set', 'hps167s', '--port', sim.port, 'termination', 'off')
-        self.told('info', 'hps167s', '--port', sim.port)
-        self.assertNotIn('resistor', self.err)
-
-    def test_everything_that_an_a16_tells(self):
-        sim = self.sim('a16:1:modbus', '--distance', '754')
-        self.assertEqual(self.json('info', 'a16', '--port', sim.port), {
-            'sensor': 'a16', 'asked_at': 1, 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,
-            'switch-polarity': 'positive', 'switch-threshold': 1000, 'automatic-value': 'processed', 'distance': 754,
-            'real-time-distance': 754})
-
-    def test_everything_that_an_a05_tells(self):
-        sim = self.sim('a05:3:modbus', '--distance', '1000,2000,1953,no-target')
-        self.assertEqual(self.json('info', 'a05:3', '--port', sim.port), {
-            'sensor': 'a05', 'asked_at': 3, 'mode': 'modbus', 'line': '9600 8N1', 'address': 3,
-            'distances': '1000, 2000, 1953, no target'})
+        self.assertIn('termination                on',
+                      self.told(f'info hps167s --port {sim}', 'termination off'))
+        self.told(f'set hps167s --port {sim} termination off')
+        self.assertNotIn('resistor', self.ends(f'info hps167s --port {sim}', 0).err)
 
     def test_one_setting_is_told_alone(self):
-        sim = self.sim('hps167s')
-        self.assertEqual(self.told('get', 'hps167s', '--port', sim.port, 'reconnect-time').splitlines()[1].split(),
-                         ['reconnect-time', '180', 'ms'])
+        out = self.told(f'get hps167s --port {self.sim("hps167s")} reconnect-time')
+        self.assertEqual(out.splitlines()[1].split(), ['reconnect-time', '180', 'ms'])
 
     def test_what_is_told_changes_nothing(self):
-        sim = self.sim('hps167s', '--counters')
-        self.told('info', 'hps167s', '--port', sim.port)
-        counted = self.counters(sim)[0]
-        self.assertEqual((counted['writes'], counted['flash_writes'], counted['resets'], counted['resets_refused']),
-                         (0, 0, 0, 0))
-        self.assertGreater(counted['answered'], 5)
+        sim = self.sim('hps167s --counters')
+        self.told(f'info hps167s --port {sim}')
+        (*changes, answered), = self.counters(sim, 'writes', 'flash_writes', 'resets', 'resets_refused',
+                                              'answered')
+        self.assertEqual(changes, [0] * 4)
+        self.assertGreater(answered, 5)
 
 
 class Change(Settings):
     def test_the_baud_rate_is_changed_and_followed(self):
         sim = self.sim('hps167s')
-        out = self.told('set', 'hps167s', '--port', sim.port, 'baud', '115200')
+        out = self.told(f'set hps167s --port {sim} baud 115200')
         self.assertIn('baud is 115200 (was 19200)', out)
-        self.assertIn(f'fathom read hps167s:1:modbus --port {sim.port} --baud 115200', out)
-        self.assertEqual(self.json('get', 'hps167s', '--port', sim.port, '--baud', '115200', 'baud')['baud'], 115200)
-        self.assertIn('no answer', self.told('get', 'hps167s', '--port', sim.port, 'baud', code=1) + self.err)
+        self.assertIn(f'fathom read hps167s:1:modbus --port {sim} --baud 115200', out)
+        self.assertEqual(self.json(f'get hps167s --port {sim} --baud 115200 baud')['baud'], 115200)
+        self.ends(f'get hps167s --port {sim} baud', 1, 'no answer')
 
     def test_without_confirmation_both_baud_rates_are_named(self):
-        # frames 1 and 2 answer #2 for the user, 3 and 4 the driver; nothing is at 115200 yet; 5 acknowledges the
-        # writing, and from then on all is lost
-        lost = [word for frame in range(5, 30) for word in ('--fault', f'silence=1@{frame}')]
-        sim = self.sim('hps167s', '--counters', *lost)
-        self.told('set', 'hps167s', '--port', sim.port, 'baud', '115200', code=1)
-        self.assertIn('it is at 19200 or at 115200 baud, perhaps from the next power-on', self.err)
-        self.assertIn(f'fathom scan --port {sim.port} --baud 19200,115200', self.err)
-        counted = self.counters(sim)[0]
-        self.assertEqual((counted['baud'], counted['writes']), (115200, 1))
+        # frames 1 and 2 answer #2 for the user, 3 and 4 the driver; nothing is at 115200 yet; 5 acknowledges
+        # the writing, and from then on all is lost
+        sim = self.sim(f'hps167s --counters {lost(5, 30)}')
+        self.told(f'set hps167s --port {sim} baud 115200',
+                  'it is at 19200 or at 115200 baud, perhaps from the next '
+                  'power-on', f'fathom scan --port {sim} --baud 19200,115200', code=1)
+        self.assertEqual(self.counters(sim, 'baud', 'writes'), [(115200, 1)])
+
+    def change_address(self, device):
+        sensor = device.split(':')[0]
+        sim = self.sim(f'{device} --counters')
+        out = self.told(f'set {sensor} --port {sim} address 5')
+        self.assertIn('address is 5', out)
+        self.assertIn(f'from now on: fathom read {sensor}:5:modbus', out)
+        self.assertTrue(self.reads(f'{sensor}:5:modbus', sim))
+        self.assertEqual(self.counters(sim, 'writes'), [(1,)])
 
     def test_an_address_is_changed_and_followed(self):
-        for device, sensor in (('a16:1:modbus', 'a16'), ('a05:1:modbus', 'a05'), ('hps167s', 'hps167s')):
-            sim = self.sim(device, '--counters')
-            out = self.told('set', sensor, '--port', sim.port, 'address', '5')
-            self.assertIn('address is 5', out)
-            self.assertIn(f'from now on: fathom read {sensor}:5:modbus', out)
-            self.assertEqual(len(self.read_json(f'{sensor}:5:modbus', '--port', sim.port, '--count', '1')) > 0, True)
-            self.assertEqual(self.counters(sim)[0]['writes'], 1)
+        self.change_address('a16:1:modbus')
+
+    @e2e.each(an_address_of_an_a05_is_changed_and_followed='a05:1:modbus',
+              an_address_of_an_hps167s_is_changed_and_followed='hps167s')
+    def follow(self, device):
+        self.change_address(device)
 
     def test_without_confirmation_both_addresses_are_named(self):
-        lost = [word for frame in range(3, 20) for word in ('--fault', f'silence=1@{frame}')]
-        sim = self.sim('a16:1:modbus', '--counters', *lost)
-        self.told('set', 'a16', '--port', sim.port, 'address', '5', code=1)
-        self.assertIn('it is at address 1 or at address 5', self.err)
-        self.assertEqual(self.counters(sim)[0]['address'], 5)
+        sim = self.sim(f'a16:1:modbus --counters {lost(3, 20)}')
+        self.told(f'set a16 --port {sim} address 5', 'it is at address 1 or at address 5', code=1)
+        self.assertEqual(self.counters(sim, 'address'), [(5,)])
 
     def test_an_address_in_use_is_not_given(self):
-        sim = self.sim('a05:1:modbus', 'a16:5:modbus', '--counters')
-        self.told('set', 'a05', '--port', sim.port, 'address', '5', code=1)
-        self.assertIn('a device answers at address 5 already, so nothing was changed', self.err)
-        self.assertEqual([counted['writes'] for counted in self.counters(sim)], [0, 0])
+        sim = self.sim('a05:1:modbus a16:5:modbus --counters')
+        self.told(f'set a05 --port {sim} address 5',
+                  'a device answers at address 5 already, so nothing was changed', code=1)
+        self.assertEqual(self.counters(sim, 'writes'), [(0,), (0,)])
 
     def test_every_a05_gets_the_address_by_55_aa(self):
         sim = self.sim('a05:1:dyp')
-        self.assertIn('address is 9', self.told('set', 'a05', '--port', sim.port, 'every-address', '9'))
-        self.assertEqual(len(self.read_json('a05:9:dyp', '--port', sim.port, '--count', '1')), 4)
+        self.assertIn('address is 9', self.told(f'set a05 --port {sim} every-address 9'))
+        self.assertEqual(len(self.reads('a05:9:dyp', sim)), 4)
 
-    def test_what_is_so_already_is_not_written(self):
-        for device, sensor, setting, value in (('a16:1:modbus', 'a16', 'switch-threshold', '1000'),
-                                               ('a05:1:modbus', 'a05', 'address', '1'),
-                                               ('hps167s', 'hps167s', 'termination', 'on')):
-            sim = self.sim(device, '--counters')
-            said = self.json('set', sensor, '--port', sim.port, setting, value)
-            self.assertIs(said['written'], False)
-            counted = self.counters(sim)[0]
-            self.assertEqual((counted['writes'], counted['flash_writes']), (0, 0))
+    @e2e.each(**{f'what_is_so_already_is_not_written_{setting.split()[0]}': (device, setting) for device,
+                 setting in (
+        ('a16:1:modbus', 'switch-threshold 1000'), ('a05:1:modbus', 'address 1'),
+        ('hps167s', 'termination on'))})
+    def already(self, device, setting):
+        sim = self.sim(f'{device} --counters')
+        self.assertIs(self.json(f'set {device.split(":")[0]} --port {sim} {setting}')['written'], False)
+        self.assertEqual(self.counters(sim, 'writes', 'flash_writes'), [(0, 0)])
 
-    def test_every_setting_that_can_be_read_back_is(self):
-        for device, sensor, changes in (
-                ('a16:1:modbus', 'a16', [('switch-polarity', 'negative'), ('switch-threshold', '2000'),
-                                         ('automatic-value', 'real-time')]),
-                ('hps167s', 'hps167s', [('warm-up', '3'), ('measure-after-power-on', 'off'), ('termination', 'off'),
-                                        ('reconnect-time', '36')])):
-            sim = self.sim(device)
-            for setting, value in changes:
-                said = self.json('set', sensor, '--port', sim.port, setting, value)
-                self.assertEqual((said['written'], said['confirmed'], str(said['value'])), (True, True, value))
-                got = self.json('get', sensor, '--port', sim.port, setting)
-                self.assertEqual(str(got[setting]), value)
+    @e2e.each(**{f'every_setting_that_can_be_read_back_is_{name}': (device, name, value) for device, name,
+                 value in (
+        ('a16:1:modbus', 'switch-polarity', 'negative'), ('a16:1:modbus', 'switch-threshold', '2000'),
+        ('a16:1:modbus', 'automatic-value', 'real-time'), ('hps167s', 'warm-up', '3'),
+        ('hps167s', 'measure-after-power-on', 'off'), ('hps167s', 'termination', 'off'),
+        ('hps167s', 'reconnect-time', '36'))})
+    def read_back(self, device, name, value):
+        sim, sensor = self.sim(device), device.split(':')[0]
+        said = self.json(f'set {sensor} --port {sim} {name} {value}')
+        self.assertEqual((said['written'], said['confirmed'], str(said['value'])), (True, True, value))
+        self.assertEqual(str(self.json(f'get {sensor} --port {sim} {name}')[name]), value)
 
     def test_what_cannot_be_read_back_is_said_to_be_acknowledged(self):
-        sim = self.sim('hps167s', '--distance', '1000')
-        for setting, value in (('distance-offset', '-15'), ('filter-sensitivity', '50'), ('load-settings', 'user')):
-            out = self.told('set', 'hps167s', '--port', sim.port, setting, value)
-            self.assertIn('cannot be read back', out)
-        self.assertEqual(self.read_json('hps167s', '--port', sim.port, '--count', '1')[0]['distance_mm'], 985)
+        sim = self.sim('hps167s --distance 1000')
+        for setting in ('distance-offset -15', 'filter-sensitivity 50', 'load-settings user'):
+            self.assertIn('cannot be read back', self.told(f'set hps167s --port {sim} {setting}'))
+        self.assertEqual(self.reads('hps167s', sim)[0]['distance_mm'], 985)
 
     def test_an_a16_returns_to_automatic_output(self):
         sim = self.sim('a16')
-        self.told('info', 'a16', '--port', sim.port)
-        self.assertIn('frames are heard', self.told('set', 'a16', '--port', sim.port, 'automatic-output', 'on'))
-        self.assertEqual(len(self.read_json('a16', '--port', sim.port, '--count', '2')), 2)
+        self.told(f'info a16 --port {sim}')
+        self.assertIn('frames are heard', self.told(f'set a16 --port {sim} automatic-output on'))
+        self.assertEqual(len(self.reads('a16', sim, 2)), 2)
 
     def test_an_a16_that_does_not_send_afterwards_is_found_out(self):
         sim = self.sim('a16:1:modbus')
-        self.told('set', 'a16', '--port', sim.port, 'automatic-output', 'on', code=1)
-        self.assertIn('no frame was heard', self.err)
-        self.assertIn('acknowledged', self.told('set', 'a16', '--port', sim.port, 'operating-mode', 'controlled'))
+        self.told(f'set a16 --port {sim} automatic-output on', 'no frame was heard', code=1)
+        self.assertIn('acknowledged', self.told(f'set a16 --port {sim} operating-mode controlled'))
 
 
 class Failure(Settings):
-    def test_a_dead_line_is_explained(self):
-        device = self.device()
-        for command in (('info', 'a16'), ('get', 'hps167s', 'termination'), ('set', 'a05', 'address', '5')):
-            self.assertEqual(self.told(*command, '--port', device.path, code=1), '')
-            self.assertIn('nothing was heard at all', self.err)
+    @e2e.each(**{f'a_dead_line_is_explained_to_{line.split()[0]}': line for line in
+                 ('info a16', 'get hps167s termination', 'set a05 address 5')})
+    def dead(self, line):
+        self.ends(f'{line} --port {self.device()}', 1, 'nothing was heard at all', out='')
 
     def test_a_port_that_is_not_there(self):
-        self.told('info', 'a16', '--port', self.path('nowhere'), code=1)
-        self.assertIn('no such device', self.err)
+        self.told('info a16 --port /nowhere', 'no such device', code=1)
 
     def test_a_lost_acknowledgement_does_not_matter_if_the_reading_confirms(self):
-        sim = self.sim('a16:1:modbus', '--fault', 'silence=1@3')
-        self.assertIn('2000 mm (was 1000)', self.told('set', 'a16', '--port', sim.port, 'switch-threshold', '2000'))
+        sim = self.sim(f'a16:1:modbus {lost(3, 4)}')
+        self.assertIn('2000 mm (was 1000)', self.told(f'set a16 --port {sim} switch-threshold 2000'))
 
     def test_a_setting_that_cannot_be_read_back_may_hold_or_not(self):
-        sim = self.sim('a16:1:modbus', '--fault', 'silence=1@3', '--fault', 'silence=1@4')
-        self.told('set', 'a16', '--port', sim.port, 'switch-threshold', '2000', code=1)
-        self.assertIn('it may hold or not', self.err)
-
-    def test_wrong_words_are_usage_errors(self):
-        port = self.path('nowhere')
-        for words, said in ((('get', 'a17'), "no sensor 'a17'"),
-                            (('get', 'a16', '--port', port), 'which setting?'),
-                            (('get', 'a16', '--port', port, 'colour'), "no setting 'colour'"),
-                            (('get', 'a16', '--port', port, 'operating-mode'), 'write-only'),
-                            (('get', 'a16', 'address'), '--port is missing'),
-                            (('set', 'a16', '--port', port), 'which setting?'),
-                            (('set', 'a16', '--port', port, 'address'), 'a value is missing'),
-                            (('set', 'a16', '--port', port, 'address', '0'), '1 to 254'),
-                            (('set', 'a16', '--port', port, 'address', '255'), '1 to 254'),
-                            (('set', 'a16', '--port', port, 'address', '5x'), '1 to 254'),
-                            (('set', 'a16', '--port', port, 'distance', '5'), 'cannot be set'),
-                            (('set', 'hps167s', '--port', port, 'address', '33'), '1 to 32'),
-                            (('set', 'hps167s', '--port', port, 'reconnect-time', '19'), 'a multiple of 18'),
-                            (('set', 'hps167s', '--port', port, 'baud', '9600'), '57600'),
-                            (('set', 'a05', '--mode', 'modbus', '--port', port, 'every-address', '5'), '--mode dyp'),
-                            (('info', 'a16:1:auto', '--port', port), 'nothing is asked'),
-                            (('info', 'a16', 'a05', '--port', port), 'one sensor at a time'),
-                            (('reset', 'a16', '--port', port, '--yes-restore-factory-settings'), 'only an hps167s'),
-                            (('reset', 'hps167s', '--port', port), '--yes-restore-factory-settings')):
-            self.told(*words, code=2)
-            self.assertIn(said, self.err)
+        sim = self.sim(f'a16:1:modbus {lost(3, 5)}')
+        self.told(f'set a16 --port {sim} switch-threshold 2000', 'it may hold or not', code=1)
 
     def test_a_full_output_is_said(self):
         sim = self.sim('a16:1:modbus')
         with open('/dev/full', 'w', encoding='ascii') as full:
-            done = self.run_fathom('info', 'a16', '--port', sim.port, stdout=full)
-        self.assertEqual(done.code, 1)
-        self.assertIn('cannot be written', done.err)
+            self.ends(f'info a16 --port {sim}', 1, 'cannot be written', stdout=full)
 
 
 class Reset(Settings):
+    RESTORE = '--yes-restore-factory-settings'
+
     def test_the_interface_gets_its_factory_settings_and_is_followed(self):
-        sim = self.sim('hps167s:7', '--counters')
-        self.told('set', 'hps167s:7', '--port', sim.port, 'baud', '57600')
-        out = self.told('reset', 'hps167s:7', '--port', sim.port, '--baud', '57600', '--yes-restore-factory-settings')
+        sim = self.sim('hps167s:7 --counters')
+        self.told(f'set hps167s:7 --port {sim} baud 57600')
+        out = self.told(f'reset hps167s:7 --port {sim} --baud 57600 {self.RESTORE}')
         self.assertIn('address 1, 19200 8E1, termination on', out)
-        self.assertEqual(len(self.read_json('hps167s', '--port', sim.port, '--count', '1')), 1)
-        self.assertEqual(self.counters(sim)[0]['resets'], 1)
+        self.assertEqual(len(self.reads('hps167s', sim)), 1)
+        self.assertEqual(self.counters(sim, 'resets'), [(1,)])
 
     def test_the_sensor_loads_its_factory_settings(self):
-        sim = self.sim('hps167s', '--distance', '1000', '--counters')
-        self.told('set', 'hps167s', '--port', sim.port, 'distance-offset', '--', '-15')
-        self.assertIn('acknowledged', self.told('reset', 'hps167s', '--port', sim.port,
-                                                '--yes-load-factory-sensor-settings'))
-        self.assertEqual(self.read_json('hps167s', '--port', sim.port, '--count', '1')[0]['distance_mm'], 1000)
+        sim = self.sim('hps167s --distance 1000 --counters')
+        self.told(f'set hps167s --port {sim} distance-offset -- -15')
+        self.assertIn('acknowledged',
+                      self.told(f'reset hps167s --port {sim} --yes-load-factory-sensor-settings'))
+        self.assertEqual(self.reads('hps167s', sim)[0]['distance_mm'], 1000)
 
     def test_where_another_has_address_1_nothing_is_sent(self):
-        sim = self.sim('hps167s:7', 'hps167s:1', '--counters')
-        self.told('reset', 'hps167s:7', '--port', sim.port, '--yes-restore-factory-settings', code=1)
-        self.assertEqual([counted['resets'] for counted in self.counters(sim)], [0, 0])
+        sim = self.sim('hps167s:7 hps167s:1 --counters')
+        self.told(f'reset hps167s:7 --port {sim} {self.RESTORE}', code=1)
+        self.assertEqual(self.counters(sim, 'resets'), [(0,), (0,)])
 
     def test_without_confirmation_both_places_are_named(self):
         # frames 1 to 4 at most answer #2 before; what follows is lost
-        lost = [word for frame in range(3, 30) for word in ('--fault', f'silence=1@{frame}')]
-        sim = self.sim('hps167s:7', '--counters', *lost)
-        self.told('reset', 'hps167s:7', '--port', sim.port, '--yes-restore-factory-settings', code=1)
-        self.assertIn('it is at address 1, 19200 8E1, or still at address 7, 19200 8E1', self.err)
-        self.assertEqual(self.counters(sim)[0]['resets'], 1)
+        sim = self.sim(f'hps167s:7 --counters {lost(3, 30)}')
+        self.told(f'reset hps167s:7 --port {sim} {self.RESTORE}',
+                  'it is at address 1, 19200 8E1, or still at address 7, 19200 8E1', code=1)
+        self.assertEqual(self.counters(sim, 'resets'), [(1,)])
 
 
 if __name__ == '__main__':

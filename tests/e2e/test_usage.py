@@ -1,108 +1,218 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Help, version, and wrong usage: exit status 2 and one line that says what and where help is."""
+"""Help, version, and wrong usage: exit status 2 and one line that says what and where help is, before
+anything is sent."""
 import re
 
 import e2e
 
-READ = ['read', 'a16', '--port', '/nowhere']
-
-# arguments, what the line must have
+COUNTED = '1 to 1000000000'
+# What is promised; what a line begins with; how it may go on, and what is said then.
 WRONG = [
-    ([], 'a command is missing: scan, read, watch, '),
-    (['reed'], "there is no command 'reed'"),
-    (['--versoin'], "there is no command '--versoin'"),
-    (['read'], 'which sensor? a16, a05 or hps167s'),
-    (['read', '--port', '/nowhere'], 'which sensor?'),
-    (['read', 'a17', '--port', '/nowhere'], "there is no sensor 'a17', only a16, a05, hps167s"),
-    (['read', 'a17:1', '--port', '/nowhere'], "there is no sensor 'a17', only a16, a05, hps167s"),
-    (['read', 'a16' * 30, '--port', '/nowhere'], "there is no sensor 'a16a16"),
-    (['read', '', '--port', '/nowhere'], "there is no sensor ''"),
-    (['read', 'a16'], '--port is missing'),
-    ([*READ, '--mode', 'dyp'], "there is no mode 'dyp' for a16, only auto, modbus"),
-    (['read', 'hps167s', '--port', '/nowhere', '--mode', 'auto'], "there is no mode 'auto' for hps167s, only modbus"),
-    ([*READ, '--format', 'xml'], "there is no format 'xml', only text, json, csv"),
-    ([*READ, '--parity', 'mark'], "--parity takes none, even or odd, not 'mark'"),
-    ([*READ, '--parity', 'Even'], "not 'Even'"),
-    ([*READ, '--baud', '12345'], '--baud takes 9600, 19200,'),
-    ([*READ, '--baud', '9600x'], "not '9600x'"),
-    ([*READ, '--baud', ''], "not ''"),
-    ([*READ, '--count', '0'], '--count takes a whole number from 1 to 1000000000'),
-    ([*READ, '--count', '-1'], "not '-1'"),
-    ([*READ, '--count', '+1'], "not '+1'"),
-    ([*READ, '--count', '1e3'], "not '1e3'"),
-    ([*READ, '--count', '0x10'], "not '0x10'"),
-    ([*READ, '--count', ' 1'], "not ' 1'"),
-    ([*READ, '--count', '1 '], "not '1 '"),
-    ([*READ, '--count', ''], "not ''"),
-    ([*READ, '--count', '1000000001'], "not '1000000001'"),
-    ([*READ, '--count', '4294967297'], "not '4294967297'"),
-    ([*READ, '--count', '18446744073709551617'], "not '18446744073709551617'"),
-    ([*READ, '--address', '0'], '--address takes a whole number from 1 to 254'),
-    ([*READ, '--address', '255'], "not '255'"),
-    (['read', 'hps167s', '--port', '/nowhere', '--address', '33'], 'from 1 to 32'),
-    ([*READ, '--interval', '3600001'], '--interval takes a whole number from 0 to 3600000'),
-    ([*READ, '--timeout', '0'], '--timeout takes a whole number from 1 to 600000'),
-    ([*READ, '--timeout', '600001'], "not '600001'"),
-    ([*READ, '--retries', '255'], '--retries takes a whole number from 0 to 254'),
-    ([*READ, '--echo', 'yes'], "--echo takes auto, on or off, not 'yes'"),
-    ([*READ, '--echo', ''], "not ''"),
-    ([*READ, '--stats=0'], '--stats takes a whole number from 1 to 4000'),
-    ([*READ, '--stats=1s'], "not '1s'"),
-    ([*READ, '--stats', '5'], "there is no sensor '5'"),
-    ([*READ, '--reconnect=1'], 'there is no option --reconnect=1'),
-    ([*READ, '--fast'], 'there is no option --fast'),
-    ([*READ, '-p'], 'there is no option -p'),
-    ([*READ, '--help=3'], 'there is no option --help=3'),
-    (['read', 'a16', '--port'], '--port needs a value'),
-    (['sim'], 'which sensor?'),
-    (['sim', 'a16', 'a05'], 'a16 and a05 would both send by themselves'),
-    (['sim', 'a17'], "there is no sensor 'a17'"),
-    (['sim', 'a16' * 30], "there is no sensor 'a16a16"),
-    (['sim', 'a16:0'], "the address of a16 is a number from 1 to 254, not '0'"),
-    (['sim', 'a16:255'], "not '255'"),
-    (['sim', 'a16:1x'], "not '1x'"),
-    (['sim', 'hps167s:33'], 'from 1 to 32'),
-    (['sim', 'a16:1:pwm'], "there is no mode 'pwm' for a16, only auto, modbus"),
-    (['sim', 'a16:1:auto:1'], "there is no mode 'auto:1'"),
-    (['sim', 'a16:1:'], "there is no mode ''"),
-    (['sim', 'a16', '--distance', '1000,2000'], "--distance '1000,2000' is more than the 1 of a16"),
-    (['sim', 'a05', '--distance', '1,2,3,4,5'], 'more than the 4 of a05'),
-    (['sim', 'a16', '--distance', '65536'], "--distance takes 0..65535 mm, no-target or interference, not '65536'"),
-    (['sim', 'a16', '--distance', '-1'], "not '-1'"),
-    (['sim', 'a16', '--distance', ''], "not ''"),
-    (['sim', 'a05', '--distance', '1000,'], "not ''"),
-    (['sim', 'a05', '--distance', ',1000'], "not ''"),
-    (['sim', 'a16', '--distance', 'fault'], "not 'fault'"),
-    (['sim', 'hps167s', '--distance', 'interference'], 'no-target or fault'),
-    (['sim', 'a16', '--distance', '1' * 40], f"not '{'1' * 40}'"),
-    (['sim', 'a16', '--seed', '4294967296'], '--seed takes a whole number from 0 to 4294967295'),
-    (['sim', 'a16', '--port', '/nowhere'], 'there is no option --port'),
+    ('wrong_usage', '', [
+        ('', 'a command is missing: scan, read, watch, '),
+        ('reed', "there is no command 'reed'"),
+        ('--versoin', "there is no command '--versoin'"),
+    ]),
+    ('wrong_usage', 'read', [
+        ('', 'which sensor? a16, a05 or hps167s'),
+        ('--port /nowhere', 'which sensor?'),
+        ('a17 --port /nowhere', "there is no sensor 'a17', only a16, a05, hps167s"),
+        ('a17:1 --port /nowhere', "there is no sensor 'a17', only a16, a05, hps167s"),
+        ('a16' * 30 + ' --port /nowhere', "there is no sensor 'a16a16"),
+        ("'' --port /nowhere", "there is no sensor ''"),
+        ('a16', '--port is missing'),
+        ('a16 --port', '--port needs a value'),
+        ('hps167s --port /nowhere --mode auto', "there is no mode 'auto' for hps167s, only modbus"),
+        ('hps167s --port /nowhere --address 33', 'from 1 to 32'),
+    ]),
+    ('wrong_usage', 'read a16 --port /nowhere', [
+        ('--mode dyp', "there is no mode 'dyp' for a16, only auto, modbus"),
+        ('--format xml', "there is no format 'xml', only text, json, csv"),
+        ('--parity mark', "--parity takes none, even or odd, not 'mark'"),
+        ('--parity Even', "not 'Even'"),
+        ('--baud 12345', '--baud takes 9600, 19200,'),
+        ('--baud 9600x', "not '9600x'"),
+        ("--baud ''", "not ''"),
+        ('--count 0', f'--count takes a whole number from {COUNTED}'),
+        ('--count -1', "not '-1'"),
+        ('--count +1', "not '+1'"),
+        ('--count 1e3', "not '1e3'"),
+        ('--count 0x10', "not '0x10'"),
+        ("--count ' 1'", "not ' 1'"),
+        ("--count '1 '", "not '1 '"),
+        ("--count ''", "not ''"),
+        ('--count 1000000001', "not '1000000001'"),
+        ('--count 4294967297', "not '4294967297'"),
+        ('--count 18446744073709551617', "not '18446744073709551617'"),
+        ('--duration 0', f'--duration takes a whole number from {COUNTED}'),
+        ('--address 0', '--address takes a whole number from 1 to 254'),
+        ('--address 255', "not '255'"),
+        ('--interval 3600001', '--interval takes a whole number from 0 to 3600000'),
+        ('--timeout 0', '--timeout takes a whole number from 1 to 600000'),
+        ('--timeout 600001', "not '600001'"),
+        ('--retries 255', '--retries takes a whole number from 0 to 254'),
+        ('--echo yes', "--echo takes auto, on or off, not 'yes'"),
+        ("--echo ''", "not ''"),
+        ('--stats=0', '--stats takes a whole number from 1 to 4000'),
+        ('--stats=1s', "not '1s'"),
+        ('--stats 5', "there is no sensor '5'"),
+        ('--reconnect=1', 'there is no option --reconnect=1'),
+        ('--fast', 'there is no option --fast'),
+        ('-p', 'there is no option -p'),
+        ('--help=3', 'there is no option --help=3'),
+    ]),
+    ('what_cannot_be_is_said_before_anything_is_sent', 'read --port /nowhere', [
+        ('a16 a05:2:auto',
+         'a05 in mode auto sends by itself and cannot share a line with others; ask it, such as '
+                           'a05:2:modbus'),
+        ('a16:1:modbus a16:1:modbus', 'a16:1 and a16:1 have the same address, so both would answer at once'),
+        ('a16:1 a05:1', 'a16:1 and a05:1 have the same address'),
+        ('a05:1:modbus a05:2:dyp',
+         'a damaged answer in mode dyp can change the address of another a05 on the line; '
+                                   'ask them all by Modbus, such as a05:2:modbus'),
+        ('a16:1 a05:2 --address 5', 'with several sensors --address and --mode stand behind each name'),
+        ('a16:1 a05:2 --mode modbus', 'with several sensors --address and --mode stand behind each name'),
+        ('a16:1 --address 5', "'a16:1' and an option say the same; leave one of them out"),
+        ('a16:1:modbus --mode auto', "'a16:1:modbus' and an option say the same"),
+        ('a16:0', "the address of a16 is a number from 1 to 254, not '0'"),
+        ('hps167s:33', "the address of hps167s is a number from 1 to 32, not '33'"),
+        ('a16:1:dyp', "there is no mode 'dyp' for a16, only auto, modbus"),
+        ('a16:1:', "there is no mode '' for a16"),
+        (' '.join(f'a16:{address}' for address in range(1, 34)), 'a line has 32 sensors at most'),
+    ]),
+    ('wrong_usage_of_watch', 'watch', [
+        ('', 'which sensor?'),
+        ('a16', '--port is missing'),
+        ('a17 --port /nowhere', "there is no sensor 'a17'"),
+        ('a16 --count 3', 'there is no option --count'),
+        ('a16 --duration 1s --port /nowhere', '--duration takes a whole number'),
+    ]),
+    ('wrong_usage', 'sim', [
+        ('', 'which sensor?'),
+        ('a17', "there is no sensor 'a17'"),
+        ('a16' * 30, "there is no sensor 'a16a16"),
+        ('a16:0', "the address of a16 is a number from 1 to 254, not '0'"),
+        ('a16:255', "not '255'"),
+        ('a16:1x', "not '1x'"),
+        ('hps167s:33', 'from 1 to 32'),
+        ('a16:1:pwm', "there is no mode 'pwm' for a16, only auto, modbus"),
+        ('a16:1:auto:1', "there is no mode 'auto:1'"),
+        ('a16:1:', "there is no mode ''"),
+        ('a16 --distance 1000,2000', "--distance '1000,2000' is more than the 1 of a16"),
+        ('a05 --distance 1,2,3,4,5', 'more than the 4 of a05'),
+        ('a16 --distance 65536', "--distance takes 0..65535 mm, no-target or interference, not '65536'"),
+        ('a16 --distance -1', "not '-1'"),
+        ("a16 --distance ''", "not ''"),
+        ('a05 --distance 1000,', "not ''"),
+        ('a05 --distance ,1000', "not ''"),
+        ('a16 --distance fault', "not 'fault'"),
+        ('hps167s --distance interference', 'no-target or fault'),
+        ('a16 --distance ' + '1' * 40, f"not '{'1' * 40}'"),
+        ('a16 --seed 4294967296', '--seed takes a whole number from 0 to 4294967295'),
+        ('a16 --port /nowhere', 'there is no option --port'),
+    ]),
+    ('two_that_send_by_themselves_are_refused', 'sim', [
+        ('a16 a05', 'a16 and a05 would both send by themselves'),
+        ('a16 hps167s:2 a05', 'a16 and a05 would both send by themselves'),
+    ]),
+    ('more_than_64_are_refused', 'sim', [('a16:1:modbus ' * 65, 'up to 64 devices a line, not 65')]),
+    ('a_device_that_is_not_there_is_refused', 'sim', [
+        ('a16 --fault 2@silence',
+         '--fault 2@silence is for a device that is not there; they count from 1 to 1'),
+    ]),
+    ('a_device_that_is_not_there_is_refused', 'sim a16:1:modbus a05:2:modbus hps167s:7', [
+        (f'--distance {place}@5',
+         f'--distance {place}@5 is for a device that is not there; they count from 1 to 3')
+        for place in (0, 4, 99999999)]),
+    ('what_one_of_them_cannot_have_is_refused', 'sim', [
+        ('a16 --baud 9600', 'a16 has one baud rate only'),
+        ('a05 a16::modbus --baud 19200', 'a05 has one baud rate only'),
+    ]),
+    ('what_none_of_them_has_is_refused', 'sim', [
+        ('a16 --with unasked=5',
+         "there is no 'unasked' for a16, only exceptions, broadcast, real-time, new-address"),
+    ]),
+    ('what_one_of_them_cannot_have_is_refused', 'sim a16:1:modbus a05:2:modbus hps167s:7', [
+        ('--fault interference', "there is no fault 'interference' for hps167s"),
+        ('--distance 1,2', "--distance '1,2' is more than the 1 of a16"),
+        ('--baud 1@19200', 'a16 has one baud rate only'),
+    ]),
+    ('what_none_of_them_has_is_refused', 'sim a16:1:modbus a05:2:modbus hps167s:7', [
+        ('--with 1@count-03', "there is no 'count-03' for a16"),
+        ('--with x', "there is no 'x' for a16"),
+    ]),
+    ('a_rate_that_an_hps167s_does_not_have_is_refused', 'sim hps167s', [
+        (f"--baud '{rate}'", f"--baud of hps167s takes 19200, 57600, 115200 or 230400, not '{rate}'")
+        for rate in ('9600', '38400', '19200x', '', '0')]),
+    ('what_none_of_them_has_is_refused', 'sim hps167s', [
+        *((f'--with {value}', f"--with takes warm-up=S, a whole number from 1 to 255, not '{value}'")
+          for value in ('warm-up', 'warm-up=', 'warm-up=0', 'warm-up=256', 'warm-up=1s')),
+        ('--with count-03=1', "--with count-03 takes no value, so not 'count-03=1'"),
+    ]),
+    ('wrong_usage_is_2_and_one_line', 'scan', [
+        ('', '--port is missing'),
+        ('--port tcp:127.0.0.1',
+         "it needs a serial port; the rates behind 'tcp:127.0.0.1' are the gateway's"),
+    ]),
+    ('wrong_usage_is_2_and_one_line', 'scan --port /nowhere', [
+        ('a16', "it takes options only, not 'a16'"),
+        ('--address 0', "--address takes one from 1 to 254, or a range such as 1-32, not '0'"),
+        *((f"--address '{text}'", f"not '{text}'")
+          for text in ('255', '1-255', '9-8', '1-', '-5', '1-5-9', '')),
+        ('--baud 4800', "and 230400 with commas between them, not '4800'"),
+        *((f"--baud '{text}'", f"not '{not_this}'") for text, not_this in (
+            ('9600,', ''), (',9600', ''), ('9600 ', '9600 '), ('All', 'All'))),
+        ('--parity mark',
+         "--parity takes all, or some of none, even and odd with commas between them, not 'mark'"),
+        ('--parity none,', "not ''"),
+        ('--timeout 0', '--timeout takes a whole number from 1 to 10000'),
+        ('--retries 10', '--retries takes a whole number from 0 to 9'),
+        ('--listen 0', '--listen takes a whole number from 1 to 60'),
+        ('--format csv', "there is no format 'csv', only text, json"),
+        ('--fast', 'there is no option --fast'),
+    ]),
+    ('wrong_words_are_usage_errors', 'info', [
+        ('a16:1:auto --port /nowhere', 'nothing is asked'),
+        ('a16 a05 --port /nowhere', 'one sensor at a time'),
+    ]),
+    ('wrong_words_are_usage_errors', 'get', [
+        ('a17', "no sensor 'a17'"),
+        ('a16 address', '--port is missing'),
+        ('a16 --port /nowhere', 'which setting?'),
+        ('a16 --port /nowhere colour', "no setting 'colour'"),
+        ('a16 --port /nowhere operating-mode', 'write-only'),
+    ]),
+    ('wrong_words_are_usage_errors', 'set', [
+        ('a16 --port /nowhere', 'which setting?'),
+        ('a16 --port /nowhere address', 'a value is missing'),
+        *((f'a16 --port /nowhere address {value}', '1 to 254') for value in ('0', '255', '5x')),
+        ('a16 --port /nowhere distance 5', 'cannot be set'),
+        ('hps167s --port /nowhere address 33', '1 to 32'),
+        ('hps167s --port /nowhere reconnect-time 19', 'a multiple of 18'),
+        ('hps167s --port /nowhere baud 9600', '57600'),
+        ('a05 --mode modbus --port /nowhere every-address 5', '--mode dyp'),
+    ]),
+    ('wrong_words_are_usage_errors', 'reset', [
+        ('a16 --port /nowhere --yes-restore-factory-settings', 'only an hps167s'),
+        ('hps167s --port /nowhere', '--yes-restore-factory-settings'),
+    ]),
 ]
 
 
 class Wrong(e2e.Case):
-    def check(self, arguments, words):
-        done = self.run_fathom(*arguments)
-        self.assertEqual((done.code, done.out), (2, ''), done.err)
+    @e2e.each(**{f'{name}_{begin}_{number:02}': (f'{begin} {rest}', words) for name, begin, rows in WRONG
+                 for number, (rest, words) in enumerate(rows)})
+    def wrong(self, line, words):
+        done = self.ends(line, 2, words, out='')
         self.assertEqual(len(done.err.splitlines()), 1, done.err)
-        self.assertIn(words, done.err)
-        command = arguments[0] + ' ' if arguments and arguments[0] in ('read', 'sim') else ''
+        command = '' if 'there is no command' in words or not line.strip() else line.split()[0] + ' '
         self.assertTrue(done.err.endswith(f'; try: fathom {command}--help\n'), done.err)
 
 
-def add(number, arguments, words):
-    name = re.sub('[^a-z0-9]+', '_', '_'.join(arguments).lower())[:50]
-    setattr(Wrong, f'test_{number:02}_{name}', lambda self: self.check(arguments, words))
-
-
-for row in enumerate(WRONG):
-    add(row[0], *row[1])
-
-
 class Help(e2e.Case):
-    def told(self, *arguments):
-        done = self.run_fathom(*arguments)
+    def told(self, line):
+        done = self.run_fathom(line)
         self.assertEqual((done.code, done.err), (0, ''))
         self.assertTrue(all(len(line) < 125 for line in done.out.splitlines()))
         return done.out
@@ -114,45 +224,49 @@ class Help(e2e.Case):
 
     def test_help_names_every_command(self):
         for word in ('--help', '-h'):
-            self.assertRegex(self.told(word), r'(?s)\n  read .*\n  watch .*\n  sim .*Exit status')
+            self.assertRegex(self.told(word), r'(?s)\n  scan .*\n  read .*\n  watch .*\n  sim .*Exit status')
 
-    def test_help_of_read_names_sensors_options_and_examples(self):
-        text = self.told('read', '--help')
-        for word in ('a16', 'a05', 'hps167s', '19200 8E1', '--port', '--mode', '--address', '--baud', '--parity', '--count',
-                     '--interval', '--timeout', '--retries', '--format', '--reconnect', '--echo', '--stats[=SECONDS]', 'Exit status', 'examples:'):
-            self.assertIn(word, text)
-
-    def test_help_of_sim_names_sensors_options_and_examples(self):
-        text = self.told('sim', '--help')
-        for word in ('a16', 'a05', 'hps167s', '--link', '--distance', '--seed', 'Exit status', 'examples'):
+    @e2e.each(
+        help_of_read_names_sensors_options_and_examples=(
+            'read', 'a16 a05 hps167s --port --mode --address --baud --parity --count --interval --timeout --retries '
+            '--format --reconnect --echo --stats[=SECONDS] examples:', '19200 8E1'),
+        help_names_what_is_to_be_seen=(
+            'watch', '--port --interval --duration --reconnect NO_COLOR examples:', 'x no answer'),
+        the_help_names_every_option_and_its_examples_are_right_usage=(
+            'scan', '--port --address --baud --parity --timeout --retries --listen --wake --estimate --format '
+            'examples:'),
+        help_of_sim_names_sensors_options_and_examples=(
+            'sim', 'a16 a05 hps167s --link --distance --seed examples'),
+        the_help_names_it_all=(
+            'sim', 'SENSOR[:ADDRESS[:MODE]]... --baud --echo --counters --with warm-up=S N@ 64 SIGUSR1'))
+    def names(self, command, words, *more):
+        text = self.told(f'{command} --help')
+        for word in (*words.split(), *more, 'Exit status'):
             self.assertIn(word, text)
 
     def test_help_wins_over_what_is_missing(self):
-        self.assertEqual(self.told('read', 'a17', '--help'), self.told('read', '--help'))
+        self.assertEqual(self.told('read a17 --help'), self.told('read --help'))
 
-    def test_each_example_of_the_help_is_right_usage(self):
+    @e2e.each(each_example_of_the_help_is_right_usage=('read', 9, 'sim'),
+              each_example_of_the_help_of_scan_is_right_usage=('scan', 3),
+              each_example_of_the_help_of_watch_is_right_usage=('watch', 3))
+    def examples(self, command, count, *more_pages):
         """Each is run with the port replaced by one that is not there: then 1, not 2, is the exit status."""
-        examples = re.findall(r'(fathom read (?:(?! {2}|\||>).)*)', self.told('read', '--help').split('examples:')[1] +
-                              self.told('sim', '--help').split('examples')[1])
-        self.assertEqual(len(examples), 9)
+        pages = [self.told(f'{page} --help').split('examples')[1] for page in (command, *more_pages)]
+        examples = re.findall(rf'fathom ({command} (?:(?! {{2}}|[|>\n]).)*)', ''.join(pages))
+        self.assertEqual(len(examples), count)
         for example in examples:
-            with self.subTest(example):
-                words = re.sub(r'--port \S+', '--port /nowhere', example).split()[1:]
-                self.assertEqual(self.run_fathom(*words).code, 1)
+            self.ends(re.sub(r'--port \S+', '--port /nowhere', example), 1)
 
     def test_options_may_stand_before_and_after_the_sensor_and_the_last_one_counts(self):
-        done = self.run_fathom('read', '--format', 'csv', 'a16', '--port', '/elsewhere', '--port', '/nowhere')
-        self.assertEqual(done.code, 1)
-        self.assertIn('/nowhere: no such device', done.err)
+        self.ends('read --format csv a16 --port /elsewhere --port /nowhere', 1, '/nowhere: no such device')
 
     def test_what_has_no_effect_is_said(self):
-        done = self.run_fathom(*READ, '--address', '7')
-        self.assertIn('in mode auto nothing is asked, so --address has no effect\n', done.err)
-        done = self.run_fathom(*READ, '--retries', '7')
-        self.assertIn('in mode auto nothing is asked, so --retries has no effect\n', done.err)
-        done = self.run_fathom(*READ, '--echo', 'on')
-        self.assertIn('in mode auto nothing is asked, so --echo has no effect\n', done.err)
-        self.assertNotIn('no effect', self.run_fathom(*READ, '--mode', 'modbus', '--retries', '7').err)
+        for option in ('--address 7', '--retries 7', '--echo on'):
+            self.ends(f'read a16 --port /nowhere {option}', 1,
+                      f'in mode auto nothing is asked, so {option.split()[0]} has no effect\n')
+        self.assertNotIn('no effect',
+                         self.run_fathom('read a16 --port /nowhere --mode modbus --retries 7').err)
 
 
 if __name__ == '__main__':

@@ -1,26 +1,30 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom watch: what is on the screen of a terminal, how it is given back, and the lines that go into a pipe."""
+"""fathom watch: what is on the screen of a terminal, how it is given back, and the lines that go into a
+pipe."""
 import os
 import re
 import signal
-import subprocess
 import termios
-import time
 
 import e2e
 import terminal
 
-BUS = ['a16:1:modbus', 'a05:2:modbus', 'hps167s:7']
+BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
 FULL = '█'  # an eighth to eight eighths: ▁▂▃▄▅▆▇█
 GUTTER = 8
 
 
 class Case(e2e.Case):
-    def watch(self, *arguments, **options):
-        it = terminal.Terminal([e2e.FATHOM, 'watch', *arguments], **options)
+    def watch(self, line, **options):
+        it = terminal.Terminal([e2e.FATHOM, 'watch', *line.split()], **options)
         self.addCleanup(it.discard)
         return it
+
+    def begin(self, options='', **more):
+        """An HPS-167S that is watched, at 2.5 m; it and the terminal."""
+        sim = self.sim('hps167s --distance 2500')
+        return sim, self.watch(f'hps167s --port {sim} {options}', **more)
 
     def assert_given_back(self, it):
         """As it was before: the screen, the cursor, the wrapping, the echo."""
@@ -28,6 +32,10 @@ class Case(e2e.Case):
         self.assertEqual((screen.is_other, screen.has_cursor, screen.wraps), (False, True, True))
         self.assertEqual(termios.tcgetattr(it.slave), it.before)
         self.assertIn(b'\x1b[?1049h', it.bytes)
+
+    def ends(self, it, code=0):
+        self.assertEqual(it.finish(), code)
+        self.assert_given_back(it)
 
 
 def rows_of(screen, name):
@@ -45,29 +53,34 @@ def plot_of(screen, name):
     return [''.join(column) for column in zip(*reversed(rows))]
 
 
+def foot_of(screen, name):
+    """The lowest row of its plot."""
+    return ''.join(column[0] for column in plot_of(screen, name))
+
+
 class Picture(Case):
     def test_three_models_fit_80x24_with_a_lane_for_each_probe(self):
-        sim = self.sim(*BUS, '--distance', '1@1953', '--distance', '2@1000,no-target,1500,4500', '--distance', '3@fault')
-        it = self.watch(*BUS, 'a16:9', '--port', sim.port, '--timeout', 800)
-        it.wait(lambda screen: re.search(r'(?m)^a16:9 +no answer', screen.text()) and 'fault  ' in screen.text() and
+        sim = self.sim(f'{BUS} --distance 1@1953 --distance 2@1000,no-target,1500,4500 --distance 3@fault')
+        it = self.watch(f'{BUS} a16:9 --port {sim} --timeout 800')
+        it.wait(lambda screen: re.search(r'(?m)^a16:9 +no answer', screen.text())
+                and 'fault  ' in screen.text() and
                 'x' in ''.join(plot_of(screen, 'a16:9')) and 'a16:9: no answer' in screen.text())
         screen = it.screen
         self.assertEqual((screen.is_other, screen.has_cursor), (True, False))
         lines = screen.text().split('\n')
-        self.assertTrue(lines[0].startswith(f'fathom watch {sim.port}   00:00:'), lines[0])
-        self.assertRegex(screen.text(), r'(?m)^a16:1 +1\.953 m +\d+\.\d/s +lost 0 of \d+$')
-        self.assertRegex(screen.text(), r'(?m)^a05:2 probe 1 +1\.000 m +\d+\.\d/s +lost 0 of \d+$')
-        self.assertRegex(screen.text(), r'(?m)^a05:2 probe 2 +no target ')
-        self.assertRegex(screen.text(), r'(?m)^a05:2 probe 3 +1\.500 m ')
-        self.assertRegex(screen.text(), r'(?m)^a05:2 probe 4 +4\.500 m ')
-        self.assertRegex(screen.text(), r'(?m)^hps167s:7 +fault ')
-        self.assertRegex(screen.text(), r'(?m)^a16:9 +no answer +0\.0/s +lost (\d+) of \1')
+        self.assertTrue(lines[0].startswith(f'fathom watch {sim}   00:00:'), lines[0])
+        for words in (r'a16:1 +1\.953 m +\d+\.\d/s +lost 0 of \d+$',
+                      r'a05:2 probe 1 +1\.000 m +\d+\.\d/s +lost 0 of \d+$',
+                      r'a05:2 probe 2 +no target ', r'a05:2 probe 3 +1\.500 m ', r'a05:2 probe 4 +4\.500 m ',
+                      r'hps167s:7 +fault ', r'a16:9 +no answer +0\.0/s +lost (\d+) of \1'):
+            self.assertRegex(screen.text(), f'(?m)^{words}')
         # Each has a scale in metres that its distances fit in.
-        self.assertTrue(rows_of(screen, 'a16:1')[1].startswith('   2.0 m'))
-        self.assertTrue(rows_of(screen, 'a05:2 probe 1')[1].startswith('   1.0 m'))
-        self.assertTrue(rows_of(screen, 'a05:2 probe 4')[1].startswith('   5.0 m'))
+        for name, scale in (('a16:1', '   2.0 m'), ('a05:2 probe 1', '   1.0 m'),
+                            ('a05:2 probe 4', '   5.0 m')):
+            self.assertTrue(rows_of(screen, name)[1].startswith(scale))
         self.assertIn('s ago', screen.text())
-        self.assertIn('- no target ~ interference s stale x no answer ! bad answer F fault P port lost', lines)
+        self.assertIn('- no target ~ interference s stale x no answer ! bad answer F fault P port lost',
+                      lines)
         # What is no distance is to be seen in the plot, over its whole height.
         for name, mark in (('a05:2 probe 2', '-'), ('hps167s:7', 'F'), ('a16:9', 'x')):
             marked = [column for column in plot_of(screen, name) if mark in column]
@@ -80,118 +93,110 @@ class Picture(Case):
             self.assertTrue(columns, name)
             self.assertTrue(all(column[0] == FULL for column in columns), columns)
         # The advice of fathom read stands at the bottom.
-        self.assertTrue(any(line.startswith('a16:9: no answer from address 9: ') for line in lines), screen.text())
+        self.assertTrue(any(line.startswith('a16:9: no answer from address 9: ') for line in lines),
+                        screen.text())
 
     def test_a_bar_is_as_high_as_the_distance_on_its_scale(self):
-        sim = self.sim('hps167s', '--distance', '2500')
-        it = self.watch('hps167s', '--port', sim.port)
+        _, it = self.begin()
         it.wait(lambda screen: FULL in screen.text())
-        # 24 rows less title, axis, legend, two of messages and the words: 18; 2.5 m of 5 m are 9. The newest one stands at
-        # the right edge.
-        it.wait(lambda screen: set(plot_of(screen, 'hps167s:1')) == {' ' * 18, FULL * 9 + ' ' * 9} and
-                plot_of(screen, 'hps167s:1')[-4:] == [FULL * 9 + ' ' * 9] * 4)
+        # 24 rows less title, axis, legend, two of messages and the words: 18; 2.5 m of 5 m are 9. The newest
+        # one stands at the right edge.
+        bar = FULL * 9 + ' ' * 9
+        it.wait(lambda screen: set(plot_of(screen, 'hps167s:1')) == {' ' * 18, bar} and
+                plot_of(screen, 'hps167s:1')[-4:] == [bar] * 4)
         self.assertTrue(rows_of(it.screen, 'hps167s:1')[1].startswith('   5.0 m'))
         self.assertTrue(rows_of(it.screen, 'hps167s:1')[-1].startswith('     0 m'))
 
     def test_lost_answers_are_gaps_and_marks_between_the_bars(self):
         """Every third request is let pass."""
         device = self.device()
-        it = self.watch('a16:1', '--port', device.path, '--timeout', 500, '--interval', 300)
+        it = self.watch(f'a16:1 --port {device} --timeout 500 --interval 300')
         for n in range(9):
-            self.assertEqual(device.read(8), bytes.fromhex('01 03 01 00 00 01 85 F6'))
-            if n % 3 != 2:
-                device.write(e2e.registers(1, 1000))
+            device.asked(e2e.ASK_A16, e2e.registers(1, 1000) if n % 3 != 2 else b'')
             it.wait(lambda screen: f'of {n + 1} ' in screen.text().replace('\n', ' \n'))
         self.assertRegex(it.screen.text(), r'lost 3 of 9')
-        it.wait(lambda screen: [column[0] for column in plot_of(screen, 'a16:1')].count('x') == 3)
-        self.assertRegex(''.join(column[0] for column in plot_of(it.screen, 'a16:1')), f'{FULL} *x *{FULL}+ *x *{FULL}+ *x')
+        it.wait(lambda screen: foot_of(screen, 'a16:1').count('x') == 3)
+        self.assertRegex(foot_of(it.screen, 'a16:1'), f'{FULL} *x *{FULL}+ *x *{FULL}+ *x')
 
     def test_what_has_fallen_silent_does_not_live_on(self):
         device = self.device()
-        it = self.watch('a16', '--port', device.path, '--timeout', 1500)
+        it = self.watch(f'a16 --port {device} --timeout 1500')
         it.wait(lambda screen: 'waiting' in screen.text())
         for _ in range(8):
             device.write(e2e.frame(1000))
-            it.wait(lambda screen, before=it.screen.text(): screen.text() != before)
+            it.changes()
         it.wait(lambda screen: '1.000 m' in screen.text())
         it.wait(lambda screen: re.search(r'(?m)^a16 +stale ', screen.text()))
-        it.wait(lambda screen: re.search(f'{FULL} {{2,}}s', ''.join(column[0] for column in plot_of(screen, 'a16'))))
+        it.wait(lambda screen: re.search(f'{FULL} {{2,}}s', foot_of(screen, 'a16')))
 
     def test_a_refused_value_is_its_probes_alone(self):
         device = self.device()
-        it = self.watch('a05:1', '--port', device.path)
+        it = self.watch(f'a05:1 --port {device}')
         device.read(8)
         device.write(e2e.registers(1, 1000, 40000, 3000, 4000))
         it.wait(lambda screen: 'bad answer  ' in screen.text())
-        for name, value in (('probe 1', '1.000 m'), ('probe 2', 'bad answer'), ('probe 3', '3.000 m'), ('probe 4', '4.000 m')):
-            self.assertRegex(it.screen.text(), f'(?m)^a05:1 {name} +{value} ')
-        self.assertRegex(it.screen.text(), r'(?m)^a05:1 probe 2 .* lost 1 of 1$')
+        for words in ('probe 1 +1.000 m ', 'probe 2 +bad answer ', 'probe 3 +3.000 m ', 'probe 4 +4.000 m ',
+                      'probe 2 .* lost 1 of 1$'):
+            self.assertRegex(it.screen.text(), f'(?m)^a05:1 {words}')
 
     def test_the_rate_is_that_of_the_readings(self):
-        sim = self.sim('a16', '--distance', '1000')
-        it = self.watch('a16', '--port', sim.port, '--duration', 6)
+        it = self.watch(f'a16 --port {self.sim("a16 --distance 1000")} --duration 6')
         rates = []
         it.wait(lambda screen: screen.is_other)
         while it.process.poll() is None and it.screen.is_other:
             before = it.screen.text()
             it.wait(lambda screen: screen.text() != before or not screen.is_other)
             rates += [float(rate) for rate in re.findall(r'1\.000 m +([\d.]+)/s', it.screen.text())]
-        self.assertEqual(it.finish(), 0)
+        self.ends(it)
         # It sends every 100 ms; a machine under load makes it less.
         self.assertTrue(5 < rates[-1] <= 11, rates)
 
 
 class Window(Case):
     def test_the_picture_follows_the_window(self):
-        sim = self.sim(*BUS)
-        it = self.watch(*BUS, '--port', sim.port)
+        it = self.watch(f'{BUS} --port {self.sim(BUS)}')
         it.wait(lambda screen: FULL in screen.text())
         for rows, columns in ((50, 132), (10, 60), (24, 80)):
             it.resize(rows, columns)
             it.wait(lambda screen: ' now' in screen.text() and FULL in screen.text())
             lines = it.screen.text().split('\n')
-            axis = next(line for line in lines if ' ago ' in line)
-            self.assertEqual(len(axis), columns)
+            self.assertEqual(len(next(line for line in lines if ' ago ' in line)), columns)
             for name in ('a16:1', 'a05:2 probe 1', 'a05:2 probe 4', 'hps167s:7'):
                 self.assertEqual(len([line for line in lines if line.startswith(name + ' ')]), 1, name)
 
     def test_a_small_window_shows_what_fits(self):
-        sim = self.sim(*BUS)
-        it = self.watch(*BUS, '--port', sim.port, rows=5, columns=40)
+        it = self.watch(f'{BUS} --port {self.sim(BUS)}', rows=5, columns=40)
         it.wait(lambda screen: re.search(r'(?m)^a05:2 probe 3 +\d', screen.text()))
         self.assertIn('2 more: enlarge', it.screen.line(0))
         it.resize(1, 10)
         it.wait(lambda screen: screen.line(0).startswith('fathom'))
         it.type(b'\x03')
-        self.assertEqual(it.finish(), 0)
-        self.assert_given_back(it)
+        self.ends(it)
 
-    def test_without_utf8_in_the_locale_all_is_ascii(self):
-        for environment in ({'LC_ALL': 'C'}, {'LC_ALL': None, 'LC_CTYPE': None, 'LANG': None}, {'LC_ALL': None, 'LC_CTYPE': 'de_DE', 'LANG': 'C.UTF-8'}):
-            sim = self.sim('hps167s', '--distance', '2500')
-            it = self.watch('hps167s', '--port', sim.port, environment=environment)
-            it.wait(lambda screen: '#' in screen.text())
-            it.wait(lambda screen: set(plot_of(screen, 'hps167s:1')) == {' ' * 18, '#' * 9 + ' ' * 9})
-            self.assertTrue(it.bytes.isascii())
-            it.send(signal.SIGTERM)
-            it.finish()
+    @e2e.each(**{f'without_utf8_in_the_locale_all_is_ascii_{number}': environment for number,
+                 environment in enumerate((
+        {'LC_ALL': 'C'}, {'LC_ALL': None, 'LC_CTYPE': None, 'LANG': None},
+        {'LC_ALL': None, 'LC_CTYPE': 'de_DE', 'LANG': 'C.UTF-8'}))})
+    def ascii(self, environment):
+        _, it = self.begin(environment=environment)
+        it.wait(lambda screen: '#' in screen.text())
+        it.wait(lambda screen: set(plot_of(screen, 'hps167s:1')) == {' ' * 18, '#' * 9 + ' ' * 9})
+        self.assertTrue(it.bytes.isascii())
 
-    def test_colours_are_for_those_who_want_them(self):
-        for value, expected in ((None, {0, 1, 31, 33, 36}), ('', {0, 1, 31, 33, 36}), ('1', {0})):
-            sim = self.sim('hps167s', '--distance', '2500')
-            it = self.watch('hps167s', '--port', sim.port, environment={'NO_COLOR': value})
-            it.wait(lambda screen: FULL in screen.text())
-            self.assertEqual(it.screen.colours, expected)
-            it.send(signal.SIGTERM)
-            it.finish()
+    @e2e.each(colours_are_for_those_who_want_them=(None, {0, 1, 31, 33, 36}),
+              colours_are_for_those_who_do_not_say=('', {0, 1, 31, 33, 36}),
+              colours_are_not_for_those_who_want_none=('1', {0}))
+    def colours(self, value, expected):
+        _, it = self.begin(environment={'NO_COLOR': value})
+        it.wait(lambda screen: FULL in screen.text())
+        self.assertEqual(it.screen.colours, expected)
 
 
 class End(Case):
     """However it ends, the terminal is as it was."""
 
     def begin(self, *arguments, **options):
-        sim = self.sim('hps167s', '--distance', '2500')
-        it = self.watch('hps167s', '--port', sim.port, *arguments, **options)
+        sim, it = super().begin(*arguments, **options)
         it.wait(lambda screen: FULL in screen.text())
         self.assertNotEqual(termios.tcgetattr(it.slave), it.before)
         return sim, it
@@ -199,53 +204,48 @@ class End(Case):
     def test_ctrl_c(self):
         _, it = self.begin()
         it.type(b'some keys, of which nothing is seen, and then \x03')
-        self.assertEqual(it.finish(), 0)
-        self.assert_given_back(it)
+        self.ends(it)
         self.assertNotIn('keys', it.screen.main)
         self.assertRegex(it.screen.main, r'^fathom: attempts \d+, failed 0, readings \d+\r\n')
 
-    def test_signals(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            _, it = self.begin()
-            it.send(number)
-            self.assertEqual(it.finish(), 0)
-            self.assert_given_back(it)
+    @e2e.each(**{f'signals_{number.name}': number
+                 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)})
+    def signals(self, number):
+        _, it = self.begin()
+        it.send(number)
+        self.ends(it)
 
     def test_ctrl_z_and_ctrl_backslash_do_nothing(self):
         _, it = self.begin()
         it.type(b'\x1a\x1c')
-        before = it.screen.text()
-        it.wait(lambda screen: screen.text() != before)
+        it.changes()
         it.type(b'\x03')
-        self.assertEqual(it.finish(), 0)
+        self.ends(it)
 
     def test_the_time_that_was_asked_for(self):
-        _, it = self.begin('--duration', 2)
-        self.assertEqual(it.finish(), 0)
-        self.assert_given_back(it)
+        self.ends(self.begin('--duration 2')[1])
 
     def test_a_lost_port(self):
         sim, it = self.begin()
         sim.end()
-        self.assertEqual(it.finish(), 1)
-        self.assert_given_back(it)
+        self.ends(it, 1)
         self.assertIn('connect it again and start again', it.screen.main)
 
     def test_a_port_that_is_not_there(self):
-        it = self.watch('a16', '--port', '/nowhere')
-        self.assertEqual(it.finish(), 1)
+        it = self.watch('a16 --port /nowhere')
+        self.ends(it, 1)
         self.assertIn('fathom: /nowhere: no such device', it.screen.main)
-        self.assert_given_back(it)
 
     def test_a_port_that_comes_back_is_watched_on(self):
         link = self.path('port')
-        sim = self.sim('hps167s', '--distance', '2500', '--link', link)
-        it = self.watch('hps167s', '--port', link, '--reconnect')
+        sim = self.sim(f'hps167s --distance 2500 --link {link}')
+        it = self.watch(f'hps167s --port {link} --reconnect')
         it.wait(lambda screen: FULL in screen.text())
         sim.end()
-        it.wait(lambda screen: 'port lost  ' in screen.text() and 'waiting until it is back' in screen.text() and
-                'P' in [column[0] for column in plot_of(screen, 'hps167s:1')])
-        self.sim('hps167s', '--distance', '2000', '--link', link)
+        it.wait(lambda screen: 'port lost  ' in screen.text() and 'waiting until it is back' in screen.text()
+                and
+                'P' in foot_of(screen, 'hps167s:1'))
+        self.sim(f'hps167s --distance 2000 --link {link}')
         it.wait(lambda screen: '2.000 m' in screen.text() and 'it is back' in screen.text())
         it.type(b'\x03')
         it.finish()
@@ -253,71 +253,50 @@ class End(Case):
 
 
 class Lines(Case):
+    ends = e2e.Case.ends
+
     def test_into_a_pipe_go_plain_lines_one_a_second(self):
-        sim = self.sim(*BUS, '--distance', '1@1953', '--distance', '2@1000,no-target,1500,4500', '--distance', '3@2500')
-        done = self.run_fathom('watch', *BUS, '--port', sim.port, '--duration', 4)
-        self.assertEqual(done.code, 0, done.err)
+        sim = self.sim(f'{BUS} --distance 1@1953 --distance 2@1000,no-target,1500,4500 --distance 3@2500')
+        done = self.ends(f'watch {BUS} --port {sim} --duration 4', 0)
         self.assertNotIn('\x1b', done.out + done.err)
         lines = done.out.splitlines()
         self.assertIn(len(lines), (3, 4, 5))
         times = [float(line.split()[0]) for line in lines]
         self.assertTrue(all(0.5 < later - before < 2.5 for before, later in zip(times, times[1:])), times)
-        self.assertRegex(lines[-1], r'^ +\d\.\d s  a16:1 1\.953 m \d\.\d/s  a05:2 probe 1 1\.000 m \d\.\d/s  a05:2 probe 2 no target '
-                                    r'\d\.\d/s  a05:2 probe 3 1\.500 m \d\.\d/s  a05:2 probe 4 4\.500 m \d\.\d/s  hps167s:7 2\.500 m '
-                                    r'\d\.\d/s$')
+        told = ('a16:1 1.953 m', 'a05:2 probe 1 1.000 m', 'a05:2 probe 2 no target', 'a05:2 probe 3 1.500 m',
+                'a05:2 probe 4 4.500 m', 'hps167s:7 2.500 m')
+        self.assertRegex(lines[-1], r'^ +\d\.\d s' + ''.join(rf'  {re.escape(one)} \d\.\d/s'
+                                                             for one in told) + '$')
 
     def test_losses_are_in_the_lines_and_advice_is_given_once(self):
-        device = self.device()
-        done = self.run_fathom('watch', 'a16:1', '--port', device.path, '--timeout', 200, '--duration', 3)
-        self.assertEqual(done.code, 1)
+        done = self.ends(f'watch a16:1 --port {self.device()} --timeout 200 --duration 3', 1)
         self.assertRegex(done.out.splitlines()[-1], r'  a16:1 no answer 0\.0/s lost (\d+) of \1$')
         self.assertEqual(done.err.count('no answer from address 1'), 1, done.err)
 
-    def test_a_terminal_that_can_do_nothing_gets_lines_too(self):
-        for kind in ('dumb', ''):
-            sim = self.sim('hps167s', '--distance', '2500')
-            it = self.watch('hps167s', '--port', sim.port, environment={'TERM': kind})
-            it.wait(lambda screen: 'hps167s:1 2.500 m' in screen.main)
-            it.type(b'\x03')
-            self.assertEqual(it.finish(), 0)
-            self.assertNotIn(b'\x1b', it.bytes)
+    @e2e.each(a_terminal_that_can_do_nothing_gets_lines_too='dumb',
+              a_terminal_that_is_not_told_gets_lines_too='')
+    def dumb(self, kind):
+        _, it = self.begin(environment={'TERM': kind})
+        it.wait(lambda screen: 'hps167s:1 2.500 m' in screen.main)
+        it.type(b'\x03')
+        self.assertEqual(it.finish(), 0)
+        self.assertNotIn(b'\x1b', it.bytes)
 
     def test_output_that_nobody_reads_ends_it(self):
-        sim = self.sim('hps167s', '--distance', '2500')
-        watch = self.fathom('watch', 'hps167s', '--port', sim.port)
-        watch.expect('hps167s:1')
-        watch.process.stdout.close()
-        self.assertEqual(watch.finish().code, 1)
+        sim = self.sim('hps167s --distance 2500')
+        out, pipe = os.pipe()
+        watch = self.fathom(f'watch hps167s --port {sim}', stdout=pipe)
+        os.close(pipe)
+        self.assertIn(b'hps167s:1', os.read(out, 4000))
+        os.close(out)
+        self.ends(watch, 1)
 
     def test_a_full_disk_is_said(self):
-        sim = self.sim('hps167s', '--distance', '2500')
+        sim = self.sim('hps167s --distance 2500')
         with open('/dev/full', 'w', encoding='ascii') as full:
-            done = self.run_fathom('watch', 'hps167s', '--port', sim.port, stdout=full)
-        self.assertEqual(done.code, 1)
-        self.assertIn('the picture cannot be written: No space left on device', done.err)
-
-
-class Usage(Case):
-    def test_help_names_what_is_to_be_seen(self):
-        done = self.run_fathom('watch', '--help')
-        self.assertEqual((done.code, done.err), (0, ''))
-        for word in ('--port', '--interval', '--duration', '--reconnect', 'NO_COLOR', 'x no answer', 'Exit status', 'examples:'):
-            self.assertIn(word, done.out)
-        self.assertTrue(all(len(line) < 125 for line in done.out.splitlines()))
-        examples = re.findall(r'(?m)^  fathom (watch [^>\n]*)', done.out)
-        self.assertEqual(len(examples), 3)
-        for example in examples:
-            words = re.sub(r'--port \S+', '--port /nowhere', example).split()
-            self.assertEqual(self.run_fathom(*words).code, 1, example)
-
-    def test_wrong_usage(self):
-        for arguments, words in ((['a17', '--port', '/nowhere'], "there is no sensor 'a17'"), (['a16'], '--port is missing'),
-                                 (['a16', '--count', '3'], 'there is no option --count'), ([], 'which sensor?'),
-                                 (['a16', '--duration', '1s', '--port', '/nowhere'], '--duration takes a whole number')):
-            done = self.run_fathom('watch', *arguments)
-            self.assertEqual((done.code, done.out), (2, ''))
-            self.assertIn(words, done.err)
-            self.assertTrue(done.err.endswith('; try: fathom watch --help\n'))
+            self.ends(f'watch hps167s --port {sim}', 1,
+                      'the picture cannot be written: No space left on device',
+                      stdout=full)
 
 
 if __name__ == '__main__':

@@ -1,31 +1,37 @@
 # SPDX-License-Identifier: MIT
-"""What the tests against Modbus that others wrote share: three clients and two servers that take the same words.
+"""What the tests against Modbus that others wrote share: three clients and two servers that take the same
+words.
 
-A client does steps (see steps.h): 'read:0x0100:1', 'write:0x0200:9', 'many:0x20:0,180', 'input:8:4', 'coils:0:1',
-'identify' (a function that no sensor has: 0x2B, or 0x11 where that is what the client can send). Each has an
-outcome in words: the values read, four hex digits each, 'done', 'exception 2', 'no answer', or what else the
-client says."""
+A client does steps (see steps.h): 'read:0x0100:1', 'write:0x0200:9', 'many:0x20:0,180', 'input:8:4',
+'coils:0:1', 'identify' (a function that no sensor has: 0x2B, or 0x11 where that is what the client can send).
+Each has an outcome in words: the values read, four hex digits each, 'done', 'exception 2', 'no answer', or
+what else the client says."""
+import asyncio
 import logging
 import os
 import re
 import sys
 import tempfile
 import termios
+import threading
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), 'e2e'))
 
 from pymodbus.client import ModbusSerialClient  # noqa: E402
+from pymodbus.datastore import ModbusServerContext, ModbusSlaveContext, ModbusSparseDataBlock  # noqa: E402
 from pymodbus.exceptions import ModbusIOException  # noqa: E402
 from pymodbus.mei_message import ReadDeviceInformationRequest  # noqa: E402
+from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer  # noqa: E402
 
 import e2e  # noqa: E402
 
 PROGRAMS = os.environ.get('FATHOM_INTEROP') or os.path.join(e2e.ROOT, 'build', 'tests', 'interop')
-LINES = {'a16': (9600, 'none'), 'a05': (9600, 'none'), 'hps167s': (19200, 'even')}  # the sensors' own settings
-SOON = 2  # seconds for an answer that comes; the slowest takes 0.52
-QUIET = 0.15  # seconds; what must not be answered here would take the simulator 20 ms if it were
+LINES = {'a16': (9600, 'none'), 'a05': (9600, 'none'),
+         'hps167s': (19200, 'even')}  # the sensors' own settings
+SOON = 5  # seconds for an answer that comes; the slowest takes 0.52
+QUIET = 0.5  # seconds; what must not be answered would take the simulator 20 ms, or 200 for two measurements
 
 logging.getLogger('pymodbus').setLevel(logging.CRITICAL)  # what went wrong is in the outcome
 
@@ -39,17 +45,17 @@ def program(name):
 
 
 class Case(e2e.Case):
-    def sensor(self, device, *arguments):
+    def sensor(self, *line):
         """A simulated sensor on a line of its own, with that line's settings."""
-        sim = self.sim(device, *arguments)
-        sim.line = LINES[device.split(':')[0]]
+        sim = self.sim(*line)
+        sim.line = LINES[re.match(r'\w+', line[0])[0]]
         return sim
 
-    def ends(self):
-        """Two ends of a line of its own."""
+    def two_ends(self):
+        """Of a line of its own."""
         folder = tempfile.mkdtemp(dir=self.folder)
         ends = [os.path.join(folder, name) for name in ('server', 'client')]
-        self.start('socat', *(f'pty,raw,echo=0,link={end}' for end in ends))
+        self.start(['socat', *(f'pty,raw,echo=0,link={end}' for end in ends)])
         deadline = time.monotonic() + e2e.PATIENCE
         while not all(os.path.exists(end) for end in ends):
             self.assertLess(time.monotonic(), deadline, 'socat did not make its terminals')
@@ -57,8 +63,9 @@ class Case(e2e.Case):
         return ends
 
     def served(self, line, unit, first, values):
-        """Where a client finds a server with these registers."""
-        server, client = self.ends()
+        """Where a client finds a server with these registers. A value '!4' is a register that breaks:
+        exception 4, or another number where the server can send it."""
+        server, client = self.two_ends()
         self.serve(server, line, unit, first, values)
         return client
 
@@ -69,7 +76,7 @@ class Case(e2e.Case):
         return self.tell(self.client, port, line, seconds, *steps)
 
     def tell(self, name, port, line, seconds, *steps):
-        done = self.start(program(name), port, *line, round(seconds * 1000), *steps).finish()
+        done = self.start([program(name), port, *line, round(seconds * 1000), *steps]).finish()
         self.assertEqual((done.code, done.err), (0, ''), done)
         return done.out.splitlines()
 
@@ -90,7 +97,7 @@ class Libmodbus(AtRates):
 
     def ask(self, sim, unit, *steps, seconds=SOON):
         steps = ['raw:0x2B,0x0E,1,0' if step == 'identify' else step for step in steps]
-        return self.tell('libmodbus_client', sim.port, sim.line, seconds, f'unit:{unit}', *steps)
+        return self.tell('libmodbus_client', sim, sim.line, seconds, f'unit:{unit}', *steps)
 
 
 class Mbpoll(AtRates):
@@ -106,14 +113,17 @@ class Mbpoll(AtRates):
 
     def poll(self, sim, unit, seconds, kind, first='0', last=''):
         baud, parity = sim.line
-        line = ['-m', 'rtu', '-a', unit, '-b', baud, '-P', parity, '-o', seconds, '-1', '-0']
+        values = []
         if kind == 'identify':
-            what, values = ['-u'], []
+            what = ['-u']
+        elif kind in ('write', 'many'):
+            what = ['-t', self.types[kind], '-r', int(first, 0)]
+            values = [int(value, 0) for value in last.split(',')]
         else:
-            writes = kind in ('write', 'many')
-            what = ['-t', self.types[kind], '-r', int(first, 0), *([] if writes else ['-c', last])]
-            values = [int(value, 0) for value in last.split(',')] if writes else []
-        done = self.start('mbpoll', *line, *what, sim.port, *values).finish()
+            what = ['-t', self.types[kind], '-r', int(first, 0), '-c', last]
+        done = self.start(['mbpoll', '-m', 'rtu', '-a', unit, '-b', baud, '-P', parity, '-o', seconds, '-1',
+                           '-0',
+                           *what, sim, *values]).finish()
         for words, outcome in self.failures:
             if words in done.err:
                 return outcome
@@ -125,8 +135,9 @@ class Mbpoll(AtRates):
 
 
 def make_other(port):
-    """Gives a terminal other settings than any sensor's. A pseudo terminal drops the parity, of which the C library
-    makes an error (EINVAL) if nothing else would change; and the simulator's stands at the sensor's rate already."""
+    """Gives a terminal other settings than any sensor's. A pseudo terminal drops the parity, of which the C
+    library makes an error (EINVAL) if nothing else would change; and the simulator's stands at the sensor's
+    rate already."""
     terminal = os.open(port, os.O_RDWR | os.O_NOCTTY)
     try:
         settings = termios.tcgetattr(terminal)
@@ -146,7 +157,8 @@ class Pymodbus(AtRates):
         if client is None:
             baud, parity = sim.line
             make_other(sim.port)
-            client = sim.client = ModbusSerialClient(sim.port, baudrate=baud, parity=parity[0].upper(), retries=0,
+            client = sim.client = ModbusSerialClient(sim.port, baudrate=baud, parity=parity[0].upper(),
+                                                     retries=0,
                                                      reset_socket=False, strict=False, timeout=seconds)
             self.addCleanup(client.close)
             self.assertTrue(client.connect(), 'pymodbus does not open the port')
@@ -158,6 +170,14 @@ class Pymodbus(AtRates):
     def ask(self, sim, unit, *steps, seconds=SOON):
         client = self.connect(sim, seconds)
         return [self.step(client, unit, *step.split(':')) for step in steps]
+
+    def stop(self, sim):
+        """Ends automatic output, of which a frame may still come; the port."""
+        self.ask(sim, 5, 'read:0x0200:1')  # whatever comes: frames and the answer may be side by side
+        port = self.connect(sim).socket
+        port.timeout = 0.4  # more than the period of either sensor
+        self.assertIn(b'', (port.read(64) for _ in range(4)), 'it does not stop')
+        return port
 
     @staticmethod
     def step(client, unit, kind, first='0', last=''):
@@ -186,22 +206,67 @@ class Pymodbus(AtRates):
         return ' '.join(f'{value:04X}' for value in values)
 
 
+def for_each_client(cases, module):
+    """Makes a class of cases of each of the three."""
+    for client in (Libmodbus, Pymodbus, Mbpoll):
+        module[client.__name__] = type(client.__name__, (client, cases, Case),
+                                       {'__module__': module['__name__']})
+
+
 class LibmodbusServer:
-    """For a Case."""
+    """For a Case. serve() returns the number of its port over TCP."""
 
     def serve(self, port, line, unit, first, values):
-        server = self.start(program('libmodbus_server'), port, *line, unit, first, *values)
-        return server.expect(r'^ready ?(\d*)$')[1]
+        return self.start([program('libmodbus_server'), port, *line, unit, first, *values]).expect(
+            r'^ready ?(\d*)$')[1]
+
+
+class Block(ModbusSparseDataBlock):
+    """Registers of pymodbus, of which some break, which it makes exception 04."""
+    broken = frozenset()
+
+    def getValues(self, address, count=1):
+        self.touch(address, count)
+        return super().getValues(address, count)
+
+    def setValues(self, address, values, use_as_default=False):
+        self.touch(address, len(values))
+        super().setValues(address, values, use_as_default)
+
+    def touch(self, address, count):
+        if self.broken.intersection(range(address, address + count)):
+            raise RuntimeError('this register is broken')
 
 
 class PymodbusServer:
-    """For a Case. It has no parity on its side of the pseudo terminal: pyserial takes it for an error that such
-    a terminal does not keep it."""
+    """For a Case: in this process, all in one thread. It has no parity on its side of the pseudo terminal:
+    pyserial takes it for an error that such a terminal does not keep it."""
+    loop = asyncio.new_event_loop()
+    threading.Thread(target=loop.run_forever, daemon=True).start()
+
+    def do(self, coroutine):
+        return asyncio.run_coroutine_threadsafe(coroutine, self.loop).result(e2e.PATIENCE)
 
     def serve(self, port, line, unit, first, values):
-        server = self.start(sys.executable, os.path.join(HERE, 'pymodbus_server.py'), port, line[0], unit, first,
-                            *values)
-        return server.expect(r'^ready ?(\d*)$')[1]
+        registers = {first + i: str(value) for i, value in enumerate(values)}
+        block = Block({at: 0 if word == '!4' else int(word, 0) for at, word in registers.items()})
+        block.broken = {at for at, word in registers.items() if word == '!4'}
+        context = ModbusServerContext({unit: ModbusSlaveContext(hr=block, zero_mode=True)}, single=False)
+        return self.do(self.begin(port, line[0], context))
+
+    async def begin(self, port, baud, context):
+        options = {'ignore_missing_slaves': True, 'broadcast_enable': True}
+        if port == 'tcp':
+            server = ModbusTcpServer(context, address=('127.0.0.1', 0), **options)
+            serving = asyncio.ensure_future(server.serve_forever())
+            self.addCleanup(self.loop.call_soon_threadsafe, serving.cancel)
+            await server.serving  # it listens
+            return server.server.sockets[0].getsockname()[1]
+        server = ModbusSerialServer(context, port=port, baudrate=baud, **options)
+        await server.start()
+        self.assertIsNotNone(server.transport, f'{port} does not open')  # it keeps why to itself
+        self.addCleanup(lambda: self.do(server.shutdown()))
+        return None
 
 
 class Tcp:

@@ -1,89 +1,76 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What our simulated sensors say to other people's Modbus clients that ask what they may not. The HPS-167S answers
-with an exception (HPS-167S "abnormal response code"); the A16 and the A05 document none and are silent."""
+"""What our simulated sensors say to other people's Modbus clients that ask what they may not. The HPS-167S
+answers with an exception (HPS-167S "abnormal response code"); the A16 and the A05 document none and are
+silent."""
 import time
 
 import interop
 from interop import QUIET, e2e
 
-MEASURED = 0.25  # seconds; two measurements take the simulator 200 ms at most
 MEASUREMENT = '0823 DCB2 0701 0000'  # HPS-167S #5, the datasheet's
 
 
 class Refusals:
-    def hps(self, outcome, *steps):
-        sim = self.sensor('hps167s', '--distance', '2083')
-        self.assertEqual(dict(zip(steps, self.ask(sim, 1, *steps))), {step: outcome for step in steps})
+    @e2e.each(
+        # The right ones are 3, 4, 11, 1 and 4.
+        each_command_of_an_hps167s_has_its_own_length=(
+            2, 'read:1:2 read:1:4 read:2:3 read:2:5 read:3:10 read:3:12 read:4:2 read:8:1 read:8:3 read:8:5 read:8:125'),
+        between_the_commands_of_an_hps167s_there_is_nothing=(
+            2, 'read:0:1 read:5:4 read:6:4 read:7:4 read:0x0100:1 read:0xFFFF:1'),
+        # 03, 06 and 10 only (HPS-167S 2.2.4); here 01, 04 and 0x2B (mbpoll: 0x11).
+        an_hps167s_has_no_other_functions=(1, 'coils:8:4 input:8:4 identify'))
+    def refused(self, exception, steps):
+        sim = self.sensor('hps167s --distance 2083')
+        steps = steps.split()
+        self.assertEqual(dict(zip(steps, self.ask(sim, 1, *steps))),
+                         dict.fromkeys(steps, f'exception {exception}'))
         self.assertEqual(self.ask(sim, 1, 'read:8:4'), [MEASUREMENT])
 
-    def test_each_command_of_an_hps167s_has_its_own_length(self):
-        """The right ones are 3, 4, 11, 1 and 4."""
-        self.hps('exception 2', 'read:1:2', 'read:1:4', 'read:2:3', 'read:2:5', 'read:3:10', 'read:3:12', 'read:4:2',
-                 'read:8:1', 'read:8:3', 'read:8:5', 'read:8:125')
-
-    def test_between_the_commands_of_an_hps167s_there_is_nothing(self):
-        self.hps('exception 2', 'read:0:1', 'read:5:4', 'read:6:4', 'read:7:4', 'read:0x0100:1', 'read:0xFFFF:1')
-
-    def test_an_hps167s_has_no_other_functions(self):
-        """03, 06 and 10 only (HPS-167S 2.2.4); here 01, 04 and 0x2B (mbpoll: 0x11)."""
-        self.hps('exception 1', 'coils:8:4', 'input:8:4', 'identify')
-
-    def silent(self, device, *steps, seconds=QUIET):
-        sim = self.sensor(f'{device}:5:modbus', '--distance', '754')
-        for step in steps:
-            self.assertEqual(self.ask(sim, 5, step, seconds=seconds), ['no answer'], step)
+    @e2e.each(
+        an_a16_reads_one_register_at_a_time=('a16', 'read:0x0101:2 read:0x0205:2'),
+        between_the_registers_of_an_a16_there_is_nothing=('a16', 'read:0x0102:1 read:0x0201:1 read:0:1'),
+        an_a16_has_no_other_functions=('a16', 'coils:0x0101:1 input:0x0101:1 identify'),
+        an_a05_does_not_read_past_the_last_probe=('a05', 'read:0x0109:2 read:0x0013:2'),
+        between_the_registers_of_an_a05_there_is_nothing=('a05', 'read:0x0105:1 read:0x010A:1 read:0x0014:1'),
+        an_a05_has_no_other_functions=('a05', 'coils:0x0106:4 input:0x0106:1 identify'))
+    def silent(self, device, steps):
+        sim = self.sensor(f'{device}:5:modbus --distance 754')
+        for step in steps.split():
+            self.assertEqual(self.ask(sim, 5, step, seconds=QUIET), ['no answer'], step)
             self.assertEqual(self.ask(sim, 5, 'read:0x0200:1'), ['0005'], f'after {step}')
-
-    def test_an_a16_reads_one_register_at_a_time(self):
-        self.silent('a16', 'read:0x0101:2', 'read:0x0205:2', seconds=MEASURED)
-
-    def test_between_the_registers_of_an_a16_there_is_nothing(self):
-        self.silent('a16', 'read:0x0102:1', 'read:0x0201:1', 'read:0:1')
-
-    def test_an_a16_has_no_other_functions(self):
-        self.silent('a16', 'coils:0x0101:1', 'input:0x0101:1', 'identify')
-
-    def test_an_a05_does_not_read_past_the_last_probe(self):
-        self.silent('a05', 'read:0x0109:2', 'read:0x0013:2', seconds=MEASURED)
-
-    def test_between_the_registers_of_an_a05_there_is_nothing(self):
-        self.silent('a05', 'read:0x0105:1', 'read:0x010A:1', 'read:0x0014:1')
-
-    def test_an_a05_has_no_other_functions(self):
-        self.silent('a05', 'coils:0x0106:4', 'input:0x0106:1', 'identify')
 
     def test_another_unit_is_not_there(self):
         for device, units, step, said in (('a16:3:modbus', (2,), 'read:0x0101:1', '02F2'),
                                           ('a05:3:modbus', (4,), 'read:0x0106:1', '02F2'),
                                           ('hps167s:3', (2, 131), 'read:4:1', '004D')):  # 131 is 128 + 3
-            sim = self.sensor(device, '--distance', '754')
+            sim = self.sensor(f'{device} --distance 754')
             for unit in units:
-                self.assertEqual(self.ask(sim, unit, step, seconds=MEASURED), ['no answer'], f'{device} at {unit}')
+                self.assertEqual(self.ask(sim, unit, step, seconds=QUIET), ['no answer'],
+                                 f'{device} at {unit}')
             self.assertEqual(self.ask(sim, 3, step), [said], device)
 
 
-class LibmodbusRefusals(interop.Libmodbus, Refusals, interop.Case):
-    pass
-
-
-class PymodbusRefusals(interop.Pymodbus, Refusals, interop.Case):
-    pass
-
-
-class MbpollRefusals(interop.Mbpoll, Refusals, interop.Case):
-    pass
+interop.for_each_client(Refusals, globals())
 
 
 class Damage(interop.Pymodbus, interop.Case):
     """Requests as no client sends them, through pymodbus' own open port, and then one of its own."""
-    patience = 0.08  # of each: these take the simulator 20 ms
 
-    def silent(self, device, good, said, head):
-        request = e2e.adu(*head)
-        sim = self.sensor(device, '--distance', '754')
-        self.assertEqual(self.ask(sim, 1, good), [said])
+    def is_silent(self, sim, data):
         port = self.connect(sim).socket
+        port.write(data)
+        time.sleep(0.25)  # these take the simulator 20 ms
+        return port.read(port.in_waiting) == b''
+
+    @e2e.each(
+        an_a16_is_silent_and_works_on=('a16::modbus', 'read:0x0200:1', '0001', (1, 3, 2, 0, 0, 1)),
+        an_a05_is_silent_and_works_on=('a05::modbus', 'read:0x0200:1', '0001', (1, 3, 2, 0, 0, 1)),
+        an_hps167s_is_silent_and_works_on=('hps167s', 'read:4:1', '004D', (1, 3, 0, 4, 0, 1)))
+    def damaged(self, device, good, said, head):
+        request = e2e.adu(*head)
+        sim = self.sensor(f'{device} --distance 754')
+        self.assertEqual(self.ask(sim, 1, good), [said])
         for what, data in (
                 ('the CRC one off', request[:6] + bytes((request[6] ^ 1, request[7]))),
                 ('the CRC one off in its other byte', request[:7] + bytes((request[7] ^ 0x80,))),
@@ -99,27 +86,13 @@ class Damage(interop.Pymodbus, interop.Case):
                 ('the unit alone', request[:1]),
                 ('an answer', e2e.registers(1, 754)),
                 ('two requests as one', request + request)):
-            port.write(data)
-            time.sleep(self.patience)
-            self.assertEqual(port.read(port.in_waiting).hex(' '), '', what)
+            self.assertTrue(self.is_silent(sim, data), what)
             self.assertEqual(self.ask(sim, 1, good), [said], f'after {what}')
-
-    def test_an_a16_is_silent_and_works_on(self):
-        self.silent('a16::modbus', 'read:0x0200:1', '0001', (1, 3, 2, 0, 0, 1))
-
-    def test_an_a05_is_silent_and_works_on(self):
-        self.silent('a05::modbus', 'read:0x0200:1', '0001', (1, 3, 2, 0, 0, 1))
-
-    def test_an_hps167s_is_silent_and_works_on(self):
-        self.silent('hps167s', 'read:4:1', '004D', (1, 3, 0, 4, 0, 1))
 
     def test_what_is_for_all_is_not_answered_by_an_hps167s(self):
         """"0x00 broadcast (no answer)" (HPS-167S 2.2.1)."""
-        sim = self.sensor('hps167s', '--distance', '2083')
-        port = self.connect(sim).socket
-        port.write(e2e.adu(0, 3, 0, 8, 0, 4))
-        time.sleep(self.patience)
-        self.assertEqual(port.read(port.in_waiting), b'')
+        sim = self.sensor('hps167s --distance 2083')
+        self.assertTrue(self.is_silent(sim, e2e.adu(0, 3, 0, 8, 0, 4)))
         self.assertEqual(self.ask(sim, 1, 'read:8:4'), [MEASUREMENT])
 
 

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Fathom's Modbus client (fathom_client.c) writes to Modbus servers that others wrote, and reads back. It reads
-first, so that it knows that the line has no echo."""
+"""Fathom's Modbus client (fathom_client.c) writes to Modbus servers that others wrote, and reads back. It
+reads first, so that it knows that the line has no echo."""
 import interop
+from interop import e2e
 
 LINE = (19200, 'even')
 MANY = [(i * 519 + 1) & 0xFFFF for i in range(125)]  # both bytes of the registers change
+NUMBERS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11)  # of the exceptions that libmodbus can send
 
 
 def words(values):
@@ -22,78 +24,71 @@ class Servers:
         client = self.served(LINE, unit, first, values)
         return self.fathom_client(client, LINE, *steps, seconds=seconds)
 
-    def test_one_register_is_read(self):
-        self.assertEqual(self.run_steps([0x1234], 'read:0xFFFF:1', first=0xFFFF), ['1234'])
-
-    def test_125_registers_are_read(self):
-        self.assertEqual(self.run_steps(MANY, 'read:0:125'), [words(MANY)])
-
-    def test_one_register_is_written(self):
-        self.assertEqual(self.run_steps([1, 2, 3], 'read:0x0200:3', 'write:0x0201:0xFE01', 'read:0x0200:3',
-                                        first=0x0200),
-                         ['0001 0002 0003', 'done', '0001 FE01 0003'])
-
-    def test_two_registers_are_written_and_their_neighbours_are_not(self):
-        """As the reconnect time of an HPS-167S: 180 ms, 0x000000B4 (HPS-167S #15)."""
-        self.assertEqual(self.run_steps([9, 9, 9, 9], 'read:0x1F:4', 'many:0x20:0,180', 'read:0x1F:4', first=0x1F),
-                         ['0009 0009 0009 0009', 'done', '0009 0000 00B4 0009'])
-
-    def test_one_register_is_written_as_many(self):
-        self.assertEqual(self.run_steps([1, 2], 'read:0:2', 'many:1:0xABCD', 'read:0:2'),
-                         ['0001 0002', 'done', '0001 ABCD'])
-
-    def test_123_registers_are_written(self):
-        outcomes = self.run_steps([0] * 124, 'read:123:1', 'many:0:' + text(MANY[:123]), 'read:0:124')
-        self.assertEqual(outcomes, ['0000', 'done', words([*MANY[:123], 0])])
-
-    def test_more_than_a_frame_holds_is_not_sent(self):
-        outcomes = self.run_steps([7] * 125, 'read:0:126', 'many:0:' + text(MANY[:124]), 'read:0:2')
-        self.assertEqual(outcomes, ['not sent, status -1', 'not sent, status -1', '0007 0007'])
+    @e2e.each(
+        one_register_is_read=(0xFFFF, [0x1234], 'read:0xFFFF:1', '1234'),
+        # 125 registers are as many as a frame holds
+        **{'125_registers_are_read': (0, MANY, 'read:0:125', words(MANY)),
+           '123_registers_are_written': (0, [0] * 124, f'read:123:1 many:0:{text(MANY[:123])} read:0:124',
+                                         '0000', 'done', words([*MANY[:123], 0]))},
+        one_register_is_written=(0x0200, [1, 2, 3], 'read:0x0200:3 write:0x0201:0xFE01 read:0x0200:3',
+                                 '0001 0002 0003', 'done', '0001 FE01 0003'),
+        # As the reconnect time of an HPS-167S: 180 ms, 0x000000B4 (HPS-167S #15).
+        two_registers_are_written_and_their_neighbours_are_not=(
+            0x1F, [9] * 4, 'read:0x1F:4 many:0x20:0,180 read:0x1F:4', '0009 0009 0009 0009', 'done',
+            '0009 0000 00B4 0009'),
+        one_register_is_written_as_many=(0, [1, 2], 'read:0:2 many:1:0xABCD read:0:2', '0001 0002', 'done',
+                                         '0001 ABCD'),
+        more_than_a_frame_holds_is_not_sent=(0, [7] * 125, f'read:0:126 many:0:{text(MANY[:124])} read:0:2',
+                                             'not sent, status -1', 'not sent, status -1', '0007 0007'),
+        what_is_not_there_is_exception_2_for_each_function=(
+            0, [1, 2], 'read:0:2 read:2:1 read:1:2 write:2:9 many:1:8,9 read:0:2', '0001 0002',
+            *['exception 2'] * 4, '0001 0002'),
+        what_breaks_is_exception_4_for_each_function=(
+            0, ['1', '!4'], 'read:0:1 read:1:1 write:1:9 many:0:8,9 read:0:1', '0001', *['exception 4'] * 3,
+            '0001'),
+        nothing_is_read_from_all=(0, [1], 'unit:0 read:0:1 unit:1 read:0:1', 'not sent, status -1', '0001'))
+    def steps(self, first, values, steps, *said):
+        self.assertEqual(self.run_steps(values, *steps.split(), first=first), [*said])
 
     def test_the_same_value_is_written_again_and_again(self):
         """Each request and each answer are alike; none may be taken for another's."""
         steps = [step for value in (5, 5, 5, 6, 6, 5) for step in (f'write:0:{value}', 'read:0:1')]
         self.assertEqual(self.run_steps([1], 'read:0:1', *steps),
-                         ['0001', *(said for value in (5, 5, 5, 6, 6, 5) for said in ('done', f'{value:04X}'))])
+                         ['0001', *(said for value in (5, 5, 5, 6, 6, 5)
+                                    for said in ('done', f'{value:04X}'))])
 
-    def test_what_is_not_there_is_exception_2_for_each_function(self):
-        outcomes = self.run_steps([1, 2], 'read:0:2', 'read:2:1', 'read:1:2', 'write:2:9', 'many:1:8,9', 'read:0:2')
-        self.assertEqual(outcomes, ['0001 0002', *['exception 2'] * 4, '0001 0002'])
-
-    def test_what_breaks_is_exception_4_for_each_function(self):
-        outcomes = self.run_steps(['1', '!4'], 'read:0:1', 'read:1:1', 'write:1:9', 'many:0:8,9', 'read:0:1')
-        self.assertEqual(outcomes, ['0001', *['exception 4'] * 3, '0001'])
+    others = ('read:0:1', 'write:0:2', 'many:0:2')
 
     def test_another_unit_is_not_there_and_the_right_one_is(self):
-        outcomes = self.run_steps([1], 'unit:7', 'read:0:1', 'unit:8', *self.others, 'unit:7', 'read:0:1', unit=7,
-                                  seconds=0.2)
+        outcomes = self.run_steps([1], 'unit:7', 'read:0:1', 'unit:8', *self.others, 'unit:7', 'read:0:1',
+                                  unit=7,
+                                  seconds=1)
         self.assertEqual(outcomes, ['0001', *['no answer'] * len(self.others), '0001'])
 
     def test_a_write_to_all_is_obeyed_and_needs_no_answer(self):
-        outcomes = self.run_steps([1, 2, 3], 'unit:9', 'read:0:3', 'unit:0', 'write:0:0x0A0B', 'unit:9', 'read:0:3',
-                                  'unit:0', 'many:1:0x0C0D,0x0E0F', 'unit:9', 'read:0:3', unit=9, seconds=0.3)
+        outcomes = self.run_steps([1, 2, 3], 'unit:9', 'read:0:3', 'unit:0', 'write:0:0x0A0B', 'unit:9',
+                                  'read:0:3',
+                                  'unit:0', 'many:1:0x0C0D,0x0E0F', 'unit:9', 'read:0:3', unit=9, seconds=1)
         self.assertEqual(outcomes, ['0001 0002 0003', 'done', '0A0B 0002 0003', 'done', '0A0B 0C0D 0E0F'])
 
-    def test_nothing_is_read_from_all(self):
-        self.assertEqual(self.run_steps([1], 'unit:0', 'read:0:1', 'unit:1', 'read:0:1'),
-                         ['not sent, status -1', '0001'])
+
+class NoMany:
+    """What follows another unit's request is that unit's answer to libmodbus, whatever it is and whenever it
+    comes. So there are two, and the second is one whose answer would have its length."""
+    others = ('read:0:1', 'write:0:2')
 
 
 class Pymodbus(interop.PymodbusServer, Servers, interop.Case):
-    others = ('read:0:1', 'write:0:2', 'many:0:2')
+    pass
 
 
-class Libmodbus(interop.LibmodbusServer, Servers, interop.Case):
-    # What follows another unit's request is that unit's answer to libmodbus, whatever it is and whenever it comes.
-    # So there are two, and the second is one whose answer would have its length.
-    others = ('read:0:1', 'write:0:2')
-
-    def test_every_exception_that_libmodbus_can_send_has_its_number(self):
-        numbers = (1, 2, 3, 4, 5, 6, 7, 8, 10, 11)
-        for function in ('read:%d:1', 'write:%d:9', 'many:%d:9'):
-            outcomes = self.run_steps(['1', *(f'!{number}' for number in numbers)], 'read:0:1',
-                                      *(function % at for at in range(1, 11)))
-            self.assertEqual(outcomes, ['0001', *(f'exception {number}' for number in numbers)], function)
+class Libmodbus(NoMany, interop.LibmodbusServer, Servers, interop.Case):
+    @e2e.each(**{f'every_exception_that_libmodbus_can_send_has_its_number_{function[:4]}': function
+                 for function in ('read:%d:1', 'write:%d:9', 'many:%d:9')})
+    def numbered(self, function):
+        outcomes = self.run_steps(['1', *(f'!{number}' for number in NUMBERS)], 'read:0:1',
+                                  *(function % at for at in range(1, 11)), 'read:0:1')
+        self.assertEqual(outcomes, ['0001', *(f'exception {number}' for number in NUMBERS), '0001'])
 
 
 if __name__ == '__main__':
