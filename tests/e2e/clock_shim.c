@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A monotonic clock for test_clock.py, to be preloaded. When the program first looks, its lower 32 bits of
- * microseconds are WRAP_IN_US from their wrap; JUMP_IN_US later it has gained three times 2^32 us, which whoever
- * knows 32 bits only cannot see.
+ * microseconds are WRAP_IN_US from their wrap; JUMP_IN_US later it has gained three times 2^32 us, which is
+ * not to be seen in 32 bits.
  */
 #define _GNU_SOURCE 1
 #include <stdint.h>

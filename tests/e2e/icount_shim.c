@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* For test_stats.py, to be preloaded: the port counts line errors, which a pseudo terminal does not. ICOUNT names the
- * counter that goes up by 3 with every look; all begin at 100, as those of a driver that was in use before. */
+/* For test_stats.py, to be preloaded: the port counts line errors, which a pseudo terminal does not. ICOUNT
+ * names the counter that goes up by 3 with every look; all begin at 100, as if the port was in use before. */
 #define _GNU_SOURCE 1
 #include <linux/serial.h>
 #include <stdarg.h>

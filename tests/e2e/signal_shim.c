@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* For test_errors.py, to be preloaded: a SIGINT comes when the program has decided to sleep for more than a second
- * and does not sleep yet. */
+/* For test_errors.py, to be preloaded: a SIGINT comes when the program has decided to sleep for more than a
+ * second and does not sleep yet. */
 #define _GNU_SOURCE 1
 #include <poll.h>
 #include <signal.h>

@@ -119,7 +119,8 @@ class Terminal:
         deadline = time.monotonic() + e2e.PATIENCE
         while not (got := condition(self.screen)):
             if not e2e.is_ready(self.master, deadline - time.monotonic()):
-                raise AssertionError(f'it did not come; the screen is\n{self.screen.text()}\n{self.screen.main}')
+                raise AssertionError(f'it did not come; the screen '
+                                     f'is\n{self.screen.text()}\n{self.screen.main}')
             self.take()
         return got
 
@@ -147,7 +148,10 @@ class Terminal:
         poller.register(self.master, select.POLLIN)
         poller.register(self.pidfd, select.POLLIN)
         deadline = time.monotonic() + e2e.PATIENCE
-        while (ready := [fd for fd, _ in poller.poll(max(0, deadline - time.monotonic()) * 1000)]) != [self.pidfd]:
+        while True:
+            ready = [fd for fd, _ in poller.poll(max(0, deadline - time.monotonic()) * 1000)]
+            if ready == [self.pidfd]:
+                break
             if not ready:
                 raise AssertionError(f'it still runs; the screen is\n{self.screen.text()}')
             self.take()

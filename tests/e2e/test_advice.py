@@ -117,7 +117,8 @@ class Asked(e2e.Case):
 
 class Sending(e2e.Case):
     @e2e.each(
-        nothing_heard_is_wiring_and_supply=('a16', b'', 'nothing was heard at all; check the supply, the wire .*--mode modbus'),
+        nothing_heard_is_wiring_and_supply=('a16', b'', 'nothing was heard at all; check the supply, the '
+                                                        'wire .*--mode modbus'),
         bytes_without_a_frame_are_rate_or_parity=(
             'a05', NOISE * 6,
             r'bytes were heard, but no frame of a05; check --baud and --parity \(now 9600 8N1\)'),

@@ -148,16 +148,18 @@ class Dead(e2e.Case):
     def test_text_tells_the_same_of_each(self):
         done, requests = self.read('--count 4 --timeout 400 --stats')
         self.assertEqual(requests, {1: 4, 2: 4, 3: 4})
-        self.assertRegex(done.err, r'(?m)^fathom: a16:1: attempts 4, failed 0, readings 4, answers 4, failures 0, '
-                                   r'silences in a row 0, left alone for 0\.0 s, time to answer: shortest [\d.]+ ms')
-        self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, answers 0, failures 4, '
-                                   r'silences in a row 4, left alone for 0\.[78] s$')
+        self.assertRegex(done.err, r'(?m)^fathom: a16:1: attempts 4, failed 0, readings 4, answers 4, '
+                                   r'failures 0, '
+                                   r'silences in a row 0, left alone for 0\.0 s, time to answer: shortest '
+                                   r'[\d.]+ ms')
+        self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, answers 0, '
+                                   r'failures 4, silences in a row 4, left alone for 0\.[78] s$')
         self.assertRegex(done.err, '(?m)^fathom: a05:3: attempts 4, failed 0, readings 16, ')
 
     def test_the_last_words_name_it_too(self):
         done, _ = self.read('--count 3 --timeout 400')
-        self.assertRegex(done.err, '(?m)^fathom: a16:2: attempts 3, failed 3, readings 0, silences in a row 3, '
-                                   'left alone for')
+        self.assertRegex(done.err, '(?m)^fathom: a16:2: attempts 3, failed 3, readings 0, silences in a row '
+                                   '3, left alone for')
         self.assertRegex(done.err, '(?m)^fathom: a16:1: attempts 3, failed 0, readings 3$')
 
     def test_the_only_one_on_a_line_is_asked_again_and_again(self):
@@ -234,7 +236,8 @@ class Example(e2e.Case):
             self.assertEqual(got, expected)
         # 600 ms of time-out, once more until its late answer can no longer come; left alone after the third,
         # for 0.6 s
-        failures = re.search(r'A05 +answers \d+, failures (\d+), silences in a row (\d+), left alone for ([\d.]+) s',
+        failures = re.search(r'A05 +answers \d+, failures (\d+), silences in a row (\d+), left alone for '
+                             r'([\d.]+) s',
                              between)
         self.assertEqual(failures[1], failures[2])
         self.assertGreaterEqual(int(failures[1]), 3)

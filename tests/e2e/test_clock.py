@@ -27,8 +27,9 @@ class Clock(e2e.Case):
     def steady(self, sensor, mode, count, wrap_in_us):
         objects, passed = self.read(sensor, mode, count, WRAP_IN_US=wrap_in_us)
         self.assertLess(objects[0]['time_us'], 10e6)
+        self.assertGreater(objects[-1]['time_us'], 1e6)
         for time_us, seconds in passed:
-            self.assertGreater(time_us, 0)
+            self.assertGreaterEqual(time_us, 0)  # what a busy machine reads at once has one time
             self.assertAlmostEqual(time_us / 1e6, seconds, delta=0.2)
 
     def test_a_time_before_the_wrap_told_after_it(self):

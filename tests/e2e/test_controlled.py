@@ -12,18 +12,21 @@ class Controlled(e2e.Case):
         """The readings, and how long it took. On a busy machine the simulated answer may come later than 130
         ms after the trigger, and is none then."""
         sim = self.sim(f'a16:1:controlled --distance {distance}')
-        done = self.run_fathom(f'read {SENSOR} --port {sim} --count {count} --format json {options}')
-        failed = done.err.count('no answer to the trigger')
-        self.assertEqual(len(done.json) + failed, count, done)
-        self.assertEqual(done.code, 1 if failed else 0)
-        self.assertGreater(len(done.json), count // 2, done)
-        return done.json, done.elapsed
+        for _ in range(5):  # and not every time
+            done = self.run_fathom(f'read {SENSOR} --port {sim} --count {count} --format json {options}')
+            failed = done.err.count('no answer to the trigger')
+            self.assertEqual(len(done.json) + failed, count, done)
+            self.assertEqual(done.code, 1 if failed else 0)
+            if len(done.json) > count // 2:
+                return done.json, done.elapsed
+        raise AssertionError(done)
 
     def test_each_trigger_brings_one_reading(self):
         readings, elapsed = self.read(1953, 8)
         for one in readings:
             self.assertEqual((one['status'], one['distance_mm'], one['address']), ('target', 1953, None))
-        self.assertGreater(elapsed, 7 * 0.121)  # from trigger to trigger, "must be greater than 120ms" (A16 3(2))
+        # From trigger to trigger, "must be greater than 120ms" (A16 3(2)).
+        self.assertGreater(elapsed, 7 * 0.121)
 
     def test_nothing_in_range_is_a_reading(self):
         self.assertEqual({one['status'] for one in self.read('no-target', 5)[0]}, {'no_target'})
@@ -35,9 +38,14 @@ class Controlled(e2e.Case):
         self.assertEqual(device.read(2), b'\0\0')
 
     def test_an_answer_that_comes_at_once_is_none(self):
-        """The example of the datasheet (A16 3(5)), but not 90 to 110 ms after the trigger."""
+        """The example of the datasheet (A16 3(5)), but not 90 to 110 ms after the trigger, unless this
+        machine is that busy; and not every time."""
         answer = [bytes.fromhex('FF 07 A1 A7')]
-        self.ends(self.play(f'read {SENSOR}', b'\0', answer, answer), 1, out='')
+        for _ in range(5):
+            done = self.play(f'read {SENSOR}', b'\0', answer, answer)
+            if not done.out:
+                break
+        self.ends(done, 1, out='')
 
     def test_an_interval_is_kept(self):
         self.assertGreater(self.read(1953, 4, '--interval 400')[1], 3 * 0.4)

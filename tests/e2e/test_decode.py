@@ -1,18 +1,94 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom decode: every frame of the datasheets, their misprints, and what is no hex."""
+"""fathom decode: every frame of the datasheets, their misprints, what is no hex; what a request makes of its
+answer, the commands of the HPS-167S, and bytes that are damaged."""
 import json
+import random
 import re
 import subprocess
 
-import decoding
 import e2e
-from decoding import FRAMES
+from e2e import ASK_A16, adu, registers
 
 WHOLE = '01 03 02 02 F2 38 A1'
+READ, WRITE, WRITE_MANY = 'read holding registers', 'write single register', 'write multiple registers'
+FIRST, SECOND = 'a16 0x0100 processed distance', 'a16 0x0101 real-time distance'
+FOUR = {'probe_1_mm': 1000, 'probe_2_mm': 2000, 'probe_3_mm': 1953, 'probe_4_mm': 3562}
+ADDRESSES = ['a16 set 0x0200 slave address', 'a05 set 0x0200 slave address']
+DETAILS, MEASURE, RESET = ('hps167s #3 sensor details', 'hps167s #5 single measurement',
+                           'hps167s #6 factory reset of the interface')
+
+# Every frame that the datasheets print (misprints corrected), in their order, so that an answer follows its
+# request: bytes, protocol, direction, what each sensor takes it for, fields of the last of these.
+FRAMES = [
+    ('FF 07 A1 A7', 'stream', 'answer', 'a16 automatic or controlled output', {'distance_mm': 1953}),
+    ('01 03 01 00 00 01 85 F6', READ, 'request', FIRST, {}),
+    ('01 03 02 02 F2 38 A1', READ, 'answer', FIRST, {'distance_mm': 754}),
+    ('01 03 01 01 00 01 D4 36', READ, 'request', SECOND, {}),
+    ('01 03 02 02 EF F8 A8', READ, 'answer', SECOND, {'distance_mm': 751}),
+    ('01 06 02 00 00 05 48 71', WRITE, 'both', ADDRESSES, {'address': 5}),
+    ('01 06 02 02 00 01 E8 72', WRITE, 'both', 'a16 set 0x0202 operating mode', {'mode': 'automatic'}),
+    ('01 06 02 07 00 01 F8 73', WRITE, 'both', 'a16 set 0x0207 data type of the automatic output',
+     {'output': 'real-time'}),
+    ('01 06 02 05 00 00 98 73', WRITE, 'both', 'a16 set 0x0205 switch output polarity',
+     {'polarity': 'negative'}),
+    ('01 06 02 06 07 D0 6B DF', WRITE, 'both', 'a16 set 0x0206 switch threshold', {'threshold_mm': 2000}),
+    ('FF 03 E8 07 D0 07 A1 0D EA 60', 'stream', 'answer', 'a05 automatic output', FOUR),
+    ('55 AA 01 01 01', 'dyp', 'request', 'a05 measure with all probes', {}),
+    ('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62', 'dyp', 'answer', 'a05 all probes have measured', FOUR),
+    ('55 AA 01 10 10', 'dyp', 'request', 'a05 measure with probe 1', {}),
+    ('55 AA 01 10 07 A1 B8', 'dyp', 'answer', 'a05 one probe has measured', {'probe_1_mm': 1953}),
+    ('55 AA 05 03 07', 'dyp', 'both', 'a05 set the address', {'new_address': 5}),
+    ('01 03 01 06 00 01 65 F7', READ, 'request', 'a05 0x0106 distance of probe 1', {}),
+    ('01 03 02 01 3C B9 C5', READ, 'answer', 'a05 0x0106 distance of probe 1', {'probe_1_mm': 316}),
+    ('01 03 01 07 00 01 34 37', READ, 'request', 'a05 0x0107 distance of probe 2', {}),
+    ('01 03 02 09 1B FE 1F', READ, 'answer', 'a05 0x0107 distance of probe 2', {'probe_2_mm': 2331}),
+    ('01 03 01 07 00 03 B5 F6', READ, 'request', 'a05 0x0107 distances of probes 2 to 4', {}),
+    ('01 03 06 00 FA 02 93 09 7A 8F 47', READ, 'answer', 'a05 0x0107 distances of probes 2 to 4',
+     {'probe_2_mm': 250, 'probe_3_mm': 659, 'probe_4_mm': 2426}),
+    ('01 06 02 00 00 05 48 71', WRITE, 'both', ADDRESSES, {'address': 5}),
+    ('01 03 00 01 00 03 54 0B', READ, 'request', 'hps167s #1 interface version', {}),
+    ('01 03 00 02 00 04 E5 C9', READ, 'request', 'hps167s #2 interface configuration', {}),
+    ('01 03 00 03 00 0B F4 0D', READ, 'request', DETAILS, {}),
+    ('01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC', READ, 'answer',
+     DETAILS,
+     {'ack': 'B0', 'uuid': '00390025423457142034383501060705', 'date': '2019-09-23', 'version': '3.9'}),
+    ('01 03 00 04 00 01 C5 CB', READ, 'request', 'hps167s #4 AFE temperature', {}),
+    ('01 03 00 08 00 04 C5 CB', READ, 'request', MEASURE, {}),
+    ('01 03 08 08 23 DC B2 07 01 00 00 FD 41', READ, 'answer', MEASURE,
+     {'distance_mm': 2083, 'magnitude': 723.1744, 'ambient': 1, 'precision': 0}),
+    ('01 03 00 09 00 01 54 08', READ, 'request', RESET, {}),
+    ('01 03 02 00 01 79 84', READ, 'answer', RESET, {'result': 'success'}),
+    ('01 06 00 0A 00 05 69 CB', WRITE, 'both', 'hps167s #7 warm-up time', {'warm_up_s': 5}),
+    ('01 06 00 11 00 01 18 0F', WRITE, 'both', 'hps167s #9 baud rate', {'baud_code': 1, 'baud_rate': 19200}),
+    ('01 06 00 12 00 00 29 CF', WRITE, 'both', 'hps167s #10 measurement after power-on',
+     {'continuous_measurement': 'off'}),
+    ('01 06 00 13 00 FF 38 4F', WRITE, 'both', 'hps167s #11 termination resistor', {'termination': 'on'}),
+    ('01 10 00 20 00 02 40 02', WRITE_MANY, 'answer', 'hps167s #15 reconnect time', {}),
+    ('01 83 02 C0 F1', 'refuses to ' + READ, 'answer',
+     [' the request is refused', 'hps167s illegal start address or register address'], {}),
+]
 
 
-class Datasheets(decoding.Case):
+class Case(e2e.Case):
+    def decode(self, *words, code=0):
+        """The objects of one run; words are bytes in hex, as text or as they are, and options."""
+        words = [word.hex(' ') if isinstance(word, bytes) else word for word in words]
+        done = self.run_fathom('decode --format json', *words)
+        self.assertEqual((done.code, done.err), (code, ''), done)
+        return done.json
+
+    def one(self, *words, code=0):
+        one, = self.decode(*words, code=code)
+        return one
+
+    def file(self, text):
+        with open(self.path('capture'), 'wb') as file:
+            file.write(text if isinstance(text, bytes) else text.encode())
+        return self.path('capture')
+
+
+class Datasheets(Case):
     def check_is(self, found, row):
         text, name, direction, what, fields = row
         protocol = name if name in ('stream', 'dyp') else 'modbus'
@@ -74,43 +150,7 @@ class Datasheets(decoding.Case):
             '        CRC FD 41 right'])
 
 
-class Misprints(decoding.Case):
-    def test_the_sum_of_the_13_byte_answer_is_62(self):
-        found = self.one('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60', code=1)
-        self.assertEqual(found['checksum'], {'right': False, 'found': '60', 'expected': '62'})
-        self.assertIn('sum 60 WRONG, it should be 62', self.run_fathom('decode', found['bytes']).out)
-
-    def test_the_crc_of_the_request_before_the_exception_is_c5_cb(self):
-        found = self.decode('01 03 00 08 00 04 C5 C8', '01 83 02 C0 F1', code=1)
-        self.assertEqual([one['checksum']['expected'] for one in found], ['C5 CB', 'C0 F1'])
-        self.assertEqual([one['checksum']['right'] for one in found], [False, True])
-        self.assertIn('CRC C5 C8 WRONG, it should be C5 CB', self.run_fathom('decode', found[0]['bytes']).out)
-
-    def test_a_crc_in_the_order_of_the_tables_is_told(self):
-        found = self.one('01 03 00 01 00 03 0B 54', code=1)
-        self.assertEqual(found['checksum']['expected'], '54 0B')
-        self.assertIn('the two bytes of the CRC are swapped: the low one goes first', found['notes'])
-
-    def test_a_frame_begins_with_one_ff(self):
-        extra, good = self.decode('FF FF 07 A1 A7', code=1)
-        self.assertEqual((extra['protocol'], extra['bytes'], good['bytes']), (None, 'FF', 'FF 07 A1 A7'))
-        self.assertIn('an FF too many', extra['notes'][0])
-
-    def test_an_exception_without_a_function_is_told(self):
-        self.assertIn('no function; HPS table 40', self.one(e2e.adu(1, 2), code=1)['notes'][0])
-
-    def test_the_command_that_sets_the_address_is_03_and_carries_no_distance(self):
-        self.assertEqual(self.meaning('55 AA 05 03 07')['what'], 'set the address')
-        self.assertEqual(self.meaning('55 AA 05 10 14')['what'], 'measure with probe 1')  # 55 + AA + 05 + 10
-        # with data, as the table has it: 55 + AA + 05 + 03 + 07 + A1 = 1AF
-        self.assertEqual([one['protocol'] for one in self.decode('55 AA 05 03 07 A1 AF', code=1)][-1], None)
-
-    def test_0109_is_probe_4(self):
-        found = self.decode(e2e.adu(1, 3, 1, 9, 0, 1), e2e.registers(1, 250))
-        self.assertEqual(found[1]['meanings'][0]['fields'], {'probe_4_mm': 250})
-
-
-class Input(decoding.Case):
+class Input(Case):
     def test_every_way_to_write_hex(self):
         for text in ('010302 02f238a1', '0x01,0x03,0x02,0x02,0xF2,0x38,0XA1', '01:03:02:02:f2:38:a1',
                      '{0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};', '0x01030202F238A1',
@@ -171,6 +211,272 @@ class Input(decoding.Case):
         for example in examples:
             self.ends(example, 0)
         self.assertEqual([line for line in text.splitlines() if len(line) > 124], [])
+
+
+UNKNOWN = 'its request is not here; what it answers hangs on that'
+NO_DISTANCE, NO_TARGET = 'no distance that it can mean', 'no target: out of range, or too weak'
+HPS = '--sensor hps167s'
+
+
+def asks(unit, address, count=1):
+    return adu(unit, 3, *divmod(address, 256), 0, count)
+
+
+def writes(address, value):
+    return adu(1, 6, *divmod(address, 256), *divmod(value, 256))
+
+
+def dyp(*data):
+    """55 AA, then these, then the low byte of the sum."""
+    frame = bytes((0x55, 0xAA, *data))
+    return frame + bytes([sum(frame) & 0xFF])
+
+
+def answered(address, *values):
+    """These registers, when they are asked for."""
+    return asks(1, address, len(values)), registers(1, *values)
+
+
+class Meaning(Case):
+    """What the last of some frames is told to be. Of its first meaning: what it is, its fields, which of
+    these have remarks (or which remarks); of itself: a remark, and whatever else."""
+
+    def tells(self, words, note=None, code=0, directions=None, **expected):
+        *before, found = self.decode(*words, code=code)
+        if directions is not None:
+            self.assertEqual([one['direction'] for one in (*before, found)], directions)
+        if note is not None:
+            self.assertTrue(any(note in one for one in found['notes']) if note else not found['notes'], found)
+        for name, value in expected.items():
+            told = found['meanings'][0][name] if name in ('what', 'fields', 'notes') else found[name]
+            self.assertEqual([*told] if isinstance(value, list) else told, value)
+
+    @e2e.each(
+        an_exception_without_a_function_is_told=[([adu(1, 2)],
+                                                  {'note': 'no function; HPS table 40', 'code': 1})],
+        a_crc_in_the_order_of_the_tables_is_told=[
+            (['01 03 00 01 00 03 0B 54'],
+             {'note': 'the two bytes of the CRC are swapped: the low one goes first', 'code': 1})],
+        **{'0109_is_probe_4': [(answered(0x0109, 250), {'fields': {'probe_4_mm': 250}})]},
+        one_answer_is_explained_by_each_request=[
+            (answered(address, 1), {'fields': fields, 'directions': ['request', 'answer']})
+            for address, fields in (
+            (0x0100, {'distance_mm': 1}), (0x0205, {'polarity': 'positive'}), (0x0206, {'threshold_mm': 1}),
+            (0x0207, {'output': 'real-time'}), (0x0108, {'probe_3_mm': 1}), (0x0010, {'probe_1_mm': 1}),
+            (0x0013, {'probe_4_mm': 1}), (0x0009, {'result': 'success'}), (0x0200, {'address': 1}),
+            (0x0004, {'temperature_f': 1, 'temperature_c': -17.2}))],  # (1 - 32) * 5 / 9 = -17.22
+        an_answer_of_another_length_is_not_the_one=[([ASK_A16, registers(1, 700, 800)], {'note': UNKNOWN})],
+        a_damaged_request_explains_nothing=[
+            (['01 03 01 00 00 01 85 F7', registers(1, 754)], {'note': UNKNOWN, 'code': 1})],
+        an_answer_from_another_unit_is_not_the_one=[
+            ([ASK_A16, registers(2, 700)], {'note': UNKNOWN}),
+            ([ASK_A16, registers(2, 700), registers(1, 754)],
+             {'what': '0x0100 processed distance', 'note': ''})],
+        a_request_is_answered_once=[([ASK_A16, registers(1, 700)], {'note': ''}),
+                                    ([ASK_A16, registers(1, 700), registers(1, 701)], {'note': UNKNOWN})],
+        broadcast_to_a16_is_answered_from_another_address=[
+            ([asks(255, 0x0200), registers(9, 9)],
+             {'fields': {'address': 9}, 'directions': ['request', 'answer']})],
+        a_write_that_comes_twice_is_acknowledged=[
+            (['01 06 02 00 00 05 48 71'], {'note': ''}),
+            (['01 06 02 00 00 05 48 71'] * 2, {'note': 'acknowledges the request before, or is its echo'})],
+        # 20 09 27, 2 1 0
+        **{'1_is_a_date_and_a_version': [(answered(1, 0x1409, 0x1B02, 0x0100),
+                                          {'fields': {'date': '2020-09-27', 'version': '2.1.0'}})],
+           '2_is_the_configuration': [
+               (answered(2, 0xFF00, 0x0500, 0x0000, 0xB403),
+                {'fields': {'termination': 'on', 'continuous_output': 'off', 'warm_up_s': 5,
+                            'reconnect_time_ms': 180,
+                            'baud_code': 3, 'baud_rate': 115200}, 'notes': {}}),
+               (answered(2, 0x0100, 0x0500, 0x0000, 0xB505),  # 01, 181 ms, code 5
+                {'notes': ['termination', 'reconnect_time_ms', 'baud_code']})],
+           '4_is_fahrenheit_and_celsius': [
+               ([HPS, *answered(4, said)], {'fields': {'temperature_f': degrees_f, 'temperature_c': celsius}})
+               for said, degrees_f, celsius in ((77, 77, 25.0), (14, 14, -10.0), (0x10000 - 40, -40, -40.0),
+                                                (100, 100, 37.8), (31, 31, -0.6), (32, 32, 0.0))],
+           '5_tells_targets_from_what_is_none': [
+               ([HPS, *answered(8, *values)], {'notes': {'distance_mm': note} if note else {}}) for values,
+               note in (
+                   ((30000, 1, 1, 0), None), ((30001, 1, 1, 0), NO_DISTANCE), ((0, 1, 1, 0), NO_DISTANCE),
+                   ((65529, 1, 1, 0), NO_DISTANCE), ((65530, 1, 1, 0), NO_TARGET),
+                   ((65534, 1, 1, 0), NO_TARGET),
+                   ((65535, 0, 0x00FF, 65535), 'the abnormal packet: the sensor has failed'),
+                   ((65535, 1, 0x00FF, 65535), 'no distance: a fault'))],
+           '15_is_32_bits': [
+               ([adu(1, 16, 0, 0x20, 0, 2, 4, *ms.to_bytes(4, 'big'))],
+                {'what': '#15 reconnect time', 'fields': {'reconnect_time_ms': ms}, 'notes': notes})
+               for ms, notes in ((180, {}), (0x12345678 // 18 * 18, {}),
+                                 (181, {'reconnect_time_ms': 'no multiple of 18'}))]},
+        what_is_written=[
+            ([HPS, writes(address, value)], {'fields': fields, 'notes': [*fields][:bad]})
+            for address, value, fields, bad in (
+                (0x0A, 256, {'warm_up_s': 256}, 1), (0x10, 32, {'new_address': 32}, 0),
+                (0x10, 33, {'new_address': 33}, 1), (0x11, 4, {'baud_code': 4, 'baud_rate': 230400}, 0),
+                (0x11, 9, {'baud_code': 9, 'baud_rate': 19200}, 1),
+                (0x12, 0xFF, {'continuous_measurement': 'on'}, 0),
+                (0x13, 7, {'termination': '0x0007'}, 1), (0x14, 0xFFF1, {'offset_mm': -15}, 0),
+                (0x15, 0, {'settings': 'of the user'}, 0), (0x15, 0xFF, {'settings': 'of the factory'}, 0),
+                (0x15, 1, {'settings': '0x0001'}, 1), (0x16, 0xFF9C, {'filter_sensitivity': -100}, 0),
+                (0x16, 101, {'filter_sensitivity': 101}, 1))],
+        what_resets_the_device_says_so=[([asks(1, 9)], {'note': 'hps167s: resets the device'}),
+                                        ([writes(0x15, 0xFF)],
+                                         {'note': "hps167s: resets the device's settings"}),
+                                        ([writes(0x15, 0)], {'note': ''})],
+        a_wrong_length_is_told=[([asks(1, 8, 3)],
+                                 {'note': 'hps167s: #5 has 4 registers, not 3; it refuses this'})],
+        each_probe_of_the_55_aa_protocol=[
+            row for probe in (1, 2, 3, 4) for row in (
+                ([dyp(9, 0x0F + probe)], {'what': f'measure with probe {probe}', 'address': 9}),
+                ([dyp(9, 0x0F + probe), dyp(9, 0x0F + probe, 3, 0xE8)],
+                 {'fields': {f'probe_{probe}_mm': 1000}}))],
+        what_the_55_aa_protocol_does_not_have_is_told=[
+            ([dyp(1, 0x14)], {'what': 'no command of it', 'command': 0x14}),
+            ([dyp(0xFF, 3)], {'notes': {'new_address': 'not from 1 to 254'}}),
+            ([dyp(0xFF, 1)], {'note': 'FF is the broadcast address'}),
+            ([dyp(5, 3)], {'note': 'every a05 on the line obeys'})],
+        distances_that_are_none_are_told=[
+            row for value, note in ((0, 'no target, as older firmware says it'), (0xFFFD, 'no target'),
+                                    (0xFFFE, 'no target: interference by another unit')) for row in (
+                ([e2e.frame(value)], {'notes': {'distance_mm': note}}),
+                ([dyp(1, 0x10, *divmod(value, 256))], {'notes': {'probe_1_mm': note}}))],
+        reads_that_an_a05_does_not_have_are_told=[
+            (['--sensor a05', asks(1, 0x0108, 3)],
+             {'what': '0x0108 is probe 3, and a read may not go past the last one'})],
+        registers_of_an_a16_that_go_one_way_are_told=[
+            ([asks(1, 0x0202)], {'note': 'a16: 0x0202 can be written only'}),
+            ([writes(0x0100, 1)], {'what': '0x0100 processed distance, which can be read only'}),
+            ([writes(0x0205, 2)], {'notes': {'polarity': 'not 0 or 1'}}),
+            ([writes(0x0200, 255)], {'notes': {'address': 'not from 0 to 254'}}),
+            ([asks(1, 0x0100, 2)], {'note': 'a16: a read of several registers is not in its datasheet'})],
+        what_no_sensor_has_is_told=[([asks(1, 0x1234, 2)], {'what': 'none of these sensors knows this',
+                                                            'fields': {'address': '0x1234',
+                                                                       'registers': 2}})])
+    def means(self, rows):
+        for words, expected in rows:
+            with self.subTest(words):
+                self.tells(words, **expected)
+
+    def test_the_magnitude_is_exact(self):
+        # 65535 << 16 = 4294901760; an exponent over 16 is not believed.
+        text = self.run_fathom(['decode', registers(1, 1000, 65535, 0x1000, 0).hex()]).out
+        self.assertRegex(text, r'magnitude +429490\.1760\n')
+        self.tells([HPS, *answered(8, 1000, 1, 0x1100, 0)], notes={'magnitude': 'the exponent is over 16'})
+
+    def test_the_sum_of_the_13_byte_answer_is_62(self):
+        found = self.one('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60', code=1)
+        self.assertEqual(found['checksum'], {'right': False, 'found': '60', 'expected': '62'})
+        self.assertIn('sum 60 WRONG, it should be 62', self.run_fathom('decode', found['bytes']).out)
+
+    def test_the_crc_of_the_request_before_the_exception_is_c5_cb(self):
+        found = self.decode('01 03 00 08 00 04 C5 C8', '01 83 02 C0 F1', code=1)
+        self.assertEqual([one['checksum']['expected'] for one in found], ['C5 CB', 'C0 F1'])
+        self.assertEqual([one['checksum']['right'] for one in found], [False, True])
+        self.assertIn('CRC C5 C8 WRONG, it should be C5 CB', self.run_fathom('decode', found[0]['bytes']).out)
+
+    def test_a_frame_begins_with_one_ff(self):
+        extra, good = self.decode('FF FF 07 A1 A7', code=1)
+        self.assertEqual((extra['protocol'], extra['bytes'], good['bytes']), (None, 'FF', 'FF 07 A1 A7'))
+        self.assertIn('an FF too many', extra['notes'][0])
+
+    def test_the_command_that_sets_the_address_is_03_and_carries_no_distance(self):
+        self.tells(['55 AA 05 03 07'], what='set the address')
+        self.tells(['55 AA 05 10 14'], what='measure with probe 1')  # 55 + AA + 05 + 10
+        # with data, as the table has it: 55 + AA + 05 + 03 + 07 + A1 = 1AF
+        self.assertEqual(self.decode('55 AA 05 03 07 A1 AF', code=1)[-1]['protocol'], None)
+
+    def test_alone_it_is_all_of_these(self):
+        whats = [one['what'] for one in self.one(registers(1, 1))['meanings']]
+        self.assertEqual(len(whats), 10)
+        for word in ('0x0100', '0x0101', '0x0200', '0x0205', '0x0206', '0x0207', 'if a probe was read', '#4',
+                     '#6'):
+            self.assertTrue(any(word in what for what in whats), (word, whats))
+
+    def sensors(self, *words):
+        return [one.get('sensor') for one in self.one(*words)['meanings']]
+
+    def test_a_named_sensor_leaves_the_others_out(self):
+        for sensor, count in (('a16', 6), ('a05', 2), ('hps167s', 2)):
+            self.assertEqual(self.sensors(f'--sensor {sensor}', registers(1, 1)), [sensor] * count)
+
+    def test_what_a_sensor_cannot_have_meant_is_left_out(self):
+        self.assertEqual(self.sensors(registers(1, 20000)), [None])  # too far for a16 and a05, too hot for #4
+        self.assertNotIn('hps167s', self.sensors(registers(40, 77)))  # it has 1..32
+
+    def test_a_refusal_names_the_code_in_both_ways(self):
+        found = self.decode(adu(7, 6, 0, 0x10, 0, 40), adu(7, 0x86, 4))[1]
+        self.assertEqual(found['name'], 'refuses to write single register')
+        self.assertEqual(found['meanings'][0]['fields'], {'exception': 4})
+        self.assertEqual(found['meanings'][0]['notes'], {'exception': 'server device failure'})
+        self.assertEqual(found['meanings'][1]['what'], 'device operation failed')
+        self.assertIn('refuses the request before', found['notes'])
+
+
+class Damage(Case):
+    def test_no_flipped_bit_is_called_right(self):
+        """Every single-bit error of the Modbus frames, a line each; the CRC finds them all."""
+        frames = [bytes.fromhex(row[0]) for row in FRAMES if row[1] not in ('stream', 'dyp')]
+        lines = [bytes(byte ^ (1 << bit) if at == place else byte for at, byte in enumerate(frame))
+                 for frame in frames for place in range(len(frame)) for bit in range(8)]
+        found = self.decode('--protocol modbus', self.file('\n'.join(line.hex(' ') for line in lines)),
+                            code=1)
+        self.assertEqual([one['bytes'] for one in found if one.get('checksum', {}).get('right')], [])
+        self.assertEqual(sum(one['length'] for one in found), sum(map(len, lines)))
+
+    def test_frames_are_found_in_noise(self):
+        chance = random.Random(7)
+        noise = [bytes(chance.choice(b'\x00\x12\x34\x77\x9C') for _ in range(chance.randint(0, 9)))
+                 for _ in range(200)]
+        frames = [asks(3, 0x0101) if i % 2 else registers(3, chance.randrange(500, 9000)) for i in range(200)]
+        found = self.decode(self.file(b''.join(a + b for a, b in zip(noise, frames)).hex()), code=1)
+        good = [one['bytes'] for one in found if one['protocol'] == 'modbus' and one['checksum']['right']]
+        self.assertEqual(good, [frame.hex(' ').upper() for frame in frames])
+        self.assertEqual(sum(one['length'] for one in found), sum(map(len, noise + frames)))
+
+    def test_a_stream_that_begins_in_mid_frame_falls_into_step(self):
+        stream = b''.join(e2e.frame(mm) for mm in range(700, 760))
+        first, *rest = self.decode('--raw', self.file(stream[1:]), code=1)
+        self.assertEqual((first['protocol'], first['length']), (None, 3))
+        self.assertEqual([one['meanings'][0]['fields']['distance_mm'] for one in rest], list(range(701, 760)))
+
+    def test_a_sum_does_not_win_over_a_crc(self):
+        # The answer with 65535, 65277 and 64511 in it has FF FF FE FD and FF FF FE FC within: good sums.
+        answer = registers(1, 0xFFFF, 0xFEFC, 0xFBFF)
+        self.one(answer)
+        self.one(answer[:-1] + bytes([answer[-1] ^ 1]), code=1)
+
+    def test_noise_is_not_taken_for_frames_that_no_sensor_sends(self):
+        for noise in ('01 03 18' + ' 00' * 26, '01 83 0C 00 00', '01 03 01 00 00 0C 85 F6'):
+            with self.subTest(noise):
+                self.assertEqual(self.one(noise, code=1)['protocol'], None)
+
+    def test_what_ends_early_is_told(self):
+        for text, why in (('01 03 02 02', 'request of 8 or an answer of 7 bytes, but ends early'),
+                          ('01 03 16 B0 00 39 00 25 42 34',
+                           'begins like a Modbus answer of 27 bytes, but ends early'),
+                          ('55 AA 01', 'begins like a 55 AA frame, but is none')):
+            with self.subTest(text):
+                found = self.one(text, code=1)
+                self.assertEqual((found['protocol'], len(found['notes'])), (None, 1))
+                self.assertIn(why, found['notes'][0])
+        self.assertEqual(self.one('01', code=1)['notes'], [])
+
+    def test_leftovers_end_with_the_line(self):
+        found = self.decode(self.file('00 11 22\n33 44\n'), code=1)
+        self.assertEqual([one['bytes'] for one in found], ['00 11 22', '33 44'])
+
+    def test_damaged_frames_keep_to_their_lines(self):
+        found = self.decode(self.file('FF 07 A1 A6\n01 03 02 02 F2 38 A0\nFF 07 A1 A5\n'), code=1)
+        self.assertEqual([one['checksum']['expected'] for one in found], ['A7', '38 A1', 'A7'])
+
+    def test_a_named_protocol_finds_no_other(self):
+        for option, text, protocol in (('--protocol dyp', WHOLE, None),
+                                       ('--protocol stream', 'FF 07 A1 A7', 'stream'),
+                                       (HPS, 'FF 07 A1 A7', None)):
+            self.assertEqual(self.one(option, text, code=0 if protocol else 1)['protocol'], protocol)
+
+    def test_another_function_is_told(self):
+        found = self.one(adu(1, 4, 0, 0, 0, 1))
+        self.assertEqual((found['function'], found['name']), (4, 'do what none of these sensors can'))
 
 
 if __name__ == '__main__':

@@ -76,12 +76,13 @@ class Silence(e2e.Case):
 
     @e2e.each(
         nobody_at_this_address=('hps167s:3 --distance 500', 'hps167s --address 4 --timeout 100',
-                                'no answer from address 4: nothing was heard at all; check the supply, A and B (or RX '
-                                'and TX) swapped, --address', 2),
+                                'no answer from address 4: nothing was heard at all; check the supply, A '
+                                'and B (or RX and TX) swapped, --address', 2),
         the_wrong_baud_rate_of_a_sensor_that_is_asked=(
             'hps167s --distance 754', 'hps167s --baud 9600 --timeout 200', '(now 9600 8E1)'),
         another_sensor_than_was_said=(f'a05 --distance {FOUR}', 'a16 --timeout 700',
-                                      'frames of an a05 that sends by itself were heard; try: fathom read a05'),
+                                      'frames of an a05 that sends by itself were heard; try: fathom read '
+                                      'a05'),
         a_distance_that_the_sensor_cannot_mean=('a16::modbus --distance 40000', 'a16 --mode modbus',
                                                 'a value that cannot be a distance: 40000;'),
         a_frame_with_a_distance_that_the_sensor_cannot_mean=(
@@ -216,8 +217,8 @@ class HangUp(e2e.Case):
         reader.expect('754 mm')
         sim.end(signal.SIGKILL)
         done = self.ends(reader, 1, re.compile(
-            rf'(?m)^fathom: attempt \d+: {sim}: the device was unplugged or its far end closed \(.*\); connect it '
-            'again'), re.compile(r'attempts \d+, failed 1, '))
+            rf'(?m)^fathom: attempt \d+: {sim}: the device was unplugged or its far end closed \(.*\); '
+            rf'connect it again'), re.compile(r'attempts \d+, failed 1, '))
         self.assertLess(done.cpu, LITTLE)
 
     def test_a_port_that_hangs_up_before_the_first_answer(self):
@@ -236,7 +237,8 @@ class Signals(e2e.Case):
         after_a_failure_it_stays_a_failure=(signal.SIGINT, 1, '--address 3 --timeout 100', 'no answer',
                                             'err'))
     def ended(self, number, code, options, expect='754 mm', stream='out'):
-        reader = self.fathom(f'read hps167s --address 2 --port {self.sim("hps167s:2 --distance 754")} {options}')
+        reader = self.fathom(f'read hps167s --address 2 --port {self.sim("hps167s:2 --distance 754")} '
+                             f'{options}')
         reader.expect(expect, stream)
         began = time.monotonic()
         done = reader.end(number)

@@ -10,7 +10,8 @@ import e2e
 class Late(e2e.Case):
     def begin(self, count, timeout, options=''):
         """What an A16 that says so many mm is told to say; and the reader."""
-        device, reader = self.beside(f'read a16 --mode modbus --timeout {timeout} --count {count} --format csv',
+        device, reader = self.beside(f'read a16 --mode modbus --timeout {timeout} --count {count} --format '
+                                     'csv',
                                      options)
         return device, lambda mm: device.write(e2e.registers(1, mm)), reader
 

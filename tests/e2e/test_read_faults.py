@@ -34,8 +34,10 @@ BY_CHANCE = {'insert', 'trailing', 'noise', 'unasked', 'split', 'power-cycle', '
 class ReadFaults(e2e.Case):
     def run_one(self, device, kind, chance):
         line, distances, timeout = SUBJECTS[device]
-        sim = self.sim(f'{device} --distance {",".join(map(str, distances))} --seed 7 --fault {kind}={chance}')
-        done = self.run_fathom(f'read {line} --port {sim} --count {FRAMES} --timeout {timeout} --format csv --stats')
+        sim = self.sim(f'{device} --distance {",".join(map(str, distances))} --seed 7 --fault '
+                       f'{kind}={chance}')
+        done = self.run_fathom(f'read {line} --port {sim} --count {FRAMES} --timeout {timeout} --format csv '
+                               '--stats')
         sim.end()
         return done
 

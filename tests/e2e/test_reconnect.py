@@ -25,7 +25,8 @@ class Plug(e2e.Case):
         return device
 
     def begin(self, options='', sensor='a16 --mode modbus'):
-        return self.fathom(f'read {sensor} --port {self.port} --timeout 400 --format csv --reconnect {options}')
+        return self.fathom(f'read {sensor} --port {self.port} --timeout 400 --format csv --reconnect '
+                           f'{options}')
 
     def answer(self, device, *values):
         for value in values:

@@ -1,16 +1,147 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom sim with several devices on one line: who answers at which rate, who collides, what the counters
-say. Judged in raw bytes, and by `fathom read`."""
+"""fathom sim as a program: its path, its link, its end, and what it sends; with several devices on one line:
+who answers at which rate, who collides, what the counters say; with faults: its errors, and what a client
+sees of them. Judged in raw bytes through pyserial, and by `fathom read`."""
+import os
+import re
 import signal
 import time
 
+import serial
+
 import e2e
 from e2e import ASK_A16, ASK_HPS, SAYS_754, SAYS_2083
-from simulated import Case
 
 BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
 A16, A05, HPS = 'a16 --mode modbus', 'a05 --mode modbus --address 2', 'hps167s --address 7'
+KINDS = ('stuck interference fault no-target unit function count exception flip-bit flip-byte drop insert '
+         'truncate '
+         'trailing parity framing overrun split duplicate delay late silence power-cycle noise unasked '
+         'break echo'
+         ).split()
+FRAME = bytes.fromhex('FF 02 EF F0')  # 751 mm: FF + 02 + EF = 1F0
+ASK_ALL = bytes.fromhex('55 AA 01 01 01')  # A05 2(3)3
+ANSWER_ALL = bytes.fromhex('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62')
+
+
+class Case(e2e.Case):
+    def open(self, sim, baudrate=None):
+        """At the rate of its first device, where none is given."""
+        rate = baudrate or (19200 if sim.command[2].startswith('hps167s') else 9600)
+        port = serial.Serial(sim.port, timeout=e2e.PATIENCE, baudrate=rate)
+        self.addCleanup(port.close)
+        return port
+
+    def ask(self, port, request, length, baud=None):
+        """After the silence that ends whatever a device took for the beginning of a request: 4 ms at 9600
+        baud."""
+        time.sleep(0.02)
+        port.baudrate = baud or port.baudrate
+        port.reset_input_buffer()
+        port.write(request)
+        return port.read(length)
+
+    def counters(self, sim, *names):
+        """What each device says of these at the end."""
+        return [tuple(one[name] for name in names) for one in sim.end().told]
+
+
+class Link(Case):
+    def setUp(self):
+        super().setUp()
+        self.link = self.path('tof')
+
+    def test_the_path_is_the_only_line_of_stdout_and_the_link_is_there_by_then(self):
+        sim = self.sim(f'hps167s --link {self.link}')
+        self.assertEqual(os.readlink(self.link), sim.port)
+        sim.expect('simulates hps167s, mode modbus, address 1, 19200 8E1.*fathom read hps167s --port '
+                   f'{self.link}$', 'err')
+        self.ends(sim.end(), 0, out=f'{sim.port}\n')
+
+    def test_the_link_goes_with_every_end_that_can_be_seen(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            sim = self.sim(f'hps167s --link {self.link}')
+            self.assertTrue(os.path.islink(self.link))
+            self.assertEqual(sim.end(number).code, 0)
+            self.assertFalse(os.path.lexists(self.link))
+
+    def test_a_link_that_was_left_behind_is_replaced(self):
+        self.sim(f'a16 --link {self.link}').end(signal.SIGKILL)
+        self.assertTrue(os.path.lexists(self.link))
+        sim = self.sim(f'a16 --distance 754 --link {self.link}')
+        self.assertEqual(self.read_json(f'a16 --port {self.link} --count 1')[0]['distance_mm'], 754)
+        sim.end()
+        self.assertFalse(os.path.lexists(self.link))
+
+    def test_a_link_that_is_now_anothers_stays(self):
+        first, second = (self.sim(f'a16 --link {self.link}') for _ in range(2))
+        self.assertEqual(first.end().code, 0)
+        self.assertEqual(os.readlink(self.link), second.port)
+
+    def test_a_file_in_the_way_is_kept_and_told(self):
+        with open(self.link, 'w', encoding='ascii') as file:
+            file.write('precious')
+        self.ends(f'sim a16 --link {self.link}', 1, f'{self.link} is there already and is no link', out='')
+        with open(self.link, encoding='ascii') as file:
+            self.assertEqual(file.read(), 'precious')
+
+    def test_a_folder_that_is_not_there_is_told(self):
+        self.ends(f'sim a16 --link {self.path("no/tof")}', 1, re.compile(
+            r'^fathom: the simulated port and its link .*/no/tof: No such file or directory\n$'), out='')
+
+    def test_the_hint_names_what_is_not_the_factorys(self):
+        sim = self.sim('a16:7:modbus')
+        sim.expect(rf'fathom read a16 --mode modbus --address 7 --port {sim}$', 'err')
+
+
+class Port(Case):
+    """Through pyserial, byte for byte; the frames are those of the datasheets."""
+
+    @e2e.each(an_a16_sends_the_datasheets_frame=('a16', '1953', 'FF 07 A1 A7'),
+              an_a05_sends_the_datasheets_frame=('a05', '1000,2000,1953,3562',
+                                                 'FF 03 E8 07 D0 07 A1 0D EA 60'))
+    def sends(self, device, distance, text):
+        frame = bytes.fromhex(text)
+        self.assertIn(frame, self.open(self.sim(f'{device} --distance {distance}')).read(3 * len(frame)))
+
+    @e2e.each(
+        an_a16_answers_as_in_the_datasheet=('a16::modbus', '754', '01 03 01 00 00 01 85 F6',
+                                            '01 03 02 02 F2 38 A1'),
+        an_a05_answers_as_in_the_datasheet=('a05::modbus', '100,250,659,2426', '01 03 01 07 00 03 B5 F6',
+                                            '01 03 06 00 FA 02 93 09 7A 8F 47'),
+        an_hps167s_answers_as_in_the_datasheet=('hps167s', '2083', '01 03 00 08 00 04 C5 CB',
+                                                '01 03 08 08 23 DC B2 07 01 00 00 FD 41'),
+        an_hps167s_refuses_a_wrong_length_as_in_the_datasheet=('hps167s', '2083', '01 03 00 08 00 03 84 09',
+                                                               '01 83 02 C0 F1'))
+    def asked(self, device, distance, request, answer):
+        port = self.open(self.sim(f'{device} --distance {distance}'))
+        port.write(bytes.fromhex(request))
+        self.assertEqual(port.read(len(bytes.fromhex(answer))).hex(' ').upper(), answer)
+
+    def test_it_moves_by_itself_and_starts_where_the_seed_says(self):
+        seen = []
+        for seed in (0, 2000000):  # 2 s further in the movement; reading takes much less
+            sim = self.sim(f'hps167s --seed {seed}')
+            distances = [one['distance_mm'] for one in self.read_json(f'hps167s --port {sim} --count 10')]
+            self.assertEqual(distances, sorted(set(distances)))
+            self.assertTrue(500 <= distances[0] and distances[-1] <= 12000, distances)
+            seen.append(distances)
+        self.assertGreater(seen[1][0], seen[0][0])
+
+    def test_it_sleeps_when_nobody_asks(self):
+        sim = self.sim('hps167s')
+        self.assertFalse(sim.has_ended(1.9))
+        self.assertLess(sim.end().cpu, 0.2)
+
+    def test_it_goes_on_when_nobody_reads_its_stdout(self):
+        out, pipe = os.pipe()
+        sim = self.fathom('sim a16 --distance 754', stdout=pipe)
+        os.close(pipe)
+        with os.fdopen(out) as stdout:
+            port = stdout.readline().strip()
+        self.assertEqual(self.read_json(f'a16 --port {port} --count 2')[1]['distance_mm'], 754)
+        self.assertEqual(sim.end().code, 0)
 
 
 class Bus(Case):
@@ -222,6 +353,115 @@ class With(Case):
         self.assertEqual(self.ask(port, NO_SUCH_REGISTER, 5, 9600), e2e.adu(1, 0x83, 2))
         self.assertEqual(self.ask(port, e2e.adu(2, 3, 3, 0, 0, 1), 5, 9600), e2e.adu(2, 0x83, 2))
         self.assertEqual(self.ask(port, e2e.adu(7, 3, 0, 8, 0, 3), 5, 19200), e2e.adu(7, 0x83, 3))
+
+
+class FaultUsage(Case):
+    def test_help_lists_every_kind_with_a_few_words(self):
+        out = self.ends('sim --help', 0).out
+        listed = re.findall(r'(?:^ {4}|  )([a-z-]+) +\S',
+                            out.split('The kinds:')[1].split('A pseudo terminal')[0],
+                            re.M)
+        self.assertEqual([word for word in listed if word in KINDS], KINDS)
+        self.assertIn('cannot mark a byte', out)
+
+    def wrong(self, *line):
+        done = self.ends(self.run_fathom('sim', *line), 2, out='')
+        self.assertEqual(len(done.err.splitlines()), 1, done.err)
+        return done.err
+
+    @e2e.each(**{f'a_wrong_kind_lists_those_there_are_{number}': kind for number, kind in
+                 enumerate(('flip', '', '=0.5', 'clock-jump', 'x' * 200))})
+    def wrong_kind(self, kind):
+        said = self.wrong('a16', ['--fault', kind])
+        self.assertIn(f"there is no fault '{kind.split('=')[0]}' for a16 in mode auto, only ", said)
+        self.assertEqual(said.split('only ')[1].split('; try')[0].split(', '),
+                         [k for k in KINDS if k != 'fault'])
+
+    def test_a_kind_that_the_sensor_cannot_have_is_wrong(self):
+        self.assertIn("no fault 'interference' for hps167s", self.wrong('hps167s --fault interference'))
+        self.assertIn("no fault 'fault' for a05 in mode dyp", self.wrong('a05::dyp --fault fault'))
+
+    @e2e.each(**{f'a_wrong_number_says_what_is_right_{row}': text for row, text in enumerate((
+        '', '0', '0.0', '2', '1.1', '101%', '-1', '+1', '0,5', '1e-3', '5 %', '%', '.', '5%%', '0x1',
+        '0.0000001',
+        '0.00001%', '1@', '1@0', '1@-1', '1@x', '1@4294967296', '@3', '1@2@3', ' 1', '9' * 40))})
+    def wrong_number(self, text):
+        self.assertIn('--fault takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%, N from 1, not '
+                      f"'drop={text}'", self.wrong('a16', ['--fault', f'drop={text}']))
+
+    def test_one_wrong_among_good_ones_is_found(self):
+        self.assertIn("not 'late=7'", self.wrong('a16 --fault drop=1% --fault late=7 --fault insert'))
+
+    def test_there_may_be_32_and_no_more(self):
+        self.assertIn('--fault may be given up to 32 times', self.wrong('a16', '--fault drop ' * 33))
+        self.assertEqual(self.sim('a16', '--fault drop=1% ' * 32).end().code, 0)
+
+    def test_a_value_is_needed(self):
+        self.assertIn('--fault needs a value', self.wrong('a16 --fault'))
+
+
+class FaultSeen(Case):
+    def port(self, line):
+        return self.open(self.sim(line))
+
+    def asked(self, port, request, answer):
+        port.write(request)
+        self.assertEqual(port.read(len(answer)), answer)
+
+    def test_the_second_of_three_answers_is_damaged(self):
+        port = self.port('a16::modbus --distance 754 --fault trailing=1@2')
+        self.asked(port, ASK_A16, SAYS_754)
+        self.asked(port, ASK_A16, SAYS_754)
+        self.assertEqual(len(port.read(1)), 1)
+        port.timeout = 0.1
+        port.read(3)  # the rest, up to four bytes in all
+        port.timeout = e2e.PATIENCE
+        self.asked(port, ASK_A16, SAYS_754)
+
+    def test_two_faults_at_once(self):
+        self.asked(self.port('a16::modbus --distance 754 --fault echo --fault duplicate=100%'), ASK_A16,
+                   ASK_A16 + SAYS_754 + SAYS_754)
+
+    def test_an_a05_speaks_55_aa_and_modbus(self):
+        port = self.port('a05::dyp --distance 1000,2000,1953,3562')
+        self.asked(port, ASK_ALL, ANSWER_ALL)
+        self.asked(port, bytes.fromhex('55 AA 01 12 12'), bytes.fromhex('55 AA 01 12 07 A1 BA'))
+        self.asked(port, e2e.adu(1, 3, 2, 0, 0, 1), e2e.adu(1, 3, 2, 0, 1))
+
+    def test_a_damaged_55_aa_answer(self):
+        port = self.port('a05::dyp --distance 1000,2000,1953,3562 --fault count=1@1')
+        self.asked(port, ASK_ALL, bytes.fromhex('55 AA 01 01 03 E8 07 D0 07 A1 6B'))
+        self.asked(port, ASK_ALL, ANSWER_ALL)
+
+    def test_one_bit_is_wrong_in_half_of_the_frames(self):
+        """Of the frames that a client reads as they come, four bytes each; 40 of them, at 10 Hz."""
+        port = self.port('a16 --distance 751 --fault flip-bit=0.5 --seed 3')
+        bad = [frame for frame in (port.read(4) for _ in range(40)) if frame != FRAME]
+        for frame in bad:
+            self.assertEqual(sum(bin(a ^ b).count('1') for a, b in zip(frame, FRAME)), 1, frame.hex(' '))
+        self.assertTrue(4 <= len(bad) <= 36, len(bad))  # 20 and five sigma of 3.16
+
+    def test_a_marked_byte_comes_as_a_terminal_gives_it(self):
+        self.assertEqual(self.port('a16 --distance 751 --fault break').read(10), (b'\0' + FRAME) * 2)
+        self.assertIn(self.port('a16 --distance 751 --fault overrun').read(3),
+                      [FRAME[:n] + FRAME[n + 1:] for n in range(4)])
+
+    def test_a_pause_inside_a_frame_is_a_pause_for_the_client(self):
+        """An answer comes in two parts. A busy machine may hand over both at once, but not every time."""
+        port = self.port('a16::modbus --distance 754 --fault split')
+        for _ in range(50):
+            port.write(ASK_A16)
+            head = port.read(1)
+            head += port.read(port.in_waiting)
+            self.assertEqual(head + port.read(7 - len(head)), SAYS_754)
+            if len(head) < 7:
+                return
+        self.fail('50 answers came in one part')
+
+    def test_the_tool_tells_what_was_wrong(self):
+        sim = self.sim('a16::modbus --distance 754 --fault exception=1@1 --fault flip-byte=1@2')
+        done = self.ends(f'read a16 --mode modbus --port {sim} --count 3 --format json', 1, 'exception')
+        self.assertEqual(done.json[-1]['distance_mm'], 754)
 
 
 if __name__ == '__main__':

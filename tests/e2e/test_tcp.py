@@ -203,7 +203,8 @@ class Answers(Case):
         self.asked(server)  # about which the gateway says nothing
         self.reads(reader, 1, [])
         first, second = re.findall(r'attempt \d: .*', reader.done.err)
-        self.assertIn(f'no answer from address 1: the gateway says exception {number} (gateway {name}); check ', first)
+        self.assertIn(f'no answer from address 1: the gateway says exception {number} (gateway {name}); '
+                      'check ', first)
         self.assertIn('the connection stands, but nothing came back', second)
 
     def test_a_silent_server(self):
@@ -226,8 +227,8 @@ class Answers(Case):
 
     def test_sensors_behind_one_gateway_and_one_that_is_dead(self):
         server = self.server()
-        reader = self.fathom(f'read hps167s:1 hps167s:2 a16:250:modbus --port {server} --count 2 --timeout 1000 '
-                             '--format csv')
+        reader = self.fathom(f'read hps167s:1 hps167s:2 a16:250:modbus --port {server} --count 2 --timeout '
+                             '1000 --format csv')
         server.accept()
         asked = []
         while asked.count(1) < 2 or asked.count(250) < 2:

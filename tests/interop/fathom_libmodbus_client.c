@@ -4,8 +4,8 @@
  *
  *     fathom_libmodbus_client PORT BAUD none|even TIMEOUT_MS STEP ...
  *
- * PORT is a terminal, or tcp:HOST:PORT, which has no use for BAUD and parity. Exit status 0 when every step was
- * tried, 1 when the port does not open, 2 for wrong usage.
+ * PORT is a terminal, or tcp:HOST:PORT, which has no use for BAUD and parity. Exit status 0 when every step
+ * was tried, 1 when the port does not open, 2 for wrong usage.
  */
 #include <errno.h>
 #include <stdio.h>

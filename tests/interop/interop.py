@@ -206,11 +206,12 @@ class Pymodbus(AtRates):
         return ' '.join(f'{value:04X}' for value in values)
 
 
-def for_each_client(cases, module):
-    """Makes a class of cases of each of the three."""
-    for client in (Libmodbus, Pymodbus, Mbpoll):
-        module[client.__name__] = type(client.__name__, (client, cases, Case),
-                                       {'__module__': module['__name__']})
+def for_each_client(module, *all_cases):
+    """Makes a class of each of these cases with each of the three."""
+    for cases in all_cases:
+        for client in (Libmodbus, Pymodbus, Mbpoll):
+            name = client.__name__ + cases.__name__
+            module[name] = type(name, (client, cases, Case), {'__module__': module['__name__']})
 
 
 class LibmodbusServer:

@@ -5,9 +5,9 @@
  *     libmodbus_server PORT BAUD none|even UNIT FIRST VALUE ...
  *     libmodbus_server tcp BAUD none|even UNIT FIRST VALUE ...
  *
- * Says "ready" when the port is open, over TCP "ready N" with a port N that the system has chosen on the loopback
- * interface; there it answers for every unit, as libmodbus does. Registers below FIRST or past the last value are exception 02. A value
- * "!N" is a register whose reading and writing are exception N.
+ * Says "ready" when the port is open, over TCP "ready N" with a port N that the system has chosen on the
+ * loopback interface; there it answers for every unit, as libmodbus does. Registers below FIRST or past the
+ * last value are exception 02. A value "!N" is a register whose reading and writing are exception N.
  */
 #include <errno.h>
 #include <modbus.h>

@@ -15,7 +15,7 @@ typedef struct {
     uint32_t timeout_us;
 } seam_t;
 
-/* Does the steps, ended by NULL, and prints an outcome each. False: one is no step, or none that it can do. */
+/* Does the steps, ended by NULL, and prints an outcome each. False: one is no step, or none it can do. */
 bool seam_run(const seam_t *seam, char **steps);
 
 #endif

@@ -44,7 +44,7 @@ class LibmodbusTcp(interop.Tcp, interop.LibmodbusServer, Servers, interop.Case):
                  for function in ('read:%d:1', 'write:%d:9', 'many:%d:9')})
     def numbered(self, function):
         outcomes = self.run_steps(['1', *(f'!{number}' for number in NUMBERS)], 'read:0:1',
-                                  *(function % at for at in range(1, 11)), 'read:0:1', seconds=1)
+                                  *(function % at for at in range(1, 11)), 'read:0:1', seconds=2)
         self.assertEqual(outcomes, ['0001', *(f'exception {number}' for number in NUMBERS[:-2]), 'no answer',
                                     'no answer', '0001'])
 

@@ -14,7 +14,8 @@ NAMES = {1: 'illegal function', 2: 'illegal data address', 3: 'illegal data valu
 class Servers:
     def read(self, sensor, first, values, options='', unit=1, code=0, count=3):
         client = self.served(interop.LINES[sensor], unit, first, values)
-        return self.ends(f'read {sensor} --mode modbus --port {client} --count {count} --format csv {options}', code)
+        return self.ends(f'read {sensor} --mode modbus --port {client} --count {count} --format csv '
+                         f'{options}', code)
 
     @e2e.each(  # what stands from some register on, where it is, and what is read of that
         the_processed_distance_of_an_a16_and_not_the_real_time_one=(

@@ -62,13 +62,13 @@ class Servers:
     def test_another_unit_is_not_there_and_the_right_one_is(self):
         outcomes = self.run_steps([1], 'unit:7', 'read:0:1', 'unit:8', *self.others, 'unit:7', 'read:0:1',
                                   unit=7,
-                                  seconds=1)
+                                  seconds=2)
         self.assertEqual(outcomes, ['0001', *['no answer'] * len(self.others), '0001'])
 
     def test_a_write_to_all_is_obeyed_and_needs_no_answer(self):
         outcomes = self.run_steps([1, 2, 3], 'unit:9', 'read:0:3', 'unit:0', 'write:0:0x0A0B', 'unit:9',
                                   'read:0:3',
-                                  'unit:0', 'many:1:0x0C0D,0x0E0F', 'unit:9', 'read:0:3', unit=9, seconds=1)
+                                  'unit:0', 'many:1:0x0C0D,0x0E0F', 'unit:9', 'read:0:3', unit=9, seconds=2)
         self.assertEqual(outcomes, ['0001 0002 0003', 'done', '0A0B 0002 0003', 'done', '0A0B 0C0D 0E0F'])
 
 
