@@ -1,28 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "bench.h"
-#include "sim/a16.h"
-#include "sim/scene.h"
+#include "talk.h"
 
-enum { MS = 1000 };
-
-typedef struct {
-    bench_t bench;
-    fathom_sim_fixed_t fixed;
-    fathom_sim_a16_t a16;
-} stage_t;
-
-static void set(stage_t *stage, uint8_t mode, int32_t distance, fathom_sim_a16_config_t config)
-{
-    bench_init(&stage->bench, &bench_9600);
-    stage->fixed.value[0] = distance;
-    config.mode = mode;
-    config.scene = fathom_sim_fixed(&stage->fixed);
-    fathom_sim_a16_init(&stage->a16, &config);
-    stage->bench.line.full_duplex = mode != FATHOM_SIM_A16_MODBUS;
-    bench_attach(&stage->bench, &stage->a16.device);
-}
-
-#define DEFAULTS ((fathom_sim_a16_config_t){0})
+#define DEFAULTS ((a16_config_t){0})
 
 static const suite_t suite = {BENCH_ROUNDS};
 
@@ -30,209 +9,163 @@ static const suite_t suite = {BENCH_ROUNDS};
 
 TEST(automatic_frame_is_that_of_a16_2_4)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_UART, 1953, DEFAULTS);
-    bench_wait(&s.bench, 110 * MS);
-    EXPECT(&s.bench, 0xFF, 0x07, 0xA1, 0xA7);
-    set(&s, FATHOM_SIM_A16_AUTO, 1953, DEFAULTS); /* A16 5(4) */
-    bench_wait(&s.bench, 110 * MS);
-    EXPECT(&s.bench, 0xFF, 0x07, 0xA1, 0xA7);
+    set_a16(FATHOM_SIM_A16_UART, 1953, DEFAULTS);
+    hear(110, "FF 07 A1 A7");
+    set_a16(FATHOM_SIM_A16_AUTO, 1953, DEFAULTS); /* A16 5(4) */
+    hear(110, "FF 07 A1 A7");
 }
 
 TEST(automatic_frames_come_every_100_ms_byte_by_byte)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 1953, DEFAULTS);
-    const uint32_t start_us = s.bench.now_us;
-    for (int i = 0; i < 50; i++) bench_wait(&s.bench, 20 * MS); /* a loop that comes round every 20 ms */
-    bench_wait(&s.bench, 5 * MS);
-    assert_int_equal(s.bench.heard, 40);
-    assert_int_equal(s.a16.device.counters.automatic, 10);
+    set_a16(FATHOM_SIM_A16_AUTO, 1953, DEFAULTS);
+    const uint32_t start_us = bench.now_us;
+    for (int i = 0; i < 50; i++) wait_ms(20); /* a loop that comes round every 20 ms */
+    wait_ms(5);
+    assert_int_equal(bench.heard, 40);
+    COUNTED(.automatic = 10);
     for (size_t i = 0; i < 40; i++) {
         /* the first bit at n * 100 ms, then characters of 10 / 9600 s, each rounded up */
         const uint32_t byte_us[] = {1042, 2084, 3125, 4167};
         const uint32_t at_us = (uint32_t)(i / 4 + 1) * 100 * MS + byte_us[i % 4];
-        assert_int_equal(fathom_elapsed_us(s.bench.end_us[i], start_us), at_us);
+        assert_int_equal(fathom_elapsed_us(bench.end_us[i], start_us), at_us);
     }
 }
 
 TEST(a_byte_is_not_there_before_its_last_bit)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 1953, DEFAULTS);
-    bench_wait(&s.bench, 100 * MS + 1041);
-    EXPECT_SILENCE(&s.bench);
-    bench_wait(&s.bench, 1);
-    EXPECT(&s.bench, 0xFF);
-    assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), 1042);
-    bench_wait(&s.bench, 1041);
-    EXPECT_SILENCE(&s.bench);
-    bench_wait(&s.bench, 1);
-    EXPECT(&s.bench, 0x07);
+    set_a16(FATHOM_SIM_A16_AUTO, 1953, DEFAULTS);
+    wait_us(100 * MS + 1041);
+    expect("");
+    wait_us(1);
+    expect("FF");
+    assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), 1042);
+    wait_us(1041);
+    expect("");
+    wait_us(1);
+    expect("07");
 }
 
 TEST(the_period_and_the_start_are_options)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 511, (fathom_sim_a16_config_t){.period_us = 40 * MS, .start_us = 900 * MS});
-    bench_wait(&s.bench, 940 * MS);
-    EXPECT_SILENCE(&s.bench);
-    bench_wait(&s.bench, 80 * MS + 5 * MS);
-    EXPECT(&s.bench, 0xFF, 0x01, 0xFF, 0xFF, 0xFF, 0x01, 0xFF, 0xFF, 0xFF, 0x01, 0xFF, 0xFF);
+    set_a16(FATHOM_SIM_A16_AUTO, 511, (a16_config_t){.period_us = 40 * MS, .start_us = 900 * MS});
+    hear(940, "");
+    wait_us(80 * MS + 5 * MS);
+    expect("FF 01 FF FF FF 01 FF FF FF 01 FF FF");
 }
 
 TEST(no_target_and_interference_are_fffd_and_fffe)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, FATHOM_SIM_NO_TARGET, DEFAULTS);
-    bench_wait(&s.bench, 110 * MS);
-    EXPECT(&s.bench, 0xFF, 0xFF, 0xFD, 0xFB);
-    s.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, 0xFF, 0xFF, 0xFE, 0xFC);
-    s.fixed.value[0] = 0; /* what older firmware says; any number can be said */
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, 0xFF, 0x00, 0x00, 0xFF);
-    s.a16.device.scene.distance = NULL;
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, 0xFF, 0xFF, 0xFD, 0xFB);
+    set_a16(FATHOM_SIM_A16_AUTO, FATHOM_SIM_NO_TARGET, DEFAULTS);
+    hear(110, "FF FF FD FB");
+    bench.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
+    hear(100, "FF FF FE FC");
+    bench.fixed.value[0] = 0; /* what older firmware says; any number can be said */
+    hear(100, "FF 00 00 FF");
+    bench.a16.device.scene.distance = NULL;
+    hear(100, "FF FF FD FB");
 }
 
 /* ---- automatic, then Modbus: A16 5 ---- */
 
 TEST(the_first_command_ends_automatic_output_with_frames_around_the_answer)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
-    bench_wait(&s.bench, 50 * MS);
-    ASK(&s.bench, 300 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36); /* A16 6(4) example 2 */
-    EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0,         /* at 100 ms, nobody stopped it yet */
-           0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8, /* the answer, about 175 ms */
-           0xFF, 0x02, 0xEF, 0xF0);                  /* at 200 ms, within the 150 ms */
-    bench_wait(&s.bench, 60000 * MS);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
+    set_a16(FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
+    wait_ms(50);
+    talk("01 03 01 01 00 01 D4 36", 300,
+         "FF 02 EF F0"          /* at 100 ms, nobody stopped it yet */
+         "01 03 02 02 EF F8 A8" /* the answer, A16 6(4) example 2, about 175 ms */
+         "FF 02 EF F0");        /* at 200 ms, within the 150 ms */
+    hear(60000, "");
+    assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
 }
 
 TEST(without_lingering_the_command_is_the_end)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0);
-    ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
+    set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
+    hear(105, "FF 02 EF F0");
+    talk("01 03 01 01 00 01 D4 36", 1000, "01 03 02 02 EF F8 A8");
 }
 
 TEST(a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
-    bench_wait(&s.bench, 95 * MS); /* the request lasts from 95 to 103.3 ms, the frame from 100 to 104.2 */
-    ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
+    set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
+    wait_ms(95); /* the request lasts from 95 to 103.3 ms, the frame from 100 to 104.2 */
+    talk("01 03 01 01 00 01 D4 36", 1000, "FF 02 EF F0 01 03 02 02 EF F8 A8");
 }
 
 TEST(only_a_command_for_it_ends_automatic_output)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
-    ASK(&s.bench, 10 * MS, 0x02, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x05); /* another unit's */
-    ASK(&s.bench, 10 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x37); /* wrong CRC */
-    bench_wait(&s.bench, 1000 * MS);
-    assert_true(s.bench.heard >= 40);
-    bench_forget(&s.bench);
-    ASK(&s.bench, 10 * MS, 0x01, 0x03, 0x02, 0x02, 0x00, 0x01, 0x24, 0x72); /* not even a register */
-    bench_forget(&s.bench);
-    bench_wait(&s.bench, 1000 * MS);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.others, 1);
-    assert_int_equal(s.a16.device.counters.crc_errors, 1);
-    assert_int_equal(s.a16.device.counters.unserved, 1);
+    set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
+    ask("02 03 01 01 00 01 D4 05", 10); /* another unit's */
+    ask("01 03 01 01 00 01 D4 37", 10); /* wrong CRC */
+    wait_ms(1000);
+    assert_true(bench.heard >= 40);
+    forget();
+    ask("01 03 02 02 00 01 24 72", 10); /* not even a register */
+    forget();
+    hear(1000, "");
+    COUNTED(.others = 1, .crc_errors = 1, .unserved = 1);
 }
 
 TEST(a_uart_module_takes_no_command)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_UART, 751, DEFAULTS);
-    ASK(&s.bench, 10 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    bench_wait(&s.bench, 400 * MS);
-    EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0, 0xFF, 0x02, 0xEF, 0xF0, 0xFF, 0x02, 0xEF, 0xF0, 0xFF, 0x02, 0xEF,
-           0xF0);
-    assert_int_equal(s.a16.device.counters.unheard, 8);
-    assert_int_equal(s.a16.device.counters.requests, 0);
+    set_a16(FATHOM_SIM_A16_UART, 751, DEFAULTS);
+    ask("01 03 01 01 00 01 D4 36", 10);
+    hear(400, "FF 02 EF F0 FF 02 EF F0 FF 02 EF F0 FF 02 EF F0");
+    COUNTED(.unheard = 8, .requests = NONE);
 }
 
 TEST(power_makes_it_automatic_again)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, 751, (fathom_sim_a16_config_t){.linger_us = 1});
-    ASK(&s.bench, 500 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
-    fathom_sim_detach(&s.bench.line, &s.a16.device, s.bench.now_us);
-    fathom_sim_detach(&s.bench.line, &s.a16.device, s.bench.now_us); /* twice is no error */
-    bench_wait(&s.bench, 500 * MS);
-    EXPECT_SILENCE(&s.bench);
-    bench_attach(&s.bench, &s.a16.device);
-    bench_wait(&s.bench, 110 * MS);
-    EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0);
+    set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
+    talk("01 03 01 01 00 01 D4 36", 500, "01 03 02 02 EF F8 A8");
+    fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us);
+    fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us); /* twice is no error */
+    hear(500, "");
+    attach(&bench.a16.device);
+    hear(110, "FF 02 EF F0");
 }
 
 /* ---- Modbus: A16 6 ---- */
 
 TEST(reads_are_those_of_a16_6_4)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
-    bench_wait(&s.bench, 10000 * MS);
-    EXPECT_SILENCE(&s.bench);
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6); /* example 1, 0x0100 */
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1);
-    s.fixed.value[0] = 751;
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36); /* example 2, 0x0101 */
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
-    s.fixed.value[0] = FATHOM_SIM_NO_TARGET;
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0xFF, 0xFD, 0x38, 0x35);
-    s.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0xFF, 0xFE, 0x78, 0x34);
-    assert_int_equal(s.a16.device.counters.requests, 4);
-    assert_int_equal(s.a16.device.counters.answered, 4);
-    assert_int_equal(s.a16.device.counters.measurements, 4);
+    set_a16(FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
+    hear(10000, "");
+    talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1, 0x0100 */
+    bench.fixed.value[0] = 751;
+    talk("01 03 01 01 00 01 D4 36", 600, "01 03 02 02 EF F8 A8"); /* example 2, 0x0101 */
+    bench.fixed.value[0] = FATHOM_SIM_NO_TARGET;
+    talk("01 03 01 01 00 01 D4 36", 600, "01 03 02 FF FD 38 35");
+    bench.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
+    talk("01 03 01 01 00 01 D4 36", 600, "01 03 02 FF FE 78 34");
+    COUNTED(.requests = 4, .answered = 4, .measurements = 4);
 }
 
 TEST(settings_read_as_from_the_factory)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x03, 0xE8, 0xB8, 0xFA);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
-    assert_int_equal(s.a16.device.counters.measurements, 0);
+    set_a16(FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
+    talk("01 03 02 00 00 01 85 B2", 30, "01 03 02 00 01 79 84");
+    talk("01 03 02 05 00 01 95 B3", 30, "01 03 02 00 01 79 84");
+    talk("01 03 02 06 00 01 65 B3", 30, "01 03 02 03 E8 B8 FA");
+    talk("01 03 02 07 00 01 34 73", 30, "01 03 02 00 00 B8 44");
+    COUNTED(.measurements = NONE);
 }
 
 TEST(answers_take_their_time_and_the_seed_decides_which)
 {
-    stage_t s;
     uint32_t first_us[3][8];
     for (size_t run = 0; run < 3; run++) {
-        set(&s, FATHOM_SIM_A16_MODBUS, 754, (fathom_sim_a16_config_t){.seed = run == 2 ? 99 : 7});
+        set_a16(FATHOM_SIM_A16_MODBUS, 754, (a16_config_t){.seed = run == 2 ? 99 : 7});
         for (size_t i = 0; i < 8; i++) {
-            const uint32_t end_us = ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, (uint8_t)(i % 2), 0x00, 0x01,
-                                        i % 2 == 0 ? 0x85 : 0xD4, i % 2 == 0 ? 0xF6 : 0x36);
-            assert_int_equal(s.bench.heard, 7);
+            ask(i % 2 == 0 ? "01 03 01 00 00 01 85 F6" : "01 03 01 01 00 01 D4 36", 600);
+            assert_int_equal(bench.heard, 7);
             /* from the last bit of the request to the last bit of the first byte */
-            first_us[run][i] = fathom_elapsed_us(s.bench.end_us[0], end_us) - 1042;
+            first_us[run][i] = fathom_elapsed_us(bench.end_us[0], bench.asked_us) - 1042;
             if (i % 2 == 0) assert_in_range(first_us[run][i], 455 * MS, 520 * MS);
             if (i % 2 == 1) assert_in_range(first_us[run][i], 105 * MS, 120 * MS);
-            ASSERT_SPAN(s.bench.end_us[6], s.bench.end_us[0], 6249, 6251);
-            bench_forget(&s.bench);
+            ASSERT_SPAN(bench.end_us[6], bench.end_us[0], 6249, 6251);
+            forget();
         }
     }
     assert_memory_equal(first_us[0], first_us[1], sizeof first_us[0]);
@@ -241,89 +174,68 @@ TEST(answers_take_their_time_and_the_seed_decides_which)
 
 TEST(the_answer_times_are_options)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 754,
-        (fathom_sim_a16_config_t){.realtime_us = 40 * MS, .processed_us = 1, .settings_us = 200 * MS});
-    uint32_t end_us = ASK(&s.bench, 60 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 35 * MS + 1042, 40 * MS + 1042);
-    bench_forget(&s.bench);
+    set_a16(FATHOM_SIM_A16_MODBUS, 754,
+            (a16_config_t){.realtime_us = 40 * MS, .processed_us = 1, .settings_us = 200 * MS});
+    ask("01 03 01 01 00 01 D4 36", 60);
+    ASSERT_ANSWERED_IN(35 * MS + 1042, 40 * MS + 1042);
+    forget();
     /* never before it can know that the request has ended: t3.5 */
-    end_us = ASK(&s.bench, 60 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 3646 + 1041, 3646 + 1042);
-    bench_forget(&s.bench);
-    end_us = ASK(&s.bench, 300 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 175 * MS + 1042, 200 * MS + 1042);
+    ask("01 03 01 00 00 01 85 F6", 60);
+    ASSERT_ANSWERED_IN(3646 + 1041, 3646 + 1042);
+    forget();
+    ask("01 03 02 00 00 01 85 B2", 300);
+    ASSERT_ANSWERED_IN(175 * MS + 1042, 200 * MS + 1042);
 }
 
 TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
-    assert_int_equal(s.a16.device.counters.writes, 1);
-    ASK(&s.bench, 300 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36);
-    EXPECT_SILENCE(&s.bench);
-    ASK(&s.bench, 300 * MS, 0x05, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD5, 0xB2);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x02, 0xEF, 0x09, 0x68);
-    ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
+    echoed("01 06 02 00 00 05 48 71", 50);
+    COUNTED(.writes = 1);
+    talk("01 03 01 01 00 01 D4 36", 300, "");
+    talk("05 03 01 01 00 01 D5 B2", 300, "05 03 02 02 EF 09 68");
+    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
 TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
-    ASK(&s.bench, 300 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0xFF, 0xC8, 0x32);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.unit, 1);
-    assert_int_equal(s.a16.device.counters.writes, 0);
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
+    talk("01 06 02 00 00 FF C8 32", 300, "");
+    assert_int_equal(bench.a16.device.unit, 1);
+    COUNTED(.writes = NONE);
 }
 
 TEST(a_broadcast_is_obeyed_without_an_answer)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
-    ASK(&s.bench, 300 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x05, 0x5D, 0xAF);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.unit, 5);
-    assert_int_equal(s.a16.device.counters.writes, 1);
-    ASK(&s.bench, 300 * MS, 0xFF, 0x03, 0x01, 0x01, 0x00, 0x01, 0xC1, 0xE8);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.requests, 2);
-    assert_int_equal(s.a16.device.counters.answered, 0);
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
+    talk("FF 06 02 00 00 05 5D AF", 300, "");
+    assert_int_equal(bench.a16.device.unit, 5);
+    COUNTED(.writes = 1);
+    talk("FF 03 01 01 00 01 C1 E8", 300, "");
+    COUNTED(.requests = 2, .answered = NONE);
 }
 
 TEST(a_broadcast_is_answered_from_its_own_address_as_an_option)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 751, (fathom_sim_a16_config_t){.unit = 5, .answers_broadcast = true});
-    ASK(&s.bench, 300 * MS, 0xFF, 0x03, 0x01, 0x01, 0x00, 0x01, 0xC1, 0xE8);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x02, 0xEF, 0x09, 0x68);
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, (a16_config_t){.unit = 5, .answers_broadcast = true});
+    talk("FF 03 01 01 00 01 C1 E8", 300, "05 03 02 02 EF 09 68");
 }
 
 TEST(what_it_does_not_know_is_silence)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x02, 0x00, 0x01, 0x24, 0x36); /* unknown register */
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x02, 0xC5, 0xF7); /* two at once */
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x02, 0x02, 0x00, 0x01, 0x24, 0x72); /* write-only */
-    ASK(&s.bench, 600 * MS, 0x01, 0x04, 0x01, 0x00, 0x00, 0x01, 0x30, 0x36); /* unknown function */
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.requests, 4);
-    assert_int_equal(s.a16.device.counters.unserved, 4);
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
+    ask("01 03 01 02 00 01 24 36", 600);      /* unknown register */
+    ask("01 03 01 00 00 02 C5 F7", 600);      /* two at once */
+    ask("01 03 02 02 00 01 24 72", 600);      /* write-only */
+    talk("01 04 01 00 00 01 30 36", 600, ""); /* unknown function */
+    COUNTED(.requests = 4, .unserved = 4);
 }
 
 TEST(exceptions_are_an_option)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, 751, (fathom_sim_a16_config_t){.exceptions = true});
-    ASK(&s.bench, 100 * MS, 0x01, 0x03, 0x01, 0x02, 0x00, 0x01, 0x24, 0x36);
-    EXPECT(&s.bench, 0x01, 0x83, 0x02, 0xC0, 0xF1);
-    ASK(&s.bench, 100 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x02, 0xC5, 0xF7);
-    EXPECT(&s.bench, 0x01, 0x83, 0x03, 0x01, 0x31);
-    ASK(&s.bench, 100 * MS, 0x01, 0x04, 0x01, 0x00, 0x00, 0x01, 0x30, 0x36);
-    EXPECT(&s.bench, 0x01, 0x84, 0x01, 0x82, 0xC0);
-    assert_int_equal(s.a16.device.counters.exceptions, 3);
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, (a16_config_t){.exceptions = true});
+    talk("01 03 01 02 00 01 24 36", 100, "01 83 02 C0 F1");
+    talk("01 03 01 00 00 02 C5 F7", 100, "01 83 03 01 31");
+    talk("01 04 01 00 00 01 30 36", 100, "01 84 01 82 C0");
+    COUNTED(.exceptions = 3);
 }

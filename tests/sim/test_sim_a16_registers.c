@@ -1,276 +1,185 @@
 /* SPDX-License-Identifier: MIT */
 /* The registers of the A16 that are written: A16 6(3), 6(4). */
-#include "bench.h"
-#include "sim/a16.h"
-#include "sim/scene.h"
-
-enum { MS = 1000 };
-
-typedef struct {
-    bench_t bench;
-    fathom_sim_fixed_t fixed;
-    fathom_sim_fixed_t processed;
-    fathom_sim_a16_t a16;
-} stage_t;
+#include "talk.h"
 
 /* 751 mm, or processed 754 mm: examples 1 and 2. */
-static void set(stage_t *stage, uint8_t mode, fathom_sim_a16_config_t config)
+static void set(uint8_t mode, a16_config_t config)
 {
-    bench_init(&stage->bench, &bench_9600);
-    stage->fixed.value[0] = 751;
-    stage->processed.value[0] = 754;
-    config.mode = mode;
+    bench.processed = FIXED(754);
+    config.processed = PROCESSED;
     config.linger_us = 1;
-    config.scene = fathom_sim_fixed(&stage->fixed);
-    config.processed = fathom_sim_fixed(&stage->processed);
-    fathom_sim_a16_init(&stage->a16, &config);
-    stage->bench.line.full_duplex = mode != FATHOM_SIM_A16_MODBUS;
-    bench_attach(&stage->bench, &stage->a16.device);
+    set_a16(mode, 751, config);
 }
 
-#define DEFAULTS       ((fathom_sim_a16_config_t){0})
-#define AUTO_REAL_TIME 0xFF, 0x02, 0xEF, 0xF0 /* 751 mm */
-#define AUTO_PROCESSED 0xFF, 0x02, 0xF2, 0xF3 /* 754 mm */
-
-static void cycle_power(stage_t *s)
-{
-    fathom_sim_power_cycle(&s->bench.line, &s->a16.device, 100 * MS, s->bench.now_us);
-    bench_wait(&s->bench, 101 * MS);
-    EXPECT_SILENCE(&s->bench);
-}
+#define DEFAULTS       ((a16_config_t){0})
+#define AUTO_REAL_TIME "FF 02 EF F0" /* 751 mm */
+#define AUTO_PROCESSED "FF 02 F2 F3" /* 754 mm */
 
 static const suite_t suite = {BENCH_ROUNDS};
 
 TEST(polarity_of_example_6_is_echoed_read_back_and_kept)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
-    cycle_power(&s);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    echoed("01 06 02 05 00 00 98 73", 50);
+    talk("01 03 02 05 00 01 95 B3", 50, "01 03 02 00 00 B8 44");
+    cycle_power(100, 101);
+    talk("01 03 02 05 00 01 95 B3", 50, "01 03 02 00 00 B8 44");
+    echoed("01 06 02 05 00 01 59 B3", 50);
+    talk("01 03 02 05 00 01 95 B3", 50, "01 03 02 00 01 79 84");
 }
 
 TEST(threshold_of_the_last_example_is_echoed_read_back_and_kept)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
-    cycle_power(&s);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0xFF, 0xFF, 0x69, 0xC3); /* no range is printed */
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x06, 0xFF, 0xFF, 0x69, 0xC3);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0xFF, 0xFF, 0xB9, 0xF4);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    echoed("01 06 02 06 07 D0 6B DF", 50);
+    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
+    cycle_power(100, 101);
+    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
+    echoed("01 06 02 06 FF FF 69 C3", 50); /* no range is printed */
+    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 FF FF B9 F4");
 }
 
 TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
-    cycle_power(&s);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x00, 0x39, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x07, 0x00, 0x00, 0x39, 0xB3);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    echoed("01 06 02 07 00 01 F8 73", 50);
+    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84");
+    cycle_power(100, 101);
+    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84");
+    echoed("01 06 02 07 00 00 39 B3", 50);
+    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 00 B8 44");
 }
 
 TEST(processed_and_real_time_values_are_two)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6); /* example 1 */
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1);
-    ASK(&s.bench, 200 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36); /* example 2 */
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
-    s.a16.device.processed.distance = NULL; /* then they are one */
-    ASK(&s.bench, 600 * MS, 0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
+    talk("01 03 01 01 00 01 D4 36", 200, "01 03 02 02 EF F8 A8"); /* example 2 */
+    bench.a16.device.processed.distance = NULL;                   /* then they are one */
+    talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 EF F8 A8");
 }
 
 TEST(automatic_frames_say_the_value_of_the_data_type)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, AUTO_PROCESSED);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x01, 0xF8, 0x73);
-    bench_forget(&s.bench);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    bench_forget(&s.bench);
-    bench_wait(&s.bench, 60 * MS);
-    EXPECT(&s.bench, AUTO_REAL_TIME);
-    cycle_power(&s);
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, AUTO_REAL_TIME);
-    set(&s, FATHOM_SIM_A16_AUTO, (fathom_sim_a16_config_t){.real_time = true});
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, AUTO_REAL_TIME);
+    set(FATHOM_SIM_A16_AUTO, DEFAULTS);
+    hear(105, AUTO_PROCESSED);
+    ask("01 06 02 07 00 01 F8 73", 50);
+    forget();
+    ask("01 06 02 02 00 01 E8 72", 50);
+    forget();
+    hear(60, AUTO_REAL_TIME);
+    cycle_power(100, 101);
+    hear(105, AUTO_REAL_TIME);
+    set(FATHOM_SIM_A16_AUTO, (a16_config_t){.real_time = true});
+    hear(105, AUTO_REAL_TIME);
 }
 
 TEST(a_uart_module_says_what_the_level_of_rx_selects_2_2)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_UART, DEFAULTS);
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, AUTO_PROCESSED);
-    set(&s, FATHOM_SIM_A16_UART, (fathom_sim_a16_config_t){.real_time = true});
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, AUTO_REAL_TIME);
+    set(FATHOM_SIM_A16_UART, DEFAULTS);
+    hear(105, AUTO_PROCESSED);
+    set(FATHOM_SIM_A16_UART, (a16_config_t){.real_time = true});
+    hear(105, AUTO_REAL_TIME);
 }
 
 /* ---- 0x0202 ---- */
 
 TEST(automatic_output_returns_with_the_command_of_example_4)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
-    ASK(&s.bench, 2000 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
-    const uint32_t end_us = ASK(&s.bench, 98 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    bench_wait(&s.bench, 210 * MS);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 100 * MS + 1041, 100 * MS + 1043);
-    EXPECT(&s.bench, AUTO_PROCESSED, AUTO_PROCESSED, AUTO_PROCESSED);
-    ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x02, 0x00, 0x00, 0x01, 0x85, 0xB2); /* and ends again */
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84);
-    assert_int_equal(s.a16.device.counters.writes, 1);
-    assert_int_equal(s.a16.device.counters.flash_writes, 0);
+    set(FATHOM_SIM_A16_AUTO, DEFAULTS);
+    talk("01 03 02 00 00 01 85 B2", 2000, "01 03 02 00 01 79 84");
+    echoed("01 06 02 02 00 01 E8 72", 98);
+    wait_ms(210);
+    ASSERT_ANSWERED_IN(100 * MS + 1041, 100 * MS + 1043);
+    expect(AUTO_PROCESSED AUTO_PROCESSED AUTO_PROCESSED);
+    talk("01 03 02 00 00 01 85 B2", 1000, "01 03 02 00 01 79 84"); /* and ends again */
+    COUNTED(.writes = 1, .flash_writes = NONE);
 }
 
 TEST(a_module_that_still_is_automatic_stays_so)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    bench_wait(&s.bench, 1000 * MS);
-    assert_in_range(s.bench.heard, 9 * 4, 10 * 4);
+    set(FATHOM_SIM_A16_AUTO, DEFAULTS);
+    echoed("01 06 02 02 00 01 E8 72", 50);
+    wait_ms(1000);
+    assert_in_range(bench.heard, 9 * 4, 10 * 4);
 }
 
 TEST(the_controlled_mode_stays_and_no_mode_is_kept)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO, DEFAULTS);
-    ASK(&s.bench, 1000 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x00, 0x29, 0xB2);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x00, 0x29, 0xB2);
-    cycle_power(&s);
-    bench_wait(&s.bench, 105 * MS);
-    EXPECT(&s.bench, AUTO_PROCESSED);
-    ASK(&s.bench, 1000 * MS, 0x01, 0x03, 0x02, 0x02, 0x00, 0x01, 0x24,
-        0x72); /* write-only: no answer, and it ends the output */
-    EXPECT_SILENCE(&s.bench);
+    set(FATHOM_SIM_A16_AUTO, DEFAULTS);
+    echoed("01 06 02 02 00 00 29 B2", 1000);
+    cycle_power(100, 101);
+    hear(105, AUTO_PROCESSED);
+    talk("01 03 02 02 00 01 24 72", 1000, ""); /* write-only: no answer, and it ends the output */
 }
 
 TEST(rs485_has_no_automatic_mode_to_return_to)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 2000 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72);
-    assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    echoed("01 06 02 02 00 01 E8 72", 2000);
+    assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
 }
 
 /* ---- what it does not take, and what it counts ---- */
 
-static void refuse_all(stage_t *s)
+#define REFUSED "01 86 03 02 61"
+static void refuse_all(void)
 {
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0xFF, 0xC8, 0x32);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x01, 0x05, 0x49, 0xE1);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x00, 0x02, 0xA8, 0x73);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x02, 0x01, 0x01, 0xE9, 0xE2);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x02, 0x19, 0xB2);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0xFF, 0x00, 0xD9, 0x83);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x02, 0xB8, 0x72);
-    ASK(&s->bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x01, 0x00, 0x38, 0x23);
-    assert_int_equal(s->a16.device.counters.writes, 0);
-    assert_int_equal(s->a16.device.counters.flash_writes, 0);
-    assert_int_equal(s->a16.device.counters.writes_refused, 8);
+    ask("01 06 02 00 00 FF C8 32", 50);
+    ask("01 06 02 00 01 05 49 E1", 50);
+    ask("01 06 02 02 00 02 A8 73", 50);
+    ask("01 06 02 02 01 01 E9 E2", 50);
+    ask("01 06 02 05 00 02 19 B2", 50);
+    ask("01 06 02 05 FF 00 D9 83", 50);
+    ask("01 06 02 07 00 02 B8 72", 50);
+    ask("01 06 02 07 01 00 38 23", 50);
+    COUNTED(.writes = NONE, .flash_writes = NONE, .writes_refused = 8);
 }
 
 TEST(a_value_that_a_register_does_not_have_is_silence_or_exception_3)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    refuse_all(&s);
-    EXPECT_SILENCE(&s.bench);
-    set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.exceptions = true});
-    refuse_all(&s);
-    assert_int_equal(s.bench.heard, 40);
-    for (size_t i = 0; i < 8; i++)
-        assert_memory_equal(s.bench.bytes + 5 * i, ((uint8_t[]){0x01, 0x86, 0x03, 0x02, 0x61}), 5);
-    bench_forget(&s.bench);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x01, 0x00, 0x00, 0x01, 0x49,
-        0xF6); /* a distance, and between the registers */
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x03, 0x00, 0x01, 0xB9, 0xB2);
-    EXPECT(&s.bench, 0x01, 0x86, 0x02, 0xC3, 0xA1, 0x01, 0x86, 0x02, 0xC3, 0xA1);
-    ASK(&s.bench, 50 * MS, 0x01, 0x10, 0x02, 0x06, 0x00, 0x01, 0x02, 0x07, 0xD0, 0x86,
-        0x5A); /* no function 16 */
-    EXPECT(&s.bench, 0x01, 0x90, 0x01, 0x8D, 0xC0);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x05, 0x00, 0x01, 0x95, 0xB3);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x07, 0x00, 0x01, 0x34, 0x73);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84, 0x01, 0x03, 0x02, 0x03, 0xE8, 0xB8, 0xFA, 0x01,
-           0x03, 0x02, 0x00, 0x00, 0xB8, 0x44);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    refuse_all();
+    expect("");
+    set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.exceptions = true});
+    refuse_all();
+    expect(REFUSED REFUSED REFUSED REFUSED REFUSED REFUSED REFUSED REFUSED);
+    ask("01 06 01 00 00 01 49 F6", 50); /* a distance, and between the registers */
+    talk("01 06 02 03 00 01 B9 B2", 50, "01 86 02 C3 A1 01 86 02 C3 A1");
+    talk("01 10 02 06 00 01 02 07 D0 86 5A", 50, "01 90 01 8D C0"); /* no function 16 */
+    ask("01 03 02 05 00 01 95 B3", 50);
+    ask("01 03 02 06 00 01 65 B3", 50);
+    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84 01 03 02 03 E8 B8 FA 01 03 02 00 00 B8 44");
 }
 
 TEST(flash_wears_with_each_setting_that_is_kept)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x05, 0x00, 0x01, 0x59, 0xB3); /* as it is */
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x06, 0x03, 0xE8, 0x68, 0xCD);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x07, 0x00, 0x00, 0x39, 0xB3);
-    assert_int_equal(s.a16.device.counters.flash_writes, 3);
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
-    assert_int_equal(s.a16.device.counters.flash_writes, 4);
-    assert_int_equal(s.a16.device.counters.writes, 4);
-    bench_forget(&s.bench);
-    cycle_power(&s);
-    ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    ask("01 06 02 05 00 01 59 B3", 50); /* as it is */
+    ask("01 06 02 06 03 E8 68 CD", 50);
+    ask("01 06 02 07 00 00 39 B3", 50);
+    COUNTED(.flash_writes = 3);
+    ask("01 06 02 00 00 05 48 71", 50);
+    COUNTED(.flash_writes = 4, .writes = 4);
+    forget();
+    cycle_power(100, 101);
+    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
 TEST(a_broadcast_is_obeyed_without_an_answer)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x7E, 0x01);
-    EXPECT_SILENCE(&s.bench);
-    ASK(&s.bench, 50 * MS, 0x01, 0x03, 0x02, 0x06, 0x00, 0x01, 0x65, 0xB3);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x07, 0xD0, 0xBB, 0xE8);
+    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
+    talk("FF 06 02 06 07 D0 7E 01", 50, "");
+    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
 }
 
 TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.answers_from_new = true});
-    ASK(&s.bench, 50 * MS, 0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71);
-    EXPECT(&s.bench, 0x05, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xF5);
-    ASK(&s.bench, 50 * MS, 0x05, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6A, 0x5B);
-    EXPECT(&s.bench, 0x05, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6A, 0x5B);
-    set(&s, FATHOM_SIM_A16_MODBUS,
-        (fathom_sim_a16_config_t){.answers_from_new = true, .answers_broadcast = true});
-    ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x06, 0x1D, 0xAE);
-    EXPECT(&s.bench, 0x06, 0x06, 0x02, 0x00, 0x00, 0x06, 0x09, 0xC7);
-    set(&s, FATHOM_SIM_A16_MODBUS, (fathom_sim_a16_config_t){.answers_broadcast = true});
-    ASK(&s.bench, 50 * MS, 0xFF, 0x06, 0x02, 0x00, 0x00, 0x06, 0x1D, 0xAE);
-    EXPECT(&s.bench, 0x01, 0x06, 0x02, 0x00, 0x00, 0x06, 0x08, 0x70);
+    set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.answers_from_new = true});
+    talk("01 06 02 00 00 05 48 71", 50, "05 06 02 00 00 05 49 F5");
+    echoed("05 06 02 06 07 D0 6A 5B", 50);
+    set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.answers_from_new = true, .answers_broadcast = true});
+    talk("FF 06 02 00 00 06 1D AE", 50, "06 06 02 00 00 06 09 C7");
+    set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.answers_broadcast = true});
+    talk("FF 06 02 00 00 06 1D AE", 50, "01 06 02 00 00 06 08 70");
 }

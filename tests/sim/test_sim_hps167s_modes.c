@@ -1,37 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* What the HPS-167S does unasked, while it warms up, and without data from inside: all of them options. */
-#include <string.h>
-
-#include "bench.h"
-#include "sim/fault.h"
-#include "sim/hps167s.h"
-#include "sim/scene.h"
-
-enum { MS = 1000 };
-
-typedef struct {
-    bench_t bench;
-    fathom_sim_fixed_t fixed;
-    fathom_sim_hps167s_t hps;
-} stage_t;
-
-static void set(stage_t *stage, fathom_sim_hps167s_config_t config)
-{
-    bench_init(&stage->bench, &bench_19200);
-    stage->fixed.value[0] = 2083;
-    config.scene = fathom_sim_fixed(&stage->fixed);
-    fathom_sim_hps167s_init(&stage->hps, &config);
-    bench_attach(&stage->bench, &stage->hps.device);
-}
+#include "talk.h"
 
 /* The answer to #5 of the datasheet's example, the abnormal packet, and an exception to 03. */
-#define EXAMPLE   0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xFD, 0x41
-#define ABNORMAL  0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xE4, 0x5C
-#define EXCEPTION 0x01, 0x83, 0x04, 0x40, 0xF3
-#define MEASURE   0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB
-#define READ_2    0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9
-#define ANSWER_2  0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00, 0xB4, 0x01, 0x63, 0x1C
+#define EXAMPLE   "01 03 08 08 23 DC B2 07 01 00 00 FD 41"
+#define ABNORMAL  "01 03 08 FF FF 00 00 00 FF FF FF E4 5C"
+#define EXCEPTION "01 83 04 40 F3"
+#define MEASURE   "01 03 00 08 00 04 C5 CB"
+#define READ_2    "01 03 00 02 00 04 E5 C9"
+#define ANSWER_2  "01 03 08 FF FF 00 00 00 00 B4 01 63 1C"
 enum { FRAME = 13, CHARACTER_US = 573, SILENCE_US = 2005 }; /* 11 bits, and 3.5 of them, at 19200 */
+
+static void lose(bool lost) { fathom_sim_hps167s_lose(&bench.hps, lost, bench.now_us); }
 
 static const suite_t suite = {BENCH_ROUNDS};
 
@@ -39,63 +19,56 @@ static const suite_t suite = {BENCH_ROUNDS};
 
 TEST(it_sends_by_itself_as_an_option)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
-    const uint32_t start_us = s.bench.now_us;
-    for (int i = 0; i < 51; i++) bench_wait(&s.bench, 20 * MS); /* a loop that comes round every 20 ms */
-    assert_int_equal(s.bench.heard, 10 * FRAME);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
+    const uint32_t start_us = bench.now_us;
+    for (int i = 0; i < 51; i++) wait_ms(20); /* a loop that comes round every 20 ms */
+    assert_int_equal(bench.heard, 10 * FRAME);
     for (size_t i = 0; i < 10; i++) {
-        assert_memory_equal(s.bench.bytes + FRAME * i, ((uint8_t[]){EXAMPLE}), FRAME);
-        assert_int_equal(fathom_elapsed_us(s.bench.end_us[FRAME * i], start_us),
+        assert_true(is_hex(bench.bytes + FRAME * i, EXAMPLE));
+        assert_int_equal(fathom_elapsed_us(bench.end_us[FRAME * i], start_us),
                          (i + 1) * 100 * MS + CHARACTER_US);
     }
-    assert_int_equal(s.hps.device.counters.automatic, 10);
-    assert_int_equal(s.hps.device.counters.answered, 0);
-    assert_int_equal(s.hps.device.counters.measurements, 10);
+    COUNTED(.automatic = 10, .answered = NONE, .measurements = 10);
 }
 
 TEST(it_fills_the_line_with_54_frames_a_second)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 18519});
-    for (int i = 0; i < 51; i++) bench_wait(&s.bench, 20 * MS);
-    assert_int_equal(s.hps.device.counters.automatic, 55); /* 1020 / 18.519 */
-    assert_in_range(s.bench.heard, 54 * FRAME, 55 * FRAME);
+    set_hps(2083, (hps_config_t){.unasked_us = 18519});
+    for (int i = 0; i < 51; i++) wait_ms(20);
+    COUNTED(.automatic = 55); /* 1020 / 18.519 */
+    assert_in_range(bench.heard, 54 * FRAME, 55 * FRAME);
 }
 
 TEST(what_it_sends_is_the_scene)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .unit = 2});
-    bench_wait(&s.bench, 110 * MS);
-    EXPECT(&s.bench, 0x02, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xF2, 0x05);
-    s.fixed.value[0] = FATHOM_SIM_FAULT;
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, 0x02, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0xFF, 0xFF, 0xFF, 0xEB, 0x18);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .unit = 2});
+    hear(110, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
+    bench.fixed.value[0] = FATHOM_SIM_FAULT;
+    hear(100, "02 03 08 FF FF 00 00 00 FF FF FF EB 18");
 }
 
 /* Asked at every time within a period. Returns true when the answer came, and not only a frame. */
-static bool asked_at(stage_t *s, uint32_t at_us)
+static bool asked_at(uint32_t at_us)
 {
     size_t frames = 0, answers = 0, i = 0;
-    set(s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .seed = at_us});
-    bench_wait(&s->bench, at_us);
-    ASK(&s->bench, 60 * MS, READ_2);
-    while (i + FRAME <= s->bench.heard) {
-        const bool is_frame = memcmp(s->bench.bytes + i, ((uint8_t[]){EXAMPLE}), FRAME) == 0;
-        const bool is_answer = memcmp(s->bench.bytes + i, ((uint8_t[]){ANSWER_2}), FRAME) == 0;
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .seed = at_us});
+    wait_us(at_us);
+    ask(READ_2, 60);
+    while (i + FRAME <= bench.heard) {
+        const bool is_frame = is_hex(bench.bytes + i, EXAMPLE);
+        const bool is_answer = is_hex(bench.bytes + i, ANSWER_2);
         if (i != 0)
-            assert_true(fathom_elapsed_us(s->bench.end_us[i], s->bench.end_us[i - 1]) >=
+            assert_true(fathom_elapsed_us(bench.end_us[i], bench.end_us[i - 1]) >=
                         SILENCE_US + CHARACTER_US - 1);
         frames += is_frame;
         answers += is_answer;
         i += FRAME;
     }
     /* one that collides with the request reaches the host garbled, and the request does not reach the device */
-    assert_int_equal(i, s->bench.heard);
-    if (s->bench.line.counters.collisions == 0) {
-        assert_int_equal((frames + answers) * FRAME, s->bench.heard);
-        assert_int_equal(answers, s->hps.device.counters.answered);
+    assert_int_equal(i, bench.heard);
+    if (bench.line.counters.collisions == 0) {
+        assert_int_equal((frames + answers) * FRAME, bench.heard);
+        assert_int_equal(answers, bench.hps.device.counters.answered);
     }
     return answers != 0;
 }
@@ -103,15 +76,14 @@ static bool asked_at(stage_t *s, uint32_t at_us)
 TEST(it_answers_while_it_sends_by_itself)
 {
     uint32_t answered = 0, beside = 0, collided = 0, tried = 0;
-    stage_t s;
     /* the request lasts 4.6 ms, the answer begins 4.2 to 4.5 ms behind it, and frames come at 100 and 200 ms */
     for (uint32_t at_us = 80 * MS; at_us < 120 * MS; at_us += 250) {
-        const bool came = asked_at(&s, at_us);
+        const bool came = asked_at(at_us);
         tried++;
         answered += came;
-        beside += came && s.bench.heard == 2 * FRAME;
-        collided += s.bench.line.counters.collisions != 0;
-        assert_true(came || s.hps.device.counters.unheard + s.hps.device.counters.torn != 0);
+        beside += came && bench.heard == 2 * FRAME;
+        collided += bench.line.counters.collisions != 0;
+        assert_true(came || bench.hps.device.counters.unheard + bench.hps.device.counters.torn != 0);
     }
     assert_int_equal(tried, 160);
     assert_true(answered > 100);
@@ -123,120 +95,96 @@ TEST(it_answers_while_it_sends_by_itself)
 
 TEST(a_measurement_that_is_asked_for_is_not_sent_unasked_as_well)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
-    bench_wait(&s.bench, 98 * MS); /* the request ends at 102.6 ms, when a frame is on the wire */
-    bench_wait(&s.bench, 11 * MS);
-    EXPECT(&s.bench, EXAMPLE);
-    const uint32_t end_us = ASK(&s.bench, 30 * MS, MEASURE); /* 109 to 113.6 ms; the next is ready at 118.5 */
-    EXPECT(&s.bench, EXAMPLE);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 118519 - 113584 + CHARACTER_US - 1,
-                118519 - 113584 + CHARACTER_US + 1);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
+    wait_ms(98); /* the request ends at 102.6 ms, when a frame is on the wire */
+    hear(11, EXAMPLE);
+    talk(MEASURE, 30, EXAMPLE); /* 109 to 113.6 ms; the next is ready at 118.5 */
+    ASSERT_ANSWERED_IN(118519 - 113584 + CHARACTER_US - 1, 118519 - 113584 + CHARACTER_US + 1);
 }
 
 TEST(without_continuous_measuring_it_is_silent)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .no_auto_output = true});
-    bench_wait(&s.bench, 1000 * MS);
-    EXPECT_SILENCE(&s.bench);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x12, 0x00, 0xFF, 0x69, 0x8F);
-    EXPECT(&s.bench, 0x01, 0x06, 0x00, 0x12, 0x00, 0xFF, 0x69, 0x8F);
-    bench_wait(&s.bench, 1000 * MS);
-    EXPECT_SILENCE(&s.bench);
-    fathom_sim_power_cycle(&s.bench.line, &s.hps.device, 0, s.bench.now_us); /* from the next power-on */
-    bench_wait(&s.bench, 250 * MS);
-    EXPECT(&s.bench, EXAMPLE, EXAMPLE);
-    ASK(&s.bench, 20 * MS, 0x01, 0x06, 0x00, 0x12, 0x00, 0x00, 0x29, 0xCF);
-    bench_forget(&s.bench);
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, EXAMPLE);
-    fathom_sim_power_cycle(&s.bench.line, &s.hps.device, 0, s.bench.now_us);
-    bench_wait(&s.bench, 1000 * MS);
-    EXPECT_SILENCE(&s.bench);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .no_auto_output = true});
+    hear(1000, "");
+    echoed("01 06 00 12 00 FF 69 8F", 30);
+    hear(1000, "");
+    cycle_power(0, 0); /* from the next power-on */
+    hear(250, EXAMPLE EXAMPLE);
+    ask("01 06 00 12 00 00 29 CF", 20);
+    forget();
+    hear(100, EXAMPLE);
+    cycle_power(0, 0);
+    hear(1000, "");
 }
 
 TEST(a_frame_between_a_new_rate_and_its_acknowledgement_has_the_old_one)
 {
     uint32_t between = 0;
-    stage_t s;
     for (uint32_t at_us = 90 * MS; at_us < 95300; at_us += 100) {
-        set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
-        bench_wait(&s.bench, at_us);
-        ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x11, 0x00, 0x03, 0x99, 0xCE);
-        if (s.bench.bytes[1] ==
-            0x06) { /* the acknowledgement came first: then the frame is at the new rate */
-            assert_memory_equal(s.bench.bytes, ((uint8_t[]){0x01, 0x06, 0x00, 0x11, 0x00, 0x03, 0x99, 0xCE}),
-                                8);
-            assert_memory_not_equal(s.bench.bytes + 8, ((uint8_t[]){EXAMPLE}), 2);
+        set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
+        wait_us(at_us);
+        ask("01 06 00 11 00 03 99 CE", 30);
+        if (bench.bytes[1] == 0x06) { /* the acknowledgement came first: then the frame is at the new rate */
+            assert_true(is_hex(bench.bytes, "01 06 00 11 00 03 99 CE"));
+            assert_false(is_hex(bench.bytes + 8, "01 03"));
             continue;
         }
         between++;
-        EXPECT(&s.bench, EXAMPLE, 0x01, 0x06, 0x00, 0x11, 0x00, 0x03, 0x99, 0xCE);
-        bench_wait(&s.bench, 100 * MS);
-        assert_int_not_equal(s.bench.bytes[0], 0x01); /* garbled: it is at 115200 */
+        expect(EXAMPLE "01 06 00 11 00 03 99 CE");
+        wait_ms(100);
+        assert_int_not_equal(bench.bytes[0], 0x01); /* garbled: it is at 115200 */
     }
     assert_true(between > 10);
 }
 
 TEST(a_fault_sends_one_more_of_them_though_nobody_has_asked_yet)
 {
-    fathom_sim_fault_t fault;
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
-    fathom_sim_fault_init(&fault, 1);
-    assert_non_null(fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_UNASKED, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
-    fathom_sim_fault_attach(&fault, &s.bench.line, &s.hps.device);
-    assert_true(fathom_sim_fault_applies(FATHOM_SIM_FAULT_EXCEPTION, &s.hps.device));
-    bench_wait(&s.bench, 350 * MS);
-    EXPECT(&s.bench, EXAMPLE, EXAMPLE, EXAMPLE, EXAMPLE);
-    assert_int_equal(fault.counters[FATHOM_SIM_FAULT_UNASKED], 1);
-    assert_int_equal(fault.frames, 3);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
+    set_faults(1);
+    FAULT(UNASKED, ALWAYS, 2);
+    assert_true(fathom_sim_fault_applies(FATHOM_SIM_FAULT_EXCEPTION, &bench.hps.device));
+    hear(350, EXAMPLE EXAMPLE EXAMPLE EXAMPLE);
+    assert_int_equal(bench.fault.counters[FATHOM_SIM_FAULT_UNASKED], 1);
+    assert_int_equal(bench.fault.frames, 3);
 }
 
 /* ---- warm-up: "the sensor will not output measurement data" (#7) ---- */
 
 TEST(the_warm_up_is_silence_an_exception_or_the_abnormal_packet)
 {
-    stage_t s;
     for (uint8_t says = 0; says <= FATHOM_SIM_HPS167S_ABNORMAL; says++) {
-        set(&s, (fathom_sim_hps167s_config_t){.warm_up_s = 5, .warm_up_says = says});
+        set_hps(2083, (hps_config_t){.warm_up_s = 5, .warm_up_says = says});
         for (int i = 0; i < 2; i++) {
-            ASK(&s.bench, 30 * MS, MEASURE);
-            if (says == FATHOM_SIM_HPS167S_SILENCE) EXPECT_SILENCE(&s.bench);
-            if (says == FATHOM_SIM_HPS167S_EXCEPTION) EXPECT(&s.bench, EXCEPTION);
-            if (says == FATHOM_SIM_HPS167S_ABNORMAL) EXPECT(&s.bench, ABNORMAL);
-            ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xCB); /* the rest is answered */
-            EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x4D, 0x78, 0x71);
-            bench_wait(&s.bench, 4700 * MS);
+            ask(MEASURE, 30);
+            if (says == FATHOM_SIM_HPS167S_SILENCE) expect("");
+            if (says == FATHOM_SIM_HPS167S_EXCEPTION) expect(EXCEPTION);
+            if (says == FATHOM_SIM_HPS167S_ABNORMAL) expect(ABNORMAL);
+            talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71"); /* the rest is answered */
+            wait_ms(4700);
         }
-        assert_int_equal(s.hps.device.counters.measurements, 0);
-        bench_wait(&s.bench, 200 * MS);
-        ASK(&s.bench, 30 * MS, MEASURE);
-        EXPECT(&s.bench, EXAMPLE);
-        fathom_sim_power_cycle(&s.bench.line, &s.hps.device, 100 * MS, s.bench.now_us);
-        bench_wait(&s.bench, 5000 * MS); /* 4.9 s after power came: it is kept */
-        ASK(&s.bench, 30 * MS, MEASURE);
-        assert_int_equal(s.hps.device.counters.measurements, 1);
-        bench_wait(&s.bench, 100 * MS);
-        bench_forget(&s.bench);
-        ASK(&s.bench, 30 * MS, MEASURE);
-        EXPECT(&s.bench, EXAMPLE);
+        COUNTED(.measurements = NONE);
+        wait_ms(200);
+        talk(MEASURE, 30, EXAMPLE);
+        fathom_sim_power_cycle(&bench.line, &bench.hps.device, 100 * MS, bench.now_us);
+        wait_ms(5000); /* 4.9 s after power came: it is kept */
+        ask(MEASURE, 30);
+        COUNTED(.measurements = 1);
+        wait_ms(100);
+        forget();
+        talk(MEASURE, 30, EXAMPLE);
     }
 }
 
 TEST(unasked_frames_wait_for_the_end_of_the_warm_up_or_are_abnormal_till_then)
 {
-    stage_t s;
     for (uint8_t says = 0; says <= FATHOM_SIM_HPS167S_ABNORMAL; says++) {
-        set(&s, (fathom_sim_hps167s_config_t){.warm_up_s = 1, .warm_up_says = says, .unasked_us = 300 * MS});
-        bench_wait(&s.bench, 1100 * MS);
+        set_hps(2083, (hps_config_t){.warm_up_s = 1, .warm_up_says = says, .unasked_us = 300 * MS});
+        wait_ms(1100);
         if (says == FATHOM_SIM_HPS167S_ABNORMAL)
-            EXPECT(&s.bench, ABNORMAL, ABNORMAL, ABNORMAL);
+            expect(ABNORMAL ABNORMAL ABNORMAL);
         else
-            EXPECT_SILENCE(&s.bench);
-        bench_wait(&s.bench, 200 * MS);
-        EXPECT(&s.bench, EXAMPLE);
+            expect("");
+        hear(200, EXAMPLE);
     }
 }
 
@@ -244,77 +192,65 @@ TEST(unasked_frames_wait_for_the_end_of_the_warm_up_or_are_abnormal_till_then)
 
 TEST(without_data_it_is_silent_for_the_reconnect_time_and_abnormal_then)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS, .reconnect_ms = 360});
-    bench_wait(&s.bench, 150 * MS);
-    EXPECT(&s.bench, EXAMPLE);
-    fathom_sim_hps167s_lose(&s.hps, true, s.bench.now_us); /* until 510 ms */
-    bench_wait(&s.bench, 400 * MS);
-    EXPECT_SILENCE(&s.bench);
-    bench_wait(&s.bench, 200 * MS); /* 600 and 700 ms */
-    EXPECT(&s.bench, ABNORMAL, ABNORMAL);
-    assert_int_equal(s.hps.device.counters.measurements, 1);
-    fathom_sim_hps167s_lose(&s.hps, false, s.bench.now_us);
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, EXAMPLE);
-    fathom_sim_hps167s_lose(&s.hps, true, s.bench.now_us); /* for less than the reconnect time: no harm */
-    bench_wait(&s.bench, 200 * MS);
-    fathom_sim_hps167s_lose(&s.hps, false, s.bench.now_us);
-    EXPECT_SILENCE(&s.bench);
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, EXAMPLE);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .reconnect_ms = 360});
+    hear(150, EXAMPLE);
+    lose(true); /* until 510 ms */
+    hear(400, "");
+    hear(200, ABNORMAL ABNORMAL); /* 600 and 700 ms */
+    COUNTED(.measurements = 1);
+    lose(false);
+    hear(100, EXAMPLE);
+    lose(true); /* for less than the reconnect time: no harm */
+    wait_ms(200);
+    lose(false);
+    expect("");
+    hear(100, EXAMPLE);
 }
 
 TEST(a_request_without_data_waits_for_the_reconnect_time)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.reconnect_ms = 360});
-    bench_wait(&s.bench, 150 * MS);
-    const uint32_t lost_us = s.bench.now_us;
-    fathom_sim_hps167s_lose(&s.hps, true, lost_us);
-    bench_wait(&s.bench, 100 * MS);
-    ASK(&s.bench, 300 * MS, MEASURE);
-    ASSERT_SPAN(s.bench.end_us[0], lost_us, 360 * MS + CHARACTER_US - 1, 360 * MS + CHARACTER_US + 1);
-    EXPECT(&s.bench, ABNORMAL);
-    uint32_t end_us = ASK(&s.bench, 30 * MS, MEASURE);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 2187 + CHARACTER_US - 1, 2500 + CHARACTER_US);
-    EXPECT(&s.bench, ABNORMAL);
-    ASK(&s.bench, 30 * MS, READ_2); /* the interface itself is well; 360 is 0x168 */
-    EXPECT(&s.bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x01, 0x68, 0x01, 0x6A, 0x1C);
+    set_hps(2083, (hps_config_t){.reconnect_ms = 360});
+    wait_ms(150);
+    const uint32_t lost_us = bench.now_us;
+    lose(true);
+    wait_ms(100);
+    ask(MEASURE, 300);
+    ASSERT_SPAN(bench.end_us[0], lost_us, 360 * MS + CHARACTER_US - 1, 360 * MS + CHARACTER_US + 1);
+    expect(ABNORMAL);
+    ask(MEASURE, 30);
+    ASSERT_ANSWERED_IN(2187 + CHARACTER_US - 1, 2500 + CHARACTER_US);
+    expect(ABNORMAL);
+    talk(READ_2, 30,
+         "01 03 08 FF FF 00 00 00 01 68 01 6A 1C"); /* the interface itself is well; 360 is 0x168 */
     /* power begins the time anew */
-    fathom_sim_power_cycle(&s.bench.line, &s.hps.device, 0, s.bench.now_us);
-    const uint32_t power_us = s.bench.now_us;
-    ASK(&s.bench, 400 * MS, MEASURE);
-    ASSERT_SPAN(s.bench.end_us[0], power_us, 360 * MS + CHARACTER_US - 1, 360 * MS + CHARACTER_US + 1);
-    EXPECT(&s.bench, ABNORMAL);
-    fathom_sim_hps167s_lose(&s.hps, false, s.bench.now_us);
-    ASK(&s.bench, 30 * MS, MEASURE);
-    EXPECT(&s.bench, EXAMPLE);
+    cycle_power(0, 0);
+    const uint32_t power_us = bench.now_us;
+    ask(MEASURE, 400);
+    ASSERT_SPAN(bench.end_us[0], power_us, 360 * MS + CHARACTER_US - 1, 360 * MS + CHARACTER_US + 1);
+    expect(ABNORMAL);
+    lose(false);
+    talk(MEASURE, 30, EXAMPLE);
 }
 
 TEST(a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.unasked_us = 100 * MS});
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0xFF, 0xFF, 0xFF, 0xFC, 0xB0,
-        0x22); /* the largest multiple of 18 */
-    EXPECT(&s.bench, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02);
-    fathom_sim_hps167s_lose(&s.hps, true, s.bench.now_us);
-    bench_wait(&s.bench, UINT32_C(1790000000));
-    EXPECT_SILENCE(&s.bench);
-    bench_wait(&s.bench, UINT32_C(11000000));
-    assert_true(s.bench.heard >= FRAME);
-    bench_forget(&s.bench);
-    bench_wait(&s.bench, 100 * MS);
-    EXPECT(&s.bench, ABNORMAL);
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
+    talk("01 10 00 20 00 02 04 FF FF FF FC B0 22", 30,
+         "01 10 00 20 00 02 40 02"); /* the largest multiple of 18 */
+    lose(true);
+    wait_us(UINT32_C(1790000000));
+    expect("");
+    wait_us(UINT32_C(11000000));
+    assert_true(bench.heard >= FRAME);
+    forget();
+    hear(100, ABNORMAL);
 }
 
 TEST(without_data_a_single_measurement_is_abnormal_after_its_time)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.no_auto_output = true});
-    fathom_sim_hps167s_lose(&s.hps, true, s.bench.now_us);
-    const uint32_t end_us = ASK(&s.bench, 50 * MS, MEASURE);
-    ASSERT_SPAN(s.bench.end_us[0], end_us, 18519 + CHARACTER_US - 1, 18519 + CHARACTER_US);
-    EXPECT(&s.bench, ABNORMAL);
+    set_hps(2083, (hps_config_t){.no_auto_output = true});
+    lose(true);
+    ask(MEASURE, 50);
+    ASSERT_ANSWERED_IN(18519 + CHARACTER_US - 1, 18519 + CHARACTER_US);
+    expect(ABNORMAL);
 }

@@ -1,51 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* What the HPS-167S does not take of #6 to #15, what all of them do, and what it counts. */
-#include "bench.h"
-#include "sim/hps167s.h"
-#include "sim/scene.h"
+#include "talk.h"
 
-enum { MS = 1000 };
-
-typedef struct {
-    bench_t bench;
-    fathom_sim_fixed_t fixed;
-    fathom_sim_hps167s_t hps;
-} stage_t;
-
-static void set(stage_t *stage, fathom_sim_hps167s_config_t config)
-{
-    bench_init(&stage->bench, &bench_19200);
-    stage->fixed.value[0] = 2083;
-    config.scene = fathom_sim_fixed(&stage->fixed);
-    fathom_sim_hps167s_init(&stage->hps, &config);
-    bench_attach(&stage->bench, &stage->hps.device);
-}
-
-#define DEFAULTS ((fathom_sim_hps167s_config_t){0})
-
-/* Appends the CRC, by bits (MODBUS over Serial Line 6.2.2), to the `length` bytes of a request and says it. */
-static void ask_sealed(stage_t *s, uint8_t *bytes, size_t length)
-{
-    uint16_t crc = 0xFFFF;
-    for (size_t i = 0; i < 8 * length; i++) {
-        const uint16_t bit = (uint16_t)((bytes[i / 8] >> (i % 8)) & 1);
-        crc = ((crc ^ bit) & 1) != 0 ? (uint16_t)((crc >> 1) ^ 0xA001) : (uint16_t)(crc >> 1);
-    }
-    bytes[length] = (uint8_t)crc;
-    bytes[length + 1] = (uint8_t)(crc >> 8);
-    bench_ask(&s->bench, bytes, length + 2, 50 * MS);
-}
+#define DEFAULTS ((hps_config_t){0})
 
 /* #2 says that all is as it was; its answer has 13 bytes at the address that was. */
-static void expect_factory(stage_t *s)
+static void expect_factory(void)
 {
-    ASK(&s->bench, 30 * MS, 0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9);
-    EXPECT(&s->bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00, 0xB4, 0x01, 0x63, 0x1C);
-    assert_int_equal(s->hps.sensor.offset_mm, 0);
-    assert_int_equal(s->hps.sensor.filter, 0);
-    assert_int_equal(s->hps.device.counters.writes, 0);
-    assert_int_equal(s->hps.device.counters.flash_writes, 0);
-    assert_int_equal(s->hps.device.counters.resets, 0);
+    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 00 00 00 00 B4 01 63 1C");
+    assert_int_equal(bench.hps.sensor.offset_mm, 0);
+    assert_int_equal(bench.hps.sensor.filter, 0);
+    COUNTED(.writes = NONE, .flash_writes = NONE, .resets = NONE);
 }
 
 static const suite_t suite = {BENCH_ROUNDS};
@@ -59,207 +24,163 @@ TEST(a_value_that_a_command_does_not_have_is_exception_3)
                  {0x12, 1},     {0x12, 0xFE},  {0x12, 0xFF00}, {0x12, 0x01FF}, {0x13, 1},   {0x13, 0xFFFF},
                  {0x13, 0x100}, {0x15, 1},     {0x15, 0xFFFF}, {0x15, 0xFF00}};
     enum { WRONG = sizeof wrong / sizeof wrong[0] };
-    stage_t s;
-    set(&s, DEFAULTS);
+    set_hps(2083, DEFAULTS);
     for (size_t i = 0; i < WRONG; i++) {
         uint8_t bytes[8] = {
             0x01, 0x06, 0x00, wrong[i].address, (uint8_t)(wrong[i].value >> 8), (uint8_t)wrong[i].value};
-        ask_sealed(&s, bytes, 6);
-        EXPECT(&s.bench, 0x01, 0x86, 0x03, 0x02, 0x61);
+        ask_sealed(bytes, 6, 50);
+        expect("01 86 03 02 61");
     }
-    assert_int_equal(s.hps.device.counters.exceptions, WRONG);
-    assert_int_equal(s.hps.device.counters.writes_refused, WRONG);
-    expect_factory(&s);
+    assert_int_equal(bench.hps.device.counters.exceptions, WRONG);
+    assert_int_equal(bench.hps.device.counters.writes_refused, WRONG);
+    expect_factory();
 }
 
 TEST(which_exception_a_wrong_value_is_is_an_option)
 {
-    stage_t s;
-    set(&s, (fathom_sim_hps167s_config_t){.wrong_value = 4});
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x10, 0x00, 0x21, 0x48, 0x17);
-    EXPECT(&s.bench, 0x01, 0x86, 0x04, 0x43, 0xA3);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x11, 0x31, 0xBB);
-    EXPECT(&s.bench, 0x01, 0x90, 0x04, 0x4D, 0xC3);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x17, 0x00, 0x00, 0x39, 0xCE); /* no such address: as ever */
-    EXPECT(&s.bench, 0x01, 0x86, 0x02, 0xC3, 0xA1);
-    expect_factory(&s);
+    set_hps(2083, (hps_config_t){.wrong_value = 4});
+    talk("01 06 00 10 00 21 48 17", 30, "01 86 04 43 A3");
+    talk("01 10 00 20 00 02 04 00 00 00 11 31 BB", 30, "01 90 04 4D C3");
+    talk("01 06 00 17 00 00 39 CE", 30, "01 86 02 C3 A1"); /* no such address: as ever */
+    expect_factory();
 }
 
 TEST(a_reconnect_time_is_a_multiple_of_18_in_two_registers)
 {
-    stage_t s;
-    set(&s, DEFAULTS);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x69, 0x30,
-        0x09); /* 361 */
-    EXPECT(&s.bench, 0x01, 0x90, 0x03, 0x0C, 0x01);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x71, 0x30,
-        0x03); /* 369, of 9 */
-    EXPECT(&s.bench, 0x01, 0x90, 0x03, 0x0C, 0x01);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0xFF, 0xFF, 0xFF, 0xFF, 0xF0,
-        0x23); /* 2^32 - 1 is 3 more than a multiple */
-    EXPECT(&s.bench, 0x01, 0x90, 0x03, 0x0C, 0x01);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x01, 0x02, 0x01, 0x68, 0xA1,
-        0x4E); /* another length */
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 0x00, 0x00, 0x01, 0x68, 0x00, 0x00, 0x67,
-        0xCA);
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x04, 0x00, 0x00, 0x01, 0x68, 0xF0,
-        0x18); /* its count and its bytes disagree */
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x06, 0x00, 0x00, 0x01, 0x68, 0x00, 0x00, 0xA6,
-        0x06);
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x01, 0x02, 0x04, 0x00, 0x00, 0x01, 0x68, 0xE1,
-        0x09); /* 258 registers, not 2 */
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    assert_int_equal(s.hps.device.counters.writes_refused, 8);
-    expect_factory(&s);
-    set(&s, (fathom_sim_hps167s_config_t){.wrong_length = 3});
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x01, 0x02, 0x01, 0x68, 0xA1, 0x4E);
-    EXPECT(&s.bench, 0x01, 0x90, 0x03, 0x0C, 0x01);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x21, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x68, 0x30,
-        0x05); /* another address is no wrong length */
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    expect_factory(&s);
+    set_hps(2083, DEFAULTS);
+    talk("01 10 00 20 00 02 04 00 00 01 69 30 09", 30, "01 90 03 0C 01"); /* 361 */
+    talk("01 10 00 20 00 02 04 00 00 01 71 30 03", 30, "01 90 03 0C 01"); /* 369, of 9 */
+    talk("01 10 00 20 00 02 04 FF FF FF FF F0 23", 30,
+         "01 90 03 0C 01");                                         /* 2^32 - 1 is 3 more than a multiple */
+    talk("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 02 CD C1"); /* another length */
+    talk("01 10 00 20 00 03 06 00 00 01 68 00 00 67 CA", 30, "01 90 02 CD C1");
+    talk("01 10 00 20 00 03 04 00 00 01 68 F0 18", 30,
+         "01 90 02 CD C1"); /* its count and its bytes disagree */
+    talk("01 10 00 20 00 02 06 00 00 01 68 00 00 A6 06", 30, "01 90 02 CD C1");
+    talk("01 10 00 20 01 02 04 00 00 01 68 E1 09", 30, "01 90 02 CD C1"); /* 258 registers, not 2 */
+    COUNTED(.writes_refused = 8);
+    expect_factory();
+    set_hps(2083, (hps_config_t){.wrong_length = 3});
+    talk("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 03 0C 01");
+    talk("01 10 00 21 00 02 04 00 00 01 68 30 05", 30,
+         "01 90 02 CD C1"); /* another address is no wrong length */
+    expect_factory();
 }
 
 /* Every address 0..0x3F, with a value that all take; the commands of each function stand in `mine`. */
 TEST(function_6_has_the_addresses_of_7_to_14_and_no_other)
 {
-    stage_t s;
     uint32_t obeyed = 0;
     for (uint8_t address = 0; address < 0x40; address++) {
         const bool mine = address == 0x0A || (address >= 0x11 && address <= 0x16);
         uint8_t bytes[8] = {0x01, 0x06, 0x00, address, 0x00, 0x00};
         if (address == 0x10) continue; /* 0 is no address: above */
-        set(&s, DEFAULTS);
-        ask_sealed(&s, bytes, 6);
+        set_hps(2083, DEFAULTS);
+        ask_sealed(bytes, 6, 50);
         if (mine) {
-            bench_expect(&s.bench, bytes, 8);
+            heard_bytes(bytes, 8);
             obeyed++;
         } else {
-            EXPECT(&s.bench, 0x01, 0x86, 0x02, 0xC3, 0xA1);
-            expect_factory(&s);
+            expect("01 86 02 C3 A1");
+            expect_factory();
         }
-        assert_int_equal(s.hps.device.counters.writes_refused, mine ? 0 : 1);
-        assert_int_equal(s.hps.device.counters.resets_refused, address == 0x09 ? 1 : 0);
+        assert_int_equal(bench.hps.device.counters.writes_refused, mine ? 0 : 1);
+        assert_int_equal(bench.hps.device.counters.resets_refused, address == 0x09 ? 1 : 0);
     }
     assert_int_equal(obeyed, 7);
 }
 
 TEST(function_16_has_the_address_of_15_and_no_other)
 {
-    stage_t s;
-    set(&s, DEFAULTS);
+    set_hps(2083, DEFAULTS);
     for (uint8_t address = 0; address < 0x40; address++) {
         uint8_t bytes[13] = {0x01, 0x10, 0x00, address, 0x00, 0x01, 0x02, 0x00, 0x00};
         if (address == 0x20) continue;
-        ask_sealed(&s, bytes, 9);
-        EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
+        ask_sealed(bytes, 9, 50);
+        expect("01 90 02 CD C1");
     }
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x01, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x68, 0xFC, 0x59);
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    assert_int_equal(s.hps.device.counters.resets_refused, 1);
-    assert_int_equal(s.hps.device.counters.writes_refused, 64);
-    expect_factory(&s);
+    talk("01 10 01 20 00 02 04 00 00 01 68 FC 59", 30, "01 90 02 CD C1");
+    COUNTED(.resets_refused = 1, .writes_refused = 64);
+    expect_factory();
 }
 
 TEST(what_is_written_is_not_to_be_read)
 {
-    stage_t s;
-    set(&s, DEFAULTS);
+    set_hps(2083, DEFAULTS);
     for (uint8_t address = 0x0A; address <= 0x20; address++) {
         uint8_t bytes[8] = {0x01, 0x03, 0x00, address, 0x00, 0x01};
-        ask_sealed(&s, bytes, 6);
-        EXPECT(&s.bench, 0x01, 0x83, 0x02, 0xC0, 0xF1);
+        ask_sealed(bytes, 6, 50);
+        expect("01 83 02 C0 F1");
     }
-    assert_int_equal(s.hps.device.counters.writes_refused, 0);
-    expect_factory(&s);
+    COUNTED(.writes_refused = NONE);
+    expect_factory();
 }
 
 TEST(the_longest_write_of_many_is_refused_and_does_no_harm)
 {
     uint8_t bytes[255] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x7B, 246}; /* 123 registers */
-    stage_t s;
-    set(&s, DEFAULTS);
-    ask_sealed(&s, bytes, 253);
-    EXPECT(&s.bench, 0x01, 0x90, 0x02, 0xCD, 0xC1);
-    expect_factory(&s);
+    set_hps(2083, DEFAULTS);
+    ask_sealed(bytes, 253, 50);
+    expect("01 90 02 CD C1");
+    expect_factory();
 }
 
 TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
 {
     fathom_sim_hps167s_t other;
-    stage_t s;
-    set(&s, DEFAULTS);
-    fathom_sim_hps167s_init(&other, &(fathom_sim_hps167s_config_t){.unit = 2, .seed = 9});
-    bench_attach(&s.bench, &other.device);
-    ASK(&s.bench, 30 * MS, 0x00, 0x06, 0x00, 0x0A, 0x00, 0x07, 0xE9, 0xDB);
-    ASK(&s.bench, 30 * MS, 0x00, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x48, 0x6B);
-    ASK(&s.bench, 30 * MS, 0x00, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x68, 0xF5, 0x35);
-    ASK(&s.bench, 30 * MS, 0x00, 0x06, 0x00, 0x12, 0x00, 0x01, 0xE9, 0xDE); /* refused in silence */
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.hps.warm_up_s, 7);
+    set_hps(2083, DEFAULTS);
+    fathom_sim_hps167s_init(&other, &(hps_config_t){.unit = 2, .seed = 9});
+    attach(&other.device);
+    ask("00 06 00 0A 00 07 E9 DB", 30);
+    ask("00 06 00 14 FF F1 48 6B", 30);
+    ask("00 10 00 20 00 02 04 00 00 01 68 F5 35", 30);
+    talk("00 06 00 12 00 01 E9 DE", 30, ""); /* refused in silence */
+    assert_int_equal(bench.hps.warm_up_s, 7);
     assert_int_equal(other.warm_up_s, 7);
-    assert_int_equal(s.hps.sensor.offset_mm, -15);
+    assert_int_equal(bench.hps.sensor.offset_mm, -15);
     assert_int_equal(other.sensor.offset_mm, -15);
-    assert_int_equal(s.hps.reconnect_ms, 360);
+    assert_int_equal(bench.hps.reconnect_ms, 360);
     assert_int_equal(other.reconnect_ms, 360);
     assert_true(other.auto_output);
-    assert_int_equal(other.device.counters.writes, 3);
-    assert_int_equal(other.device.counters.writes_refused, 1);
-    ASK(&s.bench, 30 * MS, 0x00, 0x06, 0x00, 0x11, 0x00, 0x03, 0x98, 0x1F); /* and the rate, at once */
-    ASK(&s.bench, 30 * MS, 0x02, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xF8);
-    EXPECT_SILENCE(&s.bench);
-    fathom_sim_set_line(&s.bench.line, &(fathom_line_settings_t){115200, FATHOM_PARITY_EVEN, 1},
-                        s.bench.now_us);
-    ASK(&s.bench, 30 * MS, 0x02, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xF8);
-    EXPECT(&s.bench, 0x02, 0x03, 0x02, 0x00, 0x4D, 0x3C, 0x71);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x04, 0x00, 0x01, 0xC5, 0xCB);
-    EXPECT(&s.bench, 0x01, 0x03, 0x02, 0x00, 0x4D, 0x78, 0x71);
+    COUNTED_BY(&other.device, .writes = 3, .writes_refused = 1);
+    ask("00 06 00 11 00 03 98 1F", 30); /* and the rate, at once */
+    talk("02 03 00 04 00 01 C5 F8", 30, "");
+    at_rate(115200, FATHOM_PARITY_EVEN);
+    talk("02 03 00 04 00 01 C5 F8", 30, "02 03 02 00 4D 3C 71");
+    talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
     assert_int_equal(other.device.counters.answered, 1);
 }
 
 TEST(flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there)
 {
-    stage_t s;
-    set(&s, DEFAULTS);
+    set_hps(2083, DEFAULTS);
     for (uint32_t i = 1; i <= 3; i++) {
-        ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x05, 0x69, 0xCB);
-        assert_int_equal(s.hps.device.counters.flash_writes, i);
+        ask("01 06 00 0A 00 05 69 CB", 30);
+        assert_int_equal(bench.hps.device.counters.flash_writes, i);
     }
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0xB4, 0xF1,
-        0xC0); /* 180, which it was */
-    assert_int_equal(s.hps.device.counters.flash_writes, 4);
-    assert_int_equal(s.hps.device.counters.writes, 4);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x09, 0x00, 0x01, 0x54, 0x08); /* #6 is a read */
-    assert_int_equal(s.hps.device.counters.flash_writes, 5);
-    assert_int_equal(s.hps.device.counters.writes, 4);
+    ask("01 10 00 20 00 02 04 00 00 00 B4 F1 C0", 30); /* 180, which it was */
+    COUNTED(.flash_writes = 4, .writes = 4);
+    ask("01 03 00 09 00 01 54 08", 30); /* #6 is a read */
+    COUNTED(.flash_writes = 5, .writes = 4);
 }
 
 TEST(the_reset_of_the_interface_brings_back_all_but_12_and_14)
 {
-    stage_t s;
-    set(&s, DEFAULTS);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x0A, 0x00, 0x07, 0xE8, 0x0A);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x12, 0x00, 0x00, 0x29, 0xCF);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x13, 0x00, 0x00, 0x78, 0x0F);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x14, 0xFF, 0xF1, 0x49, 0xBA);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x16, 0x00, 0x32, 0xE9, 0xDB);
-    ASK(&s.bench, 30 * MS, 0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x01, 0x68, 0xF1, 0xC9);
-    ASK(&s.bench, 30 * MS, 0x01, 0x06, 0x00, 0x10, 0x00, 0x09, 0x48, 0x09);
-    bench_forget(&s.bench);
-    ASK(&s.bench, 30 * MS, 0x09, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE4, 0x81);
-    EXPECT(&s.bench, 0x09, 0x03, 0x08, 0x00, 0x00, 0x07, 0x00, 0x00, 0x01, 0x68, 0x01, 0x01, 0xC0);
-    ASK(&s.bench, 30 * MS, 0x09, 0x03, 0x00, 0x09, 0x00, 0x01, 0x55, 0x40);
-    EXPECT(&s.bench, 0x09, 0x03, 0x02, 0x00, 0x01, 0x98, 0x45);
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9);
-    EXPECT(&s.bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x05, 0x00, 0x00, 0x00, 0xB4, 0x01, 0x63, 0x49);
-    assert_int_equal(s.hps.sensor.offset_mm, -15);
-    assert_int_equal(s.hps.sensor.filter, 50);
-    assert_int_equal(s.hps.device.counters.resets, 1);
-    fathom_sim_power_cycle(&s.bench.line, &s.hps.device, 0, s.bench.now_us); /* and it is kept */
-    ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x02, 0x00, 0x04, 0xE5, 0xC9);
-    EXPECT(&s.bench, 0x01, 0x03, 0x08, 0xFF, 0xFF, 0x05, 0x00, 0x00, 0x00, 0xB4, 0x01, 0x63, 0x49);
+    set_hps(2083, DEFAULTS);
+    ask("01 06 00 0A 00 07 E8 0A", 30);
+    ask("01 06 00 12 00 00 29 CF", 30);
+    ask("01 06 00 13 00 00 78 0F", 30);
+    ask("01 06 00 14 FF F1 49 BA", 30);
+    ask("01 06 00 16 00 32 E9 DB", 30);
+    ask("01 10 00 20 00 02 04 00 00 01 68 F1 C9", 30);
+    ask("01 06 00 10 00 09 48 09", 30);
+    forget();
+    talk("09 03 00 02 00 04 E4 81", 30, "09 03 08 00 00 07 00 00 01 68 01 01 C0");
+    talk("09 03 00 09 00 01 55 40", 30, "09 03 02 00 01 98 45");
+    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
+    assert_int_equal(bench.hps.sensor.offset_mm, -15);
+    assert_int_equal(bench.hps.sensor.filter, 50);
+    COUNTED(.resets = 1);
+    cycle_power(0, 0); /* and it is kept */
+    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
 }

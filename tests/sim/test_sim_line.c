@@ -1,33 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include "bench.h"
+#include "talk.h"
 
-#include <string.h>
-
-#include "sim/a05.h"
-#include "sim/a16.h"
-#include "sim/hps167s.h"
-#include "sim/scene.h"
-
-enum { MS = 1000 };
-
-typedef struct {
-    bench_t bench;
-    fathom_sim_fixed_t fixed;
-    fathom_sim_a16_t a16;
-} stage_t;
-
-static void set(stage_t *stage, uint8_t mode)
+static void set(uint8_t mode)
 {
-    fathom_sim_a16_config_t config = {.mode = mode, .linger_us = 1};
-    bench_init(&stage->bench, &bench_9600);
-    stage->fixed.value[0] = 751;
-    config.scene = fathom_sim_fixed(&stage->fixed);
-    fathom_sim_a16_init(&stage->a16, &config);
-    bench_attach(&stage->bench, &stage->a16.device);
+    bench_begin(&bench_9600, false);
+    bench.fixed = FIXED(751);
+    add_a16(mode, (a16_config_t){.linger_us = 1});
 }
 
-static const uint8_t ask_realtime[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36};
-#define ANSWER 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8
+#define REQUEST "01 03 01 01 00 01 D4 36" /* A16 6(4) example 2 */
+#define ANSWER  "01 03 02 02 EF F8 A8"
 
 static const suite_t suite = {BENCH_ROUNDS};
 
@@ -35,228 +17,200 @@ static const suite_t suite = {BENCH_ROUNDS};
 
 TEST(every_flipped_bit_is_met_with_silence)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
+    set(FATHOM_SIM_A16_MODBUS);
     for (size_t bit = 0; bit < 64; bit++) {
         uint8_t bytes[8];
-        memcpy(bytes, ask_realtime, 8);
+        from_hex(REQUEST, bytes, 8);
         bytes[bit / 8] = (uint8_t)(bytes[bit / 8] ^ (1u << (bit % 8)));
-        bench_ask(&s.bench, bytes, 8, 200 * MS);
+        ask_bytes(bytes, 8, 200 * MS);
     }
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.crc_errors, 64);
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    EXPECT(&s.bench, ANSWER);
+    expect("");
+    COUNTED(.crc_errors = 64);
+    talk(REQUEST, 200, ANSWER);
 }
 
 TEST(every_torn_off_request_is_met_with_silence)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    for (size_t length = 1; length < 8; length++) bench_ask(&s.bench, ask_realtime, length, 200 * MS);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.crc_errors, 7);
-    assert_int_equal(s.a16.device.counters.requests, 0);
+    set(FATHOM_SIM_A16_MODBUS);
+    uint8_t bytes[8];
+    from_hex(REQUEST, bytes, 8);
+    for (size_t length = 1; length < 8; length++) ask_bytes(bytes, length, 200 * MS);
+    expect("");
+    COUNTED(.crc_errors = 7, .requests = NONE);
 }
 
 TEST(garbage_of_any_length_is_met_with_silence)
 {
     uint8_t garbage[256];
     uint32_t random = 1;
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
+    set(FATHOM_SIM_A16_MODBUS);
     for (size_t length = 1; length <= 256; length++) {
         for (size_t i = 0; i < length; i++) {
             random = (uint32_t)(random * UINT32_C(1103515245) + 12345u);
             garbage[i] = (uint8_t)(random >> 16);
         }
-        bench_ask(&s.bench, garbage, length, 5 * MS);
+        ask_bytes(garbage, length, 5 * MS);
     }
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.crc_errors, 255);
-    assert_int_equal(s.a16.device.counters.torn, 1); /* 256 bytes are longer than any frame */
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    EXPECT(&s.bench, ANSWER);
+    expect("");
+    COUNTED(.crc_errors = 255, .torn = 1); /* 256 bytes are longer than any frame */
+    talk(REQUEST, 200, ANSWER);
 }
 
 TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    ASK(&s.bench, 200 * MS, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0x00, 0x36, 0x5F); /* 9 bytes */
-    ASK(&s.bench, 200 * MS, 0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8);             /* an answer, 7 bytes */
-    ASK(&s.bench, 200 * MS, 0x01, 0x83, 0x02, 0xC0, 0xF1);                         /* an exception */
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.unserved, 3);
-    assert_int_equal(s.a16.device.counters.measurements, 0);
+    set(FATHOM_SIM_A16_MODBUS);
+    ask("01 03 01 01 00 01 00 36 5F", 200); /* 9 bytes */
+    ask("01 03 02 02 EF F8 A8", 200);       /* an answer, 7 bytes */
+    talk("01 83 02 C0 F1", 200, "");        /* an exception */
+    COUNTED(.unserved = 3, .measurements = NONE);
 }
 
 TEST(the_crc_of_nothing_is_no_broadcast)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    ASK(&s.bench, 10 * MS, 0xFF, 0xFF);       /* the CRC of no bytes is FF FF */
-    ASK(&s.bench, 10 * MS, 0x01, 0x7E, 0x80); /* an address and its CRC */
-    assert_int_equal(s.a16.device.counters.crc_errors, 2);
-    assert_int_equal(s.a16.device.counters.requests, 0);
-    bench_wait(&s.bench, 1000 * MS);
-    assert_true(s.a16.device.counters.automatic >= 10);
+    set(FATHOM_SIM_A16_AUTO);
+    ask("FF FF", 10);    /* the CRC of no bytes is FF FF */
+    ask("01 7E 80", 10); /* an address and its CRC */
+    COUNTED(.crc_errors = 2, .requests = NONE);
+    wait_ms(1000);
+    assert_true(bench.a16.device.counters.automatic >= 10);
 }
 
 TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
+    set(FATHOM_SIM_A16_MODBUS);
     for (size_t first = 1; first < 8; first++) {
-        bench_ask(&s.bench, ask_realtime, first, 3600); /* t3.5 is 3645.8 us */
-        bench_ask(&s.bench, ask_realtime + first, 8 - first, 200 * MS);
-        EXPECT(&s.bench, ANSWER);
-        bench_ask(&s.bench, ask_realtime, first, 3700);
-        bench_ask(&s.bench, ask_realtime + first, 8 - first, 200 * MS);
-        EXPECT_SILENCE(&s.bench);
+        ask_in_two(REQUEST, first, 3600); /* t3.5 is 3645.8 us */
+        hear(200, ANSWER);
+        ask_in_two(REQUEST, first, 3700);
+        hear(200, "");
     }
-    assert_int_equal(s.a16.device.counters.crc_errors, 14);
+    COUNTED(.crc_errors = 14);
 }
 
 /* ---- half-duplex ---- */
 
 TEST(a_device_hears_nothing_while_it_serves_a_request)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    bench_ask(&s.bench, ask_realtime, 8, 20 * MS);
-    bench_ask(&s.bench, ask_realtime, 8, 20 * MS); /* it is measuring */
-    assert_int_equal(s.a16.device.counters.unheard, 8);
-    bench_wait(&s.bench, 500 * MS);
-    EXPECT(&s.bench, ANSWER); /* one */
-    assert_int_equal(s.a16.device.counters.requests, 1);
+    set(FATHOM_SIM_A16_MODBUS);
+    ask(REQUEST, 20);
+    ask(REQUEST, 20); /* it is measuring */
+    COUNTED(.unheard = 8);
+    hear(500, ANSWER); /* one */
+    COUNTED(.requests = 1);
 }
 
 TEST(a_frame_that_ends_before_the_answer_does_not_open_its_ears)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    s.bench.line.full_duplex = true;
-    bench_wait(&s.bench, 89 * MS); /* the request is known at 101 ms, in the frame of 100..104.2 */
-    bench_ask(&s.bench, ask_realtime, 8, 20 * MS);
-    assert_int_equal(s.bench.heard, 4);
-    assert_int_equal(s.a16.device.counters.requests, 1);
-    bench_ask(&s.bench, ask_realtime, 8, 20 * MS); /* before the answer */
-    assert_int_equal(s.a16.device.counters.unheard, 8);
-    bench_wait(&s.bench, 500 * MS);
-    EXPECT(&s.bench, 0xFF, 0x02, 0xEF, 0xF0, ANSWER);
-    assert_int_equal(s.a16.device.counters.requests, 1);
+    set(FATHOM_SIM_A16_AUTO);
+    bench.line.full_duplex = true;
+    wait_ms(89); /* the request is known at 101 ms, in the frame of 100..104.2 */
+    ask(REQUEST, 20);
+    assert_int_equal(bench.heard, 4);
+    COUNTED(.requests = 1);
+    ask(REQUEST, 20); /* before the answer */
+    COUNTED(.unheard = 8);
+    hear(500, "FF 02 EF F0" ANSWER);
+    COUNTED(.requests = 1);
 }
 
 TEST(a_request_that_begins_during_an_answer_is_lost_with_it)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    bench_ask(&s.bench, ask_realtime, 8, 5 * MS);
-    while (s.bench.heard < 3) bench_wait(&s.bench, 100);
-    bench_ask(&s.bench, ask_realtime, 8, 500 * MS);
-    assert_int_equal(s.bench.heard, 7);
-    assert_int_equal(s.a16.device.counters.requests, 1);
-    assert_true(s.a16.device.counters.unheard >= 3);
-    assert_true(s.a16.device.counters.unheard < 8); /* the rest was heard, and is no frame */
-    assert_int_equal(s.a16.device.counters.crc_errors + s.a16.device.counters.torn, 1);
-    assert_true(s.bench.line.counters.collisions >= 4);
-    assert_memory_not_equal(s.bench.bytes, ((const uint8_t[]){ANSWER}), 7); /* the host hears a mess */
+    set(FATHOM_SIM_A16_MODBUS);
+    ask(REQUEST, 5);
+    while (bench.heard < 3) wait_us(100);
+    ask(REQUEST, 500);
+    assert_int_equal(bench.heard, 7);
+    COUNTED(.requests = 1);
+    assert_true(bench.a16.device.counters.unheard >= 3);
+    assert_true(bench.a16.device.counters.unheard < 8); /* the rest was heard, and is no frame */
+    assert_int_equal(bench.a16.device.counters.crc_errors + bench.a16.device.counters.torn, 1);
+    assert_true(bench.line.counters.collisions >= 4);
+    assert_false(is_hex(bench.bytes, ANSWER)); /* the host hears a mess */
 }
 
 TEST(an_automatic_frame_deafens_a_device_on_two_wires)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO); /* full_duplex stays false */
-    bench_wait(&s.bench, 95 * MS);
-    bench_ask(&s.bench, ask_realtime, 8, 20 * MS); /* the frame begins in the middle of it */
-    assert_int_equal(s.a16.device.counters.requests, 0);
-    assert_true(s.a16.device.counters.unheard >= 3);
-    assert_int_equal(s.a16.device.counters.torn, 1);
-    assert_int_equal(s.a16.device.counters.crc_errors, 0);
-    bench_ask(&s.bench, ask_realtime, 8, 20 * MS); /* between two frames it hears */
-    assert_int_equal(s.a16.device.counters.requests, 1);
+    set(FATHOM_SIM_A16_AUTO); /* full_duplex stays false */
+    wait_ms(95);
+    ask(REQUEST, 20); /* the frame begins in the middle of it */
+    COUNTED(.requests = NONE);
+    assert_true(bench.a16.device.counters.unheard >= 3);
+    COUNTED(.torn = 1, .crc_errors = NONE);
+    ask(REQUEST, 20); /* between two frames it hears */
+    COUNTED(.requests = 1);
 }
 
 TEST(the_host_hears_itself_only_with_echo)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    s.bench.line.echo = true;
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    EXPECT(&s.bench, 0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36, ANSWER);
+    set(FATHOM_SIM_A16_MODBUS);
+    bench.line.echo = true;
+    talk(REQUEST, 200, "01 03 01 01 00 01 D4 36" ANSWER);
 }
 
 /* ---- time ---- */
 
 TEST(sent_turns_true_with_the_last_stop_bit)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    assert_true(fathom_sim_sent(&s.bench.line, s.bench.now_us));
-    const uint32_t end_us = bench_say(&s.bench, ask_realtime, 8);
-    assert_false(fathom_sim_sent(&s.bench.line, end_us - 1));
-    assert_true(fathom_sim_sent(&s.bench.line, end_us));
-    assert_int_equal(s.bench.line.counters.from_host, 8);
+    set(FATHOM_SIM_A16_MODBUS);
+    assert_true(fathom_sim_sent(&bench.line, bench.now_us));
+    say(REQUEST);
+    assert_false(fathom_sim_sent(&bench.line, bench.asked_us - 1));
+    assert_true(fathom_sim_sent(&bench.line, bench.asked_us));
+    assert_int_equal(bench.line.counters.from_host, 8);
 }
 
 TEST(due_leads_from_event_to_event_and_ends)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    assert_int_equal(fathom_sim_due_us(&s.bench.line, s.bench.now_us), FATHOM_NO_DEADLINE);
-    bench_say(&s.bench, ask_realtime, 8);
+    set(FATHOM_SIM_A16_MODBUS);
+    assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
+    say(REQUEST);
     size_t steps = 0;
     for (;; steps++) {
-        const uint32_t due_us = fathom_sim_due_us(&s.bench.line, s.bench.now_us);
+        const uint32_t due_us = fathom_sim_due_us(&bench.line, bench.now_us);
         if (due_us == FATHOM_NO_DEADLINE) break;
         assert_true(due_us > 0); /* never "now" without progress */
-        const size_t before = s.bench.heard;
-        bench_wait(&s.bench, due_us);
-        assert_true(s.bench.heard - before <= 1);
+        const size_t before = bench.heard;
+        wait_us(due_us);
+        assert_true(bench.heard - before <= 1);
         assert_true(steps < 100);
     }
-    EXPECT(&s.bench, ANSWER);
+    expect(ANSWER);
     assert_int_equal(steps, 8 + 1 + 1 + 7); /* bytes, t3.5, the answer, its bytes */
 }
 
 TEST(one_jump_and_many_steps_tell_the_same)
 {
-    stage_t jump, step;
-    set(&jump, FATHOM_SIM_A16_AUTO);
-    set(&step, FATHOM_SIM_A16_AUTO);
-    jump.bench.line.full_duplex = step.bench.line.full_duplex = true;
-    bench_say(&jump.bench, ask_realtime, 8);
-    bench_say(&step.bench, ask_realtime, 8);
-    bench_wait(&jump.bench, 500 * MS);
-    for (int i = 0; i < 5000; i++) bench_wait(&step.bench, 100);
-    assert_int_equal(jump.bench.heard, step.bench.heard);
-    assert_true(jump.bench.heard >= 7);
-    assert_memory_equal(jump.bench.bytes, step.bench.bytes, jump.bench.heard);
-    assert_memory_equal(jump.bench.end_us, step.bench.end_us, jump.bench.heard * sizeof(uint32_t));
+    static bench_t jump;
+    for (int steps = 0; steps != 2; steps++) {
+        bench_begin(&bench_9600, true);
+        add_a16(FATHOM_SIM_A16_AUTO, (a16_config_t){.linger_us = 1});
+        say(REQUEST);
+        for (int i = 0; i != 5000 && steps != 0; i++) wait_us(100);
+        if (steps != 0) break;
+        wait_ms(500);
+        jump = bench;
+    }
+    expect_as(&jump);
 }
 
 TEST(a_time_that_goes_back_changes_nothing)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    bench_wait(&s.bench, 150 * MS);
-    assert_int_equal(s.bench.heard, 4);
-    fathom_sim_run(&s.bench.line, s.bench.now_us - 100 * MS);
-    fathom_sim_run(&s.bench.line, s.bench.now_us - UINT32_C(1800000000));
-    assert_int_equal(s.a16.device.counters.automatic, 1);
-    bench_wait(&s.bench, 100 * MS);
-    assert_int_equal(s.bench.heard, 8);
+    set(FATHOM_SIM_A16_AUTO);
+    wait_ms(150);
+    assert_int_equal(bench.heard, 4);
+    fathom_sim_run(&bench.line, bench.now_us - 100 * MS);
+    fathom_sim_run(&bench.line, bench.now_us - UINT32_C(1800000000));
+    COUNTED(.automatic = 1);
+    wait_ms(100);
+    assert_int_equal(bench.heard, 8);
 }
 
 TEST(it_works_for_hours_across_every_wrap)
 {
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
+    set(FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 30; i++) { /* 12.5 hours, 10 wraps */
-        bench_wait(&s.bench, UINT32_C(1500000000));
-        bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-        EXPECT(&s.bench, ANSWER);
+        wait_us(UINT32_C(1500000000));
+        talk(REQUEST, 200, ANSWER);
     }
 }
 
@@ -267,31 +221,29 @@ TEST(a_read_tells_the_silence_before_and_the_time_of_the_last_byte)
     const uint8_t knows = FATHOM_RX_TIMED | FATHOM_RX_SILENCE;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[64];
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    const uint32_t later_us = s.bench.now_us + 250 * MS;
+    set(FATHOM_SIM_A16_AUTO);
+    const uint32_t later_us = bench.now_us + 250 * MS;
     /* two frames wait; one read does not span the silence between them */
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, sizeof bytes, knows, &rx), 4);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, knows, &rx), 4);
     assert_int_equal(rx.flags, FATHOM_RX_TIMED | FATHOM_RX_SILENCE);
-    assert_int_equal(fathom_elapsed_us(rx.last_us, s.bench.now_us), 100 * MS + 4167);
+    assert_int_equal(fathom_elapsed_us(rx.last_us, bench.now_us), 100 * MS + 4167);
     rx = (fathom_rx_t){0, 0};
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, 2, knows, &rx), 2);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, 2, knows, &rx), 2);
     assert_int_equal(rx.flags, FATHOM_RX_TIMED | FATHOM_RX_SILENCE);
     rx = (fathom_rx_t){0, 0};
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, sizeof bytes, knows, &rx), 2);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, knows, &rx), 2);
     assert_int_equal(rx.flags, FATHOM_RX_TIMED); /* the rest of the same frame */
-    assert_int_equal(fathom_elapsed_us(rx.last_us, s.bench.now_us), 200 * MS + 4167);
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, sizeof bytes, knows, &rx), 0);
+    assert_int_equal(fathom_elapsed_us(rx.last_us, bench.now_us), 200 * MS + 4167);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, knows, &rx), 0);
 }
 
 TEST(what_it_does_not_know_it_neither_tells_nor_minds)
 {
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[64];
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    const uint32_t later_us = s.bench.now_us + 250 * MS;
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, later_us, bytes, sizeof bytes, 0, &rx), 8);
+    set(FATHOM_SIM_A16_AUTO);
+    const uint32_t later_us = bench.now_us + 250 * MS;
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, 0, &rx), 8);
     assert_int_equal(rx.flags, 0);
 }
 
@@ -300,17 +252,16 @@ TEST(bytes_that_nobody_reads_are_lost_and_told)
     const uint8_t knows = FATHOM_RX_OVERRUN;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[512];
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    s.bench.now_us += 6550 * MS; /* 65 frames, 260 bytes */
-    assert_int_equal(
-        fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, sizeof bytes, knows, &rx), 256);
+    set(FATHOM_SIM_A16_AUTO);
+    bench.now_us += 6550 * MS; /* 65 frames, 260 bytes */
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, sizeof bytes, knows, &rx),
+                     256);
     assert_int_equal(rx.flags, 0);
-    assert_int_equal(s.bench.line.counters.overruns, 4);
-    assert_int_equal(s.bench.line.counters.to_host, 256);
-    s.bench.now_us += 100 * MS;
-    assert_int_equal(
-        fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, sizeof bytes, knows, &rx), 4);
+    assert_int_equal(bench.line.counters.overruns, 4);
+    assert_int_equal(bench.line.counters.to_host, 256);
+    bench.now_us += 100 * MS;
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, sizeof bytes, knows, &rx),
+                     4);
     assert_int_equal(rx.flags, FATHOM_RX_OVERRUN);
 }
 
@@ -318,20 +269,14 @@ TEST(bytes_that_nobody_reads_are_lost_and_told)
 
 TEST(at_another_rate_or_parity_nobody_understands)
 {
-    const fathom_line_settings_t even = {9600, FATHOM_PARITY_EVEN, 1};
-    const fathom_line_settings_t near = {9700, FATHOM_PARITY_NONE, 1};
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    fathom_sim_set_line(&s.bench.line, &even, s.bench.now_us);
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    EXPECT_SILENCE(&s.bench);
-    assert_int_equal(s.a16.device.counters.wrong_settings, 16);
-    assert_int_equal(s.a16.device.counters.torn, 2);
-    fathom_sim_set_line(&s.bench.line, &near, s.bench.now_us);
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    EXPECT(&s.bench, ANSWER);
+    set(FATHOM_SIM_A16_MODBUS);
+    at_rate(19200, FATHOM_PARITY_EVEN);
+    ask(REQUEST, 200);
+    at_rate(9600, FATHOM_PARITY_EVEN);
+    talk(REQUEST, 200, "");
+    COUNTED(.wrong_settings = 16, .torn = 2);
+    at_rate(9700, FATHOM_PARITY_NONE);
+    talk(REQUEST, 200, ANSWER);
 }
 
 TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
@@ -339,16 +284,15 @@ TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
     const uint8_t knows = FATHOM_RX_FRAMING;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[8];
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
-    s.bench.now_us += 150 * MS;
+    set(FATHOM_SIM_A16_AUTO);
+    at_rate(19200, FATHOM_PARITY_EVEN);
+    bench.now_us += 150 * MS;
     for (int i = 0; i < 4; i++) {
-        assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, 8, knows, &rx), 1);
+        assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 1);
         assert_int_equal(rx.flags, FATHOM_RX_FRAMING);
         rx.flags = 0;
     }
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, 8, knows, &rx), 0);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 0);
 }
 
 TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
@@ -356,17 +300,16 @@ TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
     const uint8_t knows = FATHOM_RX_FRAMING;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[8];
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_AUTO);
-    fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
+    set(FATHOM_SIM_A16_AUTO);
+    at_rate(19200, FATHOM_PARITY_EVEN);
     /* two characters of the frame are over when the host finds the rate */
-    s.bench.now_us += 100 * MS + 2200;
-    fathom_sim_set_line(&s.bench.line, &bench_9600, s.bench.now_us);
-    s.bench.now_us += 10 * MS;
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, 8, knows, &rx), 1);
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, 8, knows, &rx), 1);
+    bench.now_us += 100 * MS + 2200;
+    at_rate(9600, FATHOM_PARITY_NONE);
+    bench.now_us += 10 * MS;
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 1);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 1);
     rx.flags = 0;
-    assert_int_equal(fathom_sim_transmit_timed(&s.bench.line, s.bench.now_us, bytes, 8, knows, &rx), 2);
+    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 2);
     assert_int_equal(rx.flags, 0);
     assert_memory_equal(bytes, ((const uint8_t[]){0xEF, 0xF0}), 2);
 }
@@ -375,96 +318,70 @@ TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
 
 TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 {
-    fathom_sim_a05_t a05;
-    fathom_sim_hps167s_t hps;
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    fathom_sim_a05_config_t a05_config = {.unit = 5, .mode = FATHOM_SIM_A05_MODBUS};
-    fathom_sim_hps167s_config_t hps_config = {.unit = 1}; /* the A16's, at another rate */
-    fathom_sim_fixed_t second = {{2083, 0, 0, 0}};
-    hps_config.scene = fathom_sim_fixed(&second);
-    fathom_sim_a05_init(&a05, &a05_config);
-    fathom_sim_hps167s_init(&hps, &hps_config);
-    bench_attach(&s.bench, &a05.device);
-    bench_attach(&s.bench, &hps.device);
+    fathom_sim_fixed_t second = FIXED(2083);
+    set(FATHOM_SIM_A16_MODBUS);
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
+    add_hps((hps_config_t){.unit = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
     for (int round = 0; round < 3; round++) {
-        bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-        EXPECT(&s.bench, ANSWER);
-        ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-        EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
-        fathom_sim_set_line(&s.bench.line, &bench_19200, s.bench.now_us);
-        ASK(&s.bench, 30 * MS, 0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB);
-        EXPECT(&s.bench, 0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xFD, 0x41);
-        fathom_sim_set_line(&s.bench.line, &bench_9600, s.bench.now_us);
+        talk(REQUEST, 200, ANSWER);
+        talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+        at_rate(19200, FATHOM_PARITY_EVEN);
+        talk("01 03 00 08 00 04 C5 CB", 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
+        at_rate(9600, FATHOM_PARITY_NONE);
     }
-    assert_int_equal(s.bench.line.counters.collisions, 0);
+    assert_int_equal(bench.line.counters.collisions, 0);
     /* on two wires each hears the others' answers too: three from the A05 are frames for somebody else, and
      * so are three of its requests */
-    assert_int_equal(s.a16.device.counters.others, 6);
-    assert_int_equal(s.a16.device.counters.requests, 3);
-    assert_int_equal(hps.device.counters.others, 0); /* those were at another rate */
+    COUNTED_BY(&bench.a16.device, .others = 6, .requests = 3);
+    COUNTED(.others = NONE); /* those were at another rate */
 }
 
 TEST(two_devices_at_one_address_collide)
 {
     fathom_sim_a16_t twin;
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    const fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_MODBUS}; /* the same seed: the same time */
-    fathom_sim_a16_init(&twin, &config);
-    bench_attach(&s.bench, &twin.device);
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    assert_int_equal(s.a16.device.counters.answered, 1);
+    set(FATHOM_SIM_A16_MODBUS);
+    fathom_sim_a16_init(&twin, &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS}); /* the same seed and time */
+    attach(&twin.device);
+    ask(REQUEST, 200);
+    COUNTED(.answered = 1);
     assert_int_equal(twin.device.counters.answered, 1);
-    assert_int_equal(s.bench.line.counters.collisions, 7);
-    assert_int_equal(s.bench.heard, 14);
-    for (size_t i = 0; i < 14; i++) assert_int_not_equal(s.bench.bytes[i], ((uint8_t[]){ANSWER})[i / 2]);
+    assert_int_equal(bench.line.counters.collisions, 7);
+    assert_int_equal(bench.heard, 14);
+    uint8_t answer[7];
+    from_hex(ANSWER, answer, 7);
+    for (size_t i = 0; i < 14; i++) assert_int_not_equal(bench.bytes[i], answer[i / 2]);
 }
 
 TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 {
-    fathom_sim_a05_t a05;
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    const fathom_sim_a05_config_t config = {.unit = 5, .mode = FATHOM_SIM_A05_MODBUS};
-    fathom_sim_a05_init(&a05, &config);
-    bench_say(&s.bench, ask_realtime, 8);
-    bench_wait(&s.bench, 3600);
-    bench_attach(&s.bench, &a05.device);
-    bench_wait(&s.bench, 200 * MS);
-    EXPECT(&s.bench, ANSWER);
-    ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
-    bench_say(&s.bench, ask_realtime, 8);
-    while (s.bench.heard < 3) bench_wait(&s.bench, 100); /* and once more, in an answer */
-    bench_wait(&s.bench, 300);
-    fathom_sim_detach(&s.bench.line, &a05.device, s.bench.now_us);
-    bench_attach(&s.bench, &a05.device);
-    bench_wait(&s.bench, 50 * MS);
-    EXPECT(&s.bench, ANSWER);
-    ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
+    set(FATHOM_SIM_A16_MODBUS);
+    say(REQUEST);
+    wait_us(3600);
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
+    hear(200, ANSWER);
+    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    say(REQUEST);
+    while (bench.heard < 3) wait_us(100); /* and once more, in an answer */
+    wait_us(300);
+    fathom_sim_detach(&bench.line, &bench.a05.device, bench.now_us);
+    attach(&bench.a05.device);
+    hear(50, ANSWER);
+    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
 TEST(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing)
 {
-    fathom_sim_a05_t a05;
-    stage_t s;
-    set(&s, FATHOM_SIM_A16_MODBUS);
-    const fathom_sim_a05_config_t config = {.unit = 5, .mode = FATHOM_SIM_A05_MODBUS};
-    fathom_sim_a05_init(&a05, &config);
-    bench_attach(&s.bench, &a05.device);
-    ASK(&s.bench, 5 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-    while (s.bench.heard < 3) bench_wait(&s.bench, 100);
-    bench_wait(&s.bench, 300);
-    fathom_sim_detach(&s.bench.line, &a05.device, s.bench.now_us);
-    bench_wait(&s.bench, 50 * MS);
-    assert_int_equal(s.bench.heard, 3);
-    bench_forget(&s.bench);
-    bench_ask(&s.bench, ask_realtime, 8, 200 * MS);
-    EXPECT(&s.bench, ANSWER);
+    set(FATHOM_SIM_A16_MODBUS);
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
+    ask("05 03 02 00 00 01 84 36", 5);
+    while (bench.heard < 3) wait_us(100);
+    wait_us(300);
+    fathom_sim_detach(&bench.line, &bench.a05.device, bench.now_us);
+    wait_ms(50);
+    assert_int_equal(bench.heard, 3);
+    forget();
+    talk(REQUEST, 200, ANSWER);
     /* and it comes back as from power-on */
-    bench_attach(&s.bench, &a05.device);
-    ASK(&s.bench, 50 * MS, 0x05, 0x03, 0x02, 0x00, 0x00, 0x01, 0x84, 0x36);
-    EXPECT(&s.bench, 0x05, 0x03, 0x02, 0x00, 0x05, 0x89, 0x87);
+    attach(&bench.a05.device);
+    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }

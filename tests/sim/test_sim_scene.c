@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bench.h"
-
-#include "sim/a16.h"
-#include "sim/scene.h"
-
-enum { MS = 1000 };
+#include "talk.h"
 
 static int32_t at(fathom_sim_scene_t scene, uint8_t probe, uint32_t us)
 {
@@ -67,13 +62,6 @@ TEST(the_movement_is_smooth_across_wraps)
 TEST(a_device_sees_the_scene_at_the_moment_of_its_frame)
 {
     fathom_sim_moving_t moving = {1000, 2000, 2000 * MS, bench_start_us}; /* 1 mm a ms */
-    fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_AUTO};
-    fathom_sim_a16_t a16;
-    bench_t bench;
-    config.scene = fathom_sim_moving(&moving);
-    bench_init(&bench, &bench_9600);
-    fathom_sim_a16_init(&a16, &config);
-    bench_attach(&bench, &a16.device);
-    bench_wait(&bench, 310 * MS); /* 1100, 1200, 1300 */
-    EXPECT(&bench, 0xFF, 0x04, 0x4C, 0x4F, 0xFF, 0x04, 0xB0, 0xB3, 0xFF, 0x05, 0x14, 0x18);
+    set_a16(FATHOM_SIM_A16_AUTO, 0, (a16_config_t){.scene = fathom_sim_moving(&moving)});
+    hear(310, "FF 04 4C 4F FF 04 B0 B3 FF 05 14 18"); /* 1100, 1200, 1300 */
 }

@@ -61,7 +61,8 @@ static int run_file(const suite_test_t *one)
         tests[count++] = test->test;
         if (test->suite->begin_round != NULL) rounds = test->suite;
     }
-    for (unsigned round = 0; round == 0 || round < rounds->rounds; round++) {
+    const unsigned most = suite_is_long && rounds->long_rounds != 0 ? rounds->long_rounds : rounds->rounds;
+    for (unsigned round = 0; round == 0 || round < most; round++) {
         if (rounds->begin_round != NULL) rounds->begin_round(round);
         failed += run_once(name_of(one->file), tests, count);
         if (failed != 0 && suite_ends_at_failure) break;

@@ -22,7 +22,8 @@ typedef struct {
     int (*tear_down)(void **state); /* after each test; may be NULL */
     /* Called before each of `rounds` runs of all tests, with 0, 1, ...: where the clock starts, how slow the loop is. */
     void (*begin_round)(unsigned round);
-    unsigned rounds; /* 0: one */
+    unsigned rounds;      /* 0: one */
+    unsigned long_rounds; /* where suite_is_long, if that is more */
 } suite_t;
 
 /* A file without a suite of its own has this one. */
@@ -41,7 +42,7 @@ void suite_add(suite_test_t *node, const suite_t *of, const char *file, const ch
 
 extern bool suite_ends_at_failure; /* false from the start */
 
-/* FATHOM_LONG is in the environment: what is sampled else is tried to the end. False from the start. */
+/* FATHOM_LONG is in the environment: what is thinned out, because most of it looks at the same again, runs in full. */
 extern bool suite_is_long;
 
 /* Runs the suites of these files, or all when count is 0. Returns how many tests failed, and one more for each file that
