@@ -11,7 +11,7 @@ void bench_begin(const fathom_line_settings_t *settings, bool full_duplex)
     bench.line.full_duplex = full_duplex;
 }
 
-void attach(fathom_sim_device_t *device) { fathom_sim_attach(&bench.line, device, bench.now_us); }
+void attach(fathom_sim_device_t *device) { fathom_sim_attach(&bench.line, device, bench.line.now_us); }
 
 void add_a16(uint8_t mode, a16_config_t config)
 {

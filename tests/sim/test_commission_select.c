@@ -1,161 +1,145 @@
 /* SPDX-License-Identifier: MIT */
-#include "commission_stage.h"
+#include "stage.h"
 
-/* An A05 with automatic output gets power (A05 1(1)): the choice of its values by a break of the line, in loops of any
- * length, with Modbus on the same line. */
+/* An A05 with automatic output gets power (A05 1(1)): the driver holds RX low, by a pin or by a break of the line, and it
+ * sends real-time values from then on; in loops of any length, and with Modbus on the same line. */
 
-typedef struct {
-    fathom_sim_clock_t clock;
-    fathom_sim_line_t wire;
-    fathom_sim_uart_t port;
-    fathom_sim_fixed_t real_time;
-    fathom_sim_fixed_t processed;
-    fathom_sim_a05_t a05;
-    fathom_uart_t uart;
-    fathom_clock_t hal_clock;
-    fathom_line_config_t config;
-    fathom_line_t line;
-    fathom_modbus_t modbus;
-    uint8_t frame[32];
-    fathom_a05_auto_t automatic;
-    fathom_a05_modbus_t asking;
-    uint32_t loop_us;
-} start_t;
+static fathom_a05_auto_t automatic;
+static fathom_a05_modbus_t *const asking = &s.driver.a05;
+static fathom_pin_t rx;
 
-static const uint32_t loops_us[] = {0, 1 * MS, 20 * MS, 300 * MS};
-
-static void set_up_start(start_t *s, uint32_t loop_us)
+static void set_up_start(uint32_t loop_us, bool by_pin)
 {
-    memset(s, 0, sizeof *s);
-    s->loop_us = loop_us;
-    s->real_time = (fathom_sim_fixed_t){{1000, 2000, 1953, 3562}};
-    s->processed = (fathom_sim_fixed_t){{1001, 2001, 1954, 3563}};
-    fathom_sim_clock_init(&s->clock, bench_start_us, 0);
-    fathom_sim_line_init(&s->wire, &bench_9600, bench_start_us);
-    s->wire.full_duplex = true;
-    fathom_sim_uart_init(&s->port, &s->wire, &s->clock);
-    s->uart = fathom_sim_uart(&s->port);
-    s->hal_clock = fathom_sim_clock(&s->clock);
-    s->config = (fathom_line_config_t){
-        .uart = &s->uart, .clock = &s->hal_clock, .frame = s->frame, .frame_size = sizeof s->frame};
-    assert_int_equal(fathom_line_init(&s->line, &s->config), FATHOM_READY);
-    s->modbus = fathom_modbus_client(&s->line);
-    const fathom_a05_auto_config_t automatic = {.line = &s->line};
-    const fathom_a05_modbus_config_t asking = {.modbus = &s->modbus, .clock = &s->hal_clock};
-    assert_int_equal(fathom_a05_auto_init(&s->automatic, &automatic), FATHOM_READY);
-    assert_int_equal(fathom_a05_modbus_init(&s->asking, &asking), FATHOM_READY);
-    const fathom_sim_a05_config_t device = {.mode = FATHOM_SIM_A05_AUTO,
-                                            .scene = fathom_sim_fixed(&s->real_time),
-                                            .processed = fathom_sim_fixed(&s->processed)};
-    fathom_sim_a05_init(&s->a05, &device);
-    fathom_sim_attach(&s->wire, &s->a05.device, s->clock.now_us);
+    stage_begin(&bench_9600, true, loop_us);
+    bench.fixed = FIXED(1000, 2000, 1953, 3562);
+    bench.processed = FIXED(1001, 2001, 1954, 3563);
+    add_a05(FATHOM_SIM_A05_AUTO, (a05_config_t){.processed = PROCESSED});
+    fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
+    rx = fathom_sim_rx_pin(&s.pins);
+    const fathom_a05_auto_config_t config = {.line = &s.line, .select = by_pin ? &rx : NULL};
+    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_READY);
+    s.sensor = fathom_a05_auto_sensor(&automatic);
+    init_driver(&s.driver, A05, 1, NULL);
 }
 
 /* The next sample of the first probe that is no error. */
-static uint16_t first_probe_mm(start_t *s)
+static uint16_t first_probe_mm(void)
 {
-    const fathom_sensor_t sensor = fathom_a05_auto_sensor(&s->automatic);
-    const uint32_t start_us = s->clock.now_us;
     for (;;) {
-        fathom_sample_t sample;
-        const fathom_status_t status = fathom_poll(&sensor, &sample);
-        if (status == FATHOM_READY && sample.probe == 1) return sample.distance_mm;
-        if (status == FATHOM_READY) continue;
-        assert_int_equal(status, FATHOM_PENDING);
-        assert_true(fathom_elapsed_us(s->clock.now_us, start_us) < 5 * SECOND);
-        if (s->loop_us != 0)
-            fathom_sim_clock_advance(&s->clock, s->loop_us);
-        else
-            fathom_sim_clock_idle(&s->clock, fathom_due_us(&sensor, 1));
+        assert_int_equal(measure(), FATHOM_READY);
+        if (s.sample.probe == 1) return s.sample.distance_mm;
     }
 }
 
-static void power(start_t *s, fathom_a05_value_t value)
+/* The distance of the first probe in every sample of the next three seconds, which is always the same. */
+static unsigned heard_mm(void)
+{
+    const uint32_t start_us = s.clock.now_us;
+    unsigned mm = 0;
+    while (since_us(start_us) < 3 * SECOND) {
+        pass();
+        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY) {
+            assert_true(s.sample.probe != 1 || mm == 0 || mm == s.sample.distance_mm);
+            if (s.sample.probe == 1) mm = s.sample.distance_mm;
+        }
+    }
+    return mm;
+}
+
+static void power(fathom_a05_value_t value, uint32_t off_us)
 {
     fathom_status_t status;
-    while ((status = fathom_a05_auto_power_on(&s->automatic, value)) == FATHOM_ERR_BUSY) {
-        fathom_sim_clock_advance(&s->clock, 1 * MS);
-        (void)fathom_line_poll(&s->line);
-    }
+    for (; (status = fathom_a05_auto_power_on(&automatic, value)) == FATHOM_ERR_BUSY; pass_us(1 * MS))
+        (void)fathom_line_poll(&s.line);
     assert_int_equal(status, FATHOM_READY);
-    fathom_sim_power_cycle(&s->wire, &s->a05.device, 0, s->clock.now_us);
+    fathom_sim_power_cycle(&bench.line, bench.device, off_us, s.clock.now_us);
 }
 
 static const suite_t suite = {BENCH_ROUNDS};
 
+TEST(what_is_chosen_at_power_on_is_sent_until_the_next)
+{
+    for (unsigned i = 0; i != 4; i++) {
+        set_up_start(loops_us[1 + i / 2], i % 2 != 0);
+        assert_int_equal(heard_mm(), 1001);
+        power(FATHOM_A05_REAL_TIME, 50 * MS);
+        assert_int_equal(heard_mm(), 1000);
+        assert_int_equal(bench.device->rx_held, 0); /* RX is free again, and the values stay */
+        assert_int_equal(heard_mm(), 1000);
+        power(FATHOM_A05_PROCESSED, 50 * MS);
+        assert_int_equal(heard_mm(), 1001);
+    }
+}
+
+TEST(rx_that_is_low_later_chooses_nothing)
+{
+    set_up_start(1 * MS, true);
+    assert_int_equal(heard_mm(), 1001);
+    rx.set(rx.ctx, false);
+    assert_int_equal(heard_mm(), 1001);
+}
+
 TEST(the_values_are_those_that_were_chosen)
 {
-    static start_t s;
-    for (unsigned l = 0; l != 4; l++) {
-        set_up_start(&s, loops_us[l]);
-        power(&s, FATHOM_A05_REAL_TIME);
-        assert_int_equal(first_probe_mm(&s), 1000);
-        power(&s, FATHOM_A05_PROCESSED); /* in the middle of the low level for the other */
-        assert_int_equal(first_probe_mm(&s), 1001);
-        power(&s, FATHOM_A05_REAL_TIME);
-        for (unsigned i = 0; i != 10; i++) assert_int_equal(first_probe_mm(&s), 1000);
+    for (unsigned l = 0; l != LOOPS; l++) {
+        set_up_start(loops_us[l], false);
+        power(FATHOM_A05_REAL_TIME, 0);
+        assert_int_equal(first_probe_mm(), 1000);
+        power(FATHOM_A05_PROCESSED, 0); /* in the middle of the low level for the other */
+        assert_int_equal(first_probe_mm(), 1001);
+        power(FATHOM_A05_REAL_TIME, 0);
+        for (unsigned i = 0; i != 10; i++) assert_int_equal(first_probe_mm(), 1000);
     }
 }
 
 TEST(the_line_is_held_low_for_a_second_and_a_half_and_no_longer)
 {
-    static start_t s;
-    for (unsigned l = 1; l != 4; l++) {
-        set_up_start(&s, loops_us[l]);
-        power(&s, FATHOM_A05_REAL_TIME);
+    for (unsigned l = 1; l != LOOPS; l++) {
+        set_up_start(loops_us[l], false);
+        power(FATHOM_A05_REAL_TIME, 0);
         const uint32_t start_us = s.clock.now_us;
-        while (s.wire.in_break) {
-            assert_true(fathom_elapsed_us(s.clock.now_us, start_us) <= 1500 * MS + loops_us[l]);
-            (void)first_probe_mm(&s);
-            if (s.wire.in_break) fathom_sim_clock_advance(&s.clock, s.loop_us);
+        while (bench.line.in_break) {
+            assert_true(since_us(start_us) <= 1500 * MS + loops_us[l]);
+            (void)first_probe_mm();
+            if (bench.line.in_break) pass();
         }
-        ASSERT_SPAN(s.clock.now_us, start_us, 1500 * MS, 2200 * MS);
+        assert_in_range(since_us(start_us), 1500 * MS, 2200 * MS);
     }
 }
 
 /* The A05 hears Modbus from then on, and its automatic output ends. */
 TEST(what_was_asked_meanwhile_is_sent_afterwards)
 {
-    static start_t s;
-    for (unsigned l = 0; l != 4; l++) {
-        set_up_start(&s, loops_us[l]);
-        power(&s, FATHOM_A05_REAL_TIME);
+    for (unsigned l = 0; l != LOOPS; l++) {
+        set_up_start(loops_us[l], false);
+        power(FATHOM_A05_REAL_TIME, 0);
         uint8_t address = 0;
-        const fathom_sensor_t both[] = {fathom_a05_auto_sensor(&s.automatic),
-                                        fathom_a05_modbus_sensor(&s.asking)};
+        const fathom_sensor_t both[] = {s.sensor, fathom_a05_modbus_sensor(asking)};
         fathom_status_t status;
         const uint32_t start_us = s.clock.now_us;
-        while ((status = fathom_a05_modbus_address(&s.asking, &address)) == FATHOM_PENDING) {
-            fathom_sample_t sample;
-            while (fathom_poll(&both[0], &sample) == FATHOM_READY)
-                assert_int_equal(sample.distance_mm, s.real_time.value[sample.probe - 1]);
-            if (s.wire.in_break) assert_int_equal(s.a05.device.counters.requests, 0);
-            assert_true(fathom_elapsed_us(s.clock.now_us, start_us) < 10 * SECOND);
-            if (s.loop_us != 0)
-                fathom_sim_clock_advance(&s.clock, s.loop_us);
-            else
-                fathom_sim_clock_idle(&s.clock, fathom_due_us(both, 2));
+        while ((status = fathom_a05_modbus_address(asking, &address)) == FATHOM_PENDING) {
+            while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY)
+                assert_int_equal(s.sample.distance_mm, bench.fixed.value[s.sample.probe - 1]);
+            if (bench.line.in_break) COUNTED(.requests = NONE);
+            assert_true(since_us(start_us) < 10 * SECOND);
+            pass_until(fathom_due_us(both, 2));
         }
         assert_int_equal(status, FATHOM_READY);
         assert_int_equal(address, 1);
-        assert_true(fathom_elapsed_us(s.clock.now_us, start_us) >= 1500 * MS);
+        assert_true(since_us(start_us) >= 1500 * MS);
     }
 }
 
 TEST(while_a_request_is_on_its_way_it_is_busy_and_nothing_changes)
 {
-    static start_t s;
     uint8_t address = 0;
-    set_up_start(&s, 1 * MS);
-    fathom_sim_clock_advance(&s.clock, 20 * MS);
-    while (s.line.head == NULL || s.line.head->attempts == 0) {
-        assert_int_equal(fathom_a05_modbus_address(&s.asking, &address), FATHOM_PENDING);
-        fathom_sim_clock_advance(&s.clock, 1 * MS);
-    }
-    assert_int_equal(fathom_a05_auto_power_on(&s.automatic, FATHOM_A05_REAL_TIME), FATHOM_ERR_BUSY);
-    assert_false(s.wire.in_break);
-    fathom_a05_modbus_cancel(&s.asking);
-    power(&s, FATHOM_A05_REAL_TIME);
-    assert_true(s.wire.in_break);
-    assert_int_equal(first_probe_mm(&s), 1000);
+    set_up_start(1 * MS, false);
+    for (pass_us(20 * MS); s.line.head == NULL || s.line.head->attempts == 0; pass_us(1 * MS))
+        assert_int_equal(fathom_a05_modbus_address(asking, &address), FATHOM_PENDING);
+    assert_int_equal(fathom_a05_auto_power_on(&automatic, FATHOM_A05_REAL_TIME), FATHOM_ERR_BUSY);
+    assert_false(bench.line.in_break);
+    fathom_a05_modbus_cancel(asking);
+    power(FATHOM_A05_REAL_TIME, 0);
+    assert_true(bench.line.in_break);
+    assert_int_equal(first_probe_mm(), 1000);
 }

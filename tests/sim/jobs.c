@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#include "stage.h"
+
+/* Every command and setting of the drivers that ask, each with a value that the device does not have at first. */
+
+static fathom_a16_modbus_t *const a16 = &s.driver.a16;
+static fathom_a05_modbus_t *const a05 = &s.driver.a05;
+static fathom_a05_dyp_t *const dyp = &s.driver.dyp;
+static fathom_hps167s_t *const hps = &s.driver.hps;
+
+/* What is asked for is there with READY, and untouched without. */
+static fathom_status_t checked(fathom_status_t status, bool is_right, bool is_untouched)
+{
+    assert_true(status == FATHOM_READY ? is_right : is_untouched);
+    return status;
+}
+
+/* ---- A16 (6(3)) ---- */
+
+static fathom_status_t a16_set_0200(void) { return fathom_a16_set_address(a16, 5); }
+static fathom_status_t a16_set_0202(void) { return fathom_a16_set_operating_mode(a16, FATHOM_A16_AUTOMATIC); }
+static fathom_status_t a16_set_0205(void) { return fathom_a16_set_switch_polarity(a16, FATHOM_A16_NEGATIVE); }
+static fathom_status_t a16_set_0206(void) { return fathom_a16_set_switch_threshold_mm(a16, 16350); }
+static fathom_status_t a16_set_0207(void)
+{
+    return fathom_a16_set_automatic_value(a16, FATHOM_A16_REAL_TIME);
+}
+
+static fathom_status_t a16_0200(void)
+{
+    uint8_t address = 99;
+    const fathom_status_t status = fathom_a16_address(a16, &address);
+    return checked(status, address == 1, address == 99);
+}
+static fathom_status_t a16_0205(void)
+{
+    fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
+    const fathom_status_t status = fathom_a16_switch_polarity(a16, &polarity);
+    return checked(status, polarity == FATHOM_A16_POSITIVE, polarity == FATHOM_A16_NEGATIVE);
+}
+static fathom_status_t a16_0206(void)
+{
+    uint16_t threshold_mm = 9;
+    const fathom_status_t status = fathom_a16_switch_threshold_mm(a16, &threshold_mm);
+    return checked(status, threshold_mm == 1000, threshold_mm == 9);
+}
+static fathom_status_t a16_0207(void)
+{
+    fathom_a16_value_t value = FATHOM_A16_REAL_TIME;
+    const fathom_status_t status = fathom_a16_automatic_value(a16, &value);
+    return checked(status, value == FATHOM_A16_PROCESSED, value == FATHOM_A16_REAL_TIME);
+}
+static fathom_status_t a16_0101(void)
+{
+    fathom_sample_t out = {.distance_mm = 9};
+    const fathom_status_t status = fathom_a16_measure(a16, FATHOM_A16_REAL_TIME, &out);
+    return checked(status, out.distance_mm == 1234 && out.unit == 1, out.distance_mm == 9 && out.unit == 0);
+}
+
+static uint32_t a16_unit(void) { return bench.a16.device.unit; }
+static uint32_t a16_polarity(void) { return bench.a16.polarity; }
+static uint32_t a16_threshold(void) { return bench.a16.threshold_mm; }
+static uint32_t a16_automatic(void) { return bench.a16.data_type; }
+
+/* ---- A05 (2(3)5, 3(3)) ---- */
+
+static fathom_status_t a05_set_0200(void) { return fathom_a05_modbus_set_address(a05, 5); }
+static fathom_status_t a05_0200(void)
+{
+    uint8_t address = 99;
+    const fathom_status_t status = fathom_a05_modbus_address(a05, &address);
+    return checked(status, address == 1, address == 99);
+}
+static fathom_status_t dyp_03(void) { return fathom_a05_dyp_set_every_address(dyp, 5); }
+static uint32_t a05_unit(void) { return bench.a05.device.unit; }
+
+/* ---- HPS-167S (3, #1 to #15) ---- */
+
+static fathom_status_t hps_1(void)
+{
+    fathom_hps167s_version_t out = {.year = 9};
+    const fathom_status_t status = fathom_hps167s_interface_version(hps, &out);
+    return checked(status, out.year == 2020 && out.month == 9 && out.day == 27 && out.major == 2,
+                   out.year == 9);
+}
+static fathom_status_t hps_2(void)
+{
+    fathom_hps167s_configuration_t out = {.baud = 9};
+    const fathom_status_t status = fathom_hps167s_configuration(hps, &out);
+    const bool is_right = out.baud == 19200 && out.reconnect_time_ms == 180 && out.warm_up_s == 0;
+    return checked(status, is_right && out.termination && out.measures_after_power_on, out.baud == 9);
+}
+static fathom_status_t hps_3(void)
+{
+    fathom_hps167s_details_t out = {.year = 9};
+    const fathom_status_t status = fathom_hps167s_details(hps, &out);
+    return checked(status, out.year == 2019, out.year == 9); /* 13 09 17 */
+}
+static fathom_status_t hps_4(void)
+{
+    fathom_hps167s_temperature_t out = {.fahrenheit = 9};
+    const fathom_status_t status = fathom_hps167s_temperature(hps, &out); /* (77 - 32) * 50 / 9 */
+    return checked(status, out.fahrenheit == 77 && out.temperature_dc == 250, out.fahrenheit == 9);
+}
+static fathom_status_t hps_6(void) { return fathom_hps167s_restore_factory_settings(hps); }
+static fathom_status_t hps_7(void) { return fathom_hps167s_set_warm_up_s(hps, 9); }
+static fathom_status_t hps_8(void) { return fathom_hps167s_set_address(hps, 5); }
+static fathom_status_t hps_9(void) { return fathom_hps167s_set_baud(hps, 115200); }
+static fathom_status_t hps_10(void) { return fathom_hps167s_set_measures_after_power_on(hps, false); }
+static fathom_status_t hps_11(void) { return fathom_hps167s_set_termination(hps, false); }
+static fathom_status_t hps_12(void) { return fathom_hps167s_set_distance_offset_mm(hps, -15); }
+static fathom_status_t hps_13_user(void) { return fathom_hps167s_load_user_settings(hps); }
+static fathom_status_t hps_13_factory(void) { return fathom_hps167s_load_factory_settings(hps); }
+static fathom_status_t hps_14(void) { return fathom_hps167s_set_filter_sensitivity(hps, -100); }
+static fathom_status_t hps_15(void)
+{
+    return fathom_hps167s_set_reconnect_time_ms(hps, 90000);
+} /* two words */
+
+static uint32_t hps_unit(void) { return bench.hps.device.unit; }
+static uint32_t hps_warm_up(void) { return bench.hps.warm_up_s; }
+static uint32_t hps_code(void) { return bench.hps.baud_code; }
+static uint32_t hps_output(void) { return bench.hps.auto_output; }
+static uint32_t hps_termination(void) { return bench.hps.termination; }
+static uint32_t hps_reconnect(void) { return bench.hps.reconnect_ms; }
+static uint32_t hps_offset(void) { return (uint16_t)bench.hps.sensor.offset_mm; }
+static uint32_t hps_filter(void) { return (uint16_t)bench.hps.sensor.filter; }
+
+static uint32_t was_told(void) { return bench.device->counters.writes; }
+static uint32_t was_reset(void) { return bench.device->counters.resets; }
+static uint32_t nothing(void) { return 0; }
+
+const job_t jobs[] = {
+    {"A16 0x0200", a16_set_0200, a16_unit, 1, 5, A16, MOVES, 1},
+    {"A16 0x0205", a16_set_0205, a16_polarity, 1, 0, A16, KEPT, 1},
+    {"A16 0x0206", a16_set_0206, a16_threshold, 1000, 16350, A16, KEPT, 1},
+    {"A16 0x0207", a16_set_0207, a16_automatic, 0, 1, A16, KEPT, 1},
+    {"A16 0x0202", a16_set_0202, was_told, 0, 1, A16, WRITE_ONLY, 1},
+    {"A16 read 0x0200", a16_0200, nothing, 0, 0, A16, READS, 1},
+    {"A16 read 0x0205", a16_0205, nothing, 0, 0, A16, READS, 1},
+    {"A16 read 0x0206", a16_0206, nothing, 0, 0, A16, READS, 1},
+    {"A16 read 0x0207", a16_0207, nothing, 0, 0, A16, READS, 1},
+    {"A16 measure", a16_0101, nothing, 0, 0, A16, READS, 1},
+    {"A05 0x0200", a05_set_0200, a05_unit, 1, 5, A05, MOVES, 1},
+    {"A05 read 0x0200", a05_0200, nothing, 0, 0, A05, READS, 1},
+    {"A05 55 AA 03", dyp_03, a05_unit, 1, 5, A05_DYP, MOVES, 1},
+    {"HPS #1", hps_1, nothing, 0, 0, HPS, READS, 1},
+    {"HPS #2", hps_2, nothing, 0, 0, HPS, READS, 1},
+    {"HPS #3", hps_3, nothing, 0, 0, HPS, READS, 1},
+    {"HPS #4", hps_4, nothing, 0, 0, HPS, READS, 1},
+    {"HPS #6 at 1", hps_6, was_reset, 0, 1, HPS, MOVES, 1},
+    {"HPS #6 at 7", hps_6, hps_unit, 7, 1, HPS, MOVES, 7},
+    {"HPS #7", hps_7, hps_warm_up, 0, 9, HPS, KEPT, 1},
+    {"HPS #8", hps_8, hps_unit, 1, 5, HPS, MOVES, 1},
+    {"HPS #9", hps_9, hps_code, 1, 3, HPS, MOVES, 1},
+    {"HPS #10", hps_10, hps_output, 1, 0, HPS, KEPT, 1},
+    {"HPS #11", hps_11, hps_termination, 1, 0, HPS, KEPT, 1},
+    {"HPS #12", hps_12, hps_offset, 0, 0xFFF1, HPS, WRITE_ONLY, 1},
+    {"HPS #13 user", hps_13_user, was_told, 0, 1, HPS, WRITE_ONLY, 1},
+    {"HPS #13 factory", hps_13_factory, was_told, 0, 1, HPS, WRITE_ONLY, 1},
+    {"HPS #14", hps_14, hps_filter, 0, 0xFF9C, HPS, WRITE_ONLY, 1},
+    {"HPS #15", hps_15, hps_reconnect, 180, 90000, HPS, KEPT, 1},
+};
+const unsigned jobs_count = sizeof jobs / sizeof jobs[0];
