@@ -76,10 +76,16 @@ static inline void pass_until(uint32_t due_us)
         fathom_sim_clock_advance(&s.clock, s.loop_us);
     else
         fathom_sim_clock_idle(&s.clock, due_us);
+    bench.now_us = s.clock.now_us;
 }
 static inline void pass(void) { pass_until(fathom_due_us(&s.sensor, 1)); }
 
-static inline void pass_us(uint32_t by_us) { fathom_sim_clock_advance(&s.clock, by_us); }
+static inline void pass_us(uint32_t by_us)
+{
+    fathom_sim_clock_advance(&s.clock, by_us);
+    bench.now_us = s.clock.now_us;
+}
+
 static inline uint32_t since_us(uint32_t start_us) { return fathom_elapsed_us(s.clock.now_us, start_us); }
 
 /* What takes a minute never ends. */

@@ -2,135 +2,83 @@
 #ifndef FATHOM_TESTS_SIM_SWITCH_STAGE_H
 #define FATHOM_TESTS_SIM_SWITCH_STAGE_H
 
-/* The drivers of switch and relay at simulated modules, with a log of what they said, and a second line for what is
- * compared with them. */
+/* The drivers of switch and relay at simulated modules, with a log of what they said. */
 
-#include <string.h>
+#include "stage.h"
 
-#include "bench.h"
-#include "fathom/a05_relay.h"
-#include "fathom/a16_settings.h"
-#include "fathom/a16_switch.h"
-#include "fathom/modbus_client.h"
-#include "sim/a05.h"
-#include "sim/a16.h"
-#include "sim/pin.h"
-#include "sim/scene.h"
+enum { LOG = 64 };
 
-enum { MS = 1000, LOG = 64 };
+static fathom_pin_t pin;
+static fathom_a16_switch_t a16;
+static fathom_a05_relay_t a05;
+static fathom_a16_modbus_t *const settings = &s.driver.a16;
+static uint8_t kinds[LOG]; /* of all samples */
+static uint32_t times_us[LOG];
+static unsigned samples;
+static unsigned errors;
 
-/* A line with a module on it, and what the host has of them. */
-typedef struct {
-    fathom_sim_line_t wire;
-    fathom_sim_uart_t uart;
-    fathom_sim_pins_t pins;
-    fathom_uart_t hal;
-    fathom_pin_t pin;
-    uint8_t frame[13];
-    fathom_line_config_t config;
-    fathom_line_t line;
-} port_t;
-
-typedef struct {
-    fathom_sim_clock_t sim_clock;
-    fathom_clock_t clock;
-    port_t port[2];
-    fathom_sim_fixed_t fixed;
-    fathom_sim_a16_t sim_a16[2];
-    fathom_sim_a05_t sim_a05[2];
-    fathom_a16_switch_t a16;
-    fathom_a05_relay_t a05;
-    fathom_sensor_t sensor;
-    fathom_modbus_t modbus;
-    fathom_a16_modbus_t settings;
-    uint8_t kinds[LOG]; /* of all samples */
-    uint32_t times_us[LOG];
-    unsigned samples;
-    unsigned errors;
-} stage_t;
-
-static stage_t s;
-
-static inline void set_up_port(port_t *port, fathom_sim_device_t *device)
+static inline void begin(int32_t mm)
 {
-    fathom_sim_line_init(&port->wire, &bench_9600, bench_start_us);
-    port->wire.full_duplex = true;
-    fathom_sim_attach(&port->wire, device, bench_start_us);
-    fathom_sim_uart_init(&port->uart, &port->wire, &s.sim_clock);
-    fathom_sim_pins_init(&port->pins, device, &port->wire, &s.sim_clock);
-    port->hal = fathom_sim_uart(&port->uart);
-    port->pin = fathom_sim_tx_pin(&port->pins);
-    port->config = (fathom_line_config_t){.uart = &port->hal,
-                                          .clock = &s.clock,
-                                          .frame = port->frame,
-                                          .frame_size = sizeof port->frame,
-                                          .echo = FATHOM_LINE_ECHO_OFF};
-    assert_int_equal(fathom_line_init(&port->line, &port->config), FATHOM_READY);
+    stage_begin(&bench_9600, true, 0);
+    bench.fixed = FIXED(mm, mm, mm, mm);
+    s.config.echo = FATHOM_LINE_ECHO_OFF;
+    samples = errors = 0;
 }
 
-static inline void begin(int32_t distance)
+static inline void take_pin(void)
 {
-    memset(&s, 0, sizeof s);
-    fathom_sim_clock_init(&s.sim_clock, bench_start_us, 0);
-    s.clock = fathom_sim_clock(&s.sim_clock);
-    for (int i = 0; i != 4; i++) s.fixed.value[i] = distance;
+    fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
+    pin = fathom_sim_tx_pin(&s.pins);
 }
 
-static inline void set_a16(int32_t distance)
+static inline void set_switch(int32_t mm)
 {
-    begin(distance);
-    const fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_SWITCH,
-                                            .scene = fathom_sim_fixed(&s.fixed)};
-    fathom_sim_a16_init(&s.sim_a16[0], &config);
-    set_up_port(&s.port[0], &s.sim_a16[0].device);
+    begin(mm);
+    add_a16(FATHOM_SIM_A16_SWITCH, (a16_config_t){0});
+    take_pin();
     const fathom_a16_switch_config_t own = {
-        .pin = &s.port[0].pin, .clock = &s.clock, .line = &s.port[0].line, .address = 1};
-    assert_int_equal(fathom_a16_switch_init(&s.a16, &own), FATHOM_READY);
-    s.sensor = fathom_a16_switch_sensor(&s.a16);
-    s.modbus = fathom_modbus_client(&s.port[0].line);
-    const fathom_a16_modbus_config_t asks = {.modbus = &s.modbus, .clock = &s.clock};
-    assert_int_equal(fathom_a16_modbus_init(&s.settings, &asks), FATHOM_READY);
+        .pin = &pin, .clock = &s.hal_clock, .line = &s.line, .address = 1};
+    assert_int_equal(fathom_a16_switch_init(&a16, &own), FATHOM_READY);
+    s.sensor = fathom_a16_switch_sensor(&a16);
+    init_driver(&s.driver, A16, 1, NULL);
 }
 
-static inline void set_a05(int32_t distance, fathom_sim_a05_config_t config, uint8_t wiring)
+static inline void set_relay(int32_t mm, a05_config_t config, uint8_t wiring)
 {
-    begin(distance);
-    config.mode = FATHOM_SIM_A05_RELAY;
-    config.scene = fathom_sim_fixed(&s.fixed);
-    fathom_sim_a05_init(&s.sim_a05[0], &config);
-    set_up_port(&s.port[0], &s.sim_a05[0].device);
-    const fathom_a05_relay_config_t own = {.pin = &s.port[0].pin, .clock = &s.clock, .wiring = wiring};
-    assert_int_equal(fathom_a05_relay_init(&s.a05, &own), FATHOM_READY);
-    s.sensor = fathom_a05_relay_sensor(&s.a05);
+    begin(mm);
+    add_a05(FATHOM_SIM_A05_RELAY, config);
+    take_pin();
+    const fathom_a05_relay_config_t own = {.pin = &pin, .clock = &s.hal_clock, .wiring = wiring};
+    assert_int_equal(fathom_a05_relay_init(&a05, &own), FATHOM_READY);
+    s.sensor = fathom_a05_relay_sensor(&a05);
 }
 
 static inline void look(void)
 {
-    fathom_sample_t sample;
-    const fathom_status_t status = fathom_poll(&s.sensor, &sample);
+    const fathom_status_t status = fathom_poll(&s.sensor, &s.sample);
     if (status == FATHOM_READY) {
-        assert_true(s.samples < LOG);
-        s.kinds[s.samples] = sample.kind;
-        s.times_us[s.samples++] = sample.time_us;
+        assert_true(samples < LOG);
+        kinds[samples] = s.sample.kind;
+        times_us[samples++] = s.sample.time_us;
     }
-    s.errors += status < 0;
+    errors += status < 0;
 }
 
 static inline void run(uint32_t for_us, uint32_t step_us)
 {
     for (uint32_t passed_us = 0; passed_us < for_us; passed_us += step_us) {
-        fathom_sim_clock_advance(&s.sim_clock, step_us);
+        pass_us(step_us);
         look();
     }
 }
 
 /* One kind a letter. */
-static inline void expect(const char *kinds)
+static inline void expect_kinds(const char *letters)
 {
-    assert_int_equal(s.samples, strlen(kinds));
-    for (unsigned i = 0; kinds[i] != 0; i++)
-        assert_int_equal(s.kinds[i], kinds[i] == 'N' ? FATHOM_NEAR : FATHOM_FAR);
-    assert_int_equal(s.errors, 0);
+    assert_int_equal(samples, strlen(letters));
+    for (unsigned i = 0; letters[i] != 0; i++)
+        assert_int_equal(kinds[i], letters[i] == 'N' ? FATHOM_NEAR : FATHOM_FAR);
+    assert_int_equal(errors, 0);
 }
 
 #endif

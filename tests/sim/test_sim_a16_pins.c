@@ -1,61 +1,34 @@
 /* SPDX-License-Identifier: MIT */
-#include "bench.h"
-
-#include <string.h>
-
-#include "sim/a16.h"
-#include "sim/pin.h"
-#include "sim/scene.h"
-#include "sim/uart.h"
-
-enum { MS = 1000, MAX_EDGES = 64 };
+#include "stage.h"
 
 /* An A16 with its pins, and every edge that the host has seen. */
-typedef struct {
-    fathom_sim_clock_t clock;
-    fathom_sim_line_t line;
-    fathom_sim_uart_t uart;
-    fathom_sim_fixed_t fixed;
-    fathom_sim_a16_t a16;
-    fathom_sim_pins_t pins;
-    unsigned edges;
-    bool high[MAX_EDGES];
-    uint32_t edge_us[MAX_EDGES];
-} desk_t;
-
-static desk_t desk;
+enum { MAX_EDGES = 64 };
+static unsigned edges;
+static bool edge_high[MAX_EDGES];
+static uint32_t edge_us[MAX_EDGES];
 
 static void on_edge(void *ctx, bool high, uint32_t time_us)
 {
-    (void)ctx;
-    assert_true(desk.edges < MAX_EDGES);
-    desk.high[desk.edges] = high;
-    desk.edge_us[desk.edges++] = time_us;
+    assert_true(edges < MAX_EDGES);
+    edge_high[edges] = high;
+    edge_us[edges++] = time_us;
 }
 
-static void set(uint8_t mode, int32_t distance, fathom_sim_a16_config_t config)
+static void set(uint8_t mode, int32_t distance, a16_config_t config)
 {
-    memset(&desk, 0, sizeof desk);
-    desk.fixed.value[0] = distance;
-    config.mode = mode;
-    config.scene = fathom_sim_fixed(&desk.fixed);
-    fathom_sim_clock_init(&desk.clock, bench_start_us, 0);
-    fathom_sim_line_init(&desk.line, &bench_9600, desk.clock.now_us);
-    desk.line.full_duplex = true;
-    fathom_sim_uart_init(&desk.uart, &desk.line, &desk.clock);
-    fathom_sim_a16_init(&desk.a16, &config);
-    fathom_sim_attach(&desk.line, &desk.a16.device, desk.clock.now_us);
-    fathom_sim_pins_init(&desk.pins, &desk.a16.device, &desk.line, &desk.clock);
-    desk.pins.on_edge = on_edge;
+    stage_begin(&bench_9600, true, 0);
+    bench.fixed = FIXED(distance);
+    add_a16(mode, config);
+    fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
+    s.pins.on_edge = on_edge;
+    edges = 0;
 }
 
-#define DEFAULTS ((fathom_sim_a16_config_t){0})
-
-static void wait(uint32_t by_us) { fathom_sim_clock_advance(&desk.clock, by_us); }
+#define DEFAULTS ((a16_config_t){0})
 
 static void rx(bool high)
 {
-    const fathom_pin_t pin = fathom_sim_rx_pin(&desk.pins);
+    const fathom_pin_t pin = fathom_sim_rx_pin(&s.pins);
     pin.set(pin.ctx, high);
 }
 
@@ -63,39 +36,37 @@ static void rx(bool high)
 static void trigger(void)
 {
     rx(false);
-    wait(2 * MS);
+    pass_us(2 * MS);
     rx(true);
 }
 
 static bool tx(void)
 {
-    const fathom_pin_t pin = fathom_sim_tx_pin(&desk.pins);
+    const fathom_pin_t pin = fathom_sim_tx_pin(&s.pins);
     return pin.get(pin.ctx);
 }
 
 static void arm(void)
 {
-    const fathom_capture_t capture = fathom_sim_capture(&desk.pins);
+    const fathom_capture_t capture = fathom_sim_capture(&s.pins);
     capture.arm(capture.ctx);
 }
 
 static int take(fathom_pulse_t *pulse)
 {
-    const fathom_capture_t capture = fathom_sim_capture(&desk.pins);
+    const fathom_capture_t capture = fathom_sim_capture(&s.pins);
     return capture.take(capture.ctx, pulse);
 }
 
-static int brk(bool on)
-{
-    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
-    return uart.set_break(uart.ctx, on);
-}
+static int brk(bool on) { return s.uart.set_break(s.uart.ctx, on); }
 
-static size_t hear(uint8_t *bytes, fathom_rx_t *rx_of)
+static uint8_t bytes[16]; /* of the last read */
+static fathom_rx_t rx_of;
+
+static size_t read_port(void)
 {
-    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
-    *rx_of = (fathom_rx_t){0, 0};
-    return (size_t)uart.read(uart.ctx, bytes, 16, rx_of);
+    rx_of = (fathom_rx_t){0, 0};
+    return (size_t)s.uart.read(s.uart.ctx, bytes, sizeof bytes, &rx_of);
 }
 
 static const suite_t suite = {BENCH_ROUNDS};
@@ -105,26 +76,26 @@ static const suite_t suite = {BENCH_ROUNDS};
 TEST(a_falling_edge_brings_one_pulse_after_110_ms)
 {
     set(FATHOM_SIM_A16_PWM, 1739, DEFAULTS); /* A16 1(4): 10000 us */
-    const uint32_t start_us = desk.clock.now_us;
-    wait(500 * MS);
+    const uint32_t start_us = s.clock.now_us;
+    pass_us(500 * MS);
     assert_false(tx());
     trigger();
-    wait(108 * MS - 1);
-    assert_int_equal(desk.edges, 0);
+    pass_us(108 * MS - 1);
+    assert_int_equal(edges, 0);
     assert_false(tx());
-    wait(1);
+    pass_us(1);
     assert_true(tx());
-    wait(9 * MS);
+    pass_us(9 * MS);
     assert_true(tx());
-    wait(500 * MS);
+    pass_us(500 * MS);
     assert_false(tx());
-    assert_int_equal(desk.edges, 2);
-    assert_true(desk.high[0]);
-    assert_false(desk.high[1]);
-    assert_int_equal(fathom_elapsed_us(desk.edge_us[0], start_us), 610 * MS);
+    assert_int_equal(edges, 2);
+    assert_true(edge_high[0]);
+    assert_false(edge_high[1]);
+    assert_int_equal(fathom_elapsed_us(edge_us[0], start_us), 610 * MS);
     /* 1739 mm * 5.75 us/mm = 9999.25 us */
-    assert_int_equal(fathom_elapsed_us(desk.edge_us[1], desk.edge_us[0]), 9999);
-    assert_int_equal(desk.a16.device.counters.measurements, 1);
+    assert_int_equal(fathom_elapsed_us(edge_us[1], edge_us[0]), 9999);
+    COUNTED(.measurements = 1);
 }
 
 TEST(the_width_follows_the_distance_from_3_to_94_ms)
@@ -147,9 +118,9 @@ TEST(the_width_follows_the_distance_from_3_to_94_ms)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         set(FATHOM_SIM_A16_PWM, rows[i].value, DEFAULTS);
         trigger();
-        wait(300 * MS);
-        assert_int_equal(desk.edges, 2);
-        assert_int_equal(fathom_elapsed_us(desk.edge_us[1], desk.edge_us[0]), rows[i].width_us);
+        pass_us(300 * MS);
+        assert_int_equal(edges, 2);
+        assert_int_equal(fathom_elapsed_us(edge_us[1], edge_us[0]), rows[i].width_us);
     }
 }
 
@@ -158,38 +129,37 @@ TEST(edges_during_a_cycle_are_ignored_and_counted)
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     for (int i = 0; i < 10; i++) {
-        wait(18 * MS);
+        pass_us(18 * MS);
         trigger();
     } /* 202 ms */
-    wait(18 * MS);
+    pass_us(18 * MS);
     rx(false); /* at 220 ms: "must be greater than 220ms" */
-    assert_int_equal(desk.a16.device.counters.unserved, 11);
-    assert_int_equal(desk.a16.device.counters.requests, 1);
+    COUNTED(.unserved = 11, .requests = 1);
     rx(true);
-    wait(1);
+    pass_us(1);
     rx(false);
-    assert_int_equal(desk.a16.device.counters.requests, 2);
-    wait(500 * MS);
-    assert_int_equal(desk.edges, 4);
+    COUNTED(.requests = 2);
+    pass_us(500 * MS);
+    assert_int_equal(edges, 4);
 }
 
 TEST(times_of_the_pulse_are_options)
 {
     set(FATHOM_SIM_A16_PWM, FATHOM_SIM_NO_TARGET,
-        (fathom_sim_a16_config_t){
+        (a16_config_t){
             .cycle_us = 150 * MS, .pulse_us = 20 * MS, .no_target_us = 93 * MS, .start_us = 900 * MS});
     trigger();
-    wait(800 * MS);
-    assert_int_equal(desk.edges, 0); /* it was starting */
-    wait(98 * MS);
-    const uint32_t edge_us = desk.clock.now_us;
+    pass_us(800 * MS);
+    assert_int_equal(edges, 0); /* it was starting */
+    pass_us(98 * MS);
+    const uint32_t from_us = s.clock.now_us;
     trigger();
-    wait(149 * MS);
+    pass_us(149 * MS);
     trigger();
-    wait(300 * MS);
-    assert_int_equal(desk.edges, 4);
-    assert_int_equal(fathom_elapsed_us(desk.edge_us[0], edge_us), 20 * MS);
-    assert_int_equal(fathom_elapsed_us(desk.edge_us[1], edge_us), 113 * MS);
+    pass_us(300 * MS);
+    assert_int_equal(edges, 4);
+    assert_int_equal(fathom_elapsed_us(edge_us[0], from_us), 20 * MS);
+    assert_int_equal(fathom_elapsed_us(edge_us[1], from_us), 113 * MS);
 }
 
 /* ---- the host's side of the pins ---- */
@@ -199,20 +169,20 @@ TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
     fathom_pulse_t pulse = {7, 7, false};
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
-    wait(110 * MS);
+    pass_us(110 * MS);
     assert_true(tx());
     arm(); /* within the pulse */
-    wait(200 * MS);
+    pass_us(200 * MS);
     assert_int_equal(take(&pulse), 0);
     assert_false(pulse.is_high);
     assert_int_equal(pulse.width_us, 7);
     for (int i = 0; i < 6; i++) { /* one more than there is room for, and one that comes after taking */
-        desk.fixed.value[0] = 1000 * (i + 1);
+        bench.fixed.value[0] = 1000 * (i + 1);
         if (i == 5) assert_int_equal(take(&pulse), 1);
         trigger();
-        wait(300 * MS);
+        pass_us(300 * MS);
     }
-    assert_int_equal(desk.pins.lost, 1);
+    assert_int_equal(s.pins.lost, 1);
     assert_int_equal(pulse.width_us, 5750);
     for (int i = 2; i <= 4; i++) {
         assert_int_equal(take(&pulse), 1);
@@ -221,7 +191,7 @@ TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
     assert_int_equal(take(&pulse), 1);
     assert_int_equal(pulse.width_us, 5750 * 6);
     /* 110 ms + 34.5 ms after its trigger, which was 302 ms ago */
-    assert_int_equal(fathom_elapsed_us(desk.clock.now_us, pulse.end_us), 302 * MS - 144500);
+    assert_int_equal(fathom_elapsed_us(s.clock.now_us, pulse.end_us), 302 * MS - 144500);
     assert_int_equal(take(&pulse), 0);
 }
 
@@ -230,67 +200,66 @@ TEST(a_wire_can_break_stick_and_make_noise)
     fathom_pulse_t pulse;
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     arm();
-    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_HIGH);
-    wait(500);
-    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_WHOLE);
+    fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_HIGH);
+    pass_us(500);
+    fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_WHOLE);
     assert_int_equal(take(&pulse), 1);
     assert_int_equal(pulse.width_us, 500);
     trigger();
-    wait(109 * MS);
+    pass_us(109 * MS);
     assert_true(tx());
-    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_LOW); /* 1 ms into the pulse */
+    fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_LOW); /* 1 ms into the pulse */
     assert_false(tx());
     assert_int_equal(take(&pulse), 1);
     assert_int_equal(pulse.width_us, 1 * MS);
-    wait(300 * MS);
-    fathom_sim_tx_wire(&desk.pins, FATHOM_SIM_WIRE_HIGH);
-    wait(300 * MS);
+    pass_us(300 * MS);
+    fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_HIGH);
+    pass_us(300 * MS);
     trigger();
-    wait(300 * MS);
+    pass_us(300 * MS);
     assert_int_equal(take(&pulse), 0);
     assert_true(pulse.is_high);
-    assert_int_equal(desk.edges, 5);
+    assert_int_equal(edges, 5);
 }
 
 TEST(without_power_tx_is_low_and_no_edge_is_noticed)
 {
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
-    wait(109 * MS);
+    pass_us(109 * MS);
     assert_true(tx());
-    fathom_sim_device_power_on(&desk.a16.device, desk.line.now_us); /* off and on in no time */
+    fathom_sim_device_power_on(bench.device, bench.line.now_us); /* off and on in no time */
     assert_false(tx());
-    wait(300 * MS);
-    assert_int_equal(desk.edges, 2);
+    pass_us(300 * MS);
+    assert_int_equal(edges, 2);
     set(FATHOM_SIM_A16_UART, 1000, DEFAULTS);
     assert_true(tx());
 }
 
 TEST(a_break_a_pin_and_a_byte_are_one_wire)
 {
-    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
+    const fathom_uart_t uart = s.uart;
     const uint8_t byte = 0xFF;
-    set(FATHOM_SIM_A16_PWM, 1000, (fathom_sim_a16_config_t){.cycle_us = 1});
+    set(FATHOM_SIM_A16_PWM, 1000, (a16_config_t){.cycle_us = 1});
     assert_int_equal(brk(true), 1);
     assert_int_equal(brk(true), 1);
-    assert_int_equal(desk.a16.device.counters.requests, 1);
-    wait(10);
+    COUNTED(.requests = 1);
+    pass_us(10);
     rx(false); /* it is low already */
     assert_int_equal(brk(false), 1);
-    wait(10);
+    pass_us(10);
     assert_int_equal(brk(true), 1);
     rx(true);
-    wait(10);
-    assert_int_equal(desk.a16.device.counters.requests, 1);
+    pass_us(10);
+    COUNTED(.requests = 1);
     assert_int_equal(uart.write(uart.ctx, &byte, 1), 0); /* not in a break */
     assert_int_equal(brk(false), 1);
     assert_int_equal(uart.write(uart.ctx, &byte, 1), 1);
     assert_int_equal(brk(true), 0); /* it is leaving */
-    wait(2 * MS);
-    assert_int_equal(desk.a16.device.counters.requests, 2); /* the start bit */
+    pass_us(2 * MS);
+    COUNTED(.requests = 2); /* the start bit */
     assert_int_equal(brk(true), 1);
-    assert_int_equal(desk.a16.device.counters.requests, 3);
-    assert_int_equal(desk.a16.device.counters.unserved, 0);
+    COUNTED(.requests = 3, .unserved = NONE);
 }
 
 /* ---- a TX pin that is a UART's as well ---- */
@@ -302,18 +271,18 @@ TEST(the_bits_of_a_byte_can_be_seen_at_the_pin)
                                "0100001011"   /* A1 */
                                "0111001011";  /* A7 */
     set(FATHOM_SIM_A16_UART, 1953, DEFAULTS); /* A16 2(4) */
-    wait(100 * MS);
+    pass_us(100 * MS);
     /* in the middle of each bit of 104.17 us; characters are rounded up to 1042, 2084, 3125, 4167 us */
     uint32_t at_us = 0;
     for (uint32_t i = 0; i < 40; i++) {
         const uint32_t middle_us = (uint32_t)((2 * i + 1) * 1000000 / 19200);
-        wait(middle_us - at_us);
+        pass_us(middle_us - at_us);
         at_us = middle_us;
         assert_true(tx() == (bits[i] == '1'));
     }
-    wait(5 * MS);
+    pass_us(5 * MS);
     assert_true(tx());
-    assert_int_equal(desk.edges, 0);
+    assert_int_equal(edges, 0);
 }
 
 TEST(parity_and_two_stop_bits_can_be_seen_too)
@@ -344,43 +313,41 @@ TEST(parity_and_two_stop_bits_can_be_seen_too)
 
 TEST(a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host)
 {
-    uint8_t bytes[16];
-    fathom_rx_t rx_of;
     set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
-    desk.a16.device.tx_is_uart = true;
-    fathom_sim_device_set_level(&desk.a16.device, false, desk.line.now_us);
-    wait(20);
+    bench.device->tx_is_uart = true;
+    fathom_sim_device_set_level(bench.device, false, bench.line.now_us);
+    pass_us(20);
     assert_false(tx());
-    wait(1021);
-    assert_int_equal(hear(bytes, &rx_of), 0);
-    wait(1);
-    assert_int_equal(hear(bytes, &rx_of), 1);
+    pass_us(1021);
+    assert_int_equal(read_port(), 0);
+    pass_us(1);
+    assert_int_equal(read_port(), 1);
     assert_true((rx_of.flags & FATHOM_RX_FRAMING) != 0);
     assert_int_equal(bytes[0], 0);
-    fathom_sim_device_set_level(&desk.a16.device, true, desk.line.now_us);
-    wait(10 * MS);
-    assert_int_equal(hear(bytes, &rx_of), 0);
-    desk.a16.device.tx_is_uart = false;
-    fathom_sim_device_set_level(&desk.a16.device, false, desk.line.now_us);
-    wait(10 * MS);
-    assert_int_equal(hear(bytes, &rx_of), 0);
-    assert_int_equal(desk.edges, 3);
+    fathom_sim_device_set_level(bench.device, true, bench.line.now_us);
+    pass_us(10 * MS);
+    assert_int_equal(read_port(), 0);
+    bench.device->tx_is_uart = false;
+    fathom_sim_device_set_level(bench.device, false, bench.line.now_us);
+    pass_us(10 * MS);
+    assert_int_equal(read_port(), 0);
+    assert_int_equal(edges, 3);
 }
 
 TEST(a_break_spoils_the_frame_that_a_device_hears)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}; /* A16 6(4) */
-    const fathom_uart_t uart = fathom_sim_uart(&desk.uart);
+    const fathom_uart_t uart = s.uart;
     set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
     for (int with_break = 0; with_break < 2; with_break++) {
         assert_int_equal(uart.write(uart.ctx, request, 8), 8);
-        wait(8334);
+        pass_us(8334);
         assert_int_equal(brk(with_break != 0), 1);
-        wait(2 * MS);
+        pass_us(2 * MS);
         assert_int_equal(brk(false), 1);
-        wait(500 * MS);
-        assert_int_equal(desk.a16.device.counters.answered, 1);
-        assert_int_equal(desk.a16.device.counters.torn, with_break);
+        pass_us(500 * MS);
+        COUNTED(.answered = 1);
+        assert_int_equal(bench.device->counters.torn, with_break);
     }
 }
 
@@ -392,38 +359,33 @@ TEST(each_edge_brings_one_frame_90_to_110_ms_later)
     uint32_t least_us = UINT32_MAX;
     uint32_t most_us = 0;
     set(FATHOM_SIM_A16_CONTROLLED, 1953, DEFAULTS);
-    wait(500 * MS);
+    pass_us(500 * MS);
     for (int i = 0; i < 50; i++) {
-        uint8_t bytes[16];
-        fathom_rx_t rx_of;
-        const uint32_t edge_us = desk.clock.now_us;
+        const uint32_t from_us = s.clock.now_us;
         assert_int_equal(brk(true), 1);
-        wait(2 * MS);
+        pass_us(2 * MS);
         assert_int_equal(brk(false), 1);
-        wait(118 * MS + 1);
-        assert_int_equal(hear(bytes, &rx_of), 4);
+        pass_us(118 * MS + 1);
+        assert_int_equal(read_port(), 4);
         assert_memory_equal(bytes, mm_1953, 4);
-        const uint32_t begin_us = fathom_elapsed_us(rx_of.last_us, edge_us) - 4167;
+        const uint32_t begin_us = fathom_elapsed_us(rx_of.last_us, from_us) - 4167;
         assert_in_range(begin_us, 90 * MS, 110 * MS);
         if (begin_us < least_us) least_us = begin_us;
         if (begin_us > most_us) most_us = begin_us;
     }
     assert_in_range(least_us, 90 * MS, 92 * MS);
     assert_in_range(most_us, 108 * MS, 110 * MS);
-    assert_int_equal(desk.a16.device.counters.answered, 50);
-    assert_int_equal(desk.a16.device.counters.unserved, 0);
-    wait(500 * MS);
+    COUNTED(.answered = 50, .unserved = NONE);
+    pass_us(500 * MS);
     trigger();
-    wait(118 * MS);
+    pass_us(118 * MS);
     trigger(); /* after 120 ms: "must be greater than 120ms" */
-    wait(300 * MS);
-    assert_int_equal(desk.a16.device.counters.unserved, 1);
-    assert_int_equal(desk.a16.device.counters.answered, 51);
+    pass_us(300 * MS);
+    COUNTED(.unserved = 1, .answered = 51);
 }
 
 static void drop(void *ctx, fathom_sim_frame_t *frame)
 {
-    (void)ctx;
     assert_false(frame->automatic);
     assert_int_equal(frame->protocol, FATHOM_SIM_STREAM);
     frame->length = 0;
@@ -432,31 +394,27 @@ static void drop(void *ctx, fathom_sim_frame_t *frame)
 TEST(faults_reach_the_frame_that_was_triggered)
 {
     static const fathom_sim_faults_t faults = {.outgoing = drop};
-    uint8_t bytes[16];
-    fathom_rx_t rx_of;
-    set(FATHOM_SIM_A16_CONTROLLED, 1953, (fathom_sim_a16_config_t){.faults = &faults});
+    set(FATHOM_SIM_A16_CONTROLLED, 1953, (a16_config_t){.faults = &faults});
     trigger();
-    wait(300 * MS);
-    assert_int_equal(hear(bytes, &rx_of), 0);
-    assert_int_equal(desk.a16.device.counters.answered, 1);
+    pass_us(300 * MS);
+    assert_int_equal(read_port(), 0);
+    COUNTED(.answered = 1);
 }
 
 /* ---- UART: the select pin, A16 2(2) ---- */
 
 static uint16_t next_value(void)
 {
-    uint8_t bytes[16];
-    fathom_rx_t rx_of;
-    wait(100 * MS);
-    assert_int_equal(hear(bytes, &rx_of), 4);
+    pass_us(100 * MS);
+    assert_int_equal(read_port(), 4);
     return (uint16_t)(bytes[1] * 256 + bytes[2]);
 }
 
 TEST(rx_low_sends_the_real_time_value_and_rx_high_the_processed_one)
 {
-    fathom_sim_fixed_t processed = {{1000}};
-    set(FATHOM_SIM_A16_UART, 2000, (fathom_sim_a16_config_t){.processed = fathom_sim_fixed(&processed)});
-    wait(50 * MS);
+    bench.processed = FIXED(1000);
+    set(FATHOM_SIM_A16_UART, 2000, (a16_config_t){.processed = PROCESSED});
+    pass_us(50 * MS);
     assert_int_equal(next_value(), 1000);
     rx(false);
     assert_int_equal(next_value(), 2000);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "bench.h"
 #include "fathom/a05_auto.h"
 #include "fathom/a05_relay_rule.h"
 #include "fathom/a16_auto.h"
@@ -18,9 +17,33 @@ static int32_t any_distance(void)
 
 static void forget_old_samples(void)
 {
-    if (s.samples <= LOG / 2) return;
-    s.kinds[0] = s.kinds[s.samples - 1];
-    s.samples = 1;
+    if (samples <= LOG / 2) return;
+    kinds[0] = kinds[samples - 1];
+    samples = 1;
+}
+
+/* A second line on the same clock, with s.other on it. */
+static struct {
+    fathom_sim_line_t wire;
+    fathom_sim_uart_t port;
+    fathom_uart_t uart;
+    uint8_t frame[13];
+    fathom_line_config_t config;
+    fathom_line_t line;
+} beside;
+
+static void begin_beside(void)
+{
+    fathom_sim_line_init(&beside.wire, &bench_9600, bench_start_us);
+    beside.wire.full_duplex = true;
+    fathom_sim_attach(&beside.wire, &s.other.a16.device, bench_start_us);
+    fathom_sim_uart_init(&beside.port, &beside.wire, &s.clock);
+    beside.uart = fathom_sim_uart(&beside.port);
+    beside.config = s.config;
+    beside.config.uart = &beside.uart;
+    beside.config.frame = beside.frame;
+    beside.config.frame_size = sizeof beside.frame;
+    assert_int_equal(fathom_line_init(&beside.line, &beside.config), FATHOM_READY);
 }
 
 static const suite_t suite = {BENCH_ROUNDS};
@@ -31,12 +54,12 @@ TEST(a_debounced_a16_is_the_switch_of_one)
     fathom_a16_auto_t automatic;
     fathom_debounce_t gate;
     random_state = 1;
-    set_a16(2000);
-    const fathom_sim_a16_config_t config = {
-        .mode = FATHOM_SIM_A16_UART, .scene = fathom_sim_fixed(&s.fixed), .period_us = 500 * MS};
-    fathom_sim_a16_init(&s.sim_a16[1], &config);
-    set_up_port(&s.port[1], &s.sim_a16[1].device);
-    const fathom_a16_auto_config_t own = {.line = &s.port[1].line};
+    set_switch(2000);
+    const a16_config_t config = {
+        .mode = FATHOM_SIM_A16_UART, .scene = fathom_sim_fixed(&bench.fixed), .period_us = 500 * MS};
+    fathom_sim_a16_init(&s.other.a16, &config);
+    begin_beside();
+    const fathom_a16_auto_config_t own = {.line = &beside.line};
     assert_int_equal(fathom_a16_auto_init(&automatic, &own), FATHOM_READY);
     assert_int_equal(fathom_debounce_init(&gate, &(fathom_debounce_config_t){0}), FATHOM_READY);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
@@ -44,17 +67,17 @@ TEST(a_debounced_a16_is_the_switch_of_one)
     run(100 * MS, 20 * MS); /* from here the scene changes between the measurements */
     for (unsigned n = 0; n != 1000; n++) {
         fathom_sample_t sample;
-        if (n % 6 == 0) s.fixed.value[0] = any_distance();
+        if (n % 6 == 0) bench.fixed.value[0] = any_distance();
         for (unsigned step = 0; step != 25; step++) {
             run(20 * MS, 20 * MS);
             while (fathom_poll(&sensor, &sample) == FATHOM_READY)
                 changes += fathom_debounce_sample(&gate, &sample);
         }
-        if (gate.level != 0) assert_int_equal(gate.level, s.kinds[s.samples - 1]);
+        if (gate.level != 0) assert_int_equal(gate.level, kinds[samples - 1]);
         forget_old_samples();
     }
     assert_in_range(changes, 30, 600);
-    assert_int_equal(s.errors, 0);
+    assert_int_equal(errors, 0);
 }
 
 /* An A05 that sends by itself measures with the relay, every 300 ms. */
@@ -63,11 +86,11 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
     fathom_a05_auto_t automatic;
     fathom_a05_relay_rule_t rule;
     random_state = 2;
-    set_a05(3000, (fathom_sim_a05_config_t){.probes = 0x0B}, 0);
-    const fathom_sim_a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&s.fixed)};
-    fathom_sim_a05_init(&s.sim_a05[1], &config);
-    set_up_port(&s.port[1], &s.sim_a05[1].device);
-    const fathom_a05_auto_config_t own = {.line = &s.port[1].line, .probes = 0x0B};
+    set_relay(3000, (a05_config_t){.probes = 0x0B}, 0);
+    const a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&bench.fixed)};
+    fathom_sim_a05_init(&s.other.a05, &config);
+    begin_beside();
+    const fathom_a05_auto_config_t own = {.line = &beside.line, .probes = 0x0B};
     assert_int_equal(fathom_a05_auto_init(&automatic, &own), FATHOM_READY);
     const fathom_a05_relay_rule_config_t same = {.probes = 0x0B};
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &same), FATHOM_READY);
@@ -77,15 +100,15 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
     for (unsigned n = 0; n != 1000; n++) {
         fathom_sample_t sample;
         for (unsigned i = 0; i != 4; i++)
-            if (n % 2 == 0) s.fixed.value[i] = n % 8 < 4 ? any_distance() : 3000;
+            if (n % 2 == 0) bench.fixed.value[i] = n % 8 < 4 ? any_distance() : 3000;
         for (unsigned step = 0; step != 15; step++) {
             run(20 * MS, 20 * MS);
             while (fathom_poll(&sensor, &sample) == FATHOM_READY)
                 changes += fathom_a05_relay_rule_sample(&rule, &sample);
         }
-        assert_int_equal(rule.debounce.level, s.kinds[s.samples - 1]);
+        assert_int_equal(rule.debounce.level, kinds[samples - 1]);
         forget_old_samples();
     }
     assert_in_range(changes, 100, 1000);
-    assert_int_equal(s.errors, 0);
+    assert_int_equal(errors, 0);
 }
