@@ -12,12 +12,11 @@ static void begin_eight(uint32_t start_us)
     const uint8_t a16s[] = {1, 2, 9};
     const uint8_t a05s[] = {3, 5};
     const uint8_t hpss[] = {6, 7, 8};
-    for (unsigned i = 0; i != sizeof a16s; i++)
-        rig_a16(&(fathom_sim_a16_config_t){.unit = a16s[i], .mode = FATHOM_SIM_A16_MODBUS, .seed = a16s[i]});
-    rig_a05(&(fathom_sim_a05_config_t){.unit = a05s[0], .mode = FATHOM_SIM_A05_MODBUS, .seed = 3});
-    rig_a05(&(fathom_sim_a05_config_t){.unit = a05s[1], .mode = FATHOM_SIM_A05_DYP, .seed = 5});
+    for (unsigned i = 0; i != sizeof a16s; i++) rig_a16((a16_config_t){.unit = a16s[i], .seed = a16s[i]});
+    rig_a05((a05_config_t){.unit = a05s[0], .seed = 3});
+    rig_a05((a05_config_t){.unit = a05s[1], .mode = FATHOM_SIM_A05_DYP, .seed = 5});
     for (unsigned i = 0; i != sizeof hpss; i++)
-        rig_hps(&(fathom_sim_hps167s_config_t){.unit = hpss[i], .seed = hpss[i], .no_termination = i == 0});
+        rig_hps((hps_config_t){.unit = hpss[i], .seed = hpss[i], .no_termination = i == 0});
 }
 
 /* Address 4 is the dead one. */
@@ -25,12 +24,11 @@ static void expect_eight(void)
 {
     const uint8_t others[] = {1, 2, 9};
     assert_int_equal(rig.found, 8);
-    for (unsigned i = 0; i != sizeof others; i++)
-        rig_expect_sensor(others[i], FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
-    rig_expect_sensor(3, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
-    rig_expect_sensor(5, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
+    for (unsigned i = 0; i != sizeof others; i++) rig_expect(others[i], FATHOM_A16);
+    rig_expect(3, FATHOM_A05);
+    rig_expect(5, FATHOM_A05);
     for (uint8_t address = 6; address <= 8; address++) {
-        rig_expect_sensor(address, FATHOM_HPS167S, SCAN_MODBUS, &scan_hps167s_line);
+        rig_expect(address, FATHOM_HPS167S);
         const scan_finding_t *const hps = rig_find(address);
         assert_true(hps->has_interface && hps->has_config && hps->has_details);
         assert_int_equal(hps->has_termination, address != 6);
@@ -45,7 +43,7 @@ TEST(test_eight_sensors_of_three_models_are_found_and_none_is_harmed)
 {
     for (unsigned i = 0; i != STARTS; i++) {
         begin_eight(starts_us[i]);
-        assert_int_equal(rig_walk(), FATHOM_READY);
+        rig_walk();
         expect_eight();
         /* the estimate, and at most its surcharge for each */
         assert_true(rig.passed_us + rig.plan.listen_us <= scan_plan_us(&rig.plan) + 8u * SCAN_FOUND_US);
@@ -56,7 +54,7 @@ TEST(test_eight_are_found_by_a_loop_of_20_ms)
 {
     begin_eight(UINT32_C(0xFFF00000));
     rig.coarse_us = 20000;
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_walk();
     expect_eight();
 }
 
@@ -64,7 +62,7 @@ TEST(test_eight_are_found_behind_an_adapter_that_echoes)
 {
     begin_eight(0);
     rig.sim_line.echo = true;
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_walk();
     expect_eight();
     assert_true(rig.walk.heard.echoes > 50);
     assert_false(rig.walk.heard.has_master);
@@ -76,20 +74,18 @@ TEST(test_an_echo_alone_is_no_device_at_any_address)
     rig_begin(0);
     rig.sim_line.echo = true;
     rig.plan.last = 254;
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 0);
+    rig_finds(0);
     assert_int_equal(rig.walk.heard.echoes, 2 * 254);
     assert_int_equal(rig.walk.heard.bytes, 0);
 
     rig_begin(0);
     rig.sim_line.echo = true;
     rig.plan.last = 254;
-    rig_a16(&(fathom_sim_a16_config_t){.unit = 83, .mode = FATHOM_SIM_A16_MODBUS});
-    rig_a05(&(fathom_sim_a05_config_t){.unit = 147, .mode = FATHOM_SIM_A05_MODBUS});
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 2);
-    rig_expect_sensor(83, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
-    rig_expect_sensor(147, FATHOM_A05, SCAN_MODBUS, &scan_dyp_line);
+    rig_a16((a16_config_t){.unit = 83});
+    rig_a05((a05_config_t){.unit = 147});
+    rig_finds(2);
+    rig_expect(83, FATHOM_A16);
+    rig_expect(147, FATHOM_A05);
 }
 
 TEST(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers)
@@ -105,10 +101,9 @@ TEST(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_
         fathom_sim_fault_init(&flips, seed);
         assert_non_null(fathom_sim_fault_add(&flips, FATHOM_SIM_FAULT_FLIP_BIT, 500000, 0));
         fathom_sim_fault_attach(&flips, &rig.sim_line, &rig.hps[1].device);
-        assert_int_equal(rig_walk(), FATHOM_READY);
-        assert_int_equal(rig.found, 8);
-        rig_expect_sensor(2, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
-        rig_expect_sensor(7, FATHOM_HPS167S, SCAN_MODBUS, &scan_hps167s_line);
+        rig_finds(8);
+        rig_expect(2, FATHOM_A16);
+        rig_expect(7, FATHOM_HPS167S);
         assert_true(noise.frames_hit >= 2);
         flipped += flips.frames_hit;
         rig_expect_unharmed();
@@ -122,8 +117,7 @@ TEST(test_every_address_at_every_rate_and_parity_takes_less_than_10_minutes_and_
     rig_plan_everything();
     const uint64_t said_us = scan_plan_us(&rig.plan) - rig.plan.listen_us;
     assert_true(scan_plan_us(&rig.plan) < UINT64_C(600000000));
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 0);
+    rig_finds(0);
     assert_int_equal(rig.requests, 254 * 5 * 3 + 1); /* and one to any A05 */
     for (unsigned rate = 0; rate != 5; rate++)
         for (unsigned parity = 0; parity != 3; parity++) assert_int_equal(rig.probed[rate][parity], 254);
@@ -137,7 +131,7 @@ TEST(test_with_eight_sensors_every_address_takes_less_than_10_minutes)
 {
     begin_eight(0);
     rig_plan_everything();
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_walk();
     expect_eight();
     assert_true(rig.passed_us + rig.plan.listen_us < UINT32_C(600000000));
     assert_true(rig.passed_us + rig.plan.listen_us <= scan_plan_us(&rig.plan) + 8u * SCAN_FOUND_US);
@@ -148,7 +142,7 @@ TEST(test_a_silent_address_is_asked_again_as_often_as_the_plan_says)
     rig_begin(0);
     rig.plan.repeats = 2;
     rig.plan.last = 4;
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_walk();
     assert_int_equal(rig.probed[0][FATHOM_PARITY_NONE], 4 * 3);
     assert_int_equal(rig.probed[1][FATHOM_PARITY_EVEN], 4 * 3);
     assert_true(rig.passed_us + rig.plan.listen_us <= scan_plan_us(&rig.plan));
@@ -159,7 +153,7 @@ TEST(test_the_time_out_of_the_plan_is_kept)
     rig_begin(0);
     rig.plan.timeout_us = 400000;
     rig.plan.last = 2;
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_walk();
     assert_in_range(rig.passed_us, 4 * 400000 + 300000, scan_plan_us(&rig.plan) - rig.plan.listen_us);
 }
 
@@ -172,7 +166,7 @@ TEST(test_an_a16_or_a05_may_take_longer_than_an_hps167s)
     assert_int_equal(scan_timeout_us(&rig.plan, &odd), 100000);
     rig.plan.setting_count = 1;
     rig.plan.last = 1;
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_walk();
     /* 3.6 ms of silence, 8 bytes of 10 bits, the time-out and as long again, in which it may still answer; 5 bytes and
      * a time-out for any A05 */
     assert_in_range(rig.passed_us, 3646 + 8333 + 2 * 150000 + 5208 + 300000,
@@ -187,9 +181,8 @@ TEST(test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tri
     rig.plan.settings[6] = (fathom_line_settings_t){57600, FATHOM_PARITY_EVEN, 1}; /* the factory's first */
     rig.plan.settings[7] = (fathom_line_settings_t){57600, FATHOM_PARITY_NONE, 1};
     rig.plan.last = 32;
-    rig_hps(&(fathom_sim_hps167s_config_t){.unit = 12, .baud_code = 2});
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 1);
+    rig_hps((hps_config_t){.unit = 12, .baud_code = 2});
+    rig_finds(1);
     rig_expect_sensor(12, FATHOM_HPS167S, SCAN_MODBUS, &fast);
     assert_int_equal(rig.probed[2][FATHOM_PARITY_EVEN], 32);
     assert_int_equal(rig.probed[2][FATHOM_PARITY_NONE], 31);
@@ -204,30 +197,28 @@ TEST(test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on)
     rig.plan.settings[1] = (fathom_line_settings_t){230400, FATHOM_PARITY_EVEN, 1};
     rig.plan.setting_count = 3;
     rig.refused_baud = 230400;
-    rig_hps(&(fathom_sim_hps167s_config_t){.unit = 1});
-    assert_int_equal(rig_walk(), FATHOM_READY);
+    rig_hps((hps_config_t){.unit = 1});
+    rig_walk();
     assert_int_equal(rig.unsupported, 1);
-    rig_expect_sensor(1, FATHOM_HPS167S, SCAN_MODBUS, &scan_hps167s_line);
+    rig_expect(1, FATHOM_HPS167S);
 }
 
 TEST(test_one_that_answers_late_is_found_all_the_same)
 {
     /* 220 to 250 ms, where 150 are waited for: it answers while the next address is asked. */
     rig_begin(UINT32_C(0xFFF00000));
-    rig_a16(&(fathom_sim_a16_config_t){.unit = 3, .mode = FATHOM_SIM_A16_MODBUS, .settings_us = 250000});
-    rig_a16(&(fathom_sim_a16_config_t){.unit = 5, .mode = FATHOM_SIM_A16_MODBUS});
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 2);
-    rig_expect_sensor(3, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
-    rig_expect_sensor(5, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
+    rig_a16((a16_config_t){.unit = 3, .settings_us = 250000});
+    rig_a16((a16_config_t){.unit = 5});
+    rig_finds(2);
+    rig_expect(3, FATHOM_A16);
+    rig_expect(5, FATHOM_A16);
 }
 
 TEST(test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_asked)
 {
     rig_begin(0);
-    rig_a05(&(fathom_sim_a05_config_t){.unit = 100, .mode = FATHOM_SIM_A05_DYP});
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 1);
+    rig_a05((a05_config_t){.unit = 100, .mode = FATHOM_SIM_A05_DYP});
+    rig_finds(1);
     rig_expect_sensor(100, FATHOM_A05, SCAN_DYP, &scan_dyp_line);
     rig_expect_unharmed();
 }
@@ -237,7 +228,7 @@ TEST(test_it_ends_at_once_when_that_is_asked_for)
     for (uint32_t waits = 0; waits < 400; waits += 7) {
         begin_eight(0);
         rig.waits_left = waits;
-        assert_int_equal(rig_walk(), FATHOM_ERR_CANCELLED);
+        assert_int_equal(scan_walk(&rig.walk), FATHOM_ERR_CANCELLED);
         assert_null(rig.line.head);
         assert_int_equal(rig.waits_left, 0);
     }
@@ -247,6 +238,6 @@ TEST(test_a_port_that_breaks_ends_it)
 {
     begin_eight(0);
     rig.is_broken = true;
-    assert_int_equal(rig_walk(), FATHOM_ERR_PORT);
+    assert_int_equal(scan_walk(&rig.walk), FATHOM_ERR_PORT);
     assert_int_equal(rig.found, 0);
 }

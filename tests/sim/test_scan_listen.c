@@ -20,7 +20,7 @@ static void listen_for_3_s(void)
 TEST(test_a_quiet_line_is_listened_to_for_just_that_long)
 {
     rig_begin(UINT32_C(0xFFF00000));
-    rig_a16(&(fathom_sim_a16_config_t){.unit = 1, .mode = FATHOM_SIM_A16_MODBUS});
+    rig_a16((a16_config_t){.unit = 1});
     listen_for_3_s();
     assert_false(talk.is_heard);
     assert_int_equal(rig.passed_us, 3000000);
@@ -36,8 +36,7 @@ TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
             rig_begin(UINT32_C(0xFFF00000));
             rig.sim_line.full_duplex = true;
             rig.coarse_us = coarse != 0 ? 20000 : 0;
-            rig_a16(&(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO,
-                                               .scene = fathom_sim_fixed(&scenes[i])});
+            rig_a16((a16_config_t){.mode = FATHOM_SIM_A16_AUTO, .scene = fathom_sim_fixed(&scenes[i])});
             listen_for_3_s();
             assert_true(talk.is_heard);
             assert_int_equal(talk.finding.kind, SCAN_SENSOR);
@@ -47,8 +46,7 @@ TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
             rig_begin(UINT32_C(0xFFF00000));
             rig.sim_line.full_duplex = true;
             rig.coarse_us = coarse != 0 ? 20000 : 0;
-            rig_a05(&(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO,
-                                               .scene = fathom_sim_fixed(&scenes[i])});
+            rig_a05((a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&scenes[i])});
             listen_for_3_s();
             assert_true(talk.is_heard);
             assert_int_equal(talk.finding.model, FATHOM_A05);
@@ -61,20 +59,18 @@ TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devi
 {
     rig_begin(0);
     rig.sim_line.full_duplex = true;
-    rig_a16(&(fathom_sim_a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_AUTO});
+    rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_AUTO});
     listen_for_3_s();
     rig.walk.is_talking = talk.is_heard;
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 1);
-    rig_expect_sensor(7, FATHOM_A16, SCAN_MODBUS, &scan_dyp_line);
+    rig_finds(1);
+    rig_expect(7, FATHOM_A16);
 
     /* and one that hears nothing, and sends on */
     rig_begin(0);
     rig.sim_line.full_duplex = true;
-    rig_a16(&(fathom_sim_a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_UART});
+    rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_UART});
     rig.walk.is_talking = true;
-    assert_int_equal(rig_walk(), FATHOM_READY);
-    assert_int_equal(rig.found, 0);
+    rig_finds(0);
 }
 
 TEST(test_an_hps167s_that_sends_unasked_is_found_at_its_rate)
@@ -142,7 +138,7 @@ TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
         .line = &scan_hps167s_line, .timeout_us = 100000, .first = 0x0009, .address = 1};
     scan_answer_t answer;
     rig_begin(0);
-    rig_hps(&(fathom_sim_hps167s_config_t){.unit = 1});
+    rig_hps((hps_config_t){.unit = 1});
     for (uint8_t count = 1; count <= SCAN_REGISTERS; count++) {
         question.count = count;
         scan_ask(&rig.wire, &question, &answer);

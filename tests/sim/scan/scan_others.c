@@ -15,7 +15,6 @@ static uint16_t first_of(const fathom_modbus_message_t *message)
 static uint32_t stranger_request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
     const uint16_t first = first_of(message);
-    (void)device;
     if (stranger.only[0] != 0 && first != stranger.only[0] && first != stranger.only[1])
         return FATHOM_NO_DEADLINE;
     message->exception = stranger.exception;
@@ -25,8 +24,6 @@ static uint32_t stranger_request(fathom_sim_device_t *device, fathom_modbus_mess
 static void stranger_fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
     const uint16_t first = first_of(message);
-    (void)device;
-    (void)now_us;
     for (uint8_t i = 0; i != message->head[5]; i++) message->values[i] = stranger.value;
     if (first == 0x0001)
         for (uint8_t i = 0; i != message->head[5]; i++) message->values[i] = stranger.version;
@@ -53,8 +50,6 @@ static uint8_t said_length;
 
 static uint8_t speak(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
-    (void)device;
-    (void)now_us;
     memcpy(bytes, said, said_length);
     return said_length;
 }
@@ -65,8 +60,6 @@ static const fathom_sim_protocol_t speaker_protocol = {speaker_hear, speak, NULL
 
 static bool speaker_hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us)
 {
-    (void)length;
-    (void)now_us;
     if (device->unit != 0 && frame[0] != device->unit) return true;
     device->reply_settings = device->settings;
     fathom_sim_device_reply(device, &speaker_protocol, 5000);

@@ -32,13 +32,11 @@ static int rate_index(uint32_t baud)
 
 static int rig_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
-    (void)ctx;
     return rig.is_broken ? -1 : rig.inner.read(rig.inner.ctx, bytes, capacity, rx);
 }
 
 static int rig_write(void *ctx, const uint8_t *bytes, size_t length)
 {
-    (void)ctx;
     const int n = rig.inner.write(rig.inner.ctx, bytes, length);
     if (n <= 0) return n;
     expect_harmless(bytes, length);
@@ -51,7 +49,6 @@ static int rig_write(void *ctx, const uint8_t *bytes, size_t length)
 
 static int rig_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
-    (void)ctx;
     if (settings->baud == rig.refused_baud) return -1;
     return rig.inner.set_line(rig.inner.ctx, settings);
 }
@@ -59,7 +56,6 @@ static int rig_set_line(void *ctx, const fathom_line_settings_t *settings)
 static bool rig_wait(void *ctx, uint32_t max_us)
 {
     const uint32_t before_us = rig.sim_clock.now_us;
-    (void)ctx;
     if (rig.waits_left == 0) return false;
     rig.waits_left--;
     if (rig.coarse_us != 0)
@@ -72,14 +68,12 @@ static bool rig_wait(void *ctx, uint32_t max_us)
 
 static void note_found(void *ctx, const scan_finding_t *finding)
 {
-    (void)ctx;
     assert_true(rig.found < RIG_FINDINGS);
     rig.findings[rig.found++] = *finding;
 }
 
 static void note_progress(void *ctx, uint64_t done_us, const fathom_line_settings_t *line, uint8_t address)
 {
-    (void)ctx;
     assert_true(done_us >= rig.progress_us);
     assert_true(line->baud >= 9600);
     assert_in_range(address, rig.plan.first, rig.plan.last);
@@ -88,7 +82,6 @@ static void note_progress(void *ctx, uint64_t done_us, const fathom_line_setting
 
 static void note_unsupported(void *ctx, const fathom_line_settings_t *line)
 {
-    (void)ctx;
     assert_int_equal(line->baud, rig.refused_baud);
     rig.unsupported++;
 }
@@ -131,25 +124,24 @@ void rig_attach(fathom_sim_device_t *device)
     fathom_sim_attach(&rig.sim_line, device, rig.sim_clock.now_us);
 }
 
-void rig_a16(const fathom_sim_a16_config_t *config)
+void rig_a16(a16_config_t config)
 {
-    fathom_sim_a16_t *const a16 = &rig.a16[rig.a16s++];
-    fathom_sim_a16_init(a16, config);
-    rig_attach(&a16->device);
+    if (config.mode == 0) config.mode = FATHOM_SIM_A16_MODBUS;
+    fathom_sim_a16_init(&rig.a16[rig.a16s], &config);
+    rig_attach(&rig.a16[rig.a16s++].device);
 }
 
-void rig_a05(const fathom_sim_a05_config_t *config)
+void rig_a05(a05_config_t config)
 {
-    fathom_sim_a05_t *const a05 = &rig.a05[rig.a05s++];
-    fathom_sim_a05_init(a05, config);
-    rig_attach(&a05->device);
+    if (config.mode == 0) config.mode = FATHOM_SIM_A05_MODBUS;
+    fathom_sim_a05_init(&rig.a05[rig.a05s], &config);
+    rig_attach(&rig.a05[rig.a05s++].device);
 }
 
-void rig_hps(const fathom_sim_hps167s_config_t *config)
+void rig_hps(hps_config_t config)
 {
-    fathom_sim_hps167s_t *const hps = &rig.hps[rig.hpss++];
-    fathom_sim_hps167s_init(hps, config);
-    rig_attach(&hps->device);
+    fathom_sim_hps167s_init(&rig.hps[rig.hpss], &config);
+    rig_attach(&rig.hps[rig.hpss++].device);
 }
 
 void rig_plan_everything(void)
@@ -165,7 +157,13 @@ void rig_plan_everything(void)
     rig.config.silence_us = scan_silence_us(&rig.plan);
 }
 
-fathom_status_t rig_walk(void) { return scan_walk(&rig.walk); }
+void rig_walk(void) { assert_int_equal(scan_walk(&rig.walk), FATHOM_READY); }
+
+void rig_finds(uint16_t count)
+{
+    rig_walk();
+    assert_int_equal(rig.found, count);
+}
 
 const scan_finding_t *rig_find(uint8_t address)
 {
@@ -189,6 +187,12 @@ void rig_expect_sensor(uint8_t address, fathom_model_t model, scan_mode_t mode,
     assert_int_equal(finding->line.baud, line->baud);
     assert_int_equal(finding->line.parity, line->parity);
     assert_int_equal(finding->line.stop_bits, 1);
+}
+
+void rig_expect(uint8_t address, fathom_model_t model)
+{
+    rig_expect_sensor(address, model, SCAN_MODBUS,
+                      model == FATHOM_HPS167S ? &scan_hps167s_line : &scan_dyp_line);
 }
 
 static void expect_unharmed(const fathom_sim_device_t *device)

@@ -56,20 +56,28 @@ extern rig_t rig;
 /* An empty line; the plan is the tool's default: 1..32 at the factory's two settings. */
 void rig_begin(uint32_t start_us);
 
-void rig_a16(const fathom_sim_a16_config_t *config);
-void rig_a05(const fathom_sim_a05_config_t *config);
-void rig_hps(const fathom_sim_hps167s_config_t *config);
+typedef fathom_sim_a16_config_t a16_config_t;
+typedef fathom_sim_a05_config_t a05_config_t;
+typedef fathom_sim_hps167s_config_t hps_config_t;
+void rig_a16(a16_config_t config); /* mode 0: Modbus */
+void rig_a05(a05_config_t config); /* mode 0: Modbus */
+void rig_hps(hps_config_t config);
 void rig_attach(fathom_sim_device_t *device);
 
 /* All rates and parities, every address. */
 void rig_plan_everything(void);
 
-fathom_status_t rig_walk(void);
+/* The walk, which ends well; and has found so many. */
+void rig_walk(void);
+void rig_finds(uint16_t count);
 
 /* The finding at an address; NULL: none. Fails when there are two. */
 const scan_finding_t *rig_find(uint8_t address);
 void rig_expect_sensor(uint8_t address, fathom_model_t model, scan_mode_t mode,
                        const fathom_line_settings_t *line);
+
+/* In Modbus, at the settings of the factory. */
+void rig_expect(uint8_t address, fathom_model_t model);
 
 /* No simulated device has been written to, or was met with the reset's address. */
 void rig_expect_unharmed(void);
