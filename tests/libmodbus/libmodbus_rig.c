@@ -35,9 +35,24 @@ static int set_up(modbus_t *modbus)
     return 0;
 }
 
-int rig_tcp_set_up(void **state) { return set_up(modbus_new_tcp("127.0.0.1", 502)); }
+static int (*again)(void **state);
 
-int rig_rtu_set_up(void **state) { return set_up(modbus_new_rtu("/nowhere", 19200, 'E', 8, 1)); }
+int rig_tcp_set_up(void **state)
+{
+    again = rig_tcp_set_up;
+    return set_up(modbus_new_tcp("127.0.0.1", 502));
+}
+
+int rig_rtu_set_up(void **state)
+{
+    again = rig_rtu_set_up;
+    return set_up(modbus_new_rtu("/nowhere", 19200, 'E', 8, 1));
+}
+
+void rig_again(bool is_first)
+{
+    if (!is_first) assert_int_equal(rig_tear_down(NULL) + again(NULL), 0);
+}
 
 int rig_tear_down(void **state)
 {
@@ -96,4 +111,23 @@ void rig_expect_sent(const void *bytes, size_t length)
     }
     assert_int_equal(n, length);
     assert_memory_equal(sent, bytes, length);
+}
+
+void rig_expect_request(uint8_t transaction) { rig_expect_sent((const uint8_t[]){REQUEST(transaction)}, 12); }
+
+void rig_say_answer(uint8_t transaction) { rig_say((const uint8_t[]){ANSWER(transaction)}, 15); }
+
+void rig_answered(uint8_t transaction)
+{
+    rig_say_answer(transaction);
+    rig_run_fine(FINE_US);
+    rig_expect_three();
+}
+
+void rig_ask(uint8_t retries)
+{
+    rig_ask_three(&rig.request, 1, retries);
+    rig_run_fine(FINE_US);
+    rig_expect_request(1);
+    assert_int_equal(status(), FATHOM_PENDING);
 }

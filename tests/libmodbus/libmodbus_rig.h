@@ -36,7 +36,7 @@ extern rig_t rig;
 #define OTHER(transaction)              0xF0, (transaction), 0, 0, 0, 9, 1, 0x03, 6, 0, 1, 0, 2, 0, 3 /* other values */
 #define REFUSAL(transaction, exception) 0xF0, (transaction), 0, 0, 0, 3, 1, 0x83, (exception)
 
-enum { RIG_TIMEOUT_US = 100000, RIG_ALARM_S = 60 };
+enum { RIG_TIMEOUT_US = 100000, RIG_ALARM_S = 60, FINE_US = 100, SLOW_US = 20000 };
 
 /* cmocka's fixtures. */
 int rig_tcp_set_up(void **state);
@@ -53,20 +53,26 @@ void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retri
 void rig_expect_three(void);
 void rig_expect_none(void);
 
+/* The same, as a new test has it, but for the first of many. */
+void rig_again(bool is_first);
+
+/* Once over TCP: that request has left with its transaction; its answer comes, and then its values were delivered. */
+void rig_expect_request(uint8_t transaction);
+void rig_say_answer(uint8_t transaction);
+void rig_answered(uint8_t transaction);
+
+/* rig_ask_three of unit 1 over TCP, whose first request has left. */
+void rig_ask(uint8_t retries);
+
+/* Of rig.request. */
+static inline int status(void) { return rig.request.exchange.status; }
+
 /* Moves the clock on by step_us and polls, until that makes in_us. */
 void rig_run(uint32_t in_us, uint32_t step_us);
+static inline void rig_run_fine(uint32_t in_us) { rig_run(in_us, FINE_US); }
 
 /* To the port; and what the port has sent, which has to be that and nothing else. */
 void rig_say(const void *bytes, size_t length);
 void rig_expect_sent(const void *bytes, size_t length);
-
-#define RIG_TEST_TCP(test)                                                                                   \
-    {                                                                                                        \
-#test, test, rig_tcp_set_up, rig_tear_down, NULL                                                     \
-    }
-#define RIG_TEST_RTU(test)                                                                                   \
-    {                                                                                                        \
-#test, test, rig_rtu_set_up, rig_tear_down, NULL                                                     \
-    }
 
 #endif

@@ -9,13 +9,7 @@
 /* What the port does when the connection is broken, full or not there, and how it begins. */
 
 static const uint8_t request_1[] = {REQUEST(1)};
-static const uint8_t request_2[] = {REQUEST(2)};
 static const uint8_t answer_1[] = {ANSWER(1)};
-static const uint8_t answer_2[] = {ANSWER(2)};
-
-enum { FINE_US = 100 };
-
-static int status(void) { return rig.request.exchange.status; }
 
 static fathom_status_t poll_once(void)
 {
@@ -27,7 +21,7 @@ static void ask(void)
 {
     rig_ask_three(&rig.request, 1, 3); /* retries are not made on a broken connection */
     assert_int_equal(poll_once(), FATHOM_PENDING);
-    rig_expect_sent(request_1, sizeof request_1);
+    rig_expect_request(1);
 }
 
 static void hang_up(void)
@@ -54,11 +48,9 @@ static void expect_to_go_on(void)
 {
     rig_connect();
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(2 * RIG_TIMEOUT_US, FINE_US);
-    rig_expect_sent(request_2, sizeof request_2);
-    rig_say(answer_2, sizeof answer_2);
-    (void)poll_once();
-    rig_expect_three();
+    rig_run_fine(2 * RIG_TIMEOUT_US);
+    rig_expect_request(2);
+    rig_answered(2);
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_OK);
 }
 
@@ -75,7 +67,7 @@ TEST(a_server_that_closes_breaks_it_until_there_is_a_new_connection)
 TEST(an_answer_before_the_end_of_the_connection_is_read)
 {
     ask();
-    rig_say(answer_1, sizeof answer_1);
+    rig_say_answer(1);
     hang_up();
     (void)poll_once();
     rig_expect_three();
@@ -84,7 +76,7 @@ TEST(an_answer_before_the_end_of_the_connection_is_read)
 TEST(half_an_answer_and_the_end_break_it)
 {
     for (size_t cut = 1; cut != sizeof answer_1; cut++) {
-        if (cut != 1) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
+        rig_again(cut == 1);
         ask();
         rig_say(answer_1, cut);
         assert_int_equal(poll_once(), FATHOM_PENDING);
@@ -127,7 +119,7 @@ TEST(what_is_no_modbus_breaks_it_and_ends_the_connection)
     };
     for (size_t i = 0; i != sizeof nonsense / sizeof nonsense[0]; i++) {
         uint8_t byte = 0;
-        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
+        rig_again(i == 0);
         ask();
         rig_say(nonsense[i], sizeof nonsense[i]);
         expect_broken(FATHOM_LIBMODBUS_ERR_NONSENSE);
@@ -153,10 +145,8 @@ TEST(a_full_connection_is_busy_and_nothing_waits)
         filled -= (size_t)n;
     }
     assert_int_equal(poll_once(), FATHOM_PENDING);
-    rig_expect_sent(request_1, sizeof request_1);
-    rig_say(answer_1, sizeof answer_1);
-    (void)poll_once();
-    rig_expect_three();
+    rig_expect_request(1);
+    rig_answered(1);
 }
 
 TEST(a_connection_that_stays_full_is_broken_after_a_second)
@@ -164,9 +154,9 @@ TEST(a_connection_that_stays_full_is_broken_after_a_second)
     static uint8_t junk[4096];
     while (send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT) > 0) continue;
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(FATHOM_LINE_SEND_US - FINE_US, FINE_US);
+    rig_run_fine(FATHOM_LINE_SEND_US - FINE_US);
     assert_int_equal(status(), FATHOM_PENDING);
-    rig_run(3 * FINE_US, FINE_US);
+    rig_run_fine(3 * FINE_US);
     assert_int_equal(status(), FATHOM_ERR_PORT);
 }
 

@@ -40,7 +40,7 @@ static fathom_status_t poll_once(void)
 {
     rig.fake.now_us += 1000;
     (void)rig.seam.poll(rig.seam.ctx);
-    return (fathom_status_t)rig.request.exchange.status;
+    return (fathom_status_t)status();
 }
 
 /* Sends, and waits until so many bytes in all stand in the port's socket: if they do not, the alarm ends it. */

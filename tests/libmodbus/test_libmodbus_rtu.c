@@ -11,15 +11,20 @@
 static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
 static const uint8_t answer[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
 
-enum { FINE_US = 100, SLOW_US = 20000, SILENCE_US = 4011, GAP_US = 25000 };
-
-static int status(void) { return rig.request.exchange.status; }
+enum { SILENCE_US = 4011, GAP_US = 25000 };
 
 static void ask(uint8_t retries)
 {
     rig_ask_three(&rig.request, 1, retries);
-    rig_run(SILENCE_US + FINE_US, FINE_US);
+    rig_run_fine(SILENCE_US + FINE_US);
     rig_expect_sent(request, sizeof request);
+}
+
+static void answered(void)
+{
+    rig_say(answer, sizeof answer);
+    rig_run_fine(FINE_US);
+    rig_expect_three();
 }
 
 static const suite_t suite = {.set_up = rig_rtu_set_up, .tear_down = rig_tear_down};
@@ -27,17 +32,15 @@ static const suite_t suite = {.set_up = rig_rtu_set_up, .tear_down = rig_tear_do
 TEST(a_request_has_its_crc_once_and_its_answer_is_read)
 {
     ask(0);
-    rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    answered();
 }
 
 TEST(the_silence_before_a_request_is_kept)
 {
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(SILENCE_US - 2 * FINE_US, FINE_US);
+    rig_run_fine(SILENCE_US - 2 * FINE_US);
     rig_expect_sent(NULL, 0);
-    rig_run(3 * FINE_US, FINE_US);
+    rig_run_fine(3 * FINE_US);
     rig_expect_sent(request, sizeof request);
 }
 
@@ -47,7 +50,7 @@ TEST(an_answer_a_byte_at_a_time_is_read)
     for (size_t i = 0; i != sizeof answer; i++) {
         rig_expect_none();
         rig_say(answer + i, 1);
-        rig_run(1000, FINE_US);
+        rig_run_fine(1000);
     }
     rig_expect_three();
 }
@@ -68,7 +71,7 @@ TEST(an_exception_is_complete_by_its_length)
     static const uint8_t refusal[] = {0x01, 0x83, 0x02, 0xC0, 0xF1}; /* HPS-167S, table 40's example */
     ask(0);
     rig_say(refusal, sizeof refusal);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     assert_int_equal(status(), FATHOM_ERR_EXCEPTION);
     assert_int_equal(rig.request.message.exception, 2);
 }
@@ -77,21 +80,19 @@ TEST(noise_before_an_answer_is_dropped)
 {
     ask(0);
     rig_say("\xFF\x00\x55", 3);
-    rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    answered();
 }
 
 TEST(a_damaged_answer_is_a_checksum_error)
 {
     for (size_t i = 1; i != sizeof answer; i++) {
         uint8_t damaged[sizeof answer];
-        if (i != 1) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
+        rig_again(i == 1);
         memcpy(damaged, answer, sizeof answer);
         damaged[i] ^= 0x10;
         ask(0);
         rig_say(damaged, sizeof damaged);
-        rig_run(RIG_TIMEOUT_US + GAP_US, FINE_US);
+        rig_run_fine(RIG_TIMEOUT_US + GAP_US);
         assert_true(status() == FATHOM_ERR_CHECKSUM || status() == FATHOM_ERR_NO_ANSWER);
         if (i > 2) assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* its beginning was an answer's */
         rig_expect_none();
@@ -104,21 +105,17 @@ TEST(another_units_answer_is_not_taken)
     static const uint8_t other[] = {0x05, 0x03, 0x02, 0x12, 0x34, 0x44, 0xF3};
     ask(0);
     rig_say(other, sizeof other);
-    rig_run(1000, FINE_US);
+    rig_run_fine(1000);
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_STRAYS], 1);
-    rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    answered();
 }
 
 TEST(a_late_answer_serves_the_retry_that_waits)
 {
     ask(1);
-    rig_run(RIG_TIMEOUT_US + SILENCE_US, FINE_US);
+    rig_run_fine(RIG_TIMEOUT_US + SILENCE_US);
     rig_expect_sent(NULL, 0); /* it owes an answer */
-    rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    answered();
     assert_int_equal(rig.request.exchange.attempts, 1);
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
 }
@@ -126,9 +123,9 @@ TEST(a_late_answer_serves_the_retry_that_waits)
 TEST(a_unit_that_owes_is_asked_after_twice_the_time_out)
 {
     ask(1);
-    rig_run(2 * RIG_TIMEOUT_US - SILENCE_US, FINE_US);
+    rig_run_fine(2 * RIG_TIMEOUT_US - SILENCE_US);
     rig_expect_sent(NULL, 0);
-    rig_run(2 * SILENCE_US, FINE_US);
+    rig_run_fine(2 * SILENCE_US);
     rig_expect_sent(request, sizeof request);
 }
 
@@ -139,18 +136,18 @@ TEST(the_config_says_whether_there_is_an_echo)
     static const uint8_t outcomes[] = {FATHOM_LINE_ECHO_AUTO, FATHOM_LINE_ECHO_OFF, FATHOM_LINE_ECHO_ON};
     static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_READY, FATHOM_ERR_NO_ANSWER};
     for (size_t i = 0; i != sizeof outcomes; i++) {
-        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
+        rig_again(i == 0);
         const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .echo = outcomes[i]};
         uint8_t sent[16];
         assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
         rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
         fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
         assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
-        rig_run(SILENCE_US + FINE_US, FINE_US);
+        rig_run_fine(SILENCE_US + FINE_US);
         assert_int_equal(recv(rig.far, sent, sizeof sent, MSG_DONTWAIT), 8);
         assert_memory_equal(sent, write, sizeof write);
         rig_say(sent, 8);
-        rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+        rig_run_fine(RIG_TIMEOUT_US + 1000);
         assert_int_equal(status(), expected[i]);
     }
 }
@@ -161,12 +158,12 @@ TEST(the_config_has_the_silence_and_the_gap)
     assert_int_equal(rig.port.config.gap_us, GAP_US); /* the default, behind an operating system */
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(1800, FINE_US);
+    rig_run_fine(1800);
     rig_expect_sent(request, sizeof request);
     rig_say(answer, 5);
-    rig_run(FINE_US + 2800, FINE_US);
+    rig_run_fine(FINE_US + 2800);
     assert_int_equal(status(), FATHOM_PENDING);
-    rig_run(300, FINE_US);
+    rig_run_fine(300);
     assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* it broke off */
 }
 
@@ -185,7 +182,7 @@ TEST(line_settings_are_unsupported_and_nothing_is_sent)
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
     rig_ask_three(&rig.request, 1, 0);
     rig.request.exchange.settings = &settings;
-    rig_run(SILENCE_US + FINE_US, FINE_US);
+    rig_run_fine(SILENCE_US + FINE_US);
     assert_int_equal(status(), FATHOM_ERR_UNSUPPORTED);
     rig_expect_sent(NULL, 0);
 }
@@ -208,11 +205,9 @@ TEST(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back)
     assert_int_equal(status(), FATHOM_ERR_PORT);
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
     rig_connect();
-    rig_run(2 * RIG_TIMEOUT_US, FINE_US); /* what it owes */
+    rig_run_fine(2 * RIG_TIMEOUT_US); /* what it owes */
     ask(0);
-    rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    answered();
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_OK);
 }
 
@@ -230,7 +225,7 @@ TEST(a_terminal_that_hangs_up_is_broken)
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
     rig.seam = fathom_libmodbus(&rig.port);
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(SILENCE_US + FINE_US, FINE_US);
+    rig_run_fine(SILENCE_US + FINE_US);
     assert_int_equal(rig.request.exchange.attempts, 1);
     assert_int_equal(close(far), 0);
     rig.fake.now_us += FINE_US;
@@ -259,7 +254,7 @@ TEST(a_full_port_is_busy_and_nothing_waits)
     while ((n = send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT)) > 0)
         filled += (size_t)n;
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(2 * SILENCE_US, FINE_US);
+    rig_run_fine(2 * SILENCE_US);
     assert_int_equal(rig.request.exchange.attempts, 0);
     assert_false(rig.port.uart.sent(rig.port.uart.ctx));
     while (filled != 0) {
@@ -268,6 +263,6 @@ TEST(a_full_port_is_busy_and_nothing_waits)
         filled -= (size_t)n;
     }
     assert_true(rig.port.uart.sent(rig.port.uart.ctx));
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_sent(request, sizeof request);
 }

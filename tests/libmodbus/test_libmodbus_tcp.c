@@ -1,32 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include "libmodbus_rig.h"
 
-static const uint8_t request_1[] = {REQUEST(1)};
-static const uint8_t request_2[] = {REQUEST(2)};
 static const uint8_t answer_1[] = {ANSWER(1)};
-static const uint8_t answer_2[] = {ANSWER(2)};
 static const uint8_t other_1[] = {OTHER(1)};
-
-enum { FINE_US = 100, SLOW_US = 20000 };
-
-static int status(void) { return rig.request.exchange.status; }
-
-/* The first request has left. */
-static void ask(uint8_t retries)
-{
-    rig_ask_three(&rig.request, 1, retries);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_sent(request_1, sizeof request_1);
-    assert_int_equal(status(), FATHOM_PENDING);
-}
 
 static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_down};
 
 TEST(a_request_has_a_header_and_no_crc_and_its_answer_is_read)
 {
-    ask(0);
+    rig_ask(0);
     rig.fake.now_us += 5000;
-    rig_say(answer_1, sizeof answer_1);
+    rig_say_answer(1);
     assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_PENDING);
     rig_expect_three();
     assert_int_equal(rig.request.exchange.attempts, 1);
@@ -36,15 +20,13 @@ TEST(a_request_has_a_header_and_no_crc_and_its_answer_is_read)
 
 TEST(every_request_has_a_transaction_of_its_own)
 {
-    ask(0);
-    rig_say(answer_1, sizeof answer_1);
-    rig_run(FINE_US, FINE_US);
+    rig_ask(0);
+    rig_say_answer(1);
+    rig_run_fine(FINE_US);
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_sent(request_2, sizeof request_2);
-    rig_say(answer_2, sizeof answer_2);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    rig_run_fine(FINE_US);
+    rig_expect_request(2);
+    rig_answered(2);
 }
 
 TEST(transactions_begin_again_at_zero)
@@ -53,20 +35,20 @@ TEST(transactions_begin_again_at_zero)
     static const uint8_t answer[] = {0, 0, 0, 0, 0, 9, 1, 3, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
     rig.port.transaction = 0xFFFF;
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_sent(request, sizeof request);
     rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_three();
 }
 
 TEST(an_answer_that_comes_a_byte_at_a_time_is_read_when_it_is_whole)
 {
-    ask(0);
+    rig_ask(0);
     for (size_t i = 0; i != sizeof answer_1; i++) {
         rig_expect_none();
         rig_say(answer_1 + i, 1);
-        rig_run(5000, FINE_US); /* 75 ms in all; the time-out is 100 */
+        rig_run_fine(5000); /* 75 ms in all; the time-out is 100 */
     }
     rig_expect_three();
 }
@@ -74,10 +56,10 @@ TEST(an_answer_that_comes_a_byte_at_a_time_is_read_when_it_is_whole)
 TEST(an_answer_cut_anywhere_is_no_answer)
 {
     for (size_t cut = 1; cut != sizeof answer_1; cut++) {
-        if (cut != 1) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
-        ask(0);
+        rig_again(cut == 1);
+        rig_ask(0);
         rig_say(answer_1, cut);
-        rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+        rig_run_fine(RIG_TIMEOUT_US + 1000);
         assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
         rig_expect_none();
     }
@@ -85,50 +67,46 @@ TEST(an_answer_cut_anywhere_is_no_answer)
 
 TEST(the_rest_of_a_cut_answer_is_late_and_the_next_is_read)
 {
-    ask(0);
+    rig_ask(0);
     rig_say(answer_1, 9);
-    rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_run_fine(2 * RIG_TIMEOUT_US + 1000);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_sent(request_2, sizeof request_2);
+    rig_run_fine(FINE_US);
+    rig_expect_request(2);
     rig_say(answer_1 + 9, sizeof answer_1 - 9);
-    rig_run(1000, FINE_US);
+    rig_run_fine(1000);
     rig_expect_none();
-    rig_say(answer_2, sizeof answer_2);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    rig_answered(2);
     assert_int_equal(rig.port.late_answers, 1);
 }
 
 /* Twice the time-out after the request its unit may be asked again, and only the transaction tells the two apart. */
 TEST(an_answer_to_an_earlier_transaction_is_never_taken)
 {
-    ask(0);
-    rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_ask(0);
+    rig_run_fine(2 * RIG_TIMEOUT_US + 1000);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_sent(request_2, sizeof request_2);
+    rig_run_fine(FINE_US);
+    rig_expect_request(2);
     rig_say(other_1, sizeof other_1);
-    rig_run(1000, FINE_US);
+    rig_run_fine(1000);
     assert_int_equal(status(), FATHOM_PENDING);
     rig_expect_none();
-    rig_say(answer_2, sizeof answer_2);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    rig_answered(2);
     assert_int_equal(rig.port.late_answers, 1);
 }
 
 TEST(answers_glued_together_are_told_apart)
 {
     static const uint8_t glued[] = {OTHER(0), OTHER(7), ANSWER(1), OTHER(1)};
-    ask(0);
+    rig_ask(0);
     rig_say(glued, sizeof glued);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_three();
     assert_int_equal(rig.port.late_answers, 2);
-    rig_run(2000, FINE_US);
+    rig_run_fine(2000);
     /* A second answer to the same: unit, PDU (8 bytes) and the CRC that it was given. */
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_DROPPED_BYTES], 11);
     rig_expect_three();
@@ -136,37 +114,34 @@ TEST(answers_glued_together_are_told_apart)
 
 TEST(many_late_answers_at_once_do_not_hide_the_right_one)
 {
-    ask(0);
+    rig_ask(0);
     for (int i = 0; i != 100; i++) rig_say((const uint8_t[]){OTHER(0)}, sizeof other_1);
-    rig_say(answer_1, sizeof answer_1);
-    rig_run(10 * FINE_US, FINE_US);
+    rig_say_answer(1);
+    rig_run_fine(10 * FINE_US);
     rig_expect_three();
     assert_int_equal(rig.port.late_answers, 100);
 }
 
 TEST(a_late_answer_serves_the_retry_that_waits)
 {
-    ask(1);
-    rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_ask(1);
+    rig_run_fine(RIG_TIMEOUT_US + 1000);
     assert_int_equal(status(), FATHOM_PENDING);
     rig_expect_sent(NULL, 0); /* its unit owes an answer */
-    rig_say(answer_1, sizeof answer_1);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    rig_answered(1);
     assert_int_equal(rig.request.exchange.attempts, 1);
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
 }
 
 TEST(retries_are_sent_and_then_it_has_failed)
 {
-    static const uint8_t request_3[] = {REQUEST(3)};
-    ask(2);
-    rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
-    rig_expect_sent(request_2, sizeof request_2);
-    rig_run(2 * RIG_TIMEOUT_US, FINE_US);
-    rig_expect_sent(request_3, sizeof request_3);
+    rig_ask(2);
+    rig_run_fine(2 * RIG_TIMEOUT_US + 1000);
+    rig_expect_request(2);
+    rig_run_fine(2 * RIG_TIMEOUT_US);
+    rig_expect_request(3);
     assert_int_equal(status(), FATHOM_PENDING);
-    rig_run(2 * RIG_TIMEOUT_US, FINE_US);
+    rig_run_fine(2 * RIG_TIMEOUT_US);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(rig.request.exchange.attempts, 3);
     rig_expect_sent(NULL, 0);
@@ -175,12 +150,12 @@ TEST(retries_are_sent_and_then_it_has_failed)
 /* Unit 2 does not hide behind the right transaction. */
 TEST(another_units_answer_is_not_taken)
 {
-    ask(0);
+    rig_ask(0);
     uint8_t wrong[sizeof answer_1];
     memcpy(wrong, answer_1, sizeof wrong);
     wrong[6] = 2;
     rig_say(wrong, sizeof wrong);
-    rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_run_fine(RIG_TIMEOUT_US + 1000);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_STRAYS], 1);
     rig_expect_none();
@@ -189,9 +164,9 @@ TEST(another_units_answer_is_not_taken)
 TEST(another_function_is_malformed)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 6, 1, 0x06, 0x01, 0x07, 0x00, 0x03};
-    ask(0);
+    rig_ask(0);
     rig_say(wrong, sizeof wrong);
-    rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_run_fine(RIG_TIMEOUT_US + 1000);
     assert_int_equal(status(), FATHOM_ERR_MALFORMED);
     rig_expect_none();
 }
@@ -200,23 +175,21 @@ TEST(another_function_is_malformed)
 TEST(a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_out_of_step)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
-    ask(1);
+    rig_ask(1);
     rig_say(wrong, sizeof wrong);
-    rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_run_fine(2 * RIG_TIMEOUT_US + 1000);
     rig_expect_none();
-    rig_expect_sent(request_2, sizeof request_2);
-    rig_say(answer_2, sizeof answer_2);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    rig_expect_request(2);
+    rig_answered(2);
     assert_int_equal(rig.port.line.counters[FATHOM_LINE_CHECKSUM_ERRORS], 1);
 }
 
 TEST(a_damaged_answer_is_given_up_at_once)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
-    ask(0);
+    rig_ask(0);
     rig_say(wrong, sizeof wrong);
-    rig_run(2000, FINE_US);
+    rig_run_fine(2000);
     assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
 }
 
@@ -224,9 +197,9 @@ TEST(a_damaged_answer_is_given_up_at_once)
 TEST(what_only_begins_like_a_gateways_exception_is_none)
 {
     static const uint8_t longer[] = {0xF0, 1, 0, 0, 0, 4, 1, 0x83, 0x0B, 0x55};
-    ask(0);
+    rig_ask(0);
     rig_say(longer, sizeof longer);
-    rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+    rig_run_fine(RIG_TIMEOUT_US + 1000);
     assert_int_equal(rig.port.gateway_exception, 0);
     assert_int_equal(status(), FATHOM_ERR_CHECKSUM);
 }
@@ -235,10 +208,10 @@ TEST(exceptions_have_their_numbers)
 {
     for (unsigned number = 1; number != 256; number++) {
         if (number == 0x0A || number == 0x0B) continue;
-        if (number != 1) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
-        ask(0);
+        rig_again(number == 1);
+        rig_ask(0);
         rig_say((const uint8_t[]){REFUSAL(1, (uint8_t)number)}, 9);
-        rig_run(FINE_US, FINE_US);
+        rig_run_fine(FINE_US);
         assert_int_equal(status(), FATHOM_ERR_EXCEPTION);
         assert_int_equal(rig.request.message.exception, number);
         assert_int_equal(rig.port.gateway_exception, 0);
@@ -248,14 +221,14 @@ TEST(exceptions_have_their_numbers)
 TEST(a_gateways_exceptions_are_no_answer)
 {
     for (uint8_t number = 0x0A; number <= 0x0B; number++) {
-        if (number != 0x0A) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
-        ask(1);
+        rig_again(number == 0x0A);
+        rig_ask(1);
         rig_say((const uint8_t[]){REFUSAL(1, number)}, 9);
-        rig_run(2 * RIG_TIMEOUT_US + 1000, FINE_US);
+        rig_run_fine(2 * RIG_TIMEOUT_US + 1000);
         assert_int_equal(status(), FATHOM_PENDING);
-        rig_expect_sent(request_2, sizeof request_2); /* as after silence */
+        rig_expect_request(2); /* as after silence */
         rig_say((const uint8_t[]){REFUSAL(2, number)}, 9);
-        rig_run(RIG_TIMEOUT_US + 1000, FINE_US);
+        rig_run_fine(RIG_TIMEOUT_US + 1000);
         assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
         assert_int_equal(rig.request.message.exception, 0);
         assert_int_equal(rig.port.gateway_exception, number);
@@ -266,9 +239,9 @@ TEST(a_gateways_exceptions_are_no_answer)
 
 TEST(a_late_gateways_exception_is_late)
 {
-    ask(0);
+    rig_ask(0);
     rig_say((const uint8_t[]){REFUSAL(0, 0x0B), ANSWER(1)}, 9 + sizeof answer_1);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_three();
     assert_int_equal(rig.port.gateway_exception, 0);
     assert_int_equal(rig.port.late_answers, 1);
@@ -278,9 +251,9 @@ TEST(counters_stop_at_65535)
 {
     rig.port.late_answers = UINT16_MAX;
     rig.port.gateway_refusals = UINT16_MAX;
-    ask(0);
+    rig_ask(0);
     rig_say((const uint8_t[]){OTHER(0), REFUSAL(1, 0x0A)}, sizeof other_1 + 9);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     assert_int_equal(rig.port.gateway_exception, 0x0A);
     assert_int_equal(rig.port.late_answers, UINT16_MAX);
     assert_int_equal(rig.port.gateway_refusals, UINT16_MAX);
@@ -294,13 +267,13 @@ TEST(the_longest_answer_is_read_and_a_longer_one_dropped)
     rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 125, rig.values);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     for (uint8_t i = 0; i != 250; i++) answer[9 + i] = i;
     rig_say(longer, sizeof longer);
-    rig_run(1000, FINE_US);
+    rig_run_fine(1000);
     assert_int_equal(status(), FATHOM_PENDING);
     rig_say(answer, sizeof answer);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     assert_int_equal(status(), FATHOM_READY);
     for (uint8_t i = 0; i != 125; i++) assert_int_equal(rig.values[i], (2 * i) * 256 + 2 * i + 1);
 }

@@ -1,24 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "libmodbus_rig.h"
 
-static const uint8_t request_1[] = {REQUEST(1)};
-static const uint8_t request_2[] = {REQUEST(2)};
-static const uint8_t answer_1[] = {ANSWER(1)};
-static const uint8_t answer_2[] = {ANSWER(2)};
 static const uint8_t other_1[] = {OTHER(1)};
-
-enum { FINE_US = 100, SLOW_US = 20000 };
-
-static int status(void) { return rig.request.exchange.status; }
-
-/* The first request has left. */
-static void ask(uint8_t retries)
-{
-    rig_ask_three(&rig.request, 1, retries);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_sent(request_1, sizeof request_1);
-    assert_int_equal(status(), FATHOM_PENDING);
-}
 
 static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_down};
 
@@ -28,10 +11,10 @@ TEST(a_write_is_acknowledged_by_its_own_words_at_once)
     rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_sent(write, sizeof write);
     rig_say(write, sizeof write);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     assert_int_equal(status(), FATHOM_READY); /* TCP has no echo */
 }
 
@@ -41,11 +24,11 @@ TEST(a_broadcast_needs_no_answer)
     rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_write_single_register(&rig.request.message, 0, 0x0010, 7);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     rig_expect_sent(write, sizeof write);
-    rig_run(RIG_TIMEOUT_US - 1000, FINE_US);
+    rig_run_fine(RIG_TIMEOUT_US - 1000);
     assert_int_equal(status(), FATHOM_PENDING);
-    rig_run(2000, FINE_US);
+    rig_run_fine(2000);
     assert_int_equal(status(), FATHOM_READY);
 }
 
@@ -53,9 +36,9 @@ TEST(a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it)
 {
     rig_ask_three(&rig.request, 1, 0);
     rig_run(SLOW_US, SLOW_US);
-    rig_expect_sent(request_1, sizeof request_1);
+    rig_expect_request(1);
     rig_run(3 * SLOW_US, SLOW_US);
-    rig_say(answer_1, sizeof answer_1);
+    rig_say_answer(1);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_three();
 }
@@ -64,11 +47,11 @@ TEST(the_wrap_of_the_clock_changes_nothing)
 {
     rig.fake.now_us = UINT32_MAX - RIG_TIMEOUT_US / 2;
     (void)rig.seam.poll(rig.seam.ctx);
-    ask(0);
-    rig_run(RIG_TIMEOUT_US - 1000, FINE_US);
+    rig_ask(0);
+    rig_run_fine(RIG_TIMEOUT_US - 1000);
     assert_int_equal(status(), FATHOM_PENDING);
     assert_int_equal(rig.seam.due_us(rig.seam.ctx), 1100); /* that it has left is seen by the poll after */
-    rig_run(1100, FINE_US);
+    rig_run_fine(1100);
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
 }
 
@@ -80,39 +63,37 @@ TEST(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_t
     fathom_modbus_request_t second;
     rig_ask_three(&rig.request, 1, 1);
     rig_ask_three(&second, 2, 0);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_sent(request_1, sizeof request_1);
-    rig_run(RIG_TIMEOUT_US + FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
+    rig_expect_request(1);
+    rig_run_fine(RIG_TIMEOUT_US + FINE_US);
     rig_expect_sent(to_2, sizeof to_2);
     rig_say(from_2, sizeof from_2);
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     assert_int_equal(second.exchange.status, FATHOM_READY);
     assert_int_equal(status(), FATHOM_PENDING);
-    rig_run(RIG_TIMEOUT_US, FINE_US);
+    rig_run_fine(RIG_TIMEOUT_US);
     rig_expect_sent(to_1, sizeof to_1);
 }
 
 TEST(a_cancelled_request_is_nobodys_and_its_answer_too)
 {
-    ask(0);
+    rig_ask(0);
     rig.seam.cancel(rig.seam.ctx, &rig.request);
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
     rig_ask_three(&rig.request, 1, 0);
     rig_say(other_1, sizeof other_1);
-    rig_run(1000, FINE_US);
+    rig_run_fine(1000);
     assert_int_equal(status(), FATHOM_PENDING);
     rig_expect_none();
-    rig_expect_sent(request_2, sizeof request_2);
-    rig_say(answer_2, sizeof answer_2);
-    rig_run(FINE_US, FINE_US);
-    rig_expect_three();
+    rig_expect_request(2);
+    rig_answered(2);
 }
 
 TEST(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not)
 {
     fathom_modbus_request_t second;
     fathom_modbus_request_t third;
-    ask(0);
+    rig_ask(0);
     rig_ask_three(&second, 2, 0);
     rig_ask_three(&third, 1, 0);
     rig.seam.cancel_unit(rig.seam.ctx, 1);

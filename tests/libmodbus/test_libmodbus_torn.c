@@ -7,10 +7,6 @@
 
 /* A system that takes a part of a request, or refuses it for a while. */
 
-static const uint8_t request_1[] = {REQUEST(1)};
-
-enum { FINE_US = 100 };
-
 static struct {
     size_t most; /* bytes; 0: all */
     int error;
@@ -42,12 +38,12 @@ int __wrap_modbus_send_raw_request(modbus_t *modbus, const uint8_t *bytes, int l
 static void ask(void)
 {
     rig_ask_three(&rig.request, 1, 0);
-    rig_run(5000, FINE_US);
+    rig_run_fine(5000);
 }
 
 static void expect_port(fathom_libmodbus_error_t error)
 {
-    assert_int_equal(rig.request.exchange.status, FATHOM_ERR_PORT);
+    assert_int_equal(status(), FATHOM_ERR_PORT);
     assert_int_equal(fathom_libmodbus_error(&rig.port), error);
 }
 
@@ -69,13 +65,13 @@ TEST(what_is_refused_for_a_while_is_sent_later)
 {
     static const int errors[] = {EAGAIN, EINTR};
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
-        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_tcp_set_up(NULL), 0);
+        rig_again(i == 0);
         sending.error = errors[i];
         ask();
-        assert_int_equal(rig.request.exchange.status, FATHOM_PENDING);
+        assert_int_equal(status(), FATHOM_PENDING);
         sending.error = 0;
-        rig_run(FINE_US, FINE_US);
-        rig_expect_sent(request_1, sizeof request_1);
+        rig_run_fine(FINE_US);
+        rig_expect_request(1);
     }
 }
 
@@ -100,10 +96,10 @@ TEST_IN(with_rig_rtu_set_up, what_rtu_is_refused_for_a_while_is_sent_later)
 {
     sending.error = EAGAIN;
     ask();
-    assert_int_equal(rig.request.exchange.status, FATHOM_PENDING);
+    assert_int_equal(status(), FATHOM_PENDING);
     assert_int_equal(rig.request.exchange.attempts, 0);
     sending.error = 0;
-    rig_run(FINE_US, FINE_US);
+    rig_run_fine(FINE_US);
     assert_int_equal(rig.request.exchange.attempts, 1);
 }
 
@@ -111,7 +107,7 @@ TEST_IN(with_rig_rtu_set_up, an_adapter_that_was_unplugged_has_hung_up)
 {
     static const int errors[] = {EIO, ENXIO, ENODEV};
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
-        if (i != 0) assert_int_equal(rig_tear_down(NULL) + rig_rtu_set_up(NULL), 0);
+        rig_again(i == 0);
         sending.error = errors[i];
         ask();
         sending.error = 0;
