@@ -6,7 +6,7 @@
 
 #include "defences.h"
 
-enum { EXCHANGES = 20000, SEED = 1 };
+enum { EXCHANGES = 8000, SEED = 1 };
 
 static void run(const char *name, defence_result_t *result)
 {
