@@ -6,18 +6,16 @@
 
 /* set_break: the trigger of modules whose RX pin is our TX. The driver is posix_driver.h's. */
 
-static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
-
-static fathom_uart_t open_wire(port_rig_t *rig)
+static fathom_uart_t open_wire(void)
 {
     driver.is_8250 = true;
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &usual), FATHOM_POSIX_OK);
-    return fathom_posix_uart(&rig->port);
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
+    return fathom_posix_uart(&rig.port);
 }
 
 TEST(a_break_begins_and_ends_when_it_is_told_to)
 {
-    const fathom_uart_t uart = open_wire(*state);
+    const fathom_uart_t uart = open_wire();
     assert_int_equal(uart.set_break(uart.ctx, true), 1);
     assert_int_equal(driver.breaks, 1);
     assert_int_equal(uart.set_break(uart.ctx, false), 1);
@@ -26,7 +24,7 @@ TEST(a_break_begins_and_ends_when_it_is_told_to)
 
 TEST(bytes_that_are_leaving_come_first)
 {
-    const fathom_uart_t uart = open_wire(*state);
+    const fathom_uart_t uart = open_wire();
     driver.queued = 3;
     assert_int_equal(uart.set_break(uart.ctx, true), 0);
     assert_int_equal(driver.break_calls, 0);
@@ -36,11 +34,10 @@ TEST(bytes_that_are_leaving_come_first)
 
 TEST(a_device_that_has_gone_is_a_broken_port)
 {
-    port_rig_t *const rig = *state;
-    const fathom_uart_t uart = open_wire(rig);
+    const fathom_uart_t uart = open_wire();
     driver.break_error = EIO;
     assert_int_equal(uart.set_break(uart.ctx, true), -1);
-    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
     driver.break_error = 0;
     assert_int_equal(uart.set_break(uart.ctx, true), -1); /* until it is opened again */
     assert_int_equal(driver.break_calls, 1);
@@ -48,20 +45,18 @@ TEST(a_device_that_has_gone_is_a_broken_port)
 
 TEST(a_port_that_is_closed_is_broken_too)
 {
-    port_rig_t *const rig = *state;
-    const fathom_uart_t uart = open_wire(rig);
-    fathom_posix_close(&rig->port);
+    const fathom_uart_t uart = open_wire();
+    fathom_posix_close(&rig.port);
     assert_int_equal(uart.set_break(uart.ctx, true), -1);
 }
 
 TEST(on_a_pseudo_terminal_a_zero_stands_for_it)
 {
-    port_rig_t *const rig = *state;
     uint8_t bytes[4] = {0xA5, 0xA5, 0xA5, 0xA5};
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &usual), FATHOM_POSIX_OK);
-    const fathom_uart_t uart = fathom_posix_uart(&rig->port);
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
+    const fathom_uart_t uart = fathom_posix_uart(&rig.port);
     assert_int_equal(uart.set_break(uart.ctx, true), 1);
-    assert_int_equal(posix_pty_receive(&rig->pty, bytes, sizeof bytes), 1);
+    assert_int_equal(posix_pty_receive(&rig.pty, bytes, sizeof bytes), 1);
     assert_int_equal(bytes[0], 0);
     while (!uart.sent(uart.ctx)) continue;
     assert_int_equal(uart.set_break(uart.ctx, false), 1);
@@ -74,5 +69,4 @@ static int set_up(void **state)
     return port_rig_set_up(state);
 }
 
-static const suite_t suite = {
-    .set_up = set_up, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};
+static const suite_t suite = PORT_RIG_SUITE(set_up);

@@ -8,151 +8,137 @@
 
 /* Settings and devices that are refused. The driver is posix_driver.h's. */
 
-static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
-
-static void open_fails(port_rig_t *rig, const fathom_line_settings_t *settings, fathom_posix_status_t error)
+static void open_fails(const fathom_line_settings_t *settings, fathom_posix_status_t error)
 {
     const unsigned before = posix_count_fds();
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, settings), error);
-    assert_int_equal(fathom_posix_error(&rig->port), error);
+    assert_int_equal(open_with(settings), error);
+    assert_int_equal(fathom_posix_error(&rig.port), error);
     assert_int_equal(posix_count_fds(), before);
-    assert_int_equal(fathom_posix_fd(&rig->port), -1);
+    assert_int_equal(fathom_posix_fd(&rig.port), -1);
 }
 
-static speed_t speed_seen(const port_rig_t *rig)
+static speed_t speed_seen(void)
 {
     struct termios seen;
-    assert_int_equal(tcgetattr(rig->pty.master, &seen), 0);
+    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0);
     return cfgetospeed(&seen);
 }
 
 TEST(a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates)
 {
-    port_rig_t *const rig = *state;
     driver.most = B115200;
-    open_fails(rig, &port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
-    port_rig_says(rig, "asked for raw 230400 8N1, the driver set 9600 8N1");
+    open_fails(&port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says("asked for raw 230400 8N1, the driver set 9600 8N1");
     assert_int_equal(driver.sets, 2); /* and what was before was put back */
     const fathom_line_settings_t slower = {115200, FATHOM_PARITY_NONE, 1};
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &slower), FATHOM_POSIX_OK);
+    assert_int_equal(open_with(&slower), FATHOM_POSIX_OK);
 }
 
 TEST(a_refused_change_puts_the_line_back_and_the_port_goes_on)
 {
-    port_rig_t *const rig = *state;
     const fathom_line_settings_t slower = {57600, FATHOM_PARITY_NONE, 1};
-    uint8_t byte = 0;
     driver.most = B115200;
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &slower), FATHOM_POSIX_OK);
-    assert_int_equal(fathom_posix_set_line(&rig->port, &port_rig_fast), FATHOM_POSIX_ERR_REFUSED);
-    port_rig_says(rig, "asked for raw 230400 8N1, the driver set 9600 8N1");
-    assert_int_equal(speed_seen(rig), B57600);
-    assert_int_equal(port_rig_read(rig, &byte, 1), 0);
-    assert_int_equal(port_rig_write(rig, &byte, 1), 1);
+    assert_int_equal(open_with(&slower), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_posix_set_line(&rig.port, &port_rig_fast), FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says("asked for raw 230400 8N1, the driver set 9600 8N1");
+    assert_int_equal(speed_seen(), B57600);
+    assert_int_equal(port_rig_read_one(), 0);
+    assert_int_equal(port_rig_write_one(), 1);
 }
 
 TEST(a_dropped_parity_is_refused_where_there_is_a_wire)
 {
-    port_rig_t *const rig = *state;
     const fathom_line_settings_t odd = {19200, FATHOM_PARITY_ODD, 1};
     const fathom_line_settings_t even = {19200, FATHOM_PARITY_EVEN, 1};
     driver.is_8250 = true;
     driver.drops_parity = true;
-    open_fails(rig, &odd, FATHOM_POSIX_ERR_REFUSED);
-    port_rig_says(rig, "asked for raw 19200 8O1, the driver set 19200 8N1");
-    open_fails(rig, &even, FATHOM_POSIX_ERR_REFUSED);
-    port_rig_says(rig, "asked for raw 19200 8E1, the driver set 19200 8N1");
+    open_fails(&odd, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says("asked for raw 19200 8O1, the driver set 19200 8N1");
+    open_fails(&even, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says("asked for raw 19200 8E1, the driver set 19200 8N1");
     driver.drops_parity = false;
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &odd), FATHOM_POSIX_OK);
+    assert_int_equal(open_with(&odd), FATHOM_POSIX_OK);
 }
 
 TEST(dropped_stop_bits_are_refused)
 {
-    port_rig_t *const rig = *state;
     const fathom_line_settings_t two = {19200, FATHOM_PARITY_NONE, 2};
     driver.drops_stop = true;
-    open_fails(rig, &two, FATHOM_POSIX_ERR_REFUSED);
-    port_rig_says(rig, "asked for raw 19200 8N2, the driver set 19200 8N1");
+    open_fails(&two, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says("asked for raw 19200 8N2, the driver set 19200 8N1");
 }
 
 TEST(a_tty_that_does_not_become_raw_is_refused)
 {
-    port_rig_t *const rig = *state;
     driver.keeps_echo = true;
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_REFUSED);
-    port_rig_says(rig, "not raw");
+    open_fails(&usual, FATHOM_POSIX_ERR_REFUSED);
+    port_rig_says("not raw");
 }
 
 TEST(an_einval_counts_only_when_the_settings_did_not_hold)
 {
-    port_rig_t *const rig = *state;
     driver.set_error = EINVAL;
-    assert_int_equal(fathom_posix_open(&rig->port, rig->pty.path, &port_rig_fast), FATHOM_POSIX_OK);
-    fathom_posix_close(&rig->port);
+    assert_int_equal(open_with(&port_rig_fast), FATHOM_POSIX_OK);
+    fathom_posix_close(&rig.port);
     driver.most = B115200;
-    open_fails(rig, &port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
+    open_fails(&port_rig_fast, FATHOM_POSIX_ERR_REFUSED);
 }
 
 TEST(an_interrupted_change_is_repeated)
 {
-    port_rig_t *const rig = *state;
     driver.set_interrupts = 3;
-    port_rig_open(rig);
-    assert_int_equal(speed_seen(rig), B230400);
+    port_rig_open();
+    assert_int_equal(speed_seen(), B230400);
     assert_int_equal(driver.sets, 4);
 }
 
 TEST(errors_while_opening_are_told_with_the_systems_words)
 {
-    port_rig_t *const rig = *state;
     driver.set_error = ENOMEM;
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_SYSTEM);
-    port_rig_says(rig, "changing its settings: Cannot allocate memory");
+    open_fails(&usual, FATHOM_POSIX_ERR_SYSTEM);
+    port_rig_says("changing its settings: Cannot allocate memory");
     driver.set_error = 0;
     driver.get_error = EIO; /* a ttyS without a UART */
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
-    port_rig_says(rig, "no UART behind this name");
+    open_fails(&usual, FATHOM_POSIX_ERR_NOT_FOUND);
+    port_rig_says("no UART behind this name");
     for (driver.get_error_after = 1; driver.get_error_after <= 2;) { /* unplugged a moment later */
         const int after = driver.get_error_after;
-        open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+        open_fails(&usual, FATHOM_POSIX_ERR_NOT_FOUND);
         driver.get_error_after = after + 1;
     }
     driver.get_error = 0;
     driver.is_8250 = true;
     driver.exclusive_error = EIO;
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+    open_fails(&usual, FATHOM_POSIX_ERR_NOT_FOUND);
     driver.open_error = EBUSY; /* TIOCEXCL of another program */
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_IN_USE);
+    open_fails(&usual, FATHOM_POSIX_ERR_IN_USE);
     driver.open_error = ENXIO;
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_NOT_FOUND);
+    open_fails(&usual, FATHOM_POSIX_ERR_NOT_FOUND);
     driver.open_error = EMFILE;
-    open_fails(rig, &usual, FATHOM_POSIX_ERR_SYSTEM);
-    port_rig_says(rig, "opening it: Too many open files");
+    open_fails(&usual, FATHOM_POSIX_ERR_SYSTEM);
+    port_rig_says("opening it: Too many open files");
 }
 
 TEST(a_real_tty_is_taken_exclusively_and_given_back)
 {
-    port_rig_t *const rig = *state;
-    port_rig_open(rig);
-    fathom_posix_close(&rig->port);
+    port_rig_open();
+    fathom_posix_close(&rig.port);
     assert_int_equal(driver.exclusive_calls, 0); /* a pseudo terminal is not */
     driver.is_8250 = true;
-    port_rig_open(rig);
+    port_rig_open();
     assert_int_equal(driver.exclusive, 1);
-    fathom_posix_close(&rig->port);
+    fathom_posix_close(&rig.port);
     assert_int_equal(driver.exclusive, 0);
     assert_int_equal(driver.exclusive_calls, 2);
 }
 
 TEST(a_device_that_goes_while_its_line_is_changed_is_lost)
 {
-    port_rig_t *const rig = *state;
-    uint8_t byte = 0;
-    port_rig_open(rig);
+    port_rig_open();
     driver.get_error = EIO;
-    assert_int_equal(fathom_posix_set_line(&rig->port, &usual), FATHOM_POSIX_ERR_LOST);
+    assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_ERR_LOST);
     driver.get_error = 0;
-    assert_true(port_rig_read(rig, &byte, 1) < 0);
+    assert_true(port_rig_read_one() < 0);
 }
 
 static int set_up(void **state)
@@ -161,5 +147,4 @@ static int set_up(void **state)
     return port_rig_set_up(state);
 }
 
-static const suite_t suite = {
-    .set_up = set_up, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};
+static const suite_t suite = PORT_RIG_SUITE(set_up);

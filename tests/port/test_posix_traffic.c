@@ -11,57 +11,52 @@
 
 TEST(a_read_that_was_interrupted_is_repeated)
 {
-    port_rig_t *const rig = *state;
-    uint8_t byte = 0;
-    port_rig_open(rig);
+    port_rig_open();
     driver.read_interrupts = 3;
-    assert_int_equal(port_rig_read(rig, &byte, 1), 0);
+    assert_int_equal(port_rig_read_one(), 0);
     assert_int_equal(driver.read_interrupts, 0);
 }
 
 TEST(an_unplugged_adapter_fails_reads_for_good)
 {
     static const int errors[] = {EIO, ENXIO, ENODEV, EBADF};
-    port_rig_t *const rig = *state;
-    uint8_t byte = 0;
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
-        port_rig_open(rig);
+        port_rig_open();
         driver.read_error = errors[i];
-        assert_true(port_rig_read(rig, &byte, 1) < 0);
+        assert_true(port_rig_read_one() < 0);
         driver.read_error = 0; /* the same name may be another device by now */
-        assert_true(port_rig_read(rig, &byte, 1) < 0);
-        assert_true(port_rig_write(rig, &byte, 1) < 0);
-        assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
-        fathom_posix_close(&rig->port);
+        assert_true(port_rig_read_one() < 0);
+        assert_true(port_rig_write_one() < 0);
+        assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
+        fathom_posix_close(&rig.port);
     }
 }
 
 TEST(a_request_taken_in_parts_leaves_whole_through_any_call)
 {
-    port_rig_t *const rig = *state;
     static const char request[] = "0123456789abcdefghij";
     char got[2 * sizeof request];
     size_t have = 0;
-    port_rig_open(rig);
+    port_rig_open();
     driver.write_most = 5;
-    assert_int_equal(port_rig_write(rig, request, 20), 20); /* 5 */
-    assert_false(port_rig_sent(rig));                       /* 10 */
-    assert_int_equal(port_rig_read(rig, got, 1), 0);        /* 15 */
+    assert_int_equal(port_rig_write(request, 20), 20); /* 5 */
+    assert_false(port_rig_sent());                     /* 10 */
+    assert_int_equal(port_rig_read(got, 1), 0);        /* 15 */
     assert_int_equal(driver.writes, 3);
     driver.write_most = 4;
-    assert_int_equal(port_rig_write(rig, request, 20), 0); /* 19, and busy: one is left */
+    assert_int_equal(port_rig_write(request, 20), 0); /* 19, and busy: one is left */
     driver.write_error = EAGAIN;
-    assert_false(port_rig_sent(rig));
-    fathom_posix_wait(&rig->port, 1000);
-    assert_int_equal(port_rig_write(rig, request, 20), 0);
+    assert_false(port_rig_sent());
+    fathom_posix_wait(&rig.port, 1000);
+    assert_int_equal(port_rig_write(request, 20), 0);
     driver.write_error = 0;
     driver.write_interrupts = 2;
-    fathom_posix_wait(&rig->port, 0); /* 20 */
+    fathom_posix_wait(&rig.port, 0); /* 20 */
     driver.write_most = 0;
-    assert_int_equal(port_rig_write(rig, request, 20), 20);
+    assert_int_equal(port_rig_write(request, 20), 20);
     while (have < 40) {
-        assert_true(posix_wait_for(rig->pty.master, POLLIN));
-        have += posix_pty_receive(&rig->pty, (uint8_t *)got + have, sizeof got - have);
+        assert_true(posix_wait_for(rig.pty.master, POLLIN));
+        have += posix_pty_receive(&rig.pty, (uint8_t *)got + have, sizeof got - have);
     }
     assert_int_equal(have, 40);
     assert_memory_equal(got, request, 20);
@@ -70,104 +65,96 @@ TEST(a_request_taken_in_parts_leaves_whole_through_any_call)
 
 TEST(a_wait_that_ends_because_there_is_room_has_used_it)
 {
-    port_rig_t *const rig = *state;
-    port_rig_open(rig);
+    port_rig_open();
     driver.write_most = 2;
-    assert_int_equal(port_rig_write(rig, "abc", 3), 3);
+    assert_int_equal(port_rig_write("abc", 3), 3);
     driver.write_refusals = 1;
-    fathom_posix_wait(&rig->port, FATHOM_NO_DEADLINE); /* refused before it slept */
+    fathom_posix_wait(&rig.port, FATHOM_NO_DEADLINE); /* refused before it slept */
     assert_int_equal(driver.writes, 3);
-    assert_int_equal(fathom_posix_poll_events(&rig->port), POLLIN);
+    assert_int_equal(fathom_posix_poll_events(&rig.port), POLLIN);
 }
 
 TEST(a_write_is_busy_when_the_kernel_takes_nothing)
 {
-    port_rig_t *const rig = *state;
-    port_rig_open(rig);
+    port_rig_open();
     driver.write_error = EAGAIN;
-    assert_int_equal(port_rig_write(rig, "abc", 3), 0);
+    assert_int_equal(port_rig_write("abc", 3), 0);
     driver.write_error = 0;
     uint8_t got[4];
-    assert_int_equal(posix_pty_receive(&rig->pty, got, sizeof got), 0);
-    assert_true(port_rig_sent(rig));
-    assert_int_equal(port_rig_write(rig, "abc", 3), 3);
+    assert_int_equal(posix_pty_receive(&rig.pty, got, sizeof got), 0);
+    assert_true(port_rig_sent());
+    assert_int_equal(port_rig_write("abc", 3), 3);
 }
 
 TEST(a_port_that_is_lost_in_the_middle_of_a_request_says_so)
 {
-    port_rig_t *const rig = *state;
-    uint8_t byte = 0;
     for (int by = 0; by != 3; by++) {
-        port_rig_open(rig);
+        port_rig_open();
         driver.write_most = 1;
-        assert_int_equal(port_rig_write(rig, "abc", 3), 3);
+        assert_int_equal(port_rig_write("abc", 3), 3);
         driver.write_error = EIO;
-        if (by == 0) assert_true(port_rig_read(rig, &byte, 1) < 0);
-        if (by == 1) assert_true(port_rig_sent(rig));                   /* so that nobody waits for it */
-        if (by == 2) fathom_posix_wait(&rig->port, FATHOM_NO_DEADLINE); /* returns */
-        assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
-        assert_true(port_rig_write(rig, "abc", 3) < 0);
-        assert_true(port_rig_read(rig, &byte, 1) < 0);
+        if (by == 0) assert_true(port_rig_read_one() < 0);
+        if (by == 1) assert_true(port_rig_sent());                     /* so that nobody waits for it */
+        if (by == 2) fathom_posix_wait(&rig.port, FATHOM_NO_DEADLINE); /* returns */
+        assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
+        assert_true(port_rig_write("abc", 3) < 0);
+        assert_true(port_rig_read_one() < 0);
         driver.write_error = 0;
-        fathom_posix_close(&rig->port);
+        fathom_posix_close(&rig.port);
     }
 }
 
 /* Past the time that the bytes need at their rate, which is less than 1 ms here. */
-static void let_it_leave(port_rig_t *rig)
+static void let_it_leave(void)
 {
-    assert_int_equal(port_rig_write(rig, "abc", 3), 3);
+    assert_int_equal(port_rig_write("abc", 3), 3);
     const uint64_t start_us = fathom_posix_now_us();
-    while (fathom_posix_now_us() - start_us < 1000) fathom_posix_wait(&rig->port, 1000);
+    while (fathom_posix_now_us() - start_us < 1000) fathom_posix_wait(&rig.port, 1000);
 }
 
 TEST(sent_waits_for_the_kernels_queue_and_for_the_transmitter)
 {
-    port_rig_t *const rig = *state;
     driver.queued = 1;
-    port_rig_open(rig);
-    let_it_leave(rig);
-    assert_false(port_rig_sent(rig));
+    port_rig_open();
+    let_it_leave();
+    assert_false(port_rig_sent());
     driver.queued = 0;
     driver.lsr = 0;
-    assert_false(port_rig_sent(rig));
+    assert_false(port_rig_sent());
     driver.lsr = TIOCSER_TEMT;
-    assert_true(port_rig_sent(rig));
+    assert_true(port_rig_sent());
 }
 
 TEST(sent_does_without_a_transmitter_state_where_there_is_none)
 {
-    port_rig_t *const rig = *state;
     driver.lsr_error = ENOTTY;
-    port_rig_open(rig);
-    let_it_leave(rig);
-    assert_true(port_rig_sent(rig));
-    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_OK);
+    port_rig_open();
+    let_it_leave();
+    assert_true(port_rig_sent());
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_OK);
 }
 
 TEST(sent_on_a_lost_port_does_not_let_anybody_wait)
 {
-    port_rig_t *const rig = *state;
-    port_rig_open(rig);
-    let_it_leave(rig);
+    port_rig_open();
+    let_it_leave();
     driver.queue_error = EIO;
-    assert_true(port_rig_sent(rig));
-    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_ERR_LOST);
+    assert_true(port_rig_sent());
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
 }
 
 TEST(line_errors_are_the_drivers_counts)
 {
-    port_rig_t *const rig = *state;
     fathom_posix_line_errors_t errors;
     memset(&errors, 0, sizeof errors);
-    port_rig_open(rig);
-    assert_int_equal(fathom_posix_line_errors(&rig->port, &errors), FATHOM_POSIX_OK);
+    port_rig_open();
+    assert_int_equal(fathom_posix_line_errors(&rig.port, &errors), FATHOM_POSIX_OK);
     assert_int_equal(errors.parity, 11);
     assert_int_equal(errors.framing, 22);
     assert_int_equal(errors.overrun, 33);
     assert_int_equal(errors.breaks, 44);
     driver.count_error = EIO;
-    assert_int_equal(fathom_posix_line_errors(&rig->port, &errors), FATHOM_POSIX_ERR_LOST);
+    assert_int_equal(fathom_posix_line_errors(&rig.port, &errors), FATHOM_POSIX_ERR_LOST);
     assert_int_equal(errors.parity, 11);
 }
 
@@ -177,5 +164,4 @@ static int set_up(void **state)
     return port_rig_set_up(state);
 }
 
-static const suite_t suite = {
-    .set_up = set_up, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};
+static const suite_t suite = PORT_RIG_SUITE(set_up);

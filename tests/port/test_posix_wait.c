@@ -25,19 +25,19 @@ static uint64_t cpu_us(void)
            (uint64_t)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
-static uint64_t timed_wait_us(port_rig_t *rig, uint32_t max_us)
+static uint64_t timed_wait_us(uint32_t max_us)
 {
     const uint64_t start_us = fathom_posix_now_us();
-    fathom_posix_wait(&rig->port, max_us);
+    fathom_posix_wait(&rig.port, max_us);
     return fathom_posix_now_us() - start_us;
 }
 
 /* Runs `event` in another thread, soon; the wait is in between. */
-static uint64_t wait_for_event_us(port_rig_t *rig, void *(*event)(void *), uint32_t max_us)
+static uint64_t wait_for_event_us(void *(*event)(void *), uint32_t max_us)
 {
     pthread_t thread;
-    assert_int_equal(pthread_create(&thread, NULL, event, rig), 0);
-    const uint64_t took_us = timed_wait_us(rig, max_us);
+    assert_int_equal(pthread_create(&thread, NULL, event, NULL), 0);
+    const uint64_t took_us = timed_wait_us(max_us);
     assert_int_equal(pthread_join(thread, NULL), 0);
     return took_us;
 }
@@ -50,50 +50,43 @@ static void pass_a_while(void)
 
 static void *send_a_byte(void *arg)
 {
-    const port_rig_t *const rig = arg;
     pass_a_while();
-    return write(rig->pty.master, "x", 1) == 1 ? NULL : arg;
+    return write(rig.pty.master, "x", 1) == 1 ? NULL : arg;
 }
 
 static void *hang_up(void *arg)
 {
-    port_rig_t *const rig = arg;
     pass_a_while();
-    (void)close(rig->pty.master);
-    rig->pty.master = -1;
+    (void)close(rig.pty.master);
+    rig.pty.master = -1;
     return NULL;
 }
 
-static const suite_t suite = {
-    .set_up = port_rig_set_up_open, .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog};
+static const suite_t suite = PORT_RIG_SUITE(port_rig_set_up_open);
 static const suite_t plain;
 
 TEST(bytes_that_are_there_end_the_wait_at_once)
 {
-    port_rig_t *const rig = *state;
-    uint8_t byte = 0;
-    posix_pty_send(&rig->pty, (const uint8_t *)"x", 1);
-    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US);
-    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
+    posix_pty_send(&rig.pty, (const uint8_t *)"x", 1);
+    assert_true(timed_wait_us(FATHOM_NO_DEADLINE) < LONG_US);
+    assert_int_equal(port_rig_read_one(), 1);
 }
 
 TEST(bytes_that_come_end_the_wait)
 {
-    port_rig_t *const rig = *state;
     uint8_t byte = 0;
-    assert_true(wait_for_event_us(rig, send_a_byte, LONG_US) < LONG_US);
-    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
-    assert_true(wait_for_event_us(rig, send_a_byte, FATHOM_NO_DEADLINE) < LONG_US);
-    assert_int_equal(port_rig_read(rig, &byte, 1), 1);
+    assert_true(wait_for_event_us(send_a_byte, LONG_US) < LONG_US);
+    assert_int_equal(port_rig_read(&byte, 1), 1);
+    assert_true(wait_for_event_us(send_a_byte, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_int_equal(port_rig_read(&byte, 1), 1);
     assert_int_equal(byte, 'x');
 }
 
 TEST(the_time_ends_the_wait_and_not_earlier)
 {
-    port_rig_t *const rig = *state;
     static const uint32_t times_us[] = {0, 1, 999, 1750, 20000, 100000};
     for (size_t i = 0; i != sizeof times_us / sizeof times_us[0]; i++) {
-        const uint64_t took_us = timed_wait_us(rig, times_us[i]);
+        const uint64_t took_us = timed_wait_us(times_us[i]);
         assert_true(took_us >= times_us[i]);
         assert_true(took_us < LONG_US);
     }
@@ -101,10 +94,9 @@ TEST(the_time_ends_the_wait_and_not_earlier)
 
 TEST(short_waits_are_not_rounded_up_to_milliseconds)
 {
-    port_rig_t *const rig = *state;
     uint64_t least_us = LONG_US;
     for (int i = 0; i != 50; i++) { /* the best of many: a busy machine makes single ones late */
-        const uint64_t took_us = timed_wait_us(rig, 200);
+        const uint64_t took_us = timed_wait_us(200);
         if (took_us < least_us) least_us = took_us;
     }
     assert_in_range(least_us, 200, 900);
@@ -112,23 +104,20 @@ TEST(short_waits_are_not_rounded_up_to_milliseconds)
 
 TEST(an_idle_wait_uses_no_cpu)
 {
-    port_rig_t *const rig = *state;
     const uint64_t before_us = cpu_us();
-    const uint64_t took_us = timed_wait_us(rig, 300000);
+    const uint64_t took_us = timed_wait_us(300000);
     assert_true(took_us >= 300000);
     assert_true(cpu_us() - before_us < 30000);
 }
 
 TEST(a_hang_up_ends_the_wait_and_no_later_wait_sleeps)
 {
-    port_rig_t *const rig = *state;
-    uint8_t byte = 0;
-    assert_true(wait_for_event_us(rig, hang_up, FATHOM_NO_DEADLINE) < LONG_US);
-    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US); /* not read yet */
-    assert_true(port_rig_read(rig, &byte, 1) < 0);
-    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US); /* known to be lost */
-    fathom_posix_close(&rig->port);
-    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US); /* closed */
+    assert_true(wait_for_event_us(hang_up, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_true(timed_wait_us(FATHOM_NO_DEADLINE) < LONG_US); /* not read yet */
+    assert_true(port_rig_read_one() < 0);
+    assert_true(timed_wait_us(FATHOM_NO_DEADLINE) < LONG_US); /* known to be lost */
+    fathom_posix_close(&rig.port);
+    assert_true(timed_wait_us(FATHOM_NO_DEADLINE) < LONG_US); /* closed */
 }
 
 static volatile sig_atomic_t signals;
@@ -141,14 +130,12 @@ static void on_signal(int number)
 
 TEST(a_signal_ends_the_wait_and_does_no_harm_to_the_port)
 {
-    port_rig_t *const rig = *state;
     struct sigaction action;
     struct sigevent event;
     /* Again and again, so that one comes while the wait sleeps. */
     const struct itimerspec soon = {{0, EVENT_US * 1000L}, {0, EVENT_US * 1000L}};
     const struct itimerspec never = {{0, 0}, {0, 0}};
     timer_t timer;
-    uint8_t byte = 0;
     memset(&action, 0, sizeof action);
     memset(&event, 0, sizeof event);
     action.sa_handler = on_signal;
@@ -158,46 +145,44 @@ TEST(a_signal_ends_the_wait_and_does_no_harm_to_the_port)
     event.sigev_signo = SIGUSR1;
     assert_int_equal(timer_create(CLOCK_MONOTONIC, &event, &timer), 0);
     assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
-    assert_true(timed_wait_us(rig, FATHOM_NO_DEADLINE) < LONG_US);
+    assert_true(timed_wait_us(FATHOM_NO_DEADLINE) < LONG_US);
     assert_true(signals > 0);
     assert_int_equal(timer_settime(timer, 0, &never, NULL), 0);
     assert_int_equal(timer_delete(timer), 0);
-    assert_int_equal(port_rig_read(rig, &byte, 1), 0);
-    assert_int_equal(fathom_posix_error(&rig->port), FATHOM_POSIX_OK);
+    assert_int_equal(port_rig_read_one(), 0);
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_OK);
 }
 
 TEST(the_wait_alone_moves_the_rest_of_a_request_along)
 {
-    port_rig_t *const rig = *state;
     uint8_t bytes[251] = {0};
     size_t total = 0;
     int n = 0;
-    while ((n = port_rig_write(rig, bytes, sizeof bytes)) > 0) total += (size_t)n;
+    while ((n = port_rig_write(bytes, sizeof bytes)) > 0) total += (size_t)n;
     assert_int_equal(n, 0);
-    assert_int_equal(fathom_posix_poll_events(&rig->port), POLLIN | POLLOUT);
-    assert_true(timed_wait_us(rig, 1000) >= 1000); /* full: nothing to wake for */
+    assert_int_equal(fathom_posix_poll_events(&rig.port), POLLIN | POLLOUT);
+    assert_true(timed_wait_us(1000) >= 1000); /* full: nothing to wake for */
 
     const uint64_t start_us = fathom_posix_now_us();
     size_t have = 0;
-    while (fathom_posix_poll_events(&rig->port) != POLLIN) {
+    while (fathom_posix_poll_events(&rig.port) != POLLIN) {
         assert_true(fathom_posix_now_us() - start_us < LONG_US);
-        have += posix_pty_receive(&rig->pty, bytes, sizeof bytes);
-        fathom_posix_wait(&rig->port, 10000);
+        have += posix_pty_receive(&rig.pty, bytes, sizeof bytes);
+        fathom_posix_wait(&rig.port, 10000);
     }
     while (have < total) {
-        assert_true(posix_wait_for(rig->pty.master, POLLIN));
-        have += posix_pty_receive(&rig->pty, bytes, sizeof bytes);
+        assert_true(posix_wait_for(rig.pty.master, POLLIN));
+        have += posix_pty_receive(&rig.pty, bytes, sizeof bytes);
     }
     assert_int_equal(have, total);
 }
 
 TEST(a_poll_of_ones_own_sees_what_the_wait_sees)
 {
-    port_rig_t *const rig = *state;
-    struct pollfd entry = {fathom_posix_fd(&rig->port), fathom_posix_poll_events(&rig->port), 0};
+    struct pollfd entry = {fathom_posix_fd(&rig.port), fathom_posix_poll_events(&rig.port), 0};
     assert_int_equal(entry.events, POLLIN);
     assert_int_equal(poll(&entry, 1, 0), 0);
-    posix_pty_send(&rig->pty, (const uint8_t *)"x", 1);
+    posix_pty_send(&rig.pty, (const uint8_t *)"x", 1);
     assert_int_equal(poll(&entry, 1, POSIX_LIMIT_MS), 1);
     assert_int_equal(entry.revents, POLLIN);
 }
