@@ -3,35 +3,15 @@
 #include <grp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "suite.h"
-
-#include "fathom_posix.h"
-#include "posix_pty.h"
+#include "posix_rig.h"
 
 /* What fathom_posix_open says when it fails. */
 
-static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
-
-static int set_up(void **state)
-{
-    static posix_pty_t pty;
-    *state = &pty;
-    posix_pty_open(&pty);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    posix_pty_close(*state);
-    return 0;
-}
-
 static const suite_t suite = {.begin_round = posix_start_watchdog};
-static const suite_t fresh = {.set_up = set_up, .tear_down = tear_down};
+static const suite_t fresh = {.set_up = port_rig_set_up, .tear_down = port_rig_tear_down};
 
 static void check_failure(const char *path, fathom_posix_status_t error, const char *text)
 {
@@ -91,28 +71,27 @@ static int open_is_denied(void *arg)
 }
 
 /* Not root's group, which a pseudo terminal of root may have. */
-static void give_to_tty(const posix_pty_t *pty)
+static void give_to_tty(void)
 {
-    if (geteuid() == 0) assert_int_equal(chown(pty->path, 65534, getgrnam("tty")->gr_gid), 0);
+    if (geteuid() == 0) assert_int_equal(chown(rig.pty.path, 65534, getgrnam("tty")->gr_gid), 0);
 }
 
 /* A real EACCES: the owner may do nothing, which stops him even where his group may, and the port is opened
  * by a child that is not root. */
 TEST_IN(fresh, a_denied_permission_names_the_group_and_how_to_join_it)
 {
-    const posix_pty_t *const pty = *state;
     struct stat status;
     char belongs[64];
     char command[64];
-    give_to_tty(pty);
-    assert_int_equal(chmod(pty->path, 0060), 0);
-    assert_int_equal(stat(pty->path, &status), 0);
+    give_to_tty();
+    assert_int_equal(chmod(rig.pty.path, 0060), 0);
+    assert_int_equal(stat(rig.pty.path, &status), 0);
     assert_true(status.st_gid != 0);
     const struct group *const group = getgrgid(status.st_gid);
     assert_non_null(group);
     (void)snprintf(belongs, sizeof belongs, "permission denied: it belongs to the group %s;", group->gr_name);
     (void)snprintf(command, sizeof command, "sudo usermod -aG %s $USER", group->gr_name);
-    denied_t denied = {pty->path, {belongs, command, "log in again"}};
+    denied_t denied = {rig.pty.path, {belongs, command, "log in again"}};
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
 }
 
@@ -128,16 +107,15 @@ int __wrap_getgrgid_r(gid_t gid, struct group *entry, char *memory, size_t size,
 
 TEST_IN(fresh, a_denied_permission_shows_a_group_without_a_name_as_its_number)
 {
-    const posix_pty_t *const pty = *state;
     struct stat status;
     char belongs[64];
     char command[64];
-    give_to_tty(pty);
-    assert_int_equal(chmod(pty->path, 0060), 0);
-    assert_int_equal(stat(pty->path, &status), 0);
+    give_to_tty();
+    assert_int_equal(chmod(rig.pty.path, 0060), 0);
+    assert_int_equal(stat(rig.pty.path, &status), 0);
     (void)snprintf(belongs, sizeof belongs, "the group %lu;", (unsigned long)status.st_gid);
     (void)snprintf(command, sizeof command, "usermod -aG %lu ", (unsigned long)status.st_gid);
-    denied_t denied = {pty->path, {belongs, command, pty->path}};
+    denied_t denied = {rig.pty.path, {belongs, command, rig.pty.path}};
     groups_have_no_names = true;
     const int result = posix_run_unprivileged(open_is_denied, &denied);
     groups_have_no_names = false;
@@ -146,15 +124,15 @@ TEST_IN(fresh, a_denied_permission_shows_a_group_without_a_name_as_its_number)
 
 TEST_IN(fresh, a_denied_permission_names_no_group_that_would_not_help)
 {
-    const posix_pty_t *const pty = *state;
-    denied_t denied = {pty->path, {"permission denied", "mode 0020", "udev"}}; /* may write, may not read */
-    give_to_tty(pty);
-    assert_int_equal(chmod(pty->path, 0020), 0);
+    denied_t denied = {rig.pty.path,
+                       {"permission denied", "mode 0020", "udev"}}; /* may write, may not read */
+    give_to_tty();
+    assert_int_equal(chmod(rig.pty.path, 0020), 0);
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
     if (geteuid() != 0) return;
     denied.texts[1] = "the group root with mode 0660";
-    assert_int_equal(chown(pty->path, 0, 0), 0);
-    assert_int_equal(chmod(pty->path, 0660), 0);
+    assert_int_equal(chown(rig.pty.path, 0, 0), 0);
+    assert_int_equal(chmod(rig.pty.path, 0660), 0);
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
 }
 

@@ -3,41 +3,21 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include "suite.h"
-
-#include "fathom_posix.h"
-#include "posix_pty.h"
+#include "posix_rig.h"
 
 /* Opening and settings, over real pseudo terminals. */
 
-static const fathom_line_settings_t usual = {9600, FATHOM_PARITY_NONE, 1};
+static const suite_t suite = PORT_RIG_SUITE(port_rig_set_up);
 
-static int set_up(void **state)
-{
-    static posix_pty_t pty;
-    *state = &pty;
-    posix_pty_open(&pty);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    posix_pty_close(*state);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down, .begin_round = posix_start_watchdog};
-
-static void check_seen(const posix_pty_t *pty, speed_t speed, uint8_t parity, uint8_t stop_bits)
+static void check_seen(speed_t speed, uint8_t parity, uint8_t stop_bits)
 {
     struct termios seen;
-    assert_int_equal(tcgetattr(pty->master, &seen), 0); /* a pseudo terminal's ends share them */
+    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0); /* a pseudo terminal's ends share them */
     assert_int_equal(cfgetospeed(&seen), speed);
     assert_int_equal(cfgetispeed(&seen), speed);
     assert_int_equal((seen.c_cflag & PARODD) != 0, parity == FATHOM_PARITY_ODD);
@@ -60,72 +40,62 @@ enum { RATES = sizeof rates / sizeof rates[0] };
 
 TEST(every_rate_is_what_the_other_end_sees)
 {
-    const posix_pty_t *const pty = *state;
-    fathom_posix_uart_t port;
     for (size_t i = 0; i != RATES; i++) { /* opened with it */
         const fathom_line_settings_t settings = {rates[i].baud, FATHOM_PARITY_NONE, 1};
-        assert_int_equal(fathom_posix_open(&port, pty->path, &settings), FATHOM_POSIX_OK);
-        check_seen(pty, rates[i].speed, FATHOM_PARITY_NONE, 1);
-        fathom_posix_close(&port);
+        assert_int_equal(open_with(&settings), FATHOM_POSIX_OK);
+        check_seen(rates[i].speed, FATHOM_PARITY_NONE, 1);
+        fathom_posix_close(&rig.port);
     }
-    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
     for (size_t i = 0; i != RATES; i++) { /* changed to it */
         const fathom_line_settings_t settings = {rates[i].baud, FATHOM_PARITY_NONE, 1};
-        assert_int_equal(fathom_posix_set_line(&port, &settings), FATHOM_POSIX_OK);
-        check_seen(pty, rates[i].speed, FATHOM_PARITY_NONE, 1);
+        assert_int_equal(fathom_posix_set_line(&rig.port, &settings), FATHOM_POSIX_OK);
+        check_seen(rates[i].speed, FATHOM_PARITY_NONE, 1);
     }
-    fathom_posix_close(&port);
 }
 
 TEST(every_parity_and_stop_bit_is_accepted_in_every_order)
 {
-    const posix_pty_t *const pty = *state;
-    fathom_posix_uart_t port;
     for (unsigned pair = 0; pair != 36; pair++) {
         const unsigned both[2] = {pair / 6, pair % 6};
         for (unsigned i = 0; i != 2; i++) {
             const fathom_line_settings_t settings = {19200, (uint8_t)(both[i] % 3),
                                                      (uint8_t)(1 + both[i] / 3)};
-            const fathom_posix_status_t status = i == 0 ? fathom_posix_open(&port, pty->path, &settings)
-                                                        : fathom_posix_set_line(&port, &settings);
-            assert_string_equal(fathom_posix_error_text(&port), "");
+            const fathom_posix_status_t status =
+                i == 0 ? open_with(&settings) : fathom_posix_set_line(&rig.port, &settings);
+            assert_string_equal(fathom_posix_error_text(&rig.port), "");
             assert_int_equal(status, FATHOM_POSIX_OK);
-            check_seen(pty, B19200, settings.parity, settings.stop_bits);
+            check_seen(B19200, settings.parity, settings.stop_bits);
         }
-        fathom_posix_close(&port);
+        fathom_posix_close(&rig.port);
     }
 }
 
 TEST(what_came_before_it_was_opened_is_thrown_away)
 {
-    const posix_pty_t *const pty = *state;
-    const int slave = open(pty->path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    const int slave = open(rig.pty.path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     struct termios raw;
     assert_true(slave >= 0);
     assert_int_equal(tcgetattr(slave, &raw), 0);
     cfmakeraw(&raw);
     assert_int_equal(tcsetattr(slave, TCSANOW, &raw), 0);
-    posix_pty_send(pty, (const uint8_t *)"old", 3);
+    posix_pty_send(&rig.pty, (const uint8_t *)"old", 3);
     assert_true(posix_wait_for(slave, POLLIN));
 
-    fathom_posix_uart_t port;
     fathom_rx_t rx = {0, 0};
     uint8_t bytes[4];
-    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
-    const fathom_uart_t uart = fathom_posix_uart(&port);
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
+    const fathom_uart_t uart = fathom_posix_uart(&rig.port);
     assert_int_equal(uart.read(uart.ctx, bytes, sizeof bytes, &rx), 0);
-    fathom_posix_close(&port);
+    fathom_posix_close(&rig.port);
     assert_int_equal(close(slave), 0);
 }
 
 TEST(the_descriptor_does_not_block_and_is_not_inherited)
 {
-    const posix_pty_t *const pty = *state;
-    fathom_posix_uart_t port;
-    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
-    assert_true((fcntl(fathom_posix_fd(&port), F_GETFL) & O_NONBLOCK) != 0);
-    assert_true((fcntl(fathom_posix_fd(&port), F_GETFD) & FD_CLOEXEC) != 0);
-    fathom_posix_close(&port);
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
+    assert_true((fcntl(fathom_posix_fd(&rig.port), F_GETFL) & O_NONBLOCK) != 0);
+    assert_true((fcntl(fathom_posix_fd(&rig.port), F_GETFD) & FD_CLOEXEC) != 0);
 }
 
 /* 0: opened, and there is no controlling terminal after it. */
@@ -139,9 +109,8 @@ static int open_in_a_new_session(void *path)
 
 TEST(it_does_not_become_the_controlling_terminal)
 {
-    posix_pty_t *const pty = *state;
-    assert_int_equal(chmod(pty->path, 0666), 0);
-    assert_int_equal(posix_run_unprivileged(open_in_a_new_session, pty->path), 0);
+    assert_int_equal(chmod(rig.pty.path, 0666), 0);
+    assert_int_equal(posix_run_unprivileged(open_in_a_new_session, rig.pty.path), 0);
 }
 
 /* The exit status of a child that opens it: the error, positive. */
@@ -153,54 +122,51 @@ static int open_it(void *path)
 
 TEST(a_second_open_is_refused_even_to_root_and_allowed_after_close)
 {
-    posix_pty_t *const pty = *state;
     fathom_posix_uart_t first;
     fathom_posix_uart_t second;
-    assert_int_equal(chmod(pty->path, 0666), 0);
-    assert_int_equal(fathom_posix_open(&first, pty->path, &usual), FATHOM_POSIX_OK);
-    assert_int_equal(fathom_posix_open(&second, pty->path, &usual), FATHOM_POSIX_ERR_IN_USE);
+    assert_int_equal(chmod(rig.pty.path, 0666), 0);
+    assert_int_equal(fathom_posix_open(&first, rig.pty.path, &usual), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_posix_open(&second, rig.pty.path, &usual), FATHOM_POSIX_ERR_IN_USE);
     assert_int_equal(fathom_posix_error(&second), FATHOM_POSIX_ERR_IN_USE);
-    assert_non_null(strstr(fathom_posix_error_text(&second), pty->path));
+    assert_non_null(strstr(fathom_posix_error_text(&second), rig.pty.path));
     assert_non_null(strstr(fathom_posix_error_text(&second), "in use by another program"));
-    assert_int_equal(posix_run_unprivileged(open_it, pty->path), -FATHOM_POSIX_ERR_IN_USE);
-    check_seen(pty, B9600, FATHOM_PARITY_NONE, 1); /* the first one's settings stand */
+    assert_int_equal(posix_run_unprivileged(open_it, rig.pty.path), -FATHOM_POSIX_ERR_IN_USE);
+    check_seen(B9600, FATHOM_PARITY_NONE, 1); /* the first one's settings stand */
     fathom_posix_close(&second);
-    assert_int_equal(fathom_posix_open(&second, pty->path, &usual), FATHOM_POSIX_ERR_IN_USE);
+    assert_int_equal(fathom_posix_open(&second, rig.pty.path, &usual), FATHOM_POSIX_ERR_IN_USE);
     fathom_posix_close(&first);
-    assert_int_equal(fathom_posix_open(&second, pty->path, &usual), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_posix_open(&second, rig.pty.path, &usual), FATHOM_POSIX_OK);
     fathom_posix_close(&second);
-    assert_int_equal(posix_run_unprivileged(open_it, pty->path), 0);
+    assert_int_equal(posix_run_unprivileged(open_it, rig.pty.path), 0);
 }
 
 TEST(a_program_that_was_killed_does_not_keep_the_port)
 {
-    posix_pty_t *const pty = *state;
     int pipe_ends[2];
     char byte = 0;
-    assert_int_equal(chmod(pty->path, 0666), 0);
+    assert_int_equal(chmod(rig.pty.path, 0666), 0);
     assert_int_equal(pipe(pipe_ends), 0);
     const pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
         fathom_posix_uart_t port;
         (void)alarm(60);
-        byte = fathom_posix_open(&port, pty->path, &usual) == FATHOM_POSIX_OK ? 'y' : 'n';
+        byte = fathom_posix_open(&port, rig.pty.path, &usual) == FATHOM_POSIX_OK ? 'y' : 'n';
         if (write(pipe_ends[1], &byte, 1) != 1) _exit(1);
         for (;;) (void)pause();
     }
     assert_int_equal(read(pipe_ends[0], &byte, 1), 1);
     assert_int_equal(byte, 'y');
-    assert_int_equal(posix_run_unprivileged(open_it, pty->path), -FATHOM_POSIX_ERR_IN_USE);
+    assert_int_equal(posix_run_unprivileged(open_it, rig.pty.path), -FATHOM_POSIX_ERR_IN_USE);
     assert_int_equal(kill(child, SIGKILL), 0);
     assert_int_equal(waitpid(child, NULL, 0), child);
-    assert_int_equal(posix_run_unprivileged(open_it, pty->path), 0);
+    assert_int_equal(posix_run_unprivileged(open_it, rig.pty.path), 0);
     (void)close(pipe_ends[0]);
     (void)close(pipe_ends[1]);
 }
 
 TEST(arguments_outside_the_contract_are_refused)
 {
-    const posix_pty_t *const pty = *state;
     const unsigned before = posix_count_fds();
     const struct {
         fathom_line_settings_t settings;
@@ -210,22 +176,21 @@ TEST(arguments_outside_the_contract_are_refused)
                  {{9600, 3, 1}, "parity 3"},
                  {{9600, 0, 0}, "0 stop bits"},
                  {{9600, 0, 3}, "3 stop bits"}};
-    fathom_posix_uart_t port;
-    assert_int_equal(fathom_posix_open(NULL, pty->path, &usual), FATHOM_POSIX_ERR_ARGUMENT);
-    assert_int_equal(fathom_posix_open(&port, NULL, &usual), FATHOM_POSIX_ERR_ARGUMENT);
-    assert_string_equal(fathom_posix_error_text(&port), "serial port: no path or no settings were given");
-    assert_int_equal(fathom_posix_open(&port, pty->path, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_open(NULL, rig.pty.path, &usual), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_open(&rig.port, NULL, &usual), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_string_equal(fathom_posix_error_text(&rig.port), "serial port: no path or no settings were given");
+    assert_int_equal(open_with(NULL), FATHOM_POSIX_ERR_ARGUMENT);
     for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++) {
-        assert_int_equal(fathom_posix_open(&port, pty->path, &wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
-        assert_non_null(strstr(fathom_posix_error_text(&port), wrong[i].text));
+        assert_int_equal(open_with(&wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
+        assert_non_null(strstr(fathom_posix_error_text(&rig.port), wrong[i].text));
         assert_int_equal(posix_count_fds(), before);
     }
-    assert_int_equal(fathom_posix_open(&port, pty->path, &usual), FATHOM_POSIX_OK);
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
     for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++)
-        assert_int_equal(fathom_posix_set_line(&port, &wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
-    assert_int_equal(fathom_posix_set_line(&port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
-    assert_int_equal(fathom_posix_line_errors(&port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
-    check_seen(pty, B9600, FATHOM_PARITY_NONE, 1);
-    fathom_posix_close(&port);
+        assert_int_equal(fathom_posix_set_line(&rig.port, &wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_set_line(&rig.port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_line_errors(&rig.port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    check_seen(B9600, FATHOM_PARITY_NONE, 1);
+    fathom_posix_close(&rig.port);
     fathom_posix_close(NULL);
 }
