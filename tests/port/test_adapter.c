@@ -17,26 +17,27 @@ enum { LONG = 512 };
 
 static char root[64];
 
-static void run(const char *command)
+__attribute__((format(printf, 1, 2))) static void run(const char *format, ...)
 {
+    char command[4 * LONG];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(command, sizeof command, format, arguments);
+    va_end(arguments);
     assert_int_equal(system(command), 0); /* NOLINT: the command is this file's */
 }
 
 static int set_up(void **state)
 {
-    char command[LONG];
     strcpy(root, "/tmp/fathom-sysfs-XXXXXX");
     if (mkdtemp(root) == NULL) return -1;
-    (void)snprintf(command, sizeof command, "mkdir -p %s/class/tty %s/devices %s/dev", root, root, root);
-    run(command);
+    run("mkdir -p %s/class/tty %s/devices %s/dev", root, root, root);
     return 0;
 }
 
 static int tear_down(void **state)
 {
-    char command[LONG];
-    (void)snprintf(command, sizeof command, "rm -rf %s", root);
-    run(command);
+    run("rm -rf %s", root);
     return 0;
 }
 
@@ -56,9 +57,7 @@ static void write_file(const char *folder, const char *name, const char *text)
 static void plug_in(const char *socket, const char *vendor, const char *product, const char *serial)
 {
     char folder[LONG];
-    char command[LONG];
-    (void)snprintf(command, sizeof command, "mkdir -p %s/devices/usb1/%s/%s:1.0", root, socket, socket);
-    run(command);
+    run("mkdir -p %s/devices/usb1/%s/%s:1.0", root, socket, socket);
     (void)snprintf(folder, sizeof folder, "usb1/%s", socket);
     write_file(folder, "idVendor", vendor);
     write_file(folder, "idProduct", product);
@@ -69,37 +68,49 @@ static void plug_in(const char *socket, const char *vendor, const char *product,
 
 static void unplug(const char *socket, const char *tty)
 {
-    char command[LONG];
-    (void)snprintf(command, sizeof command, "rm -rf %s/devices/usb1/%s %s/class/tty/%s", root, socket, root,
-                   tty);
-    run(command);
+    run("rm -rf %s/devices/usb1/%s %s/class/tty/%s", root, socket, root, tty);
 }
 
 /* Its tty: `below` is the folder of devices/ that its `device` link shows. */
 static void add_tty(const char *tty, const char *below)
 {
-    char command[LONG];
-    (void)snprintf(command, sizeof command,
-                   "mkdir -p %s/devices/%s %s/class/tty/%s && ln -s %s/devices/%s %s/class/tty/%s/device && "
-                   "touch %s/dev/%s",
-                   root, below, root, tty, root, below, root, tty, root, tty);
-    run(command);
+    run("mkdir -p %s/devices/%s %s/class/tty/%s && ln -s %s/devices/%s %s/class/tty/%s/device && "
+        "touch %s/dev/%s",
+        root, below, root, tty, root, below, root, tty, root, tty);
 }
 
-static bool identify(adapter_t *adapter, const char *tty)
+/* An adapter of usb-serial. */
+static void plug_in_as(const char *tty, const char *socket, const char *vendor, const char *product,
+                       const char *serial)
 {
-    char path[LONG];
-    (void)snprintf(path, sizeof path, "%s/dev/%s", root, tty);
-    return adapter_identify(adapter, root, path);
+    char below[64];
+    plug_in(socket, vendor, product, serial);
+    (void)snprintf(below, sizeof below, "usb1/%s/%s:1.0/%s", socket, socket, tty);
+    add_tty(tty, below);
+}
+
+static adapter_t adapter;
+static char path[ADAPTER_PATH];
+
+static bool identify(const char *tty)
+{
+    char device[LONG];
+    (void)snprintf(device, sizeof device, "%s/dev/%s", root, tty);
+    return adapter_identify(&adapter, root, device);
+}
+
+/* The adapter is there, under that name; NULL: it is not. */
+static void expect_found(const char *name)
+{
+    assert_int_equal(adapter_find(&adapter, root, path), name != NULL);
+    if (name != NULL) assert_string_equal(path, name);
 }
 
 TEST(an_adapter_is_what_its_usb_device_says)
 {
-    adapter_t adapter;
-    plug_in("1-2", "0403", "6001", "A50285BI");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    plug_in_as("ttyUSB0", "1-2", "0403", "6001", "A50285BI");
     write_file("usb1/1-2/1-2:1.0/ttyUSB0", "port_number", "0");
-    assert_true(identify(&adapter, "ttyUSB0"));
+    assert_true(identify("ttyUSB0"));
     assert_string_equal(adapter.vendor, "0403");
     assert_string_equal(adapter.product, "6001");
     assert_string_equal(adapter.serial, "A50285BI");
@@ -111,7 +122,6 @@ TEST(an_adapter_is_what_its_usb_device_says)
 
 TEST(an_adapter_of_the_cdc_class_too_and_through_a_link)
 {
-    adapter_t adapter;
     char target[LONG];
     char link_path[LONG];
     plug_in("1-3.4", "1a86", "55d3", "5424");
@@ -119,101 +129,75 @@ TEST(an_adapter_of_the_cdc_class_too_and_through_a_link)
     (void)snprintf(target, sizeof target, "%s/dev/ttyACM0", root);
     (void)snprintf(link_path, sizeof link_path, "%s/dev/tank", root);
     assert_int_equal(symlink(target, link_path), 0);
-    assert_true(identify(&adapter, "tank"));
+    assert_true(identify("tank"));
     assert_string_equal(adapter.serial, "5424");
     assert_string_equal(adapter.socket, "1-3.4");
 }
 
 TEST(a_tty_that_is_no_usb_adapter_is_none)
 {
-    char path[ADAPTER_PATH] = "untouched";
-    adapter_t adapter;
+    strcpy(path, "untouched");
     add_tty("ttyS0", "platform/serial8250");
-    assert_false(identify(&adapter, "ttyS0"));
+    assert_false(identify("ttyS0"));
     assert_string_equal(adapter.vendor, "");
-    assert_false(identify(&adapter, "nowhere"));
-    assert_false(adapter_find(&adapter, root, path)); /* and it is not found as the first best */
+    assert_false(identify("nowhere"));
+    expect_found(NULL); /* and it is not found as the first best */
     assert_string_equal(path, "untouched");
 }
 
 TEST(with_a_serial_number_it_is_found_in_another_socket_under_another_name)
 {
-    char path[ADAPTER_PATH];
-    adapter_t adapter;
-    plug_in("1-2", "0403", "6001", "A50285BI");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
-    assert_true(identify(&adapter, "ttyUSB0"));
+    plug_in_as("ttyUSB0", "1-2", "0403", "6001", "A50285BI");
+    assert_true(identify("ttyUSB0"));
     unplug("1-2", "ttyUSB0");
-    assert_false(adapter_find(&adapter, root, path));
-    plug_in("1-4", "0403", "6001", "OTHER"); /* takes its old name */
-    add_tty("ttyUSB0", "usb1/1-4/1-4:1.0/ttyUSB0");
-    assert_false(adapter_find(&adapter, root, path));
-    plug_in("1-5", "0403", "6001", "A50285BI");
-    add_tty("ttyUSB1", "usb1/1-5/1-5:1.0/ttyUSB1");
-    assert_true(adapter_find(&adapter, root, path));
-    assert_string_equal(path, "/dev/ttyUSB1");
+    expect_found(NULL);
+    plug_in_as("ttyUSB0", "1-4", "0403", "6001", "OTHER"); /* takes its old name */
+    expect_found(NULL);
+    plug_in_as("ttyUSB1", "1-5", "0403", "6001", "A50285BI");
+    expect_found("/dev/ttyUSB1");
 }
 
 TEST(another_vendor_or_product_with_its_serial_number_is_another)
 {
-    char path[ADAPTER_PATH];
-    adapter_t adapter;
-    plug_in("1-2", "0403", "6001", "0001");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
-    assert_true(identify(&adapter, "ttyUSB0"));
+    plug_in_as("ttyUSB0", "1-2", "0403", "6001", "0001");
+    assert_true(identify("ttyUSB0"));
     unplug("1-2", "ttyUSB0");
-    plug_in("1-2", "10c4", "6001", "0001");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
-    assert_false(adapter_find(&adapter, root, path));
+    plug_in_as("ttyUSB0", "1-2", "10c4", "6001", "0001");
+    expect_found(NULL);
     unplug("1-2", "ttyUSB0");
-    plug_in("1-2", "0403", "6010", "0001");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
-    assert_false(adapter_find(&adapter, root, path));
+    plug_in_as("ttyUSB0", "1-2", "0403", "6010", "0001");
+    expect_found(NULL);
 }
 
 TEST(without_a_serial_number_it_is_found_in_its_socket_only)
 {
-    char path[ADAPTER_PATH];
-    adapter_t adapter;
-    plug_in("1-2", "1a86", "7523", NULL);
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
-    assert_true(identify(&adapter, "ttyUSB0"));
+    plug_in_as("ttyUSB0", "1-2", "1a86", "7523", NULL);
+    assert_true(identify("ttyUSB0"));
     assert_true(adapter.needs_socket);
     unplug("1-2", "ttyUSB0");
-    plug_in("1-3", "1a86", "7523", NULL);
-    add_tty("ttyUSB0", "usb1/1-3/1-3:1.0/ttyUSB0");
-    assert_false(adapter_find(&adapter, root, path));
-    plug_in("1-2", "1a86", "7523", NULL);
-    add_tty("ttyUSB5", "usb1/1-2/1-2:1.0/ttyUSB5");
-    assert_true(adapter_find(&adapter, root, path));
-    assert_string_equal(path, "/dev/ttyUSB5");
+    plug_in_as("ttyUSB0", "1-3", "1a86", "7523", NULL);
+    expect_found(NULL);
+    plug_in_as("ttyUSB5", "1-2", "1a86", "7523", NULL);
+    expect_found("/dev/ttyUSB5");
 }
 
 TEST(two_with_the_same_serial_number_are_told_apart_by_their_socket)
 {
-    char path[ADAPTER_PATH];
-    adapter_t adapter;
-    plug_in("1-2", "10c4", "ea60", "0001");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
-    plug_in("1-3", "10c4", "ea60", "0001");
-    add_tty("ttyUSB1", "usb1/1-3/1-3:1.0/ttyUSB1");
-    assert_true(identify(&adapter, "ttyUSB0"));
+    plug_in_as("ttyUSB0", "1-2", "10c4", "ea60", "0001");
+    plug_in_as("ttyUSB1", "1-3", "10c4", "ea60", "0001");
+    assert_true(identify("ttyUSB0"));
     assert_true(adapter.needs_socket);
     unplug("1-2", "ttyUSB0");
-    assert_false(adapter_find(&adapter, root, path)); /* ttyUSB1 has another sensor */
+    expect_found(NULL); /* ttyUSB1 has another sensor */
 }
 
 TEST(the_ports_of_one_adapter_are_told_apart)
 {
-    char path[ADAPTER_PATH];
-    adapter_t adapter;
-    plug_in("1-2", "0403", "6011", "FT4ABC");
-    add_tty("ttyUSB0", "usb1/1-2/1-2:1.0/ttyUSB0");
+    plug_in_as("ttyUSB0", "1-2", "0403", "6011", "FT4ABC");
     add_tty("ttyUSB1", "usb1/1-2/1-2:1.1/ttyUSB1");
     write_file("usb1/1-2/1-2:1.1", "bInterfaceNumber", "01");
-    assert_true(identify(&adapter, "ttyUSB1"));
+    assert_true(identify("ttyUSB1"));
     assert_string_equal(adapter.interface, "01");
     assert_false(adapter.needs_socket);
-    assert_true(adapter_find(&adapter, root, path));
-    assert_string_equal(path, "/dev/ttyUSB1");
+    expect_found("/dev/ttyUSB1");
 }

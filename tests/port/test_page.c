@@ -235,19 +235,17 @@ static int read_port(uint8_t *bytes, size_t capacity, uint8_t *flags)
 
 TEST(a_read_never_spans_a_wrong_byte)
 {
+    static const struct {
+        int count;
+        uint8_t first, flags;
+    } reads[] = {{2, 1, 0}, {1, 3, FATHOM_RX_PARITY}, {1, 4, 0}};
     uint8_t bytes[8], flags;
-    come(1, 0);
-    come(2, 0);
-    come(3, FATHOM_RX_PARITY);
-    come(4, 0);
-    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 2);
-    assert_int_equal(flags, 0);
-    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 1);
-    assert_int_equal(bytes[0], 3);
-    assert_int_equal(flags, FATHOM_RX_PARITY);
-    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 1);
-    assert_int_equal(bytes[0], 4);
-    assert_int_equal(flags, 0);
+    for (uint8_t byte = 1; byte <= 4; byte++) come(byte, byte == 3 ? FATHOM_RX_PARITY : 0);
+    for (unsigned i = 0; i != 3; i++) {
+        assert_int_equal(read_port(bytes, sizeof bytes, &flags), reads[i].count);
+        assert_int_equal(bytes[0], reads[i].first);
+        assert_int_equal(flags, reads[i].flags);
+    }
     assert_int_equal(read_port(bytes, sizeof bytes, &flags), 0);
 }
 

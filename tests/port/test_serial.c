@@ -28,6 +28,14 @@ static int read_all(size_t capacity)
     return fathom_serial_read(&serial, got, capacity, &rx);
 }
 
+/* So many bytes come, the first of them this, with these flags. */
+static void expect_read(int count, uint8_t first, uint8_t flags)
+{
+    assert_int_equal(read_all(sizeof got), count);
+    assert_int_equal(got[0], first);
+    assert_int_equal(rx.flags, flags);
+}
+
 static void put(unsigned from, unsigned count)
 {
     for (unsigned i = 0; i != count; i++) fathom_serial_put(&serial, (uint8_t)(from + i), 0);
@@ -69,17 +77,11 @@ TEST(the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it)
     assert_int_equal(serial.overruns, 0);
     put(200, 3); /* find no room */
     assert_int_equal(serial.overruns, 3);
-    assert_int_equal(read_all(sizeof got), RING);
-    assert_int_equal(got[0], 0);
+    expect_read(RING, 0, 0);
     assert_int_equal(got[RING - 1], 127);
-    assert_int_equal(rx.flags, 0);
     put(50, 2);
-    assert_int_equal(read_all(sizeof got), 1);
-    assert_int_equal(got[0], 50);
-    assert_int_equal(rx.flags, FATHOM_RX_OVERRUN);
-    assert_int_equal(read_all(sizeof got), 1);
-    assert_int_equal(got[0], 51);
-    assert_int_equal(rx.flags, 0);
+    expect_read(1, 50, FATHOM_RX_OVERRUN);
+    expect_read(1, 51, 0);
 }
 
 TEST(a_byte_with_a_flag_comes_alone)
@@ -88,17 +90,10 @@ TEST(a_byte_with_a_flag_comes_alone)
     fathom_serial_put(&serial, 3, FATHOM_RX_PARITY);
     fathom_serial_put(&serial, 4, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
     put(5, 2);
-    assert_int_equal(read_all(sizeof got), 2);
-    assert_int_equal(rx.flags, 0);
-    assert_int_equal(read_all(sizeof got), 1);
-    assert_int_equal(got[0], 3);
-    assert_int_equal(rx.flags, FATHOM_RX_PARITY);
-    assert_int_equal(read_all(sizeof got), 1);
-    assert_int_equal(got[0], 4);
-    assert_int_equal(rx.flags, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
-    assert_int_equal(read_all(sizeof got), 2);
-    assert_int_equal(got[0], 5);
-    assert_int_equal(rx.flags, 0);
+    expect_read(2, 1, 0);
+    expect_read(1, 3, FATHOM_RX_PARITY);
+    expect_read(1, 4, FATHOM_RX_PARITY | FATHOM_RX_FRAMING);
+    expect_read(2, 5, 0);
     assert_int_equal(serial.parity, 2);
     assert_int_equal(serial.framing, 1);
 }

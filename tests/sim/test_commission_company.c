@@ -167,6 +167,7 @@ TEST(a_rate_for_the_next_power_on_is_followed_then)
         bench.hps.baud_at_power_on = true;
         assert_int_equal(carry_out(set_230400), FATHOM_READY);
         assert_int_equal(s.driver.hps.next_baud, 230400);
+        assert_int_equal(bench.device->settings.baud, 19200);
         assert_int_equal(measure(), FATHOM_READY); /* still at the old rate */
         if (n % 2 != 0) fathom_sim_power_cycle(&bench.line, bench.device, 0, s.clock.now_us);
         fathom_hps167s_power_on(&s.driver.hps);

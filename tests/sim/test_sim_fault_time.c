@@ -96,8 +96,11 @@ TEST(a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too)
     set_faulty(A16_MODBUS, 0);
     FAULT(LATE, ALWAYS, 1)->us = 700 * MS;
     talk(A16_ASKED, 400, "");
-    talk(A16_ASKED, 500, A16_ANSWER);
-    COUNTED(.unheard = 8);
+    const uint32_t asked_us = bench.asked_us;
+    talk(A16_ASKED, 500, A16_ANSWER); /* the host asks again, in vain */
+    ASSERT_SPAN(bench.end_us[0], asked_us, 805 * MS, 822 * MS);
+    hear(2000, "");
+    COUNTED(.requests = 1, .unheard = 8);
     set_faulty(A16_AUTO, 0);
     FAULT(LATE, ALWAYS, 2)->us = 70 * MS;
     hear(350, A16_FRAME A16_FRAME A16_FRAME);

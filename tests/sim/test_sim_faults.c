@@ -70,34 +70,11 @@ TEST(a_hook_that_does_nothing_changes_nothing)
     assert_int_equal(out.seen, 1);
 }
 
-TEST(an_answer_can_come_after_a_time_out_and_keeps_the_device_busy)
-{
-    set(FATHOM_SIM_A16_MODBUS);
-    out.delay_us = 700 * MS;
-    talk(REQUEST, 400, "");
-    const uint32_t asked_us = bench.asked_us;
-    ask(REQUEST, 500); /* the host asks again, in vain */
-    ASSERT_SPAN(bench.end_us[0], asked_us, 805 * MS, 822 * MS);
-    expect(ANSWER);
-    hear(2000, "");
-    COUNTED(.requests = 1, .unheard = 8);
-}
-
 TEST(a_bit_can_be_flipped)
 {
     set(FATHOM_SIM_A16_MODBUS);
     out.flip = 0x10;
     talk(REQUEST, 200, "01 03 02 12 EF F8 A8");
-}
-
-TEST(an_answer_can_be_lost_and_the_device_is_free_at_once)
-{
-    set(FATHOM_SIM_A16_MODBUS);
-    out.drop = true;
-    talk(REQUEST, 130, "");
-    COUNTED(.answered = 1);
-    out.drop = false;
-    talk(REQUEST, 200, ANSWER);
 }
 
 TEST(an_answer_can_be_shorter_or_longer)

@@ -199,36 +199,6 @@ TEST(a_rate_is_followed_there_and_back)
     }
 }
 
-TEST(a_rate_from_the_next_power_on_is_followed_then)
-{
-    IN_BOTH_LOOPS
-    {
-        set(loops_us[l], (hps_config_t){.baud_at_power_on = true}, &bench_19200);
-        assert_int_equal(with(nine, 115200), FATHOM_READY);
-        assert_int_equal(hps->next_baud, 115200);
-        assert_int_equal(bench.device->settings.baud, 19200);
-        assert_measures(1, TARGET_MM);
-        cut_power();
-        fathom_hps167s_power_on(hps);
-        assert_int_equal(bench.device->settings.baud, 115200);
-        assert_measures(1, TARGET_MM);
-        COUNTED(.flash_writes = 1);
-    }
-}
-
-/* The driver is told of a power-on that did not happen: it comes back to the rate before. */
-TEST(a_device_that_stays_at_its_rate_is_found_there)
-{
-    IN_BOTH_LOOPS
-    {
-        set(loops_us[l], (hps_config_t){.baud_at_power_on = true}, &bench_19200);
-        assert_int_equal(with(nine, 57600), FATHOM_READY);
-        fathom_hps167s_power_on(hps);
-        assert_int_equal(measure(), FATHOM_ERR_WARMING_UP);
-        assert_measures(1, TARGET_MM);
-    }
-}
-
 TEST(without_confirmation_both_rates_are_asked_until_it_answers)
 {
     IN_BOTH_LOOPS

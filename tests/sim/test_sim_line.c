@@ -216,53 +216,45 @@ TEST(it_works_for_hours_across_every_wrap)
 
 /* ---- what the host's UART knows ---- */
 
+static uint8_t bytes_read[512];
+static fathom_rx_t rx; /* of them */
+
+/* A read so long from now, by a UART that knows so much: how many bytes, and what is told of them. */
+static void expect_read(uint32_t in_us, size_t capacity, uint8_t knows, size_t count, uint8_t flags)
+{
+    rx = (fathom_rx_t){0, 0};
+    assert_int_equal(
+        fathom_sim_transmit_timed(&bench.line, bench.now_us + in_us, bytes_read, capacity, knows, &rx),
+        count);
+    assert_int_equal(rx.flags, flags);
+}
+
 TEST(a_read_tells_the_silence_before_and_the_time_of_the_last_byte)
 {
-    const uint8_t knows = FATHOM_RX_TIMED | FATHOM_RX_SILENCE;
-    fathom_rx_t rx = {0, 0};
-    uint8_t bytes[64];
+    enum { BOTH = FATHOM_RX_TIMED | FATHOM_RX_SILENCE };
     set(FATHOM_SIM_A16_AUTO);
-    const uint32_t later_us = bench.now_us + 250 * MS;
     /* two frames wait; one read does not span the silence between them */
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, knows, &rx), 4);
-    assert_int_equal(rx.flags, FATHOM_RX_TIMED | FATHOM_RX_SILENCE);
+    expect_read(250 * MS, 64, BOTH, 4, BOTH);
     assert_int_equal(fathom_elapsed_us(rx.last_us, bench.now_us), 100 * MS + 4167);
-    rx = (fathom_rx_t){0, 0};
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, 2, knows, &rx), 2);
-    assert_int_equal(rx.flags, FATHOM_RX_TIMED | FATHOM_RX_SILENCE);
-    rx = (fathom_rx_t){0, 0};
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, knows, &rx), 2);
-    assert_int_equal(rx.flags, FATHOM_RX_TIMED); /* the rest of the same frame */
+    expect_read(250 * MS, 2, BOTH, 2, BOTH);
+    expect_read(250 * MS, 64, BOTH, 2, FATHOM_RX_TIMED); /* the rest of the same frame */
     assert_int_equal(fathom_elapsed_us(rx.last_us, bench.now_us), 200 * MS + 4167);
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, knows, &rx), 0);
+    expect_read(250 * MS, 64, BOTH, 0, 0);
 }
 
 TEST(what_it_does_not_know_it_neither_tells_nor_minds)
 {
-    fathom_rx_t rx = {0, 0};
-    uint8_t bytes[64];
     set(FATHOM_SIM_A16_AUTO);
-    const uint32_t later_us = bench.now_us + 250 * MS;
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, later_us, bytes, sizeof bytes, 0, &rx), 8);
-    assert_int_equal(rx.flags, 0);
+    expect_read(250 * MS, 64, 0, 8, 0);
 }
 
 TEST(bytes_that_nobody_reads_are_lost_and_told)
 {
-    const uint8_t knows = FATHOM_RX_OVERRUN;
-    fathom_rx_t rx = {0, 0};
-    uint8_t bytes[512];
     set(FATHOM_SIM_A16_AUTO);
-    bench.now_us += 6550 * MS; /* 65 frames, 260 bytes */
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, sizeof bytes, knows, &rx),
-                     256);
-    assert_int_equal(rx.flags, 0);
+    expect_read(6550 * MS, 512, FATHOM_RX_OVERRUN, 256, 0); /* 65 frames, 260 bytes */
     assert_int_equal(bench.line.counters.overruns, 4);
     assert_int_equal(bench.line.counters.to_host, 256);
-    bench.now_us += 100 * MS;
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, sizeof bytes, knows, &rx),
-                     4);
-    assert_int_equal(rx.flags, FATHOM_RX_OVERRUN);
+    expect_read(6650 * MS, 512, FATHOM_RX_OVERRUN, 4, FATHOM_RX_OVERRUN);
 }
 
 /* ---- rates ---- */
@@ -281,37 +273,23 @@ TEST(at_another_rate_or_parity_nobody_understands)
 
 TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
 {
-    const uint8_t knows = FATHOM_RX_FRAMING;
-    fathom_rx_t rx = {0, 0};
-    uint8_t bytes[8];
     set(FATHOM_SIM_A16_AUTO);
     at_rate(19200, FATHOM_PARITY_EVEN);
-    bench.now_us += 150 * MS;
-    for (int i = 0; i < 4; i++) {
-        assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 1);
-        assert_int_equal(rx.flags, FATHOM_RX_FRAMING);
-        rx.flags = 0;
-    }
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 0);
+    for (int i = 0; i < 4; i++) expect_read(150 * MS, 8, FATHOM_RX_FRAMING, 1, FATHOM_RX_FRAMING);
+    expect_read(150 * MS, 8, FATHOM_RX_FRAMING, 0, 0);
 }
 
 TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
 {
-    const uint8_t knows = FATHOM_RX_FRAMING;
-    fathom_rx_t rx = {0, 0};
-    uint8_t bytes[8];
     set(FATHOM_SIM_A16_AUTO);
     at_rate(19200, FATHOM_PARITY_EVEN);
     /* two characters of the frame are over when the host finds the rate */
     bench.now_us += 100 * MS + 2200;
     at_rate(9600, FATHOM_PARITY_NONE);
-    bench.now_us += 10 * MS;
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 1);
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 1);
-    rx.flags = 0;
-    assert_int_equal(fathom_sim_transmit_timed(&bench.line, bench.now_us, bytes, 8, knows, &rx), 2);
-    assert_int_equal(rx.flags, 0);
-    assert_memory_equal(bytes, ((const uint8_t[]){0xEF, 0xF0}), 2);
+    expect_read(10 * MS, 8, FATHOM_RX_FRAMING, 1, FATHOM_RX_FRAMING);
+    expect_read(10 * MS, 8, FATHOM_RX_FRAMING, 1, FATHOM_RX_FRAMING);
+    expect_read(10 * MS, 8, FATHOM_RX_FRAMING, 2, 0);
+    assert_true(is_hex(bytes_read, "EF F0"));
 }
 
 /* ---- more than one ---- */
@@ -334,22 +312,6 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
      * so are three of its requests */
     COUNTED_BY(&bench.a16.device, .others = 6, .requests = 3);
     COUNTED(.others = NONE); /* those were at another rate */
-}
-
-TEST(two_devices_at_one_address_collide)
-{
-    fathom_sim_a16_t twin;
-    set(FATHOM_SIM_A16_MODBUS);
-    fathom_sim_a16_init(&twin, &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS}); /* the same seed and time */
-    attach(&twin.device);
-    ask(REQUEST, 200);
-    COUNTED(.answered = 1);
-    assert_int_equal(twin.device.counters.answered, 1);
-    assert_int_equal(bench.line.counters.collisions, 7);
-    assert_int_equal(bench.heard, 14);
-    uint8_t answer[7];
-    from_hex(ANSWER, answer, 7);
-    for (size_t i = 0; i < 14; i++) assert_int_not_equal(bench.bytes[i], answer[i / 2]);
 }
 
 TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
