@@ -17,37 +17,38 @@ static void set(uint8_t mode, a16_config_t config)
 
 static const suite_t suite = {BENCH_ROUNDS};
 
-TEST(polarity_of_example_6_is_echoed_read_back_and_kept)
+/* What is written is echoed, read back and kept without power, and so is another value. */
+static void is_kept(const char *read, const char *write, const char *value, const char *write_other,
+                    const char *other)
 {
     set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    echoed("01 06 02 05 00 00 98 73", 50);
-    talk("01 03 02 05 00 01 95 B3", 50, "01 03 02 00 00 B8 44");
+    echoed(write, 50);
+    talk(read, 50, value);
     cycle_power(100, 101);
-    talk("01 03 02 05 00 01 95 B3", 50, "01 03 02 00 00 B8 44");
-    echoed("01 06 02 05 00 01 59 B3", 50);
-    talk("01 03 02 05 00 01 95 B3", 50, "01 03 02 00 01 79 84");
+    talk(read, 50, value);
+    echoed(write_other, 50);
+    talk(read, 50, other);
+}
+
+TEST(polarity_of_example_6_is_echoed_read_back_and_kept)
+{
+    is_kept("01 03 02 05 00 01 95 B3",                          /* the register */
+            "01 06 02 05 00 00 98 73", "01 03 02 00 00 B8 44",  /* negative */
+            "01 06 02 05 00 01 59 B3", "01 03 02 00 01 79 84"); /* positive */
 }
 
 TEST(threshold_of_the_last_example_is_echoed_read_back_and_kept)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    echoed("01 06 02 06 07 D0 6B DF", 50);
-    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
-    cycle_power(100, 101);
-    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
-    echoed("01 06 02 06 FF FF 69 C3", 50); /* no range is printed */
-    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 FF FF B9 F4");
+    is_kept("01 03 02 06 00 01 65 B3",                          /* the register */
+            "01 06 02 06 07 D0 6B DF", "01 03 02 07 D0 BB E8",  /* 2000 mm */
+            "01 06 02 06 FF FF 69 C3", "01 03 02 FF FF B9 F4"); /* no range is printed */
 }
 
 TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
-    echoed("01 06 02 07 00 01 F8 73", 50);
-    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84");
-    cycle_power(100, 101);
-    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84");
-    echoed("01 06 02 07 00 00 39 B3", 50);
-    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 00 B8 44");
+    is_kept("01 03 02 07 00 01 34 73",                          /* the register */
+            "01 06 02 07 00 01 F8 73", "01 03 02 00 01 79 84",  /* real-time */
+            "01 06 02 07 00 00 39 B3", "01 03 02 00 00 B8 44"); /* processed */
 }
 
 TEST(processed_and_real_time_values_are_two)

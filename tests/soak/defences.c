@@ -8,16 +8,14 @@
 static void run_cell(uint8_t setting, uint8_t kind, uint32_t chance_ppm, uint16_t held_mm,
                      const soak_options_t *options, uint64_t exchanges, uint32_t seed, cell_result_t *result)
 {
-    cell_t cell;
-    memset(&cell, 0, sizeof cell);
+    const cell_t cell = {.setting = setting,
+                         .kinds_used = kind != 0,
+                         .kinds = {kind},
+                         .chance_ppm = chance_ppm,
+                         .held_mm = held_mm,
+                         .seed = seed,
+                         .options = *options};
     memset(result, 0, sizeof *result);
-    cell.setting = setting;
-    cell.kinds_used = kind != 0 ? 1 : 0;
-    cell.kinds[0] = kind;
-    cell.chance_ppm = chance_ppm;
-    cell.held_mm = held_mm;
-    cell.seed = seed;
-    cell.options = *options;
     cell_run(&cell, exchanges, result);
 }
 
@@ -29,17 +27,14 @@ static void window(uint64_t exchanges, uint32_t seed, defence_result_t *result)
     uint64_t wrong[2];
     result->what = "wrong readings";
     for (uint8_t i = 0; i < 2; i++) {
-        cell_t cell;
+        const cell_t cell = {.setting = SOAK_A05_AUTO,
+                             .kinds_used = 2,
+                             .kinds = {FATHOM_SIM_FAULT_DROP, FATHOM_SIM_FAULT_INSERT},
+                             .chance_ppm = 700000,
+                             .seed = seed,
+                             .options = {.max_mm = max_mm[i]}};
         cell_result_t cell_result;
-        memset(&cell, 0, sizeof cell);
         memset(&cell_result, 0, sizeof cell_result);
-        cell.setting = SOAK_A05_AUTO;
-        cell.kinds_used = 2;
-        cell.kinds[0] = FATHOM_SIM_FAULT_DROP;
-        cell.kinds[1] = FATHOM_SIM_FAULT_INSERT;
-        cell.chance_ppm = 700000;
-        cell.seed = seed;
-        cell.options.max_mm = max_mm[i];
         cell_run(&cell, 2 * exchanges, &cell_result);
         wrong[i] = cell_result.totals.wrong_answers;
     }

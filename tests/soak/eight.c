@@ -7,15 +7,17 @@ const char *const eight_mix_names[EIGHT_MIXES] = {"8 a16-real-time", "8 a05-modb
                                                   "8 hps167s"};
 const char *const eight_trouble_names[EIGHT_TROUBLES] = {"alive", "dead", "damaged"};
 
+#define TWO(setting)  (setting), (setting)
+#define FOUR(setting) TWO(setting), TWO(setting)
+#define EIGHT(setting)                                                                                       \
+    {                                                                                                        \
+        FOUR(setting), FOUR(setting)                                                                         \
+    }
 static const uint8_t mixes[EIGHT_MIXES][EIGHT_UNITS] = {
-    [EIGHT_A16] = {SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME,
-                   SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME},
-    [EIGHT_A05] = {SOAK_A05_MODBUS, SOAK_A05_MODBUS, SOAK_A05_MODBUS, SOAK_A05_MODBUS, SOAK_A05_MODBUS,
-                   SOAK_A05_MODBUS, SOAK_A05_MODBUS, SOAK_A05_MODBUS},
-    [EIGHT_MIXED] = {SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME, SOAK_A16_REAL_TIME,
-                     SOAK_A16_PROCESSED, SOAK_A05_MODBUS, SOAK_A05_MODBUS, SOAK_A16_PROCESSED},
-    [EIGHT_HPS167S] = {SOAK_HPS167S, SOAK_HPS167S, SOAK_HPS167S, SOAK_HPS167S, SOAK_HPS167S, SOAK_HPS167S,
-                       SOAK_HPS167S, SOAK_HPS167S},
+    [EIGHT_A16] = EIGHT(SOAK_A16_REAL_TIME),
+    [EIGHT_A05] = EIGHT(SOAK_A05_MODBUS),
+    [EIGHT_MIXED] = {FOUR(SOAK_A16_REAL_TIME), SOAK_A16_PROCESSED, TWO(SOAK_A05_MODBUS), SOAK_A16_PROCESSED},
+    [EIGHT_HPS167S] = EIGHT(SOAK_HPS167S),
 };
 
 static const uint32_t loop_us = 1000;

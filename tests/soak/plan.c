@@ -42,13 +42,10 @@ static void run_rates(cell_t *cell, uint32_t *seed, uint8_t rates, uint64_t exch
 void plan_these(const plan_t *plan, uint8_t setting, const uint8_t *kinds, uint8_t count, uint64_t exchanges)
 {
     cell_result_t result;
-    cell_t cell;
+    cell_t cell = {.setting = setting, .kinds_used = count};
     char name[NAME] = "none";
     uint32_t seed = plan->seed;
     memset(&result, 0, sizeof result);
-    memset(&cell, 0, sizeof cell);
-    cell.setting = setting;
-    cell.kinds_used = count;
     for (uint8_t i = 0; i < count; i++) {
         cell.kinds[i] = kinds[i];
         const size_t used = i == 0 ? 0 : strlen(name);
@@ -67,14 +64,12 @@ void plan_singles(const plan_t *plan, uint8_t setting, uint64_t exchanges)
     for (uint8_t i = 0; i < count; i++) plan_these(plan, setting, &kinds[i], 1, each);
     if (!soak_is_asked(setting)) return;
     cell_result_t result;
-    cell_t cell;
+    cell_t cell = {.setting = setting,
+                   .kinds_used = 1,
+                   .kinds = {FATHOM_SIM_FAULT_LATE},
+                   .late_us = cell_late_beyond_us(setting)};
     uint32_t seed = plan->seed;
     memset(&result, 0, sizeof result);
-    memset(&cell, 0, sizeof cell);
-    cell.setting = setting;
-    cell.kinds_used = 1;
-    cell.kinds[0] = FATHOM_SIM_FAULT_LATE;
-    cell.late_us = cell_late_beyond_us(setting);
     run_rates(&cell, &seed, CELL_RATES, each, &result);
     plan->report(plan->ctx, setting, "too-late", &result);
 }
@@ -92,13 +87,8 @@ void plan_pairs(const plan_t *plan, uint8_t setting, uint64_t exchanges)
         memset(&sum, 0, sizeof sum);
         for (uint8_t j = (uint8_t)(i + 1); j < count; j++) {
             cell_result_t result;
-            cell_t cell;
+            cell_t cell = {.setting = setting, .kinds_used = 2, .kinds = {kinds[i], kinds[j]}};
             memset(&result, 0, sizeof result);
-            memset(&cell, 0, sizeof cell);
-            cell.setting = setting;
-            cell.kinds_used = 2;
-            cell.kinds[0] = kinds[i];
-            cell.kinds[1] = kinds[j];
             run_rates(&cell, &seed, rates, each, &result);
             (void)snprintf(name, NAME, "%s+%s", fathom_sim_fault_name(kinds[i]),
                            fathom_sim_fault_name(kinds[j]));
@@ -120,10 +110,8 @@ void plan_mixtures(const plan_t *plan, uint8_t setting, uint64_t exchanges)
     uint32_t seed = plan->seed;
     for (uint8_t told_apart = 0; told_apart != 2; told_apart++) {
         cell_result_t result;
-        cell_t cell;
+        cell_t cell = {.setting = setting};
         memset(&result, 0, sizeof result);
-        memset(&cell, 0, sizeof cell);
-        cell.setting = setting;
         for (uint8_t i = 0; i < count; i++)
             if (!told_apart ||
                 (kinds[i] != FATHOM_SIM_FAULT_UNASKED && kinds[i] != FATHOM_SIM_FAULT_CLOCK_JUMP))
