@@ -6,13 +6,16 @@
 
 #include "stage.h"
 
+enum { MAX_EDGES = 64 };
 static unsigned edges;
-static uint32_t edge_us;
+static bool edge_high[MAX_EDGES];
+static uint32_t edge_us[MAX_EDGES];
 
 static inline void on_edge(void *ctx, bool high, uint32_t time_us)
 {
-    edges++;
-    edge_us = time_us;
+    assert_true(edges < MAX_EDGES);
+    edge_high[edges] = high;
+    edge_us[edges++] = time_us;
 }
 
 static inline void begin(int32_t mm)

@@ -1,27 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "stage.h"
+#include "pin_stage.h"
 
-/* An A16 with its pins, and every edge that the host has seen. */
-enum { MAX_EDGES = 64 };
-static unsigned edges;
-static bool edge_high[MAX_EDGES];
-static uint32_t edge_us[MAX_EDGES];
+/* The pins of an A16: pulses, triggers, breaks, and its TX as a UART's. */
 
-static void on_edge(void *ctx, bool high, uint32_t time_us)
+static void set(uint8_t mode, int32_t mm, a16_config_t config)
 {
-    assert_true(edges < MAX_EDGES);
-    edge_high[edges] = high;
-    edge_us[edges++] = time_us;
-}
-
-static void set(uint8_t mode, int32_t distance, a16_config_t config)
-{
-    stage_begin(&bench_9600, true, 0);
-    bench.fixed = FIXED(distance);
+    begin(mm);
     add_a16(mode, config);
-    fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
-    s.pins.on_edge = on_edge;
-    edges = 0;
+    take_pins();
 }
 
 #define DEFAULTS ((a16_config_t){0})
@@ -38,12 +24,6 @@ static void trigger(void)
     rx(false);
     pass_us(2 * MS);
     rx(true);
-}
-
-static bool tx(void)
-{
-    const fathom_pin_t pin = fathom_sim_tx_pin(&s.pins);
-    return pin.get(pin.ctx);
 }
 
 static void arm(void)
@@ -77,18 +57,14 @@ TEST(a_falling_edge_brings_one_pulse_after_110_ms)
 {
     set(FATHOM_SIM_A16_PWM, 1739, DEFAULTS); /* A16 1(4): 10000 us */
     const uint32_t start_us = s.clock.now_us;
-    pass_us(500 * MS);
-    assert_false(tx());
+    assert_false(level_in(500 * MS));
     trigger();
     pass_us(108 * MS - 1);
     assert_int_equal(edges, 0);
-    assert_false(tx());
-    pass_us(1);
-    assert_true(tx());
-    pass_us(9 * MS);
-    assert_true(tx());
-    pass_us(500 * MS);
-    assert_false(tx());
+    assert_false(level());
+    assert_true(level_in(1));
+    assert_true(level_in(9 * MS));
+    assert_false(level_in(500 * MS));
     assert_int_equal(edges, 2);
     assert_true(edge_high[0]);
     assert_false(edge_high[1]);
@@ -169,8 +145,7 @@ TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
     fathom_pulse_t pulse = {7, 7, false};
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
-    pass_us(110 * MS);
-    assert_true(tx());
+    assert_true(level_in(110 * MS));
     arm(); /* within the pulse */
     pass_us(200 * MS);
     assert_int_equal(take(&pulse), 0);
@@ -206,10 +181,9 @@ TEST(a_wire_can_break_stick_and_make_noise)
     assert_int_equal(take(&pulse), 1);
     assert_int_equal(pulse.width_us, 500);
     trigger();
-    pass_us(109 * MS);
-    assert_true(tx());
+    assert_true(level_in(109 * MS));
     fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_LOW); /* 1 ms into the pulse */
-    assert_false(tx());
+    assert_false(level());
     assert_int_equal(take(&pulse), 1);
     assert_int_equal(pulse.width_us, 1 * MS);
     pass_us(300 * MS);
@@ -226,14 +200,13 @@ TEST(without_power_tx_is_low_and_no_edge_is_noticed)
 {
     set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
-    pass_us(109 * MS);
-    assert_true(tx());
+    assert_true(level_in(109 * MS));
     fathom_sim_device_power_on(bench.device, bench.line.now_us); /* off and on in no time */
-    assert_false(tx());
+    assert_false(level());
     pass_us(300 * MS);
     assert_int_equal(edges, 2);
     set(FATHOM_SIM_A16_UART, 1000, DEFAULTS);
-    assert_true(tx());
+    assert_true(level());
 }
 
 TEST(a_break_a_pin_and_a_byte_are_one_wire)
@@ -278,10 +251,9 @@ TEST(the_bits_of_a_byte_can_be_seen_at_the_pin)
         const uint32_t middle_us = (uint32_t)((2 * i + 1) * 1000000 / 19200);
         pass_us(middle_us - at_us);
         at_us = middle_us;
-        assert_true(tx() == (bits[i] == '1'));
+        assert_true(level() == (bits[i] == '1'));
     }
-    pass_us(5 * MS);
-    assert_true(tx());
+    assert_true(level_in(5 * MS));
     assert_int_equal(edges, 0);
 }
 
@@ -316,8 +288,7 @@ TEST(a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host)
     set(FATHOM_SIM_A16_MODBUS, 1000, DEFAULTS);
     bench.device->tx_is_uart = true;
     fathom_sim_device_set_level(bench.device, false, bench.line.now_us);
-    pass_us(20);
-    assert_false(tx());
+    assert_false(level_in(20));
     pass_us(1021);
     assert_int_equal(read_port(), 0);
     pass_us(1);

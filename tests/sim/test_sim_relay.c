@@ -33,11 +33,11 @@ TEST(each_state_of_the_relay_lasts_a_second)
 {
     set(999, AS_IT_IS);
     assert_false(level_in(300 * MS));
-    const uint32_t closed_us = edge_us;
+    const uint32_t closed_us = edge_us[edges - 1];
     bench.fixed = FIXED(2000, 2000, 2000, 2000);
     assert_false(level_in(1199 * MS));
     assert_true(level_in(1 * MS)); /* the first measurement after a second */
-    ASSERT_SPAN(edge_us, closed_us, 1200 * MS, 1200 * MS);
+    ASSERT_SPAN(edge_us[edges - 1], closed_us, 1200 * MS, 1200 * MS);
     bench.fixed.value[2] = 1;
     assert_false(level_in(1200 * MS));
     assert_int_equal(edges, 3);
