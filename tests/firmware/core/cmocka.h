@@ -18,13 +18,10 @@ struct CMUnitTest {
     void *initial_state;
 };
 
-/* The names of cases that this target leaves out, each with a space behind it. The program's main() sets it. */
-extern const char *stand_in_left_out;
-
-/* Runs them in order, but for those to leave out, and prints how many passed. Returns how many did not, and one more
- * when not all that are to be left out are there. A set-up that fails, with an assertion or by what it returns, fails
- * its test, which is then not run. A set-up of the group there is none. */
-int _cmocka_run_group_tests(const char *group, const struct CMUnitTest *tests, size_t count,
+/* Runs the tests of a file in order, but for those to leave out, and prints how many passed. Returns how many did not,
+ * and one more when not all that are to be left out are there. A set-up that fails, with an assertion or by what it
+ * returns, fails its test, which is then not run. A set-up of the group there is none. */
+int _cmocka_run_group_tests(const char *file, const struct CMUnitTest *tests, size_t count,
                             int (*set_up)(void **state), int (*tear_down)(void **state));
 
 /* The first that does not hold ends its test. */

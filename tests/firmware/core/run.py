@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the programs of tests/unit, golden, property and sim that were built for another machine, two at a time.
+"""Runs the suites of tests/unit, golden, property and sim that were built for another machine, two at a time.
 
     run.py TARGET IMAGES RUNNER [ARGUMENT...]
 
-TARGET is avr, powerpc or s390x; IMAGES the folder with its programs; RUNNER what runs one, with {} in its place.
-A program passes when its last words are cmocka's, when they say that all cases passed, and when it ends with 0.
-What is left out has its line in left_out.txt. The last line is "N passed, 0 failed"."""
+TARGET is avr, powerpc or s390x; IMAGES the folder with its programs; RUNNER what runs one, with {} in its place. A
+suite passes when the last words are cmocka's, when they say that all cases passed, and when its program ends with 0.
+What is left out has its line in left_out.txt; but with FATHOM_LONG in the environment what waits for the long run is
+run too. The last line is "N passed, 0 failed"."""
 import concurrent.futures
 import glob
 import os
@@ -19,32 +20,28 @@ TESTS = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(TESTS, 'checks'))
 from count import cases  # noqa: E402: it counts what the host's tests print, and these print the same
 
-KINDS = {'avr': ('unit', 'golden', 'property'),
-         'powerpc': ('unit', 'golden', 'property', 'sim'),
-         's390x': ('unit', 'golden', 'property', 'sim')}
 # Lines of left_out.txt. Whoever makes one longer changes this too.
-LEFT_OUT = {'avr': 55, 'powerpc': 11, 's390x': 14}
+LEFT_OUT = {'avr': 55, 'powerpc': 18, 's390x': 16}
 # A target with fewer cases than this has lost some.
-AT_LEAST = {'avr': 1107, 'powerpc': 2805, 's390x': 2780}
-SECONDS = 500  # for one program; a busy machine is slow, not wrong
+AT_LEAST = {'avr': 1107, 'powerpc': 2767, 's390x': 2842}
+SECONDS = 500  # for one suite; a busy machine is slow, not wrong
 
 
 def left_out(target):
-    """{program: set of its cases, empty for all of it}"""
+    """{suite: set of its cases, empty for all of it}"""
     with open(os.path.join(HERE, 'left_out.txt'), encoding='utf-8') as file:
-        lines = re.findall(r'^(\w+) (\w+)(?:\.(\w+))?: .+$', file.read(), re.M)
-    lines = [(program, case) for name, program, case in lines if name == target]
+        lines = re.findall(rf'^{target} (\w+)(?:\.(\w+))?: (.+)$', file.read(), re.M)
     table = {}
-    for program, case in lines:
-        table.setdefault(program, set()).update({case} if case else set())
+    for suite, case, why in lines:
+        if not (why.endswith('in the long run') and 'FATHOM_LONG' in os.environ):
+            table.setdefault(suite, set()).update({case} if case else set())
     return table, len(lines)
 
 
-def run(command, image):
+def run(command):
     """(passed, failed, what it printed)"""
     try:
-        done = subprocess.run([part.replace('{}', image) for part in command], stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, timeout=SECONDS, check=False)
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS, check=False)
         printed, status = done.stdout.decode(errors='replace'), done.returncode
     except subprocess.TimeoutExpired as slow:
         printed, status = (slow.stdout or b'').decode(errors='replace') + '\nruns for ever', 'none'
@@ -64,15 +61,19 @@ def main():
     absent, lines = left_out(target)
     if lines != LEFT_OUT[target]:
         problems.append(f'left_out.txt has {lines} lines for {target}, not {LEFT_OUT[target]}')
-    wanted = {os.path.basename(path)[:-2] for kind in KINDS[target]
-              for path in glob.glob(os.path.join(TESTS, kind, 'test_*.c'))}
+    is_avr = target == 'avr'  # where each suite is a program
+    kinds = {os.path.basename(path)[:-2]: kind for kind in ('unit', 'golden', 'property', 'sim')
+             for path in glob.glob(os.path.join(TESTS, kind, 'test_*.c'))}
+    wanted = {name for name, kind in kinds.items() if not (is_avr and kind == 'sim')}
     for name in sorted(set(absent) - wanted):
         problems.append(f'{name} is left out, but there is no such test')
     wanted -= {name for name, some in absent.items() if not some}
     passed = failed = 0
     with concurrent.futures.ThreadPoolExecutor(max_workers=2) as pool:
-        paths = {name: os.path.join(images, name) for name in sorted(wanted)}
-        for name, (good, bad, printed) in zip(paths, pool.map(lambda path: run(command, path), paths.values())):
+        names = sorted(wanted)
+        commands = [[part.replace('{}', os.path.join(images, name if is_avr else 'test_' + kinds[name]))
+                     for part in command] + ([] if is_avr else [name]) for name in names]
+        for name, (good, bad, printed) in zip(names, pool.map(run, commands)):
             gone = set(re.findall(r'^\[ LEFT OUT \] (\w+)$', printed, re.M))
             if gone != absent.get(name, set()):
                 bad += 1
@@ -82,7 +83,7 @@ def main():
                 print(f'{name}:', *printed.splitlines(), sep='\n    ')
     if passed < AT_LEAST[target]:
         problems.append(f'{passed} cases passed, {AT_LEAST[target]} did when this number was kept')
-    print(*problems, f'{target}: {len(wanted)} programs, {lines} programs or cases left out', sep='\n')
+    print(*problems, f'{target}: {len(wanted)} suites, {lines} suites or cases left out', sep='\n')
     print(f'{passed} passed, {failed + len(problems)} failed')
     return 1 if failed or problems else 0
 
