@@ -1,12 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Images of port/mps2 that check themselves, in simulated time."""
-import os
-import sys
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
-
-import qemu  # noqa: E402
+import qemu
 
 
 class Alone(qemu.Case):

@@ -4,12 +4,9 @@
 import os
 import re
 import select
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
-
-import qemu  # noqa: E402
-from qemu import e2e, interop  # noqa: E402
+import qemu
+from qemu import e2e, interop
 
 TANK, BUMPER, GATE, SILO, REAR = 1, 2, 4, 8, 16
 ALL = 31

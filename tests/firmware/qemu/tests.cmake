@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Every test_NAME.py beside the including CMakeLists.txt is a test, firmware.MACHINE_NAME. It finds the images of its
-# machine in FATHOM_IMAGES, and what tests/interop has in its own variables.
+# machine in FATHOM_IMAGES, qemu.py in PYTHONPATH, and what tests/interop has in its own variables.
 file(GLOB scripts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test_*.py)
 get_filename_component(machine ${CMAKE_CURRENT_SOURCE_DIR} NAME)
 foreach(script IN LISTS scripts)
@@ -11,5 +11,5 @@ foreach(script IN LISTS scripts)
         add_dependencies(${name} fathom_tool)
     endif()
     set_tests_properties(firmware.${name} PROPERTIES
-        ENVIRONMENT "${environment};FATHOM_IMAGES=${FATHOM_IMAGES_${machine}}")
+        ENVIRONMENT "${environment};FATHOM_IMAGES=${FATHOM_IMAGES_${machine}};PYTHONPATH=${CMAKE_CURRENT_LIST_DIR}")
 endforeach()

@@ -2,12 +2,7 @@
 # SPDX-License-Identifier: MIT
 """examples/stm32f4/hps167s_rs485.c on QEMU's netduinoplus2. Its USARTs do not tell their rate, so that the far ends
 are at 115200 baud, QEMU's own."""
-import os
-import sys
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
-
-import qemu  # noqa: E402
+import qemu
 
 
 class Exchange(qemu.Case):

@@ -1,12 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """examples/virt/hps167s.c on QEMU's virt."""
-import os
-import sys
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'qemu'))
-
-import qemu  # noqa: E402
+import qemu
 
 
 class Exchange(qemu.Case):

@@ -5,28 +5,16 @@
 #include "start.h"
 
 #define MTIME ((volatile uint32_t *)0x0200BFF8u)
-#define RTC_LOW                                                                                              \
-    (*(volatile uint32_t *)0x00101000u) /* ns, of which it latches the high half; wraps after 4.3 s */
+/* ns, of which it latches the high half; wraps after 4.3 s */
+static const counter_t rtc_low = {(volatile uint32_t *)0x00101000u, UINT32_MAX, false};
 
 void timer_interrupt(void) { fathom_virt_timer_interrupt(); }
 
 static uint32_t now_us(void) { return fathom_virt_clock.now_us(fathom_virt_clock.ctx); }
 
-static uint32_t ns_in_us(uint32_t length_us)
-{
-    const uint32_t since_us = now_us();
-    const uint32_t since_ns = RTC_LOW;
-    while (fathom_elapsed_us(now_us(), since_us) < length_us) {
-    }
-    return RTC_LOW - since_ns;
-}
+static uint32_t ns_in_100_ms(void) { return counted_in_us(&rtc_low, &fathom_virt_clock, 100000); }
 
-static uint32_t slept_us(uint32_t max_us)
-{
-    const uint32_t since_us = now_us();
-    fathom_virt_idle(0, max_us);
-    return fathom_elapsed_us(now_us(), since_us);
-}
+static uint32_t slept(uint32_t max_us) { return slept_us(&fathom_virt_clock, fathom_virt_idle, 0, max_us); }
 
 static void set_mtime(uint64_t ticks)
 {
@@ -61,19 +49,19 @@ int main(void)
     check(fathom_virt_us(wrap) == 0, "2^32 us are 0");
     check(fathom_virt_us(wrap * 3 + 70) == 7, "and each 2^32 more are");
 
-    check_within(ns_in_us(100000), 99900000, 100100000, "100 ms by the clock are 100 ms by the RTC");
+    check_within(ns_in_100_ms(), 99900000, 100100000, "100 ms by the clock are 100 ms by the RTC");
     set_mtime(0x100000000 - 500000);
-    check_within(ns_in_us(100000), 99900000, 100100000, "100 ms are 100 ms across the low half of mtime");
+    check_within(ns_in_100_ms(), 99900000, 100100000, "100 ms are 100 ms across the low half of mtime");
     check_within(now_us(), 429496729 + 49900, 429496729 + 60000, "which is no wrap of the clock");
     check(is_steady(), "no reading jumps while the low half wraps");
     set_mtime(wrap - 500000);
-    check_within(ns_in_us(100000), 99900000, 100100000, "100 ms are 100 ms across the wrap");
+    check_within(ns_in_100_ms(), 99900000, 100100000, "100 ms are 100 ms across the wrap");
     check_within(now_us(), 49999, 60000, "after which the clock has begun anew");
 
-    check_within(slept_us(20000), 20000, 20100, "a sleep of 20 ms takes 20 ms");
-    check_within(slept_us(1), 1, 100, "a sleep of 1 us takes not much more");
+    check_within(slept(20000), 20000, 20100, "a sleep of 20 ms takes 20 ms");
+    check_within(slept(1), 1, 100, "a sleep of 1 us takes not much more");
     set_mtime(0x100000000 - 50000);
-    check_within(slept_us(20000), 20000, 20100, "a sleep of 20 ms takes 20 ms across the low half of mtime");
-    check_within(slept_us(0), 0, 20, "no time is no sleep");
+    check_within(slept(20000), 20000, 20100, "a sleep of 20 ms takes 20 ms across the low half of mtime");
+    check_within(slept(0), 0, 20, "no time is no sleep");
     return check_result();
 }
