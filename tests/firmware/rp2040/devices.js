@@ -68,18 +68,25 @@ class Hps167s {
   }
 }
 
-// The lines of text that a UART has sent.
+// The lines of text that UART 0 has sent.
 class Terminal {
-  constructor(uart) {
-    this.lines = [];
+  constructor(machine) {
+    Object.assign(this, {machine, lines: []});
     let line = '';
-    uart.onSent = ({value}) => {
+    machine.uart[0].onSent = ({value}) => {
       if (value !== 10) line += String.fromCharCode(value);
       else {
         this.lines.push(line);
         line = '';
       }
     };
+  }
+
+  // Runs until so many lines have come, within `ms`, and returns those.
+  first(count, ms) {
+    this.machine.until(() => this.lines.length >= count || this.machine.ended, ms);
+    this.machine.assertWell();
+    return this.lines.slice(0, count);
   }
 }
 

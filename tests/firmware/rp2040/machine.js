@@ -5,6 +5,7 @@
 // wait for SIO, 3 or 4 more for a peripheral, and flash as fast as RAM. It leaves out the entry to an interrupt (15) and
 // the return (13), and misses in the cache before the flash, some 50 cycles each: true for code in RAM or in the cache.
 'use strict';
+const assert = require('assert');
 const {Simulator} = require('rp2040js');
 const {readElf} = require('./elf.js');
 const {Pl011} = require('./pl011.js');
@@ -152,10 +153,33 @@ class Machine {
 
   runTo(us) { this.run((us - this.us) * US / MS); }
 
-  // What the firmware did that the manuals forbid, or the simulator does not know.
-  get complaints() {
+  // The firmware did nothing that the manuals forbid, or the simulator does not know.
+  assertWell() {
     const ended = this.ended ? [`the firmware ended with ${this.status}`] : [];
-    return [...ended, ...this.warnings, ...this.uart.flatMap((uart) => uart.violations)];
+    assert.deepStrictEqual([...ended, ...this.warnings, ...this.uart.flatMap((uart) => uart.violations)], []);
+  }
+
+  // Of all the time the core is awake for so much, and for less than `most`.
+  awake(most) {
+    const share = this.core.cycles / (this.us * 125);
+    assert.ok(share < most, `awake for ${share} of the time`);
+    return share;
+  }
+
+  // Calls `callback` before the instruction that is so many from now, 1 for the next; returns {isDue}, false after that.
+  beforeInstruction(number, callback) {
+    const {core} = this;
+    const step = core.executeInstruction;
+    const waiting = {isDue: true};
+    core.executeInstruction = () => {
+      if (waiting.isDue && --number === 0) {
+        waiting.isDue = false;
+        core.executeInstruction = step;
+        callback();
+      }
+      return step.call(core);
+    };
+    return waiting;
   }
 
   halfword(name, offset) { return this.mcu.sramView.getUint16(this.symbols.get(name) - RAM + offset, true); }

@@ -7,10 +7,6 @@ const {Desk} = require('./desk.js');
 
 const NO_DEADLINE = 0xffffffff;
 
-function end(desk) {
-  assert.deepStrictEqual(desk.machine.complaints, []);
-}
-
 // How long idle(max_us) takes, in us, with nothing else happening.
 function slept(desk, max) {
   desk.call('idle', 0); // forgets old news
@@ -25,7 +21,7 @@ test('idle sleeps for as long as it may, and no longer', () => {
     const took = slept(desk, max);
     assert.ok(took > max - 1 && took < max + 3, `${took} us instead of ${max}`);
   }
-  end(desk);
+  desk.machine.assertWell();
 });
 
 test('idle ends in time across the wrap of the clock', () => {
@@ -34,7 +30,7 @@ test('idle ends in time across the wrap of the clock', () => {
     desk.machine.runTo(2 ** 32 - early);
     const took = slept(desk, 20);
     assert.ok(took > 19 && took < 23, `${took} us`);
-    end(desk);
+    desk.machine.assertWell();
   }
 });
 
@@ -63,7 +59,7 @@ test('idle returns when a byte has come, and when a request has left', () => {
   // The driver's alarm may look more than once.
   for (let looks = 0; looks < 3 && desk.call('sent') === 0; looks++) desk.call('idle', NO_DEADLINE);
   assert.strictEqual(desk.call('sent'), 1);
-  end(desk);
+  desk.machine.assertWell();
 });
 
 test('a byte that comes at any instruction of idle ends it', () => {
@@ -73,42 +69,29 @@ test('a byte that comes at any instruction of idle ends it', () => {
     desk.begin('19200 8E1');
     desk.call('idle', 0);
     desk.ask('idle', NO_DEADLINE);
-    const {core} = desk.machine;
-    const step = core.executeInstruction.bind(core);
-    let left = instructions;
-    const come = () => {
-      left = 0;
-      [1, 2, 3, 4].forEach((value) => desk.machine.uart[1].receive(value));
-    };
-    core.executeInstruction = () => {
-      if (left > 0 && --left === 0) come();
-      return step();
-    };
+    const come = () => [1, 2, 3, 4].forEach((value) => desk.machine.uart[1].receive(value));
+    const one = desk.machine.beforeInstruction(instructions, come);
     desk.machine.after(1000, () => { // if it sleeps before that
-      if (left > 0) come();
+      if (one.isDue) come();
+      one.isDue = false;
     });
     desk.machine.until(() => desk.isDone, 10);
     assert.deepStrictEqual(desk.read().bytes, [1, 2, 3, 4]);
-    end(desk);
+    desk.machine.assertWell();
   }
 });
 
 test('idle ends in time although something holds it up at any of its instructions', () => {
   for (let instructions = 1; instructions < 120; instructions++) {
     const desk = new Desk();
-    const {core, clock} = desk.machine;
-    const step = core.executeInstruction.bind(core);
     desk.call('idle', 0);
-    let left = instructions;
-    core.executeInstruction = () => {
-      if (left > 0 && --left === 0) clock.tick(10000); // a debugger, or the other core at the bus: 10 us
-      return step();
-    };
+    // A debugger, or the other core at the bus: 10 us.
+    desk.machine.beforeInstruction(instructions, () => desk.machine.clock.tick(10000));
     const from = desk.machine.us;
     desk.ask('idle', 3);
     desk.machine.until(() => desk.isDone, 1);
     assert.ok(desk.machine.us - from < 25);
-    end(desk);
+    desk.machine.assertWell();
   }
 });
 
@@ -123,7 +106,7 @@ test('the clock counts microseconds and wraps', () => {
     desk.machine.run(0.05);
   }
   assert.ok(desk.machine.us > 2 ** 32);
-  end(desk);
+  desk.machine.assertWell();
 });
 
 test('an output begins at the level that was asked for, without another one before', () => {
@@ -135,7 +118,7 @@ test('an output begins at the level that was asked for, without another one befo
     desk.call('set', 1 - high);
     desk.call('set', high);
     assert.deepStrictEqual(levels.map((level) => level.high), [high, 1 - high, high].map(Boolean));
-    end(desk);
+    desk.machine.assertWell();
   }
 });
 
@@ -151,7 +134,7 @@ test('an input tells the level of its pin, with the pull-up or with none', () =>
       assert.strictEqual(desk.call('get'), level ? 1 : 0);
     }
   }
-  end(desk);
+  desk.machine.assertWell();
 });
 
 run();

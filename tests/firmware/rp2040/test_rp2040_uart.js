@@ -16,10 +16,6 @@ function begin(line, where = {}, options) {
   return {desk, machine: desk.machine, uart: desk.machine.uart[where.number === undefined ? 1 : where.number]};
 }
 
-function end({machine}) {
-  assert.deepStrictEqual(machine.complaints, []);
-}
-
 const TIMER = 0x40054, DE_ALARM = 1;
 
 test('line settings become the divider and LCR_H of the datasheet', () => {
@@ -40,7 +36,7 @@ test('line settings become the divider and LCR_H of the datasheet', () => {
     assert.strictEqual(bench.uart.divider, whole * 64 + fraction, line);
     assert.strictEqual(bench.uart.lcr, format, line);
     assert.strictEqual(bench.uart.format, line.split(' ')[1]);
-    end(bench);
+    bench.machine.assertWell();
   }
   const bench = begin('9600 8N1', {clk: 48e6}); // 48 MHz / 16 / 9600 = 312.5
   assert.strictEqual(bench.uart.divider, 312 * 64 + 32);
@@ -57,7 +53,7 @@ test('what cannot be reached within 2.5 % is refused, and the settings before st
   assert.strictEqual(bench.desk.call('setLine', 9600, 3, 1), -1); // no parity of that number
   assert.strictEqual(bench.desk.setLine('8000000 8N1'), 1); // 2.4 % off
   assert.strictEqual(bench.desk.setLine('117 8N1'), 1); // 1.9 % off
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('begin refuses pins that are not of this UART', () => {
@@ -85,7 +81,7 @@ test('set_line waits until the last byte has left, and keeps what was received',
   assert.strictEqual(bench.desk.setLine('9600 8N1'), 1);
   assert.strictEqual(bench.uart.divider, 813 * 64 + 51);
   assert.deepStrictEqual(bench.desk.read().bytes, [1, 2, 3]);
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('a request of any length leaves whole, in order and without a gap', () => {
@@ -98,7 +94,7 @@ test('a request of any length leaves whole, in order and without a gap', () => {
     bench.uart.sent.forEach(({start}, i, all) => {
       if (i > 0) assert.ok(start - all[i - 1].end < all[i].bit / 8, `a gap before byte ${i} of ${length}`);
     });
-    end(bench);
+    bench.machine.assertWell();
   }
 });
 
@@ -110,7 +106,7 @@ test('write takes all or nothing, and the caller may reuse his memory', () => {
   assert.strictEqual(bench.desk.write([255, 255]), 0);
   bench.machine.until(() => bench.uart.sent.length === 100);
   assert.deepStrictEqual(bench.uart.sent.map(({value}) => value), bytesUpTo(100));
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('sent is exact: false until the last stop bit has left, then true', () => {
@@ -128,7 +124,7 @@ test('sent is exact: false until the last stop bit has left, then true', () => {
     }
     assert.ok(!over || last.end >= asked);
   }
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('the driver is on from before the first start bit until the last stop bit has left, at every rate', () => {
@@ -144,7 +140,7 @@ test('the driver is on from before the first start bit until the last stop bit h
       assert.ok(!levels[1].high && levels[1].at >= last.end, `${last.end - levels[1].at} ns too early`);
       assert.ok(levels[1].at - last.end <= 2 * first.bit + 5000, `${levels[1].at - last.end} ns too late`);
       assert.ok(Math.abs(first.end - first.start - bits * first.bit) < 1);
-      end(bench);
+      bench.machine.assertWell();
     }
 });
 
@@ -161,29 +157,24 @@ test('the driver stays on if a request follows at once', () => {
   assert.strictEqual(bench.uart.sent.length, 18);
   for (const {start, end: over} of bench.uart.sent) assert.ok(!low.some((at) => at > start && at < over));
   assert.ok(!levels[levels.length - 1].high);
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('the alarm of the request before leaves the driver on, at whichever instruction of write it comes', () => {
   for (let instructions = 1; instructions < 200; instructions++) {
     const bench = begin('115200 8N1', {driver: 6});
-    const {core, mcu} = bench.machine;
+    const {mcu} = bench.machine;
     const levels = bench.machine.record(6);
     bench.desk.write([1]);
     bench.machine.until(() => bench.uart.sent.length === 1);
-    const step = core.executeInstruction.bind(core);
-    let left = instructions;
-    core.executeInstruction = () => {
-      if (left > 0 && --left === 0) mcu.peripherals[TIMER].fireAlarm(DE_ALARM);
-      return step();
-    };
+    bench.machine.beforeInstruction(instructions, () => mcu.peripherals[TIMER].fireAlarm(DE_ALARM));
     bench.desk.write([2]);
     bench.machine.until(() => bench.uart.sent.length === 2);
     const {start, end: over} = bench.uart.sent[1];
     const before = levels.filter(({at}) => at <= start);
     assert.ok(before[before.length - 1].high, `off when alarm came at instruction ${instructions}`);
     assert.ok(!levels.some(({at}) => at > start && at < over));
-    end(bench);
+    bench.machine.assertWell();
   }
 });
 
@@ -197,7 +188,7 @@ test('the driver is let go in time when the clock wraps while bytes leave', () =
     bench.machine.until(() => levels.length === 2, 3);
     assert.ok(bench.machine.us > 2 ** 32);
     assert.ok(levels[1].at >= bench.uart.sent[0].end);
-    end(bench);
+    bench.machine.assertWell();
   }
 });
 
@@ -205,22 +196,16 @@ test('the driver is let go in time when a receive interrupt comes at any instruc
   // Of a character that takes 1.28 us, so that the alarm for its end has passed when the interrupt is over.
   const bench = begin('7812500 8N1', {driver: 6});
   const levels = bench.machine.record(6);
-  const {core} = bench.machine;
-  const step = core.executeInstruction.bind(core);
-  let left = 0;
-  core.executeInstruction = () => {
-    if (left > 0 && --left === 0) [1, 2, 3, 4].forEach((value) => bench.uart.receive(value));
-    return step();
-  };
   for (let instructions = 1; instructions < 250; instructions++) {
-    left = instructions;
+    const come = () => [1, 2, 3, 4].forEach((value) => bench.uart.receive(value));
+    const one = bench.machine.beforeInstruction(instructions, come);
     bench.desk.write([1]);
     bench.machine.run(0.02);
     assert.strictEqual(levels.length, 2 * instructions, 'it still drives');
-    assert.strictEqual(left, 0);
+    assert.ok(!one.isDue);
     assert.deepStrictEqual(bench.desk.read().bytes, [1, 2, 3, 4]);
   }
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('a break holds TX low and the driver high; nothing is written meanwhile', () => {
@@ -240,7 +225,7 @@ test('a break holds TX low and the driver high; nothing is written meanwhile', (
   assert.deepStrictEqual(bench.uart.breaks.map(({on}) => on), [true, false]);
   assert.ok(!levels[levels.length - 1].high);
   assert.strictEqual(bench.desk.write([2]), 1);
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('bytes are read in order, as many as there is room for, also those that the FIFO still holds', () => {
@@ -252,7 +237,7 @@ test('bytes are read in order, as many as there is room for, also those that the
     assert.deepStrictEqual([...first, ...bench.desk.read().bytes], bytesUpTo(count));
     assert.deepStrictEqual(bench.desk.read().bytes, []);
   }
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('ring and FIFO hold 96 bytes and go on after that, many times over the wrap of their indices', () => {
@@ -265,7 +250,7 @@ test('ring and FIFO hold 96 bytes and go on after that, many times over the wrap
     assert.deepStrictEqual(heard, sent);
   }
   assert.strictEqual(bench.desk.call('counter', 2), 0);
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('bytes that found no room are told as an overrun, before the byte that came after them', () => {
@@ -283,7 +268,7 @@ test('bytes that found no room are told as an overrun, before the byte that came
   assert.deepStrictEqual(bench.desk.read(), {bytes: [77], flags: OVERRUN});
   assert.deepStrictEqual(bench.desk.read(), {bytes: [78], flags: 0});
   assert.strictEqual(bench.desk.call('counter', 2), 1);
-  end(bench);
+  bench.machine.assertWell();
 });
 
 test('a byte with an error is told alone: a read ends before and after it', () => {
@@ -295,7 +280,7 @@ test('a byte with an error is told alone: a read ends before and after it', () =
     assert.deepStrictEqual(bench.desk.read(), {bytes: [4], flags: flag});
     assert.deepStrictEqual(bench.desk.read(), {bytes: [5, 6], flags: 0});
     assert.strictEqual(bench.desk.call('counter', counter), 2);
-    end(bench);
+    bench.machine.assertWell();
   }
 });
 
@@ -325,7 +310,7 @@ test('where the receiver\'s time-out has come a read ends, and the time of its l
     bench.desk.receive(bench.uart, [4, 5]);
     assert.deepStrictEqual(bench.desk.read().bytes, [1, 2, 3]);
     assert.deepStrictEqual(bench.desk.read(), {bytes: [4, 5], flags: 0});
-    end(bench);
+    bench.machine.assertWell();
   }
 });
 
