@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdio.h>
-
 #include "suite.h"
 
 #include "board.h"
 
 TEST(the_adapter_keeps_what_its_header_says)
 {
-    board_t board;
     unsigned held = 0;
-    assert_true(board_start(&board, "adapter"));
-    for (const board_record_t *record; (record = board_next_record(&board, 200000)) != NULL;) {
+    board_start("adapter");
+    for (const board_record_t *record; (record = board_next_record(200000)) != NULL;) {
         if (record->kind == 1)
             held = record->bytes[0];
         else
@@ -20,5 +17,4 @@ TEST(the_adapter_keeps_what_its_header_says)
     assert_int_equal(board.exit_code, 0);
     assert_int_equal(held, 45);
     assert_int_equal(board.usart.overruns, 0);
-    board_end(&board);
 }

@@ -6,7 +6,7 @@
 
 #include "suite.h"
 
-#include "printed.h"
+#include "board.h"
 
 enum { OVERFLOW_CYCLES = 16384 }; /* of Timer0 at 64 cycles a step; every 1.024 ms */
 enum { TIMER0_OVF = 16 };         /* its vector */
@@ -15,9 +15,7 @@ enum { CYCLE_US = 240000 };       /* more than from one reading to the next */
  * cycles with its entry. */
 enum { STEP_US = 4, BOUND_US = 11 };
 
-typedef struct {
-    board_t board;
-    printed_t printed;
+static struct {
     uint64_t width_cycles;   /* of the answer; 0: none */
     uint64_t rise_at_cycles; /* not 0: the edge is so long after an overflow of Timer0 */
     uint64_t fall_at_cycles;
@@ -31,150 +29,135 @@ typedef struct {
     uint64_t low_cycles;
     uint64_t trigger_cycles; /* from one trigger to the next */
     uint32_t triggers;
-} bench_t;
+} bench;
 
-static uint8_t *count_of(bench_t *bench) { return board_data(&bench->board, "timer0_overflow_count"); }
+static const suite_t suite = {.tear_down = board_stop};
 
-static uint32_t overflows(bench_t *bench)
-{
-    const uint8_t *const bytes = count_of(bench);
-    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-}
+static uint8_t *count_of(void) { return board_data("timer0_overflow_count"); }
+
+static uint32_t overflows(void) { return board_number(count_of(), 4); }
 
 static avr_cycle_count_t fall(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-    (void)when;
-    bench_t *const bench = (bench_t *)param;
-    bench->fell_cycles = avr->cycle - bench->rise_cycle;
-    bench->fall_count = overflows(bench);
-    board_drive(&bench->board, 'D', 2, false);
+    bench.fell_cycles = avr->cycle - bench.rise_cycle;
+    bench.fall_count = overflows();
+    board_drive('D', 2, false);
     return 0;
 }
 
 /* From now, at least `cycles`, to so long after an overflow. */
-static uint64_t aligned(const bench_t *bench, uint64_t cycles, uint64_t at)
+static uint64_t aligned(uint64_t cycles, uint64_t at)
 {
-    const uint64_t would_be = (bench->board.avr->cycle + cycles - bench->overflow_cycle) % OVERFLOW_CYCLES;
+    const uint64_t would_be = (board.avr->cycle + cycles - bench.overflow_cycle) % OVERFLOW_CYCLES;
     return cycles + OVERFLOW_CYCLES + at - would_be;
 }
 
 static avr_cycle_count_t rise(avr_t *avr, avr_cycle_count_t when, void *param)
 {
-    (void)when;
-    bench_t *const bench = (bench_t *)param;
-    uint64_t width = bench->width_cycles;
+    uint64_t width = bench.width_cycles;
     if (width == 0) return 0;
-    bench->rise_cycle = avr->cycle;
-    bench->rise_count = overflows(bench);
-    if (bench->fall_at_cycles != 0) width = aligned(bench, width, bench->fall_at_cycles);
-    board_drive(&bench->board, 'D', 2, true);
-    if (!bench->stays_high) avr_cycle_timer_register(avr, width, fall, bench);
+    bench.rise_cycle = avr->cycle;
+    bench.rise_count = overflows();
+    if (bench.fall_at_cycles != 0) width = aligned(width, bench.fall_at_cycles);
+    board_drive('D', 2, true);
+    if (!bench.stays_high) avr_cycle_timer_register(avr, width, fall, NULL);
     return 0;
 }
 
 static void on_trigger(void *ctx, bool high)
 {
-    bench_t *const bench = (bench_t *)ctx;
-    avr_t *const avr = bench->board.avr;
+    avr_t *const avr = board.avr;
     if (high) {
-        bench->low_cycles = avr->cycle - bench->low_cycle;
+        bench.low_cycles = avr->cycle - bench.low_cycle;
         return;
     }
-    bench->trigger_cycles = avr->cycle - bench->low_cycle;
-    bench->low_cycle = avr->cycle;
-    bench->triggers++;
+    bench.trigger_cycles = avr->cycle - bench.low_cycle;
+    bench.low_cycle = avr->cycle;
+    bench.triggers++;
     uint64_t after = UINT64_C(110000) * BOARD_CYCLES_PER_US;
-    if (bench->rise_at_cycles != 0) after = aligned(bench, after, bench->rise_at_cycles);
-    avr_cycle_timer_register(avr, after, rise, bench);
+    if (bench.rise_at_cycles != 0) after = aligned(after, bench.rise_at_cycles);
+    avr_cycle_timer_register(avr, after, rise, NULL);
 }
 
 static void on_overflow(avr_irq_t *irq, uint32_t pending, void *param)
 {
-    (void)irq;
-    bench_t *const bench = (bench_t *)param;
-    if (pending != 0) bench->overflow_cycle = bench->board.avr->cycle;
+    if (pending != 0) bench.overflow_cycle = board.avr->cycle;
 }
 
-static void begin(bench_t *bench, const char *image)
+static void begin(const char *image)
 {
-    memset(bench, 0, sizeof *bench);
-    assert_true(board_start(&bench->board, image));
-    board_drive(&bench->board, 'D', 2, false);
-    board_watch(&bench->board, 'D', 7, true, on_trigger, bench);
-    avr_irq_register_notify(avr_get_interrupt_irq(bench->board.avr, TIMER0_OVF) + AVR_INT_IRQ_PENDING,
-                            on_overflow, bench);
-    printed_begin(&bench->printed, &bench->board);
+    memset(&bench, 0, sizeof bench);
+    board_start(image);
+    board_drive('D', 2, false);
+    board_watch('D', 7, true, on_trigger, NULL);
+    avr_irq_register_notify(avr_get_interrupt_irq(board.avr, TIMER0_OVF) + AVR_INT_IRQ_PENDING, on_overflow,
+                            NULL);
 }
 
 /* The next line, which is to be of the pulse whose width has been set. */
-static const char *line(bench_t *bench)
-{
-    const char *const text = printed_line(&bench->printed, 2 * CYCLE_US);
-    if (text == NULL) fail_msg("nothing was printed");
-    return text;
-}
+static const char *line(void) { return board_line(2 * CYCLE_US); }
 
 /* How far the printed width is off, in us; the distance has to be 4/23 of it, rounded (A16 1(4)). */
-static double off_us(bench_t *bench)
+static double off_us(void)
 {
     unsigned mm = 0;
     unsigned us = 0;
-    const char *const text = line(bench);
+    const char *const text = line();
     if (sscanf(text, "%u mm, %u us", &mm, &us) != 2) fail_msg("%s", text);
     assert_int_equal(mm, (us * 8 + 23) / 46);
-    return us - (double)bench->fell_cycles / BOARD_CYCLES_PER_US;
+    return us - (double)bench.fell_cycles / BOARD_CYCLES_PER_US;
 }
 
 static double magnitude(double value) { return value < 0 ? -value : value; }
 
-TEST(pulses_become_distances)
+/* Four pulses by that sketch. */
+static void measure(const char *image, const uint32_t widths_us[4])
 {
-    static const uint32_t widths_us[] = {3000, 10100, 86250, 3000};
-    bench_t bench;
-    begin(&bench, "a16_pulse");
-    for (size_t i = 0; i < sizeof widths_us / sizeof *widths_us; i++) {
+    begin(image);
+    for (int i = 0; i < 4; i++) {
         bench.width_cycles = widths_us[i] * BOARD_CYCLES_PER_US;
-        const double off = off_us(&bench);
-        assert_true(magnitude(off) <= BOUND_US);
+        assert_true(magnitude(off_us()) <= BOUND_US);
         assert_int_equal(bench.fell_cycles / BOARD_CYCLES_PER_US, widths_us[i]);
     }
+}
+
+TEST(pulses_become_distances)
+{
+    measure("a16_pulse", (const uint32_t[4]){3000, 10100, 86250, 3000});
     /* A16 1(1), (2): low long enough for any input, and more than 220 ms from trigger to trigger. */
     assert_true(bench.triggers >= 4);
     assert_in_range(bench.low_cycles / BOARD_CYCLES_PER_US, 2000, 3000);
     assert_in_range(bench.trigger_cycles / BOARD_CYCLES_PER_US, 220001, CYCLE_US);
-    board_end(&bench.board);
 }
 
 TEST(nothing_in_range_no_answer_and_a_stuck_line_are_told_apart)
 {
-    bench_t bench;
-    begin(&bench, "a16_pulse");
+    begin("a16_pulse");
     bench.width_cycles = 94000 * BOARD_CYCLES_PER_US;
-    assert_string_equal(line(&bench), "nothing in range");
+    assert_string_equal(line(), "nothing in range");
     bench.width_cycles = 0;
-    assert_string_equal(line(&bench), "error -3");   /* FATHOM_ERR_NO_ANSWER */
+    assert_string_equal(line(), "error -3");         /* FATHOM_ERR_NO_ANSWER */
     bench.width_cycles = 1000 * BOARD_CYCLES_PER_US; /* noise */
-    assert_string_equal(line(&bench), "error -3");
+    assert_string_equal(line(), "error -3");
     bench.width_cycles = 120000 * BOARD_CYCLES_PER_US;
-    assert_string_equal(line(&bench), "stuck line");
+    assert_string_equal(line(), "stuck line");
     bench.width_cycles = 10000 * BOARD_CYCLES_PER_US;
     bench.stays_high = false;
-    assert_true(magnitude(off_us(&bench)) <= BOUND_US);
+    assert_true(magnitude(off_us()) <= BOUND_US);
     bench.stays_high = true;
-    assert_string_equal(line(&bench), "stuck line");
-    board_end(&bench.board);
+    assert_string_equal(line(), "stuck line");
 }
 
 /* The most that widths are off with falling edges so long after an overflow of Timer0, and rising ones away from it, at
  * three places of a step of micros(), which is 64 cycles. */
-static double most_off_us(bench_t *bench, uint64_t first, uint64_t end, uint64_t step)
+static double most_off_us(uint64_t first, uint64_t end, uint64_t step)
 {
     double most_us = 0;
     for (uint64_t rise_at = 8000; rise_at < 8064; rise_at += 21) {
         for (uint64_t at = first; at < end; at += step) {
-            bench->rise_at_cycles = rise_at;
-            bench->fall_at_cycles = at;
-            const double off = magnitude(off_us(bench));
+            bench.rise_at_cycles = rise_at;
+            bench.fall_at_cycles = at;
+            const double off = magnitude(off_us());
             if (off > most_us) most_us = off;
         }
     }
@@ -183,36 +166,23 @@ static double most_off_us(bench_t *bench, uint64_t first, uint64_t end, uint64_t
 
 TEST(a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most)
 {
-    bench_t bench;
-    begin(&bench, "a16_pulse");
+    begin("a16_pulse");
     bench.width_cycles = 20000 * BOARD_CYCLES_PER_US;
-    off_us(&bench); /* until Timer0's time is known */
-    const double apart_us = most_off_us(&bench, 4000, 4064, 22);
-    const double most_us = most_off_us(&bench, 1, 120, 13);
+    off_us(); /* until Timer0's time is known */
+    const double apart_us = most_off_us(4000, 4064, 22);
+    const double most_us = most_off_us(1, 120, 13);
     printf("figure arduino_pulse_error %.1f us\n", most_us);
     printf("figure arduino_pulse_error_apart_from_timer0 %.1f us\n", apart_us);
     assert_true(apart_us <= STEP_US);
     assert_true(most_us <= BOUND_US);
     assert_true(most_us > STEP_US); /* it was hit */
-    board_end(&bench.board);
 }
 
 TEST(a_loop_of_20_ms_loses_no_precision)
 {
-    static const uint32_t widths_us[] = {3000, 10100, 50003, 86250};
-    bench_t bench;
-    begin(&bench, "a16_slow");
-    for (size_t i = 0; i < sizeof widths_us / sizeof *widths_us; i++) {
-        bench.width_cycles = widths_us[i] * BOARD_CYCLES_PER_US;
-        const double off = off_us(&bench);
-        assert_int_equal(bench.fell_cycles / BOARD_CYCLES_PER_US, widths_us[i]);
-        assert_true(magnitude(off) <= BOUND_US);
-    }
+    measure("a16_slow", (const uint32_t[4]){3000, 10100, 50003, 86250});
     bench.width_cycles = 0;
-    const char *const text = printed_line(&bench.printed, 3 * CYCLE_US);
-    assert_non_null(text);
-    assert_string_equal(text, "error -3");
-    board_end(&bench.board);
+    assert_string_equal(board_line(3 * CYCLE_US), "error -3");
 }
 
 /* The core counts overflows of Timer0, of 1024 us each, in 32 bits, and micros() is 1024 times that: 2^22 of them are
@@ -220,18 +190,16 @@ TEST(a_loop_of_20_ms_loses_no_precision)
 TEST(a_pulse_across_the_wrap_of_micros_is_right)
 {
     static const uint32_t wrap = UINT32_C(1) << 22;
-    bench_t bench;
-    begin(&bench, "a16_pulse");
+    begin("a16_pulse");
     bench.width_cycles = 80000 * BOARD_CYCLES_PER_US;
-    assert_true(board_run_us(&bench.board, 1500)); /* the sketch has begun, and has not triggered */
+    assert_true(board_run_us(1500)); /* the sketch has begun, and has not triggered */
     assert_int_equal(bench.triggers, 0);
     /* The pulse has its middle 150 ms, 146 overflows, after the first trigger, which now comes at once. */
     const uint32_t count = wrap - 146;
-    for (unsigned i = 0; i < 4; i++) count_of(&bench)[i] = (uint8_t)(count >> (8 * i));
-    assert_true(magnitude(off_us(&bench)) <= BOUND_US);
+    for (unsigned i = 0; i < 4; i++) count_of()[i] = (uint8_t)(count >> (8 * i));
+    assert_true(magnitude(off_us()) <= BOUND_US);
     assert_int_equal(bench.fell_cycles / BOARD_CYCLES_PER_US, 80000);
     assert_true(bench.rise_count < wrap && bench.fall_count >= wrap);
     assert_int_equal(bench.triggers, 1);
-    assert_true(magnitude(off_us(&bench)) <= BOUND_US);
-    board_end(&bench.board);
+    assert_true(magnitude(off_us()) <= BOUND_US);
 }

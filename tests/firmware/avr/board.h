@@ -16,12 +16,12 @@
  * pins to the pins of a device. One time for both: the simulation's clock is the processor's cycles divided by 16.
  * What a device does happens at the first instruction after its time, so up to 3 cycles late, as in the hardware.
  *
- *     board_start(&board, "auto");                       image of that name
+ *     board_start("auto");                       image of that name
  *     fathom_sim_line_init(&line, &settings, board.clock.now_us);
  *     fathom_sim_attach(...);
- *     board_join_line(&board, &line);
- *     while (board_run(&board, condition, ctx, most_us)) ...
- *     board_end(&board);
+ *     board_join_line(&line);
+ *     while (board_run(condition, ctx, most_us)) ...
+ *     board_end();
  *
  * The image speaks to the test by three registers that have no other use: a byte written to GPIOR0 is one more of a
  * record, GPIOR1 ends the record and says its kind, GPIOR2 ends the program with an exit code (0 is good).
@@ -39,7 +39,8 @@ enum {
     BOARD_BYTES = 4096,
     BOARD_EDGES = 512,
     BOARD_WATCHES = 8,
-    BOARD_PLANNED = 16
+    BOARD_PLANNED = 16,
+    BOARD_LINE = 80
 };
 
 /* What the image has reported. */
@@ -64,11 +65,8 @@ typedef struct {
     bool high;
 } board_edge_t;
 
-typedef struct board board_t;
-
 /* An output pin that is looked at. */
 typedef struct {
-    board_t *board;
     void (*changed)(void *ctx, bool high);
     void *ctx;
     char port;
@@ -79,7 +77,6 @@ typedef struct {
 
 /* An edge to come at an input. */
 typedef struct {
-    board_t *board;
     char port;
     uint8_t bit;
     bool high;
@@ -88,13 +85,13 @@ typedef struct {
 
 /* One who follows each instruction; see profile.h. */
 typedef struct {
-    void (*before)(void *ctx);
-    void (*after)(void *ctx);
-    void (*interrupt)(void *ctx, uint8_t vector); /* has been entered, at its vector */
-    void *ctx;
+    void (*before)(void);
+    void (*after)(void);
+    void (*interrupt)(uint8_t vector); /* has been entered, at its vector */
 } board_observer_t;
 
-struct board {
+/* The one that there is. */
+typedef struct {
     avr_t *avr;
     elf_firmware_t image;
     usart_t usart;
@@ -142,66 +139,86 @@ struct board {
         uint8_t bit[2];
         uint8_t inputs;
     } joined;
-};
+    struct {
+        uint32_t seen; /* of `bytes` */
+        uint32_t length;
+        char line[BOARD_LINE];
+    } text;
+} board_t;
 
-/* FATHOM_IMAGES of the environment, or else of the compiler, is the folder of images. false, with a message: no such
- * image. */
-bool board_start(board_t *board, const char *name);
-void board_end(board_t *board);
+extern board_t board;
+
+/* FATHOM_IMAGES of the environment, or else of the compiler, is the folder of images. Ends the one that runs. */
+void board_start(const char *name);
+void board_end(void);
+/* The same, for a suite_t: the image has not crashed. */
+int board_stop(void **state);
 
 /* Runs until done(ctx), and says whether that came about: false when most_us are over, or when the program has ended
  * or crashed (with a message) before. done: NULL for never. */
 typedef bool (*board_condition_t)(void *ctx);
-bool board_run(board_t *board, board_condition_t done, void *ctx, uint64_t most_us);
+bool board_run(board_condition_t done, void *ctx, uint64_t most_us);
 
 /* Runs so long, sleep included; false: it ended before. */
-bool board_run_us(board_t *board, uint32_t us);
+bool board_run_us(uint32_t us);
 
 /* Time passes and the processor does nothing: moves what it does next against its timers, cycle by cycle. */
-void board_stall(board_t *board, uint64_t cycles);
+void board_stall(uint64_t cycles);
 
 /* The next record, running until there is one; NULL: none came within most_us. Valid until the next call. */
-const board_record_t *board_next_record(board_t *board, uint64_t most_us);
+const board_record_t *board_next_record(uint64_t most_us);
+
+/* The next line of text that the image sends by its UART, without its end, running until there is one; "": none came
+ * within most_us. Valid until the next call. */
+const char *board_line(uint64_t most_us);
 
 /* ---- wires ---- */
 
 /* The UART to `line`, which is put on the board's clock. Its settings are the USART's registers' from here on; a
  * break on TXD is one. The line is half or full duplex, with or without echo, as the test has set it. */
-void board_join_line(board_t *board, fathom_sim_line_t *line);
+void board_join_line(fathom_sim_line_t *line);
+
+/* Initialises a line, with the settings of `device`, and puts the device on it. */
+void board_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, bool full_duplex);
 
 /* Driver-enable of an RS-485 transceiver, pulled down: bytes that leave while it is low, or whose end it cuts off,
  * do not reach the line; what comes while it is high is garbage. */
-void board_join_driver(board_t *board, char port, uint8_t bit);
+void board_join_driver(char port, uint8_t bit);
 
 /* A device's RX to an output pin (pulled up until it is one), and its TX to input pins: up to two, as "B0" and "D2";
- * NULL: none. Once a board. `pins` is initialised with board->clock. */
-void board_join_pins(board_t *board, fathom_sim_pins_t *pins, const char *trigger, const char *input,
-                     const char *input_too);
+ * NULL: none. Once a board. `pins` is initialised with board.clock. */
+void board_join_pins(fathom_sim_pins_t *pins, const char *trigger, const char *input, const char *input_too);
 
 /* Puts bytes on RXD without a device or a line, back to back from at_cycle on, each for `cycles` (0: as long as the
  * USART's registers have it). marks: FATHOM_RX_... of each, or NULL. Both arrays outlive the last byte; what was fed
  * before and has not come yet does not come any more. */
-void board_feed(board_t *board, const uint8_t *bytes, const uint8_t *marks, uint16_t count, uint64_t at_cycle,
+void board_feed(const uint8_t *bytes, const uint8_t *marks, uint16_t count, uint64_t at_cycle,
                 uint32_t cycles);
 
 /* Drives an input from outside, now, or at a cycle to come (up to BOARD_PLANNED at a time). */
-void board_drive(board_t *board, char port, uint8_t bit, bool high);
-void board_drive_at(board_t *board, char port, uint8_t bit, bool high, uint64_t cycle);
+void board_drive(char port, uint8_t bit, bool high);
+void board_drive_at(char port, uint8_t bit, bool high, uint64_t cycle);
 
 /* Calls `changed` when an output pin changes. */
-board_watch_t *board_watch(board_t *board, char port, uint8_t bit, bool idle_high,
-                           void (*changed)(void *ctx, bool high), void *ctx);
+board_watch_t *board_watch(char port, uint8_t bit, bool idle_high, void (*changed)(void *ctx, bool high),
+                           void *ctx);
+
+/* Ends the test program with a message. */
+__attribute__((noreturn, format(printf, 1, 2))) void board_give_up(const char *format, ...);
 
 /* ---- the image's memory ---- */
 
+/* A number of so many bytes, the low one first, as the image has them. */
+uint32_t board_number(const uint8_t *bytes, int length);
+
 /* The address of a symbol; of data without the 0x800000 that the linker adds. Ends the test program with a message
  * if there is none. */
-uint32_t board_address(const board_t *board, const char *symbol);
-uint8_t *board_data(board_t *board, const char *symbol);
+uint32_t board_address(const char *symbol);
+uint8_t *board_data(const char *symbol);
 
 /* Brings the simulation to the processor's time, as the test's own calls into it need. */
-void board_sync(board_t *board);
+void board_sync(void);
 /* To be called after the test has done something to a line or a device. */
-void board_plan(board_t *board);
+void board_plan(void);
 
 #endif

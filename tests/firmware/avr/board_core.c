@@ -60,7 +60,6 @@ static void run(avr_t *avr)
 /* A flag is cleared by a one and by nothing else (ATmega328P 16.11.9, 13.2.3); simavr clears all of a timer. */
 static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
-    (void)param;
     for (uint8_t i = 0; i < avr->interrupts.vector_count; i++) {
         avr_int_vector_t *const vector = avr->interrupts.vector[i];
         if (vector->raised.reg == address && (value >> vector->raised.bit & 1) != 0)
@@ -71,7 +70,6 @@ static void write_flags(avr_t *avr, avr_io_addr_t address, uint8_t value, void *
 /* An interrupt whose flag stands comes when it is enabled; in simavr only if it was when the flag rose. */
 static void write_mask(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
-    (void)param;
     avr->data[address] = value;
     for (uint8_t i = 0; i < avr->interrupts.vector_count; i++) {
         avr_int_vector_t *const vector = avr->interrupts.vector[i];

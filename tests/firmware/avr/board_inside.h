@@ -10,9 +10,9 @@
 void board_mend(avr_t *avr);
 
 /* Once the processor is there: the USART's ends. */
-void board_wire(board_t *board);
+void board_wire(void);
 
 /* The line has a byte for the UART, which ended ago_us ago. */
-void board_arrived(board_t *board, uint8_t byte, uint8_t flags, uint32_t ago_us);
+void board_arrived(uint8_t byte, uint8_t flags, uint32_t ago_us);
 
 #endif

@@ -34,6 +34,14 @@ typedef struct {
     bool running;
 } profile_function_t;
 
+/* An interrupt that runs. */
+typedef struct {
+    uint8_t vector;
+    uint32_t cycles;
+    uint16_t stack_pointer;
+    uint16_t deepest;
+} profile_frame_t;
+
 typedef struct {
     profile_cost_t interrupts[PROFILE_VECTORS]; /* by vector number, ATmega328P 12.4, from 0 */
     profile_function_t functions[PROFILE_FUNCTIONS];
@@ -44,14 +52,7 @@ typedef struct {
     uint16_t deepest_pointer; /* the stack pointer, interrupts and all */
 
     /* inside */
-    board_t *board;
-    board_observer_t observer;
-    struct {
-        uint8_t vector;
-        uint32_t cycles;
-        uint16_t stack_pointer;
-        uint16_t deepest;
-    } nested[PROFILE_NESTED];
+    profile_frame_t nested[PROFILE_NESTED];
     uint8_t depth;
     uint8_t running; /* simavr's count at the beginning of the instruction */
     bool entered;    /* an interrupt at the end of this instruction */
@@ -60,18 +61,19 @@ typedef struct {
     uint64_t cycle;
 } profile_t;
 
-/* Begins now, with everything 0; one at a time. */
-void profile_begin(profile_t *profile, board_t *board);
-void profile_end(profile_t *profile);
+extern profile_t profile;
+
+/* Begins now, with everything 0. */
+void profile_begin(void);
 
 /* To be called between begin and the calls of interest. */
-const profile_cost_t *profile_function(profile_t *profile, const char *symbol);
+const profile_cost_t *profile_function(const char *symbol);
 
 /* Bytes between the end of the RAM and the deepest stack pointer. */
-uint16_t profile_deepest_stack(const profile_t *profile);
+uint16_t profile_deepest_stack(void);
 
 /* Awake, in interrupts or in the main loop, since the beginning. */
-uint64_t profile_awake_cycles(const profile_t *profile);
+uint64_t profile_awake_cycles(void);
 
 enum { /* the vectors of interest */
        PROFILE_INT0 = 1,

@@ -10,32 +10,22 @@
 #include "sim/a16.h"
 #include "sim/scene.h"
 
-static board_t board;
-static profile_t profile;
-
 static int start(void **state)
 {
-    assert_true(board_start(&board, "bench"));
-    board_drive(&board, 'D', 2, false);
-    board_drive(&board, 'D', 3, false);
-    board_drive(&board, 'D', 4, false);
+    board_start("bench");
+    board_drive('D', 2, false);
+    board_drive('D', 3, false);
+    board_drive('D', 4, false);
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 /* Runs until it reports a record of that kind. */
 static board_record_t reported(char kind)
 {
     for (;;) {
-        const board_record_t *const record = board_next_record(&board, 1000000);
+        const board_record_t *const record = board_next_record(1000000);
         assert_non_null(record);
         if (record->kind == kind) return *record;
     }
@@ -43,9 +33,9 @@ static board_record_t reported(char kind)
 
 TEST(functions_cost_what_the_instruction_set_says)
 {
-    profile_begin(&profile, &board);
-    const profile_cost_t *const forty = profile_function(&profile, "forty_cycles");
-    const profile_cost_t *const pushes = profile_function(&profile, "three_pushes");
+    profile_begin();
+    const profile_cost_t *const forty = profile_function("forty_cycles");
+    const profile_cost_t *const pushes = profile_function("three_pushes");
     reported('2');
     assert_int_equal(forty->calls, 10);
     assert_int_equal(forty->longest_cycles, 40);
@@ -55,30 +45,27 @@ TEST(functions_cost_what_the_instruction_set_says)
     assert_int_equal(pushes->calls, 5);
     assert_int_equal(pushes->longest_cycles, 59);
     assert_int_equal(pushes->stack, 7);
-    assert_int_equal(profile_awake_cycles(&profile), board.avr->cycle);
+    assert_int_equal(profile_awake_cycles(), board.avr->cycle);
     assert_int_equal(profile.asleep_cycles, 0);
-    assert_true(profile_deepest_stack(&profile) >= 2 + 7); /* main's return address */
-    assert_true(profile_deepest_stack(&profile) < 30);
-    profile_end(&profile);
+    assert_true(profile_deepest_stack() >= 2 + 7); /* main's return address */
+    assert_true(profile_deepest_stack() < 30);
 }
 
 /* Between the reports 1 and 2 the functions run, after 2 come 400 nops. */
 TEST(interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt)
 {
     reported('1');
-    profile_begin(&profile, &board);
-    const profile_cost_t *const forty = profile_function(&profile, "forty_cycles");
-    for (int i = 0; i < 8; i++)
-        board_drive_at(&board, 'D', 2, i % 2 == 0, board.avr->cycle + 20 + 53 * (uint64_t)i);
+    profile_begin();
+    const profile_cost_t *const forty = profile_function("forty_cycles");
+    for (int i = 0; i < 8; i++) board_drive_at('D', 2, i % 2 == 0, board.avr->cycle + 20 + 53 * (uint64_t)i);
     reported('2');
     assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 8);
     assert_int_equal(forty->calls, 10);
     assert_int_equal(forty->longest_cycles, 40);
     assert_int_equal(forty->shortest_cycles, 40);
     assert_int_equal(forty->stack, 2);
-    assert_int_equal(profile_deepest_stack(&profile),
+    assert_int_equal(profile_deepest_stack(),
                      2 + 7 + 2); /* main's return address, three_pushes, the interrupt's */
-    profile_end(&profile);
 }
 
 static uint64_t cycles_to_the_first_byte(void)
@@ -90,36 +77,33 @@ static uint64_t cycles_to_the_first_byte(void)
 TEST(an_interrupt_costs_its_cycles_and_four_of_entry)
 {
     const uint64_t without = cycles_to_the_first_byte();
-    stop(state);
     start(state);
     reported('2');
     const uint64_t begin_cycle = board.avr->cycle;
-    profile_begin(&profile, &board);
-    board_drive_at(&board, 'D', 2, true, begin_cycle + 30);
-    board_drive_at(&board, 'D', 2, false, begin_cycle + 100);
+    profile_begin();
+    board_drive_at('D', 2, true, begin_cycle + 30);
+    board_drive_at('D', 2, false, begin_cycle + 100);
     assert_int_equal(reported('d').cycle - begin_cycle + 1, without + 2 * (18 + 4));
     assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 2);
     assert_int_equal(profile.interrupts[PROFILE_INT0].shortest_cycles, 18);
     assert_int_equal(profile.interrupts[PROFILE_INT0].longest_cycles, 18);
     assert_int_equal(profile.interrupts[PROFILE_INT0].stack, 2);
     assert_int_equal(profile.entries, 2);
-    profile_end(&profile);
 }
 
 TEST(an_interrupt_that_is_interrupted_is_charged_its_own_cycles)
 {
     reported('2');
     const uint64_t begin_cycle = board.avr->cycle;
-    profile_begin(&profile, &board);
-    board_drive_at(&board, 'D', 3, true, begin_cycle + 30);
-    board_drive_at(&board, 'D', 2, true, begin_cycle + 60);
+    profile_begin();
+    board_drive_at('D', 3, true, begin_cycle + 30);
+    board_drive_at('D', 2, true, begin_cycle + 60);
     reported('d');
     assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 1);
     assert_int_equal(profile.interrupts[PROFILE_INT0].longest_cycles, 18);
     assert_int_equal(profile.interrupts[2].calls, 1);
     assert_int_equal(profile.interrupts[2].longest_cycles, 48);
     assert_int_equal(profile.main_cycles + 18 + 48 + 8, board.avr->cycle - begin_cycle);
-    profile_end(&profile);
 }
 
 /* ATmega328P 20.6: the second byte is taken while the first leaves, the third one character later, and transmit
@@ -149,9 +133,9 @@ TEST(the_receiver_keeps_three_bytes_and_tells_what_was_lost)
     static const uint8_t bytes[] = {1, 2, 3, 4, 5};
     static const uint8_t marks[] = {0, FATHOM_RX_FRAMING, 0, 0, FATHOM_RX_FRAMING | FATHOM_RX_PARITY};
     reported('3');
-    board_feed(&board, bytes, marks, sizeof bytes, board.avr->cycle, 0);
-    board_run_us(&board, 6000);
-    board_drive(&board, 'D', 4, true);
+    board_feed(bytes, marks, sizeof bytes, board.avr->cycle, 0);
+    board_run_us(6000);
+    board_drive('D', 4, true);
     const board_record_t record = reported('b');
     /* RXC0 0x80, TXC0 0x40, UDRE0 0x20, FE0 0x10, DOR0 0x08; no UPE0, as there is no parity in 8N1 */
     static const uint8_t expected[] = {0xE0, 1, 0xF0, 2, 0xF8, 5};
@@ -164,17 +148,16 @@ TEST(receive_complete_interrupts_as_long_as_a_byte_waits)
 {
     static const uint8_t byte = 0x77;
     reported('3');
-    board_drive(&board, 'D', 4, true);
+    board_drive('D', 4, true);
     reported('b');
-    board_run_us(&board, 10);
-    profile_begin(&profile, &board);
-    board_feed(&board, &byte, NULL, 1, board.avr->cycle, 0);
+    board_run_us(10);
+    profile_begin();
+    board_feed(&byte, NULL, 1, board.avr->cycle, 0);
     const board_record_t record = reported('r');
     static const uint8_t expected[] = {0xE0, 0x77};
     assert_memory_equal(record.bytes, expected, sizeof expected);
-    board_run_us(&board, 1000);
+    board_run_us(1000);
     assert_int_equal(profile.interrupts[PROFILE_USART_RECEIVE].calls, 3);
-    profile_end(&profile);
 }
 
 /* A16 1: S[cm] = T[us] / 57.5, so 1739 mm are 9999 us. The loop of the image sees an edge within 40 cycles. */
@@ -184,15 +167,12 @@ TEST(a_device_on_the_pins_answers_the_trigger_with_its_pulse)
     fathom_sim_line_t line;
     fathom_sim_pins_t pins;
     fathom_sim_fixed_t target = {{1739, 0, 0, 0}};
-    const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
     const fathom_sim_a16_config_t config = {.mode = FATHOM_SIM_A16_PWM, .scene = fathom_sim_fixed(&target)};
     fathom_sim_a16_init(&a16, &config);
-    fathom_sim_line_init(&line, &settings, board.clock.now_us);
-    line.full_duplex = true;
-    fathom_sim_attach(&line, &a16.device, board.clock.now_us);
+    board_attach(&line, &a16.device, true);
     fathom_sim_pins_init(&pins, &a16.device, &line, &board.clock);
-    board_join_pins(&board, &pins, "B1", "B0", "D2");
-    board_drive(&board, 'D', 4, true);
+    board_join_pins(&pins, "B1", "B0", "D2");
+    board_drive('D', 4, true);
     reported('b');
     assert_int_equal(reported('p').bytes[0], 0);
     const board_record_t high = reported('p');
@@ -206,24 +186,23 @@ TEST(a_device_on_the_pins_answers_the_trigger_with_its_pulse)
 
 TEST(a_program_that_sleeps_is_charged_nothing_and_ends_with_its_code)
 {
-    board_drive(&board, 'D', 4, true);
+    board_drive('D', 4, true);
     reported('b');
-    board_run_us(&board, 3000);
-    board_drive(&board, 'D', 4, false);
-    board_run_us(&board, 10);
+    board_run_us(3000);
+    board_drive('D', 4, false);
+    board_run_us(10);
     assert_int_equal(board.avr->state, cpu_Sleeping);
-    profile_begin(&profile, &board);
+    profile_begin();
     const uint64_t begin_cycle = board.avr->cycle;
-    board_run_us(&board, 1000000);
+    board_run_us(1000000);
     assert_in_range(profile.asleep_cycles, 1000000 * BOARD_CYCLES_PER_US - 2000,
                     1000000 * BOARD_CYCLES_PER_US + 2000);
-    assert_int_equal(profile_awake_cycles(&profile), 0);
+    assert_int_equal(profile_awake_cycles(), 0);
     assert_false(board.finished);
-    board_drive(&board, 'D', 2, true);
-    board_run_us(&board, 10);
+    board_drive('D', 2, true);
+    board_run_us(10);
     assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 1);
-    assert_int_equal(profile_awake_cycles(&profile) + profile.asleep_cycles, board.avr->cycle - begin_cycle);
+    assert_int_equal(profile_awake_cycles() + profile.asleep_cycles, board.avr->cycle - begin_cycle);
     assert_true(board.finished);
     assert_int_equal(board.exit_code, 7);
-    profile_end(&profile);
 }

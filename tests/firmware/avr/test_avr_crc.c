@@ -9,23 +9,14 @@
 #include "board.h"
 #include "crcs.h"
 
-static board_t board;
-
 static int start(void **state)
 {
-    assert_true(board_start(&board, "crcs"));
-    assert_true(board_run_us(&board, 1000)); /* its memory has been cleared */
+    board_start("crcs");
+    assert_true(board_run_us(1000)); /* its memory has been cleared */
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 /* MODBUS over Serial Line V1.02, 6.2.2 */
 static uint16_t defined(const uint8_t *bytes, uint8_t length)
@@ -40,16 +31,16 @@ static uint16_t defined(const uint8_t *bytes, uint8_t length)
 
 static void assert_crc(const uint8_t *bytes, uint8_t length, uint16_t expected)
 {
-    crcs_t *const asked = (crcs_t *)(void *)board_data(&board, "asked");
+    crcs_t *const asked = (crcs_t *)(void *)board_data("asked");
     memcpy(asked->bytes, bytes, length);
     asked->length = length;
     asked->go = 1;
-    const board_record_t *const record = board_next_record(&board, 100000);
+    const board_record_t *const record = board_next_record(100000);
     assert_non_null(record);
     assert_int_equal(record->kind, CRCS_RECORD);
     assert_int_equal(record->length, 4);
-    assert_int_equal(record->bytes[0] | record->bytes[1] << 8, expected); /* without a table */
-    assert_int_equal(record->bytes[2] | record->bytes[3] << 8, expected); /* by the table */
+    assert_int_equal(board_number(record->bytes, 2), expected);     /* without a table */
+    assert_int_equal(board_number(record->bytes + 2, 2), expected); /* by the table */
 }
 
 TEST(the_examples_of_the_datasheets_have_their_crc)

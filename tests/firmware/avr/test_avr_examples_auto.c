@@ -6,7 +6,6 @@
 #include "suite.h"
 
 #include "board.h"
-#include "console.h"
 #include "sim/a05.h"
 #include "sim/a16.h"
 #include "sim/scene.h"
@@ -15,8 +14,6 @@
  * multiplexer gives one of them to RXD, chosen by PD4. */
 enum { PATIENCE_US = 6000000 };
 
-static board_t board;
-static console_t console;
 static fathom_sim_line_t a16_line;
 static fathom_sim_line_t a05_line;
 static fathom_sim_a16_t a16;
@@ -35,34 +32,28 @@ static void forget(fathom_sim_line_t *line)
 
 static void on_select(void *ctx, bool high)
 {
-    (void)ctx;
     fathom_sim_line_t *const line = high ? &a05_line : &a16_line;
     turns++;
-    board_sync(&board);
+    board_sync();
     forget(line);
-    board_join_line(&board, line);
+    board_join_line(line);
 }
 
 static void start(uint32_t a16_period_us, uint32_t a05_period_us)
 {
-    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    assert_true(board_start(&board, "a16_a05_auto"));
+    board_start("a16_a05_auto");
     fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_UART,
                                                          .scene = fathom_sim_fixed(&a16_scene),
                                                          .period_us = a16_period_us});
     fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO,
                                                          .scene = fathom_sim_fixed(&a05_scene),
                                                          .period_us = a05_period_us});
-    fathom_sim_line_init(&a16_line, &settings, board.clock.now_us);
-    fathom_sim_line_init(&a05_line, &settings, board.clock.now_us);
-    a16_line.full_duplex = a05_line.full_duplex = true;
-    fathom_sim_attach(&a16_line, &a16.device, board.clock.now_us);
-    fathom_sim_attach(&a05_line, &a05.device, board.clock.now_us);
-    board_join_line(&board, &a16_line);
-    board_join_line(&board, &a05_line);
+    board_attach(&a16_line, &a16.device, true);
+    board_attach(&a05_line, &a05.device, true);
+    board_join_line(&a16_line);
+    board_join_line(&a05_line);
     turns = 0;
-    assert_non_null(board_watch(&board, 'D', 4, true, on_select, NULL));
-    console_begin(&console, &board);
+    assert_non_null(board_watch('D', 4, true, on_select, NULL));
 }
 
 static int set_up(void **state)
@@ -73,19 +64,9 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
+static const suite_t suite = {.set_up = set_up, .tear_down = board_stop};
 
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
-
-static void assert_says(const char *expected)
-{
-    assert_string_equal(console_line(&console, PATIENCE_US), expected);
-}
+static void assert_says(const char *expected) { assert_string_equal(board_line(PATIENCE_US), expected); }
 
 TEST(both_are_printed_in_turn)
 {
@@ -109,14 +90,13 @@ TEST(a_turn_in_the_middle_of_a_frame_gives_no_wrong_value)
         {13000, 29000}, {17100, 21700}, {33333, 27001}, {100000, 300000}};
     a16_scene.value[0] = 511;
     for (size_t i = 0; i < sizeof periods_us / sizeof *periods_us; i++) {
-        board_end(&board);
         start(periods_us[i][0], periods_us[i][1]);
         unsigned of_a16 = 0;
         unsigned of_a05 = 0;
         for (int lines = 0; lines < 200; lines++) {
             static const char *const good[] = {"A16 511 mm", "A05 1 1000 mm", "A05 2 2000 mm",
                                                "A05 3 2047 mm", "A05 4 1339 mm"};
-            const char *const text = console_line(&console, PATIENCE_US);
+            const char *const text = board_line(PATIENCE_US);
             size_t which = 0;
             while (which < 5 && strcmp(text, good[which]) != 0) which++;
             if (which == 5) print_message("\"%s\"\n", text);
@@ -134,11 +114,10 @@ TEST(a_turn_in_the_middle_of_a_frame_gives_no_wrong_value)
  * right sum. A turn in their midst is not the silence that would tell one from the other. */
 TEST(sensors_that_never_pause_are_silent_rather_than_wrong)
 {
-    board_end(&board);
     a16_scene.value[0] = 511;
     start(4167, 10417); /* 4 and 10 characters of 10 bits at 9600 baud, rounded up */
     for (int lines = 0; lines < 8; lines++) {
-        const char *const text = console_line(&console, PATIENCE_US);
+        const char *const text = board_line(PATIENCE_US);
         if (strcmp(text, "A16 error -7: silent") != 0) assert_string_equal(text, "A05 error -7: silent");
     }
 }
@@ -155,9 +134,9 @@ TEST(what_is_not_in_range_is_said_for_each_probe)
 
 static void power_off(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t us)
 {
-    board_sync(&board);
+    board_sync();
     fathom_sim_power_cycle(line, device, us, board.clock.now_us);
-    board_plan(&board);
+    board_plan();
 }
 
 TEST(a_dead_one_is_said_to_be_silent_and_the_other_goes_on)
@@ -168,7 +147,7 @@ TEST(a_dead_one_is_said_to_be_silent_and_the_other_goes_on)
     unsigned silent = 0;
     const uint64_t begin_cycle = board.avr->cycle;
     while (board.avr->cycle < begin_cycle + 18000000ull * BOARD_CYCLES_PER_US) {
-        const char *const text = console_line(&console, PATIENCE_US);
+        const char *const text = board_line(PATIENCE_US);
         if (strcmp(text, "A16 1234 mm") == 0)
             of_a16++;
         else if (strcmp(text, "A05 error -7: silent") == 0)
@@ -180,7 +159,7 @@ TEST(a_dead_one_is_said_to_be_silent_and_the_other_goes_on)
     assert_in_range(silent, 4, 4);   /* each 4 s */
     /* And when it lives again. */
     unsigned lines = 0;
-    while (strcmp(console_line(&console, PATIENCE_US), "A05 4 1339 mm") != 0) assert_true(++lines < 12);
+    while (strcmp(board_line(PATIENCE_US), "A05 4 1339 mm") != 0) assert_true(++lines < 12);
 }
 
 TEST(both_dead_are_both_said_to_be_silent)
@@ -188,9 +167,9 @@ TEST(both_dead_are_both_said_to_be_silent)
     power_off(&a16_line, &a16.device, 60000000);
     power_off(&a05_line, &a05.device, 60000000);
     for (int i = 0; i < 3; i++) {
-        char first[CONSOLE_LINE];
-        strcpy(first, console_line(&console, PATIENCE_US));
-        const char *const second = console_line(&console, PATIENCE_US);
+        char first[BOARD_LINE];
+        strcpy(first, board_line(PATIENCE_US));
+        const char *const second = board_line(PATIENCE_US);
         const bool is_a16_first = strcmp(first, "A16 error -7: silent") == 0;
         assert_string_equal(is_a16_first ? first : second, "A16 error -7: silent");
         assert_string_equal(is_a16_first ? second : first, "A05 error -7: silent");

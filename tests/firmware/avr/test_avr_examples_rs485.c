@@ -12,55 +12,35 @@
 enum { NEAR = 0, FAR = 1, ERROR = 2, LEDS = 3 };
 enum { PERIOD_US = 18519 }; /* 54 Hz */
 
-static board_t board;
 static fathom_sim_line_t line;
 static fathom_sim_hps167s_t hps;
 static fathom_sim_fixed_t scene;
 static bool lit[LEDS];
 static uint64_t changed_cycle;
 
-static void near_changed(void *ctx, bool high)
+static void changed(void *led, bool high)
 {
-    (void)ctx;
-    lit[NEAR] = !high;
-    changed_cycle = board.avr->cycle;
-}
-
-static void far_changed(void *ctx, bool high)
-{
-    (void)ctx;
-    lit[FAR] = !high;
-    changed_cycle = board.avr->cycle;
-}
-
-static void error_changed(void *ctx, bool high)
-{
-    (void)ctx;
-    lit[ERROR] = !high;
+    *(bool *)led = !high;
     changed_cycle = board.avr->cycle;
 }
 
 static void start(uint8_t warm_up_s)
 {
-    static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
     memset(lit, 0, sizeof lit);
     scene.value[0] = 3000;
-    assert_true(board_start(&board, "hps167s_rs485"));
+    board_start("hps167s_rs485");
     fathom_sim_hps167s_init(
         &hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene), .warm_up_s = warm_up_s});
-    fathom_sim_line_init(&line, &settings, board.clock.now_us);
-    fathom_sim_attach(&line, &hps.device, board.clock.now_us);
-    board_join_line(&board, &line);
-    board_join_driver(&board, 'D', 2);
-    board_watch(&board, 'B', 0, true, near_changed, NULL);
-    board_watch(&board, 'B', 1, true, far_changed, NULL);
-    board_watch(&board, 'B', 2, true, error_changed, NULL);
+    board_attach(&line, &hps.device, false);
+    board_join_line(&line);
+    board_join_driver('D', 2);
+    for (uint8_t i = 0; i < LEDS; i++) board_watch('B', i, true, changed, &lit[i]);
 }
 
 static int set_up(void **state)
 {
     start(0);
-    assert_true(board_run_us(&board, 200000));
+    assert_true(board_run_us(200000));
     return 0;
 }
 
@@ -69,7 +49,7 @@ static int tear_down(void **state)
     assert_false(board.crashed);
     assert_int_equal(board.cut_bytes, 0);
     assert_int_equal(board.talked_over, 0);
-    board_end(&board);
+    board_end();
     return 0;
 }
 
@@ -86,7 +66,7 @@ TEST(far_is_lit_while_nothing_is_near)
 {
     assert_lit(false, true, false);
     scene.value[0] = FATHOM_SIM_NO_TARGET;
-    assert_true(board_run_us(&board, 1000000));
+    assert_true(board_run_us(1000000));
     assert_lit(false, true, false);
 }
 
@@ -95,7 +75,7 @@ static unsigned periods_until_change(void)
 {
     const uint64_t begin_cycle = board.avr->cycle;
     changed_cycle = 0;
-    for (unsigned ms = 0; changed_cycle == 0 && ms < 1000; ms++) assert_true(board_run_us(&board, 1000));
+    for (unsigned ms = 0; changed_cycle == 0 && ms < 1000; ms++) assert_true(board_run_us(1000));
     assert_true(changed_cycle != 0);
     return (unsigned)((changed_cycle - begin_cycle) / (BOARD_CYCLES_PER_US * PERIOD_US));
 }
@@ -114,7 +94,6 @@ TEST(near_is_lit_after_three_nearer_ones_and_far_after_five_farther_ones)
 static int32_t two_of_three(void *ctx, uint8_t probe, uint32_t now_us)
 {
     unsigned *const asked = ctx;
-    (void)probe, (void)now_us;
     return (*asked)++ % 3 == 2 ? 3000 : 100;
 }
 
@@ -123,7 +102,7 @@ TEST(two_nearer_ones_light_nothing)
     unsigned asked = 0;
     hps.device.scene = (fathom_sim_scene_t){two_of_three, &asked};
     changed_cycle = 0;
-    assert_true(board_run_us(&board, 1000000));
+    assert_true(board_run_us(1000000));
     assert_in_range(asked, 50, 54);
     assert_int_equal(changed_cycle, 0);
     assert_lit(false, true, false);
@@ -132,7 +111,7 @@ TEST(two_nearer_ones_light_nothing)
 TEST(it_asks_54_times_a_second)
 {
     const uint32_t before = hps.device.counters.answered;
-    assert_true(board_run_us(&board, 1000000));
+    assert_true(board_run_us(1000000));
     assert_in_range(hps.device.counters.answered - before, 53, 54);
     assert_int_equal(hps.device.counters.torn, 0);
     assert_int_equal(hps.device.counters.crc_errors, 0);
@@ -142,48 +121,47 @@ TEST(it_asks_54_times_a_second)
 TEST(a_dead_sensor_lights_the_error_alone_until_it_answers_again)
 {
     /* Beyond its warm-up, 5 s and a time-out, in which silence is no error. */
-    assert_true(board_run_us(&board, 6000000));
+    assert_true(board_run_us(6000000));
     assert_lit(false, true, false);
-    board_sync(&board);
+    board_sync();
     fathom_sim_power_cycle(&line, &hps.device, 10000000, board.clock.now_us);
-    board_plan(&board);
-    assert_true(board_run_us(&board, 2000000)); /* two attempts of 500 ms each */
+    board_plan();
+    assert_true(board_run_us(2000000)); /* two attempts of 500 ms each */
     assert_lit(false, false, true);
-    assert_true(board_run_us(&board, 20000000));
+    assert_true(board_run_us(20000000));
     assert_lit(false, true, false);
 }
 
 TEST(a_sensor_that_says_it_is_broken_lights_the_error)
 {
-    assert_true(board_run_us(&board, 6000000));
+    assert_true(board_run_us(6000000));
     scene.value[0] = FATHOM_SIM_FAULT;
-    assert_true(board_run_us(&board, 100000));
+    assert_true(board_run_us(100000));
     assert_lit(false, false, true);
     scene.value[0] = 1000;
-    assert_true(board_run_us(&board, 100000));
+    assert_true(board_run_us(100000));
     assert_lit(true, false, false);
 }
 
 TEST(while_it_warms_up_nothing_is_lit)
 {
-    board_end(&board);
     start(5);
     for (int i = 0; i < 49; i++) {
-        assert_true(board_run_us(&board, 100000));
+        assert_true(board_run_us(100000));
         assert_lit(false, false, false);
     }
-    assert_true(board_run_us(&board, 2000000));
+    assert_true(board_run_us(2000000));
     assert_lit(false, true, false);
 }
 
 TEST(a_single_damaged_answer_is_no_error)
 {
-    assert_true(board_run_us(&board, 6000000));
+    assert_true(board_run_us(6000000));
     for (int i = 0; i < 10; i++) {
         /* A byte that nobody sent, somewhere in the cycle. */
         usart_arrive(&board.usart, 0x55, FATHOM_RX_PARITY);
         changed_cycle = 0;
-        assert_true(board_run_us(&board, 101000));
+        assert_true(board_run_us(101000));
         assert_lit(false, true, false);
         assert_int_equal(changed_cycle, 0);
     }
@@ -193,6 +171,6 @@ TEST(it_sleeps_most_of_the_time)
 {
     const uint64_t asleep_cycles = board.asleep_cycles;
     const uint64_t begin_cycle = board.avr->cycle;
-    assert_true(board_run_us(&board, 1000000));
+    assert_true(board_run_us(1000000));
     assert_true((board.asleep_cycles - asleep_cycles) * 10 > (board.avr->cycle - begin_cycle) * 8);
 }

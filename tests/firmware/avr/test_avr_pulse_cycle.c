@@ -5,7 +5,6 @@
 #include "suite.h"
 
 #include "board.h"
-#include "console.h"
 #include "sim/a16.h"
 #include "sim/scene.h"
 
@@ -16,8 +15,6 @@
 enum { CYCLE_US = 221000, PATIENCE_US = 1000000 };
 enum { EDGES = 64 };
 
-static board_t board;
-static console_t console;
 static fathom_sim_line_t line; /* what the simulation hangs the device on; no byte goes there */
 static fathom_sim_a16_t a16;
 static fathom_sim_pins_t pins;
@@ -28,24 +25,21 @@ static unsigned triggered;
 
 static void on_trigger(void *ctx, bool high)
 {
-    const board_edge_t edge = {((const board_t *)ctx)->avr->cycle, high};
+    const board_edge_t edge = {board.avr->cycle, high};
     triggers[triggered++ % EDGES] = edge;
 }
 
 static void start(uint32_t no_target_us)
 {
-    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    assert_true(board_start(&board, "a16_pulse"));
+    board_start("a16_pulse");
     fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_PWM,
                                                          .scene = fathom_sim_fixed(&scene),
                                                          .no_target_us = no_target_us});
-    fathom_sim_line_init(&line, &settings, board.clock.now_us);
-    fathom_sim_attach(&line, &a16.device, board.clock.now_us);
+    board_attach(&line, &a16.device, false);
     fathom_sim_pins_init(&pins, &a16.device, &line, &board.clock);
-    board_join_pins(&board, &pins, "B1", "B0", NULL);
+    board_join_pins(&pins, "B1", "B0", NULL);
     triggered = 0;
-    assert_non_null(board_watch(&board, 'B', 1, true, on_trigger, &board));
-    console_begin(&console, &board);
+    assert_non_null(board_watch('B', 1, true, on_trigger, NULL));
 }
 
 static int set_up(void **state)
@@ -55,20 +49,13 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+static const suite_t suite = {.set_up = set_up, .tear_down = board_stop};
 
 /* The line of the first cycle that begins from now on. */
 static void assert_next(const char *expected)
 {
-    console_line(&console, PATIENCE_US); /* of the cycle under way */
-    assert_string_equal(console_line(&console, PATIENCE_US), expected);
+    board_line(PATIENCE_US); /* of the cycle under way */
+    assert_string_equal(board_line(PATIENCE_US), expected);
 }
 
 TEST(each_distance_is_printed_to_the_mm)
@@ -100,7 +87,7 @@ TEST(each_distance_is_printed_to_the_mm)
 TEST(the_trigger_is_low_for_2_ms_once_in_221_ms)
 {
     assert_next("1000 mm");
-    for (int i = 0; i < 10; i++) assert_string_equal(console_line(&console, PATIENCE_US), "1000 mm");
+    for (int i = 0; i < 10; i++) assert_string_equal(board_line(PATIENCE_US), "1000 mm");
     assert_true(triggered >= 20);
     uint64_t fell = 0;
     for (unsigned i = 0; i < triggered; i++) {
@@ -120,11 +107,11 @@ TEST(a_cut_wire_is_an_error_and_no_reading)
 {
     assert_next("1000 mm");
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
-    board_plan(&board);
+    board_plan();
     assert_next("error -3: no answer");
-    assert_string_equal(console_line(&console, PATIENCE_US), "error -3: no answer");
+    assert_string_equal(board_line(PATIENCE_US), "error -3: no answer");
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
-    board_plan(&board);
+    board_plan();
     assert_next("1000 mm");
 }
 
@@ -132,10 +119,10 @@ TEST(a_line_that_is_stuck_high_is_a_fault)
 {
     assert_next("1000 mm");
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
-    board_plan(&board);
+    board_plan();
     assert_next("sensor fault");
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
-    board_plan(&board);
+    board_plan();
     assert_next("1000 mm");
 }
 
@@ -143,9 +130,9 @@ TEST(a_line_that_is_stuck_high_is_a_fault)
 static void noise(uint32_t us)
 {
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
-    assert_true(board_run_us(&board, us));
+    assert_true(board_run_us(us));
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
-    board_plan(&board);
+    board_plan();
 }
 
 TEST(short_pulses_before_the_right_one_are_noise)
@@ -153,22 +140,20 @@ TEST(short_pulses_before_the_right_one_are_noise)
     assert_next("1000 mm");
     for (int i = 0; i < 5; i++) {
         /* The line came with its pulse, 110 ms after the trigger: the next one falls 105 ms from here. */
-        assert_true(board_run_us(&board, 120000));
+        assert_true(board_run_us(120000));
         for (uint32_t us = 100; us <= 2600; us += 500) {
             noise(us);
-            assert_true(board_run_us(&board, 5000));
+            assert_true(board_run_us(5000));
         }
-        assert_string_equal(console_line(&console, PATIENCE_US), "1000 mm");
+        assert_string_equal(board_line(PATIENCE_US), "1000 mm");
     }
 }
 
 TEST(a_pulse_of_more_than_105_ms_is_a_fault)
 {
-    board_end(&board);
     scene.value[0] = FATHOM_SIM_NO_TARGET;
     start(105900);
     assert_next("sensor fault");
-    board_end(&board);
     start(104900);
     assert_next("nothing in range");
 }
@@ -179,17 +164,18 @@ TEST(the_line_of_text_comes_right_after_the_pulse)
     /* 110 ms to the pulse, 5.75 ms of it, 9 characters at 115200 baud: 0.78 ms. */
     const uint64_t fell = triggers[(triggered - 2) % EDGES].cycle;
     assert_false(triggers[(triggered - 2) % EDGES].high);
-    assert_in_range((console.end_cycle - fell) / BOARD_CYCLES_PER_US, 116500, 117000);
+    assert_in_range((board.bytes[(board.text.seen - 1) % BOARD_BYTES].end_cycle - fell) / BOARD_CYCLES_PER_US,
+                    116500, 117000);
 }
 
 /* Its UART only prints; a byte of noise on RXD is no reason to stay awake. */
 TEST(it_sleeps_also_after_a_byte_of_noise)
 {
     static const uint8_t noise = 0x55;
-    board_feed(&board, &noise, NULL, 1, board.avr->cycle + 16000, 0);
-    assert_true(board_run_us(&board, 300000));
+    board_feed(&noise, NULL, 1, board.avr->cycle + 16000, 0);
+    assert_true(board_run_us(300000));
     const uint64_t begin_cycle = board.avr->cycle, asleep_cycles = board.asleep_cycles;
-    assert_true(board_run_us(&board, 1000000));
+    assert_true(board_run_us(1000000));
     const uint64_t cycles = board.avr->cycle - begin_cycle;
     assert_true(board.asleep_cycles - asleep_cycles > cycles / 100 * 95);
 }

@@ -10,44 +10,34 @@
 enum { US = BOARD_CYCLES_PER_US, PULSE_CYCLES = 1000 * US };
 enum { BY_ICP1 = 1, BY_INT0 = 2 }; /* images/pulses.c */
 
-static board_t board;
 static uint64_t rise_cycle; /* of the next edge that is placed */
 
 static int start(void **state)
 {
-    assert_true(board_start(&board, "pulses"));
-    board_drive(&board, 'B', 0, false);
-    board_drive(&board, 'D', 2, false);
-    assert_true(board_run_us(&board, 1000));
+    board_start("pulses");
+    board_drive('B', 0, false);
+    board_drive('D', 2, false);
+    assert_true(board_run_us(1000));
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 /* `offset` cycles after rise_cycle. */
-static void edge(bool high, uint64_t offset) { board_drive_at(&board, 'B', 0, high, rise_cycle + offset); }
+static void edge(bool high, uint64_t offset) { board_drive_at('B', 0, high, rise_cycle + offset); }
 
 /* The width of the next pulse that is told, in us; 0: none is for 3 ms. */
 static uint32_t told_us(uint8_t by)
 {
-    const board_record_t *const record = board_next_record(&board, 3000);
+    const board_record_t *const record = board_next_record(3000);
     if (record == NULL) return 0;
     assert_int_equal(record->kind, by);
-    uint32_t us = 0;
-    for (int i = 3; i >= 0; i--) us = us << 8 | record->bytes[i];
-    return us;
+    return board_number(record->bytes, 4);
 }
 
 static void place(void)
 {
-    board_run_us(&board, 2000);
+    board_run_us(2000);
     assert_int_equal(board.taken, board.recorded); /* the pulse before was told once */
     rise_cycle = board.avr->cycle + 100 * US;
 }
@@ -98,8 +88,8 @@ TEST(int0_tells_a_pulse_alone_within_1_us)
 {
     for (uint64_t more = 0; more < 8 * US; more += 5) {
         place();
-        board_drive_at(&board, 'D', 2, true, rise_cycle);
-        board_drive_at(&board, 'D', 2, false, rise_cycle + PULSE_CYCLES + more);
+        board_drive_at('D', 2, true, rise_cycle);
+        board_drive_at('D', 2, false, rise_cycle + PULSE_CYCLES + more);
         assert_told(told_us(BY_INT0), PULSE_CYCLES + more, PULSE_CYCLES + more);
     }
 }

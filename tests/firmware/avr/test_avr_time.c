@@ -9,22 +9,13 @@
 
 enum { PERIOD_CYCLES = 65536 * 8 }; /* of Timer1: 32768 us */
 
-static board_t board;
-
 static int start(void **state)
 {
-    remote_start(&board);
+    remote_start();
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 typedef struct {
     uint64_t cycle; /* just before it */
@@ -36,15 +27,15 @@ static reading_t next_reading(uint64_t (*stall)(uint64_t cycle))
 {
     reading_t reading = {0, 0};
     for (;;) {
-        const board_record_t *const record = board_next_record(&board, 100000);
+        const board_record_t *const record = board_next_record(100000);
         assert_non_null(record);
         if (record->kind == REMOTE_MARK) {
-            if (stall != NULL) board_stall(&board, stall(record->cycle));
+            if (stall != NULL) board_stall(stall(record->cycle));
             reading.cycle = board.avr->cycle;
         }
         if (record->kind != REMOTE_CLOCK || reading.cycle == 0) continue;
         assert_int_equal(record->length, 4);
-        for (int i = 3; i >= 0; i--) reading.us = reading.us << 8 | record->bytes[i];
+        reading.us = board_number(record->bytes, 4);
         return reading;
     }
 }
@@ -52,7 +43,7 @@ static reading_t next_reading(uint64_t (*stall)(uint64_t cycle))
 static void watch(uint8_t masked)
 {
     board.taken = board.recorded;
-    remote_watch_clock(&board, true, masked);
+    remote_watch_clock(true, masked);
 }
 
 /* When the clock was 0, by this reading: the same for all of them but for the us that is cut off and for the way from
@@ -80,8 +71,8 @@ static int64_t set_off(void)
     watch(0);
     const int64_t zero = zero_cycle(next_reading(NULL));
     for (int i = 0; i < 100; i++) assert_right(next_reading(NULL), zero, 0);
-    remote_watch_clock(&board, false, 0);
-    board_run_us(&board, 100);
+    remote_watch_clock(false, 0);
+    board_run_us(100);
     return zero;
 }
 
@@ -93,13 +84,13 @@ TEST(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap)
     uint32_t readings = 0;
     for (uint32_t slept = 0; board.avr->cycle < (uint64_t)72 * 60 * BOARD_HZ; slept++) {
         assert_true(slept < 140000); /* of 32000 us each */
-        remote_idle(&board, 32000);
+        remote_idle(32000);
         if (slept % 500 != 0) continue;
         watch(0);
         const reading_t reading = next_reading(NULL);
         const uint64_t since = reading.cycle - (uint64_t)zero;
-        remote_watch_clock(&board, false, 0);
-        board_run_us(&board, 100);
+        remote_watch_clock(false, 0);
+        board_run_us(100);
         assert_right(reading, zero, since >= wrap_cycle ? 1 : 0);
         readings++;
     }
@@ -171,7 +162,7 @@ TEST(idle_returns_when_its_time_is_up)
     static const uint32_t most_us[] = {100, 1000, 5000, 20000, 32000};
     for (size_t i = 0; i < sizeof most_us / sizeof most_us[0]; i++) {
         const uint64_t begin_cycle = board.avr->cycle, asleep_cycles = board.asleep_cycles;
-        remote_idle(&board, most_us[i]);
+        remote_idle(most_us[i]);
         assert_in_range(board.avr->cycle - begin_cycle, most_us[i] * BOARD_CYCLES_PER_US,
                         (most_us[i] + 40) * BOARD_CYCLES_PER_US);
         assert_true(board.asleep_cycles - asleep_cycles > (most_us[i] - 40) * BOARD_CYCLES_PER_US);
@@ -181,11 +172,11 @@ TEST(idle_returns_when_its_time_is_up)
 TEST(idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time)
 {
     uint64_t begin_cycle = board.avr->cycle;
-    remote_idle(&board, UINT32_MAX);
+    remote_idle(UINT32_MAX);
     assert_in_range(board.avr->cycle - begin_cycle, 32000 * BOARD_CYCLES_PER_US, 32768 * BOARD_CYCLES_PER_US);
     for (uint32_t most_us = 0; most_us < 30; most_us++) {
         begin_cycle = board.avr->cycle;
-        remote_idle(&board, most_us);
+        remote_idle(most_us);
         assert_in_range(board.avr->cycle - begin_cycle, 0, (most_us + 40) * BOARD_CYCLES_PER_US);
     }
 }
@@ -195,18 +186,18 @@ TEST(a_byte_ends_the_sleep_and_one_that_waits_prevents_it)
     static const uint8_t byte = 0x5A;
     static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
     uint8_t got, flags;
-    assert_true(remote_begin(&board, &line, false, 8));
-    remote_idle(&board, 0);
+    assert_true(remote_begin(&line, false, 8));
+    remote_idle(0);
     /* at every cycle of going to sleep */
     for (uint16_t phase = 0; phase < 400; phase++) {
         const uint64_t begin_cycle = board.avr->cycle;
-        board_feed(&board, &byte, NULL, 1, begin_cycle + phase, 1);
-        remote_idle(&board, 20000);
+        board_feed(&byte, NULL, 1, begin_cycle + phase, 1);
+        remote_idle(20000);
         assert_true(board.avr->cycle - begin_cycle < 1200);
         const uint64_t again_cycle = board.avr->cycle;
-        remote_idle(&board, 20000);
+        remote_idle(20000);
         assert_true(board.avr->cycle - again_cycle < 1200);
-        assert_int_equal(remote_read(&board, &got, 1, &flags), 1);
+        assert_int_equal(remote_read(&got, 1, &flags), 1);
         assert_int_equal(got, byte);
     }
 }
@@ -215,14 +206,14 @@ TEST(the_last_stop_bit_ends_the_sleep)
 {
     static const uint8_t request[] = {1, 2, 3};
     static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
-    assert_true(remote_begin(&board, &line, false, 8));
-    remote_idle(&board, 0);
-    remote_write(&board, request, sizeof request);
-    remote_idle(&board, 20000);
+    assert_true(remote_begin(&line, false, 8));
+    remote_idle(0);
+    remote_write(request, sizeof request);
+    remote_idle(20000);
     assert_int_equal(board.bytes_seen, 3);
     assert_in_range(board.avr->cycle, board.bytes[2].end_cycle, board.bytes[2].end_cycle + 400);
-    assert_true(remote_sent(&board));
+    assert_true(remote_sent());
     const uint64_t begin_cycle = board.avr->cycle;
-    remote_idle(&board, 20000); /* it ends one */
+    remote_idle(20000); /* it ends one */
     assert_true(board.avr->cycle - begin_cycle > 20000 * BOARD_CYCLES_PER_US);
 }

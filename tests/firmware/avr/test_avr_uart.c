@@ -14,32 +14,19 @@ enum { MOST_AFTER_STOP_BIT = 80, MOST_OF_RECEIVE = 64 };
 static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
 static const uint8_t request[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* HPS-167S #5 */
 
-static board_t board;
-
 static int start(void **state)
 {
-    remote_start(&board);
-    board_join_driver(&board, 'D', 3);
-    assert_true(remote_begin(&board, &at_19200, true, REMOTE_REQUEST));
+    remote_start();
+    board_join_driver('D', 3);
+    assert_true(remote_begin(&at_19200, true, REMOTE_REQUEST));
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static bool all_out(void *ctx) { return !board.usart.shifting && !board.driver_on && board.bytes_seen != 0; }
 
-static bool all_out(void *ctx)
-{
-    (void)ctx;
-    return !board.usart.shifting && !board.driver_on && board.bytes_seen != 0;
-}
-
-static void wait_until_out(void) { assert_true(board_run(&board, all_out, NULL, 1000000)); }
+static void wait_until_out(void) { assert_true(board_run(all_out, NULL, 1000000)); }
 
 static void assert_sent(const uint8_t *bytes, uint8_t length, uint32_t character_cycles)
 {
@@ -72,7 +59,7 @@ static void forget(void)
 TEST(a_request_leaves_without_a_gap_and_the_driver_is_on_around_it)
 {
     assert_false(board.driver_on);
-    assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
+    assert_int_equal(remote_write(request, sizeof request), sizeof request);
     wait_until_out();
     assert_sent(request, sizeof request, 11 * 52 * 16); /* start, 8, parity, stop; UBRR 51 */
     assert_driver_around(sizeof request);
@@ -92,10 +79,10 @@ TEST(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length)
     uint8_t bytes[REMOTE_REQUEST];
     for (uint8_t i = 0; i < REMOTE_REQUEST; i++) bytes[i] = (uint8_t)(0xF1 * i);
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
-        assert_int_equal(remote_set_line(&board, &rates[i].line), 1);
+        assert_int_equal(remote_set_line(&rates[i].line), 1);
         for (uint8_t length = 1; length <= REMOTE_REQUEST; length++) {
             forget();
-            assert_int_equal(remote_write(&board, bytes, length), length);
+            assert_int_equal(remote_write(bytes, length), length);
             wait_until_out();
             assert_sent(bytes, length, rates[i].character_cycles);
             assert_driver_around(length);
@@ -110,17 +97,16 @@ TEST(a_receive_interrupt_delays_the_driver_by_no_more_than_itself)
     const uint32_t length_cycles = 11 * 52 * 16;
     for (int phase = -80; phase <= 20; phase++) {
         forget();
-        remote_write(&board, request, 1);
+        remote_write(request, 1);
         assert_int_equal(board.bytes_seen, 1);
         const uint64_t end_cycle = board.bytes[0].end_cycle;
-        board_feed(&board, &noise, NULL, 1, (uint64_t)((int64_t)end_cycle + phase) - length_cycles,
-                   length_cycles);
+        board_feed(&noise, NULL, 1, (uint64_t)((int64_t)end_cycle + phase) - length_cycles, length_cycles);
         wait_until_out();
         assert_in_range(board.driver_edges[1].cycle, end_cycle,
                         end_cycle + MOST_AFTER_STOP_BIT + MOST_OF_RECEIVE);
         uint8_t byte = 0, flags;
-        board_run_us(&board, 20);
-        assert_int_equal(remote_read(&board, &byte, 1, &flags), 1);
+        board_run_us(20);
+        assert_int_equal(remote_read(&byte, 1, &flags), 1);
         assert_int_equal(byte, noise);
     }
 }
@@ -128,10 +114,10 @@ TEST(a_receive_interrupt_delays_the_driver_by_no_more_than_itself)
 /* With interrupts off for 5 ms at a time the bytes have pauses, and transmit complete comes before the last of them. */
 TEST(the_driver_stays_on_through_a_pause_that_other_interrupts_make)
 {
-    remote_write(&board, request, sizeof request);
-    remote_watch_clock(&board, true, 80);
+    remote_write(request, sizeof request);
+    remote_watch_clock(true, 80);
     wait_until_out();
-    remote_watch_clock(&board, false, 0);
+    remote_watch_clock(false, 0);
     assert_int_equal(board.bytes_seen, sizeof request);
     uint32_t pauses = 0;
     for (uint8_t i = 0; i < sizeof request; i++) {
@@ -142,15 +128,11 @@ TEST(the_driver_stays_on_through_a_pause_that_other_interrupts_make)
     assert_int_equal(board.driver_edges_seen, 2);
     assert_int_equal(board.cut_bytes, 0);
     assert_true(board.driver_edges[1].cycle >= board.bytes[sizeof request - 1].end_cycle);
-    board_run_us(&board, 10000);
-    assert_true(remote_sent(&board));
+    board_run_us(10000);
+    assert_true(remote_sent());
 }
 
-static bool first_has_begun(void *ctx)
-{
-    (void)ctx;
-    return board.bytes_seen != 0;
-}
+static bool first_has_begun(void *ctx) { return board.bytes_seen != 0; }
 
 /* The interrupt that gives the second byte is late by a character, so that the first one ends at any cycle of it: before
  * the byte is given transmit complete comes of that, and means nothing. */
@@ -159,13 +141,13 @@ TEST(a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_
     int pauses = 0;
     for (uint64_t before_cycles = 0; before_cycles < 240; before_cycles++) {
         forget();
-        volatile remote_t *const remote = remote_call(&board, REMOTE_WRITE);
+        volatile remote_t *const remote = remote_call(REMOTE_WRITE);
         remote->bytes[0] = 0x11;
         remote->bytes[1] = 0x22;
         remote->length = 2;
-        assert_true(board_run(&board, first_has_begun, NULL, 1000));
-        board_stall(&board, board.bytes[0].end_cycle - board.avr->cycle - before_cycles);
-        board_run_us(&board, 2000);
+        assert_true(board_run(first_has_begun, NULL, 1000));
+        board_stall(board.bytes[0].end_cycle - board.avr->cycle - before_cycles);
+        board_run_us(2000);
         assert_int_equal(board.bytes_seen, 2);
         assert_int_equal(board.cut_bytes, 0);
         assert_int_equal(board.driver_edges_seen, 2);
@@ -182,17 +164,16 @@ TEST(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall)
     for (uint64_t phase = 0; phase < 160; phase++) {
         const bool high = phase % 2 != 0;
         forget();
-        remote_write(&board, request, 1);
-        board_run_us(&board,
-                     (uint32_t)(board.bytes[0].end_cycle - board.avr->cycle - NEAR) / BOARD_CYCLES_PER_US);
+        remote_write(request, 1);
+        board_run_us((uint32_t)(board.bytes[0].end_cycle - board.avr->cycle - NEAR) / BOARD_CYCLES_PER_US);
         board.taken = board.recorded;
-        remote_call(&board, REMOTE_PIN)->flags = high;
-        while (board_next_record(&board, 1000)->kind != REMOTE_MARK) {
+        remote_call(REMOTE_PIN)->flags = high;
+        while (board_next_record(1000)->kind != REMOTE_MARK) {
         }
         const uint64_t left = board.bytes[0].end_cycle - board.avr->cycle;
         assert_in_range(left, 100, NEAR);
-        board_stall(&board, left + phase - 100);
-        board_run_us(&board, 100);
+        board_stall(left + phase - 100);
+        board_run_us(100);
         assert_int_equal(board.bytes_seen, 1);
         assert_false(board.driver_on);
         assert_int_equal(board.avr->data[PORTD_AT] & PD4, high ? PD4 : 0);
@@ -201,16 +182,16 @@ TEST(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall)
 
 TEST(sent_is_exact_to_the_stop_bit)
 {
-    assert_true(remote_sent(&board));
-    remote_write(&board, request, sizeof request);
+    assert_true(remote_sent());
+    remote_write(request, sizeof request);
     uint64_t last_false_cycle = 0, first_true_cycle = 0;
     while (first_true_cycle == 0) {
         const uint64_t begin_cycle = board.avr->cycle;
-        if (remote_sent(&board))
+        if (remote_sent())
             first_true_cycle = board.avr->cycle;
         else
             last_false_cycle = begin_cycle;
-        board_run(&board, NULL, NULL, 0);
+        board_run(NULL, NULL, 0);
     }
     assert_int_equal(board.bytes_seen, sizeof request);
     const uint64_t end_cycle = board.bytes[sizeof request - 1].end_cycle;
@@ -222,11 +203,11 @@ TEST(sent_is_exact_to_the_stop_bit)
 TEST(a_write_is_refused_while_bytes_leave_and_does_not_touch_them)
 {
     static const uint8_t other[] = {0xAA, 0xAA, 0xAA, 0xAA};
-    assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
+    assert_int_equal(remote_write(request, sizeof request), sizeof request);
     /* A call takes some hundred cycles: one that begins in the last bit may find it over. */
     while (board.bytes_seen < sizeof request ||
            board.avr->cycle + 2000 < board.bytes[sizeof request - 1].end_cycle)
-        assert_int_equal(remote_write(&board, other, sizeof other), 0);
+        assert_int_equal(remote_write(other, sizeof other), 0);
     wait_until_out();
     assert_sent(request, sizeof request, 11 * 52 * 16);
     assert_driver_around(sizeof request);
@@ -235,24 +216,24 @@ TEST(a_write_is_refused_while_bytes_leave_and_does_not_touch_them)
 TEST(a_write_of_nothing_or_more_than_its_memory_is_an_error_and_nothing_leaves)
 {
     const uint8_t bytes[REMOTE_REQUEST + 1] = {0};
-    assert_true(remote_write(&board, bytes, REMOTE_REQUEST + 1) < 0);
-    assert_true(remote_begin(&board, &at_19200, true, 8));
-    assert_true(remote_write(&board, bytes, 9) < 0);
-    assert_true(remote_write(&board, bytes, 0) < 0); /* which would be 256 of whatever is there */
-    board_run_us(&board, 10000);
+    assert_true(remote_write(bytes, REMOTE_REQUEST + 1) < 0);
+    assert_true(remote_begin(&at_19200, true, 8));
+    assert_true(remote_write(bytes, 9) < 0);
+    assert_true(remote_write(bytes, 0) < 0); /* which would be 256 of whatever is there */
+    board_run_us(10000);
     assert_int_equal(board.bytes_seen, 0);
     assert_int_equal(board.driver_edges_seen, 0);
-    assert_int_equal(remote_write(&board, request, 8), 8);
+    assert_int_equal(remote_write(request, 8), 8);
     wait_until_out();
     assert_sent(request, 8, 11 * 52 * 16);
 }
 
 TEST(without_a_driver_pin_none_is_driven)
 {
-    assert_true(remote_begin(&board, &at_19200, false, 8));
+    assert_true(remote_begin(&at_19200, false, 8));
     board.has_driver = false;
-    remote_write(&board, request, sizeof request);
-    board_run_us(&board, 20000);
+    remote_write(request, sizeof request);
+    board_run_us(20000);
     assert_sent(request, sizeof request, 11 * 52 * 16);
     assert_int_equal(board.driver_edges_seen, 0);
 }
@@ -261,10 +242,10 @@ TEST(begin_refuses_what_it_cannot_do)
 {
     static const fathom_line_settings_t too_fast = {230400, FATHOM_PARITY_EVEN, 1};
     const uint8_t ubrr = board.avr->data[0xC4];
-    assert_false(remote_begin(&board, &too_fast, true, 8));
-    assert_false(remote_begin(&board, &at_19200, true, 0));
+    assert_false(remote_begin(&too_fast, true, 8));
+    assert_false(remote_begin(&at_19200, true, 0));
     assert_int_equal(board.avr->data[0xC4], ubrr);
-    remote_write(&board, request, sizeof request);
+    remote_write(request, sizeof request);
     wait_until_out();
     assert_sent(request, sizeof request, 11 * 52 * 16);
 }
@@ -275,20 +256,20 @@ TEST(a_break_holds_txd_low_for_its_time_with_the_driver_on)
 {
     fathom_sim_line_t line;
     fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
-    board_join_line(&board, &line);
+    board_join_line(&line);
     assert_false(line.in_break);
-    assert_int_equal(remote_set_break(&board, true), 1);
+    assert_int_equal(remote_set_break(true), 1);
     assert_true(line.in_break);
     assert_true(board.driver_on);
-    board_run_us(&board, 5000);
+    board_run_us(5000);
     assert_true(line.in_break);
-    assert_int_equal(remote_write(&board, request, sizeof request), 0);
-    assert_int_equal(remote_set_break(&board, false), 1);
+    assert_int_equal(remote_write(request, sizeof request), 0);
+    assert_int_equal(remote_set_break(false), 1);
     assert_false(line.in_break);
     assert_false(board.driver_on);
     assert_int_equal(board.bytes_seen, 0);
     forget();
-    assert_int_equal(remote_write(&board, request, sizeof request), sizeof request);
+    assert_int_equal(remote_write(request, sizeof request), sizeof request);
     wait_until_out();
     assert_sent(request, sizeof request, 11 * 52 * 16);
     assert_driver_around(sizeof request);
@@ -298,10 +279,10 @@ TEST(a_break_waits_for_the_last_stop_bit)
 {
     fathom_sim_line_t line;
     fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
-    board_join_line(&board, &line);
-    remote_write(&board, request, sizeof request);
+    board_join_line(&line);
+    remote_write(request, sizeof request);
     int refused = 0;
-    while (remote_set_break(&board, true) == 0) {
+    while (remote_set_break(true) == 0) {
         assert_false(line.in_break);
         refused++;
     }
@@ -310,5 +291,5 @@ TEST(a_break_waits_for_the_last_stop_bit)
     assert_int_equal(board.cut_bytes, 0);
     assert_int_equal(board.bytes_seen, sizeof request);
     assert_true(board.avr->cycle > board.bytes[sizeof request - 1].end_cycle);
-    assert_int_equal(remote_set_break(&board, false), 1);
+    assert_int_equal(remote_set_break(false), 1);
 }

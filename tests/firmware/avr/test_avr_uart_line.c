@@ -11,23 +11,14 @@ enum { UCSR0A = 0xC0, UCSR0C = 0xC2, UBRR0L = 0xC4, UBRR0H = 0xC5, U2X = 0x02 };
 
 static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
 
-static board_t board;
-
 static int start(void **state)
 {
-    remote_start(&board);
-    assert_true(remote_begin(&board, &at_19200, false, 8));
+    remote_start();
+    assert_true(remote_begin(&at_19200, false, 8));
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 static uint16_t ubrr(void) { return (uint16_t)(board.avr->data[UBRR0L] | board.avr->data[UBRR0H] << 8); }
 
@@ -61,11 +52,11 @@ TEST(every_rate_has_the_divisor_that_the_arithmetic_says)
     };
     for (size_t i = 0; i < sizeof rates / sizeof rates[0]; i++) {
         const fathom_line_settings_t line = {rates[i].baud, FATHOM_PARITY_NONE, 1};
-        assert_int_equal(remote_set_line(&board, &line), 1);
+        assert_int_equal(remote_set_line(&line), 1);
         assert_int_equal(ubrr(), rates[i].ubrr);
         assert_int_equal(u2x(), rates[i].u2x);
         const uint64_t cycle = board.avr->cycle;
-        assert_int_equal(remote_set_line(&board, &line), 1); /* again: they hold */
+        assert_int_equal(remote_set_line(&line), 1); /* again: they hold */
         assert_true(board.avr->cycle > cycle);
         assert_int_equal(ubrr(), rates[i].ubrr);
     }
@@ -77,7 +68,7 @@ TEST(rates_beyond_two_and_a_half_percent_are_refused_and_change_nothing)
     static const uint32_t bauds[] = {230400, 300000, 3000000, UINT32_MAX, 100, 0};
     for (size_t i = 0; i < sizeof bauds / sizeof bauds[0]; i++) {
         const fathom_line_settings_t line = {bauds[i], FATHOM_PARITY_NONE, 2};
-        assert_true(remote_set_line(&board, &line) < 0);
+        assert_true(remote_set_line(&line) < 0);
         assert_int_equal(ubrr(), 51);
         assert_false(u2x());
         assert_int_equal(board.avr->data[UCSR0C], 0x26);
@@ -93,12 +84,12 @@ TEST(every_format_has_its_bits)
         const uint8_t parity = i < 6 ? i % 3 : i / 2 % 3;
         const uint8_t stop_bits = (i < 6 ? i / 3 : i % 2) + 1;
         const fathom_line_settings_t line = {9600, parity, stop_bits};
-        assert_int_equal(remote_set_line(&board, &line), 1);
+        assert_int_equal(remote_set_line(&line), 1);
         assert_int_equal(board.avr->data[UCSR0C], 0x06 | parities[parity] | (stop_bits == 2 ? 0x08 : 0));
     }
     static const fathom_line_settings_t wrong[] = {{9600, 3, 1}, {9600, 0, 0}, {9600, 0, 3}};
     for (size_t i = 0; i < 3; i++) {
-        assert_true(remote_set_line(&board, &wrong[i]) < 0);
+        assert_true(remote_set_line(&wrong[i]) < 0);
         assert_int_equal(board.avr->data[UCSR0C], 0x3E);
     }
 }
@@ -108,11 +99,11 @@ TEST(settings_wait_until_all_bytes_have_left)
     static const uint8_t request[] = {1, 2, 3};
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     const fathom_line_settings_t never = {230400, FATHOM_PARITY_NONE, 1};
-    remote_write(&board, request, sizeof request);
+    remote_write(request, sizeof request);
     int refused = 0;
     for (;;) {
         const uint64_t begin_cycle = board.avr->cycle;
-        const int done = remote_set_line(&board, &at_9600);
+        const int done = remote_set_line(&at_9600);
         if (done == 1) break;
         assert_int_equal(done, 0);
         assert_int_equal(ubrr(), 51);
@@ -124,9 +115,9 @@ TEST(settings_wait_until_all_bytes_have_left)
     assert_true(board.avr->cycle >= board.bytes[2].end_cycle);
     for (int i = 0; i < 3; i++)
         assert_int_equal(board.bytes[i].end_cycle - board.bytes[i].begin_cycle, 11 * 52 * 16);
-    remote_write(&board, request, 1);
-    assert_true(remote_set_line(&board, &never) < 0);
-    board_run_us(&board, 2000);
+    remote_write(request, 1);
+    assert_true(remote_set_line(&never) < 0);
+    board_run_us(2000);
     assert_int_equal(board.bytes[3].end_cycle - board.bytes[3].begin_cycle, 10 * 104 * 16);
 }
 
@@ -134,15 +125,15 @@ TEST(settings_that_hold_already_do_so_at_once_also_while_bytes_leave)
 {
     static const uint8_t request[] = {1, 2, 3};
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
-    assert_int_equal(remote_write(&board, request, sizeof request), 3);
-    assert_int_equal(remote_set_line(&board, &at_19200), 1);
-    assert_int_equal(remote_set_line(&board, &at_9600), 0);
-    board_run_us(&board, 3000);
+    assert_int_equal(remote_write(request, sizeof request), 3);
+    assert_int_equal(remote_set_line(&at_19200), 1);
+    assert_int_equal(remote_set_line(&at_9600), 0);
+    board_run_us(3000);
     assert_int_equal(board.bytes_seen, 3);
-    assert_int_equal(remote_set_line(&board, &at_9600), 1);
-    assert_int_equal(remote_write(&board, request, sizeof request), 3);
-    assert_int_equal(remote_set_line(&board, &at_9600), 1);
-    assert_int_equal(remote_set_line(&board, &at_19200), 0);
+    assert_int_equal(remote_set_line(&at_9600), 1);
+    assert_int_equal(remote_write(request, sizeof request), 3);
+    assert_int_equal(remote_set_line(&at_9600), 1);
+    assert_int_equal(remote_set_line(&at_19200), 0);
     assert_int_equal(ubrr(), 103);
 }
 
@@ -151,10 +142,10 @@ TEST(what_was_received_before_is_kept)
     static const uint8_t bytes[] = {5, 6, 7};
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     uint8_t got[8], flags;
-    board_feed(&board, bytes, NULL, 3, board.avr->cycle, 0);
-    board_run_us(&board, 3000);
-    assert_int_equal(remote_set_line(&board, &at_9600), 1);
-    assert_int_equal(remote_read(&board, got, 8, &flags), 3);
+    board_feed(bytes, NULL, 3, board.avr->cycle, 0);
+    board_run_us(3000);
+    assert_int_equal(remote_set_line(&at_9600), 1);
+    assert_int_equal(remote_read(got, 8, &flags), 3);
     assert_int_equal(flags, 0);
     assert_memory_equal(got, bytes, 3);
 }

@@ -18,25 +18,17 @@ enum {
     CHARACTER_115200 = 10 * 16000000 / 115200
 }; /* what a far end at the nominal rate takes: 1388 cycles */
 
-static board_t board;
 static uint8_t pattern[1024];
 
 static int start(void **state)
 {
     for (size_t i = 0; i < sizeof pattern; i++) pattern[i] = (uint8_t)(i * 7 + i / 256);
-    remote_start(&board);
-    assert_true(remote_begin(&board, &at_115200, false, 8));
+    remote_start();
+    assert_true(remote_begin(&at_115200, false, 8));
     return 0;
 }
 
-static int stop(void **state)
-{
-    assert_false(board.crashed);
-    board_end(&board);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = start, .tear_down = stop};
+static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 typedef struct {
     uint16_t parity, framing, overruns;
@@ -45,7 +37,7 @@ typedef struct {
 static counters_t counters(void)
 {
     counters_t read;
-    memcpy(&read, board_data(&board, "fathom_avr_usart0_counters"), sizeof read); /* as avr-gcc lays it out */
+    memcpy(&read, board_data("fathom_avr_usart0_counters"), sizeof read); /* as avr-gcc lays it out */
     return read;
 }
 
@@ -63,7 +55,7 @@ static uint16_t read_all(uint8_t *bytes, uint8_t capacity)
     uint16_t count = 0;
     for (;;) {
         uint8_t flags;
-        const int more = remote_read(&board, bytes + count, capacity, &flags);
+        const int more = remote_read(bytes + count, capacity, &flags);
         assert_true(more >= 0);
         assert_int_equal(flags, 0);
         if (more == 0) return count;
@@ -74,8 +66,8 @@ static uint16_t read_all(uint8_t *bytes, uint8_t capacity)
 TEST(a_frame_of_32_bytes_at_115200_comes_whole_with_no_gap_between_bytes)
 {
     uint8_t bytes[64];
-    board_feed(&board, pattern, NULL, 32, board.avr->cycle, CHARACTER_115200);
-    board_run_us(&board, 3000);
+    board_feed(pattern, NULL, 32, board.avr->cycle, CHARACTER_115200);
+    board_run_us(3000);
     assert_int_equal(read_all(bytes, 64), 32);
     assert_memory_equal(bytes, pattern, 32);
     assert_counters(0, 0, 0);
@@ -86,11 +78,11 @@ TEST(a_thousand_bytes_come_whole_while_they_are_read_in_pieces_of_any_size)
     static uint8_t bytes[1024 + 64];
     for (uint8_t capacity = 1; capacity <= 64; capacity = (uint8_t)(capacity * 2 + 1)) {
         uint16_t count = 0;
-        board_feed(&board, pattern, NULL, sizeof pattern, board.avr->cycle, CHARACTER_115200);
+        board_feed(pattern, NULL, sizeof pattern, board.avr->cycle, CHARACTER_115200);
         while (count < sizeof pattern) {
             const uint64_t cycle = board.avr->cycle;
             uint8_t flags;
-            const int more = remote_read(&board, bytes + count, capacity, &flags);
+            const int more = remote_read(bytes + count, capacity, &flags);
             assert_true(more >= 0);
             assert_int_equal(flags, 0);
             count = (uint16_t)(count + more);
@@ -112,26 +104,26 @@ TEST(a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is)
     for (uint16_t phase = 0; phase < 240; phase++) {
         while ((uint8_t)(sent + 1) != 0) { /* 255 more, read as they come */
             const uint8_t burst = (uint8_t)((uint8_t)~sent > 60 ? 60 : (uint8_t)~sent);
-            board_feed(&board, pattern, NULL, burst, board.avr->cycle, 150);
-            board_run_us(&board, 600);
+            board_feed(pattern, NULL, burst, board.avr->cycle, 150);
+            board_run_us(600);
             assert_int_equal(read_all(bytes, 64), burst);
             sent = (uint16_t)(sent + burst);
         }
         static const uint8_t last = 0xA5;
         uint8_t flags;
         board.taken = board.recorded;
-        remote_call(&board, REMOTE_READ)->length = 64;
-        while (board_next_record(&board, 1000)->kind != REMOTE_MARK) {
+        remote_call(REMOTE_READ)->length = 64;
+        while (board_next_record(1000)->kind != REMOTE_MARK) {
         }
-        board_feed(&board, &last, NULL, 1, board.avr->cycle + phase - 150, 150);
-        board_run_us(&board, 200);
+        board_feed(&last, NULL, 1, board.avr->cycle + phase - 150, 150);
+        board_run_us(200);
         sent++;
-        const volatile remote_t *const remote = remote_call(&board, 0);
+        const volatile remote_t *const remote = remote_call(0);
         const int count = remote->result;
         assert_in_range(count, 0, 1);
         seen[count]++;
         if (count == 1) assert_int_equal(remote->bytes[0], last);
-        const int more = remote_read(&board, bytes, 64, &flags);
+        const int more = remote_read(bytes, 64, &flags);
         assert_int_equal(count + more, 1);
         if (more == 1) assert_int_equal(bytes[0], last);
     }
@@ -157,12 +149,12 @@ TEST(errors_are_told_of_their_byte_and_counted)
         {1, 7, 0},
         {0, 0, 0},
     };
-    assert_true(remote_begin(&board, &at_19200, false, 8));
-    board_feed(&board, bytes, marks, sizeof bytes, board.avr->cycle, 0);
-    board_run_us(&board, 10000);
+    assert_true(remote_begin(&at_19200, false, 8));
+    board_feed(bytes, marks, sizeof bytes, board.avr->cycle, 0);
+    board_run_us(10000);
     for (size_t i = 0; i < sizeof reads / sizeof reads[0]; i++) {
         uint8_t got[64] = {0}, flags;
-        assert_int_equal(remote_read(&board, got, 64, &flags), reads[i].count);
+        assert_int_equal(remote_read(got, 64, &flags), reads[i].count);
         assert_int_equal(flags, reads[i].flags);
         for (uint8_t at = 0; at < reads[i].count; at++) assert_int_equal(got[at], reads[i].first + at);
     }
@@ -173,8 +165,8 @@ TEST(without_parity_no_byte_has_a_wrong_one)
 {
     static const uint8_t byte = 9, mark = FATHOM_RX_PARITY;
     uint8_t bytes[4];
-    board_feed(&board, &byte, &mark, 1, board.avr->cycle, 0);
-    board_run_us(&board, 1000);
+    board_feed(&byte, &mark, 1, board.avr->cycle, 0);
+    board_run_us(1000);
     assert_int_equal(read_all(bytes, 4), 1);
     assert_counters(0, 0, 0);
 }
@@ -185,13 +177,13 @@ TEST(counters_stop_at_their_end)
     static const uint8_t bytes[3] = {1, 2, 3};
     static const uint8_t marks[3] = {28, 28, 28};
     assert_int_equal(28, FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN);
-    assert_true(remote_begin(&board, &at_19200, false, 8));
-    memcpy(board_data(&board, "fathom_avr_usart0_counters"), &nearly, sizeof nearly);
-    board_feed(&board, bytes, marks, 3, board.avr->cycle, 0);
-    board_run_us(&board, 5000);
+    assert_true(remote_begin(&at_19200, false, 8));
+    memcpy(board_data("fathom_avr_usart0_counters"), &nearly, sizeof nearly);
+    board_feed(bytes, marks, 3, board.avr->cycle, 0);
+    board_run_us(5000);
     for (int i = 0; i < 3; i++) {
         uint8_t byte, flags;
-        assert_int_equal(remote_read(&board, &byte, 1, &flags), 1);
+        assert_int_equal(remote_read(&byte, 1, &flags), 1);
         assert_int_equal(flags, 28);
     }
     assert_counters(65535, 65535, 65535);
@@ -201,13 +193,13 @@ TEST(a_full_ring_keeps_what_it_has_and_the_next_byte_tells_of_the_loss)
 {
     for (int round = 0; round < 3; round++) { /* wherever the ring begins */
         uint8_t bytes[128], flags;
-        board_feed(&board, pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
-        board_run_us(&board, 20000); /* the main loop is away */
+        board_feed(pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
+        board_run_us(20000); /* the main loop is away */
         assert_int_equal(read_all(bytes, 40), RING);
         assert_memory_equal(bytes, pattern, RING);
-        board_feed(&board, pattern + 200, NULL, 3, board.avr->cycle, CHARACTER_115200);
-        board_run_us(&board, 1000);
-        assert_int_equal(remote_read(&board, bytes, 64, &flags), 1);
+        board_feed(pattern + 200, NULL, 3, board.avr->cycle, CHARACTER_115200);
+        board_run_us(1000);
+        assert_int_equal(remote_read(bytes, 64, &flags), 1);
         assert_int_equal(flags, FATHOM_RX_OVERRUN);
         assert_int_equal(bytes[0], pattern[200]);
         assert_int_equal(read_all(bytes, 64), 2);
@@ -220,8 +212,8 @@ TEST(a_ring_that_is_just_full_has_lost_nothing)
 {
     uint8_t bytes[64];
     for (int round = 0; round < 3; round++) {
-        board_feed(&board, pattern, NULL, RING, board.avr->cycle, CHARACTER_115200);
-        board_run_us(&board, 20000);
+        board_feed(pattern, NULL, RING, board.avr->cycle, CHARACTER_115200);
+        board_run_us(20000);
         assert_int_equal(read_all(bytes, 64), RING);
         assert_memory_equal(bytes, pattern, RING);
     }
@@ -233,21 +225,21 @@ TEST(bytes_that_the_interrupt_comes_too_late_for_are_told_of)
 {
     uint8_t bytes[64], flags;
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
-    assert_true(remote_begin(&board, &at_9600, false, 8));
+    assert_true(remote_begin(&at_9600, false, 8));
     board.taken = board.recorded;
-    remote_watch_clock(&board, true, 255);
-    while (board_next_record(&board, 100000)->kind != REMOTE_CLOCK) {
+    remote_watch_clock(true, 255);
+    while (board_next_record(100000)->kind != REMOTE_CLOCK) {
     }
-    board_run_us(&board, 100);
-    board_feed(&board, pattern, NULL, 10, board.avr->cycle, 0);
-    board_run_us(&board, 12000); /* the bytes took 10.4 */
-    remote_watch_clock(&board, false, 0);
-    board_run_us(&board, 20000);
+    board_run_us(100);
+    board_feed(pattern, NULL, 10, board.avr->cycle, 0);
+    board_run_us(12000); /* the bytes took 10.4 */
+    remote_watch_clock(false, 0);
+    board_run_us(20000);
     assert_int_equal(board.usart.overruns, 7);
-    assert_int_equal(remote_read(&board, bytes, 64, &flags), 2);
+    assert_int_equal(remote_read(bytes, 64, &flags), 2);
     assert_int_equal(flags, 0);
     assert_memory_equal(bytes, pattern, 2);
-    assert_int_equal(remote_read(&board, bytes, 64, &flags), 1);
+    assert_int_equal(remote_read(bytes, 64, &flags), 1);
     assert_int_equal(flags, FATHOM_RX_OVERRUN);
     assert_int_equal(bytes[0], pattern[9]);
     assert_counters(0, 0, 1);
@@ -256,14 +248,12 @@ TEST(bytes_that_the_interrupt_comes_too_late_for_are_told_of)
 /* The bound; 4 more of entry. Here with a full ring too, in which the interrupt has to remember the loss. */
 TEST(the_receive_interrupt_takes_at_most_60_cycles)
 {
-    profile_t profile;
-    profile_begin(&profile, &board);
-    board_feed(&board, pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
-    board_run_us(&board, 20000);
+    profile_begin();
+    board_feed(pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
+    board_run_us(20000);
     assert_int_equal(profile.interrupts[PROFILE_USART_RECEIVE].calls, 100);
     assert_true(profile.interrupts[PROFILE_USART_RECEIVE].longest_cycles <= 60);
     print_message("receive interrupt: %u to %u cycles\n",
                   (unsigned)profile.interrupts[PROFILE_USART_RECEIVE].shortest_cycles,
                   (unsigned)profile.interrupts[PROFILE_USART_RECEIVE].longest_cycles);
-    profile_end(&profile);
 }

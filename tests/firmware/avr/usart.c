@@ -37,7 +37,6 @@ void usart_refresh(usart_t *usart)
 
 static void on_return(avr_irq_t *irq, uint32_t running, void *param)
 {
-    (void)irq;
     if (running == 0) usart_refresh((usart_t *)param);
 }
 
@@ -63,7 +62,7 @@ static void shift_out(usart_t *usart, uint8_t byte, uint64_t at_cycle)
     usart->shift = byte;
     usart->begin_cycle = at_cycle;
     usart->end_cycle = at_cycle + usart_character_cycles(usart);
-    usart->byte_begins(usart->ctx, byte, usart->begin_cycle, usart->end_cycle);
+    usart->byte_begins(byte, usart->begin_cycle, usart->end_cycle);
 }
 
 static avr_cycle_count_t shifted_out(avr_t *avr, avr_cycle_count_t when, void *param)
@@ -78,14 +77,13 @@ static avr_cycle_count_t shifted_out(avr_t *avr, avr_cycle_count_t when, void *p
     }
     avr->data[UCSR0A] |= TXC;
     avr_raise_interrupt(avr, &usart->simavr->txc);
-    usart->configured(usart->ctx);
+    usart->configured();
     return 0;
 }
 
 static void write_data(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     usart_t *const usart = (usart_t *)param;
-    (void)address;
     /* 20.6: nothing is taken by a transmitter that is off or whose buffer is full. */
     if (!is_set(usart, UCSR0B, TXEN) || usart->buffered) return;
     if (usart->shifting) {
@@ -121,7 +119,6 @@ void usart_arrive(usart_t *usart, uint8_t byte, uint8_t flags)
 static uint8_t read_data(avr_t *avr, avr_io_addr_t address, void *param)
 {
     usart_t *const usart = (usart_t *)param;
-    (void)address;
     const uint8_t byte = usart->frames[0].byte; /* the last one again where none waits */
     if (usart->waiting > 1)
         memmove(usart->frames, usart->frames + 1, (usart->waiting - 1U) * sizeof usart->frames[0]);
@@ -142,7 +139,7 @@ static void write_state(avr_t *avr, avr_io_addr_t address, uint8_t value, void *
     }
     avr->data[address] = (uint8_t)((avr->data[address] & ~(U2X | MPCM)) | (value & (U2X | MPCM)));
     usart_refresh(usart);
-    usart->configured(usart->ctx);
+    usart->configured();
 }
 
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
@@ -152,14 +149,14 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
     if ((value & RXEN) == 0) usart->waiting = 0; /* 20.7.5: flushed */
     if ((value & TXCIE) != 0 && is_set(usart, UCSR0A, TXC)) avr_raise_interrupt(avr, &usart->simavr->txc);
     usart_refresh(usart);
-    usart->configured(usart->ctx);
+    usart->configured();
 }
 
 static void write_format(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     usart_t *const usart = (usart_t *)param;
     avr->data[address] = value;
-    usart->configured(usart->ctx);
+    usart->configured();
 }
 
 fathom_line_settings_t usart_settings(const usart_t *usart)

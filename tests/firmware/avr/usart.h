@@ -28,9 +28,8 @@ enum { USART_BUFFER = 3 }; /* two in the receive buffer, one in the shift regist
 
 typedef struct {
     /* What the owner wants to know; set after usart_begin. Called in simulated time. */
-    void (*byte_begins)(void *ctx, uint8_t byte, uint64_t begin_cycle, uint64_t end_cycle);
-    void (*configured)(void *ctx); /* rate, parity, stop bits, or who has the pins */
-    void *ctx;
+    void (*byte_begins)(uint8_t byte, uint64_t begin_cycle, uint64_t end_cycle);
+    void (*configured)(void); /* rate, parity, stop bits, or who has the pins */
 
     avr_t *avr;
     avr_uart_t *simavr; /* for its interrupts */

@@ -17,26 +17,21 @@
  */
 enum { GPIOR0 = 0x3E, READINGS = 200 };
 
-static board_t board;
-static profile_t profile;
 static fathom_sim_line_t line;
 static fathom_sim_fixed_t scene = {{1000, 1000, 1000, 1000}};
-
-static void give_up(const char *what)
-{
-    fprintf(stderr, "%s\n", what);
-    exit(EXIT_FAILURE);
-}
+static fathom_sim_hps167s_t hps;
+static fathom_sim_a05_t a05;
 
 static void figure(const char *name, double value, const char *unit)
 {
     printf(strcmp(unit, "%") == 0 ? "figure avr_%s %.2f %s\n" : "figure avr_%s %.0f %s\n", name, value, unit);
 }
 
-/* `option`: what the image finds in GPIOR0. */
+/* `option`: what the image finds in GPIOR0. The HPS-167S is a new one. */
 static void start(const char *image, uint8_t option)
 {
-    if (!board_start(&board, image)) give_up(image);
+    board_start(image);
+    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
     board.avr->data[GPIOR0] = option;
 }
 
@@ -46,16 +41,16 @@ static void join(fathom_sim_device_t *device, const fathom_line_settings_t *sett
     fathom_sim_line_init(&line, settings, board.clock.now_us);
     fathom_sim_attach(&line, device, board.clock.now_us);
     device->settings = *settings; /* also one that it cannot be set to */
-    board_join_line(&board, &line);
-    board_join_driver(&board, 'D', 3);
+    board_join_line(&line);
+    board_join_driver('D', 3);
 }
 
 /* So many records of kind 1, and none of any other. */
 static void run_readings(int count)
 {
     while (count-- != 0) {
-        const board_record_t *const record = board_next_record(&board, 1000000);
-        if (record == NULL || record->kind != 1) give_up("a reading failed");
+        const board_record_t *const record = board_next_record(1000000);
+        if (record == NULL || record->kind != 1) board_give_up("a reading failed");
     }
 }
 
@@ -86,39 +81,36 @@ static void measure_pulses(void)
 {
     enum { US = BOARD_CYCLES_PER_US, PERIOD = 65536 * 8 };
     start("pulses", 0);
-    profile_begin(&profile, &board);
-    board_run_us(&board, 1000);
+    profile_begin();
+    board_run_us(1000);
     for (uint64_t i = 1; i < 200; i++) {
         const uint64_t from = board.avr->cycle / PERIOD * PERIOD + 2 * PERIOD + 1000 + 10 * i;
         const uint64_t width = i % 2 != 0 ? 3000 * US : i * US / 2;
-        for (int pin = 0; pin < 2; pin++) {
-            board_drive_at(&board, pin == 0 ? 'B' : 'D', pin == 0 ? 0 : 2, true, from);
-            board_drive_at(&board, pin == 0 ? 'B' : 'D', pin == 0 ? 0 : 2, false, from + width);
+        for (int high = 1; high >= 0; high--) {
+            board_drive_at('B', 0, high != 0, high != 0 ? from : from + width);
+            board_drive_at('D', 2, high != 0, high != 0 ? from : from + width);
         }
-        board_run_us(&board, 80000);
+        board_run_us(80000);
         usart_arrive(&board.usart, 0x55, 0);
     }
     note_interrupts();
-    board_end(&board);
 }
 
 /* ---- polling an HPS-167S at its pace ---- */
 
 static void measure_share(bool is_fast, bool gathers)
 {
-    static fathom_sim_hps167s_t hps;
     const fathom_line_settings_t settings = {is_fast ? 115200 : 9600, FATHOM_PARITY_EVEN, 1};
     start("measure_hps167s", (uint8_t)((is_fast ? 1 : 0) | (gathers ? 2 : 0)));
-    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
     join(&hps.device, &settings);
     run_readings(2);
-    profile_begin(&profile, &board);
-    const profile_cost_t *const poll = profile_function(&profile, "fathom_line_poll");
+    profile_begin();
+    const profile_cost_t *const poll = profile_function("fathom_line_poll");
     const uint64_t begin_cycle = board.avr->cycle;
     run_readings(READINGS);
     const double cycles = (double)(board.avr->cycle - begin_cycle);
-    const double awake = (double)profile_awake_cycles(&profile);
-    if (awake + (double)profile.asleep_cycles != cycles) give_up("cycles were lost");
+    const double awake = (double)profile_awake_cycles();
+    if (awake + (double)profile.asleep_cycles != cycles) board_give_up("cycles were lost");
     char name[32];
     snprintf(name, sizeof name, "share%s_%lu", gathers ? "_gathering" : "", (unsigned long)settings.baud);
     figure(name, 100 * awake / cycles, "%");
@@ -129,7 +121,6 @@ static void measure_share(bool is_fast, bool gathers)
         figure("poll_longest", poll->longest_cycles, "cycles");
     }
     note_interrupts();
-    board_end(&board);
 }
 
 /* ---- bus time ---- */
@@ -163,19 +154,19 @@ static bus_t bus_time(const fathom_line_settings_t *settings, uint8_t answer)
     bus_t worst = {-1000, -100};
     fathom_line_settings_t chip = *settings;
     chip.baud = usart_settings(&board.usart).baud;
-    if (board.bytes_seen > BOARD_BYTES) give_up("more bytes on the wire than are kept");
+    if (board.bytes_seen > BOARD_BYTES) board_give_up("more bytes on the wire than are kept");
     /* The first request finds a measurement that has waited for it: the pace begins with the third. */
     for (uint32_t n = 2 * per_exchange; n + per_exchange < board.bytes_seen; n += per_exchange) {
         const board_byte_t *const b = &board.bytes[n];
         if (!b[0].from_here || !b[REQUEST - 1].from_here || b[REQUEST].from_here ||
             b[per_exchange - 1].from_here || !b[per_exchange].from_here)
-            give_up("the bytes on the wire are not as expected");
+            board_give_up("the bytes on the wire are not as expected");
         const double device = (double)(b[REQUEST].begin_cycle - b[REQUEST - 1].end_cycle) / us;
         const double answered = (double)(b[per_exchange - 1].end_cycle - b[REQUEST].begin_cycle) / us;
         const double silent = (double)(b[per_exchange].begin_cycle - b[per_exchange - 1].end_cycle) / us;
         const double allowed = REQUEST * character_us(&chip) + device + answered + silence_us(settings);
         const double over = (double)(b[per_exchange].begin_cycle - b[0].begin_cycle) / us - allowed;
-        if (silent < silence_us(settings)) give_up("t3.5 was not kept");
+        if (silent < silence_us(settings)) board_give_up("t3.5 was not kept");
         if (over > worst.over_us) worst.over_us = over;
         if (100 * over / allowed > worst.over_percent) worst.over_percent = 100 * over / allowed;
     }
@@ -187,27 +178,19 @@ static bus_t bus_time(const fathom_line_settings_t *settings, uint8_t answer)
 static bus_t measure_bus(uint8_t rate, bool is_a05)
 {
     static const uint32_t rates[] = {9600, 19200, 57600, 115200};
-    static fathom_sim_hps167s_t hps;
-    static fathom_sim_a05_t a05;
     const fathom_line_settings_t settings = {rates[rate], is_a05 ? FATHOM_PARITY_NONE : FATHOM_PARITY_EVEN,
                                              1};
     start("measure_client", (uint8_t)(rate | (is_a05 ? 4 : 0)));
-    if (is_a05) {
-        fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_MODBUS,
-                                                             .scene = fathom_sim_fixed(&scene)});
-        join(&a05.device, &settings);
-    } else {
-        fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
-        join(&hps.device, &settings);
-    }
-    profile_begin(&profile, &board);
+    fathom_sim_a05_init(
+        &a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_MODBUS, .scene = fathom_sim_fixed(&scene)});
+    join(is_a05 ? &a05.device : &hps.device, &settings);
+    profile_begin();
     run_readings(60);
     const bus_t bus = bus_time(&settings, is_a05 ? 7 : 13);
     char name[32];
     snprintf(name, sizeof name, "bus_%s_%lu", is_a05 ? "a05" : "hps167s", (unsigned long)rates[rate]);
     figure(name, bus.over_percent, "%");
     note_interrupts();
-    board_end(&board);
     return bus;
 }
 
@@ -226,15 +209,14 @@ static void measure_all_buses(void)
 static double crc_cycles(const char *function, uint8_t length)
 {
     start("crcs", 0);
-    profile_begin(&profile, &board);
-    const profile_cost_t *const cost = profile_function(&profile, function);
-    board_run_us(&board, 1000); /* its memory has been cleared */
-    crcs_t *const asked = (crcs_t *)(void *)board_data(&board, "asked");
+    profile_begin();
+    const profile_cost_t *const cost = profile_function(function);
+    board_run_us(1000); /* its memory has been cleared */
+    crcs_t *const asked = (crcs_t *)(void *)board_data("asked");
     asked->length = length;
     asked->go = 1;
-    if (board_next_record(&board, 100000) == NULL) give_up("no CRC");
+    if (board_next_record(100000) == NULL) board_give_up("no CRC");
     const double cycles = cost->longest_cycles;
-    board_end(&board);
     return cycles;
 }
 
@@ -248,53 +230,37 @@ static void measure_crcs(void)
 
 /* ---- stack ---- */
 
-static void show_stack(const char *image)
+/* With a device on the line, a driver-enable pin at PD2, or the device's pins; for so long. */
+static void measure_stack(const char *image, fathom_sim_device_t *device, bool driver, bool by_pins,
+                          uint32_t us)
 {
+    static fathom_sim_pins_t pins;
     char name[32];
+    start(image, 0);
+    profile_begin();
+    board_attach(&line, device, !driver && !by_pins);
+    if (by_pins) {
+        fathom_sim_pins_init(&pins, device, &line, &board.clock);
+        board_join_pins(&pins, "B1", "B0", NULL);
+    } else {
+        board_join_line(&line);
+    }
+    if (driver) board_join_driver('D', 2);
+    board_run_us(us);
     snprintf(name, sizeof name, "stack_%s", image);
-    figure(name, profile_deepest_stack(&profile), "B");
-    board_end(&board);
+    figure(name, profile_deepest_stack(), "B");
 }
 
 static void measure_stacks(void)
 {
-    static fathom_sim_hps167s_t hps;
-    const fathom_line_settings_t rs485 = {19200, FATHOM_PARITY_EVEN, 1};
-    start("hps167s_rs485", 0);
-    profile_begin(&profile, &board);
-    fathom_sim_hps167s_init(&hps, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
-    fathom_sim_line_init(&line, &rs485, board.clock.now_us);
-    fathom_sim_attach(&line, &hps.device, board.clock.now_us);
-    board_join_line(&board, &line);
-    board_join_driver(&board, 'D', 2);
-    board_run_us(&board, 2000000);
-    show_stack("hps167s_rs485");
-
     static fathom_sim_a16_t a16;
-    static fathom_sim_pins_t pins;
-    const fathom_line_settings_t ttl = {9600, FATHOM_PARITY_NONE, 1};
-    start("a16_pulse", 0);
-    profile_begin(&profile, &board);
+    measure_stack("hps167s_rs485", &hps.device, true, false, 2000000);
     fathom_sim_a16_init(
         &a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_PWM, .scene = fathom_sim_fixed(&scene)});
-    fathom_sim_line_init(&line, &ttl, board.clock.now_us);
-    fathom_sim_attach(&line, &a16.device, board.clock.now_us);
-    fathom_sim_pins_init(&pins, &a16.device, &line, &board.clock);
-    board_join_pins(&board, &pins, "B1", "B0", NULL);
-    board_run_us(&board, 3000000);
-    show_stack("a16_pulse");
-
-    static fathom_sim_a05_t a05;
-    start("a16_a05_auto", 0);
-    profile_begin(&profile, &board);
+    measure_stack("a16_pulse", &a16.device, false, true, 3000000);
     fathom_sim_a05_init(
         &a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&scene)});
-    fathom_sim_line_init(&line, &ttl, board.clock.now_us);
-    line.full_duplex = true;
-    fathom_sim_attach(&line, &a05.device, board.clock.now_us);
-    board_join_line(&board, &line);
-    board_run_us(&board, 9000000);
-    show_stack("a16_a05_auto");
+    measure_stack("a16_a05_auto", &a05.device, false, false, 9000000);
 }
 
 int main(void)
