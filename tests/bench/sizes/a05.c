@@ -1,20 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "programs.h"
 
-static fathom_a05_auto_t a05_auto;
-static fathom_a05_modbus_t a05_modbus;
-static fathom_a05_dyp_t a05_dyp;
 static fathom_a05_dyp_find_t a05_dyp_find;
-static fathom_a05_relay_t a05_relay;
 static fathom_a05_relay_rule_t a05_relay_rule;
 
-fathom_sensor_t a05_auto_begin(void)
-{
-    static const fathom_a05_auto_config_t config = {.line = &line, .select = &pin};
-    line_begin();
-    fathom_a05_auto_init(&a05_auto, &config);
-    return fathom_a05_auto_sensor(&a05_auto);
-}
+DRIVER(a05_auto, line_begin(), .line = &line, .select = &pin)
 
 void a05_auto_use(const fathom_sample_t *sample)
 {
@@ -22,13 +12,7 @@ void a05_auto_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_auto_power_on(&a05_auto, (fathom_a05_value_t)argument);
 }
 
-fathom_sensor_t a05_modbus_begin(void)
-{
-    static const fathom_a05_modbus_config_t config = {.modbus = &modbus, .clock = &clock};
-    modbus_begin();
-    fathom_a05_modbus_init(&a05_modbus, &config);
-    return fathom_a05_modbus_sensor(&a05_modbus);
-}
+DRIVER(a05_modbus, modbus_begin(), .modbus = &modbus, .clock = &clock)
 
 void a05_modbus_use(const fathom_sample_t *sample)
 {
@@ -39,13 +23,7 @@ void a05_modbus_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_modbus_set_address(&a05_modbus, (uint8_t)argument);
 }
 
-fathom_sensor_t a05_dyp_begin(void)
-{
-    static const fathom_a05_dyp_config_t config = {.line = &line};
-    line_begin();
-    fathom_a05_dyp_init(&a05_dyp, &config);
-    return fathom_a05_dyp_sensor(&a05_dyp);
-}
+DRIVER(a05_dyp, line_begin(), .line = &line)
 
 void a05_dyp_use(const fathom_sample_t *sample)
 {
@@ -56,14 +34,8 @@ void a05_dyp_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_dyp_find(&a05_dyp_find, &line, &address);
 }
 
-fathom_sensor_t a05_relay_begin(void)
-{
-    static const fathom_a05_relay_config_t config = {.pin = &pin, .clock = &clock};
-    fathom_a05_relay_init(&a05_relay, &config);
-    return fathom_a05_relay_sensor(&a05_relay);
-}
-
-void a05_relay_use(const fathom_sample_t *sample) { outcome = sample->kind; }
+DRIVER(a05_relay, (void)0, .pin = &pin, .clock = &clock)
+ONLY(a05_relay, kind)
 
 /* The rule is fed with the samples of any driver; here with those of the least one that there can be. */
 static fathom_status_t stub_poll(void *ctx, fathom_sample_t *sample)

@@ -1,22 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "programs.h"
 
-static fathom_a16_auto_t a16_auto;
-static fathom_a16_controlled_t a16_controlled;
-static fathom_a16_modbus_t a16_modbus;
-static fathom_a16_pwm_t a16_pwm;
 static fathom_a16_rs232_t a16_rs232;
-static fathom_a16_switch_t a16_switch;
 static fathom_edges_t edges;
 static fathom_capture_t edges_capture;
 
-fathom_sensor_t a16_auto_begin(void)
-{
-    static const fathom_a16_auto_config_t config = {.line = &line, .select = &pin};
-    line_begin();
-    fathom_a16_auto_init(&a16_auto, &config);
-    return fathom_a16_auto_sensor(&a16_auto);
-}
+DRIVER(a16_auto, line_begin(), .line = &line, .select = &pin)
 
 void a16_auto_use(const fathom_sample_t *sample)
 {
@@ -24,23 +13,10 @@ void a16_auto_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a16_auto_select(&a16_auto, argument != 0);
 }
 
-fathom_sensor_t a16_controlled_begin(void)
-{
-    static const fathom_a16_controlled_config_t config = {.line = &line, .trigger = &pin};
-    line_begin();
-    fathom_a16_controlled_init(&a16_controlled, &config);
-    return fathom_a16_controlled_sensor(&a16_controlled);
-}
+DRIVER(a16_controlled, line_begin(), .line = &line, .trigger = &pin)
+ONLY(a16_controlled, distance_mm)
 
-void a16_controlled_use(const fathom_sample_t *sample) { outcome = sample->distance_mm; }
-
-fathom_sensor_t a16_modbus_begin(void)
-{
-    static const fathom_a16_modbus_config_t config = {.modbus = &modbus, .clock = &clock};
-    modbus_begin();
-    fathom_a16_modbus_init(&a16_modbus, &config);
-    return fathom_a16_modbus_sensor(&a16_modbus);
-}
+DRIVER(a16_modbus, modbus_begin(), .modbus = &modbus, .clock = &clock)
 
 void a16_modbus_use(const fathom_sample_t *sample)
 {
@@ -71,14 +47,8 @@ void a16_settings_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a16_set_automatic_value(&a16_modbus, (fathom_a16_value_t)argument);
 }
 
-fathom_sensor_t a16_pwm_begin(void)
-{
-    static const fathom_a16_pwm_config_t config = {.clock = &clock, .capture = &capture, .trigger = &pin};
-    fathom_a16_pwm_init(&a16_pwm, &config);
-    return fathom_a16_pwm_sensor(&a16_pwm);
-}
-
-void a16_pwm_use(const fathom_sample_t *sample) { outcome = sample->distance_mm; }
+DRIVER(a16_pwm, (void)0, .clock = &clock, .capture = &capture, .trigger = &pin)
+ONLY(a16_pwm, distance_mm)
 
 fathom_sensor_t a16_pwm_edges_begin(void)
 {
@@ -114,14 +84,8 @@ void a16_rs232_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a16_rs232_due_us(&a16_rs232);
 }
 
-fathom_sensor_t a16_switch_begin(void)
-{
-    static const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock};
-    fathom_a16_switch_init(&a16_switch, &config);
-    return fathom_a16_switch_sensor(&a16_switch);
-}
-
-void a16_switch_use(const fathom_sample_t *sample) { outcome = sample->kind; }
+DRIVER(a16_switch, (void)0, .pin = &pin, .clock = &clock)
+ONLY(a16_switch, kind)
 
 fathom_sensor_t a16_switch_set_begin(void)
 {

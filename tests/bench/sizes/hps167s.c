@@ -1,17 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "programs.h"
 
-static fathom_hps167s_t hps167s;
-static fathom_hps167s_auto_t hps167s_auto;
 static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
 
-fathom_sensor_t hps167s_begin(void)
-{
-    static const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &clock, .settings = &settings};
-    modbus_begin();
-    fathom_hps167s_init(&hps167s, &config);
-    return fathom_hps167s_sensor(&hps167s);
-}
+DRIVER(hps167s, modbus_begin(), .modbus = &modbus, .clock = &clock, .settings = &settings)
 
 void hps167s_use(const fathom_sample_t *sample)
 {
@@ -52,12 +44,5 @@ void hps167s_settings_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_hps167s_restore_factory_settings(&hps167s);
 }
 
-fathom_sensor_t hps167s_auto_begin(void)
-{
-    static const fathom_hps167s_auto_config_t config = {.line = &line};
-    line_begin();
-    fathom_hps167s_auto_init(&hps167s_auto, &config);
-    return fathom_hps167s_auto_sensor(&hps167s_auto);
-}
-
-void hps167s_auto_use(const fathom_sample_t *sample) { outcome = sample->distance_mm; }
+DRIVER(hps167s_auto, line_begin(), .line = &line)
+ONLY(hps167s_auto, distance_mm)

@@ -33,6 +33,21 @@ extern volatile uint16_t argument;
 extern volatile uint16_t outcome;
 extern volatile uint8_t level;
 
+/* The driver of that name and how its program begins: after `before`, with this configuration. */
+#define DRIVER(name, before, ...)                                                                            \
+    static fathom_##name##_t name;                                                                           \
+    fathom_sensor_t name##_begin(void)                                                                       \
+    {                                                                                                        \
+        static const fathom_##name##_config_t config = {__VA_ARGS__};                                        \
+        before;                                                                                              \
+        fathom_##name##_init(&name, &config);                                                                \
+        return fathom_##name##_sensor(&name);                                                                \
+    }
+
+/* A program without commands. */
+#define ONLY(name, what)                                                                                     \
+    void name##_use(const fathom_sample_t *sample) { outcome = sample->what; }
+
 /* All programs, in the order of the table. sizes.py reads their names here. */
 #define PROGRAMS(X)                                                                                          \
     X(a16_auto)                                                                                              \
