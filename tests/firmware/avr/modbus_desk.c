@@ -8,8 +8,6 @@
 #include "fathom/sample.h"
 #include "wire.h"
 
-enum { GPIOR0 = 0x3E };
-
 static uint16_t distance_of(uint8_t unit, uint32_t number)
 {
     return (uint16_t)((unit == 1 ? 1000 : 15000) + number % 13000);
@@ -31,7 +29,7 @@ uint32_t desk_begin(uint8_t orders, uint32_t clock_us)
     assert_int_equal(ready->kind, REPORT_READY);
     const uint32_t zero_us = (uint32_t)(ready->cycle / BOARD_CYCLES_PER_US);
     for (int i = 0; i < 4; i++) board_data("periods_us")[i] = (uint8_t)(clock_us >> 8 * i);
-    board.avr->data[GPIOR0] = orders;
+    *board_data("ordered") = orders;
     assert_int_equal(board_next_record(1000)->kind, REPORT_BEGUN);
     return zero_us;
 }
@@ -41,7 +39,7 @@ void desk_start(uint8_t orders, uint32_t clock_us)
     memset(&desk, 0, sizeof desk);
     desk.baud = (orders & ORDER_115200) != 0 ? 115200 : 19200;
     const fathom_line_settings_t settings = {desk.baud, FATHOM_PARITY_EVEN, 1};
-    board_start("modbus");
+    board_start("sensors");
     fathom_sim_line_init(&desk.line, &settings, board.clock.now_us);
     for (uint8_t i = 0; i < 2; i++) {
         const fathom_sim_hps167s_config_t config = {
@@ -110,7 +108,7 @@ void desk_run(uint32_t reports)
 
 void desk_order(uint8_t order)
 {
-    board.avr->data[GPIOR0] = order;
+    *board_data("ordered") = order;
     while (next()->kind != REPORT_ASKED) {
     }
 }

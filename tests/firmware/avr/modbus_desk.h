@@ -8,7 +8,7 @@
 #include "sim/fault.h"
 #include "sim/hps167s.h"
 
-/* The image "modbus" on RS-485 with two HPS-167S, addresses 1 and 2, each with faults of its own. */
+/* The image "sensors" on RS-485 with two HPS-167S, addresses 1 and 2, each with faults of its own. */
 
 typedef struct {
     fathom_sim_line_t line;

@@ -44,7 +44,7 @@ static int32_t measure(void *ctx, uint8_t probe, uint32_t now_us)
 
 static void order(uint8_t orders, uint32_t clock_us)
 {
-    board_start("auto");
+    board_start("sensors");
     measured = 0;
     const fathom_sim_scene_t scene = {measure, NULL};
     fathom_sim_device_t *device = &a16.device;
@@ -138,11 +138,11 @@ ALL(every_frame_of_an_a05_gives_its_four_readings, ORDER_A05, FRAMES, 0)
 /* The wrap comes after 4.2 s. */
 ALL(across_the_wrap_of_the_clock_nothing_is_lost, ORDER_A16, FRAMES, 0xFFC00000)
 ALL(across_the_wrap_of_the_clock_nothing_of_an_a05_is_lost, ORDER_A05, FRAMES, 0xFFC00000)
-ALL(in_a_loop_that_comes_round_every_20_ms_too, ORDER_A16 | ORDER_20_MS, FRAMES_AWAKE, 0)
+ALL(in_a_loop_that_comes_round_every_20_ms_too, ORDER_A16 | ORDER_SLOW_LOOP, FRAMES_AWAKE, 0)
 
 TEST(in_a_loop_that_comes_round_every_20_ms_no_reading_of_an_a05_is_wrong)
 {
-    order(ORDER_A05 | ORDER_20_MS, 0);
+    order(ORDER_A05 | ORDER_SLOW_LOOP, 0);
     assert_int_equal(run(4, FRAMES_AWAKE).wrong, 0);
 }
 

@@ -54,31 +54,31 @@ static void assert_run(void **state)
     static const run_t name = {__VA_ARGS__};                                                                 \
     TEST_ROW(name, assert_run, &name)
 
-RUN(every_request_has_its_answer_and_the_wire_its_silences, ORDER_BEGIN, .readings = 60, .more_requests = 1)
+RUN(every_request_has_its_answer_and_the_wire_its_silences, ORDER_HPS167S, .readings = 60, .more_requests = 1)
 
 /* Where two units wait to be asked, one request follows upon the other's answer as soon as it may: t3.5 are 2005 us,
  * and the processor wakes and looks for less than half a millisecond. */
-RUN(the_next_request_comes_t3_5_after_the_answer_before_and_not_much_later, ORDER_BEGIN | ORDER_TWO_UNITS,
+RUN(the_next_request_comes_t3_5_after_the_answer_before_and_not_much_later, ORDER_HPS167S | ORDER_TWO_UNITS,
     .readings = 100, .more_requests = 1, .least_us = 2005, .most_us = 2504)
 
-RUN(at_115200_too, ORDER_BEGIN | ORDER_TWO_UNITS | ORDER_115200, .readings = 100, .more_requests = 1,
+RUN(at_115200_too, ORDER_HPS167S | ORDER_TWO_UNITS | ORDER_115200, .readings = 100, .more_requests = 1,
     .least_us = 1750, .most_us = 2249)
 
-RUN(in_a_loop_that_comes_round_every_20_ms, ORDER_BEGIN | ORDER_TWO_UNITS | ORDER_SLOW_LOOP, .readings = 40,
+RUN(in_a_loop_that_comes_round_every_20_ms, ORDER_HPS167S | ORDER_TWO_UNITS | ORDER_SLOW_LOOP, .readings = 40,
     .more_requests = 2)
 
 /* 40 periods of Timer1 before the wrap: 1.3 s. */
-RUN(across_the_wrap_of_the_clock, ORDER_BEGIN, .clock_us = UINT32_C(0) - 40 * 32768, .readings = 100,
+RUN(across_the_wrap_of_the_clock, ORDER_HPS167S, .clock_us = UINT32_C(0) - 40 * 32768, .readings = 100,
     .more_requests = 1)
 
-RUN(with_the_echo_of_the_line, ORDER_BEGIN, .echo = true, .readings = 40, .more_requests = 1)
-RUN(with_the_echo_of_the_line_in_a_slow_loop, ORDER_BEGIN | ORDER_SLOW_LOOP, .echo = true, .readings = 40,
+RUN(with_the_echo_of_the_line, ORDER_HPS167S, .echo = true, .readings = 40, .more_requests = 1)
+RUN(with_the_echo_of_the_line_in_a_slow_loop, ORDER_HPS167S | ORDER_SLOW_LOOP, .echo = true, .readings = 40,
     .more_requests = 2)
 
 TEST(a_unit_that_is_not_there_costs_its_time_outs_and_nothing_else)
 {
     uint64_t silence_cycles;
-    desk_start(ORDER_BEGIN | ORDER_TWO_UNITS, 0);
+    desk_start(ORDER_HPS167S | ORDER_TWO_UNITS, 0);
     fathom_sim_detach(&desk.line, &desk.hps[1].device, board.clock.now_us);
     board_plan();
     desk_run(100);

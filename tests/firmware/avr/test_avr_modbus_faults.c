@@ -56,24 +56,24 @@ static void assert_damaged(void **state)
     static const damaged_t name = {__VA_ARGS__};                                                             \
     TEST_ROW(name, assert_damaged, &name)
 
-DAMAGED(a_byte_with_wrong_parity_fails_its_answer_and_is_counted, ORDER_BEGIN,
+DAMAGED(a_byte_with_wrong_parity_fails_its_answer_and_is_counted, ORDER_HPS167S,
         {FATHOM_SIM_FAULT_PARITY, FATHOM_SIM_FAULT_PARITY}, 25, .requests = 40, .no_answers = 5, .parity = 5)
 
-DAMAGED(a_byte_without_a_stop_bit_fails_its_answer_and_is_counted, ORDER_BEGIN,
+DAMAGED(a_byte_without_a_stop_bit_fails_its_answer_and_is_counted, ORDER_HPS167S,
         {FATHOM_SIM_FAULT_FRAMING, FATHOM_SIM_FAULT_FRAMING}, 25, .requests = 40, .no_answers = 5,
         .framing = 5)
 
-DAMAGED(with_a_retry_a_damaged_answer_is_asked_for_again, ORDER_BEGIN | ORDER_RETRY,
+DAMAGED(with_a_retry_a_damaged_answer_is_asked_for_again, ORDER_HPS167S | ORDER_RETRY,
         {FATHOM_SIM_FAULT_PARITY, FATHOM_SIM_FAULT_FRAMING}, 25, .requests = 45, .parity = 2, .framing = 3)
 
 /* The time-out is 100 ms; an answer that comes within twice of it is known for what it is. */
-DAMAGED(a_late_answer_is_recognised, ORDER_BEGIN, {FATHOM_SIM_FAULT_LATE, FATHOM_SIM_FAULT_LATE}, 15,
+DAMAGED(a_late_answer_is_recognised, ORDER_HPS167S, {FATHOM_SIM_FAULT_LATE, FATHOM_SIM_FAULT_LATE}, 15,
         .late_us = 130000, .requests = 40, .no_answers = 3, .late = 3)
 
 /* On one pair of wires a late answer hits what goes on between the others; it delays its own unit alone. */
 TEST(a_late_answer_among_others_spoils_what_it_hits_and_nothing_else)
 {
-    desk_start(ORDER_BEGIN | ORDER_TWO_UNITS, 0);
+    desk_start(ORDER_HPS167S | ORDER_TWO_UNITS, 0);
     for (uint32_t frame = 5; frame <= 15; frame += 5)
         fathom_sim_fault_add(&desk.faults[0], FATHOM_SIM_FAULT_LATE, FATHOM_SIM_FAULT_ALWAYS_PPM, frame)->us =
             130000;
@@ -96,7 +96,7 @@ TEST(damage_of_every_kind_never_makes_a_reading)
         FATHOM_SIM_FAULT_INSERT,   FATHOM_SIM_FAULT_TRUNCATE,  FATHOM_SIM_FAULT_OVERRUN,
         FATHOM_SIM_FAULT_PARITY,   FATHOM_SIM_FAULT_FRAMING,   FATHOM_SIM_FAULT_SILENCE,
         FATHOM_SIM_FAULT_SPLIT,    FATHOM_SIM_FAULT_EXCEPTION, FATHOM_SIM_FAULT_UNIT};
-    desk_start(ORDER_BEGIN | ORDER_TWO_UNITS, 0);
+    desk_start(ORDER_HPS167S | ORDER_TWO_UNITS, 0);
     for (size_t i = 0; i < sizeof kinds; i++)
         for (int unit = 0; unit < 2; unit++) fathom_sim_fault_add(&desk.faults[unit], kinds[i], 20000, 0);
     desk_run(600);
@@ -112,7 +112,7 @@ TEST(a_full_ring_is_counted_and_the_next_exchange_is_as_before)
 {
     static uint8_t babble[100];
     for (size_t i = 0; i < sizeof babble; i++) babble[i] = (uint8_t)(0xC0 + i);
-    desk_start(ORDER_BEGIN, 0);
+    desk_start(ORDER_HPS167S, 0);
     desk_run(10);
     for (uint16_t round = 1; round <= 3; round++) {
         desk_order(ORDER_AWAY);
@@ -132,7 +132,7 @@ TEST(a_full_ring_is_counted_and_the_next_exchange_is_as_before)
 /* The sensor's settings are not the processor's: garbage is no reading, and what it has at its own rate is. */
 TEST(a_sensor_at_another_rate_is_never_read)
 {
-    desk_start(ORDER_BEGIN, 0);
+    desk_start(ORDER_HPS167S, 0);
     desk_run(5);
     desk.hps[0].device.settings.baud = 57600;
     const uint32_t samples = desk.samples[0];
