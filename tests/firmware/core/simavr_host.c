@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <simavr/sim_avr.h>
+#include <simavr/sim_core.h>
 #include <simavr/sim_elf.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,9 +44,8 @@ int main(int argc, char **argv)
     avr_register_io_write(avr, GPIOR0, put, NULL);
 
     unsigned least_sp = RAM_END;
-    int state = cpu_Running;
-    while (avr->cycle < limit && state != cpu_Done && state != cpu_Crashed) {
-        state = avr_run(avr);
+    while (avr->cycle < limit && avr->state == cpu_Running) {
+        avr->pc = avr_run_one(avr); /* avr_run is for timers and interrupts, of which there are none */
         const unsigned sp = word_at(avr->data + SPL);
         if (sp >= RAM_BEGIN && sp < least_sp) least_sp = sp; /* 0 before the start-up code sets it */
         if (sp >= RAM_BEGIN && sp < data_end) {
