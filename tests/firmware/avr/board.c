@@ -180,13 +180,15 @@ static void complain(avr_t *avr, const int level, const char *format, va_list ar
     if (level == LOG_ERROR) vfprintf(stderr, format, arguments);
 }
 
-void board_start(const char *name)
+bool board_has_time(void) { return getenv("FATHOM_LONG") != NULL; }
+
+void board_start_from(const char *folder, const char *name)
 {
     char path[512];
     if (board.avr != NULL) board_end();
     memset(&board, 0, sizeof board);
     const char *const images = getenv("FATHOM_IMAGES");
-    snprintf(path, sizeof path, "%s/%s.elf", images != NULL ? images : FATHOM_IMAGES, name);
+    snprintf(path, sizeof path, "%s/%s.elf", images != NULL ? images : folder, name);
     avr_global_logger_set(complain);
     if (elf_read_firmware(path, &board.image) != 0) board_give_up("%s cannot be read", path);
     avr_t *const avr = board.avr = avr_make_mcu_by_name("atmega328p");

@@ -148,8 +148,9 @@ typedef struct {
 
 extern board_t board;
 
-/* FATHOM_IMAGES of the environment, or else of the compiler, is the folder of images. Ends the one that runs. */
-void board_start(const char *name);
+/* The folder of images: FATHOM_IMAGES of the environment, or else of the compiler. Ends the one that runs. */
+void board_start_from(const char *folder, const char *name);
+static inline void board_start(const char *name) { board_start_from(FATHOM_IMAGES, name); }
 void board_end(void);
 /* The same, for a suite_t: the image has not crashed. */
 int board_stop(void **state);
@@ -171,6 +172,9 @@ const board_record_t *board_next_record(uint64_t most_us);
 /* The next line of text that the image sends by its UART, without its end, running until there is one; "": none came
  * within most_us. Valid until the next call. */
 const char *board_line(uint64_t most_us);
+
+/* Is this the long run, with FATHOM_LONG in its environment? Then sweeps leave nothing out. */
+bool board_has_time(void);
 
 /* ---- wires ---- */
 
