@@ -161,8 +161,7 @@ int _cmocka_run_group_tests(const char *file, const struct CMUnitTest *tests, si
         run++;
         passed += good != 0;
     }
-    if (to_leave_out != 0)
-        print_error("[  FAILED  ] to leave out what is not there: %s\n", left_out);
+    if (to_leave_out != 0) print_error("[  FAILED  ] to leave out what is not there: %s\n", left_out);
     printf("[==========] %u test(s) run.\n", run);
     printf("[  PASSED  ] %u test(s).\n", passed);
     if (passed != run) printf("[  FAILED  ] %u test(s).\n", run - passed);

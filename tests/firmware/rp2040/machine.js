@@ -20,6 +20,7 @@ const SCRATCH0 = 0x4005800c, SCRATCH1 = 0x40058010, ENDED = 0x454e4421; // examp
 class Machine {
   // startUs: what TIMER shows at reset, up to 2^32. scratch: {number: value} of the watchdog's registers.
   constructor(path, {startUs = 0, scratch = {}} = {}) {
+    Machine.change(this);
     this.mcu = new Simulator().rp2040;
     this.clock = this.mcu.clock;
     this.core = this.mcu.core;
@@ -152,6 +153,12 @@ class Machine {
   }
 
   runTo(us) { this.run((us - this.us) * US / MS); }
+
+  // The one that runs; when the next one begins, or the test ends, it has to be well.
+  static change(machine) {
+    if (Machine.current) Machine.current.assertWell();
+    Machine.current = machine;
+  }
 
   // The firmware did nothing that the manuals forbid, or the simulator does not know.
   assertWell() {

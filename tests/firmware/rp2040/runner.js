@@ -2,6 +2,7 @@
 // The tests of one file, in their order; its last statement is run(). The last line is "N passed, 0 failed". With
 // FATHOM_FIRST_FAILURE in the environment the first one that fails is the last.
 'use strict';
+const {Machine} = require('./machine.js');
 
 const tests = [];
 
@@ -19,10 +20,12 @@ function run() {
   for (const {name, body} of tests) {
     try {
       body();
+      Machine.change(null);
       console.log(`passed  ${name}`);
       passed++;
     } catch (error) {
       failed++;
+      Machine.current = null;
       console.log(`FAILED  ${name}\n${error.stack}`);
       if (process.env.FATHOM_FIRST_FAILURE) break;
     }

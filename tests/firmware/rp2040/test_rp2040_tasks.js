@@ -25,11 +25,6 @@ function start({tank = 50000, gate = [MEASURING], ...options} = {}) {
   };
 }
 
-function go({machine}, ms) {
-  machine.run(ms);
-  machine.assertWell();
-}
-
 // tasks_reading_t
 function reading({machine}, name) {
   const at = machine.symbols.get(name);
@@ -49,7 +44,7 @@ function assertBlinks({lamp}, ms) {
 
 test('each task reads its own sensor at its own pace, while the lamp blinks', () => {
   const bench = start();
-  go(bench, 3000);
+  bench.machine.run(3000);
   const tank = reading(bench, 'tank');
   const gate = reading(bench, 'gate');
   assert.deepStrictEqual([tank.mm, tank.status, tank.errors], [TANK_MM, 1, 0]);
@@ -63,7 +58,7 @@ test('each task reads its own sensor at its own pace, while the lamp blinks', ()
 
 test('a line that is dead holds up neither the other one nor the lamp', () => {
   const bench = start({gate: [NEVER]});
-  go(bench, 3000);
+  bench.machine.run(3000);
   const tank = reading(bench, 'tank');
   const gate = reading(bench, 'gate');
   assert.ok(tank.readings === 24 || tank.readings === 25, `${tank.readings} readings of the A16`);
@@ -77,11 +72,11 @@ test('what one task has read another one acts on within a millisecond', () => {
   const bench = start();
   bench.machine.until(() => reading(bench, 'tank').readings === 1, 500);
   const read = bench.machine.clock.nanos;
-  go(bench, 2);
+  bench.machine.run(2);
   const near = bench.near[bench.near.length - 1];
   assert.ok(near.high && near.at - read < MS, `high after ${near.at - read} ns`); // 751 mm
   bench.tank.after = undefined;
-  go(bench, 1500);
+  bench.machine.run(1500);
   assert.strictEqual(reading(bench, 'tank').mm, NONE);
   assert.strictEqual(bench.near[bench.near.length - 1].high, false); // 2083 mm are not near
 });
@@ -108,7 +103,7 @@ test('every register that a function has to keep comes back with its task', () =
     machine.watched.set(core.LR & ~1, comeBack);
     assert.strictEqual(core.SP % 8, 0, 'the stack is aligned where a function is called');
   });
-  go(bench, 1000);
+  bench.machine.run(1000);
   assert.ok(came > 100, `${came} switches`);
   assert.ok(reading(bench, 'tank').readings > 5 && reading(bench, 'gate').readings > 40);
 });
@@ -135,7 +130,7 @@ test('an interrupt that comes while a task changes places does no harm', () => {
     enter(number);
     if (number === 36) machine.uart[0].update(); // as it really is
   };
-  go(bench, 2000);
+  bench.machine.run(2000);
   assert.ok(turn > 100 && taken > 100, `${taken} interrupts in ${turn} passes`);
   assert.ok(reading(bench, 'tank').readings >= 15 && reading(bench, 'gate').readings >= 100);
   assert.strictEqual(reading(bench, 'tank').errors + reading(bench, 'gate').errors, 0);
@@ -159,14 +154,14 @@ test('what is given right before the core would sleep keeps it awake', () => {
     since = machine.clock.nanos;
     machine.mcu.setInterrupt(20, true); // which comes before its first instruction
   });
-  go(bench, 1000);
+  bench.machine.run(1000);
   assert.ok(given > 50, `${given} times`);
   assert.ok(longest > 0 && longest < 5000, `it slept for ${longest} ns`);
 });
 
 test('each stack has room to spare', () => {
   const bench = start({gate: [MEASURING, NEVER, MEASURING]});
-  go(bench, 3000);
+  bench.machine.run(3000);
   for (const name of ['tank_task', 'gate_task', 'lamp_task']) {
     const [symbol] = [...bench.machine.symbols.keys()].filter((each) => each.split('.')[0] === name);
     const words = bench.machine.symbols.get(symbol) + 20;
@@ -180,7 +175,7 @@ test('each stack has room to spare', () => {
 test('all of them wait across the wrap of the clock', () => {
   for (let early = 100; early < 1000; early += 270) { // ms from reset to the wrap
     const bench = start({startUs: 2 ** 32 - early * 1000});
-    go(bench, 2000);
+    bench.machine.run(2000);
     assert.ok(bench.machine.clock.nanos > WRAP_NS);
     const tank = reading(bench, 'tank');
     const gate = reading(bench, 'gate');
@@ -192,7 +187,7 @@ test('all of them wait across the wrap of the clock', () => {
 
 test('the core sleeps when all tasks wait', () => {
   const bench = start();
-  go(bench, 2000);
+  bench.machine.run(2000);
   figure('rp2040_tasks_cpu_share', (bench.machine.awake(0.02) * 100).toFixed(3), '%');
 });
 
