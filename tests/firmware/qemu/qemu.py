@@ -71,5 +71,25 @@ class Case(interop.Case):
         return readings
 
 
+def alone(**images):
+    """Tests of images that check themselves: what it shows=(image, checks) or (image, checks, shift)."""
+    tests = {f'test_{name}': lambda self, row=row: self.self_test(*row) for name, row in images.items()}
+    sys.modules['__main__'].Alone = type('Alone', (Case,), {**tests, '__module__': '__main__'})
+    main()
+
+
+class Exchange:
+    """For a Case with check(port): an HPS-167S at 2083 mm, simulated and served by others. sim_options: of its rate."""
+    serve = interop.LibmodbusServer.serve
+    baud = 19200
+    sim_options = ()
+
+    def test_a_simulated_sensor_is_read(self):
+        self.check(self.sim('hps167s', *self.sim_options, '--distance', '2083').port)
+
+    def test_a_server_by_libmodbus_is_read(self):
+        self.check(self.served((self.baud, 'even'), 1, 8, DATASHEET))
+
+
 def main():
     e2e.main()

@@ -4,7 +4,7 @@
 import qemu
 
 
-class Exchange(qemu.Case):
+class Exchange(qemu.Exchange, qemu.Case):
     def check(self, port):
         """30 answers of 13 bytes are more than an index of the ring can count."""
         done = self.end_well(self.boot('hps167s', port, traces=('serial_update_parameters',)))
@@ -13,14 +13,6 @@ class Exchange(qemu.Case):
         # line; the last one is what holds.
         self.assertEqual(done.err.splitlines()[-1],
                          "serial_update_parameters baudrate=19009 parity='E' data=8 stop=1")
-
-    def test_a_simulated_sensor_is_read(self):
-        self.check(self.sim('hps167s', '--distance', '2083').port)
-
-    def test_a_server_by_libmodbus_is_read(self):
-        self.check(self.served((19200, 'even'), 1, 8, qemu.DATASHEET))
-
-    serve = qemu.interop.LibmodbusServer.serve
 
 
 if __name__ == '__main__':
