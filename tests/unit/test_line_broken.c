@@ -96,9 +96,9 @@ static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t coun
 
 TEST(the_first_bytes_of_a_port_that_works_again_are_after_no_gap)
 {
-    fathom_listener_t ear = {hear, GAP_US};
+    fathom_listener_t listener = {hear, GAP_US};
     heard = gaps = 0;
-    fathom_line_listen(&bench.line, &ear);
+    fathom_line_listen(&bench.line, &listener);
     bench.fake.read_fails = true;
     assert_int_equal(after(1000), FATHOM_ERR_PORT);
     bench.fake.read_fails = false;

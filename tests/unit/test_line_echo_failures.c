@@ -5,12 +5,10 @@
 
 static const suite_t suite = {.set_up = set_up};
 
-static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
-
 /* The write has just left. */
 static void write_on(void **state, uint8_t echo)
 {
-    set_up_with(state, echo);
+    set_up_with(echo);
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
     bench.request.exchange.timeout_us = TIMEOUT_US;
     bench.request.exchange.retries = 0;
@@ -104,7 +102,7 @@ TEST(no_byte_of_a_writes_echo_is_dropped)
 
 TEST(no_byte_of_a_writes_echo_goes_to_the_listener)
 {
-    fathom_listener_t ear = {hear, 2000};
-    echoed_write(state, &ear, FATHOM_LINE_ECHO_AUTO);
-    echoed_write(state, &ear, FATHOM_LINE_ECHO_ON);
+    fathom_listener_t listener = {hear, 2000};
+    echoed_write(state, &listener, FATHOM_LINE_ECHO_AUTO);
+    echoed_write(state, &listener, FATHOM_LINE_ECHO_ON);
 }

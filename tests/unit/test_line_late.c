@@ -5,9 +5,6 @@
 
 static const suite_t suite = {.set_up = set_up};
 
-/* A16 6(5): the address of unit 1 becomes 5. Request and answer are the same bytes. */
-static const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
-
 static void start_write(void)
 {
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
@@ -140,8 +137,8 @@ TEST(no_byte_of_a_late_answer_that_is_taken_is_dropped)
 
 TEST(no_byte_of_a_late_answer_that_is_taken_goes_to_the_listener)
 {
-    fathom_listener_t ear = {hear, 2000};
-    serve_a_retry(&ear);
+    fathom_listener_t listener = {hear, 2000};
+    serve_a_retry(&listener);
     assert_int_equal(heard, 0);
 }
 
@@ -184,9 +181,9 @@ static void hear_gaps(fathom_listener_t *listener, const uint8_t *bytes, uint8_t
 TEST(a_pause_within_bytes_that_were_held_back_is_no_gap_before_them)
 {
     static const uint8_t wrong[] = {0, 0, 0};
-    fathom_listener_t ear = {hear_gaps, 2000};
+    fathom_listener_t listener = {hear_gaps, 2000};
     heard = gaps = 0;
-    fathom_line_listen(&bench.line, &ear);
+    fathom_line_listen(&bench.line, &listener);
     ask_1_and_send(0);
     receive(answer_1_754, 4);
     run(3000);
