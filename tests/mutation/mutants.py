@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Mutants of C sources: copies with one small change each, which a good test sees.
 
@@ -36,12 +36,13 @@ class Mutant:
     @property
     def change(self):
         old, new = tokens(self.old), tokens(self.new)
-        return f'{"it" if old == self.statement else old} -> {new or "nothing"}'
+        return f'{"it" if old == self.statement else shown(old)} -> {shown(new) or "nothing"}'
 
     @property
     def identity(self):
         """Stays the same when lines move and comments change."""
-        return f'{self.file} | {self.function} | {self.operator}: {self.change} | {self.statement} | {self.ordinal}'
+        identity = f'{self.file} | {self.function} | {self.operator}: {self.change} | {shown(self.statement)}'
+        return f'{identity} | {self.ordinal}' if self.ordinal > 1 else identity
 
     def applied(self, text):
         assert text[self.start:self.end] == self.old
@@ -50,6 +51,13 @@ class Mutant:
 
 def tokens(code):
     return ' '.join(TOKEN.findall(code))
+
+
+def shown(code):
+    """Tokens with about as much space as a reader is used to."""
+    code = re.sub(r' ?(->|\.|\[) ?', r'\1', code)
+    code = re.sub(r'([(!~]) ', r'\1', re.sub(r' (?=[)\],;])', '', code))
+    return re.sub(r'\b(?<!if)(?<!for)(?<!while)(?<!return)(?<!switch) (?=\()', '', code)
 
 
 def mutants_of(path, root=ROOT, arguments=None):
