@@ -56,8 +56,7 @@ class Asked(e2e.Case):
             ['requests of another master were heard (it asked address 5)'], '--address'),
         with_echo_told_to_be_off_it_is_the_same_advice=(
             e2e.ASK_A16, ["only the tool's own request came back", 'wiring behind the adapter'],
-            'nothing was heard',
-            A16 + ' --echo off'),
+            'nothing was heard', A16 + ' --echo off'),
         damaged_from_the_start_may_be_the_settings=(
             DAMAGED, ['was damaged', '--parity', 'termination', 'no other unit'], 'other answers'))
     def once(self, answer, words, never, sensor=A16):
@@ -68,8 +67,7 @@ class Asked(e2e.Case):
             done = self.ask(request, request, sensor=sensor)
             for attempt in (1, 2):
                 self.advised(done, attempt, "only the tool's own request came back",
-                             'wiring behind the adapter',
-                             'supply', never='nothing was heard')
+                             'wiring behind the adapter', 'supply', never='nothing was heard')
 
     def test_an_echo_and_an_answer_are_a_reading_without_advice(self):
         for echo in ('auto', 'on'):

@@ -39,8 +39,7 @@ class Read(e2e.Case):
         self.assertEqual(done.err.splitlines(), [
             'fathom: attempts 12, failed 0, readings 24', 'fathom: a16:1: attempts 4, failed 0, readings 4',
             'fathom: a05:2: attempts 4, failed 0, readings 16',
-            'fathom: hps167s:7: attempts 4, failed 0, readings 4',
-            'fathom: line: answers 12'])
+            'fathom: hps167s:7: attempts 4, failed 0, readings 4', 'fathom: line: answers 12'])
 
     def test_each_line_of_text_names_sensor_and_address(self):
         lines = self.ends(f'read {BUS} --port {self.bus()} --count 1', 0).out.splitlines()
@@ -237,8 +236,7 @@ class Example(e2e.Case):
         # 600 ms of time-out, once more until its late answer can no longer come; left alone after the third,
         # for 0.6 s
         failures = re.search(r'A05 +answers \d+, failures (\d+), silences in a row (\d+), left alone for '
-                             r'([\d.]+) s',
-                             between)
+                             r'([\d.]+) s', between)
         self.assertEqual(failures[1], failures[2])
         self.assertGreaterEqual(int(failures[1]), 3)
         self.assertRegex(after, r'A05 +answers \d+, failures \d+, silences in a row 0, left alone for 0\.0 s')

@@ -60,8 +60,7 @@ class Silence(e2e.Case):
 
     def test_a_stream_of_nothing_is_stale(self):
         done = self.fails('nothing was heard at all; check the supply',
-                          f'a16 --port {self.device()} --timeout 200',
-                          3, 0.6, 5)
+                          f'a16 --port {self.device()} --timeout 200', 3, 0.6, 5)
         self.assertIn('line: stale 3\n', done.err)
 
     @e2e.each(  # the shortest default of those that ask is 0.5 s

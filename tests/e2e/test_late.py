@@ -11,8 +11,7 @@ class Late(e2e.Case):
     def begin(self, count, timeout, options=''):
         """What an A16 that says so many mm is told to say; and the reader."""
         device, reader = self.beside(f'read a16 --mode modbus --timeout {timeout} --count {count} --format '
-                                     'csv',
-                                     options)
+                                     'csv', options)
         return device, lambda mm: device.write(e2e.registers(1, mm)), reader
 
     def test_an_answer_during_the_next_attempt_is_not_its_reading(self):

@@ -157,8 +157,7 @@ class Several(Bus):
         sim = self.sim(f'{BUS} --distance 1@754 --distance 2@316 --distance 3@2083 --counters')
         self.assertEqual([self.mm(sim, sensor) for sensor in (HPS, A16, A05)], [2083, 754, 316])
         told = self.counters(sim, 'device', 'sensor', 'mode', 'address', 'baud', 'requests', 'answered',
-                             'writes',
-                             'resets', 'wrong_settings', 'others')
+                             'writes', 'resets', 'wrong_settings', 'others')
         self.assertEqual([one[:9] for one in told], [(1, 'a16', 'modbus', 1, 9600, 1, 1, 0, 0),
                                                      (2, 'a05', 'modbus', 2, 9600, 1, 1, 0, 0),
                                                      (3, 'hps167s', 'modbus', 7, 19200, 1, 1, 0, 0)])
@@ -359,8 +358,7 @@ class FaultUsage(Case):
     def test_help_lists_every_kind_with_a_few_words(self):
         out = self.ends('sim --help', 0).out
         listed = re.findall(r'(?:^ {4}|  )([a-z-]+) +\S',
-                            out.split('The kinds:')[1].split('A pseudo terminal')[0],
-                            re.M)
+                            out.split('The kinds:')[1].split('A pseudo terminal')[0], re.M)
         self.assertEqual([word for word in listed if word in KINDS], KINDS)
         self.assertIn('cannot mark a byte', out)
 

@@ -33,8 +33,7 @@ class Stats(e2e.Case):
     def test_each_failure_has_its_counter(self):
         damaged = bytes((*GOOD[:4], GOOD[4] ^ 0x10, *GOOD[5:]))
         done = self.ask([GOOD, b'', damaged, e2e.adu(1, 0x83, 2), e2e.registers(1, 754, 755),
-                         e2e.registers(1, 40000),
-                         GOOD, e2e.registers(2, 754)], JSON)
+                         e2e.registers(1, 40000), GOOD, e2e.registers(2, 754)], JSON)
         self.assertEqual(done.code, 1)
         one = self.told(done)
         self.assertEqual(list(one), ['time_us', 'attempts', 'failed', 'readings', 'requests',

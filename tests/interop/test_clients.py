@@ -212,8 +212,7 @@ class Settings:
     def test_the_reset_of_an_hps167s_undoes_what_was_set(self):
         """Warm-up 5 s, 180 ms, and all else on."""
         self.assertEqual(self.ask(self.hps(), 1, 'write:0x0A:7', 'write:0x12:0', 'write:0x13:0',
-                                  'many:0x20:0,360',
-                                  'read:2:4', 'read:9:1', 'read:2:4'),
+                                  'many:0x20:0,360', 'read:2:4', 'read:9:1', 'read:2:4'),
                          ['done'] * 4 + ['0000 0700 0001 6801', '0001', 'FFFF 0500 0000 B401'])
 
     def test_the_settings_of_an_a16(self):
@@ -320,4 +319,4 @@ class Alone(interop.Pymodbus, interop.Case):
 
 
 if __name__ == '__main__':
-    interop.main()
+    interop.main(at_once=32)

@@ -22,8 +22,7 @@ class LibmodbusRtu(Rtu, NoMany, interop.LibmodbusServer, Servers, interop.Case):
 class Units(Rtu, interop.LibmodbusServer, interop.Case):
     def test_units_that_libmodbus_has_not_are_unsupported_and_the_others_are_asked(self):
         outcomes = self.fathom_client(self.served(LINE, 247, 0, [5]), LINE, 'unit:248', 'read:0:1',
-                                      'unit:255',
-                                      'write:0:1', 'unit:247', 'read:0:1')
+                                      'unit:255', 'write:0:1', 'unit:247', 'read:0:1')
         self.assertEqual(outcomes, ['not sent, status -12', 'not sent, status -12', '0005'])
 
 

@@ -62,7 +62,7 @@ class Servers:
     def test_another_unit_is_not_there_and_the_right_one_is(self):
         outcomes = self.run_steps([1], 'unit:7', 'read:0:1', 'unit:8', *self.others, 'unit:7', 'read:0:1',
                                   unit=7,
-                                  seconds=2)
+                                  seconds=1)
         self.assertEqual(outcomes, ['0001', *['no answer'] * len(self.others), '0001'])
 
     def test_a_write_to_all_is_obeyed_and_needs_no_answer(self):
