@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT */
+#include "controlled_rig.h"
+
+#include <string.h>
+
+#include "suite.h"
+
+/* a16_controlled.h: its defaults to the microsecond and to the millimetre, when it is due, and whose hands it keeps off. */
+
+static const suite_t suite = {.set_up = controlled_set_up};
+
+static fathom_status_t poll_after(uint32_t us)
+{
+    rig.fake.now_us += us;
+    return rig_poll();
+}
+
+static uint32_t due_us(void) { return rig.sensor.due_us(rig.sensor.ctx); }
+
+/* The rising edge, and then a silence. */
+static void release(void)
+{
+    assert_int_equal(poll_after(2 * MS), FATHOM_PENDING);
+    assert_int_equal(poll_after(8 * MS), FATHOM_PENDING);
+}
+
+/* The edge, 2 ms after the start. */
+static void trigger(void)
+{
+    poll_after(2 * MS);
+    assert_int_equal(rig.fake.breaks, 1);
+}
+
+/* A frame whose last byte came so long after the edge, as the port knows; then the silence that ends it. */
+static fathom_status_t answered_after(uint32_t us, const uint8_t frame[4])
+{
+    fake_receive_rx(&rig.fake, us, frame, 4, (fathom_rx_t){rig.fake.now_us + us, FATHOM_RX_TIMED});
+    release();
+    assert_int_equal(poll_after(us - 10000u + 100u), FATHOM_PENDING);
+    return poll_after(RIG_GAP_US - 100);
+}
+
+/* ---- the defaults ---- */
+
+/* "earliest_us; 0: 80 ms", "latest_us; 0: 130 ms". */
+TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
+{
+    static const struct {
+        uint32_t after_us;
+        bool answers;
+    } rows[] = {{79999, false}, {80000, true}, {130000, true}, {130001, false}};
+    for (unsigned i = 0; i != 4; i++) {
+        controlled_set_up(state);
+        trigger();
+        const fathom_status_t status = answered_after(rows[i].after_us, controlled_1953);
+        assert_int_equal(status == FATHOM_READY, rows[i].answers);
+        assert_int_equal(controlled.a16.late, !rows[i].answers);
+    }
+}
+
+/* "period_us ... 0 and anything less: 121 ms". */
+TEST(the_next_trigger_comes_121_ms_after_the_last)
+{
+    trigger();
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    poll_after(121 * MS - 105 * MS - 1);
+    assert_int_equal(rig.fake.breaks, 1);
+    poll_after(1);
+    assert_int_equal(rig.fake.breaks, 2);
+}
+
+/* "window ... 0: 1 and 16350 mm". 3FDE: FF + 3F + DE = 21C; 3FDF: 21D. */
+TEST(distances_up_to_16350_mm_are_believed)
+{
+    static const uint8_t mm_16350[] = {0xFF, 0x3F, 0xDE, 0x1C};
+    static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
+    trigger();
+    assert_int_equal(answered_after(100 * MS, mm_16350), FATHOM_READY);
+    assert_int_equal(rig.sample.distance_mm, 16350);
+    controlled_start();
+    trigger();
+    assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
+    assert_int_equal(controlled.a16.answer.implausible, 1);
+}
+
+/* "FATHOM_ERR_MALFORMED: ... refused and counted": it is no sample, so the next one is the second. */
+TEST(a_refused_frame_takes_no_number_of_the_samples)
+{
+    static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
+    trigger();
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    assert_int_equal(rig.sample.sequence, 1);
+    poll_after(16 * MS);
+    assert_int_equal(rig.fake.breaks, 2);
+    assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
+    poll_after(16 * MS);
+    assert_int_equal(rig.fake.breaks, 3);
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    assert_int_equal(rig.sample.sequence, 2);
+}
+
+/* FATHOM_ERR_ARGUMENT: "earliest_us over latest_us". */
+TEST(earliest_and_latest_may_be_the_same)
+{
+    controlled.config.earliest_us = 100000;
+    controlled.config.latest_us = 100000;
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    controlled.config.latest_us = 99999;
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_ERR_ARGUMENT);
+}
+
+/* ---- when it is due ---- */
+
+TEST(where_the_port_was_busy_it_is_due_in_1_ms)
+{
+    rig.fake.busy_until_us = rig.fake.now_us + 100 * MS;
+    poll_after(2 * MS);
+    assert_int_equal(rig.fake.breaks, 0);
+    assert_int_equal(due_us(), 1000);
+    rig.fake.now_us += 400;
+    assert_int_equal(due_us(), 600);
+}
+
+/* After latest_us an answer that came in time may still wait for its silence. */
+TEST(where_a_frame_waits_for_its_end_it_is_due_in_1_ms)
+{
+    trigger();
+    fake_receive(&rig.fake, 129 * MS, controlled_1953, 4);
+    release();
+    poll_after(119 * MS);
+    assert_int_equal(poll_after(1 * MS), FATHOM_PENDING); /* 4 ms are left */
+    assert_int_equal(due_us(), 1000);
+    rig.fake.now_us += 400;
+    assert_int_equal(due_us(), 600);
+}
+
+TEST(while_an_answer_may_come_it_is_due_at_the_end_of_that)
+{
+    trigger();
+    release();
+    assert_int_equal(due_us(), 120 * MS);
+    rig.fake.now_us += 70 * MS;
+    assert_int_equal(due_us(), 50 * MS);
+    rig.fake.now_us += 100 * MS;
+    assert_int_equal(due_us(), 0);
+}
+
+/* After the answer the next trigger is due, however long the period is: the stream's own deadline means nothing. */
+TEST(between_two_triggers_it_is_due_at_the_next_one)
+{
+    controlled.config.period_us = 5000 * MS;
+    for (unsigned fill = 0; fill != 2; fill++) {
+        rig_start(RIG_START_US);
+        memset(&controlled.a16, fill != 0 ? 0xFF : 0, sizeof controlled.a16);
+        assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+        rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
+        trigger();
+        poll_after(2 * MS);
+        assert_int_equal(poll_after(128 * MS), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(due_us(), 4870 * MS);
+        rig.fake.now_us += 70 * MS;
+        assert_int_equal(due_us(), 4800 * MS);
+        rig.fake.now_us += 4801 * MS;
+        assert_int_equal(due_us(), 0);
+    }
+}
+
+/* ---- what it leaves alone ---- */
+
+static unsigned set_breaks;
+
+static int counted_set_break(void *ctx, bool on)
+{
+    set_breaks++;
+    return rig.fake.uart.set_break(ctx, on);
+}
+
+TEST(a_break_is_ended_only_where_one_has_begun)
+{
+    static fathom_uart_t uart;
+    uart = rig.fake.uart;
+    uart.set_break = counted_set_break;
+    set_breaks = 0;
+    rig.line_config.uart = &uart;
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    assert_int_equal(set_breaks, 0);
+    fathom_a16_controlled_deinit(&controlled.a16);
+    assert_int_equal(set_breaks, 0);
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    trigger();
+    assert_int_equal(set_breaks, 1);
+    fathom_a16_controlled_deinit(&controlled.a16);
+    assert_int_equal(set_breaks, 2);
+    assert_false(rig.fake.in_break);
+}
+
+TEST(a_pin_that_is_high_is_not_set_when_the_sensor_is_given_up)
+{
+    controlled.config.trigger = &controlled.pin.trigger;
+    controlled_start();
+    assert_int_equal(controlled.pin.sets, 1); /* high */
+    fathom_a16_controlled_deinit(&controlled.a16);
+    assert_int_equal(controlled.pin.sets, 1);
+}
