@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "suite.h"
+
+#include "fake_pin.h"
+#include "fathom/a16_pwm.h"
+
+/* a16_pwm.h: the window, and all members of a sample. */
+
+static fake_t fake;
+static fake_pin_t pin;
+static fathom_a16_pwm_config_t config;
+static fathom_a16_pwm_t a16;
+static fathom_sensor_t sensor;
+static fathom_sample_t sample;
+
+static fathom_status_t init(void) { return fathom_a16_pwm_init(&a16, &config); }
+
+static int set_up(void **state)
+{
+    fake_init(&fake);
+    fake_pin_init(&pin, &fake);
+    pin.answer_after_us = 100000;
+    memset(&config, 0, sizeof config);
+    config.clock = &fake.clock;
+    config.capture = &pin.capture;
+    config.trigger = &pin.trigger;
+    config.noise_us = 1; /* or short pulses would be none */
+    memset(&a16, 0x5A, sizeof a16);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+/* What comes of a pulse of this width. */
+static fathom_status_t pulse_of(uint32_t width_us)
+{
+    assert_int_equal(init(), FATHOM_READY);
+    sensor = fathom_a16_pwm_sensor(&a16);
+    pin.answer_width_us = width_us;
+    for (unsigned polls = 0; polls != 100; polls++) {
+        memset(&sample, 0xFF, sizeof sample);
+        fake.now_us += 10000;
+        const fathom_status_t status = fathom_poll(&sensor, &sample);
+        if (status != FATHOM_PENDING) return status;
+    }
+    fail_msg("nothing in 1 s");
+    return FATHOM_PENDING;
+}
+
+/* "window: ... 0: 1 and ...". width * 4 / 23: 2 us are 0.35 mm, 3 us 0.52 mm, which is 1 mm. */
+TEST(distances_from_1_mm_are_believed)
+{
+    assert_int_equal(pulse_of(2), FATHOM_ERR_MALFORMED);
+    assert_int_equal(a16.implausible, 1);
+    assert_int_equal(pulse_of(3), FATHOM_READY);
+    assert_int_equal(sample.distance_mm, 1);
+}
+
+/* 572 us are 99.48 mm, 573 us 99.65 mm. */
+TEST(the_nearest_distance_is_an_option)
+{
+    config.window.min_mm = 100;
+    assert_int_equal(pulse_of(572), FATHOM_ERR_MALFORMED);
+    assert_int_equal(pulse_of(573), FATHOM_READY);
+    assert_int_equal(sample.distance_mm, 100);
+}
+
+/* FATHOM_ERR_ARGUMENT: "min_mm over max_mm". */
+TEST(a_window_of_one_distance_is_one)
+{
+    config.window.min_mm = 100;
+    config.window.max_mm = 100;
+    assert_int_equal(pulse_of(573), FATHOM_READY);
+    config.window.max_mm = 99;
+    assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
+}
+
+TEST(a_sample_is_without_interference)
+{
+    const bool no = false;
+    assert_int_equal(pulse_of(10000), FATHOM_READY);
+    assert_memory_equal(&sample.interference, &no, sizeof no);
+}
