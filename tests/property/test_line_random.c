@@ -156,7 +156,7 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
     fathom_modbus_request_t requests[UNITS + 1] = {0};
     uint16_t values[UNITS + 1];
     bool asked[UNITS + 1] = {false};
-    uint32_t since_us[UNITS + 1];
+    uint32_t since_us[UNITS + 1] = {0};
     fathom_line_t line;
     outcome_t outcome = {0, 0, 0, 0};
     memset(&world, 0, sizeof world);

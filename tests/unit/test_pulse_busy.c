@@ -29,23 +29,23 @@ static int failing_take(void *ctx, fathom_pulse_t *pulse)
 
 static int set_up_uart(void **state)
 {
-    pulse_rig_set_up(state);
+    set_up_meter(state);
     uart = stand.fake.uart;
     uart.set_break = counted_set_break;
     stand.config.trigger = NULL;
     stand.config.uart = &uart;
     set_breaks = 0;
-    pulse_rig_start(1000);
+    start_meter();
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up_uart};
-static const suite_t with_pin = {.set_up = pulse_rig_set_up};
+static const suite_t with_pin = {.set_up = set_up_meter};
 
 static fathom_status_t poll_after(uint32_t us)
 {
     stand.fake.now_us += us;
-    return pulse_rig_poll();
+    return poll_meter();
 }
 
 static void is_busy_for(uint32_t us) { stand.fake.busy_until_us = stand.fake.now_us + us; }
@@ -122,7 +122,7 @@ TEST_IN(with_pin, every_negative_result_of_take_is_a_broken_port)
     capture = stand.pin.capture;
     capture.take = failing_take;
     stand.config.capture = &capture;
-    pulse_rig_run_to_trigger();
+    run_to_trigger();
     assert_int_equal(poll_after(100), FATHOM_ERR_PORT);
 }
 
@@ -131,10 +131,10 @@ TEST_IN(with_pin, without_a_pulse_the_next_cycle_begins_221_ms_after_the_last)
 {
     static const uint32_t cycles_us[] = {0, 1, 221000, 221001};
     for (unsigned i = 0; i != 4; i++) {
-        pulse_rig_set_up(state);
+        set_up_meter(state);
         stand.config.cycle_us = cycles_us[i];
-        pulse_rig_start(1000);
-        pulse_rig_run_to_trigger();
+        start_meter();
+        run_to_trigger();
         poll_after(2 * MS);
         /* 2 ms of it have passed */
         assert_int_equal(poll_after((i == 3 ? 219001u : 219000u) - 1), FATHOM_PENDING);
