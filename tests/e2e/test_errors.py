@@ -129,10 +129,10 @@ class Silence(e2e.Case):
 class Noise(e2e.Case):
     GARBAGE = bytes(byte for byte in random.Random(1).randbytes(4000) if byte != 0xFF)
 
-    def feed(self, sensor, data, until, pause=0.04):
+    def feed(self, sensor, data, until, pause=0.04, timeout=300):
         """A sensor that sends this again and again, with pauses, until the reader says something on
         stderr."""
-        device, reader = self.beside(f'read {sensor} --timeout 300 --format csv')
+        device, reader = self.beside(f'read {sensor} --timeout {timeout} --format csv')
         deadline = time.monotonic() + e2e.PATIENCE
         while not re.search(until, reader.said['err'].decode()):
             self.assertLess(time.monotonic(), deadline, f'{until!r} did not come')
@@ -167,7 +167,7 @@ class Noise(e2e.Case):
         self.assertEqual(self.ends(reader, 1).rows, [])
 
     def test_a_good_frame_after_garbage_is_read(self):
-        device, reader = self.feed('a16 --count 2', b'\x12\x34\x56', 'no frame of a16')
+        device, reader = self.feed('a16 --count 2', b'\x12\x34\x56', 'no frame of a16', timeout=2000)
         while not reader.has_ended(0.06):
             device.write(FRAME)
         done = self.ends(reader, 1)
