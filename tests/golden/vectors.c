@@ -6,11 +6,11 @@
 /* A row's frame, and of a Modbus frame what unit 1 was asked where it brings no values. */
 #define FRAME(source, name, direction, hex)                                                                  \
     {                                                                                                        \
-        source, name, direction, hex, 0, { 0 }                                                               \
+        source, source ": " name, direction, hex, 0, { 0 }                                                   \
     }
-#define REQUEST(source, name, hex) FRAME(source, name, VECTOR_REQUEST, hex)
-#define ANSWER(source, name, hex)  FRAME(source, name, VECTOR_ANSWER, hex)
-#define BOTH(source, name, hex)    FRAME(source, name, VECTOR_BOTH, hex)
+#define REQUEST(source, name, hex) FRAME(source, name ", request", VECTOR_REQUEST, hex)
+#define ANSWER(source, name, hex)  FRAME(source, name ", answer", VECTOR_ANSWER, hex)
+#define BOTH(source, name, hex)    FRAME(source, name ", both ways", VECTOR_BOTH, hex)
 #define ASKED(function, first, operand)                                                                      \
     {                                                                                                        \
         1, function, first, operand, {0}, 0                                                                  \
@@ -60,7 +60,7 @@ modbus_vector_t modbus_vectors[MODBUS_ROWS] = {
       {0xB000, 0x3900, 0x2542, 0x3457, 0x1420, 0x3438, 0x3501, 0x0607, 0x0513, 0x0917, 0x0309},
       0}},
     {REQUEST("HPS table 15", "AFE temperature", "01 03 00 04 00 01 C5 CB"), ASKED(READ, 0x0004, 1)},
-    {REQUEST("HPS table 17", "single measurement: the exception example misprints the CRC as C5 C8",
+    {REQUEST("HPS table 17", "single measurement; the exception example misprints the CRC as C5 C8",
              "01 03 00 08 00 04 C5 CB"),
      ASKED(READ, 0x0008, 4)},
     {ANSWER("HPS command #5", "single measurement: 2083 mm; magnitude 723.1744; ambient 1; precision 0",

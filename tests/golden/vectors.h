@@ -19,7 +19,7 @@ enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8, PRINTED_TABL
 
 typedef struct {
     const char *source;
-    const char *name;
+    const char *name; /* source, what it is, and which way it goes */
     uint8_t direction;
     const char *hex;
     uint8_t length; /* of what `hex` says, and its bytes: filled in before main() */
