@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include "auto_rig.h"
+
+#include <string.h>
+
+#include "suite.h"
+
+#include "fake_pin.h"
+#include "fathom/a05_auto.h"
+#include "fathom/a16_auto.h"
+#include "fathom/modbus_client.h"
+
+/* a05_auto.h and a16_auto.h: what selects a value is driven when it has to be, and let go where it was taken. */
+
+static fathom_uart_t uart; /* of the line; it counts what is done to its TX */
+static unsigned set_breaks;
+static fake_pin_t pin;
+static fathom_a05_auto_t a05;
+static fathom_a16_auto_t a16;
+
+static int counted_set_break(void *ctx, bool on)
+{
+    set_breaks++;
+    return rig.fake.uart.set_break(ctx, on);
+}
+
+static int set_up(void **state)
+{
+    rig_start(RIG_START_US);
+    uart = rig.fake.uart;
+    uart.set_break = counted_set_break;
+    rig.line_config.uart = &uart;
+    set_breaks = 0;
+    fake_pin_init(&pin, &rig.fake);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+static void start_a05(const fathom_pin_t *select)
+{
+    const fathom_a05_auto_config_t config = {.line = &rig.line, .select = select};
+    memset(&a05, 0xFF, sizeof a05);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    rig.sensor = fathom_a05_auto_sensor(&a05);
+}
+
+static void start_a16(uint8_t fill, const fathom_pin_t *select, uint32_t stale_us)
+{
+    const fathom_a16_auto_config_t config = {.line = &rig.line, .select = select, .stale_us = stale_us};
+    memset(&a16, fill, sizeof a16);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
+    rig.sensor = fathom_a16_auto_sensor(&a16);
+}
+
+static fathom_status_t poll_after(uint32_t us)
+{
+    rig.fake.now_us += us;
+    return rig_poll();
+}
+
+static uint32_t due_us(void) { return rig.sensor.due_us(rig.sensor.ctx); }
+
+/* ---- A05 ---- */
+
+/* "FATHOM_ERR_ARGUMENT: no such value": not 256 either, where an enumeration can hold it at all. */
+TEST(a_value_of_256_is_refused)
+{
+    start_a05(NULL);
+    if (sizeof(fathom_a05_value_t) == 1) return;
+    assert_int_equal(fathom_a05_auto_power_on(&a05, (fathom_a05_value_t)256), FATHOM_ERR_ARGUMENT);
+}
+
+/* "To be called right before the sensor gets power": what the one before has said is over. The frame is A05 1(3). */
+TEST(after_power_on_no_sample_of_before_is_handed_over)
+{
+    static const uint8_t four[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
+    start_a05(NULL);
+    poll_after(10000);
+    fake_receive(&rig.fake, 0, four, sizeof four);
+    assert_int_equal(poll_after(100), FATHOM_PENDING);
+    assert_int_equal(poll_after(RIG_GAP_US), FATHOM_READY);
+    assert_int_equal(rig.sample.probe, 1);
+    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_READY);
+    assert_int_equal(poll_after(100), FATHOM_PENDING);
+    assert_int_equal(due_us(), 2000000 - 100);
+}
+
+/* FATHOM_A05_SELECT_US, some time after the last poll too. */
+TEST(the_end_of_selecting_is_due_after_1500_ms)
+{
+    start_a05(NULL);
+    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
+    assert_int_equal(due_us(), RIG_GAP_US); /* before that the line is to see a silence */
+    assert_int_equal(poll_after(10000), FATHOM_PENDING);
+    assert_int_equal(due_us(), 1490000);
+    rig.fake.now_us += 70000;
+    assert_int_equal(due_us(), 1420000);
+    rig.fake.now_us += 1420001;
+    assert_int_equal(due_us(), 0);
+    assert_int_equal(poll_after(0), FATHOM_PENDING);
+    assert_false(rig.fake.in_break);
+}
+
+/* "Stops listening": what it had taken hold of it has let go before. */
+TEST(after_selecting_nothing_is_driven_when_the_sensor_is_given_up)
+{
+    for (unsigned has_pin = 0; has_pin != 2; has_pin++) {
+        set_up(state);
+        start_a05(has_pin != 0 ? &pin.trigger : NULL);
+        assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
+        poll_after(FATHOM_A05_SELECT_US);
+        const unsigned driven = set_breaks + pin.sets;
+        assert_int_equal(driven, 2); /* low, and high again */
+        fathom_a05_auto_deinit(&a05);
+        assert_int_equal(set_breaks + pin.sets, driven);
+    }
+}
+
+/* ---- A16 ---- */
+
+/* "ends a break that selected": whatever the memory held, there was none. */
+TEST(without_a_selection_an_a16_leaves_tx_alone)
+{
+    static const uint8_t fills[] = {0x00, 0x5A, 0xFF};
+    for (unsigned i = 0; i != sizeof fills; i++) {
+        set_up(state);
+        start_a16(fills[i], NULL, 0);
+        fathom_a16_auto_deinit(&a16);
+        assert_int_equal(set_breaks, 0);
+    }
+}
+
+TEST(a_break_that_selected_is_ended_once)
+{
+    start_a16(0, NULL, 0);
+    assert_int_equal(fathom_a16_auto_select(&a16, true), FATHOM_READY);
+    assert_true(rig.fake.in_break);
+    fathom_a16_auto_deinit(&a16);
+    assert_false(rig.fake.in_break);
+    assert_int_equal(set_breaks, 2);
+}
+
+/* A pin stays as it is: the module goes on with the value that was selected. */
+TEST(a_pin_that_selected_is_left_as_it_is)
+{
+    for (unsigned real_time = 0; real_time != 2; real_time++) {
+        set_up(state);
+        start_a16(0, &pin.trigger, 0);
+        assert_int_equal(fathom_a16_auto_select(&a16, real_time != 0), FATHOM_READY);
+        const unsigned sets = pin.sets;
+        fathom_a16_auto_deinit(&a16);
+        assert_int_equal(pin.sets, sets);
+        assert_int_equal(pin.level, real_time == 0);
+        assert_int_equal(set_breaks, 0);
+    }
+}
+
+/* "FATHOM_ERR_ARGUMENT: no line": whatever else the config wants. */
+TEST(an_a16_without_a_line_is_refused_before_anything_is_selected)
+{
+    const fathom_a16_auto_config_t config = {.select = &pin.trigger, .real_time = true};
+    const fathom_a16_auto_config_t by_break = {.real_time = true};
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_auto_init(&a16, &by_break), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(pin.sets, 0);
+}
+
+/* ---- beside an exchange ---- */
+
+/* "FATHOM_ERR_STALE: no good frame for stale_us": a part of an answer, which the line holds back, is no frame that waits
+ * for its end. */
+TEST(it_is_stale_while_the_line_holds_a_part_of_an_answer)
+{
+    static const uint8_t part[] = {0x01, 0x03, 0x02, 0x02};
+    uint16_t value;
+    fathom_modbus_request_t request = {.exchange = {.timeout_us = 1000000}};
+    fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &value);
+    start_a16(0, NULL, 50000);
+    assert_int_equal(fathom_modbus_client_submit(&rig.line, &request), FATHOM_PENDING);
+    poll_after(10000);
+    poll_after(10000);
+    fake_receive(&rig.fake, 0, part, sizeof part);
+    assert_int_equal(poll_after(29000), FATHOM_PENDING);
+    assert_int_equal(poll_after(1000), FATHOM_ERR_STALE); /* 10 + 10 + 29 + 1 = 50 */
+    fathom_line_cancel(&rig.line, &request.exchange);
+}
