@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/a16_rs232.h"
+#include "line_bench.h"
+
+/* a16_rs232.h: the way back to automatic output, which a frame ends, or 2 s without. */
+
+static fathom_modbus_t seam;
+static fathom_a16_modbus_t modbus;
+static fathom_a16_auto_t automatic;
+static fathom_a16_rs232_t rs232;
+static fathom_sample_t sample;
+
+static const uint8_t address_is_1[] = {0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84};
+static const uint8_t mode_is_1[] = {0x01, 0x06, 0x02, 0x02, 0x00, 0x01, 0xE8, 0x72};
+
+static fathom_status_t after(uint32_t us)
+{
+    bench.fake.now_us += us;
+    return fathom_a16_rs232_return_to_automatic(&rs232, &sample);
+}
+
+static void answer_when_sent(size_t written, const uint8_t *bytes, size_t length)
+{
+    for (unsigned i = 0; bench.fake.written != written; i++) {
+        assert_true(i < 10000);
+        assert_int_equal(after(100), FATHOM_PENDING);
+    }
+    assert_int_equal(after(8 * BYTE_US), FATHOM_PENDING);
+    receive(bytes, length);
+    assert_int_equal(after(0), FATHOM_PENDING);
+}
+
+/* The address has been read and the mode written; from now on it listens. The memory was full of FF. */
+static int set_up_listening(void **state)
+{
+    const fathom_a16_modbus_config_t config = {.modbus = &seam, .clock = &bench.fake.clock};
+    const fathom_a16_auto_config_t listening = {.line = &bench.line, .stale_us = 100000000};
+    set_up(state);
+    seam = fathom_modbus_client(&bench.line);
+    assert_int_equal(fathom_a16_modbus_init(&modbus, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &listening), FATHOM_READY);
+    memset(&rs232, 0xFF, sizeof rs232);
+    fathom_a16_rs232_init(&rs232, &modbus, &automatic);
+    answer_when_sent(1, address_is_1, sizeof address_is_1);
+    answer_when_sent(2, mode_is_1, sizeof mode_is_1);
+    assert_memory_equal(bench.fake.writes[1].bytes, mode_is_1, sizeof mode_is_1);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up_listening};
+
+/* "FATHOM_READY: *sample is the first reading that the sensor has sent by itself". The frame is A16 2(4). */
+TEST(the_first_reading_is_handed_over)
+{
+    static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};
+    memset(&sample, 0xA5, sizeof sample);
+    assert_int_equal(after(100000), FATHOM_PENDING);
+    receive(mm_1953, sizeof mm_1953);
+    assert_int_equal(after(100), FATHOM_PENDING);
+    assert_int_equal(after(GAP_US), FATHOM_READY);
+    assert_int_equal(sample.kind, FATHOM_TARGET);
+    assert_int_equal(sample.distance_mm, 1953);
+    assert_int_equal(sample.model, FATHOM_A16);
+}
+
+/* "FATHOM_ERR_UNCONFIRMED: no frame in 2 s". */
+TEST(without_a_frame_it_is_unconfirmed_after_2_s)
+{
+    assert_int_equal(after(1999999), FATHOM_PENDING);
+    assert_int_equal(after(1), FATHOM_ERR_UNCONFIRMED);
+}
+
+/* "How long until that function has something to do if no byte comes", some time after the last call too. */
+TEST(the_end_of_listening_is_due_after_2_s)
+{
+    assert_int_equal(after(10000), FATHOM_PENDING); /* the line has seen a silence */
+    assert_int_equal(fathom_a16_rs232_due_us(&rs232), 1990000);
+    bench.fake.now_us += 70000;
+    assert_int_equal(fathom_a16_rs232_due_us(&rs232), 1920000);
+    bench.fake.now_us += 1919999;
+    assert_int_equal(fathom_a16_rs232_due_us(&rs232), 1);
+    bench.fake.now_us += 1;
+    assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
+    bench.fake.now_us += 1000;
+    assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
+}
