@@ -26,7 +26,7 @@ static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_setti
     }
 #define TWO(unit, ends, warm_up, code, baud)                                                                 \
     {                                                                                                        \
-        {unit, 3, 0, 2, 0, 4}, ends, {0xFFFF, warm_up * 256u, 0x0000, 0xB400 + code}, baud                    \
+        {unit, 3, 0, 2, 0, 4}, ends, {0xFFFF, warm_up * 256u, 0x0000, 0xB400 + code}, baud                   \
     }
 #define IS(unit, warm_up, code, baud) TWO(unit, OK, warm_up, code, baud), TWO(unit, OK, warm_up, code, baud)
 #define WRITE(unit, command, value, ends, baud)                                                              \
