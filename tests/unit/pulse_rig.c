@@ -17,7 +17,7 @@ void start_meter_at(uint32_t now_us)
     stand.config.capture = &stand.pin.capture;
     memset(&stand.meter, 0x5A, sizeof stand.meter);
     stand.readings = 0;
-    stand.no_answers = 0;
+    stand.no_answers = stand.port_errors = 0;
     assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_READY);
 }
 
@@ -51,6 +51,7 @@ fathom_status_t poll_meter(void)
         assert_memory_equal(&reading, untouched, sizeof untouched);
     }
     stand.no_answers += status == FATHOM_ERR_NO_ANSWER;
+    stand.port_errors += status == FATHOM_ERR_PORT;
     return status;
 }
 

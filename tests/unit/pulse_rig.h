@@ -20,6 +20,7 @@ typedef struct {
     fathom_pulse_reading_t last;
     unsigned readings;
     unsigned no_answers;
+    unsigned port_errors;
 } pulse_rig_t;
 
 extern pulse_rig_t stand;

@@ -216,6 +216,7 @@ static void expect_every_trigger_answered(void)
         assert_in_range(stand.readings, 8, 10); /* cycles of 221 to 240 ms */
         expect_readings(stand.pin.falls + stand.fake.breaks);
         expect_no_answers(0);
+        assert_int_equal(stand.port_errors, 0); /* a busy port is none */
         expect_last(FATHOM_TARGET, 10 * MS);
     }
 }
