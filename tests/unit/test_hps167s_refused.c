@@ -16,7 +16,7 @@ static fathom_status_t set_reconnect(void)
 static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&desk.hps); }
 
 #define OK        FATHOM_READY
-#define NOBODY    FATHOM_ERR_NO_ANSWER
+#define SILENT    FATHOM_ERR_NO_ANSWER
 #define EXCEPTION FATHOM_ERR_EXCEPTION
 
 /* Tables 9, 11, 19, 21, 23 and 25. */
@@ -67,7 +67,7 @@ TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
 {
     desk_start_at(1, &factory);
     desk.argument = 115200;
-    assert_int_equal(desk_play(set_baud, ROWS(IS(1, 5, 1, 19200), TWO(1, NOBODY, 5, 1, 115200),
+    assert_int_equal(desk_play(set_baud, ROWS(IS(1, 5, 1, 19200), TWO(1, SILENT, 5, 1, 115200),
                                               WRITE(1, 0x11, 3, EXCEPTION, 19200))),
                      FATHOM_ERR_EXCEPTION);
     assert_int_equal(desk.hps.next_baud, 0);
@@ -78,12 +78,12 @@ TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
 }
 
 /* The rate is the one that the driver is at, so there is no other one to look for it. */
-TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_nobody)
+TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_does_not_look_elsewhere)
 {
     desk_start_at(1, &factory);
     desk.argument = 19200;
     assert_int_equal(desk_play(set_baud, ROWS(IS(1, 5, 3, 19200), WRITE(1, 0x11, 1, OK, 19200),
-                                              TWO(1, NOBODY, 5, 1, 19200))),
+                                              TWO(1, SILENT, 5, 1, 19200))),
                      FATHOM_ERR_UNCONFIRMED);
     assert_int_equal(desk_play(set_warm_up, ROWS(IS(1, 200, 1, 19200))), FATHOM_READY);
 }
@@ -94,12 +94,12 @@ TEST(nothing_is_reset_before_a_device_that_is_sought_has_answered)
 {
     desk_start_at(1, &factory);
     desk.argument = 57600;
-    assert_int_equal(desk_play(set_baud, ROWS(IS(1, 5, 1, 19200), TWO(1, NOBODY, 5, 1, 57600),
-                                              WRITE(1, 0x11, 2, NOBODY, 19200), TWO(1, NOBODY, 5, 1, 57600),
-                                              TWO(1, NOBODY, 5, 1, 19200))),
+    assert_int_equal(desk_play(set_baud, ROWS(IS(1, 5, 1, 19200), TWO(1, SILENT, 5, 1, 57600),
+                                              WRITE(1, 0x11, 2, SILENT, 19200), TWO(1, SILENT, 5, 1, 57600),
+                                              TWO(1, SILENT, 5, 1, 19200))),
                      FATHOM_ERR_UNCONFIRMED);
-    assert_int_equal(desk_play(reset, ROWS(ONE(1, NOBODY, 19200))), FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(desk_play(reset, ROWS(ONE(1, OK, 57600), IS(1, 5, 2, 57600), TWO(1, NOBODY, 5, 1, 19200),
+    assert_int_equal(desk_play(reset, ROWS(ONE(1, SILENT, 19200))), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(desk_play(reset, ROWS(ONE(1, OK, 57600), IS(1, 5, 2, 57600), TWO(1, SILENT, 5, 1, 19200),
                                            RESET(1, OK, 1, 57600), IS(1, 5, 1, 19200))),
                      FATHOM_READY);
     desk_asks(1, 19200);
@@ -111,7 +111,7 @@ TEST(after_a_reset_that_was_refused_rate_and_warm_up_are_as_before)
     desk_start_at(1, &fast);
     desk.config.warm_up_s = 9;
     desk_start();
-    assert_int_equal(desk_play(reset, ROWS(IS(1, 9, 3, 115200), TWO(1, NOBODY, 9, 1, 19200),
+    assert_int_equal(desk_play(reset, ROWS(IS(1, 9, 3, 115200), TWO(1, SILENT, 9, 1, 19200),
                                            RESET(1, EXCEPTION, 4, 115200))),
                      FATHOM_ERR_EXCEPTION);
     assert_int_equal(desk.hps.next_baud, 0);
@@ -131,11 +131,11 @@ TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
     assert_warm_up(200);
 }
 
-/* "if the device is elsewhere, address 1 at 19200 is asked whether somebody is there": it is not elsewhere by now. */
+/* "if the device is elsewhere, address 1 at 19200 is asked": it is not elsewhere by now. */
 TEST(a_device_that_was_moved_to_address_1_is_reset_without_looking_there)
 {
     desk_start_at(7, NULL);
-    assert_int_equal(desk_play(set_address_1, ROWS(ONE(7, OK, 0), ONE(1, NOBODY, 0), WRITE(7, 0x10, 1, OK, 0),
+    assert_int_equal(desk_play(set_address_1, ROWS(ONE(7, OK, 0), ONE(1, SILENT, 0), WRITE(7, 0x10, 1, OK, 0),
                                                    ONE(1, OK, 0))),
                      FATHOM_READY);
     assert_int_equal(desk_play(reset, ROWS(IS(1, 5, 1, 0), RESET(1, OK, 1, 0), IS(1, 5, 1, 0))),
@@ -148,7 +148,7 @@ TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before
     static const uint16_t is[4] = {0xFFFF, 0x0500, 0x0000, 0xB401};
     fathom_hps167s_configuration_t configuration;
     desk_start_at(7, NULL);
-    assert_int_equal(desk_play(set_address_1, ROWS(ONE(7, OK, 0), ONE(1, NOBODY, 0), WRITE(7, 0x10, 1, OK, 0),
+    assert_int_equal(desk_play(set_address_1, ROWS(ONE(7, OK, 0), ONE(1, SILENT, 0), WRITE(7, 0x10, 1, OK, 0),
                                                    ONE(1, OK, 0))),
                      FATHOM_READY);
     for (unsigned n = 0; n != 2; n++) {
@@ -172,7 +172,7 @@ TEST(a_device_is_sought_at_both_rates_when_the_port_breaks_while_the_new_one_is_
     desk_start_at(1, &factory);
     desk.argument = 57600;
     assert_int_equal(desk_play(set_baud_until_the_port_breaks,
-                               ROWS(IS(1, 5, 1, 19200), TWO(1, NOBODY, 5, 1, 57600),
+                               ROWS(IS(1, 5, 1, 19200), TWO(1, SILENT, 5, 1, 57600),
                                     WRITE(1, 0x11, 2, OK, 19200), TWO(1, FATHOM_ERR_PORT, 5, 1, 57600))),
                      FATHOM_ERR_UNCONFIRMED);
     desk.fake.carrier = FATHOM_PENDING;

@@ -35,7 +35,7 @@ TEST(a_new_line_knows_of_nothing)
     }
 }
 
-/* 16 is the unit whose bit is the lowest; nobody owes, so each is due after the silence, before any poll too. */
+/* 16 is the unit whose bit is the lowest; no unit owes, so each is due after the silence, before any poll too. */
 TEST(the_first_request_waits_for_one_silence_and_nothing_else)
 {
     static const uint8_t units[] = {1, 15, 16};

@@ -47,7 +47,7 @@ TEST(a_short_debt_of_another_unit_does_not_end_a_long_one)
     assert_int_equal(bench.fake.written, 3);
 }
 
-/* "LATE_ANSWERS: from a unit that owed one"; "STRAYS: whole frames that nobody had asked for". Unit 9 has its bit in the
+/* "LATE_ANSWERS: from a unit that owed one"; "STRAYS: whole frames" that were not asked for. Unit 9 has its bit in the
  * upper byte. */
 TEST(a_frame_of_a_unit_that_owes_nothing_is_a_stray_and_leaves_the_debt_of_another)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* What line.h promises who brings a protocol of his own: fathom_protocol_t and fathom_match_t. This one asks with one
+/* What line.h promises a protocol that is not from here: fathom_protocol_t and fathom_match_t. This one asks with one
  * byte, '?'. An answer is its unit (1..15), a count and so many bytes. What a match need not say it says wrongly. */
 
 static const suite_t suite = {.set_up = set_up};

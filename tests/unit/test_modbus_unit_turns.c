@@ -128,7 +128,7 @@ TEST(a_command_is_told_busy_while_another_with_the_same_lower_byte_waits)
     assert_int_equal(ask_after(0, &read_200), FATHOM_ERR_BUSY);
 }
 
-/* "FATHOM_ERR_BUSY: another command ... is not finished, or nobody has taken its outcome." */
+/* "FATHOM_ERR_BUSY: another command ... is not finished", or its outcome was not taken. */
 TEST(writes_of_neighbouring_registers_are_two_commands)
 {
     ask_and_send(&write_200);
@@ -140,7 +140,7 @@ TEST(writes_of_neighbouring_registers_are_two_commands)
     assert_int_equal(fake.submits, 2);
 }
 
-/* "nobody minds if an outcome is replaced by a newer one": once it has given way it is not handed over. */
+/* An outcome of the repeated question may be replaced by a newer one: once it has given way it is not handed over. */
 TEST(an_outcome_that_gave_way_to_a_command_is_not_handed_over)
 {
     ask_and_send(&measure);
