@@ -39,7 +39,7 @@ class Machine:
         self.tests = {}  # seconds, by name
 
     def prepare(self):
-        """False where the machine's tools are missing."""
+        """False where the machine has no test that passes: its tools may be missing."""
         os.makedirs(self.root)
         for name in COPIED:
             source, target = os.path.join(ROOT, name), os.path.join(self.root, name)
@@ -57,9 +57,10 @@ class Machine:
         for name in names:
             began = time.monotonic()
             if self.fails(name, 4 * LIMIT_S):
-                raise Broken(f'without a mutant: firmware.{name} fails')
-            self.tests[name] = time.monotonic() - began
-        return True
+                print(f'firmware.{name} fails without a mutant, and is left out')
+            else:
+                self.tests[name] = time.monotonic() - began
+        return bool(self.tests)
 
     def fails(self, test, limit_s):
         words = ['ctest', '-R', rf'^firmware\.{test}$', '--timeout', str(round(limit_s)), '--no-tests=error']
@@ -120,7 +121,7 @@ class Machine:
 
 
 def results(name, folder, sample):
-    """Of some mutants of a machine's port, which sample chooses from all; None where its tools are missing."""
+    """Of some mutants of a machine's port, which sample chooses from all; None where it has no test that passes."""
     machine = Machine(name, folder)
     if not machine.prepare():
         return None

@@ -195,7 +195,7 @@ def try_ports(options):
         of_machines = pool.map(lambda name: firmware.results(name, folder, sample), firmware.TARGETS)
         for name, found in zip(firmware.TARGETS, of_machines):
             if found is None:
-                print(f'{name}: left out, since its tools are missing')
+                print(f'{name}: left out, since no test of it passes; its tools may be missing')
             for result in found or []:
                 report.add(result)
     report.table()
