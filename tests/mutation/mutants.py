@@ -36,7 +36,8 @@ class Mutant:
     @property
     def change(self):
         old, new = tokens(self.old), tokens(self.new)
-        return f'{"it" if old == self.statement else shown(old)} -> {shown(new) or "nothing"}'
+        is_all = old == self.statement or self.operator == 'jump dropped'
+        return f'{"it" if is_all else shown(old)} -> {shown(new) or "nothing"}'
 
     @property
     def identity(self):
@@ -68,7 +69,7 @@ def mutants_of(path, root=ROOT, arguments=None):
     for (start, end, new), (operator, function, (first, last, name)) in sorted(
             source.made.items(), key=lambda item: (item[0], item[1][0])):
         mutant = Mutant(path, function, operator, start, end, source.text[start:end], new, source.line(start),
-                        source.line(first), source.line(last - 1), name or tokens(source.code[first:last]), 0,
+                        source.line(first), source.line(last - 1), tokens(name or source.code[first:last]), 0,
                         source.names.get(function, frozenset()))
         number = counts[mutant.identity] = counts[mutant.identity] + 1
         found.append(dataclasses.replace(mutant, ordinal=number))

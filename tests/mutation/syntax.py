@@ -36,6 +36,7 @@ class Source(Expressions):
             raise SystemExit('\n'.join(errors))
         self.names = {}  # of what is local to each function
         self.returns = False
+        self.header = (0, 0)  # where that is what the present statement depends on
         for cursor in self.unit.cursor.get_children():
             if cursor.location.file is None or cursor.location.file.name != os.path.join(root, path):
                 continue
@@ -43,6 +44,7 @@ class Source(Expressions):
                 self.macros.append((cursor.extent.start.offset, cursor.extent.end.offset))
             elif cursor.kind == Kind.FUNCTION_DECL and cursor.is_definition():
                 self.function = cursor.spelling
+                self.header = (0, 0)
                 self.returns = cursor.result_type.kind != TypeKind.VOID
                 self.names[self.function] = frozenset(child.spelling for child in cursor.walk_preorder()
                                                       if child.kind in (Kind.PARM_DECL, Kind.VAR_DECL))
@@ -109,6 +111,7 @@ class Source(Expressions):
         elif kind in (Kind.CASE_STMT, Kind.DEFAULT_STMT):
             *values, body = cursor.get_children()
             self.context = (self.span(cursor)[0], self.span(body)[0], None)
+            self.header = self.context[:2]
             for value in values:
                 self.expression(value)
             self.statement(body, is_tail)
@@ -121,12 +124,13 @@ class Source(Expressions):
                     self.enumerators(child)
         elif kind != Kind.NULL_STMT and self.is_macro(cursor) is not None:
             start, end = self.span(cursor)
-            self.context = (start, end, None)
             is_last_return = kind == Kind.RETURN_STMT and is_tail and self.returns
             is_end = kind == Kind.RETURN_STMT and is_tail and not self.returns
-            if kind in JUMPS and not is_last_return and not is_end:
+            if kind in JUMPS and not is_last_return and not is_end:  # of those there are many that look alike
+                self.context = (start, end, f'{self.code[slice(*self.header)]} {self.code[start:end]}')
                 self.make('jump dropped', start, end, '')
-            elif kind.is_expression():
+            self.context = (start, end, None)
+            if kind.is_expression():
                 self.make('statement dropped', start, end, '')
             self.expression(cursor)
 
@@ -148,8 +152,11 @@ class Source(Expressions):
             self.expression(children[0])
         else:
             self.condition(children[0])
+        outer = self.header
         for body in bodies:
+            self.header = (start, self.span(bodies[0])[0])
             self.statement(body, is_tail and kind in (Kind.IF_STMT, Kind.SWITCH_STMT))
+        self.header = outer
 
     def for_head(self, start, parts, end):
         context = self.context
