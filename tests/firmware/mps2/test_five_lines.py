@@ -16,15 +16,15 @@ SAID = {'tank': {'probe 1 754 mm'},
         'gate': {'probe 1 2083 mm'}, 'silo': {'probe 1 511 mm'}, 'rear': {'probe 1 3562 mm'}}
 
 
-class FiveLines(qemu.Case):
+class FiveLines(interop.PymodbusServer, qemu.Case):
     def libmodbus(self, line, first, values):
-        server, client = self.ends()
+        server, client = self.two_ends()
         interop.LibmodbusServer.serve(self, server, line, 1, first, values)
         return client
 
     def pymodbus(self, line, first, values):
-        server, client = self.ends()
-        interop.PymodbusServer.serve(self, server, line, 1, first, values)
+        server, client = self.two_ends()
+        self.serve(server, line, 1, first, values)
         return client
 
     def far_ends(self):
@@ -63,15 +63,15 @@ class FiveLines(qemu.Case):
     def nobody_answers(self, name, error, count):
         """On that line. The others go on after it was noticed; the image ends when three of them have `count`."""
         ports = self.far_ends()
-        ports[name] = self.device().path
+        ports[name] = self.device().port
         image = self.five_lines(ports, count, TANK + GATE + REAR)
         image.expect(rf'^{name} error {error}$', seconds=qemu.PATIENCE)
-        before = len(image.seen['out'])
+        before = len(image.lines())
         done = self.end_well(image)
         self.assertNotIn(f'{name} probe', done.out)
         self.check_said(done.out, [other for other in SAID if other != name], 1)
         for other in ('tank', 'gate', 'rear'):
-            self.assertIn(f'{other} probe 1 ', ''.join(image.seen['out'][before:]), 'it has not gone on')
+            self.assertIn(f'{other} probe 1 ', ''.join(image.lines()[before:]), 'it has not gone on')
 
     def test_four_go_on_beside_an_a05_that_does_not_answer(self):
         self.nobody_answers('bumper', 3, 10)
@@ -96,7 +96,7 @@ class FiveLines(qemu.Case):
     def test_four_go_on_beside_a_line_with_noise_damage_strangers_and_late_answers(self):
         ports = self.far_ends()
         tank = self.device()
-        ports['tank'] = tank.path
+        ports['tank'] = tank.port
         image = self.five_lines(ports, 6)
         request = e2e.adu(1, 3, 1, 1, 0, 1)  # the real-time value, 0x0101
         right = e2e.registers(1, 754)

@@ -47,7 +47,7 @@ class Case(interop.Case):
             options += ['-trace', trace]
         if shift is not None:
             options += ['-serial', 'null', '-icount', f'shift={shift},sleep=off', '-rtc', 'clock=vm']
-        return self.start(*MACHINES[self.machine], *options)
+        return self.start([*MACHINES[self.machine], *options])
 
     def end_well(self, program):
         done = program.finish(PATIENCE)
