@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
 
-#include <string.h>
-
-#include "suite.h"
-
 controlled_t controlled;
 
 const uint8_t controlled_1953[4] = {0xFF, 0x07, 0xA1, 0xA7};

@@ -7,7 +7,6 @@
 #include "fathom/a16_controlled.h"
 
 /* auto_rig.h with an A16 that is triggered, by the fake UART's break unless the config names the pin. */
-#define MS ((int32_t)1000) /* an int may have 16 bits */
 enum { FRAME_US = 4 * RIG_BYTE_US };
 
 typedef struct {

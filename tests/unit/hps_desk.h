@@ -2,67 +2,83 @@
 #ifndef FATHOM_TESTS_HPS_DESK_H
 #define FATHOM_TESTS_HPS_DESK_H
 
-#include <string.h>
-
-#include "suite.h"
-
-#include "fake_modbus.h"
+#include "desk.h"
 #include "fathom/hps167s_info.h"
 #include "fathom/hps167s_settings.h"
 
-/* An HPS-167S driver on the fake seam, and what the device is asked and says, in order. */
-enum { DESK_GUARD = 0xA5 };
+/* desk.h with an HPS-167S. */
+extern fathom_hps167s_config_t hps_config;
+extern fathom_hps167s_t hps;
 
-typedef struct {
-    fake_modbus_t fake;
-    fathom_hps167s_config_t config;
-    fathom_hps167s_t hps;
-    fathom_sensor_t sensor;
-    fathom_sample_t sample;
-    uint32_t step_us; /* the application's loop */
-    int32_t argument; /* of the command */
-} desk_t;
+extern const fathom_line_settings_t hps_factory; /* 19200 8E1 */
+extern const uint16_t hps_measured[4];           /* command #5: 2.083 m */
+extern const uint16_t hps_abnormal[4];           /* the same: "abnormal packet" */
 
-extern desk_t desk;
-
-/* One request as it has to be, and how it ends: FATHOM_READY with the registers of `values` (of a write: acknowledged),
- * FATHOM_ERR_EXCEPTION with values[0], or another error. A write of many has to carry `values`. */
-typedef struct {
-    uint8_t head[6]; /* unit, function, address, count or value */
-    fathom_status_t ends;
-    uint16_t values[4];
-    uint32_t baud; /* at which it is asked; 0: no settings are named */
-} row_t;
-
-/* Set-up of a test, and the driver's init. */
-int desk_set_up(void **state);
-void desk_start(void);
-
-/* Calls the command in the application's loop until it has ended: exactly these requests are made. */
-fathom_status_t desk_play(fathom_status_t (*command)(void), const row_t *rows, unsigned count);
-
-/* fathom_poll, the sample filled with DESK_GUARD before. */
-fathom_status_t desk_poll(void);
-
-/* A driver of its own, at this address and with these settings in its config. */
-void desk_start_at(uint8_t address, const fathom_line_settings_t *settings);
+/* Before each test: a driver with the default config. hps_start: init anew, on the memory as it is. hps_start_at: all
+ * anew, at this address and with these settings of the line. */
+int hps_set_up(void **state);
+void hps_start(void);
+void hps_start_at(uint8_t address, const fathom_line_settings_t *settings);
 
 /* The next measurement is asked of this unit at this rate, 3 s later; 0: no settings are named. Then it is answered with
  * the example of command #5, or not at all, which fathom_poll tells like this. */
-void desk_asks(uint8_t unit, uint32_t baud);
-void desk_answers(void);
-void desk_is_silent(fathom_status_t as);
+void hps_asks(uint8_t unit, uint32_t baud);
+void hps_answers(void);
+void hps_is_silent(fathom_status_t as);
 
-void desk_assert_guard(const void *object, size_t size);
+/* Requests of commands #1, #2, #5 and #6 (tables 9, 11, 17, 19), for rows of desk.h. */
+#define HPS_1(unit, ends, baud)                                                                              \
+    {                                                                                                        \
+        {unit, 3, 0, 1, 0, 3}, ends, {0x1409, 0x1B02, 0x0100, 0}, baud                                       \
+    }
+#define HPS_2(unit, ends, baud, ...)                                                                         \
+    {                                                                                                        \
+        {unit, 3, 0, 2, 0, 4}, ends, {__VA_ARGS__}, baud                                                     \
+    }
+#define HPS_5(ends, ...)                                                                                     \
+    {                                                                                                        \
+        {1, 3, 0, 8, 0, 4}, ends, {__VA_ARGS__}, 0                                                           \
+    }
+#define HPS_6(unit, ends, says, baud)                                                                        \
+    {                                                                                                        \
+        {unit, 3, 0, 9, 0, 1}, ends, {says}, baud                                                            \
+    }
+/* A write of one register whose address has no high byte. */
+#define HPS_WRITE(unit, address, value, ends, baud)                                                          \
+    {                                                                                                        \
+        {unit, 6, 0, address, HIGH(value), LOW(value)}, ends, {2}, baud                                      \
+    }
+/* An answer to #2 whose rate has this code; and two that agree. */
+#define TWO(unit, ends, code, baud) HPS_2(unit, ends, baud, 0xFFFF, 0x0500, 0x0000, 0xB400 + code)
+#define IS(unit, code, baud)        TWO(unit, FATHOM_READY, code, baud), TWO(unit, FATHOM_READY, code, baud)
+/* Two of unit 1 with these registers; table 12: termination FF, automatic FF, warm-up 5 s, reconnect 180 ms, rate 1. */
+#define TELLS(...) HPS_2(1, OK, 0, __VA_ARGS__), HPS_2(1, OK, 0, __VA_ARGS__)
+#define FACTORY    TELLS(0xFFFF, 0x0500, 0x0000, 0xB401)
 
-#define ROWS(...) (const row_t[]){__VA_ARGS__}, sizeof((const row_t[]){__VA_ARGS__}) / sizeof(row_t)
+/* With a driver of its own, whose command has this argument. */
+#define PLAY_AT(unit, settings, its_argument, command, status, ...)                                          \
+    do {                                                                                                     \
+        hps_start_at(unit, settings);                                                                        \
+        desk.argument = its_argument;                                                                        \
+        PLAY(command, status, __VA_ARGS__);                                                                  \
+    } while (0)
+
+/* A test that is this, and where the next measurement is asked. */
+#define FOLLOWS(promise, then_unit, then_baud, ...)                                                          \
+    TEST(promise)                                                                                            \
+    {                                                                                                        \
+        PLAY_AT(__VA_ARGS__);                                                                                \
+        hps_asks(then_unit, then_baud);                                                                      \
+    }
+
+#define OK     FATHOM_READY
+#define NOBODY FATHOM_ERR_NO_ANSWER
 
 /* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
-enum { DESK_ROUNDS = 4 };
-void desk_begin_round(unsigned round);
+enum { HPS_ROUNDS = 4 };
+void hps_begin_round(unsigned round);
 
-#define DESK_SUITE                                                                                           \
-    static const suite_t suite = {                                                                           \
-        .set_up = desk_set_up, .begin_round = desk_begin_round, .rounds = DESK_ROUNDS}
+#define HPS_SUITE                                                                                            \
+    static const suite_t suite = {.set_up = hps_set_up, .begin_round = hps_begin_round, .rounds = HPS_ROUNDS}
 
 #endif

@@ -1,327 +1,230 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
-#include "suite.h"
-
-#include "fake_modbus.h"
+#include "desk.h"
 #include "fathom/a16_settings.h"
 
-/* The heads of requests are those of A16 6(4), without their CRC. */
+/* Requests are those of A16 6(4), without their CRC. */
 
-static fake_modbus_t fake;
-static fathom_a16_modbus_t sensor;
+static fathom_a16_modbus_t a16;
 
 static int set_up(void **state)
 {
-    fake_modbus_init(&fake);
+    desk_begin(5000);
     const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
-    memset(&sensor, 0x5A, sizeof sensor);
-    assert_int_equal(fathom_a16_modbus_init(&sensor, &config), FATHOM_READY);
+    memset(&a16, 0, sizeof a16); /* 0 is something that each output could be given by mistake */
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    desk.sensor = fathom_a16_modbus_sensor(&a16);
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-static void pass(void) { fake.now_us += FATHOM_A16_MIN_PERIOD_US; }
+#define OK     FATHOM_READY
+#define NOBODY FATHOM_ERR_NO_ANSWER
 
-/* The call goes on; what it asks next goes out when the period is over. */
-#define ASKS(call)                                                                                           \
-    do {                                                                                                     \
-        assert_int_equal(call, FATHOM_PENDING);                                                              \
-        if (fake.request == NULL) pass();                                                                    \
-        assert_int_equal(call, FATHOM_PENDING);                                                              \
-        assert_non_null(fake.request);                                                                       \
-    } while (0)
+/* ---- one register a row, in the caller's own variable, which keeps what no device has told until FATHOM_READY ---- */
 
-static void assert_head(const uint8_t head[6])
+static struct {
+    uint8_t address;
+    fathom_a16_polarity_t polarity;
+    uint16_t threshold_mm;
+    fathom_a16_value_t value;
+} is;
+
+static fathom_status_t get_address(void) { return fathom_a16_address(&a16, &is.address); }
+static fathom_status_t get_polarity(void) { return fathom_a16_switch_polarity(&a16, &is.polarity); }
+static fathom_status_t get_threshold(void) { return fathom_a16_switch_threshold_mm(&a16, &is.threshold_mm); }
+static fathom_status_t get_automatic(void) { return fathom_a16_automatic_value(&a16, &is.value); }
+
+static fathom_status_t set_address(void) { return fathom_a16_set_address(&a16, (uint8_t)desk.argument); }
+static fathom_status_t set_polarity(void)
 {
-    assert_non_null(fake.request);
-    assert_memory_equal(fake.log[fake.submits - 1], head, 6);
+    return fathom_a16_set_switch_polarity(&a16, (fathom_a16_polarity_t)desk.argument);
+}
+static fathom_status_t set_threshold(void)
+{
+    return fathom_a16_set_switch_threshold_mm(&a16, (uint16_t)desk.argument);
+}
+static fathom_status_t set_automatic(void)
+{
+    return fathom_a16_set_automatic_value(&a16, (fathom_a16_value_t)desk.argument);
+}
+static fathom_status_t set_mode(void)
+{
+    return fathom_a16_set_operating_mode(&a16, (fathom_a16_operating_mode_t)desk.argument);
 }
 
-static void assert_reads(uint8_t unit, uint16_t address)
-{
-    const uint8_t head[] = {unit, 0x03, (uint8_t)(address >> 8), (uint8_t)(address & 0xFF), 0, 1};
-    assert_head(head);
-}
-
-static void answer(uint16_t value)
-{
-    static uint16_t said;
-    said = value;
-    fake_modbus_answer(&fake, &said, 1);
-    pass();
-}
-
-/* ---- one register a row: as numbers, whatever the type of the argument ---- */
-
-static fathom_status_t get_address(unsigned *value)
-{
-    uint8_t address = 0;
-    const fathom_status_t status = fathom_a16_address(&sensor, &address);
-    if (status == FATHOM_READY) *value = address;
-    return status;
-}
-static fathom_status_t set_address(unsigned value) { return fathom_a16_set_address(&sensor, (uint8_t)value); }
-
-static fathom_status_t get_polarity(unsigned *value)
-{
-    fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
-    const fathom_status_t status = fathom_a16_switch_polarity(&sensor, &polarity);
-    if (status == FATHOM_READY) *value = (unsigned)polarity;
-    return status;
-}
-static fathom_status_t set_polarity(unsigned value)
-{
-    return fathom_a16_set_switch_polarity(&sensor, (fathom_a16_polarity_t)value);
-}
-
-static fathom_status_t get_threshold(unsigned *value)
-{
-    uint16_t mm = 0;
-    const fathom_status_t status = fathom_a16_switch_threshold_mm(&sensor, &mm);
-    if (status == FATHOM_READY) *value = mm;
-    return status;
-}
-static fathom_status_t set_threshold(unsigned value)
-{
-    return fathom_a16_set_switch_threshold_mm(&sensor, (uint16_t)value);
-}
-
-static fathom_status_t get_automatic(unsigned *value)
-{
-    fathom_a16_value_t which = FATHOM_A16_PROCESSED;
-    const fathom_status_t status = fathom_a16_automatic_value(&sensor, &which);
-    if (status == FATHOM_READY) *value = (unsigned)which;
-    return status;
-}
-static fathom_status_t set_automatic(unsigned value)
-{
-    return fathom_a16_set_automatic_value(&sensor, (fathom_a16_value_t)value);
-}
-
-static fathom_status_t set_mode(unsigned value)
-{
-    return fathom_a16_set_operating_mode(&sensor, (fathom_a16_operating_mode_t)value);
-}
-
-typedef struct {
-    fathom_status_t (*get)(unsigned *value);
-    fathom_status_t (*set)(unsigned value);
-    uint8_t write[6];                     /* the datasheet's example */
-    unsigned is, least, most, impossible; /* impossible: what the device cannot mean; 0: nothing is */
-} row_t;
-
-static const row_t rows[] = {
-    {get_polarity, set_polarity, {0x01, 0x06, 0x02, 0x05, 0x00, 0x00}, 1, 0, 1, 2},
-    {get_threshold, set_threshold, {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0}, 1000, 1, 16350, 0},
-    {get_automatic, set_automatic, {0x01, 0x06, 0x02, 0x07, 0x00, 0x01}, 0, 0, 1, 2},
+/* The register; a value that it has and one that the device cannot mean (0: there is none); to be set: the datasheet's
+ * example, and what is allowed. */
+static const struct {
+    fathom_status_t (*get)(void);
+    fathom_status_t (*set)(void);
+    uint16_t address, is, impossible, example, least, most;
+} rows[] = {
+    {get_address, set_address, 0x0200, 1, 256, 5, 1, 254},
+    {get_polarity, set_polarity, 0x0205, 1, 2, 0, 0, 1},
+    {get_threshold, set_threshold, 0x0206, 1000, 0, 2000, 1, 16350},
+    {get_automatic, set_automatic, 0x0207, 0, 2, 1, 0, 1},
+    {NULL, set_mode, 0x0202, 0, 0, 1, 0, 1},
 };
-enum { ROWS = sizeof rows / sizeof rows[0] };
+enum { GETS = 4, ALL = 5 };
 
-static uint16_t register_of(const row_t *row) { return (uint16_t)(row->write[2] << 8 | row->write[3]); }
-static unsigned example_of(const row_t *row) { return (unsigned)row->write[4] << 8 | row->write[5]; }
-
-TEST(a_register_is_read)
+static void forget(void)
 {
-    for (const row_t *row = rows; row != rows + ROWS; row++) {
-        unsigned value = 77;
-        set_up(state);
-        ASKS(row->get(&value));
-        assert_reads(1, register_of(row));
-        answer((uint16_t)row->is);
-        assert_int_equal(row->get(&value), FATHOM_READY);
-        assert_int_equal(value, row->is);
+    is.address = 0xA5;
+    is.polarity = FATHOM_A16_POSITIVE;
+    is.threshold_mm = 0xA5A5;
+    is.value = FATHOM_A16_REAL_TIME;
+}
+
+/* All but the one of this row. */
+static void assert_untouched_but(unsigned row)
+{
+    if (row != 0) assert_int_equal(is.address, 0xA5);
+    if (row != 1) assert_int_equal(is.polarity, FATHOM_A16_POSITIVE);
+    if (row != 2) assert_int_equal(is.threshold_mm, 0xA5A5);
+    if (row != 3) assert_int_equal(is.value, FATHOM_A16_REAL_TIME);
+}
+
+static unsigned value_of(unsigned row)
+{
+    const unsigned values[] = {is.address, (unsigned)is.polarity, is.threshold_mm, (unsigned)is.value};
+    return values[row];
+}
+
+TEST(a_register_is_read_into_that_one_variable)
+{
+    for (unsigned i = 0; i != GETS; i++) {
+        for (unsigned zero = 0; zero != 2; zero++) {
+            const uint16_t value = zero != 0 ? 0 : rows[i].is;
+            set_up(state);
+            forget();
+            PLAY(rows[i].get, OK, READ(1, rows[i].address, OK, value));
+            assert_int_equal(value_of(i), value);
+            assert_untouched_but(i);
+        }
     }
 }
 
 TEST(a_value_that_a_register_cannot_have_is_refused)
 {
-    for (const row_t *row = rows; row != rows + ROWS; row++) {
-        unsigned value = 77;
-        if (row->impossible == 0) continue;
-        set_up(state);
-        ASKS(row->get(&value));
-        answer((uint16_t)row->impossible);
-        assert_int_equal(row->get(&value), FATHOM_ERR_MALFORMED);
-        assert_int_equal(value, 77);
+    forget();
+    for (unsigned i = 0; i != GETS; i++) {
+        if (rows[i].impossible == 0) continue;
+        PLAY(rows[i].get, FATHOM_ERR_MALFORMED, READ(1, rows[i].address, OK, rows[i].impossible));
+        assert_untouched_but(GETS);
     }
 }
 
-TEST(a_failed_read_writes_nothing)
+TEST(while_it_is_asked_and_when_that_fails_it_is_left_alone)
 {
-    unsigned value = 77;
-    static fathom_status_t (*const gets[])(unsigned *value) = {get_address, get_polarity, get_threshold,
-                                                               get_automatic};
-    for (size_t i = 0; i != sizeof gets / sizeof gets[0]; i++) {
-        set_up(state);
-        ASKS(gets[i](&value));
-        fake_modbus_refuse(&fake, 2);
-        assert_int_equal(gets[i](&value), FATHOM_ERR_EXCEPTION);
-        assert_int_equal(value, 77);
+    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT,
+                                             FATHOM_ERR_EXCEPTION};
+    forget();
+    for (unsigned i = 0; i != GETS; i++) {
+        for (unsigned k = 0; k != COUNT(errors); k++) {
+            fake.now_us += FATHOM_A16_MIN_PERIOD_US;
+            PENDS(rows[i].get());
+            assert_untouched_but(GETS);
+            PLAY(rows[i].get, errors[k], READ(1, rows[i].address, errors[k], 2));
+            assert_untouched_but(GETS);
+        }
+    }
+}
+
+TEST(a_command_that_is_busy_leaves_it_alone)
+{
+    forget();
+    for (unsigned i = 0; i != GETS; i++) {
+        fake.now_us += FATHOM_A16_MIN_PERIOD_US;
+        PENDS(rows[i].get());
+        for (unsigned other = 0; other != GETS; other++)
+            if (other != i) assert_int_equal(rows[other].get(), FATHOM_ERR_BUSY);
+        assert_untouched_but(GETS);
+        fathom_a16_cancel(&a16);
     }
 }
 
 TEST(a_register_is_set_as_in_the_examples_of_6_4)
 {
-    for (const row_t *row = rows; row != rows + ROWS; row++) {
-        const unsigned wanted = example_of(row);
-        set_up(state);
-        ASKS(row->set(wanted));
-        assert_reads(1, register_of(row));
-        answer((uint16_t)row->is);
-        ASKS(row->set(wanted));
-        assert_head(row->write);
-        fake_modbus_acknowledge(&fake);
-        pass();
-        ASKS(row->set(wanted));
-        assert_reads(1, register_of(row));
-        answer((uint16_t)wanted);
-        assert_int_equal(row->set(wanted), FATHOM_READY);
+    for (unsigned i = 1; i != GETS; i++) {
+        const uint16_t address = rows[i].address;
+        desk.argument = rows[i].example;
+        PLAY(rows[i].set, OK, READ(1, address, OK, rows[i].is), WRITE(1, address, rows[i].example, OK),
+             READ(1, address, OK, rows[i].example));
     }
 }
 
 TEST(what_is_out_of_range_is_not_sent)
 {
-    for (const row_t *row = rows; row != rows + ROWS; row++) {
+    for (unsigned i = 0; i != ALL; i++) {
         set_up(state);
-        assert_int_equal(row->set(row->most + 1), FATHOM_ERR_ARGUMENT);
-        if (row->least != 0) assert_int_equal(row->set(row->least - 1), FATHOM_ERR_ARGUMENT);
-        assert_int_equal(set_address(0), FATHOM_ERR_ARGUMENT);
-        assert_int_equal(set_address(255), FATHOM_ERR_ARGUMENT);
-        assert_int_equal(set_mode(2), FATHOM_ERR_ARGUMENT);
+        desk.argument = rows[i].most + 1;
+        assert_int_equal(rows[i].set(), FATHOM_ERR_ARGUMENT);
+        desk.argument = (int32_t)rows[i].least - 1;
+        if (rows[i].least != 0) assert_int_equal(rows[i].set(), FATHOM_ERR_ARGUMENT);
         assert_int_equal(fake.submits, 0);
-        ASKS(row->set(row->most));
-        fathom_a16_cancel(&sensor);
-        ASKS(row->set(row->least));
+        desk.argument = rows[i].most;
+        PENDS(rows[i].set());
+        fathom_a16_cancel(&a16);
+        fake.now_us += FATHOM_A16_MIN_PERIOD_US;
+        desk.argument = rows[i].least;
+        PENDS(rows[i].set());
         assert_int_equal(fake.submits, 2);
     }
 }
 
 TEST(the_address_is_read_and_followed_when_it_is_set)
 {
-    /* A16 6(4), example 3 */
-    static const uint8_t write[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05};
-    fathom_sample_t sample;
-    unsigned address = 0;
-    ASKS(get_address(&address));
-    assert_reads(1, 0x0200);
-    answer(1);
-    assert_int_equal(get_address(&address), FATHOM_READY);
-    assert_int_equal(address, 1);
-
-    ASKS(set_address(5));
-    assert_reads(1, 0x0200);
-    answer(1);
-    ASKS(set_address(5));
-    assert_reads(5, 0x0200); /* is somebody there? */
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    pass();
-    ASKS(set_address(5));
-    assert_head(write);
-    fake_modbus_acknowledge(&fake);
-    pass();
-    ASKS(set_address(5));
-    assert_reads(5, 0x0200);
-    answer(5);
-    assert_int_equal(set_address(5), FATHOM_READY);
-
-    const fathom_sensor_t driver = fathom_a16_modbus_sensor(&sensor);
-    ASKS(fathom_poll(&driver, &sample));
-    assert_reads(5, 0x0100);
-    answer(754);
-    assert_int_equal(fathom_poll(&driver, &sample), FATHOM_READY);
-    assert_int_equal(sample.unit, 5);
-}
-
-TEST(an_address_over_255_is_none)
-{
-    unsigned address = 77;
-    ASKS(get_address(&address));
-    answer(256);
-    assert_int_equal(get_address(&address), FATHOM_ERR_MALFORMED);
-    assert_int_equal(address, 77);
+    desk.argument = 5;
+    PLAY(desk_poll, OK, READ(1, 0x0100, OK, 1000));
+    assert_int_equal(desk.sample.unit, 1);
+    PLAY(set_address, OK, READ(1, 0x0200, OK, 1), READ(5, 0x0200, NOBODY, 0), /* is somebody there? */
+         WRITE(1, 0x0200, 5, OK), READ(5, 0x0200, OK, 5));
+    PLAY(desk_poll, OK, READ(5, 0x0100, OK, 754));
+    assert_int_equal(desk.sample.unit, 5);
+    assert_int_equal(desk.sample.distance_mm, 754);
 }
 
 TEST(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is)
 {
-    /* A16 6(4), example 4 */
-    static const uint8_t write[] = {0x01, 0x06, 0x02, 0x02, 0x00, 0x01};
-    ASKS(set_mode(1));
-    assert_reads(1, 0x0200); /* is it there, and does the line echo? */
-    answer(1);
-    ASKS(set_mode(1));
-    assert_head(write);
-    fake_modbus_acknowledge(&fake);
-    pass();
-    assert_int_equal(set_mode(1), FATHOM_READY);
-    assert_int_equal(fake.submits, 2);
+    desk.argument = 1; /* is it there, and does the line echo? */
+    PLAY(set_mode, OK, READ(1, 0x0200, OK, 1), WRITE(1, 0x0202, 1, OK));
 }
 
 TEST(the_operating_mode_of_one_that_does_not_answer_is_not_written)
 {
-    ASKS(set_mode(1));
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(set_mode(1), FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(fake.submits, 1);
+    PLAY(set_mode, NOBODY, READ(1, 0x0200, NOBODY, 0));
+}
+
+/* ---- a distance asked once ---- */
+
+static fathom_status_t measure(void)
+{
+    return fathom_a16_measure(&a16, (fathom_a16_value_t)desk.argument, &desk.sample);
 }
 
 TEST(either_distance_can_be_asked_once)
 {
-    static const struct {
-        fathom_a16_value_t value;
-        uint16_t address, mm;
-    } distances[] = {{FATHOM_A16_PROCESSED, 0x0100, 754}, {FATHOM_A16_REAL_TIME, 0x0101, 751}}; /* 6(4) */
-    for (size_t i = 0; i != 2; i++) {
-        fathom_sample_t sample;
-        set_up(state);
-        ASKS(fathom_a16_measure(&sensor, distances[i].value, &sample));
-        assert_reads(1, distances[i].address);
-        answer(distances[i].mm);
-        assert_int_equal(fathom_a16_measure(&sensor, distances[i].value, &sample), FATHOM_READY);
-        assert_int_equal(sample.kind, FATHOM_TARGET);
-        assert_int_equal(sample.distance_mm, distances[i].mm);
-        assert_int_equal(sample.unit, 1);
+    static const uint16_t distances[] = {754, 751}; /* 6(4): 0100 is processed, 0101 real-time */
+    for (uint8_t i = 0; i != 2; i++) {
+        desk.argument = i;
+        PLAY(measure, OK, READ(1, 0x0100 + i, OK, distances[i]));
+        assert_int_equal(desk.sample.kind, FATHOM_TARGET);
+        assert_int_equal(desk.sample.distance_mm, distances[i]);
+        assert_int_equal(desk.sample.unit, 1);
     }
-    fathom_sample_t sample;
-    assert_int_equal(fathom_a16_measure(&sensor, (fathom_a16_value_t)2, &sample), FATHOM_ERR_ARGUMENT);
-}
-
-TEST(a_distance_asked_once_is_refused_like_any_other)
-{
-    fathom_sample_t sample;
-    ASKS(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample));
-    answer(16351);
-    assert_int_equal(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample), FATHOM_ERR_MALFORMED);
+    desk.argument = 2;
+    assert_int_equal(measure(), FATHOM_ERR_ARGUMENT);
+    desk.argument = 0;
+    PLAY(measure, FATHOM_ERR_MALFORMED, READ(1, 0x0100, OK, 16351)); /* refused like any other */
 }
 
 TEST(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one)
 {
-    const fathom_sensor_t driver = fathom_a16_modbus_sensor(&sensor);
-    fathom_sample_t sample;
-    ASKS(fathom_poll(&driver, &sample));
-    assert_int_equal(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample), FATHOM_PENDING);
+    desk_waits(0);
+    PENDS(measure());
     assert_int_equal(fake.submits, 1);
-    answer(1111); /* to the repeated question, which nobody takes */
-    ASKS(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample));
-    assert_int_equal(fake.submits, 2);
-    answer(2222);
-    assert_int_equal(fathom_a16_measure(&sensor, FATHOM_A16_PROCESSED, &sample), FATHOM_READY);
-    assert_int_equal(sample.distance_mm, 2222);
-}
-
-TEST(after_power_on_silence_is_warming_up_for_a_second_and_a_half)
-{
-    const fathom_sensor_t driver = fathom_a16_modbus_sensor(&sensor);
-    fathom_sample_t sample;
-    ASKS(fathom_poll(&driver, &sample));
-    fathom_a16_modbus_power_on(&sensor);
-    assert_null(fake.request);
-    ASKS(fathom_poll(&driver, &sample));
-    fake.now_us += 1499999;
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(fathom_poll(&driver, &sample), FATHOM_ERR_WARMING_UP);
-    ASKS(fathom_poll(&driver, &sample)); /* takes the period, which is the rest of the time and more */
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(fathom_poll(&driver, &sample), FATHOM_ERR_NO_ANSWER);
+    PLAY(measure, OK, READ(1, 0x0100, OK, 1111), /* to the repeated question, which nobody takes */
+         READ(1, 0x0100, OK, 2222));
+    assert_int_equal(desk.sample.distance_mm, 2222);
 }

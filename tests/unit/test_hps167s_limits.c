@@ -5,22 +5,16 @@
 
 #define PERIOD_US FATHOM_HPS167S_MIN_PERIOD_US
 
-static const uint16_t measured[4] = {0x0823, 0xDCB2, 0x0701, 0x0000}; /* the example of #5 */
-static const uint16_t tells[4] = {0xFF00, 0x0500, 0x0000, 0xB401};    /* table 12: 180 ms, rate 1 */
-static const fathom_line_settings_t factory = {19200, FATHOM_PARITY_EVEN, 1};
+static const uint16_t tells[4] = {0xFF00, 0x0500, 0x0000, 0xB401}; /* table 12: 180 ms, rate 1 */
 
 static fathom_hps167s_configuration_t is;
 static fathom_hps167s_temperature_t temperature;
 
-static fathom_status_t configuration(void) { return fathom_hps167s_configuration(&desk.hps, &is); }
-static fathom_status_t read_temperature(void) { return fathom_hps167s_temperature(&desk.hps, &temperature); }
-static fathom_status_t set_termination(void) { return fathom_hps167s_set_termination(&desk.hps, false); }
-static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&desk.hps, 115200); }
+static fathom_status_t configuration(void) { return fathom_hps167s_configuration(&hps, &is); }
+static fathom_status_t read_temperature(void) { return fathom_hps167s_temperature(&hps, &temperature); }
+static fathom_status_t set_termination(void) { return fathom_hps167s_set_termination(&hps, false); }
+static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&hps, 115200); }
 
-#define TWO(...)                                                                                             \
-    {                                                                                                        \
-        {1, 3, 0, 2, 0, 4}, FATHOM_READY, {__VA_ARGS__}, 0                                                   \
-    }
 #define ON  0xFF00, 0x0500, 0x0000, 0xB401
 #define OFF 0x0000, 0x0500, 0x0000, 0xB401
 
@@ -29,38 +23,37 @@ static uint32_t due_us(void) { return desk.sensor.due_us(desk.sensor.ctx); }
 /* Calls until the next request is under way. */
 static void asks(fathom_status_t (*command)(void))
 {
-    for (unsigned i = 0; desk.fake.request == NULL || desk.fake.ends != FATHOM_PENDING; i++) {
+    for (unsigned i = 0; fake.request == NULL || fake.ends != FATHOM_PENDING; i++) {
         assert_true(i < 1000);
-        assert_int_equal(command(), FATHOM_PENDING);
-        if (desk.fake.request == NULL) desk.fake.now_us += 1000;
+        PENDS(command());
+        if (fake.request == NULL) fake.now_us += 1000;
     }
 }
 
 static void measures(fathom_status_t as, const uint16_t *registers)
 {
     asks(desk_poll);
-    fake_modbus_answer(&desk.fake, registers, 4);
+    fake_modbus_answer(&fake, registers, 4);
     assert_int_equal(desk_poll(), as);
 }
 
-DESK_SUITE;
+HPS_SUITE;
 
 /* ---- memory that is not zero ---- */
 
 TEST(a_new_driver_has_had_no_answer_to_a_reset)
 {
-    desk_start();
-    assert_int_equal(desk.hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
-    assert_int_equal(desk.hps.reset_answer, 0xFFFF);
+    assert_int_equal(hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
+    assert_int_equal(hps.reset_answer, 0xFFFF);
 }
 
 /* "neither may be what the other was last": there was none, whatever stands in the memory. */
 TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
 {
     static const uint16_t first[4] = {0x0823, 0x0101, 0x0701, 0x0000};
-    memcpy(desk.hps.told, first, sizeof first);
-    desk_start();
-    measures(FATHOM_READY, first);
+    memcpy(hps.told, first, sizeof first);
+    hps_start();
+    measures(OK, first);
     assert_int_equal(desk.sample.distance_mm, 2083);
 }
 
@@ -68,11 +61,9 @@ TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
 TEST(the_first_configuration_is_believed_whatever_stood_in_the_memory)
 {
     static const uint16_t first[4] = {0x0000, 0x0101, 0x0000, 0x0801};
-    memcpy(desk.hps.measured, first, sizeof first);
-    desk_start();
-    assert_int_equal(desk_play(configuration, ROWS(TWO(0x0000, 0x0101, 0x0000, 0x0801),
-                                                   TWO(0x0000, 0x0101, 0x0000, 0x0801))),
-                     FATHOM_READY);
+    memcpy(hps.measured, first, sizeof first);
+    hps_start();
+    PLAY(configuration, OK, TELLS(0x0000, 0x0101, 0x0000, 0x0801));
     assert_int_equal(is.warm_up_s, 1);
     assert_int_equal(is.reconnect_time_ms, 16777224);
 }
@@ -83,7 +74,7 @@ TEST(decoding_sets_interference)
     const bool no = false;
     fathom_sample_t sample;
     memset(&sample, 0xFF, sizeof sample);
-    assert_int_equal(fathom_hps167s_decode(measured, &sample), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_decode(hps_measured, &sample), OK);
     assert_memory_equal(&sample.interference, &no, sizeof no);
 }
 
@@ -92,16 +83,16 @@ TEST(decoding_sets_interference)
 /* modbus_unit.h: after the third silence in a row one time-out, then two; the config says how much at most. */
 TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
 {
-    desk.config.backoff_us = 700000;
-    desk_start();
+    hps_config.backoff_us = 700000;
+    hps_start();
     for (unsigned n = 1; n != 7; n++) {
         asks(desk_poll);
-        fake_modbus_send(&desk.fake);
-        assert_int_equal(desk_poll(), FATHOM_PENDING);
-        desk.fake.now_us += 500000;
-        desk_is_silent(FATHOM_ERR_NO_ANSWER);
+        fake_modbus_send(&fake);
+        PENDS(desk_poll());
+        fake.now_us += 500000;
+        hps_is_silent(NOBODY);
         assert_int_equal(due_us(), n < 3 ? 0 : n == 3 ? 500000 : 700000);
-        desk.fake.now_us += due_us();
+        fake.now_us += due_us();
     }
 }
 
@@ -109,11 +100,10 @@ TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
  * one period longer. */
 TEST(after_the_fourth_measurement_in_the_place_of_an_answer_it_waits_four_periods)
 {
-    desk_start();
     for (uint32_t n = 1; n != 5; n++) {
         asks(configuration);
-        fake_modbus_answer(&desk.fake, measured, 4);
-        assert_int_equal(configuration(), FATHOM_PENDING);
+        fake_modbus_answer(&fake, hps_measured, 4);
+        PENDS(configuration());
         assert_int_equal(due_us(), n * PERIOD_US); /* 74076 us at last */
     }
 }
@@ -121,14 +111,13 @@ TEST(after_the_fourth_measurement_in_the_place_of_an_answer_it_waits_four_period
 /* No answer came, so none was a measurement, whatever the registers hold from before. */
 TEST(a_configuration_that_is_not_answered_puts_nothing_off)
 {
-    desk_start();
-    measures(FATHOM_READY, measured);
+    measures(OK, hps_measured);
     asks(configuration);
-    fake_modbus_send(&desk.fake);
-    assert_int_equal(configuration(), FATHOM_PENDING);
-    desk.fake.now_us += 1000000;
-    fake_modbus_fail(&desk.fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(configuration(), FATHOM_ERR_NO_ANSWER);
+    fake_modbus_send(&fake);
+    PENDS(configuration());
+    fake.now_us += 1000000;
+    fake_modbus_fail(&fake, NOBODY);
+    assert_int_equal(configuration(), NOBODY);
     assert_int_equal(due_us(), 0);
 }
 
@@ -136,25 +125,21 @@ TEST(a_configuration_that_is_not_answered_puts_nothing_off)
 
 TEST(after_power_on_the_configuration_is_asked_as_often_as_ever)
 {
-    desk_start();
     asks(configuration);
-    fake_modbus_answer(&desk.fake, tells, 4);
-    assert_int_equal(configuration(), FATHOM_PENDING); /* one of two */
-    fathom_hps167s_power_on(&desk.hps);
-    assert_int_equal(desk_play(configuration, ROWS(TWO(ON), TWO(ON))), FATHOM_READY);
+    fake_modbus_answer(&fake, tells, 4);
+    PENDS(configuration()); /* one of two */
+    fathom_hps167s_power_on(&hps);
+    PLAY(configuration, OK, TELLS(ON));
 }
 
 /* FATHOM_ERR_BUSY: "another command or setting is not finished": that one does not notice. */
 TEST(who_is_told_busy_costs_a_setting_no_answer)
 {
-    desk_start();
     asks(set_termination);
-    fake_modbus_answer(&desk.fake, tells, 4);
-    assert_int_equal(set_termination(), FATHOM_PENDING); /* one of two */
+    fake_modbus_answer(&fake, tells, 4);
+    PENDS(set_termination()); /* one of two */
     assert_int_equal(configuration(), FATHOM_ERR_BUSY);
-    assert_int_equal(desk_play(set_termination, ROWS(TWO(ON), {{1, 6, 0, 0x13, 0, 0}, FATHOM_READY, {0}, 0},
-                                                     TWO(OFF), TWO(OFF))),
-                     FATHOM_READY);
+    PLAY(set_termination, OK, HPS_2(1, OK, 0, ON), {{1, 6, 0, 0x13, 0, 0}, OK, {0}, 0}, TELLS(OFF));
 }
 
 /* ---- where it is ---- */
@@ -162,20 +147,17 @@ TEST(who_is_told_busy_costs_a_setting_no_answer)
 /* hps167s_settings.h: "the driver asks at both in turns until it is answered": a turn is a question, not a call. */
 TEST(calls_before_the_next_question_do_not_change_the_rate)
 {
-    desk.config.settings = &factory;
-    desk.config.backoff_us = 1; /* else it is left alone for longer than desk_asks() waits */
-    desk_start();
-    assert_int_equal(desk_play(set_baud, ROWS({{1, 3, 0, 2, 0, 4}, FATHOM_READY, {ON}, 19200},
-                                              {{1, 3, 0, 2, 0, 4}, FATHOM_READY, {ON}, 19200},
-                                              {{1, 3, 0, 2, 0, 4}, FATHOM_ERR_NO_ANSWER, {0}, 115200},
-                                              {{1, 6, 0, 0x11, 0, 3}, FATHOM_ERR_NO_ANSWER, {0}, 19200},
-                                              {{1, 3, 0, 2, 0, 4}, FATHOM_ERR_NO_ANSWER, {0}, 115200},
-                                              {{1, 3, 0, 2, 0, 4}, FATHOM_ERR_NO_ANSWER, {0}, 19200})),
-                     FATHOM_ERR_UNCONFIRMED);
+    hps_config.settings = &hps_factory;
+    hps_config.backoff_us = 1; /* else it is left alone for longer than hps_asks() waits */
+    hps_start();
+    PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200},
+         {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200}, {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 115200},
+         {{1, 6, 0, 0x11, 0, 3}, NOBODY, {0}, 19200}, {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 115200},
+         {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 19200});
     for (unsigned n = 0; n != 4; n++) {
-        desk_asks(1, n % 2 == 0 ? 19200 : 115200);
-        desk_is_silent(FATHOM_ERR_NO_ANSWER);
-        for (unsigned calls = 0; calls != n; calls++) assert_int_equal(desk_poll(), FATHOM_PENDING);
+        hps_asks(1, n % 2 == 0 ? 19200 : 115200);
+        hps_is_silent(NOBODY);
+        for (unsigned calls = 0; calls != n; calls++) PENDS(desk_poll());
     }
 }
 
@@ -188,16 +170,16 @@ TEST(a_temperature_is_told_as_far_as_tenths_of_a_degree_fit)
         uint16_t raw;
         fathom_status_t status;
         int16_t tenths;
-    } rows[] = {{23720, FATHOM_READY, 32767},
+    } rows[] = {{23720, OK, 32767},
                 {23721, FATHOM_ERR_MALFORMED, 0},
-                {0x10000 - 23465, FATHOM_READY, INT16_MIN},
+                {0x10000 - 23465, OK, INT16_MIN},
                 {0x10000 - 23466, FATHOM_ERR_MALFORMED, 0}};
     for (unsigned i = 0; i != 4; i++) {
-        desk_set_up(NULL);
-        desk.config.steps_per_degree = 4;
-        desk_start();
-        const row_t row = {{1, 3, 0, 4, 0, 1}, FATHOM_READY, {rows[i].raw}, 0};
+        hps_set_up(NULL);
+        hps_config.steps_per_degree = 4;
+        hps_start();
+        const row_t row = {{1, 3, 0, 4, 0, 1}, OK, {rows[i].raw}, 0};
         assert_int_equal(desk_play(read_temperature, &row, 1), rows[i].status);
-        if (rows[i].status == FATHOM_READY) assert_int_equal(temperature.temperature_dc, rows[i].tenths);
+        if (rows[i].status == OK) assert_int_equal(temperature.temperature_dc, rows[i].tenths);
     }
 }

@@ -3,60 +3,51 @@
 
 /* Warm-up, and what counts as a distance: the options of measuring. */
 
-static const uint16_t measured[4] = {0x0823, 0xDCB2, 0x0701, 0x0000};
-static const uint16_t abnormal[4] = {0xFFFF, 0x0000, 0x00FF, 0xFFFF}; /* #5 */
+/* Asks at once, and is answered after us: with these registers, or so. */
+static fathom_status_t says_after(uint32_t us, const uint16_t *registers, fathom_status_t status)
+{
+    PENDS(desk_poll());
+    assert_non_null(fake.request);
+    fake.now_us += us;
+    if (registers != NULL)
+        fake_modbus_answer(&fake, registers, 4);
+    else
+        fake_modbus_fail(&fake, status);
+    fake.submits = 0;
+    status = desk_poll();
+    fake.now_us += 20000;
+    return status;
+}
 
-/* Asks at once and ends it after us. */
 static fathom_status_t ends_after(uint32_t us, fathom_status_t status)
 {
-    assert_int_equal(desk_poll(), FATHOM_PENDING);
-    assert_non_null(desk.fake.request);
-    desk.fake.now_us += us;
-    if (status == FATHOM_ERR_EXCEPTION)
-        fake_modbus_refuse(&desk.fake, 4);
-    else
-        fake_modbus_fail(&desk.fake, status);
-    const fathom_status_t as = desk_poll();
-    desk_assert_guard(&desk.sample, sizeof desk.sample);
-    desk.fake.now_us += 20000;
-    return as;
+    return says_after(us, NULL, status);
 }
+static fathom_status_t says(const uint16_t *registers) { return says_after(0, registers, OK); }
 
-static fathom_status_t says(const uint16_t *registers)
-{
-    assert_int_equal(desk_poll(), FATHOM_PENDING);
-    fake_modbus_answer(&desk.fake, registers, 4);
-    const fathom_status_t as = desk_poll();
-    desk.fake.now_us += 20000;
-    return as;
-}
-
-DESK_SUITE;
+HPS_SUITE;
 
 /* ---- warm-up ---- */
 
 TEST(silence_damage_refusal_and_the_abnormal_packet_are_warming_up)
 {
-    desk_start();
-    fathom_hps167s_power_on(&desk.hps);
-    assert_int_equal(ends_after(10000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_WARMING_UP);
+    fathom_hps167s_power_on(&hps);
+    assert_int_equal(ends_after(10000, NOBODY), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(10000, FATHOM_ERR_CHECKSUM), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(10000, FATHOM_ERR_EXCEPTION), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(10000, FATHOM_ERR_PORT), FATHOM_ERR_PORT);
-    assert_int_equal(says(abnormal), FATHOM_ERR_WARMING_UP);
-    desk_assert_guard(&desk.sample, sizeof desk.sample);
-    assert_int_equal(desk.hps.implausible, 0);
-    assert_int_equal(says(measured), FATHOM_READY); /* if it does measure, it does */
+    assert_int_equal(says(hps_abnormal), FATHOM_ERR_WARMING_UP);
+    assert_int_equal(hps.implausible, 0);
+    assert_int_equal(says(hps_measured), OK); /* if it does measure, it does */
     assert_int_equal(desk.sample.sequence, 1);
-    assert_int_equal(says(abnormal), FATHOM_ERR_WARMING_UP);
+    assert_int_equal(says(hps_abnormal), FATHOM_ERR_WARMING_UP);
 }
 
 TEST(without_power_on_they_are_what_they_are)
 {
-    desk_start();
-    assert_int_equal(ends_after(10000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(ends_after(10000, NOBODY), NOBODY);
     assert_int_equal(ends_after(10000, FATHOM_ERR_EXCEPTION), FATHOM_ERR_EXCEPTION);
-    assert_int_equal(says(abnormal), FATHOM_READY);
+    assert_int_equal(says(hps_abnormal), OK);
     assert_int_equal(desk.sample.kind, FATHOM_FAULT);
 }
 
@@ -67,104 +58,85 @@ TEST(the_warm_up_is_an_option_and_its_last_question_counts)
         {0, 0, 5500000}, {1, 0, 1500000}, {9, 0, 9500000}, {255, 0, 255500000}, {2, 170000, 2170000}};
     for (unsigned i = 0; i != 5; i++) {
         for (unsigned late = 0; late != 2; late++) {
-            desk_set_up(NULL);
-            desk.config.warm_up_s = (uint8_t)rows[i][0];
-            desk.config.timeout_us = rows[i][1];
-            desk_start();
-            fathom_hps167s_power_on(&desk.hps);
-            assert_int_equal(ends_after(rows[i][2] - 1 + late, FATHOM_ERR_NO_ANSWER),
-                             late == 0 ? FATHOM_ERR_WARMING_UP : FATHOM_ERR_NO_ANSWER);
-            assert_int_equal(says(abnormal), FATHOM_READY);
+            hps_set_up(NULL);
+            hps_config.warm_up_s = (uint8_t)rows[i][0];
+            hps_config.timeout_us = rows[i][1];
+            hps_start();
+            fathom_hps167s_power_on(&hps);
+            assert_int_equal(ends_after(rows[i][2] - 1 + late, NOBODY),
+                             late == 0 ? FATHOM_ERR_WARMING_UP : NOBODY);
+            assert_int_equal(says(hps_abnormal), OK);
             assert_int_equal(desk.sample.kind, FATHOM_FAULT);
         }
     }
 }
 
-static fathom_status_t nine(void) { return fathom_hps167s_set_warm_up_s(&desk.hps, 9); }
-static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&desk.hps); }
+static fathom_status_t nine(void) { return fathom_hps167s_set_warm_up_s(&hps, 9); }
+static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
 
-#define IS(warm_up)                                                                                          \
-    {{1, 3, 0, 2, 0, 4}, FATHOM_READY, {0xFFFF, warm_up * 256, 0x0000, 0xB401}, 0},                          \
-    {                                                                                                        \
-        {1, 3, 0, 2, 0, 4}, FATHOM_READY, {0xFFFF, warm_up * 256, 0x0000, 0xB401}, 0                         \
-    }
+#define WARMS_UP(s) TELLS(0xFFFF, (s)*256, 0x0000, 0xB401)
 
 TEST(a_warm_up_that_was_set_counts_from_then_on)
 {
-    desk.config.warm_up_s = 1;
-    desk_start();
-    assert_int_equal(desk_play(nine, ROWS(IS(1), {{1, 6, 0, 0x0A, 0, 9}, FATHOM_READY, {0}, 0}, IS(9))),
-                     FATHOM_READY);
-    desk.fake.now_us += 20000;
-    fathom_hps167s_power_on(&desk.hps);
-    assert_int_equal(ends_after(9000000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_WARMING_UP);
-    assert_int_equal(desk_play(reset, ROWS(IS(9), {{1, 3, 0, 9, 0, 1}, FATHOM_READY, {1}, 0}, IS(5))),
-                     FATHOM_READY);
-    desk.fake.now_us += 20000;
-    fathom_hps167s_power_on(&desk.hps);
-    assert_int_equal(ends_after(5400000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_WARMING_UP);
-    assert_int_equal(ends_after(100000, FATHOM_ERR_NO_ANSWER), FATHOM_ERR_NO_ANSWER);
+    hps_config.warm_up_s = 1;
+    hps_start();
+    PLAY(nine, OK, WARMS_UP(1), HPS_WRITE(1, 0x0A, 9, OK, 0), WARMS_UP(9));
+    fake.now_us += 20000;
+    fathom_hps167s_power_on(&hps);
+    assert_int_equal(ends_after(9000000, NOBODY), FATHOM_ERR_WARMING_UP);
+    PLAY(reset, OK, WARMS_UP(9), HPS_6(1, OK, 1, 0), WARMS_UP(5));
+    fake.now_us += 20000;
+    fathom_hps167s_power_on(&hps);
+    assert_int_equal(ends_after(5400000, NOBODY), FATHOM_ERR_WARMING_UP);
+    assert_int_equal(ends_after(100000, NOBODY), NOBODY);
 }
 
 TEST(power_forgets_what_was_under_way)
 {
     fathom_hps167s_configuration_t is;
-    desk_start();
-    assert_int_equal(fathom_hps167s_configuration(&desk.hps, &is), FATHOM_PENDING);
-    fathom_hps167s_power_on(&desk.hps);
-    assert_null(desk.fake.request);
-    assert_int_equal(says(measured), FATHOM_READY);
+    PENDS(fathom_hps167s_configuration(&hps, &is));
+    fathom_hps167s_power_on(&hps);
+    assert_null(fake.request);
+    assert_int_equal(says(hps_measured), OK);
 }
 
 /* ---- what is a distance ---- */
 
-static int kind_of(uint16_t raw)
-{
-    const uint16_t registers[4] = {raw, 0xDCB2, 0x0701, 0x0000};
-    desk.fake.submits = 0;
-    return says(registers) == FATHOM_READY ? desk.sample.kind : 0;
-}
+typedef struct {
+    fathom_hps167s_limits_t limits;
+    struct {
+        uint16_t raw;
+        uint8_t kind; /* 0: refused */
+    } is[4];
+} limits_t;
 
-TEST(the_largest_distance_is_an_option)
+static void kinds_as_in(void **state)
 {
-    desk_start();
-    assert_int_equal(kind_of(30000), FATHOM_TARGET);
-    assert_int_equal(kind_of(30001), 0);
-    desk_set_up(NULL);
-    desk.config.limits.max_mm = 18000;
-    desk_start();
-    assert_int_equal(kind_of(18000), FATHOM_TARGET);
-    assert_int_equal(kind_of(18001), 0);
-    assert_int_equal(kind_of(65530), FATHOM_NO_TARGET);
-    assert_int_equal(desk.hps.implausible, 1);
-}
-
-TEST(where_over_range_begins_is_an_option)
-{
-    desk_start();
-    assert_int_equal(kind_of(65529), 0);
-    assert_int_equal(kind_of(65530), FATHOM_NO_TARGET);
-    desk_set_up(NULL);
-    desk.config.limits.over_range_mm = 65500;
-    desk_start();
-    assert_int_equal(kind_of(65499), 0);
-    assert_int_equal(kind_of(65500), FATHOM_NO_TARGET);
-    assert_int_equal(kind_of(65534), FATHOM_NO_TARGET);
-    assert_int_equal(kind_of(65535), FATHOM_FAULT);
-}
-
-TEST(limits_that_make_no_sense_are_refused)
-{
-    static const uint16_t wrong[][2] = {{0, 65535}, {0, 30000}, {65530, 0}, {100, 100}, {65534, 65534}};
-    for (unsigned i = 0; i != 5; i++) {
-        desk.config.limits.max_mm = wrong[i][0];
-        desk.config.limits.over_range_mm = wrong[i][1];
-        assert_int_equal(fathom_hps167s_init(&desk.hps, &desk.config), FATHOM_ERR_ARGUMENT);
+    const limits_t *const row = *state;
+    hps_set_up(NULL);
+    hps_config.limits = row->limits;
+    hps_start();
+    for (unsigned i = 0; i != 4; i++) {
+        const uint16_t registers[4] = {row->is[i].raw, 0xDCB2, 0x0701, 0x0000};
+        const uint16_t refused = hps.implausible;
+        assert_int_equal(says(registers), row->is[i].kind != 0 ? OK : FATHOM_ERR_MALFORMED);
+        assert_int_equal(hps.implausible - refused, row->is[i].kind == 0);
+        if (row->is[i].kind != 0) assert_int_equal(desk.sample.kind, row->is[i].kind);
     }
-    desk.config.limits.max_mm = 65533;
-    desk.config.limits.over_range_mm = 65534;
-    assert_int_equal(fathom_hps167s_init(&desk.hps, &desk.config), FATHOM_READY);
 }
+
+#define LIMITS(promise, max_mm, over_range_mm, ...)                                                          \
+    static const limits_t promise = {{max_mm, over_range_mm}, {__VA_ARGS__}};                                \
+    TEST_ROW(promise, kinds_as_in, &promise)
+
+LIMITS(by_default_distances_end_at_30000_and_over_range_begins_at_65530, 0, 0, {30000, FATHOM_TARGET},
+       {30001, 0}, {65529, 0}, {65530, FATHOM_NO_TARGET})
+LIMITS(the_largest_distance_is_an_option, 18000, 0, {18000, FATHOM_TARGET}, {18001, 0}, {65529, 0},
+       {65530, FATHOM_NO_TARGET})
+LIMITS(where_over_range_begins_is_an_option, 0, 65500, {65499, 0}, {65500, FATHOM_NO_TARGET},
+       {65534, FATHOM_NO_TARGET}, {65535, FATHOM_FAULT})
+LIMITS(the_two_limits_may_touch, 65533, 65534, {65533, FATHOM_TARGET}, {65534, FATHOM_NO_TARGET},
+       {65535, FATHOM_FAULT}, {0, 0})
 
 /* Never a distance, whatever the rest of the packet says. */
 TEST(all_ones_are_a_fault_without_the_full_pattern_too)
@@ -173,9 +145,8 @@ TEST(all_ones_are_a_fault_without_the_full_pattern_too)
                                           {0xFFFF, 0x0000, 0x0000, 0xFFFF},
                                           {0xFFFF, 0x0000, 0x00FF, 0x0000},
                                           {0xFFFF, 0xDCB2, 0x0701, 0x0000}};
-    desk_start();
     for (unsigned i = 0; i != 4; i++) {
-        assert_int_equal(says(packets[i]), FATHOM_READY);
+        assert_int_equal(says(packets[i]), OK);
         assert_int_equal(desk.sample.kind, FATHOM_FAULT);
         assert_int_equal(desk.sample.distance_mm, 0);
     }

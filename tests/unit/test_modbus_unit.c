@@ -1,60 +1,96 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
-#include "suite.h"
-
-#include "fake_modbus.h"
+#include "desk.h"
 #include "fathom/modbus_unit.h"
 
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, GUARD16 = 0xA5A5 };
 
-static fake_modbus_t fake;
 static fathom_modbus_unit_t unit;
 static uint16_t values[11];
+static uint16_t wanted[2] = {0x07D0, 0x1234};
 
+#define QUESTION(timeout_us, values, first, count, retries, is_command, function)                            \
+    {                                                                                                        \
+        timeout_us, PACE_US, 0, NULL, values, first, count, retries, is_command, function                    \
+    }
 /* As drivers use them: one repeated question, and two commands. */
-static const fathom_modbus_question_t measure = {TIMEOUT_US, PACE_US, 0, NULL,  values,
-                                                 0x0100,     1,       2, false, 0};
-static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true, 0};
-static const fathom_modbus_question_t details = {1000000, PACE_US, 0, NULL, values, 0x0003, 11, 0, true, 0};
+static const fathom_modbus_question_t measure = QUESTION(TIMEOUT_US, values, 0x0100, 1, 2, false, 0);
+static const fathom_modbus_question_t version = QUESTION(1000000, values, 0x0001, 3, 0, true, 0);
+static const fathom_modbus_question_t details = QUESTION(1000000, values, 0x0003, 11, 0, true, 0);
 
-static const uint16_t one_value[] = {754};
-static const uint16_t three_values[] = {0x1409, 0x1B02, 0x0100};
-
-static int set_up_at(uint32_t now_us)
+static void set_up_at(uint32_t now_us)
 {
-    fake_modbus_init(&fake);
-    fake.now_us = now_us;
-    memset(values, 0xA5, sizeof values);
+    desk_begin(now_us);
+    memset(values, GUARD, sizeof values);
     memset(&unit, 0x5A, sizeof unit);
     assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, UNIT), FATHOM_READY);
+}
+
+static int set_up(void **state)
+{
+    set_up_at(5000);
     return 0;
 }
 
-static int set_up(void **state) { return set_up_at(5000); }
-
 static const suite_t suite = {.set_up = set_up};
 
-static fathom_status_t read_after(uint32_t us, const fathom_modbus_question_t *question)
+/* What happens in the order of time. */
+typedef struct {
+    const fathom_modbus_question_t *question; /* is asked; NULL: the carrier does something */
+    uint32_t after_us;
+    /* What comes of it; of the carrier: how it ends the request, or FATHOM_PENDING: it sends it. */
+    fathom_status_t is;
+    uint8_t submits; /* requests so far */
+} step_t;
+
+#define P(us, question, submits)                                                                             \
+    (step_t) { &(question), us, FATHOM_PENDING, submits }
+#define IS(status, us, question, submits)                                                                    \
+    (step_t) { &(question), us, status, submits }
+#define SENT                                                                                                 \
+    (step_t) { NULL, 0, FATHOM_PENDING, 0 }
+#define ENDS(status)                                                                                         \
+    (step_t) { NULL, 0, status, 0 }
+#define ANSWERED ENDS(FATHOM_READY)
+/* It is asked and on the wire; and the answer has been taken, so long after. */
+#define ON_WIRE(question, submits) P(0, question, submits), SENT, P(0, question, submits)
+#define TAKEN(us, question, submits)                                                                         \
+    ON_WIRE(question, submits), ANSWERED, IS(FATHOM_READY, us, question, submits)
+/* It is asked in exactly so long. */
+#define ASKED_IN(us, question, submits) P((us)-1, question, (submits)-1), P(1, question, submits)
+
+static const uint16_t three_values[] = {0x1409, 0x1B02, 0x0100};
+
+static void go(const step_t *steps, unsigned count)
 {
-    fake.now_us += us;
-    return fathom_modbus_unit_ask(&unit, question);
+    static const uint16_t one_value[] = {754};
+    for (const step_t *step = steps; step != steps + count; step++) {
+        if (step->question != NULL) {
+            fake.now_us += step->after_us;
+            const unsigned before = fake.submits;
+            const fathom_modbus_question_t *const asked = step->question;
+            assert_int_equal(fathom_modbus_unit_ask(&unit, asked), step->is);
+            assert_int_equal(fake.submits, step->submits);
+            if (fake.submits == before) continue;
+            const uint8_t *const head = fake.log[before];
+            const bool one_write = asked->function == 6;
+            assert_int_equal(head[0], UNIT);
+            assert_int_equal(head[1], asked->function != 0 ? asked->function : 3);
+            assert_int_equal(head[2] << 8 | head[3], asked->first);
+            assert_int_equal(head[4] << 8 | head[5], one_write ? asked->values[0] : asked->count);
+        } else if (step->is == FATHOM_PENDING) {
+            fake_modbus_send(&fake);
+        } else if (step->is == FATHOM_READY && fake.request->message.head[1] == 3) {
+            const uint8_t asked = fake.request->message.head[5];
+            fake_modbus_answer(&fake, asked == 1 ? one_value : three_values, asked);
+        } else {
+            fake_modbus_fail(&fake, step->is);
+        }
+    }
 }
 
-static void pending_after(uint32_t us, const fathom_modbus_question_t *question)
-{
-    assert_int_equal(read_after(us, question), FATHOM_PENDING);
-}
-
-/* The question is asked, and its request is on the wire. */
-static void ask_and_send(const fathom_modbus_question_t *question)
-{
-    const unsigned before = fake.submits;
-    pending_after(0, question);
-    assert_int_equal(fake.submits, before + 1);
-    fake_modbus_send(&fake);
-    pending_after(0, question);
-}
+#define GO(...) go((const step_t[]){__VA_ARGS__}, sizeof((const step_t[]){__VA_ARGS__}) / sizeof(step_t))
+#define STEPS(promise, ...)                                                                                  \
+    TEST(promise) { GO(__VA_ARGS__); }
 
 static uint32_t due(void) { return fathom_modbus_unit_due_us(&unit); }
 
@@ -73,8 +109,10 @@ TEST(a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device)
 
 TEST(the_first_question_goes_out_at_once_just_as_it_was_asked)
 {
-    pending_after(0, &measure);
-    fake_modbus_assert_asked(&fake, 1, UNIT, 0x0100, 1);
+    assert_int_equal(due(), 0);
+    fake.now_us += 1000000;
+    assert_int_equal(due(), 0);
+    GO(P(0, measure, 1));
     assert_int_equal(fake.request->exchange.timeout_us, TIMEOUT_US);
     assert_int_equal(fake.request->exchange.retries, 2);
     assert_ptr_equal(fake.request->message.values, values);
@@ -84,43 +122,28 @@ TEST(the_first_question_goes_out_at_once_just_as_it_was_asked)
 
 TEST(an_answer_is_handed_over_once)
 {
-    ask_and_send(&measure);
     fake.heard_us = 4711;
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(10, &measure), FATHOM_READY);
+    GO(TAKEN(10, measure, 1), P(10, measure, 1), P(10, measure, 1));
     assert_int_equal(values[0], 754);
     assert_int_equal(unit.heard_us, 4711);
     assert_int_equal(unit.answers, 1);
     assert_int_equal(unit.failures, 0);
-    for (unsigned i = 0; i != 5; i++) pending_after(10, &measure);
-    assert_int_equal(fake.submits, 1);
 }
 
 TEST(every_error_is_handed_over_once_and_the_next_attempt_follows)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
                                              FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED};
-    for (unsigned i = 0; i != sizeof errors / sizeof *errors; i++) {
-        ask_and_send(&measure);
-        fake.exception = 4;
-        fake_modbus_fail(&fake, errors[i]);
-        assert_int_equal(read_after(10, &measure), errors[i]);
-        assert_int_equal(unit.failures, i + 1);
+    fake.exception = 171;
+    for (uint8_t i = 1; i <= COUNT(errors); i++) {
+        GO(ON_WIRE(measure, i), ENDS(errors[i - 1]), IS(errors[i - 1], 10, measure, i),
+           P(PACE_US - 11, measure, i));
+        assert_int_equal(unit.failures, i);
         assert_int_equal(unit.answers, 0);
         assert_int_equal(values[0], GUARD16);
-        pending_after(PACE_US - 11, &measure);
-        assert_int_equal(fake.submits, i + 1);
+        assert_int_equal(unit.request.message.exception, i == 3 ? 171 : 0);
         fake.now_us += 1;
     }
-    assert_int_equal(unit.request.message.exception, 0);
-}
-
-TEST(the_number_of_an_exception_stands_in_the_request)
-{
-    ask_and_send(&measure);
-    fake_modbus_refuse(&fake, 171);
-    assert_int_equal(read_after(10, &measure), FATHOM_ERR_EXCEPTION);
-    assert_int_equal(unit.request.message.exception, 171);
 }
 
 TEST(a_request_that_the_carrier_does_not_take_is_tried_again_each_time)
@@ -128,26 +151,20 @@ TEST(a_request_that_the_carrier_does_not_take_is_tried_again_each_time)
     static const fathom_status_t errors[] = {FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY, FATHOM_ERR_BUSY};
     for (unsigned i = 0; i != 3; i++) {
         fake.refuses = errors[i];
-        assert_int_equal(read_after(1, &measure), errors[i]);
-        assert_int_equal(read_after(1, &measure), errors[i]);
+        GO(IS(errors[i], 1, measure, 0), IS(errors[i], 1, measure, 0));
         assert_int_equal(due(), 0);
     }
     fake.refuses = 0;
-    ask_and_send(&measure);
+    GO(P(0, measure, 1));
     assert_int_equal(unit.failures, 0);
 }
 
 TEST(the_counters_stop_at_65535)
 {
-    unit.answers = 65534;
-    unit.failures = 65534;
-    for (unsigned i = 0; i != 3; i++) {
-        ask_and_send(&measure);
-        fake_modbus_answer(&fake, one_value, 1);
-        assert_int_equal(read_after(PACE_US, &measure), FATHOM_READY);
-        ask_and_send(&measure);
-        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-        assert_int_equal(read_after(PACE_US, &measure), FATHOM_ERR_NO_ANSWER);
+    unit.answers = unit.failures = 65534;
+    for (uint8_t i = 1; i <= 5; i += 2) {
+        GO(TAKEN(PACE_US, measure, i), ON_WIRE(measure, i + 1), ENDS(FATHOM_ERR_NO_ANSWER),
+           IS(FATHOM_ERR_NO_ANSWER, PACE_US, measure, i + 1));
         assert_int_equal(unit.answers, 65535);
         assert_int_equal(unit.failures, 65535);
     }
@@ -157,225 +174,128 @@ TEST(the_counters_stop_at_65535)
 
 TEST(the_pace_counts_from_the_request_on_the_wire)
 {
-    pending_after(0, &measure);
-    for (unsigned i = 0; i != 100; i++) pending_after(PACE_US, &measure); /* in a long queue */
-    fake_modbus_send(&fake);
-    pending_after(20, &measure); /* in this poll it leaves */
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(40000, &measure), FATHOM_READY);
-    pending_after(PACE_US - 40001, &measure);
-    assert_int_equal(fake.submits, 1);
-    pending_after(1, &measure);
-    assert_int_equal(fake.submits, 2);
+    for (unsigned i = 0; i != 100; i++) GO(P(PACE_US, measure, 1)); /* in a long queue */
+    GO(SENT, P(20, measure, 1), ANSWERED, IS(FATHOM_READY, 40000, measure, 1),
+       ASKED_IN(PACE_US - 40000, measure, 2));
 }
 
-TEST(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it)
-{
-    pending_after(0, &measure);
-    fake_modbus_answer(&fake, one_value, 1); /* a slow loop: sent and answered since the last poll */
-    assert_int_equal(read_after(3 * PACE_US, &measure), FATHOM_READY);
-    pending_after(PACE_US - 1, &measure);
-    assert_int_equal(fake.submits, 1);
-    pending_after(1, &measure);
-    assert_int_equal(fake.submits, 2);
-}
+/* A slow loop: sent and answered since the last poll. */
+STEPS(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it, P(0, measure, 1), ANSWERED,
+      IS(FATHOM_READY, 3 * PACE_US, measure, 1), ASKED_IN(PACE_US, measure, 2))
 
 /* modbus_unit.h: "from this request to the next one to the unit, at least"; a retry is a request too. */
-TEST(the_pace_counts_from_the_last_attempt)
-{
-    ask_and_send(&measure);
-    pending_after(6 * PACE_US, &measure);
-    fake_modbus_send(&fake);
-    pending_after(0, &measure);
-    assert_int_equal(fake.request->exchange.attempts, 2);
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(25000, &measure), FATHOM_READY);
-    pending_after(PACE_US - 25001, &measure);
-    assert_int_equal(fake.submits, 1);
-    pending_after(1, &measure);
-    assert_int_equal(fake.submits, 2);
-}
+STEPS(the_pace_counts_from_the_last_attempt, ON_WIRE(measure, 1), P(6 * PACE_US, measure, 1), SENT,
+      P(0, measure, 1), ANSWERED, IS(FATHOM_READY, 25000, measure, 1), ASKED_IN(PACE_US - 25000, measure, 2))
 
-TEST(an_answer_slower_than_the_pace_is_followed_at_once)
-{
-    ask_and_send(&measure);
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(PACE_US, &measure), FATHOM_READY);
-    pending_after(0, &measure);
-    assert_int_equal(fake.submits, 2);
-}
+STEPS(an_answer_slower_than_the_pace_is_followed_at_once, TAKEN(PACE_US, measure, 1), P(0, measure, 2))
 
-TEST(the_pace_holds_across_the_wrap_of_the_clock)
+TEST(the_pace_holds_across_the_wrap_of_the_clock_and_due_tells_it)
 {
     for (uint32_t before_us = 0; before_us <= PACE_US; before_us += 10000) {
         set_up_at(UINT32_MAX - before_us);
-        ask_and_send(&measure);
-        fake_modbus_answer(&fake, one_value, 1);
-        assert_int_equal(read_after(30000, &measure), FATHOM_READY);
-        assert_int_equal(due(), PACE_US - 30000);
-        pending_after(PACE_US - 30001, &measure);
-        assert_int_equal(fake.submits, 1);
-        pending_after(1, &measure);
-        assert_int_equal(fake.submits, 2);
+        GO(TAKEN(30000, measure, 1));
+        for (uint32_t left_us = PACE_US - 30000; left_us != 0; left_us -= 10000) {
+            assert_int_equal(due(), left_us);
+            fake.now_us += 10000;
+        }
+        assert_int_equal(due(), 0);
+        fake.now_us += 1;
+        assert_int_equal(due(), 0);
+        fake.now_us -= PACE_US - 30000 + 1;
+        GO(ASKED_IN(PACE_US - 30000, measure, 2));
     }
 }
 
 /* ---- commands beside the repeated question ---- */
 
+/* The measurement's outcome is dropped. */
 TEST(a_command_waits_for_a_measurement_and_takes_its_place)
 {
-    ask_and_send(&measure);
-    pending_after(10, &version);
-    assert_int_equal(fake.submits, 1);
-    fake_modbus_answer(&fake, one_value, 1);
-    pending_after(10, &version); /* the measurement's outcome is dropped */
-    pending_after(PACE_US - 21, &version);
-    assert_int_equal(fake.submits, 1);
-    pending_after(1, &version);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0001, 3);
+    GO(ON_WIRE(measure, 1), P(10, version, 1), ANSWERED, P(10, version, 1),
+       ASKED_IN(PACE_US - 20, version, 2));
     assert_int_equal(unit.answers, 1);
-    fake_modbus_answer(&fake, three_values, 3);
-    assert_int_equal(read_after(10, &version), FATHOM_READY);
+    GO(ANSWERED, IS(FATHOM_READY, 10, version, 2));
     assert_memory_equal(values, three_values, sizeof three_values);
 }
 
 TEST(a_measurement_waits_until_the_outcome_of_a_command_was_taken)
 {
-    ask_and_send(&version);
-    pending_after(10, &measure);
-    fake_modbus_answer(&fake, three_values, 3);
-    for (unsigned i = 0; i != 5; i++) pending_after(PACE_US, &measure);
-    assert_int_equal(fake.submits, 1);
+    GO(ON_WIRE(version, 1), P(10, measure, 1), ANSWERED);
+    for (unsigned i = 0; i != 5; i++) {
+        GO(P(PACE_US, measure, 1));
+        assert_int_equal(due(), 0); /* with an outcome to take */
+    }
     assert_memory_equal(values, three_values, sizeof three_values);
-    assert_int_equal(read_after(10, &version), FATHOM_READY);
+    GO(IS(FATHOM_READY, 10, version, 1), P(0, measure, 2));
     assert_int_equal(unit.answers, 1);
-    pending_after(0, &measure);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0100, 1);
 }
 
-TEST(an_error_of_a_command_waits_for_who_asked_too)
-{
-    ask_and_send(&version);
-    fake_modbus_refuse(&fake, 2);
-    pending_after(PACE_US, &measure);
-    pending_after(PACE_US, &measure);
-    assert_int_equal(read_after(0, &version), FATHOM_ERR_EXCEPTION);
-    assert_int_equal(unit.request.message.exception, 2);
-}
+STEPS(an_error_of_a_command_waits_for_who_asked_too, ON_WIRE(version, 1), ENDS(FATHOM_ERR_EXCEPTION),
+      P(PACE_US, measure, 1), P(PACE_US, measure, 1), IS(FATHOM_ERR_EXCEPTION, 0, version, 1))
 
-TEST(a_second_command_is_told_busy_until_the_first_was_taken)
-{
-    ask_and_send(&version);
-    assert_int_equal(read_after(10, &details), FATHOM_ERR_BUSY);
-    fake_modbus_answer(&fake, three_values, 3);
-    assert_int_equal(read_after(10, &details), FATHOM_ERR_BUSY);
-    assert_int_equal(read_after(PACE_US, &details), FATHOM_ERR_BUSY);
-    assert_int_equal(fake.submits, 1);
-    assert_int_equal(read_after(10, &version), FATHOM_READY);
-    pending_after(10, &details);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0003, 11);
-}
+STEPS(a_second_command_is_told_busy_until_the_first_was_taken, ON_WIRE(version, 1),
+      IS(FATHOM_ERR_BUSY, 10, details, 1), ANSWERED, IS(FATHOM_ERR_BUSY, 10, details, 1),
+      IS(FATHOM_ERR_BUSY, PACE_US, details, 1), IS(FATHOM_READY, 10, version, 1), P(10, details, 2))
 
-TEST(another_repeated_question_replaces_the_first_when_that_has_ended)
-{
-    const fathom_modbus_question_t other = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false, 0};
-    ask_and_send(&measure);
-    pending_after(10, &other);
-    fake_modbus_answer(&fake, one_value, 1);
-    pending_after(PACE_US, &other);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0101, 1);
-}
+static const fathom_modbus_question_t at_0101 = QUESTION(TIMEOUT_US, values, 0x0101, 1, 0, false, 0);
+static const fathom_modbus_question_t at_0000 = QUESTION(TIMEOUT_US, values, 0x0000, 1, 0, false, 0);
 
-TEST(registers_with_one_equal_byte_are_two_questions)
-{
-    const fathom_modbus_question_t high = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0000, 1, 0, false, 0};
-    const fathom_modbus_question_t low = {TIMEOUT_US, PACE_US, 0, NULL, values, 0x0101, 1, 0, false, 0};
-    ask_and_send(&version); /* 0001 */
-    fake_modbus_answer(&fake, three_values, 3);
-    pending_after(PACE_US, &high);
-    pending_after(PACE_US, &measure); /* 0100 */
-    pending_after(PACE_US, &low);
-    assert_int_equal(read_after(0, &version), FATHOM_READY);
-}
+STEPS(another_repeated_question_replaces_the_first_when_that_has_ended, ON_WIRE(measure, 1),
+      P(10, at_0101, 1), ANSWERED, P(PACE_US, at_0101, 2))
+
+/* version is of 0001, measure of 0100 */
+STEPS(registers_with_one_equal_byte_are_two_questions, ON_WIRE(version, 1), ANSWERED, P(PACE_US, at_0000, 1),
+      P(PACE_US, measure, 1), P(PACE_US, at_0101, 1), IS(FATHOM_READY, 0, version, 1))
+
+STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_question, TAKEN(1000, measure, 1),
+      P(1000, version, 1), P(PACE_US, measure, 1), /* the pause is over, but a command waits */
+      IS(FATHOM_ERR_BUSY, 0, details, 1),          /* another one must not overtake it */
+      P(0, version, 2))
 
 /* ---- cancel ---- */
 
-TEST(cancel_ends_a_request_under_way_once)
+TEST(cancel_ends_a_request_under_way_once_and_keeps_the_pace)
 {
-    ask_and_send(&version);
+    fathom_modbus_unit_cancel(&unit); /* nothing */
+    assert_int_equal(fake.cancels, 0);
+    GO(ON_WIRE(version, 1));
     fathom_modbus_unit_cancel(&unit);
     fathom_modbus_unit_cancel(&unit);
     assert_int_equal(fake.cancels, 1);
     assert_null(fake.request);
-    pending_after(PACE_US - 1, &measure); /* and keeps the pace */
-    assert_int_equal(fake.submits, 1);
-    pending_after(1, &measure);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0100, 1);
+    GO(ASKED_IN(PACE_US, measure, 2));
 }
 
 TEST(cancel_forgets_an_outcome_that_nobody_took)
 {
-    ask_and_send(&version);
-    fake_modbus_answer(&fake, three_values, 3);
-    pending_after(10, &measure);
+    GO(ON_WIRE(version, 1), ANSWERED, P(10, measure, 1));
     fathom_modbus_unit_cancel(&unit);
     assert_int_equal(fake.cancels, 0);
-    pending_after(PACE_US, &version);
-    assert_int_equal(fake.submits, 2);
+    GO(P(PACE_US, version, 2));
 }
 
-TEST(cancel_of_nothing_does_nothing)
+TEST(cancel_gives_up_a_command_that_waits)
 {
+    GO(TAKEN(1000, measure, 1), P(1000, version, 1));
     fathom_modbus_unit_cancel(&unit);
-    assert_int_equal(fake.cancels, 0);
-    ask_and_send(&measure);
+    GO(P(PACE_US, measure, 2));
 }
 
 /* ---- due ---- */
 
-TEST(it_is_due_at_once_when_it_may_ask)
-{
-    assert_int_equal(due(), 0);
-    fake.now_us += 1000000;
-    assert_int_equal(due(), 0);
-}
-
 TEST(it_is_due_when_the_carrier_is_while_it_waits)
 {
-    ask_and_send(&measure);
+    GO(ON_WIRE(measure, 1));
     fake.due_us = 1234;
     assert_int_equal(due(), 1234);
     fake.due_us = FATHOM_NO_DEADLINE;
     assert_true(due() == FATHOM_NO_DEADLINE);
 }
 
-TEST(it_is_due_after_the_pause_counted_from_now)
-{
-    ask_and_send(&measure);
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(30000, &measure), FATHOM_READY);
-    assert_int_equal(due(), PACE_US - 30000);
-    fake.now_us += 50000;
-    assert_int_equal(due(), PACE_US - 80000);
-    fake.now_us += 20000;
-    assert_int_equal(due(), 0);
-    fake.now_us += 1;
-    assert_int_equal(due(), 0);
-}
-
-TEST(it_is_due_at_once_with_an_outcome_to_take)
-{
-    ask_and_send(&version);
-    fake_modbus_answer(&fake, three_values, 3);
-    pending_after(10, &measure);
-    assert_int_equal(due(), 0);
-}
-
 /* Several drivers share a carrier, so that one driver's poll may end another's request. */
 TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 {
-    ask_and_send(&measure);
-    fake_modbus_answer(&fake, one_value, 1);
+    GO(ON_WIRE(measure, 1), ANSWERED);
     fake.modbus.poll(fake.modbus.ctx);
     assert_int_equal(due(), 0);
 }
@@ -385,45 +305,33 @@ TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 TEST(a_broken_carrier_is_said_by_every_read_and_nothing_is_asked)
 {
     fake.carrier = FATHOM_ERR_PORT;
-    assert_int_equal(read_after(0, &measure), FATHOM_ERR_PORT);
-    assert_int_equal(read_after(0, &version), FATHOM_ERR_PORT);
-    assert_int_equal(fake.submits, 0);
+    GO(IS(FATHOM_ERR_PORT, 0, measure, 0), IS(FATHOM_ERR_PORT, 0, version, 0));
     fake.carrier = FATHOM_PENDING;
-    pending_after(0, &measure);
-    assert_int_equal(fake.submits, 1);
+    GO(P(0, measure, 1));
 }
 
 TEST(what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first)
 {
-    ask_and_send(&measure);
+    GO(ON_WIRE(measure, 1));
     fake.carrier = FATHOM_ERR_PORT;
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(0, &measure), FATHOM_READY);
-    assert_int_equal(read_after(0, &measure), FATHOM_ERR_PORT);
+    GO(ANSWERED, IS(FATHOM_READY, 0, measure, 1), IS(FATHOM_ERR_PORT, 0, measure, 1));
 }
 
-/* ---- whose turn it is ---- */
+/* ---- questions about one register that are not the same question: a read, a write, a measurement ---- */
 
-TEST(a_command_that_waits_for_the_pause_comes_before_the_repeated_question)
-{
-    ask_and_send(&measure);
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(1000, &measure), FATHOM_READY);
-    pending_after(1000, &version);
-    pending_after(PACE_US, &measure); /* the pause is over, but a command waits */
-    assert_int_equal(fake.submits, 1);
-    assert_int_equal(read_after(0, &details), FATHOM_ERR_BUSY); /* another one must not overtake it */
-    pending_after(0, &version);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0001, 3);
-}
+enum { REGISTER = 0x0206 };
+static const fathom_modbus_question_t measurement = QUESTION(TIMEOUT_US, values, REGISTER, 1, 0, false, 0);
+static const fathom_modbus_question_t reading = QUESTION(TIMEOUT_US, values, REGISTER, 1, 0, true, 0);
+static const fathom_modbus_question_t one_write = QUESTION(TIMEOUT_US, wanted, REGISTER, 1, 0, true, 6);
+static const fathom_modbus_question_t two_written = QUESTION(TIMEOUT_US, wanted, REGISTER, 2, 0, true, 16);
 
-TEST(cancel_gives_up_a_command_that_waits)
-{
-    ask_and_send(&measure);
-    fake_modbus_answer(&fake, one_value, 1);
-    assert_int_equal(read_after(1000, &measure), FATHOM_READY);
-    pending_after(1000, &version);
-    fathom_modbus_unit_cancel(&unit);
-    pending_after(PACE_US, &measure);
-    fake_modbus_assert_asked(&fake, 2, UNIT, 0x0100, 1);
-}
+/* The read does not take the outcome of the write. */
+STEPS(while_a_register_is_written_a_read_is_told_busy_and_a_measurement_waits, P(0, one_write, 1),
+      IS(FATHOM_ERR_BUSY, 0, reading, 1), P(0, measurement, 1), ANSWERED, IS(FATHOM_ERR_BUSY, 0, reading, 1),
+      P(0, measurement, 1), IS(FATHOM_READY, 0, one_write, 1), P(PACE_US, measurement, 2), ANSWERED,
+      IS(FATHOM_READY, 0, measurement, 2), P(PACE_US, reading, 3))
+
+/* A reading is no acknowledgement. */
+STEPS(a_write_of_a_register_that_is_being_read_is_told_busy, P(0, reading, 1),
+      IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_ERR_BUSY, 0, two_written, 1), ANSWERED,
+      IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_READY, 0, reading, 1), P(PACE_US, two_written, 2))

@@ -1,0 +1,396 @@
+/* SPDX-License-Identifier: MIT */
+#include "contract.h"
+
+#include "contact_rig.h"
+#include "controlled_rig.h"
+#include "desk.h"
+#include "fathom/a05_auto.h"
+#include "fathom/a05_dyp.h"
+#include "fathom/a05_modbus.h"
+#include "fathom/a05_relay.h"
+#include "fathom/a16_auto.h"
+#include "fathom/a16_pwm.h"
+#include "fathom/a16_settings.h"
+#include "fathom/a16_switch.h"
+#include "fathom/hps167s_auto.h"
+#include "fathom/hps167s_info.h"
+
+uint32_t contract_came_us;
+uint32_t contract_slack_us;
+
+/* The driver NAME with its config, of which the members that follow are the least that it needs. */
+#define DRIVER(name, ...)                                                                                    \
+    static fathom_##name##_t name;                                                                           \
+    static fathom_##name##_config_t name##_config;                                                           \
+    static void name##_prepare(void) { name##_config = (fathom_##name##_config_t){__VA_ARGS__}; }            \
+    static fathom_status_t name##_init(void)                                                                 \
+    {                                                                                                        \
+        memset(&name, 0x5A, sizeof name);                                                                    \
+        return fathom_##name##_init(&name, &name##_config);                                                  \
+    }                                                                                                        \
+    static fathom_sensor_t name##_sensor(void) { return fathom_##name##_sensor(&name); }
+
+/* One of its functions, for the table. */
+#define CAN(name, verb) CAN_BY(name, verb, fathom_##name##_##verb)
+#define CAN_BY(name, verb, function)                                                                         \
+    static void name##_##verb(void) { function(&name); }
+
+#define ITSELF(d, its_kind)                                                                                  \
+    .name = #d, .kind = &(its_kind), .prepare = d##_prepare, .init = d##_init, .sensor = d##_sensor
+
+#define RANGE(d, its, least, most)                                                                           \
+    {                                                                                                        \
+        .what = #its, .member = &d##_config.its, .from = least, .to = most, .size = sizeof d##_config.its    \
+    }
+#define IS(d, its, value) RANGE(d, its, value, value)
+#define NONE(d, its)      IS(d, its, 0) /* a pointer */
+#define BOTH(d, its, value, other, other_value)                                                              \
+    {                                                                                                        \
+        .what = #its, .member = &d##_config.its, .from = value, .to = value, .size = sizeof d##_config.its,  \
+        .also = &d##_config.other, .also_is = other_value                                                    \
+    }
+#define WINDOW(d, most) IS(d, window.min_mm, most + 1), BOTH(d, window.min_mm, 500, window.max_mm, 499)
+
+/* ---- on the seam of Modbus ---- */
+
+static fathom_status_t desk_has_said(const contract_driver_t *driver, uint16_t value)
+{
+    static uint16_t values[4];
+    const uint16_t figures[4] = {value, 0xDCB2, 0x0701, 0x0000}; /* as an HPS-167S has them in #5 */
+    memcpy(values, figures, sizeof values);
+    desk_waits(5000000);
+    assert_non_null(fake.request);
+    fake.heard_us = contract_came_us = fake.now_us + 700;
+    contract_slack_us = 0;
+    fake_modbus_answer(&fake, values, driver->count);
+    fake.submits = 0;
+    return desk_poll_after(1000);
+}
+
+static void desk_breaks(bool on) { fake.carrier = on ? FATHOM_ERR_PORT : FATHOM_PENDING; }
+static bool desk_is_used(void) { return fake.submits + fake.polls + fake.cancels != 0; }
+static bool desk_is_at_work(void) { return fake.request != NULL; }
+
+static const contract_kind_t on_seam = {desk_begin,   desk_poll,    desk_has_said,
+                                        desk_breaks,  desk_is_used, desk_is_at_work,
+                                        &desk.sensor, &desk.sample, &fake.now_us};
+
+#define ON_SEAM(d)                                                                                           \
+    ITSELF(d, on_seam), .deinit = d##_deinit, .command = d##_command, .cancel = d##_cancel,                  \
+                        .address = &d##_config.address, .retries = &d##_config.retries,                      \
+                        .period_us = &d##_config.period_us, .timeout_us = &d##_config.timeout_us,            \
+                        .command_timeout_us = &d##_config.command_timeout_us
+
+#define COUNTS(of) .sequence = &(of).sequence, .implausible = &(of).implausible
+#define DYP(d, its_answer, most, its_model, its_unit)                                                        \
+    .window = &d##_config.window, .max_mm = most, .good = 1953, .other = 511, .refused = (most) + 1,         \
+    COUNTS(its_answer),                                                                                      \
+    .sample = {                                                                                              \
+        .raw = 1953, .distance_mm = 1953, .kind = FATHOM_TARGET, .model = its_model, .unit = its_unit}
+
+DRIVER(a16_modbus, .modbus = &fake.modbus, .clock = &fake.clock)
+CAN(a16_modbus, deinit)
+CAN(a16_modbus, power_on)
+CAN_BY(a16_modbus, cancel, fathom_a16_cancel)
+static fathom_status_t a16_modbus_command(void)
+{
+    uint8_t address;
+    return fathom_a16_address(&a16_modbus, &address);
+}
+
+const contract_driver_t contract_a16_modbus = {
+    ON_SEAM(a16_modbus),
+    DYP(a16_modbus, a16_modbus.base.answer, 16350, FATHOM_A16, 1),
+    .numbers_answers = true,
+    .first = 0x0100,
+    .count = 1,
+    .most_address = 254,
+    .least_period_us = 120000,
+    .default_timeout_us = 1000000,
+    .start_us = &a16_modbus_config.start_us,
+    .power_on = a16_modbus_power_on,
+    .wrong = {NONE(a16_modbus, modbus), NONE(a16_modbus, clock), IS(a16_modbus, address, 255),
+              RANGE(a16_modbus, value, 2, 255), WINDOW(a16_modbus, 16350)}};
+
+DRIVER(a05_modbus, .modbus = &fake.modbus, .clock = &fake.clock, .probes = 1)
+CAN(a05_modbus, deinit)
+CAN(a05_modbus, power_on)
+CAN(a05_modbus, cancel)
+static fathom_status_t a05_modbus_command(void)
+{
+    uint8_t address;
+    return fathom_a05_modbus_address(&a05_modbus, &address);
+}
+
+const contract_driver_t contract_a05_modbus = {
+    ON_SEAM(a05_modbus),
+    DYP(a05_modbus, a05_modbus.base.answer, 6000, FATHOM_A05, 1),
+    .numbers_answers = true,
+    .first = 0x0106,
+    .count = 1,
+    .most_address = 254,
+    .least_period_us = 100000,
+    .default_timeout_us = 300000,
+    .start_us = &a05_modbus_config.start_us,
+    .power_on = a05_modbus_power_on,
+    .wrong = {NONE(a05_modbus, modbus), NONE(a05_modbus, clock), IS(a05_modbus, address, 255),
+              RANGE(a05_modbus, probes, 16, 255), WINDOW(a05_modbus, 6000),
+              RANGE(a05_modbus, registers, 1, 0x000F), RANGE(a05_modbus, registers, 0x0011, 0x0105),
+              RANGE(a05_modbus, registers, 0x0107, 0x0200)}};
+
+DRIVER(hps167s, .modbus = &fake.modbus, .clock = &fake.clock)
+CAN(hps167s, deinit)
+CAN(hps167s, cancel)
+static fathom_status_t hps167s_command(void)
+{
+    fathom_hps167s_version_t version;
+    return fathom_hps167s_interface_version(&hps167s, &version);
+}
+
+/* Command #5: 2.083 m, (DCB2 << 7) / 10000 = 723.1744, ambient 1, precision 0. */
+#define HPS_FIGURES                                                                                          \
+    .raw = 2083, .distance_mm = 2083, .kind = FATHOM_TARGET, .model = FATHOM_HPS167S, .unit = 1,             \
+    .ambient = 1, .magnitude = 7231744
+
+const contract_driver_t contract_hps167s = {
+    ON_SEAM(hps167s),
+    .good = 2083,
+    .other = 511,
+    .refused = 31000,
+    .sample = {HPS_FIGURES},
+    COUNTS(hps167s),
+    .first = 0x0008,
+    .count = 4,
+    .most_address = 32,
+    .least_period_us = 18519,
+    .default_timeout_us = 500000,
+    .wrong = {NONE(hps167s, modbus), NONE(hps167s, clock), RANGE(hps167s, address, 33, 255),
+              RANGE(hps167s, same_answers, 9, 255), IS(hps167s, limits.over_range_mm, 65535),
+              IS(hps167s, limits.over_range_mm, 30000), IS(hps167s, limits.max_mm, 65530),
+              BOTH(hps167s, limits.max_mm, 100, limits.over_range_mm, 100),
+              BOTH(hps167s, limits.max_mm, 65534, limits.over_range_mm, 65534)}};
+
+/* ---- on a line ---- */
+
+static void line_begins(uint32_t now_us)
+{
+    rig_start(now_us);
+    fake_pin_init(&controlled.pin, &rig.fake);
+}
+
+static void line_breaks(bool on) { rig.fake.read_fails = on; }
+
+static bool line_is_used(void)
+{
+    return rig.line.listener != NULL ||
+           rig.fake.reads + rig.fake.written + rig.fake.breaks + controlled.pin.sets != 0;
+}
+
+static bool line_is_at_work(void)
+{
+    return rig.line.listener != NULL || rig.line.head != NULL || rig.fake.in_break;
+}
+
+#define LINE_KIND(says, is_at_work)                                                                          \
+    {                                                                                                        \
+        line_begins, rig_poll, says, line_breaks, line_is_used, is_at_work, &rig.sensor, &rig.sample,        \
+            &rig.fake.now_us                                                                                 \
+    }
+
+static size_t a16_frame(uint8_t *frame, uint16_t value) { return rig_dyp_frame(frame, &value, 1); }
+
+/* Probe 1's value; what is not fitted sends what nothing can mean. */
+static size_t a05_frame(uint8_t *frame, uint16_t value)
+{
+    const uint16_t values[] = {value, 0xFFFF, 0xFFFF, 0xFFFF};
+    return rig_dyp_frame(frame, values, 4);
+}
+
+static size_t hps_frame(uint8_t *frame, uint16_t value)
+{
+    rig_hps_frame(frame, 1, value, 0xDCB2, 0x0701, 0x0000);
+    return RIG_HPS_LENGTH;
+}
+
+/* It sends by itself. */
+static fathom_status_t has_sent(const contract_driver_t *driver, uint16_t value)
+{
+    uint8_t frame[RIG_HPS_LENGTH];
+    contract_came_us = rig.fake.now_us + RIG_PERIOD_US - rig.silent_us;
+    contract_slack_us = 0;
+    return rig_send(frame, driver->frame(frame, value), 500);
+}
+
+static const contract_kind_t listening = LINE_KIND(has_sent, line_is_at_work);
+
+#define LISTENS(d) ITSELF(d, listening), .deinit = d##_deinit, .stale_us = &d##_config.stale_us
+
+DRIVER(a16_auto, .line = &rig.line)
+CAN(a16_auto, deinit)
+
+const contract_driver_t contract_a16_auto = {LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
+                                             DYP(a16_auto, a16_auto.base.answer, 16350, FATHOM_A16, 0),
+                                             .frame = a16_frame,
+                                             .wrong = {NONE(a16_auto, line), WINDOW(a16_auto, 16350)}};
+
+DRIVER(a05_auto, .line = &rig.line, .probes = 1)
+CAN(a05_auto, deinit)
+
+const contract_driver_t contract_a05_auto = {
+    LISTENS(a05_auto), .gap_us = &a05_auto_config.gap_us,
+    DYP(a05_auto, a05_auto.base.answer, 6000, FATHOM_A05, 0), .frame = a05_frame,
+    .wrong = {NONE(a05_auto, line), RANGE(a05_auto, probes, 16, 255), WINDOW(a05_auto, 6000)}};
+
+DRIVER(hps167s_auto, .line = &rig.line)
+CAN(hps167s_auto, deinit)
+
+const contract_driver_t contract_hps167s_auto = {
+    LISTENS(hps167s_auto),
+    .frame = hps_frame,
+    .good = 2083,
+    .other = 511,
+    .refused = 31000,
+    .sample = {HPS_FIGURES},
+    COUNTS(hps167s_auto),
+    .wrong = {NONE(hps167s_auto, line), RANGE(hps167s_auto, address, 33, 255),
+              IS(hps167s_auto, limits.over_range_mm, 65535), IS(hps167s_auto, limits.over_range_mm, 30000)}};
+
+/* It is asked with 55 AA; the answer is there at once. */
+static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
+{
+    uint8_t frame[RIG_HPS_LENGTH];
+    for (unsigned polls = 0; rig.fake.written == 0; polls++) {
+        assert_true(polls < 20000);
+        rig.fake.now_us += 200;
+        PENDS(rig_poll());
+    }
+    rig_run(70 * MS, 200);
+    rig.fake.written = 0;
+    fake_receive(&rig.fake, 0, frame, driver->frame(frame, value));
+    contract_came_us = rig.fake.now_us;
+    contract_slack_us = 0;
+    return rig_poll();
+}
+
+/* A05 2(3)4 of probe 1: 55 AA 01 10, and 55 + AA + 01 + 10 = 110. */
+static size_t a05_dyp_frame(uint8_t *frame, uint16_t value)
+{
+    const uint8_t bytes[] = {
+        0x55, 0xAA, 0x01, 0x10, HIGH(value), LOW(value), LOW(0x10 + HIGH(value) + LOW(value))};
+    memcpy(frame, bytes, sizeof bytes);
+    return sizeof bytes;
+}
+
+static const contract_kind_t asked_on_line = LINE_KIND(is_asked, line_is_at_work);
+
+DRIVER(a05_dyp, .line = &rig.line, .probes = 1)
+CAN(a05_dyp, deinit)
+CAN(a05_dyp, power_on)
+
+const contract_driver_t contract_a05_dyp = {ITSELF(a05_dyp, asked_on_line),
+                                            DYP(a05_dyp, a05_dyp.base.answer, 6000, FATHOM_A05, 1),
+                                            .deinit = a05_dyp_deinit,
+                                            .power_on = a05_dyp_power_on,
+                                            .start_us = &a05_dyp_config.start_us,
+                                            .frame = a05_dyp_frame,
+                                            .numbers_answers = true,
+                                            .wrong = {NONE(a05_dyp, line), IS(a05_dyp, address, 255),
+                                                      RANGE(a05_dyp, probes, 16, 255),
+                                                      WINDOW(a05_dyp, 6000)}};
+
+/* ---- triggered ---- */
+
+static fathom_status_t is_triggered(const contract_driver_t *driver, uint16_t value)
+{
+    uint8_t frame[4];
+    controlled_run_to_break(rig.fake.breaks + 1, 100);
+    contract_came_us = rig.fake.now_us + 100 * MS;
+    contract_slack_us = 100;
+    driver->frame(frame, value);
+    controlled_answer(frame, 100 * MS);
+    return controlled_outcome(100);
+}
+
+static const contract_kind_t triggered = LINE_KIND(is_triggered, line_is_at_work);
+
+DRIVER(a16_controlled, .line = &rig.line)
+CAN(a16_controlled, deinit)
+
+const contract_driver_t contract_a16_controlled = {
+    ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.answer, 16350, FATHOM_A16, 0),
+    .deinit = a16_controlled_deinit, .frame = a16_frame,
+    .wrong = {NONE(a16_controlled, line), IS(a16_controlled, earliest_us, 131 * MS),
+              WINDOW(a16_controlled, 16350)}};
+
+/* A pulse so wide, 110 ms after the trigger. */
+static fathom_status_t has_pulsed(const contract_driver_t *driver, uint16_t value)
+{
+    fathom_status_t status = FATHOM_PENDING;
+    controlled.pin.answer_after_us = 110 * MS;
+    controlled.pin.answer_width_us = value;
+    contract_slack_us = 0;
+    for (unsigned polls = 0; status == FATHOM_PENDING; polls++) {
+        assert_true(polls < 100);
+        contract_came_us = controlled.pin.fall_us + 110 * MS + value;
+        rig.fake.now_us += 20 * MS;
+        status = rig_poll();
+    }
+    return status;
+}
+
+static bool is_low(void) { return !controlled.pin.level; }
+
+static const contract_kind_t pulsing = LINE_KIND(has_pulsed, is_low);
+
+DRIVER(a16_pwm, .clock = &rig.fake.clock, .capture = &controlled.pin.capture,
+       .trigger = &controlled.pin.trigger)
+CAN(a16_pwm, deinit)
+
+const contract_driver_t contract_a16_pwm = {
+    ITSELF(a16_pwm, pulsing),
+    .deinit = a16_pwm_deinit,
+    .good = 10000,
+    /* A16 1(4): 173.9 cm */ .other = 20000,
+    .sample = {.raw = 10000, .distance_mm = 1739, .kind = FATHOM_TARGET, .model = FATHOM_A16},
+    COUNTS(a16_pwm),
+    .wrong = {NONE(a16_pwm, clock), NONE(a16_pwm, capture), WINDOW(a16_pwm, 16350)}};
+
+/* ---- contacts ---- */
+
+static fathom_status_t has_turned(const contract_driver_t *driver, uint16_t value)
+{
+    fathom_status_t status = FATHOM_PENDING;
+    pins.level = value != 0;
+    contract_came_us = pins.fake.now_us + 1000;
+    contract_slack_us = 0;
+    for (unsigned ms = 0; status == FATHOM_PENDING && ms != 200; ms++) {
+        pins.fake.now_us += 1000;
+        status = pins_poll();
+    }
+    return status;
+}
+
+static bool pin_is_used(void) { return false; }
+
+static const contract_kind_t contact = {.begin = pins_start,
+                                        .poll = pins_poll,
+                                        .says = has_turned,
+                                        .is_used = pin_is_used,
+                                        .sensor = &pins.sensor,
+                                        .sample = &pins.sample,
+                                        .now_us = &pins.fake.now_us};
+
+DRIVER(a16_switch, .pin = &pins.pin, .clock = &pins.fake.clock, .address = 5)
+
+const contract_driver_t contract_a16_switch = {
+    ITSELF(a16_switch, contact), .good = 1,
+    .sample = {.raw = 1, .kind = FATHOM_NEAR, .model = FATHOM_A16, .unit = 5},
+    .timing = &a16_switch_config.timing, .wrong = {NONE(a16_switch, pin), NONE(a16_switch, clock)}};
+
+DRIVER(a05_relay, .pin = &pins.pin, .clock = &pins.fake.clock)
+
+const contract_driver_t contract_a05_relay = {ITSELF(a05_relay, contact), .good = 1,
+                                              .sample = {.raw = 1, .kind = FATHOM_FAR, .model = FATHOM_A05},
+                                              .timing = &a05_relay_config.timing,
+                                              .wrong = {NONE(a05_relay, pin), NONE(a05_relay, clock),
+                                                        IS(a05_relay, wiring, 3), IS(a05_relay, level, 3)}};
