@@ -1,28 +1,31 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
-#include "suite.h"
-
 #include "auto_rig.h"
+#include "fake_pin.h"
 #include "fathom/a05_auto.h"
+
+/* Its four probes, and power-on; test_driver_contract.c has what every listener promises. */
 
 static fathom_a05_auto_config_t config;
 static fathom_a05_auto_t a05;
+static fake_pin_t pin;
 
 /* A05 1(3): 1000, 2000, 1953, 3562 mm. */
 static const uint8_t example[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
 static const uint16_t distances[] = {1000, 2000, 1953, 3562};
 
-static void start_at(uint32_t now_us)
+static void start_at(uint32_t now_us, const fathom_pin_t *select)
 {
     rig_start(now_us);
+    fake_pin_init(&pin, &rig.fake);
+    pin.level = true;
     config.line = &rig.line;
+    config.select = select;
     memset(&a05, 0x5A, sizeof a05);
     assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
-static void start(void) { start_at(RIG_START_US); }
+static void start(void) { start_at(RIG_START_US, NULL); }
 
 static int set_up(void **state)
 {
@@ -33,135 +36,99 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static void send(const uint8_t frame[10]) { rig_send(frame, 10, 500); }
-
-/* A05 1(2), by hand: FF, each distance high byte first, the low byte of the sum of all before it. */
-static void make(uint8_t frame[10], const uint16_t values[4])
+static void send(uint16_t one, uint16_t two, uint16_t three, uint16_t four)
 {
-    unsigned sum = 0xFF;
-    frame[0] = 0xFF;
-    for (unsigned i = 0; i != 4; i++) {
-        frame[1 + 2 * i] = (uint8_t)(values[i] / 256);
-        frame[2 + 2 * i] = (uint8_t)(values[i] % 256);
-        sum += values[i] / 256u + values[i] % 256u;
-    }
-    frame[9] = (uint8_t)(sum % 256);
+    uint8_t frame[10];
+    rig_send(frame, rig_dyp_frame(frame, (const uint16_t[]){one, two, three, four}, 4), 500);
 }
 
-static unsigned counter(unsigned which) { return a05.base.stream.counters[which]; }
+/* The example has come, and is there to be taken. */
+static void example_is_there(void)
+{
+    rig_run(10000, 1000);
+    fake_receive(&rig.fake, 0, example, 10);
+    PENDS(rig_poll());
+    rig.fake.now_us += RIG_GAP_US;
+}
+
+static void takes(unsigned probe, uint16_t mm, uint16_t sequence)
+{
+    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig.sample.probe, probe);
+    assert_int_equal(rig.sample.distance_mm, mm);
+    assert_int_equal(rig.sample.sequence, sequence);
+}
 
 /* ---- readings ---- */
 
 TEST(the_example_of_the_datasheet_is_four_samples_of_one_sequence_and_time)
 {
-    send(example);
-    assert_int_equal(rig.samples, 4);
-    for (unsigned i = 0; i != 4; i++) {
-        const fathom_sample_t *const sample = &rig.last[i];
-        assert_int_equal(sample->probe, i + 1);
-        assert_int_equal(sample->distance_mm, distances[i]);
-        assert_int_equal(sample->raw, distances[i]);
-        assert_int_equal(sample->kind, FATHOM_TARGET);
-        assert_int_equal(sample->model, FATHOM_A05);
-        assert_int_equal(sample->unit, 0);
-        assert_int_equal(sample->sequence, 1);
-        assert_int_equal(sample->time_us, RIG_START_US + RIG_PERIOD_US);
-        assert_int_equal(sample->magnitude + sample->precision + sample->ambient, 0);
-        assert_false(sample->interference);
+    for (uint16_t n = 1; n <= 3; n++) {
+        rig_send(example, 10, 500);
+        assert_int_equal(rig.samples, 4 * n);
+        for (uint8_t i = 0; i != 4; i++)
+            assert_sample(&rig.last[i],
+                          (fathom_sample_t){.time_us = RIG_START_US + n * (uint32_t)RIG_PERIOD_US,
+                                            .raw = distances[i],
+                                            .sequence = n,
+                                            .distance_mm = distances[i],
+                                            .kind = FATHOM_TARGET,
+                                            .model = FATHOM_A05,
+                                            .probe = (uint8_t)(i + 1)});
     }
 }
 
 TEST(one_poll_gives_one_sample_in_the_order_of_the_probes)
 {
-    rig_run(10000, 1000);
-    fake_receive(&rig.fake, 0, example, 10);
-    assert_int_equal(rig_poll(), FATHOM_PENDING);
-    rig.fake.now_us += RIG_GAP_US;
+    example_is_there();
     for (unsigned i = 0; i != 4; i++) {
-        assert_int_equal(rig_poll(), FATHOM_READY);
-        assert_int_equal(rig.sample.probe, i + 1);
+        takes(i + 1, distances[i], 1);
         assert_int_equal(fathom_due_us(&rig.sensor, 1), i != 3 ? 0 : 2000000);
     }
-    assert_int_equal(rig_poll(), FATHOM_PENDING);
-}
-
-TEST(every_frame_is_four_samples_in_loops_from_100_us_to_20_ms)
-{
-    static const uint32_t steps_us[] = {100, 521, 1042, 3333, 10000, 20000};
-    for (unsigned i = 0; i != sizeof steps_us / sizeof *steps_us; i++) {
-        start();
-        for (unsigned n = 1; n <= 20; n++) {
-            rig_send(example, 10, steps_us[i]);
-            rig_run(steps_us[i], steps_us[i]);
-            assert_int_equal(rig.samples, 4 * n);
-            for (unsigned probe = 0; probe != 4; probe++) {
-                assert_int_equal(rig.last[probe].sequence, n);
-                assert_int_equal(rig.last[probe].distance_mm, distances[probe]);
-            }
-        }
-        assert_int_equal(rig.stales + rig.malformed + rig.ports, 0);
-    }
+    PENDS(rig_poll());
 }
 
 TEST(a_new_frame_does_not_mix_into_the_samples_of_the_old_one)
 {
     uint8_t newer[10];
-    make(newer, (const uint16_t[]){301, 302, 303, 304});
-    rig_run(10000, 1000);
-    fake_receive(&rig.fake, 0, example, 10);
-    assert_int_equal(rig_poll(), FATHOM_PENDING);
-    rig.fake.now_us += RIG_GAP_US;
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    rig_dyp_frame(newer, (const uint16_t[]){301, 302, 303, 304}, 4);
+    example_is_there();
+    takes(1, 1000, 1);
     rig.fake.now_us += 10000;
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    takes(2, 2000, 1);
     fake_receive(&rig.fake, 0, newer, 10);
-    assert_int_equal(rig_poll(), FATHOM_READY);
-    assert_int_equal(rig.sample.distance_mm, 1953);
-    assert_int_equal(rig_poll(), FATHOM_READY);
-    assert_int_equal(rig.sample.distance_mm, 3562);
-    assert_int_equal(rig.sample.sequence, 1);
-    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    takes(3, 1953, 1);
+    takes(4, 3562, 1);
+    PENDS(rig_poll());
     rig.fake.now_us += RIG_GAP_US;
-    for (unsigned i = 0; i != 4; i++) {
-        assert_int_equal(rig_poll(), FATHOM_READY);
-        assert_int_equal(rig.sample.distance_mm, 301 + i);
-        assert_int_equal(rig.sample.sequence, 2);
-    }
+    for (uint16_t i = 1; i <= 4; i++) takes(i, 300 + i, 2);
 }
 
 TEST(codes_mean_nothing_there_for_their_probe_alone)
 {
-    uint8_t frame[10];
-    make(frame, (const uint16_t[]){0xFFFD, 0xFFFE, 0, 6000});
-    send(frame);
+    send(0xFFFD, 0xFFFE, 0, 6000);
     assert_int_equal(rig.samples, 4);
-    for (unsigned i = 0; i != 3; i++) {
-        assert_int_equal(rig.last[i].kind, FATHOM_NO_TARGET);
-        assert_int_equal(rig.last[i].distance_mm, 0);
-        assert_true(rig.last[i].interference == (i == 1));
+    for (unsigned i = 0; i != 4; i++) {
+        assert_int_equal(rig.last[i].kind, i != 3 ? FATHOM_NO_TARGET : FATHOM_TARGET);
+        assert_int_equal(rig.last[i].distance_mm, i != 3 ? 0 : 6000);
+        assert_int_equal(rig.last[i].interference, i == 1);
     }
     assert_int_equal(rig.last[0].raw, 0xFFFD);
-    assert_int_equal(rig.last[3].kind, FATHOM_TARGET);
-    assert_int_equal(rig.last[3].distance_mm, 6000);
 }
 
-/* ---- probes ---- */
-
+/* What is not fitted sends what nothing can mean. */
 TEST(every_choice_of_probes_gives_samples_of_those_alone)
 {
     for (uint8_t probes = 1; probes <= 15; probes++) {
         uint16_t values[4];
-        uint8_t frame[10];
         unsigned fitted = 0;
-        for (unsigned i = 0; i != 4; i++) { /* what is not fitted sends what nothing can mean */
-            const bool is_fitted = (probes >> i & 1) != 0;
-            values[i] = is_fitted ? distances[i] : 0xFFFF;
-            fitted += is_fitted;
+        for (unsigned i = 0; i != 4; i++) {
+            values[i] = (probes >> i & 1) != 0 ? distances[i] : 0xFFFF;
+            fitted += probes >> i & 1;
         }
-        make(frame, values);
         config.probes = probes;
         start();
-        send(frame);
+        send(values[0], values[1], values[2], values[3]);
         assert_int_equal(rig.samples, fitted);
         assert_int_equal(rig.malformed, 0);
         for (unsigned i = 0; i != 4; i++) {
@@ -174,145 +141,132 @@ TEST(every_choice_of_probes_gives_samples_of_those_alone)
 
 TEST(a_frame_with_one_value_that_cannot_be_is_refused_whole)
 {
-    for (unsigned i = 0; i != 4; i++) {
-        uint16_t values[4];
-        uint8_t frame[10];
-        memcpy(values, distances, sizeof values);
-        values[i] = 6001;
-        make(frame, values);
+    config.window = (fathom_dyp_window_t){250, 4500, false};
+    for (unsigned i = 0; i != 5; i++) {
+        static const uint16_t odd[] = {249, 4501, 249, 4501, 250};
         start();
-        send(frame);
-        assert_int_equal(rig.samples, 0);
-        assert_int_equal(rig.malformed, 1);
-        assert_int_equal(a05.base.answer.implausible, 1);
-        send(example);
-        assert_int_equal(rig.samples, 4);
-        assert_int_equal(rig.sample.sequence, 1);
-    }
-}
-
-TEST(a_window_of_the_users_own_is_kept)
-{
-    uint8_t frame[10];
-    config.window.min_mm = 250;
-    config.window.max_mm = 4500;
-    start();
-    make(frame, (const uint16_t[]){250, 4500, 250, 4500});
-    send(frame);
-    assert_int_equal(rig.samples, 4);
-    make(frame, (const uint16_t[]){250, 4500, 249, 4500});
-    send(frame);
-    make(frame, (const uint16_t[]){250, 4501, 250, 4500});
-    send(frame);
-    assert_int_equal(rig.samples, 4);
-    assert_int_equal(rig.malformed, 2);
-}
-
-/* ---- silence and its absence ---- */
-
-/* 1000, 2000, 2047, 1339 mm; out of step by six 1339, 2047, 1000, 2000 with the same sum: FF + 03 + E8 + 07 + D0 +
- * 07 + FF + 05 + 3B = 407. */
-static const uint8_t permutable[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
-
-TEST(with_silence_between_frames_probes_are_not_permuted)
-{
-    static const uint16_t right[] = {1000, 2000, 2047, 1339};
-    for (unsigned n = 0; n != 5; n++) {
-        send(permutable);
-        for (unsigned i = 0; i != 4; i++) assert_int_equal(rig.last[i].distance_mm, right[i]);
-    }
-    assert_int_equal(rig.samples, 20);
-}
-
-TEST(without_silence_probes_are_not_permuted_and_it_turns_stale)
-{
-    fake_receive(&rig.fake, 0, permutable + 6, 4);
-    rig_poll();
-    for (unsigned n = 0; n != 400; n++) { /* 4.168 s */
-        fake_trickle(&rig.fake, 0, RIG_BYTE_US, permutable, 10);
-        rig_run(10 * RIG_BYTE_US, RIG_BYTE_US);
-    }
-    assert_int_equal(rig.samples + rig.malformed, 0);
-    assert_int_equal(rig.stales, 2);
-    assert_true(counter(FATHOM_STREAM_AMBIGUOUS) >= 700);
-}
-
-/* ---- stale, due, the port, the clock ---- */
-
-TEST(it_is_stale_after_2_s_or_as_the_config_says_and_once_each_time)
-{
-    send(example);
-    rig_run(1999000, 1000);
-    assert_int_equal(rig.stales, 0);
-    rig_run(1000, 1000);
-    assert_int_equal(rig.stales, 1);
-    rig_run(2000000, 1000);
-    assert_int_equal(rig.stales, 2);
-    config.stale_us = 700000;
-    start();
-    rig_run(699000, 1000);
-    assert_int_equal(rig.stales, 0);
-    rig_run(1000, 1000);
-    assert_int_equal(rig.stales, 1);
-}
-
-TEST(it_works_across_the_wrap_of_the_clock)
-{
-    for (uint32_t before_us = 0; before_us <= 300000; before_us += 30000) {
-        start_at(UINT32_MAX - before_us);
-        for (unsigned n = 1; n <= 3; n++) {
-            send(example);
-            assert_int_equal(rig.samples, 4 * n);
-            assert_int_equal(rig.sample.time_us, (uint32_t)(n * RIG_PERIOD_US - before_us - 1));
-        }
-        assert_int_equal(rig.stales, 0);
+        send(i == 0 ? odd[i] : 250, i == 1 ? odd[i] : 4500, i == 2 ? odd[i] : 250, i == 3 ? odd[i] : 4500);
+        assert_int_equal(rig.samples, i != 4 ? 0 : 4);
+        assert_int_equal(rig.malformed, i != 4);
+        assert_int_equal(a05.base.answer.implausible, i != 4);
+        rig_send(example, 10, 500);
+        assert_int_equal(rig.sample.sequence, i != 4 ? 1 : 2);
     }
 }
 
 TEST(a_broken_port_is_said_when_the_samples_that_came_before_are_taken)
 {
-    rig_run(10000, 1000);
-    fake_receive(&rig.fake, 0, example, 10);
-    assert_int_equal(rig_poll(), FATHOM_PENDING);
-    rig.fake.now_us += RIG_GAP_US;
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    example_is_there();
+    takes(1, 1000, 1);
     rig.fake.read_fails = true;
-    for (unsigned i = 0; i != 3; i++) assert_int_equal(rig_poll(), FATHOM_READY);
+    for (unsigned i = 1; i != 4; i++) takes(i + 1, distances[i], 1);
     for (unsigned i = 0; i != 3; i++) assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
     rig.fake.read_fails = false;
-    send(example);
+    rig_send(example, 10, 500);
     assert_int_equal(rig.samples, 8);
 }
 
-TEST(the_gap_that_counts_is_the_configs)
+/* ---- power-on: the level of RX in the first second chooses what is sent (A05 1(1)) ---- */
+
+enum { LOW_US = 1500000 };
+
+static void power_on(fathom_a05_value_t value, fathom_status_t status)
 {
-    assert_int_equal(a05.base.stream.listener.gap_us, 5000);
-    config.gap_us = 25000;
-    start();
-    assert_int_equal(a05.base.stream.listener.gap_us, 25000);
+    assert_int_equal(fathom_a05_auto_power_on(&a05, value), status);
 }
 
-/* ---- setting up ---- */
+static bool is_low(void) { return config.select != NULL ? !pin.level : rig.fake.in_break; }
 
-TEST(wrong_arguments_are_refused_and_nothing_listens)
+TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
 {
-    fathom_a05_auto_t other;
-    fathom_line_listen(&rig.line, NULL);
-    for (unsigned probes = 16; probes != 256; probes++) {
-        config.probes = (uint8_t)probes;
-        assert_int_equal(fathom_a05_auto_init(&other, &config), FATHOM_ERR_ARGUMENT);
+    static const uint32_t starts_us[] = {1000, 0xFFFFFFFFu - 700000};
+    for (unsigned i = 0; i != 4; i++) {
+        start_at(starts_us[i / 2], i % 2 == 0 ? &pin.trigger : NULL);
+        rig_run(10000, 1000); /* the silence that begins a frame has been seen */
+        power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+        assert_true(is_low());
+        assert_int_equal(fathom_due_us(&rig.sensor, 1), LOW_US);
+        rig_run(LOW_US - 1000, 1000);
+        assert_true(is_low());
+        assert_int_equal(fathom_due_us(&rig.sensor, 1), 1000);
+        rig_run(1000, 1000);
+        assert_false(is_low());
+        assert_true(fathom_due_us(&rig.sensor, 1) > 1000);
     }
-    config.probes = 0;
-    config.window.min_mm = 6001;
-    assert_int_equal(fathom_a05_auto_init(&other, &config), FATHOM_ERR_ARGUMENT);
-    memset(&config, 0, sizeof config);
-    assert_int_equal(fathom_a05_auto_init(&other, &config), FATHOM_ERR_ARGUMENT);
-    assert_null(rig.line.listener);
 }
 
-TEST(deinit_stops_listening)
+TEST(rx_is_high_for_processed_values)
 {
-    assert_ptr_equal(rig.line.listener, &a05.base.stream.listener);
-    fathom_a05_auto_deinit(&a05);
-    assert_null(rig.line.listener);
+    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    assert_int_equal(rig.fake.breaks, 0);
+    start_at(RIG_START_US, &pin.trigger);
+    pin.level = false;
+    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    assert_true(pin.level);
+}
+
+TEST(a_second_power_on_begins_anew)
+{
+    for (unsigned i = 0; i != 2; i++) {
+        power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+        rig_run(1000000, 1000);
+    }
+    assert_true(rig.fake.in_break);
+    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    assert_false(rig.fake.in_break);
+}
+
+TEST(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten)
+{
+    rig_run(1900000, 1000);
+    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    rig_run(1999000, 1000);
+    assert_int_equal(rig.stales, 0);
+    rig_run(1000, 1000);
+    assert_int_equal(rig.stales, 1);
+    rig_send(example, sizeof example, 500);
+    assert_int_equal(rig.samples, 4);
+}
+
+TEST(a_port_that_cannot_is_said_and_a_pin_helps)
+{
+    rig.fake.uart.set_break = NULL;
+    power_on(FATHOM_A05_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
+    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    start_at(RIG_START_US, &pin.trigger);
+    rig.fake.uart.set_break = NULL;
+    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    assert_int_equal(pin.sets, 1);
+}
+
+TEST(a_line_that_sends_is_busy_and_another_value_is_none)
+{
+    rig.fake.busy_until_us = rig.fake.now_us + 1000;
+    power_on(FATHOM_A05_REAL_TIME, FATHOM_ERR_BUSY);
+    assert_false(rig.fake.in_break);
+    rig.fake.now_us += 1000;
+    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    power_on((fathom_a05_value_t)2, FATHOM_ERR_ARGUMENT);
+}
+
+TEST(who_stops_listening_lets_rx_go)
+{
+    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    for (unsigned i = 0; i != 2; i++) {
+        fathom_a05_auto_deinit(&a05);
+        assert_false(rig.fake.in_break);
+        assert_null(rig.line.listener);
+    }
+    assert_int_equal(rig.fake.breaks, 1);
+}
+
+TEST(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less)
+{
+    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    rig_run(1480000, 20000);
+    assert_true(rig.fake.in_break);
+    rig.fake.now_us += 100000; /* one turn that takes longer */
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+    (void)rig_poll();
+    assert_false(rig.fake.in_break);
 }

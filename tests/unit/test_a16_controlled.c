@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
 
-#include <string.h>
+/* The trigger, and when an answer is one; test_driver_contract.c has the rest. */
 
-#include "suite.h"
-
-/* Sums by hand: FF + 3F + DF = 21D, FF + FF + FD = 2FB, FF + FF + FE = 2FC. */
-static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
-static const uint8_t no_object[] = {0xFF, 0xFF, 0xFD, 0xFB};
-static const uint8_t interference[] = {0xFF, 0xFF, 0xFE, 0xFC};
+static const uint8_t wrong_sum[] = {0xFF, 0x07, 0xA1, 0xA6};
 
 static const suite_t suite = {.set_up = controlled_set_up};
 
@@ -81,65 +76,190 @@ TEST(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge)
     assert_in_range(controlled.pin.least_high_us, 2 * MS, 301 * MS);
 }
 
-/* ---- the answer ---- */
+/* ---- in time or not ---- */
 
-TEST(the_example_of_the_datasheet_is_a_sample_with_all_its_members)
+/* One trigger, answered so much later; what comes of it. */
+static fathom_status_t answered_after(const uint8_t frame[4], uint32_t us, uint32_t step_us)
 {
-    controlled_run_to_break(1, 100);
-    const uint32_t edge_us = rig.fake.now_us;
-    controlled_answer(controlled_1953, 100 * MS);
-    assert_int_equal(controlled_outcome(100), FATHOM_READY);
+    controlled_start();
+    controlled_run_to_break(1, step_us);
+    controlled_answer(frame, us);
+    return controlled_outcome(step_us);
+}
+
+static void comes(fathom_status_t status) { assert_int_equal(controlled_outcome(100), status); }
+
+TEST(a_sample_is_told_5_ms_after_its_last_byte)
+{
+    assert_int_equal(answered_after(controlled_1953, 100 * MS, 100), FATHOM_READY);
     assert_int_equal(rig.sample.distance_mm, 1953);
-    assert_int_equal(rig.sample.raw, 1953);
-    assert_int_equal(rig.sample.kind, FATHOM_TARGET);
-    assert_int_equal(rig.sample.model, FATHOM_A16);
-    assert_int_equal(rig.sample.sequence, 1);
-    assert_int_equal(rig.sample.unit, 0);
-    assert_int_equal(rig.sample.probe, 1);
-    assert_int_equal(rig.sample.magnitude + rig.sample.precision + rig.sample.ambient, 0);
-    assert_in_range(rig.sample.time_us, edge_us + 100 * MS, edge_us + 100 * MS + 100);
     assert_in_range(rig.fake.now_us, rig.sample.time_us + 5000, rig.sample.time_us + 5100);
 }
 
-static const struct {
-    const uint8_t *frame;
-    uint8_t kind; /* 0: refused */
-    bool interference;
-} readings[] = {
-    {controlled_511, FATHOM_TARGET, false},
-    {no_object, FATHOM_NO_TARGET, false},
-    {interference, FATHOM_NO_TARGET, true},
-    {mm_16351, 0, false},
-};
-
-TEST(frames_are_target_no_target_or_refused)
+/* What begins in time and ends too late is damaged as far as it came: CHECKSUM. */
+TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
 {
-    for (unsigned i = 0; i != sizeof readings / sizeof *readings; i++) {
-        controlled_start();
-        controlled_run_to_break(1, 100);
-        controlled_answer(readings[i].frame, 100 * MS);
-        assert_int_equal(controlled_outcome(100),
-                         readings[i].kind != 0 ? FATHOM_READY : FATHOM_ERR_MALFORMED);
-        assert_int_equal(controlled.a16.answer.implausible, readings[i].kind == 0);
-        if (readings[i].kind == 0) continue;
-        assert_int_equal(rig.sample.kind, readings[i].kind);
-        assert_true(rig.sample.interference == readings[i].interference);
+    static const struct {
+        uint32_t after_us;
+        fathom_status_t status;
+    } times[] = {
+        {30 * MS, FATHOM_ERR_NO_ANSWER}, {79900, FATHOM_ERR_NO_ANSWER},   {80 * MS, FATHOM_READY},
+        {94 * MS, FATHOM_READY},         {114 * MS, FATHOM_READY},        {130 * MS, FATHOM_READY},
+        {130200, FATHOM_ERR_CHECKSUM},   {133 * MS, FATHOM_ERR_CHECKSUM}, {134 * MS, FATHOM_ERR_NO_ANSWER}};
+    for (unsigned i = 0; i != COUNT(times); i++) {
+        assert_int_equal(answered_after(controlled_1953, times[i].after_us, 50), times[i].status);
+        rig_run(20 * MS, 50);
+        assert_int_equal(controlled.a16.late, times[i].status != FATHOM_READY);
+        assert_int_equal(rig.samples, times[i].status == FATHOM_READY);
     }
-    controlled_start();
-    controlled.a16.answer.implausible = UINT16_MAX;
-    controlled_run_to_break(1, 100);
-    controlled_answer(mm_16351, 100 * MS);
-    assert_int_equal(controlled_outcome(100), FATHOM_ERR_MALFORMED);
-    assert_int_equal(controlled.a16.answer.implausible, UINT16_MAX);
 }
 
-TEST(a_window_of_the_users_own_is_kept)
+TEST(both_ends_of_the_time_are_options)
 {
-    controlled.config.window.min_mm = 1954;
-    controlled_start();
+    static const uint32_t after_us[] = {39900, 40 * MS, 60 * MS, 60200};
+    controlled.config.earliest_us = 40 * MS;
+    controlled.config.latest_us = 60 * MS;
+    for (unsigned i = 0; i != 4; i++)
+        assert_int_equal(answered_after(controlled_1953, after_us[i], 50) == FATHOM_READY, i == 1 || i == 2);
+}
+
+TEST(no_answer_is_said_at_130_ms_and_the_next_trigger_follows)
+{
     controlled_run_to_break(1, 100);
+    rig_run(129900, 100);
+    assert_int_equal(rig.fake.breaks, 1);
+    rig.fake.now_us += 100;
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+    assert_int_equal(rig_poll(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(rig.fake.breaks, 2);
+}
+
+/* Bytes before the time of an answer are none. */
+TEST(a_damaged_answer_is_a_wrong_checksum_and_noise_right_after_the_trigger_is_none)
+{
+    assert_int_equal(answered_after(wrong_sum, 100 * MS, 100), FATHOM_ERR_CHECKSUM);
+    comes(FATHOM_ERR_NO_ANSWER);
+    controlled_answer(wrong_sum, 20 * MS);
+    comes(FATHOM_ERR_NO_ANSWER);
+    controlled_answer(wrong_sum, 20 * MS);
     controlled_answer(controlled_1953, 100 * MS);
-    assert_int_equal(controlled_outcome(100), FATHOM_ERR_MALFORMED);
+    comes(FATHOM_READY);
+}
+
+TEST(a_late_answer_is_not_that_of_the_next_trigger_and_the_count_stops)
+{
+    controlled.a16.late = UINT16_MAX - 1;
+    controlled_run_to_break(1, 100);
+    for (unsigned i = 0; i != 3; i++) {
+        comes(FATHOM_ERR_NO_ANSWER);
+        controlled_answer(controlled_511, 30 * MS); /* of the trigger before, 160 ms after it */
+    }
+    comes(FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(rig.samples, 0);
+    assert_int_equal(controlled.a16.late, UINT16_MAX);
+    controlled_answer(controlled_1953, 100 * MS);
+    comes(FATHOM_READY);
+    assert_int_equal(rig.sample.distance_mm, 1953);
+}
+
+/* With an answer taken, a second one to the same trigger has no business. */
+TEST(a_second_frame_to_one_trigger_is_late)
+{
+    controlled_run_to_break(1, 100);
+    controlled_answer(controlled_1953, 90 * MS);
+    controlled_answer(controlled_511, 105 * MS);
+    comes(FATHOM_READY);
+    rig_run(24 * MS, 100);
+    assert_int_equal(rig.samples, 1);
+    assert_int_equal(controlled.a16.late, 1);
+}
+
+/* Stamped at 131 ms, read at 139 ms, when the poll before was at 119 ms: it may have come in time but for the stamp. */
+TEST(the_ports_time_stamps_decide_where_there_are_any)
+{
+    for (uint32_t came_us = 129 * MS; came_us <= 131 * MS; came_us += MS) {
+        const bool in_time = came_us <= 130 * MS;
+        controlled_start();
+        controlled_run_to_break(1, 100);
+        const uint32_t edge_us = rig.fake.now_us;
+        rig_run(119 * MS, 1 * MS);
+        fake_receive_rx(&rig.fake, 20 * MS, controlled_1953, 4,
+                        (fathom_rx_t){edge_us + came_us, FATHOM_RX_TIMED});
+        assert_int_equal(controlled_outcome(20 * MS), in_time ? FATHOM_READY : FATHOM_ERR_NO_ANSWER);
+        if (in_time) assert_int_equal(rig.sample.time_us, edge_us + came_us);
+        assert_int_equal(controlled.a16.late, !in_time);
+    }
+}
+
+/* ---- loops and the clock ---- */
+
+TEST(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_wrap)
+{
+    static const uint32_t steps_us[] = {100, 1000, 3333, 20000, 33000, 300000};
+    static const uint32_t starts_us[] = {0,
+                                         UINT32_MAX - 1000,
+                                         UINT32_MAX - 60000,
+                                         UINT32_MAX - 100000,
+                                         UINT32_MAX - 250000,
+                                         UINT32_C(0x7FFFF000)};
+    for (unsigned s = 0; s != COUNT(steps_us); s++) {
+        for (unsigned n = 0; n != COUNT(starts_us); n++) {
+            unsigned triggers = 0;
+            controlled_start_at(starts_us[n]);
+            rig.fake.step_us = n % 2 * 7; /* a clock that goes on within a poll */
+            while (rig.samples != 6) {
+                rig.fake.now_us += steps_us[s];
+                const fathom_status_t status = rig_poll();
+                assert_true(status == FATHOM_PENDING || status == FATHOM_READY);
+                if (status == FATHOM_READY)
+                    assert_int_equal(rig.sample.distance_mm, rig.samples % 2 != 0 ? 1953 : 511);
+                assert_in_range(rig.fake.breaks, rig.samples, rig.samples + 1);
+                if (rig.fake.breaks == triggers) continue;
+                triggers++;
+                controlled_answer(triggers % 2 != 0 ? controlled_1953 : controlled_511,
+                                  90 * MS + triggers % 6 * 4 * MS + FRAME_US);
+            }
+            assert_int_equal(controlled.a16.late, 0);
+        }
+    }
+}
+
+TEST(who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger)
+{
+    unsigned polls = 0;
+    unsigned answered = 0;
+    while (rig.samples != 5) {
+        uint32_t due_us = fathom_due_us(&rig.sensor, 1);
+        assert_true(++polls < 200);
+        if (rig.fake.breaks > answered) { /* the bytes wake it */
+            answered = rig.fake.breaks;
+            fake_receive(&rig.fake, 100 * MS, controlled_1953, 4);
+        }
+        if (!fake_drained(&rig.fake)) {
+            const uint32_t comes_us = rig.fake.chunks[rig.fake.first].at_us - rig.fake.now_us;
+            if (comes_us < due_us) due_us = comes_us;
+        }
+        rig.fake.now_us += due_us;
+        rig_poll();
+    }
+    assert_int_equal(rig.fake.breaks, 5);
+    assert_int_equal(controlled.a16.late, 0);
+}
+
+/* Its stream has a deadline of its own, 71 minutes, which is no concern of the user's. */
+TEST(hours_without_an_answer_are_one_no_answer_a_trigger)
+{
+    unsigned no_answers = 0;
+    for (unsigned i = 0; i != 40000; i++) {
+        rig.fake.now_us += 135 * MS;
+        rig.fake.busy_until_us = rig.fake.now_us; /* what left 35 minutes ago would come, to the fake */
+        const fathom_status_t status = rig_poll();
+        assert_true(status == FATHOM_PENDING || status == FATHOM_ERR_NO_ANSWER);
+        no_answers += status == FATHOM_ERR_NO_ANSWER;
+    }
+    assert_true(no_answers > 15000);
+    assert_int_equal(rig.stales, 0);
+    assert_int_equal(controlled.a16.late, 0);
 }
 
 /* ---- the port ---- */
@@ -164,7 +284,7 @@ TEST(a_busy_port_delays_the_edges_and_costs_no_answer)
     assert_int_equal(rig.samples, 1);
 }
 
-TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
+TEST(a_port_that_breaks_in_the_break_is_said_and_then_the_trigger_had_no_answer)
 {
     controlled_run_to_break(1, 100);
     rig.fake.read_fails = true;
@@ -175,17 +295,9 @@ TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
     rig.fake.read_fails = false;
     assert_int_equal(rig_poll(), FATHOM_ERR_NO_ANSWER);
     assert_false(rig.fake.in_break);
-    controlled_run_to_break(2, 100);
-    controlled_answer(controlled_1953, 100 * MS);
-    assert_int_equal(controlled_outcome(100), FATHOM_READY);
 }
 
-static int broken(void *ctx, bool on)
-{
-    (void)ctx;
-    (void)on;
-    return -1;
-}
+static int broken(void *ctx, bool on) { return -1; }
 
 TEST(a_break_that_fails_is_said_by_every_poll_until_it_works_again)
 {
@@ -198,37 +310,16 @@ TEST(a_break_that_fails_is_said_by_every_poll_until_it_works_again)
     assert_int_equal(rig.fake.breaks, 1);
 }
 
-/* ---- setting up ---- */
-
-TEST(a_config_that_cannot_work_is_refused_and_nothing_listens)
+TEST(without_a_pin_or_a_break_nothing_listens_and_deinit_ends_a_break)
 {
     fathom_a16_controlled_t other;
-    fathom_line_listen(&rig.line, NULL);
-    controlled.config.window.min_mm = 16351;
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
-    controlled.config.window.min_mm = 0;
-    controlled.config.earliest_us = 131 * MS;
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
-    controlled.config.earliest_us = 0;
-    controlled.config.line = NULL;
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
-    controlled.config.line = &rig.line;
+    controlled_run_to_break(1, 100);
+    fathom_a16_controlled_deinit(&controlled.a16);
+    assert_false(rig.fake.in_break);
     rig.fake.uart.set_break = NULL;
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_UNSUPPORTED);
     assert_null(rig.line.listener);
     controlled.config.trigger = &controlled.pin.trigger;
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_READY);
     assert_ptr_equal(rig.line.listener, &other.listener);
-}
-
-TEST(deinit_ends_the_break_and_stops_listening_unless_another_does)
-{
-    fathom_a16_controlled_t other;
-    controlled_run_to_break(1, 100);
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_READY);
-    fathom_a16_controlled_deinit(&controlled.a16);
-    assert_false(rig.fake.in_break);
-    assert_ptr_equal(rig.line.listener, &other.listener);
-    fathom_a16_controlled_deinit(&other);
-    assert_null(rig.line.listener);
 }
