@@ -1,102 +1,118 @@
 /* SPDX-License-Identifier: MIT */
+#include "auto_rig.h"
 #include "fathom/a05_dyp.h"
-#include "line_bench.h"
+#include "fathom/modbus_rtu.h"
 
 /* An A05 that answers the frames 55 AA (A05 2), over a line on the fake UART. SUM is the low byte of the sum of all
- * before it, and 55 + AA = FF. */
-enum { STEP_US = 200, GUARD = 0xA5 };
+ * before it, and 55 + AA = FF. test_driver_contract.c has one probe alone. */
+enum { STEP_US = 250, REQUEST_US = 5 * RIG_BYTE_US };
 
 /* A05 2(3)3 with the sum put right, and 2(3)4. */
 static const uint8_t ask_all[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
 static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
+static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
 static fathom_a05_dyp_config_t config;
 static fathom_a05_dyp_t a05;
-static fathom_sensor_t sensor;
-static fathom_sample_t sample;
 
-static int set_up_a05(void **state)
+static void set_up_at(uint32_t now_us)
 {
-    set_up(state);
-    memset(&config, 0, sizeof config);
-    config.line = &bench.line;
+    rig_start(now_us);
+    rig.line_config.echo = FATHOM_LINE_ECHO_OFF;
+    rig.fake.byte_us = RIG_BYTE_US;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
+    config = (fathom_a05_dyp_config_t){.line = &rig.line};
     memset(&a05, 0x5A, sizeof a05);
-    return 0;
 }
-
-static const suite_t suite = {.set_up = set_up_a05};
 
 static void start(void)
 {
     assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
-    sensor = fathom_a05_dyp_sensor(&a05);
+    rig.sensor = fathom_a05_dyp_sensor(&a05);
 }
 
-static fathom_status_t poll_once(void)
+/* With the defaults but for these. */
+static void start_with(uint8_t probes, uint32_t period_us, uint32_t timeout_us)
 {
-    uint8_t untouched[sizeof sample];
-    memset(&sample, GUARD, sizeof sample);
-    memset(untouched, GUARD, sizeof untouched);
-    const fathom_status_t status = fathom_poll(&sensor, &sample);
-    if (status != FATHOM_READY) assert_memory_equal(&sample, untouched, sizeof untouched);
+    set_up_at(RIG_START_US);
+    config.probes = probes;
+    config.period_us = period_us;
+    config.timeout_us = timeout_us;
+    start();
+}
+
+static int set_up(void **state)
+{
+    start_with(0, 0, 0);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+/* The status that comes next, within `us`. */
+static fathom_status_t next_within(uint32_t us, fathom_status_t (*call)(void))
+{
+    fathom_status_t status = FATHOM_PENDING;
+    for (uint32_t passed_us = 0; passed_us < us && status == FATHOM_PENDING; passed_us += STEP_US) {
+        rig.fake.now_us += STEP_US;
+        status = call();
+    }
     return status;
 }
 
-static void assert_nothing_for(uint32_t us)
-{
-    for (uint32_t passed_us = 0; passed_us < us; passed_us += STEP_US) {
-        bench.fake.now_us += STEP_US;
-        assert_int_equal(poll_once(), FATHOM_PENDING);
-    }
-}
+static void nothing_for(uint32_t us) { assert_int_equal(next_within(us, rig_poll), FATHOM_PENDING); }
 
 /* Goes on until the request after `written` others is on its way; returns when that was. */
 static uint32_t until_written(size_t written)
 {
-    for (uint32_t i = 0; bench.fake.written <= written; i++) {
+    for (uint32_t i = 0; rig.fake.written <= written; i++) {
         assert_true(i < 100000);
-        assert_nothing_for(STEP_US);
+        nothing_for(STEP_US);
     }
-    return bench.fake.writes[written].at_us;
+    return rig.fake.writes[written].at_us;
 }
 
-/* The status that comes next, within `us`. */
-static fathom_status_t next_within(uint32_t us)
+static void receive(const uint8_t *bytes, size_t length) { fake_receive(&rig.fake, 0, bytes, length); }
+
+/* It is asked for all, and answers. */
+static void tell(size_t written, const uint8_t *bytes, size_t length)
 {
-    for (uint32_t passed_us = 0; passed_us < us; passed_us += STEP_US) {
-        const fathom_status_t status = poll_once();
-        if (status != FATHOM_PENDING) return status;
-        bench.fake.now_us += STEP_US;
-    }
-    return FATHOM_PENDING;
+    until_written(written);
+    assert_int_equal(rig.fake.writes[written].length, sizeof ask_all);
+    assert_memory_equal(rig.fake.writes[written].bytes, ask_all, sizeof ask_all);
+    nothing_for(205000);
+    receive(bytes, length);
 }
 
-/* ---- all probes ---- */
+static void takes(unsigned probe)
+{
+    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig.sample.probe, probe);
+    assert_int_equal(rig.sample.distance_mm, four_mm[probe - 1]);
+}
+
+/* ---- probes ---- */
 
 TEST(four_samples_share_sequence_and_time)
 {
-    start();
-    for (unsigned answer = 1; answer <= 3; answer++) {
-        until_written(answer - 1);
-        assert_memory_equal(bench.fake.writes[answer - 1].bytes, ask_all, sizeof ask_all);
-        assert_nothing_for(205000);
-        receive(four, sizeof four);
-        const uint32_t heard_us = bench.fake.now_us;
-        for (unsigned probe = 1; probe <= 4; probe++) {
-            if (probe != 1) assert_int_equal(fathom_due_us(&sensor, 1), 0);
-            assert_int_equal(poll_once(), FATHOM_READY);
-            assert_int_equal(sample.probe, probe);
-            assert_int_equal(sample.sequence, answer);
-            assert_int_equal(sample.time_us, heard_us);
-            assert_int_equal(sample.raw, four_mm[probe - 1]);
-            assert_int_equal(sample.distance_mm, four_mm[probe - 1]);
-            assert_int_equal(sample.kind, FATHOM_TARGET);
-            assert_int_equal(sample.model, FATHOM_A05);
-            assert_int_equal(sample.unit, 1);
-            bench.fake.now_us += STEP_US;
+    for (uint16_t answer = 1; answer <= 3; answer++) {
+        tell(answer - 1u, four, sizeof four);
+        const uint32_t heard_us = rig.fake.now_us;
+        for (uint8_t probe = 1; probe <= 4; probe++) {
+            if (probe != 1) assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+            takes(probe);
+            assert_sample(&rig.sample, (fathom_sample_t){.time_us = heard_us,
+                                                         .raw = four_mm[probe - 1],
+                                                         .sequence = answer,
+                                                         .distance_mm = four_mm[probe - 1],
+                                                         .kind = FATHOM_TARGET,
+                                                         .model = FATHOM_A05,
+                                                         .unit = 1,
+                                                         .probe = probe});
+            rig.fake.now_us += STEP_US;
         }
-        assert_nothing_for(1000);
+        nothing_for(1000);
     }
 }
 
@@ -104,65 +120,13 @@ TEST(every_choice_of_several_probes_measures_all_and_hands_over_the_wanted)
 {
     for (uint8_t probes = 1; probes != 16; probes++) {
         if ((probes & (probes - 1)) == 0) continue;
-        set_up_a05(state);
-        config.probes = probes;
-        start();
-        until_written(0);
-        assert_memory_equal(bench.fake.writes[0].bytes, ask_all, sizeof ask_all);
-        assert_nothing_for(205000);
-        receive(four, sizeof four);
-        for (uint8_t probe = 1; probe <= 4; probe++) {
-            if ((probes >> (probe - 1) & 1) == 0) continue;
-            assert_int_equal(poll_once(), FATHOM_READY);
-            assert_int_equal(sample.probe, probe);
-            assert_int_equal(sample.distance_mm, four_mm[probe - 1]);
-        }
-        assert_nothing_for(1000);
+        start_with(probes, 0, 0);
+        tell(0, four, sizeof four);
+        for (uint8_t probe = 1; probe <= 4; probe++)
+            if ((probes >> (probe - 1) & 1) != 0) takes(probe);
+        nothing_for(1000);
     }
 }
-
-/* FFFD is no object, FFFE interference of sister models (dyp.h), 0 no object of older firmware; 6001 is outside.
- * FF + 01 + 01 = 101; FF + FD = 1FC; FF + FE = 1FD; 0; 17 + 71 = 88: 01 + FC + FD + 88 = 282. */
-TEST(values_mean_what_they_mean_in_the_other_modes)
-{
-    static const uint8_t odd[] = {0x55, 0xAA, 0x01, 0x01, 0xFF, 0xFD, 0xFF,
-                                  0xFE, 0x00, 0x00, 0x17, 0x71, 0x82};
-    start();
-    until_written(0);
-    assert_nothing_for(205000);
-    receive(odd, sizeof odd);
-    assert_int_equal(poll_once(), FATHOM_READY);
-    assert_int_equal(sample.kind, FATHOM_NO_TARGET);
-    assert_false(sample.interference);
-    assert_int_equal(poll_once(), FATHOM_READY);
-    assert_int_equal(sample.kind, FATHOM_NO_TARGET);
-    assert_true(sample.interference);
-    assert_int_equal(poll_once(), FATHOM_READY);
-    assert_int_equal(sample.kind, FATHOM_NO_TARGET);
-    assert_int_equal(sample.distance_mm, 0);
-    assert_int_equal(poll_once(), FATHOM_ERR_MALFORMED);
-    assert_int_equal(a05.base.answer.implausible, 1);
-    assert_nothing_for(1000);
-}
-
-TEST(the_window_is_the_configs)
-{
-    config.window.min_mm = 1001;
-    config.window.max_mm = 2000;
-    start();
-    until_written(0);
-    assert_nothing_for(205000);
-    receive(four, sizeof four);
-    assert_int_equal(poll_once(), FATHOM_ERR_MALFORMED);
-    assert_int_equal(poll_once(), FATHOM_READY);
-    assert_int_equal(sample.probe, 2);
-    assert_int_equal(poll_once(), FATHOM_READY);
-    assert_int_equal(sample.probe, 3);
-    assert_int_equal(poll_once(), FATHOM_ERR_MALFORMED);
-    assert_nothing_for(1000);
-}
-
-/* ---- one probe ---- */
 
 TEST(one_probe_is_measured_alone)
 {
@@ -170,99 +134,96 @@ TEST(one_probe_is_measured_alone)
         const uint8_t command = (uint8_t)(0x0F + probe);
         const uint8_t request[] = {0x55, 0xAA, 0x01, command, command}; /* FF + 01 = 100 */
         const uint8_t answer[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
-        set_up_a05(state);
-        config.probes = (uint8_t)(1u << (probe - 1));
-        start();
+        start_with((uint8_t)(1u << (probe - 1)), 0, 0);
         until_written(0);
-        assert_int_equal(bench.fake.writes[0].length, sizeof request);
-        assert_memory_equal(bench.fake.writes[0].bytes, request, sizeof request);
-        assert_nothing_for(70000);
+        assert_int_equal(rig.fake.writes[0].length, sizeof request);
+        assert_memory_equal(rig.fake.writes[0].bytes, request, sizeof request);
+        nothing_for(70000);
         receive(answer, sizeof answer);
-        assert_int_equal(poll_once(), FATHOM_READY);
-        assert_int_equal(sample.probe, probe);
-        assert_int_equal(sample.distance_mm, 1953);
-        assert_int_equal(sample.sequence, 1);
-        assert_nothing_for(1000);
+        assert_int_equal(rig_poll(), FATHOM_READY);
+        assert_int_equal(rig.sample.probe, probe);
+        assert_int_equal(rig.sample.distance_mm, 1953);
+        nothing_for(1000);
     }
+}
+
+/* Each probe's value for itself: FFFD is no object, FFFE interference of sister models (dyp.h), 0 no object of older
+ * firmware; 6001 is outside. FF + 01 + 01 = 101; FF + FD = 1FC; FF + FE = 1FD; 0; 17 + 71 = 88: 01 + FC + FD + 88 =
+ * 282. */
+TEST(a_value_that_cannot_be_is_refused_alone)
+{
+    static const uint8_t odd[] = {0x55, 0xAA, 0x01, 0x01, 0xFF, 0xFD, 0xFF,
+                                  0xFE, 0x00, 0x00, 0x17, 0x71, 0x82};
+    tell(0, odd, sizeof odd);
+    for (unsigned i = 0; i != 3; i++) {
+        assert_int_equal(rig_poll(), FATHOM_READY);
+        assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
+        assert_int_equal(rig.sample.interference, i == 1);
+    }
+    assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
+    assert_int_equal(a05.base.answer.implausible, 1);
+    nothing_for(1000);
+    config.window = (fathom_dyp_window_t){1001, 2000, false};
+    start();
+    tell(1, four, sizeof four);
+    assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
+    takes(2);
+    takes(3);
+    assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
+    nothing_for(1000);
 }
 
 /* ---- time ---- */
 
 /* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the answers are instant. */
-static void assert_period(uint8_t probes, uint32_t period_us, uint32_t expected_us)
+static void assert_period(uint32_t expected_us)
 {
-    static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
     uint32_t last_us = 0;
-    config.probes = probes;
-    config.period_us = period_us;
-    start();
     for (unsigned n = 0; n != 4; n++) {
         const uint32_t at_us = until_written(n);
-        if (n != 0) {
-            assert_true(at_us - last_us >= expected_us);
-            assert_true(at_us - last_us <= expected_us + 2 * STEP_US);
-        }
+        if (n != 0) assert_in_range(at_us - last_us, expected_us, expected_us + 2 * STEP_US);
         last_us = at_us;
-        assert_nothing_for(10000);
-        if (probes == 0) {
+        nothing_for(10000);
+        if (config.probes == 0)
             receive(four, sizeof four);
-            for (unsigned i = 0; i != 4; i++) assert_int_equal(poll_once(), FATHOM_READY);
-            assert_nothing_for(STEP_US);
-            assert_true(fathom_due_us(&sensor, 1) <= expected_us - 10000);
-            assert_true(fathom_due_us(&sensor, 1) >= expected_us - 12000);
-        } else {
+        else
             receive(first_1953, sizeof first_1953);
-            assert_int_equal(poll_once(), FATHOM_READY);
-        }
+        for (unsigned i = config.probes == 0 ? 4 : 1; i != 0; i--) assert_int_equal(rig_poll(), FATHOM_READY);
+        nothing_for(STEP_US);
+        assert_in_range(fathom_due_us(&rig.sensor, 1), expected_us - 12000, expected_us - 10000);
     }
 }
 
 TEST(commands_keep_the_least_time_between_them)
 {
-    assert_period(0, 0, 250000);
-    set_up_a05(state);
-    assert_period(1, 0, 100000);
-    set_up_a05(state);
-    assert_period(0, 249999, 250000);
-    set_up_a05(state);
-    assert_period(1, 99999, 100000);
-    set_up_a05(state);
-    assert_period(0, 300000, 300000);
-    set_up_a05(state);
-    assert_period(1, 250000, 250000);
+    static const uint32_t rows[][3] = {{0, 0, 250000},     {1, 0, 100000},      {0, 249999, 250000},
+                                       {1, 99999, 100000}, {0, 300000, 300000}, {1, 250000, 250000}};
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        start_with((uint8_t)rows[i][0], rows[i][1], 0);
+        assert_period(rows[i][2]);
+    }
 }
 
 TEST(the_period_is_kept_across_the_wrap_of_the_clock)
 {
     for (uint32_t before_us = 20000; before_us < 600000; before_us += 70000) {
-        set_up_a05(state);
-        bench.fake.now_us = UINT32_MAX - before_us;
-        bench.fake.busy_until_us = bench.fake.now_us;
-        assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
-        assert_period(0, 0, 250000);
+        set_up_at(UINT32_MAX - before_us);
+        start();
+        assert_period(250000);
     }
-}
-
-static void assert_time_out(uint8_t probes, uint32_t timeout_us, uint32_t expected_us)
-{
-    config.probes = probes;
-    config.timeout_us = timeout_us;
-    start();
-    until_written(0);
-    assert_nothing_for(5 * BYTE_US + expected_us - 1000);
-    assert_int_equal(next_within(2000), FATHOM_ERR_NO_ANSWER);
-    assert_nothing_for(1000);
 }
 
 TEST(silence_is_said_after_the_time_out)
 {
-    assert_time_out(0, 0, 500000);
-    set_up_a05(state);
-    assert_time_out(8, 0, 200000);
-    set_up_a05(state);
-    assert_time_out(0, 220000, 220000);
-    set_up_a05(state);
-    assert_time_out(1, 80000, 80000);
+    static const uint32_t rows[][3] = {
+        {0, 0, 500000}, {8, 0, 200000}, {0, 220000, 220000}, {1, 80000, 80000}};
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        start_with((uint8_t)rows[i][0], 0, rows[i][1]);
+        until_written(0);
+        nothing_for(REQUEST_US + rows[i][2] - 1000);
+        assert_int_equal(next_within(2000, rig_poll), FATHOM_ERR_NO_ANSWER);
+        nothing_for(1000);
+    }
 }
 
 TEST(retries_are_the_configs)
@@ -270,8 +231,8 @@ TEST(retries_are_the_configs)
     config.probes = 1;
     config.retries = 2;
     start();
-    assert_int_equal(next_within(2000000), FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(bench.fake.written, 3);
+    assert_int_equal(next_within(2000000, rig_poll), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(rig.fake.written, 3);
 }
 
 TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
@@ -281,10 +242,26 @@ TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
     start();
     for (unsigned n = 0; n != 8; n++) {
         const uint32_t at_us = until_written(n);
-        assert_int_equal(next_within(300000), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_ANSWER);
         /* 200 ms of time-out and as much of owing; from the third on the pause: 200, then 300 ms after it. */
-        if (n >= 4) assert_true(at_us - bench.fake.writes[n - 1].at_us >= 500000);
-        if (n >= 1) assert_true(at_us - bench.fake.writes[n - 1].at_us <= 520000);
+        if (n >= 4) assert_true(at_us - rig.fake.writes[n - 1].at_us >= 500000);
+        if (n >= 1) assert_true(at_us - rig.fake.writes[n - 1].at_us <= 520000);
+    }
+}
+
+/* 1.5 s, or as the config says, and then a time-out and a debt. */
+TEST(after_power_on_silence_is_warming_up)
+{
+    static const uint32_t starts_us[][2] = {{0, 1500000}, {700000, 700000}};
+    for (unsigned i = 0; i != 2; i++) {
+        fathom_status_t status = FATHOM_ERR_WARMING_UP;
+        set_up_at(RIG_START_US);
+        config.start_us = starts_us[i][0];
+        start();
+        fathom_a05_dyp_power_on(&a05);
+        while (status == FATHOM_ERR_WARMING_UP) status = next_within(2000000, rig_poll);
+        assert_int_equal(status, FATHOM_ERR_NO_ANSWER);
+        assert_in_range(rig.fake.now_us - RIG_START_US, starts_us[i][1], starts_us[i][1] + 1600000);
     }
 }
 
@@ -295,45 +272,17 @@ TEST(errors_leave_the_sample_alone_and_the_sensor_goes_on)
     uint8_t damaged[sizeof four];
     memcpy(damaged, four, sizeof four);
     damaged[12] = 0x60; /* as A05 2(3)3 prints it */
-    start();
-    until_written(0);
-    assert_nothing_for(205000);
-    receive(damaged, sizeof damaged);
-    assert_int_equal(next_within(20000), FATHOM_ERR_CHECKSUM);
-
-    until_written(1);
-    assert_nothing_for(205000);
-    receive(four, 9);
-    assert_int_equal(next_within(20000), FATHOM_ERR_CHECKSUM);
-
+    tell(0, damaged, sizeof damaged);
+    assert_int_equal(next_within(20000, rig_poll), FATHOM_ERR_CHECKSUM);
+    tell(1, four, 9);
+    assert_int_equal(next_within(20000, rig_poll), FATHOM_ERR_CHECKSUM);
     until_written(2);
-    bench.fake.read_fails = true;
-    assert_int_equal(poll_once(), FATHOM_ERR_PORT);
-    assert_int_equal(poll_once(), FATHOM_ERR_PORT);
-    bench.fake.read_fails = false;
-
-    until_written(3);
-    assert_nothing_for(205000);
-    receive(four, sizeof four);
-    assert_int_equal(poll_once(), FATHOM_READY);
-    assert_int_equal(sample.sequence, 1);
-}
-
-TEST(wrong_arguments_are_refused)
-{
-    config.line = NULL;
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_ERR_ARGUMENT);
-    set_up_a05(state);
-    config.address = 255;
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_ERR_ARGUMENT);
-    set_up_a05(state);
-    config.window.min_mm = 6001;
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_ERR_ARGUMENT);
-    for (unsigned probes = 16; probes != 256; probes++) {
-        set_up_a05(state);
-        config.probes = (uint8_t)probes;
-        assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_ERR_ARGUMENT);
-    }
+    rig.fake.read_fails = true;
+    for (unsigned i = 0; i != 2; i++) assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
+    rig.fake.read_fails = false;
+    tell(3, four, sizeof four);
+    takes(1);
+    assert_int_equal(rig.sample.sequence, 1);
 }
 
 TEST(address_and_settings_are_the_configs)
@@ -344,17 +293,202 @@ TEST(address_and_settings_are_the_configs)
     config.settings = &settings;
     start();
     until_written(0);
-    assert_memory_equal(bench.fake.writes[0].bytes, ask_254, sizeof ask_254);
-    assert_int_equal(bench.fake.writes[0].baud, 9600);
+    assert_memory_equal(rig.fake.writes[0].bytes, ask_254, sizeof ask_254);
+    assert_int_equal(rig.fake.writes[0].baud, 9600);
 }
 
-TEST(deinit_cancels_what_is_under_way)
+TEST(after_deinit_an_answer_changes_nothing)
 {
-    start();
     until_written(0);
     fathom_a05_dyp_deinit(&a05);
-    assert_null(bench.line.head);
+    assert_null(rig.line.head);
     receive(four, sizeof four);
-    run(1000);
+    fathom_line_poll(&rig.line);
+    rig.fake.now_us += 1000;
+    fathom_line_poll(&rig.line);
     for (unsigned i = 0; i != 4; i++) assert_int_equal(a05.values[i], 0x5A5A);
+}
+
+/* ---- which address has the one A05 on this line? ---- */
+
+static const uint8_t ask_anyone[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* FF + FF + 10 = 20E */
+/* 1953 mm from 5: FF + 05 + 10 + 07 + A1 = 1BC; from 254: FF + FE + 10 + 07 + A1 = 2B5. */
+static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
+static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
+
+static fathom_a05_dyp_find_t sought;
+static uint8_t address;
+
+static int set_up_find(void **state)
+{
+    set_up(state);
+    memset(&sought, 0, sizeof sought);
+    address = GUARD;
+    return 0;
+}
+
+static const suite_t finding = {.set_up = set_up_find};
+
+static fathom_status_t find(void) { return fathom_a05_dyp_find(&sought, &rig.line, &address); }
+static void finds_within(uint32_t us, fathom_status_t status)
+{
+    assert_int_equal(next_within(us, find), status);
+}
+
+static void until_asked(size_t written)
+{
+    for (unsigned i = 0; rig.fake.written != written; i++) {
+        assert_true(i < 5000);
+        finds_within(STEP_US, FATHOM_PENDING);
+    }
+    assert_int_equal(rig.fake.writes[written - 1].length, sizeof ask_anyone);
+    assert_memory_equal(rig.fake.writes[written - 1].bytes, ask_anyone, sizeof ask_anyone);
+    finds_within(70000, FATHOM_PENDING);
+    assert_int_equal(rig.fake.written, written);
+}
+
+static void finds(size_t written, const uint8_t *answer, uint8_t where)
+{
+    until_asked(written);
+    receive(answer, sizeof from_5);
+    finds_within(STEP_US, FATHOM_READY);
+    assert_int_equal(address, where);
+}
+
+TEST_IN(finding, the_address_is_where_the_answer_came_from_and_the_next_call_asks_anew)
+{
+    finds(1, from_5, 5);
+    finds(2, from_254, 254);
+}
+
+TEST_IN(finding, silence_is_no_answer_and_leaves_the_address_alone)
+{
+    until_asked(1);
+    finds_within(REQUEST_US + 200000 - 70000 - 1000, FATHOM_PENDING);
+    finds_within(2000, FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(address, GUARD);
+}
+
+TEST_IN(finding, what_is_damaged_gives_no_address)
+{
+    uint8_t damaged[sizeof from_5];
+    for (unsigned bit = 0; bit != 8 * sizeof from_5; bit++) {
+        set_up_find(state);
+        memcpy(damaged, from_5, sizeof damaged);
+        damaged[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        until_asked(1);
+        receive(damaged, sizeof damaged);
+        assert_true(next_within(200000, find) < 0);
+        assert_int_equal(address, GUARD);
+    }
+}
+
+TEST_IN(finding, of_two_answers_the_first_is_taken)
+{
+    uint8_t glued[sizeof from_5 + sizeof from_254];
+    memcpy(glued, from_254, sizeof from_254);
+    memcpy(glued + sizeof from_254, from_5, sizeof from_5);
+    until_asked(1);
+    receive(glued, sizeof glued);
+    finds_within(STEP_US, FATHOM_READY);
+    assert_int_equal(address, 254);
+    assert_int_equal(sought.value, 1953);
+}
+
+TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
+{
+    rig.line_config.echo = FATHOM_LINE_ECHO_AUTO;
+    while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
+    fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_anyone, sizeof ask_anyone);
+    fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
+    finds_within(100000, FATHOM_READY);
+    assert_int_equal(address, 5);
+    assert_int_equal(fathom_line_echo(&rig.line), FATHOM_LINE_ECHO_ON);
+}
+
+TEST_IN(finding, it_can_be_given_up)
+{
+    until_asked(1);
+    for (unsigned i = 0; i != 2; i++) { /* the second time there is nothing to give up */
+        fathom_a05_dyp_find_cancel(&sought, &rig.line);
+        assert_null(rig.line.head);
+    }
+    finds_within(2 * 200000 - 75000, FATHOM_PENDING);
+    assert_int_equal(rig.fake.written, 1); /* all owe an answer */
+    finds(2, from_5, 5);
+}
+
+TEST_IN(finding, a_broken_port_ends_it)
+{
+    until_asked(1);
+    rig.fake.read_fails = true;
+    finds_within(STEP_US, FATHOM_ERR_PORT);
+    assert_int_equal(address, GUARD);
+}
+
+TEST_IN(finding, a_line_without_room_says_so)
+{
+    rig.line_config.frame_size = 12;
+    for (unsigned i = 0; i != 2; i++) finds_within(STEP_US, FATHOM_ERR_CAPACITY);
+    assert_null(rig.line.head);
+}
+
+/* ---- 55 AA 03 gives its address to every A05 on the line (A05 2(3)5). Whoever has the driver's seam to the line can
+ * send it at no time: not before the driver sets an address, not between the calls that set it, and not afterwards ---- */
+
+/* A write of the address register, as a program would send it that has taken the seam for Modbus. */
+static void assert_refused(void)
+{
+    static fathom_modbus_request_t other;
+    const fathom_modbus_t *const seam = &a05.client;
+    const size_t written = rig.fake.written;
+    fathom_modbus_write_single_register(&other.message, 9, 0x0200, 9);
+    assert_int_equal(seam->submit(seam->ctx, &other), FATHOM_ERR_UNSUPPORTED);
+    assert_false(fathom_line_has(&rig.line, &other.exchange));
+    assert_int_equal(rig.fake.written, written);
+}
+
+static fathom_status_t set_7(void) { return fathom_a05_dyp_set_every_address(&a05, 7); }
+
+/* 55 AA 01 10 and 0x75B mm: 55 + AA + 01 + 10 + 07 + 5B = 172, so that the sum is 72; and at address 7: 78. 55 + AA + 07
+ * + 03 = 109. */
+static const struct {
+    uint8_t address, command, length, answer[7];
+} steps[] = {{0x01, 0x10, 7, {0x55, 0xAA, 0x01, 0x10, 0x07, 0x5B, 0x72}},
+             {0x07, 0x10, 0, {0}}, /* is somebody there? */
+             {0x07, 0x03, 5, {0x55, 0xAA, 0x07, 0x03, 0x09}},
+             {0x07, 0x10, 7, {0x55, 0xAA, 0x07, 0x10, 0x07, 0x5B, 0x78}}};
+
+TEST(a_write_through_the_seam_is_refused_at_every_time)
+{
+    fathom_status_t status = FATHOM_PENDING;
+    size_t seen = 0;
+    assert_refused();
+    for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
+        assert_true(ms < 10000);
+        rig.fake.now_us += 1000;
+        status = set_7();
+        assert_refused();
+        if (rig.fake.written == seen) continue;
+        assert_true(seen < COUNT(steps));
+        assert_int_equal(rig.fake.writes[seen].bytes[2], steps[seen].address);
+        assert_int_equal(rig.fake.writes[seen].bytes[3], steps[seen].command);
+        if (steps[seen].length != 0) fake_receive(&rig.fake, 70000, steps[seen].answer, steps[seen].length);
+        seen++;
+    }
+    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(seen, COUNT(steps));
+    assert_refused();
+}
+
+TEST(what_was_refused_or_given_up_leaves_the_seam_closed)
+{
+    assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 0), FATHOM_ERR_ARGUMENT);
+    assert_refused();
+    assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 255), FATHOM_ERR_ARGUMENT);
+    assert_refused();
+    assert_int_equal(set_7(), FATHOM_PENDING);
+    fathom_a05_dyp_cancel(&a05);
+    assert_refused();
+    assert_int_equal(rig.fake.written, 0);
 }

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
-#include "suite.h"
-
+#include "drivers.h"
 #include "fathom/a05_relay_rule.h"
 
 enum { HALF_S = 500000, NONE = 0 };
@@ -30,6 +27,8 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
+/* ---- measurements ---- */
+
 static bool give(uint8_t probe, uint8_t kind, uint16_t mm)
 {
     const fathom_sample_t sample = {
@@ -49,62 +48,70 @@ static bool measure(uint16_t one, uint16_t two, uint16_t three, uint16_t four)
     return changed;
 }
 
+/* All probes at this distance, which changes the level or not. */
+static void all(uint16_t mm, bool changes) { assert_int_equal(measure(mm, mm, mm, mm), changes); }
+
+static void is(uint8_t level) { assert_int_equal(rule.debounce.level, level); }
+
+static void changes_to(uint8_t level, uint16_t one, uint16_t two, uint16_t three, uint16_t four)
+{
+    assert_true(measure(one, two, three, four));
+    is(level);
+}
+
+/* A new measurement, of which only some probes speak yet. */
+static void begin_after(uint32_t us)
+{
+    now_us += us;
+    sequence++;
+}
+
 TEST(any_probe_nearer_than_the_threshold_closes)
 {
     for (uint8_t near = 0; near != 4; near++) {
         set_up(state);
-        assert_true(measure(1001, NONE, 4500, 1001));
-        assert_int_equal(rule.debounce.level, FATHOM_FAR);
+        changes_to(FATHOM_FAR, 1001, NONE, 4500, 1001);
         measure(1001, 1001, 1001, 1001);
-        assert_true(measure(near == 0 ? 999 : 1001, near == 1 ? 999 : NONE, near == 2 ? 999 : 4500,
-                            near == 3 ? 999 : 1001));
-        assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+        changes_to(FATHOM_NEAR, near == 0 ? 999 : 1001, near == 1 ? 999 : NONE, near == 2 ? 999 : 4500,
+                   near == 3 ? 999 : 1001);
     }
 }
 
 TEST(it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one)
 {
-    sequence++;
-    assert_false(give(1, FATHOM_TARGET, 1001));
-    assert_true(give(2, FATHOM_TARGET, 999));
-    assert_false(give(3, FATHOM_TARGET, 999));
-    assert_false(give(4, FATHOM_TARGET, 4000));
-    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
-    now_us += 1000000;
-    sequence++;
-    assert_false(give(1, FATHOM_NO_TARGET, 0));
-    assert_false(give(2, FATHOM_NO_TARGET, 0));
-    assert_false(give(3, FATHOM_TARGET, 1001));
-    assert_true(give(4, FATHOM_TARGET, 1001));
-    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+    static const uint16_t mm[2][4] = {{1001, 999, 999, 4000}, {NONE, NONE, 1001, 1001}};
+    for (unsigned i = 0; i != 2; i++) {
+        begin_after(1000000);
+        for (uint8_t n = 0; n != 4; n++)
+            assert_int_equal(
+                give((uint8_t)(n + 1), mm[i][n] == NONE ? FATHOM_NO_TARGET : FATHOM_TARGET, mm[i][n]),
+                n == (i == 0 ? 1 : 3));
+        is(i == 0 ? FATHOM_NEAR : FATHOM_FAR);
+    }
 }
 
 /* ---- Decision: each state lasts at least 1 s ---- */
 
 TEST(each_state_lasts_at_least_1_s)
 {
-    assert_true(measure(999, 999, 999, 999));
-    assert_false(measure(1001, 1001, 1001, 1001)); /* 0.5 s */
-    assert_true(measure(1001, 1001, 1001, 1001));
-    assert_false(measure(999, 999, 999, 999));
+    all(999, true);
+    all(1001, false); /* 0.5 s */
+    all(1001, true);
+    all(999, false);
     now_us -= 1; /* 999999 us */
-    assert_false(measure(999, 999, 999, 999));
+    all(999, false);
     now_us -= HALF_S - 1;
-    assert_true(measure(999, 999, 999, 999));
+    all(999, true);
 }
 
 TEST(how_long_a_state_lasts_is_an_option)
 {
-    config.hold_us = 1;
-    start();
-    assert_true(measure(999, 999, 999, 999));
-    assert_true(measure(1001, 1001, 1001, 1001));
-    config.hold_us = 1500000;
-    start();
-    assert_true(measure(999, 999, 999, 999));
-    assert_false(measure(1001, 1001, 1001, 1001));
-    assert_false(measure(1001, 1001, 1001, 1001));
-    assert_true(measure(1001, 1001, 1001, 1001));
+    for (uint32_t halves = 1; halves <= 3; halves += 2) {
+        config.hold_us = halves == 1 ? 1 : halves * HALF_S;
+        start();
+        all(999, true);
+        for (uint32_t n = 1; n <= halves; n++) all(1001, n == halves);
+    }
 }
 
 /* ---- Decision: what is not fitted never closes it ---- */
@@ -113,14 +120,11 @@ TEST(a_probe_that_is_not_fitted_counts_for_nothing)
 {
     config.probes = 0x05; /* 1 and 3 */
     start();
-    assert_true(measure(1001, 1, 1001, 1));
-    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+    changes_to(FATHOM_FAR, 1001, 1, 1001, 1);
     for (int i = 0; i != 5; i++) assert_false(measure(2000, 1, 2000, 1));
-    assert_true(measure(2000, 3000, 999, 3000));
-    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    changes_to(FATHOM_NEAR, 2000, 3000, 999, 3000);
     measure(2000, 1, 2000, 1);
-    assert_true(measure(2000, 1, 2000, 1));
-    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+    changes_to(FATHOM_FAR, 2000, 1, 2000, 1);
 }
 
 TEST(every_mask_of_probes_heeds_its_own_and_no_other)
@@ -129,9 +133,9 @@ TEST(every_mask_of_probes_heeds_its_own_and_no_other)
         for (uint8_t near = 0; near != 16; near++) {
             config.probes = probes;
             start();
-            assert_true(measure((near & 1) != 0 ? 999 : 1001, (near & 2) != 0 ? 999 : 1001,
-                                (near & 4) != 0 ? 999 : 1001, (near & 8) != 0 ? 999 : 1001));
-            assert_int_equal(rule.debounce.level, (near & probes) != 0 ? FATHOM_NEAR : FATHOM_FAR);
+            changes_to((near & probes) != 0 ? FATHOM_NEAR : FATHOM_FAR, (near & 1) != 0 ? 999 : 1001,
+                       (near & 2) != 0 ? 999 : 1001, (near & 4) != 0 ? 999 : 1001,
+                       (near & 8) != 0 ? 999 : 1001);
         }
     }
 }
@@ -140,35 +144,31 @@ TEST(every_mask_of_probes_heeds_its_own_and_no_other)
 
 TEST(a_measurement_without_one_of_its_probes_holds_unless_another_is_near)
 {
-    assert_true(measure(999, 999, 999, 999));
+    all(999, true);
     for (int i = 0; i != 9; i++) {
-        now_us += HALF_S;
-        sequence++;
+        begin_after(HALF_S);
         for (uint8_t probe = 1; probe <= 3; probe++) assert_false(give(probe, FATHOM_TARGET, 2000));
         if (i > 4) assert_false(give(4, FATHOM_FAULT, 0));
     }
-    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
-    assert_true(measure(2000, 2000, 2000, 2000));
-    now_us += 1000000;
-    sequence++;
+    is(FATHOM_NEAR);
+    all(2000, true);
+    begin_after(1000000);
     assert_true(give(4, FATHOM_TARGET, 999));
-    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    is(FATHOM_NEAR);
 }
 
 TEST(a_sample_of_a_measurement_before_completes_none)
 {
     for (uint8_t probe = 1; probe <= 4; probe++, sequence++) assert_false(give(probe, FATHOM_TARGET, 2000));
-    assert_int_equal(rule.debounce.level, 0);
+    is(0);
 }
 
 TEST(a_probe_that_speaks_twice_in_a_measurement_is_heard_once)
 {
-    for (int i = 0; i != 4; i++) assert_false(give(1, FATHOM_TARGET, 2000));
-    assert_false(give(1, FATHOM_TARGET, 999));
-    assert_false(give(2, FATHOM_TARGET, 2000));
-    assert_false(give(3, FATHOM_TARGET, 2000));
-    assert_true(give(4, FATHOM_TARGET, 2000));
-    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+    for (int i = 0; i != 5; i++) assert_false(give(1, FATHOM_TARGET, i != 4 ? 2000 : 999));
+    for (uint8_t probe = 2; probe <= 4; probe++)
+        assert_int_equal(give(probe, FATHOM_TARGET, 2000), probe == 4);
+    is(FATHOM_FAR);
 }
 
 TEST(a_first_measurement_of_any_number_counts)
@@ -177,7 +177,7 @@ TEST(a_first_measurement_of_any_number_counts)
     for (int i = 0; i != 4; i++) {
         start();
         sequence = (uint16_t)(numbers[i] - 1);
-        assert_true(measure(2000, 2000, 2000, 2000));
+        all(2000, true);
     }
 }
 
@@ -188,13 +188,12 @@ TEST(the_threshold_goes_from_250_to_4500_mm)
     static const uint16_t allowed_mm[] = {250, 1000, 4500};
     static const uint16_t refused_mm[] = {1, 249, 4501, UINT16_MAX};
     for (int i = 0; i != 3; i++) {
-        config.threshold_mm = allowed_mm[i];
+        const uint16_t mm = config.threshold_mm = allowed_mm[i];
         start();
-        const uint16_t mm = allowed_mm[i];
         assert_true(measure(NONE, mm, NONE, (uint16_t)(mm - 1)));
         measure(NONE, mm, NONE, mm);
         assert_false(measure(NONE, mm, NONE, mm));
-        assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+        is(FATHOM_NEAR);
         assert_true(measure(NONE, NONE, NONE, (uint16_t)(mm + 1)));
     }
     for (int i = 0; i != 4; i++) {
@@ -209,15 +208,13 @@ TEST(equality_holds_the_state_unless_it_is_told_otherwise)
     assert_true(measure(1000, 1001, 1001, 999));
     measure(1001, 1001, 1001, 1000);
     for (int i = 0; i != 9; i++) assert_false(measure(1000, 1001, 1001, 1001));
-    assert_true(measure(1001, 1001, 1001, 1001));
+    all(1001, true);
     config.equal = FATHOM_EQUAL_IS_NEAR;
     start();
-    assert_true(measure(1001, 1001, 1000, 1001));
-    assert_int_equal(rule.debounce.level, FATHOM_NEAR);
+    changes_to(FATHOM_NEAR, 1001, 1001, 1000, 1001);
     config.equal = FATHOM_EQUAL_IS_FAR;
     start();
-    assert_true(measure(1001, 1001, 1000, 1001));
-    assert_int_equal(rule.debounce.level, FATHOM_FAR);
+    changes_to(FATHOM_FAR, 1001, 1001, 1000, 1001);
 }
 
 TEST(a_config_without_sense_is_refused)
@@ -248,8 +245,7 @@ static uint8_t refer(uint8_t before, uint8_t probes, unsigned said)
 static void measure_all(unsigned said)
 {
     static const uint16_t mm[] = {999, 1001, 1000};
-    now_us += HALF_S;
-    sequence++;
+    begin_after(HALF_S);
     for (unsigned i = 0; i != 4; i++)
         if ((said >> 2 * i & 3) != MISSING) give((uint8_t)(i + 1), FATHOM_TARGET, mm[said >> 2 * i & 3]);
 }

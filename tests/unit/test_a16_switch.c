@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
+#include "drivers.h"
 #include "fathom/a16_switch.h"
 #include "fathom/modbus_client.h"
 
-#define MS ((int32_t)1000) /* an int may have 16 bits */
-enum { START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000, SETTLE_US = 20000 };
+/* What its levels mean, and Modbus on the same pins; test_driver_contract.c has the rest. */
+
+enum { START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000 };
 
 /* A16 6(4), the last two examples: threshold to 2000 mm, polarity to negative. The answers equal the requests. */
 static const uint8_t threshold_2000[8] = {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF};
@@ -37,43 +39,59 @@ static void start(bool level) { start_at(START_US, level); }
 
 static int set_up(void **state)
 {
-    memset(&config, 0, sizeof config);
-    config.line = &line;
+    config = (fathom_a16_switch_config_t){.line = &line};
     start(false);
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-static uint8_t read_as(bool level)
+/* So much later there are so many samples, the last of this kind. */
+static void after_ms(uint32_t ms, unsigned samples, uint8_t kind)
 {
-    start(level);
-    pins_run(100 * MS, 1000);
-    assert_int_equal(pins.samples, 1);
-    assert_int_equal(pins.sample.raw, level);
-    return pins.sample.kind;
+    pins_run(ms * 1000, 1000);
+    pins_expect(samples, kind);
 }
 
-/* Writes a register of unit 1. */
-static void set_register(uint16_t address, uint16_t value)
+/* The level stands, and is the sample. */
+static void stands_as(uint8_t kind) { after_ms(60, 1, kind); }
+
+/* Unit 1 is told to set a register: this is an example of the datasheet. */
+static void submit(const uint8_t *example)
 {
     memset(&request, 0, sizeof request);
     request.exchange.timeout_us = TIMEOUT_US;
-    fathom_modbus_write_single_register(&request.message, 1, address, value);
+    fathom_modbus_write_single_register(&request.message, 1, (uint16_t)(example[2] << 8 | example[3]),
+                                        (uint16_t)(example[4] << 8 | example[5]));
     assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
+}
+
+/* At rest, and then asked; the request has left. */
+static void asks(const uint8_t *example)
+{
+    pins_run(60 * MS, 1000);
+    submit(example);
+    pins_run(10 * MS, 1000);
+    assert_int_equal(pins.fake.written, 1);
+    assert_memory_equal(pins.fake.writes[0].bytes, example, 8);
 }
 
 static int8_t status(void) { return request.exchange.status; }
 
+static void until_ended(void)
+{
+    while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+}
+
 /* The bits of an answer on the pin, whose level is `level` before and after it, and the bytes at the UART. */
-static void answer(uint32_t in_us, bool level, const uint8_t *bytes, size_t length)
+static void answer(uint32_t in_us, bool level, const uint8_t *bytes)
 {
     bool now = level;
-    fake_trickle(&pins.fake, in_us, BYTE_US, bytes, length);
-    for (uint32_t n = 0; n <= 10 * (uint32_t)length; n++) {
+    fake_trickle(&pins.fake, in_us, BYTE_US, bytes, 8);
+    for (uint32_t n = 0; n <= 80; n++) {
         const uint32_t bit = n % 10;
-        bool high = bit == 9 || (bit != 0 && (bytes[n / 10 < length ? n / 10 : 0] >> (bit - 1) & 1) != 0);
-        if (n == 10 * (uint32_t)length) high = level;
+        bool high = bit == 9 || (bit != 0 && (bytes[n / 10 % 8] >> (bit - 1) & 1) != 0);
+        if (n == 80) high = level;
         if (high != now) pins_turn(in_us + n / 10 * BYTE_US + bit * BIT_US);
         now = high;
     }
@@ -81,64 +99,23 @@ static void answer(uint32_t in_us, bool level, const uint8_t *bytes, size_t leng
 
 /* ---- the level ---- */
 
-TEST(high_is_near_from_the_factory)
+TEST(high_is_near_from_the_factory_and_polarity_is_an_option)
 {
-    assert_int_equal(read_as(true), FATHOM_NEAR);
-    assert_int_equal(read_as(false), FATHOM_FAR);
-}
-
-TEST(polarity_is_an_option)
-{
-    config.negative = true;
-    assert_int_equal(read_as(true), FATHOM_FAR);
-    assert_int_equal(read_as(false), FATHOM_NEAR);
-}
-
-TEST(a_sample_says_who_it_is)
-{
-    config.address = 5;
-    assert_int_equal(read_as(true), FATHOM_NEAR);
-    assert_int_equal(pins.sample.model, FATHOM_A16);
-    assert_int_equal(pins.sample.unit, 5);
-    assert_int_equal(pins.sample.probe, 1);
+    for (unsigned i = 0; i != 4; i++) {
+        config.negative = i / 2 != 0;
+        start(i % 2 != 0);
+        stands_as(i == 1 || i == 2 ? FATHOM_NEAR : FATHOM_FAR);
+        assert_int_equal(pins.sample.raw, i % 2);
+    }
 }
 
 TEST(without_a_line_the_level_alone_counts)
 {
     config.line = NULL;
     start(true);
-    pins_run(SETTLE_US, 20000);
+    pins_run(20 * MS, 20000);
     pins_expect(1, FATHOM_NEAR);
     assert_int_equal(pins.fake.reads, 0);
-}
-
-TEST(the_times_are_options)
-{
-    config.line = NULL;
-    config.timing.settle_us = 30000;
-    config.timing.period_us = 400000;
-    config.timing.look_us = 3000;
-    config.timing.stale_us = 60000;
-    start(true);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
-    pins_run(29 * MS, 1000);
-    assert_int_equal(pins.samples, 0);
-    pins_run(1 * MS, 1000);
-    assert_int_equal(pins.samples, 1);
-    pins_run(400 * MS, 1000);
-    assert_int_equal(pins.samples, 2);
-    for (uint32_t i = 0; i != 100; i++) pins_turn((i + 1) * MS);
-    pins_run(61 * MS, 1000);
-    assert_int_equal(pins.stales, 1);
-}
-
-TEST(a_config_without_sense_is_refused)
-{
-    config.pin = NULL;
-    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
-    config.pin = &pins.pin;
-    config.clock = NULL;
-    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_ERR_ARGUMENT);
 }
 
 /* ---- Modbus on the same pins ---- */
@@ -154,10 +131,9 @@ TEST(an_answer_on_the_pin_is_no_change_in_any_loop)
                 start_at(UINT32_MAX - 150 * MS, level != 0);
                 pins_run(60 * MS, step_us);
                 pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
-                set_register(0x0206, 2000);
+                submit(threshold_2000);
                 while (pins.fake.written == 0) pins_run(step_us, step_us);
-                assert_memory_equal(pins.fake.writes[0].bytes, threshold_2000, 8);
-                answer(30 * MS + offset_us, level != 0, threshold_2000, 8);
+                answer(30 * MS + offset_us, level != 0, threshold_2000);
                 pins_run(200 * MS, step_us);
                 assert_int_equal(status(), FATHOM_READY);
                 assert_int_equal(pins.samples, 1);
@@ -169,78 +145,61 @@ TEST(an_answer_on_the_pin_is_no_change_in_any_loop)
 
 TEST(a_level_that_turns_during_an_exchange_is_a_sample_after_it)
 {
-    pins_run(60 * MS, 1000);
+    asks(threshold_2000);
     pins_expect(1, FATHOM_FAR);
-    set_register(0x0206, 2000);
-    pins_run(10 * MS, 1000);
-    assert_int_equal(pins.fake.written, 1);
     pins_turn(0);
     pins_run(100 * MS, 1000);
     assert_int_equal(pins.samples, 1); /* it has stood for 100 ms: not looked at */
-    answer(0, true, threshold_2000, 8);
+    answer(0, true, threshold_2000);
     const uint32_t ended_us = pins.fake.now_us + 8 * BYTE_US;
     while (pins.samples == 1) pins_run(100, 100);
     assert_int_equal(status(), FATHOM_READY);
     pins_expect(2, FATHOM_NEAR);
     /* 5 ms of silence, and 20 ms in which the level stood */
-    const uint32_t after_us = fathom_elapsed_us(pins.fake.now_us, ended_us);
-    assert_in_range(after_us, 25000, 25300);
-    assert_in_range(fathom_elapsed_us(pins.sample.time_us, ended_us), 5000, 5300);
+    assert_in_range(pins.fake.now_us - ended_us, 25000, 25300);
+    assert_in_range(pins.sample.time_us - ended_us, 5000, 5300);
 }
 
 TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
 {
-    pins_run(60 * MS, 1000);
+    stands_as(FATHOM_FAR);
     pins_turn(1 * MS);
     pins_run(20 * MS, 1000); /* seen for 19 ms */
-    set_register(0x0206, 2000);
+    submit(threshold_2000);
     pins_run(1 * MS, 1000);
     assert_int_equal(pins.fake.written, 1);
-    pins_run(100 * MS, 1000);
-    pins_expect(1, FATHOM_FAR);
+    after_ms(100, 1, FATHOM_FAR);
 }
 
-/* To the host's UART a low level is a break: 00 without a stop bit, before the answer and after it. */
-TEST(garbage_with_framing_errors_around_an_answer_is_dropped_and_counted)
+/* To the host's UART a low level is a break: 00 without a stop bit, before the answer and after it. A port that cannot
+ * tell: the bytes of a break are noise before the answer. */
+TEST(garbage_with_framing_errors_around_an_answer_or_unmarked_before_it_is_dropped_and_counted)
 {
-    const fathom_rx_t spoilt = {0, FATHOM_RX_FRAMING};
-    pins_run(60 * MS, 1000);
-    set_register(0x0206, 2000);
-    pins_run(10 * MS, 1000);
-    fake_receive_rx(&pins.fake, 2 * MS, &nothing, 1, spoilt);
-    fake_receive_rx(&pins.fake, 30 * MS, &nothing, 1, spoilt);
-    fake_receive_rx(&pins.fake, 31 * MS, &nothing, 1, spoilt);
-    fake_trickle(&pins.fake, 31 * MS, BYTE_US, threshold_2000, 8);
-    fake_receive_rx(&pins.fake, 31 * MS + 9 * BYTE_US, &nothing, 1, spoilt);
-    pins_run(100 * MS, 1000);
-    assert_int_equal(status(), FATHOM_READY);
-    assert_int_equal(line.counters[FATHOM_LINE_BAD_BYTES], 4);
-    assert_int_equal(line.counters[FATHOM_LINE_ANSWERS], 1);
-    pins_expect(1, FATHOM_FAR);
-}
-
-/* A port that cannot tell: the bytes of a break are noise before the answer. */
-TEST(unmarked_garbage_before_an_answer_is_dropped_too)
-{
-    pins_run(60 * MS, 1000);
-    set_register(0x0206, 2000);
-    pins_run(10 * MS, 1000);
-    fake_receive(&pins.fake, 30 * MS, &nothing, 1);
-    fake_trickle(&pins.fake, 30 * MS, BYTE_US, threshold_2000, 8);
-    pins_run(100 * MS, 1000);
-    assert_int_equal(status(), FATHOM_READY);
-    assert_int_equal(line.counters[FATHOM_LINE_DROPPED_BYTES], 1);
-    pins_expect(1, FATHOM_FAR);
+    static const uint32_t spoilt_us[] = {2 * MS, 30 * MS, 31 * MS, 31 * MS + 9 * BYTE_US};
+    for (unsigned marked = 0; marked != 2; marked++) {
+        const fathom_rx_t rx = {0, marked != 0 ? FATHOM_RX_FRAMING : 0};
+        start(false);
+        asks(threshold_2000);
+        for (unsigned i = marked != 0 ? 0 : 2; i != 3; i++)
+            fake_receive_rx(&pins.fake, spoilt_us[i], &nothing, 1, rx);
+        fake_trickle(&pins.fake, 31 * MS, BYTE_US, threshold_2000, 8);
+        if (marked != 0) fake_receive_rx(&pins.fake, spoilt_us[3], &nothing, 1, rx);
+        pins_run(100 * MS, 1000);
+        assert_int_equal(status(), FATHOM_READY);
+        assert_int_equal(line.counters[FATHOM_LINE_BAD_BYTES], 4 * marked);
+        assert_int_equal(line.counters[FATHOM_LINE_DROPPED_BYTES], !marked);
+        assert_int_equal(line.counters[FATHOM_LINE_ANSWERS], 1);
+        pins_expect(1, FATHOM_FAR);
+    }
 }
 
 TEST(an_answer_after_its_time_out_is_no_change_either)
 {
-    pins_run(60 * MS, 1000);
-    set_register(0x0206, 2000);
-    while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+    asks(threshold_2000);
+    until_ended();
     assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
     pins_run(60 * MS, 1000);
-    answer(3 * MS, false, threshold_2000, 8);
+    answer(3 * MS, false, threshold_2000);
     pins_run(200 * MS, 1000);
     assert_int_equal(line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
     pins_expect(1, FATHOM_FAR);
@@ -250,10 +209,9 @@ TEST(an_answer_after_its_time_out_is_no_change_either)
 /* The unit owes an answer, so the next request waits for it; the pin is free. */
 TEST(a_request_that_waits_does_not_hide_the_level)
 {
-    pins_run(60 * MS, 1000);
-    set_register(0x0206, 2000);
-    while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
-    set_register(0x0206, 2000);
+    asks(threshold_2000);
+    until_ended();
+    submit(threshold_2000);
     pins_turn(0);
     pins_run(50 * MS, 1000);
     assert_int_equal(pins.fake.written, 1);
@@ -268,15 +226,14 @@ TEST(bytes_that_never_end_make_it_stale)
     }
     assert_int_equal(pins.samples, 0);
     assert_int_equal(pins.stales, 2);
-    pins_run(26 * MS, 1000);
-    pins_expect(1, FATHOM_FAR);
+    after_ms(26, 1, FATHOM_FAR);
 }
 
 TEST(while_the_line_is_busy_a_look_is_due_in_5_ms)
 {
-    pins_run(60 * MS, 1000);
+    stands_as(FATHOM_FAR);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 10000);
-    set_register(0x0206, 2000);
+    submit(threshold_2000);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 0); /* the line's: send it */
     pins_run(1 * MS, 1000);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 1000); /* the line's: has it left? */
@@ -289,12 +246,10 @@ TEST(while_the_line_is_busy_a_look_is_due_in_5_ms)
 TEST(a_broken_port_is_said_but_does_not_hide_the_level)
 {
     pins.fake.read_fails = true;
-    pins_run(100 * MS, 1000);
-    pins_expect(1, FATHOM_FAR);
+    after_ms(100, 1, FATHOM_FAR);
     assert_int_equal(pins.ports, 99);
     pins_turn(0);
-    pins_run(22 * MS, 1000);
-    pins_expect(2, FATHOM_NEAR);
+    after_ms(22, 2, FATHOM_NEAR);
 }
 
 /* ---- polarity by Modbus ---- */
@@ -302,22 +257,18 @@ TEST(a_broken_port_is_said_but_does_not_hide_the_level)
 TEST(polarity_that_is_set_and_told_is_no_change)
 {
     for (unsigned level = 0; level != 2; level++) {
+        const uint8_t before = level != 0 ? FATHOM_NEAR : FATHOM_FAR;
+        const uint8_t after = level != 0 ? FATHOM_FAR : FATHOM_NEAR;
         start(level != 0);
-        pins_run(60 * MS, 1000);
-        set_register(0x0205, 0);
-        pins_run(10 * MS, 1000);
-        assert_memory_equal(pins.fake.writes[0].bytes, negative, 8);
+        asks(negative);
         fake_trickle(&pins.fake, 30 * MS, BYTE_US, negative, 8);
-        while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+        until_ended();
         fathom_a16_switch_polarity_is(&a16, FATHOM_A16_NEGATIVE);
         pins_turn(10 * MS);
-        pins_run(200 * MS, 1000);
-        pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+        after_ms(200, 1, before);
         pins_turn(0);
-        pins_run(50 * MS, 1000);
-        pins_expect(2, level != 0 ? FATHOM_FAR : FATHOM_NEAR);
+        after_ms(50, 2, after);
         fathom_a16_switch_polarity_is(&a16, FATHOM_A16_POSITIVE);
-        pins_run(50 * MS, 1000);
-        pins_expect(3, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+        after_ms(50, 3, before);
     }
 }
