@@ -15,7 +15,7 @@ ROWS = (
      ('src/pulse.c', 'fathom_pulse_poll',
       'const uint32_t passed_us = fathom_elapsed_us(at_us, meter->polled_us);',
       'const uint32_t passed_us = at_us > meter->polled_us ? at_us - meter->polled_us : 0;')),
-    ('armed-after-edge', 'pulse.h: a pulse anywhere after the trigger counts', 'unit/test_pulse_order',
+    ('armed-after-edge', 'pulse.h: a pulse anywhere after the trigger counts', 'unit/test_pulse_trigger',
      ('src/pulse.c', 'begin',
       'capture->arm(capture->ctx);', ''),
      ('src/pulse.c', 'begin',
