@@ -81,3 +81,31 @@ TEST(a_frame_right_upon_an_ambiguous_one_is_unsure)
     assert_1953(20000, 10100);
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
 }
+
+/* "it stands in a believable place": the very first frame does not, unless a silence was seen before it, whatever the
+ * memory held: the bytes since the last frame, too. */
+TEST(the_first_frame_without_a_silence_is_unsure_whatever_stood_in_the_memory)
+{
+    static const uint8_t fills[] = {0x00, 0x01, 0x04, 0xFF};
+    for (unsigned i = 0; i != sizeof fills; i++) {
+        memset(&stream, fills[i], sizeof stream);
+        assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+        feed(mm_1953, 4, false, 1500);
+        assert_int_equal(fathom_stream_poll(&stream, 9000, &frame), FATHOM_PENDING);
+        assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 1);
+    }
+}
+
+/* MISSED: "good ones that a newer one replaced before it was polled". */
+TEST(a_frame_is_missed_only_where_the_one_before_was_not_polled)
+{
+    feed(mm_1953, 4, true, 1500);
+    assert_1953(9000, 1500);
+    feed(mm_1953, 4, true, 11500);
+    assert_1953(19000, 11500);
+    assert_int_equal(stream.counters[FATHOM_STREAM_MISSED], 0);
+    feed(mm_1953, 4, true, 21500);
+    feed(mm_1953, 4, true, 31500);
+    assert_1953(39000, 31500);
+    assert_int_equal(stream.counters[FATHOM_STREAM_MISSED], 1);
+}
