@@ -25,6 +25,7 @@ TEST(the_driver_follows_the_device_to_its_rate)
         PLAY(set_baud, OK, IS(1, code, bauds[i]), TWO(1, NOBODY, 0, 19200), RATE(1, 1, OK, bauds[i]),
              IS(1, 1, 19200));
         hps_asks(1, 19200);
+        assert_true(hps.unit.settings == &hps.moved[0] || hps.unit.settings == &hps.moved[1]);
         hps_answers();
         desk.argument = (int32_t)bauds[i]; /* and there again */
         PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, NOBODY, 0, bauds[i]), RATE(1, code, OK, 19200),
