@@ -63,11 +63,64 @@ TEST(the_first_level_is_told_whatever_stood_in_the_memory)
 }
 
 /* The rig hands over a sample full of A5. */
-TEST(a_sample_is_without_interference)
+TEST(a_sample_has_a_level_and_nothing_that_is_measured)
 {
     const bool no = false;
+    pins.level = true;
+    poll_after(10000);
     assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(pins.sample.kind, FATHOM_NEAR);
+    assert_int_equal(pins.sample.raw, 1);
+    assert_int_equal(pins.sample.distance_mm, 0);
+    assert_int_equal(pins.sample.magnitude, 0);
+    assert_int_equal(pins.sample.precision, 0);
+    assert_int_equal(pins.sample.ambient, 0);
     assert_memory_equal(&pins.sample.interference, &no, sizeof no);
+    assert_int_equal(pins.sample.model, FATHOM_A16);
+    assert_int_equal(pins.sample.unit, 0);
+    assert_int_equal(pins.sample.probe, 1);
+}
+
+/* "FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read". */
+TEST(a_pin_that_cannot_be_read_is_no_contact)
+{
+    static const fathom_pin_t output = {NULL, NULL, NULL};
+    contact.pin = &output;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    contact.pin = NULL;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+    contact.pin = &pins.pin;
+    contact.clock = NULL;
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
+}
+
+/* "time_us is the look at which it was first seen to stand, or the present one when it repeats"; and due_us: "in look_us
+ * at the latest", or when it repeats. */
+TEST(a_level_that_repeats_has_the_time_of_its_look)
+{
+    timing.period_us = 70000;
+    timing.look_us = 1000000;
+    start_on(0, NULL);
+    assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(pins.sample.time_us, START_US);
+    assert_int_equal(due_us(), 70000);
+    assert_int_equal(poll_after(69999), FATHOM_PENDING);
+    assert_int_equal(due_us(), 1);
+    assert_int_equal(poll_after(1), FATHOM_READY);
+    assert_int_equal(pins.sample.time_us, START_US + 90000);
+    assert_int_equal(pins.sample.sequence, 2);
+}
+
+/* fathom_contact_set_near_is_high(): "The level has to settle anew". */
+TEST(a_level_settles_anew_when_it_means_something_else)
+{
+    assert_int_equal(poll_after(20000), FATHOM_READY);
+    pins_expect(1, FATHOM_FAR);
+    fathom_contact_set_near_is_high(&contact, false);
+    assert_int_equal(poll_after(19999), FATHOM_PENDING);
+    assert_int_equal(poll_after(1), FATHOM_READY);
+    pins_expect(2, FATHOM_NEAR);
+    assert_int_equal(pins.sample.time_us, START_US + 20000);
 }
 
 /* "FATHOM_NO_DEADLINE where an interrupt of the pin wakes the program": at any time after the last look. */
