@@ -78,3 +78,16 @@ TEST(two_copies_of_a_set_address_in_one_read_show_no_echo)
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
     assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
 }
+
+/* Behind five bytes that are the request 55 AA begins another frame; behind others it is the first probe's low and the
+ * second one's high byte. 0355, AA00, 0000, 0000 hexadecimal: FF + 01 + 01 + 03 + 55 + AA = 203. */
+TEST(an_answer_that_does_not_begin_as_its_request_is_taken_whatever_it_says)
+{
+    static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0x55, 0xAA, 0, 0, 0, 0, 0, 0x03};
+    ask_all();
+    receive(four, sizeof four);
+    run(100);
+    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(values[0], 0x0355);
+    assert_int_equal(values[1], 0xAA00);
+}
