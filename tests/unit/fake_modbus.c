@@ -97,7 +97,8 @@ void fake_modbus_send(fake_modbus_t *fake)
 
 void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t count)
 {
-    fake->answer = values;
+    assert_in_range(count, 1, sizeof fake->answer / sizeof *fake->answer);
+    memcpy(fake->answer, values, count * sizeof *values);
     fake->answer_count = count;
     fake_modbus_fail(fake, FATHOM_READY);
 }

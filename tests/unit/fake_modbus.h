@@ -29,7 +29,7 @@ typedef struct {
     bool is_sent;                     /* the next poll puts it on the wire */
     fathom_status_t ends;             /* with which the next poll ends it; FATHOM_PENDING: it does not */
     uint8_t exception;
-    const uint16_t *answer;
+    uint16_t answer[16];
     uint8_t answer_count;
 
     uint8_t log[FAKE_MODBUS_LOG][6]; /* heads of all that was submitted: unit, function, first, count */
