@@ -23,6 +23,7 @@ import glob
 import hashlib
 import os
 import random
+import signal
 import subprocess
 import sys
 import tempfile
@@ -259,6 +260,7 @@ def main():
     if options.self_test:
         import self_test  # pylint: disable=import-outside-toplevel
         return self_test.main()
+    signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(f'ended by signal {number}'))  # and cleans up
     try:
         return try_ports(options) if options.ports else try_them(options)
     except Broken as error:

@@ -11,7 +11,7 @@ import time
 
 from bench import IN_REAL_TIME, ROOT
 
-QUICK_S = 0.12  # tests that take longer run last, on optimised code, if that is not the same as without the mutant
+QUICK_S = 0.3  # tests that take longer run last, on optimised code, if that is not the same as without the mutant
 NOT_C, SAME_CODE, KILLED, SURVIVED = 'not C', 'same code', 'killed', 'survived'
 
 
