@@ -112,7 +112,7 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
         return FATHOM_ERR_BUSY;
     }
     do {
-        const bool is_write = unit->step == WRITE;
+        const bool is_write = setting->read == NULL || unit->step == WRITE;
         uint32_t value = 0;
         unit->step |= INSIDE;
         status =
