@@ -295,7 +295,7 @@ ROWS = [
      'passed_us : 0'),
     ('the callers give a variable of their own, and copy it where the status, which is told either way, is READY',
      'src/a16_settings.c | get_choice | condition: status != FATHOM_READY -> 0 | if (status != FATHOM_READY)',
-     'src/a16_settings.c | get_choice | jump dropped: it -> nothing | return status'),
+     'src/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_READY) return status'),
     ('of the write only the address is sent, and no other question has its name',
      'src/a05_dyp.c | fathom_a05_dyp_set_every_address | statement dropped: it -> nothing | write.first = '
      'FATHOM_DYP_REGISTER_ADDRESS',
