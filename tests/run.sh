@@ -108,11 +108,11 @@ run_short() {
 
 run_long() {
     stage 300 'gcc and clang-sanitize: build' build_two
-    stage 300 'mutants: changed files, 400 more' mutants --changed --sample 400
+    stage 420 'mutants: changed files, 400 more' mutants --changed --sample 400
     stage 150 'end to end, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop'
     stage 200 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
     export FATHOM_LONG=1
-    stage 250 'exhaustive forms' run_tests gcc long --label-exclude 'e2e|interop|check|selfcheck|faults'
+    stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
 }
 build_two() { build gcc && build clang-sanitize; }
 mutants() {
@@ -125,7 +125,10 @@ mutants() {
 
 run_full() {
     run_long
-    stage 5400 'mutants: all' mutants --all --record
+    stage 120 'firmware, exhaustive forms: build' build gcc # s390x is built only for them
+    stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
+    unset FATHOM_LONG
+    stage 2400 'mutants: all' mutants --all --record
     stage 1800 'mutants: a sample of the ports' mutants --ports
     stage 60 'soak: ten million exchanges' soak
 }
