@@ -133,7 +133,6 @@ run_full() {
     stage 60 'soak: ten million exchanges' soak
 }
 soak() {
-    results="$results $logs/soak.txt"
     cmake --build build-gcc --target soak >"$logs/soak.txt" 2>&1
     status=$?
     tail -n 20 "$logs/soak.txt"
