@@ -95,14 +95,14 @@ show_costs() {
 slow='e2e|interop|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
 run_short() {
     stage 70 'gcc: build, firmware too' build gcc
-    stage 150 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
-    stage 45 'planted faults' run_tests gcc faults --label-regex faults
+    stage 135 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
+    stage 40 'planted faults' run_tests gcc faults --label-regex faults
     for preset in clang gcc-sanitize clang-sanitize; do
-        stage 45 "$preset: build" build "$preset"
-        stage 20 "$preset: tests in C" run_tests "$preset" "$preset" --label-exclude "$slow"
+        stage 42 "$preset: build" build "$preset"
+        stage 18 "$preset: tests in C" run_tests "$preset" "$preset" --label-exclude "$slow"
     done
-    stage 25 'coverage: build' build coverage
-    stage 25 'coverage: tests in C, every branch' measure_coverage
+    stage 22 'coverage: build' build coverage
+    stage 22 'coverage: tests in C, every branch' measure_coverage
     stage 1 'what it costs' show_costs
 }
 
