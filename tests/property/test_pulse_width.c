@@ -89,6 +89,8 @@ TEST(temperatures_by_hand)
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, 200), 1717);
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, -400), 1535);
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, 850), 1914);
+    /* 25.9 degC: v = 3070600 + 606 * 659 = 3469954; 41087 * v = 142569999998, 2 short of 7128.5 * 2 * 10^7. */
+    assert_int_equal(fathom_pulse_width_mm_in_air(41087, 259), 7128);
 }
 
 /* 347.83 m/s is at (347.83 - 331.3) / 0.606 = 27.3 degC. */
