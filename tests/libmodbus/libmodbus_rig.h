@@ -2,7 +2,6 @@
 #ifndef LIBMODBUS_RIG_H
 #define LIBMODBUS_RIG_H
 
-#include <stdint.h>
 #include <string.h>
 
 #include "suite.h"

@@ -2,7 +2,6 @@
 /* How the tool knows a USB adapter again: against a sysfs that is built here, of links and one-line files laid out as
  * Linux does for usb-serial (ttyUSB0 below the interface) and cdc_acm (the interface itself). */
 #define _DEFAULT_SOURCE 1
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

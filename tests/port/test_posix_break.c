@@ -63,10 +63,5 @@ TEST(on_a_pseudo_terminal_a_zero_stands_for_it)
     assert_int_equal(driver.break_calls, 0);
 }
 
-static int set_up(void **state)
-{
-    posix_driver_reset();
-    return port_rig_set_up(state);
-}
-
-static const suite_t suite = PORT_RIG_SUITE(set_up);
+EACH_BEGINS((posix_driver_reset(), (void)port_rig_set_up(state)))
+static const suite_t suite = PORT_RIG_SUITE(begins);

@@ -141,10 +141,5 @@ TEST(a_device_that_goes_while_its_line_is_changed_is_lost)
     assert_true(port_rig_read_one() < 0);
 }
 
-static int set_up(void **state)
-{
-    posix_driver_reset();
-    return port_rig_set_up(state);
-}
-
-static const suite_t suite = PORT_RIG_SUITE(set_up);
+EACH_BEGINS((posix_driver_reset(), (void)port_rig_set_up(state)))
+static const suite_t suite = PORT_RIG_SUITE(begins);

@@ -158,10 +158,5 @@ TEST(line_errors_are_the_drivers_counts)
     assert_int_equal(errors.parity, 11);
 }
 
-static int set_up(void **state)
-{
-    posix_driver_reset();
-    return port_rig_set_up(state);
-}
-
-static const suite_t suite = PORT_RIG_SUITE(set_up);
+EACH_BEGINS((posix_driver_reset(), (void)port_rig_set_up(state)))
+static const suite_t suite = PORT_RIG_SUITE(begins);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the UART ports of 32-bit machines share, port/serial: the ring between interrupt and main loop, and the
  * request that leaves. The test is both sides. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "../../port/serial/fathom_serial.h"
@@ -14,13 +12,9 @@ static uint8_t request[SIZE];
 static uint8_t got[256];
 static fathom_rx_t rx;
 
-static int set_up(void **state)
-{
-    fathom_serial_init(&serial, request, SIZE);
-    return 0;
-}
+EACH_BEGINS(fathom_serial_init(&serial, request, SIZE))
 
-static const suite_t suite = {.set_up = set_up};
+static const suite_t suite = {.set_up = begins};
 
 static int read_all(size_t capacity)
 {

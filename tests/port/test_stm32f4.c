@@ -3,7 +3,6 @@
  * lies in their place, at their addresses (RM0090 2.3), which the test reads and sets. It has no side effects: a
  * register keeps what was written to it last. */
 #define _GNU_SOURCE 1 /* MAP_FIXED_NOREPLACE */
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>

@@ -3,9 +3,7 @@
 #define FATHOM_TESTS_SIM_BENCH_H
 
 /* What all tests of the simulator share: where the clock starts, and the settings of lines. */
-
 #include "suite.h"
-#include <stdint.h>
 
 #include "sim/sim.h"
 

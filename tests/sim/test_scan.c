@@ -39,6 +39,9 @@ static void expect_eight(void)
     rig_expect_unharmed();
 }
 
+EACH_BEGINS(rig_begin(0))
+static const suite_t suite = {.set_up = begins};
+
 TEST(test_eight_sensors_of_three_models_are_found_and_none_is_harmed)
 {
     for (unsigned i = 0; i != STARTS; i++) {
@@ -71,7 +74,6 @@ TEST(test_eight_are_found_behind_an_adapter_that_echoes)
 TEST(test_an_echo_alone_is_no_device_at_any_address)
 {
     /* Nor is that of units 83 and 147, which looks like an answer. */
-    rig_begin(0);
     rig.sim_line.echo = true;
     rig.plan.last = 254;
     rig_finds(0);
@@ -139,7 +141,6 @@ TEST(test_with_eight_sensors_every_address_takes_less_than_10_minutes)
 
 TEST(test_a_silent_address_is_asked_again_as_often_as_the_plan_says)
 {
-    rig_begin(0);
     rig.plan.repeats = 2;
     rig.plan.last = 4;
     rig_walk();
@@ -150,7 +151,6 @@ TEST(test_a_silent_address_is_asked_again_as_often_as_the_plan_says)
 
 TEST(test_the_time_out_of_the_plan_is_kept)
 {
-    rig_begin(0);
     rig.plan.timeout_us = 400000;
     rig.plan.last = 2;
     rig_walk();
@@ -160,7 +160,6 @@ TEST(test_the_time_out_of_the_plan_is_kept)
 TEST(test_an_a16_or_a05_may_take_longer_than_an_hps167s)
 {
     const fathom_line_settings_t odd = {9600, FATHOM_PARITY_ODD, 1};
-    rig_begin(0);
     assert_int_equal(scan_timeout_us(&rig.plan, &scan_dyp_line), 150000);
     assert_int_equal(scan_timeout_us(&rig.plan, &scan_hps167s_line), 100000);
     assert_int_equal(scan_timeout_us(&rig.plan, &odd), 100000);
@@ -176,7 +175,6 @@ TEST(test_an_a16_or_a05_may_take_longer_than_an_hps167s)
 TEST(test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tried)
 {
     const fathom_line_settings_t fast = {57600, FATHOM_PARITY_EVEN, 1};
-    rig_begin(0);
     rig_plan_everything();
     rig.plan.settings[6] = (fathom_line_settings_t){57600, FATHOM_PARITY_EVEN, 1}; /* the factory's first */
     rig.plan.settings[7] = (fathom_line_settings_t){57600, FATHOM_PARITY_NONE, 1};
@@ -192,7 +190,6 @@ TEST(test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tri
 
 TEST(test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on)
 {
-    rig_begin(0);
     rig.plan.settings[2] = rig.plan.settings[1];
     rig.plan.settings[1] = (fathom_line_settings_t){230400, FATHOM_PARITY_EVEN, 1};
     rig.plan.setting_count = 3;
@@ -216,7 +213,6 @@ TEST(test_one_that_answers_late_is_found_all_the_same)
 
 TEST(test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_asked)
 {
-    rig_begin(0);
     rig_a05((a05_config_t){.unit = 100, .mode = FATHOM_SIM_A05_DYP});
     rig_finds(1);
     rig_expect_sensor(100, FATHOM_A05, SCAN_DYP, &scan_dyp_line);

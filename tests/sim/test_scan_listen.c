@@ -17,6 +17,9 @@ static void listen_for_3_s(void)
     assert_int_equal(rig.sim_line.counters.from_host, 0);
 }
 
+EACH_BEGINS(rig_begin(0))
+static const suite_t suite = {.set_up = begins};
+
 TEST(test_a_quiet_line_is_listened_to_for_just_that_long)
 {
     rig_begin(UINT32_C(0xFFF00000));
@@ -57,7 +60,6 @@ TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
 
 TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devices)
 {
-    rig_begin(0);
     rig.sim_line.full_duplex = true;
     rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_AUTO});
     listen_for_3_s();
@@ -107,7 +109,6 @@ TEST(test_another_master_is_told)
 {
     /* A16 6, the first example: it asks address 1 for 0100 */
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
-    rig_begin(0);
     begin_speaker(&scan_dyp_line, 500000, request, sizeof request);
     listen_for_3_s();
     assert_true(talk.is_heard);
@@ -117,7 +118,6 @@ TEST(test_another_master_is_told)
 
 TEST(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise)
 {
-    rig_begin(0);
     begin_speaker(&scan_dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
     listen_for_3_s();
     assert_true(talk.is_heard);

@@ -8,6 +8,9 @@ static const uint8_t junk[] = {0x02, 0x84, 0x31, 0x90, 0x11, 0xE7};
 
 /* ---- answers that are damaged ---- */
 
+EACH_BEGINS(rig_begin(0))
+static const suite_t suite = {.set_up = begins};
+
 TEST(test_two_units_with_one_address_are_told_and_their_neighbours_found)
 {
     for (uint32_t seed = 0; seed != 8; seed++) {
@@ -32,7 +35,6 @@ TEST(test_two_units_with_one_address_are_told_and_their_neighbours_found)
 TEST(test_two_answers_to_one_question_are_told)
 {
     /* One answers 0200 after 17.5 to 20 ms, the other after 35 to 40: both answers are whole. */
-    rig_begin(0);
     rig_a16((a16_config_t){.unit = 6});
     rig_a16((a16_config_t){.unit = 6, .settings_us = 40000});
     rig_finds(1);
@@ -41,7 +43,6 @@ TEST(test_two_answers_to_one_question_are_told)
 
 TEST(test_one_spike_on_a_dead_address_is_no_device)
 {
-    rig_begin(0);
     /* once, 1.2 s after the beginning */
     const fathom_sim_device_t *const spike = begin_speaker(&scan_dyp_line, 1200000, junk, 1);
     rig.plan.setting_count = 1;
@@ -136,7 +137,6 @@ TEST(test_whoever_has_no_date_in_0001_is_no_hps167s)
 TEST(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
 {
     /* #2 is in its ranges but for the baud rate's code, 0 */
-    rig_begin(0);
     stranger = (stranger_t){.version = 0x0909};
     begin_stranger(9, &scan_hps167s_line);
     expect_other(9);
@@ -144,7 +144,6 @@ TEST(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
 
 TEST(test_an_a16_that_answers_0100_alone_is_known)
 {
-    rig_begin(0);
     stranger = (stranger_t){.value = 754, .address = 9, .only = {0x0200, 0x0100}};
     begin_stranger(9, &scan_dyp_line);
     rig_walk();
@@ -155,7 +154,6 @@ TEST(test_an_a16_that_answers_0100_alone_is_known)
 TEST(test_an_a05_whose_measurement_is_lost_once_is_known)
 {
     static fathom_sim_fault_t fault;
-    rig_begin(0);
     rig_a05((a05_config_t){.unit = 9});
     fathom_sim_fault_init(&fault, 1);
     /* its first answer is that of 0200 */
@@ -170,7 +168,6 @@ TEST(test_a_frame_of_an_address_that_was_not_asked_is_noted)
 {
     /* A16 6, the first example's answer */
     static const uint8_t answer[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
-    rig_begin(0);
     rig.plan.first = 2;
     rig.plan.last = 4;
     begin_speaker(&scan_dyp_line, 0, answer, sizeof answer);
@@ -182,7 +179,6 @@ TEST(test_a_frame_of_an_address_that_was_not_asked_is_noted)
 TEST(test_another_master_that_begins_later_is_noted)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
-    rig_begin(0);
     rig.plan.first = 2;
     rig.plan.last = 4;
     begin_speaker(&scan_dyp_line, 0, request, sizeof request);
@@ -194,7 +190,6 @@ TEST(test_another_master_that_begins_later_is_noted)
 
 TEST(test_measurements_may_take_longer_than_the_first_answer)
 {
-    rig_begin(0);
     rig_a16((a16_config_t){.unit = 1, .realtime_us = 290000});
     rig_a05((a05_config_t){.unit = 2, .probe_us = 290000});
     rig_finds(2);
@@ -204,7 +199,6 @@ TEST(test_measurements_may_take_longer_than_the_first_answer)
 
 TEST(test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same)
 {
-    rig_begin(0);
     rig_a16((a16_config_t){.unit = 1, .exceptions = true});
     rig_a05((a05_config_t){.unit = 2, .exceptions = true});
     rig_hps((hps_config_t){.unit = 3, .wrong_length = FATHOM_MODBUS_ILLEGAL_DATA_VALUE});

@@ -5,7 +5,8 @@
 /* the probes of the examples in A05 3(4)1 */
 #define EXAMPLE FIXED(316, 250, 659, 2426)
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(automatic_frame_is_that_of_a05_1_3)
 {
@@ -85,21 +86,18 @@ TEST(reads_are_those_of_a05_3_4_1)
 
 TEST(the_fourth_probe_is_at_0109_though_the_table_calls_it_the_third)
 {
-    set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     talk("01 03 01 09 00 01 55 F4", 150, "01 03 02 09 7A 3F F7");
     talk("01 03 00 13 00 01 75 CF", 150, "01 03 02 09 7A 3F F7"); /* and at its other address */
 }
 
 TEST(all_four_come_in_one_read_at_either_address)
 {
-    set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     talk("01 03 01 06 00 04 A5 F4", 450, "01 03 08 01 3C 00 FA 02 93 09 7A 06 2A");
     talk("01 03 00 10 00 04 45 CC", 450, "01 03 08 01 3C 00 FA 02 93 09 7A 06 2A");
 }
 
 TEST(a_read_takes_about_100_ms_a_probe)
 {
-    set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ask("01 03 01 06 00 01 65 F7", 450);
     ASSERT_ANSWERED_IN(87500 + 1042, 100 * MS + 1042);
     forget();
@@ -109,7 +107,6 @@ TEST(a_read_takes_about_100_ms_a_probe)
 
 TEST(what_it_does_not_know_is_silence)
 {
-    set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ask("01 03 01 09 00 02 15 F5", 450); /* past the last */
     ask("01 03 00 13 00 02 35 CE", 450);
     ask("01 03 01 06 00 05 64 34", 450);
@@ -124,7 +121,6 @@ TEST(what_it_does_not_know_is_silence)
 
 TEST(set_address_is_echoed_and_obeyed_a05_3_4_2)
 {
-    set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     echoed("01 06 02 00 00 05 48 71", 50);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
     talk("01 03 02 00 00 01 85 B2", 50, "");
@@ -132,7 +128,6 @@ TEST(set_address_is_echoed_and_obeyed_a05_3_4_2)
 
 TEST(a_broadcast_is_obeyed_without_an_answer)
 {
-    set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, DEFAULTS);
     ask("FF 06 02 00 00 05 5D AF", 300);
     talk("FF 03 01 06 00 01 70 29", 300, "");
     assert_int_equal(bench.a05.device.unit, 5);

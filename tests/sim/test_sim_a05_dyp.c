@@ -6,11 +6,11 @@
 #define DEFAULTS ((a05_config_t){0})
 #define ALL      FIXED(1000, 2000, 1953, 3562) /* of the example in A05 2(3)3 */
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(all_probes_are_those_of_a05_2_3_3_whose_sum_is_62_not_60)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS);
     talk("55 AA 01 01 01", 300, "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62");
     COUNTED(.measurements = 4, .requests = 1, .answered = 1);
 }
@@ -68,7 +68,6 @@ TEST(other_times_may_be_set)
 
 TEST(it_measures_when_it_answers_and_is_deaf_until_then)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS);
     ask("55 AA 01 10 10", 30);
     bench.fixed.value[0] = 1953;
     talk("55 AA 01 11 11", 200, "55 AA 01 10 07 A1 B8");
@@ -77,7 +76,6 @@ TEST(it_measures_when_it_answers_and_is_deaf_until_then)
 
 TEST(set_address_is_answered_with_its_own_bytes_a05_2_3_5)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS);
     echoed("55 AA 05 03 07", 50);
     COUNTED(.writes = 1);
     talk("55 AA 01 10 10", 300, ""); /* the old one */
@@ -106,7 +104,6 @@ TEST(every_unit_that_hears_set_address_obeys_it)
 
 TEST(addresses_00_and_ff_are_refused_in_silence)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS);
     ask("55 AA 00 03 02", 300);
     talk("55 AA FF 03 01", 300, "");
     assert_int_equal(bench.a05.device.unit, 1);
@@ -126,7 +123,6 @@ TEST(ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to)
 
 TEST(what_it_does_not_know_is_silence_and_counted)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS);
     ask("55 AA 01 01 02", 300); /* the sum is 01 */
     ask("55 AA 01 00", 300);    /* the sum of three, but too short */
     ask("55 AA FF", 300);
@@ -158,7 +154,6 @@ TEST(it_speaks_modbus_at_the_same_time)
 
 TEST(the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, DEFAULTS);
     hear(5000, "");
     set_a05(FATHOM_SIM_A05_MODBUS, ALL, DEFAULTS);
     ask("55 AA 01 01 01", 300);

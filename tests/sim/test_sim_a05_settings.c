@@ -13,7 +13,8 @@ static void set(uint8_t mode, a05_config_t config)
 #define REAL_TIME "FF 03 E8 07 D0 07 A1 0D EA 60" /* 1(3) */
 #define AVERAGED  "FF 01 3C 00 FA 02 93 09 7A 4E"
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(FATHOM_SIM_A05_DYP, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(the_level_of_rx_at_power_on_selects_what_automatic_frames_say)
 {
@@ -37,7 +38,6 @@ TEST(the_level_counts_when_power_comes_and_not_later)
 
 TEST(what_is_asked_for_is_real_time_whatever_was_selected)
 {
-    set(FATHOM_SIM_A05_DYP, DEFAULTS);
     talk("01 03 01 06 00 04 A5 F4", 450, "01 03 08 03 E8 07 D0 07 A1 0D EA A8 20");
     talk("55 AA 01 01 01", 250,
          "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62"); /* 2(3)3; the printed sum of the answer is wrong */
@@ -52,7 +52,6 @@ TEST(without_processed_values_of_their_own_they_are_the_real_time_ones)
 
 TEST(the_address_is_kept_whichever_protocol_set_it)
 {
-    set(FATHOM_SIM_A05_DYP, DEFAULTS);
     echoed("55 AA 05 03 07", 50); /* 2(3)5 */
     cycle_power(100, 101);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
@@ -64,7 +63,6 @@ TEST(the_address_is_kept_whichever_protocol_set_it)
 
 TEST(flash_wears_also_when_the_address_is_what_it_was)
 {
-    set(FATHOM_SIM_A05_DYP, DEFAULTS);
     ask("01 06 02 00 00 01 49 B2", 50);
     ask("55 AA 01 03 03", 50);
     COUNTED(.flash_writes = 2);
@@ -72,7 +70,6 @@ TEST(flash_wears_also_when_the_address_is_what_it_was)
 
 TEST(what_it_does_not_obey_is_counted)
 {
-    set(FATHOM_SIM_A05_DYP, DEFAULTS);
     ask("01 06 02 00 00 FF C8 32", 50);
     ask("01 06 02 00 01 05 49 E1", 50);
     ask("01 06 01 06 00 05 A8 34", 50);

@@ -3,7 +3,8 @@
 
 #define DEFAULTS ((a16_config_t){0})
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 /* ---- automatic: A16 2, 5 ---- */
 
@@ -189,7 +190,6 @@ TEST(the_answer_times_are_options)
 
 TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 {
-    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     echoed("01 06 02 00 00 05 48 71", 50);
     COUNTED(.writes = 1);
     talk("01 03 01 01 00 01 D4 36", 300, "");
@@ -199,7 +199,6 @@ TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 
 TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
 {
-    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     talk("01 06 02 00 00 FF C8 32", 300, "");
     assert_int_equal(bench.a16.device.unit, 1);
     COUNTED(.writes = NONE);
@@ -207,7 +206,6 @@ TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
 
 TEST(a_broadcast_is_obeyed_without_an_answer)
 {
-    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     talk("FF 06 02 00 00 05 5D AF", 300, "");
     assert_int_equal(bench.a16.device.unit, 5);
     COUNTED(.writes = 1);
@@ -223,7 +221,6 @@ TEST(a_broadcast_is_answered_from_its_own_address_as_an_option)
 
 TEST(what_it_does_not_know_is_silence)
 {
-    set_a16(FATHOM_SIM_A16_MODBUS, 751, DEFAULTS);
     ask("01 03 01 02 00 01 24 36", 600);      /* unknown register */
     ask("01 03 01 00 00 02 C5 F7", 600);      /* two at once */
     ask("01 03 02 02 00 01 24 72", 600);      /* write-only */

@@ -49,7 +49,8 @@ static size_t read_port(void)
     return (size_t)s.uart.read(s.uart.ctx, bytes, sizeof bytes, &rx_of);
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 /* ---- PWM: A16 1 ---- */
 
@@ -102,7 +103,6 @@ TEST(the_width_follows_the_distance_from_3_to_94_ms)
 
 TEST(edges_during_a_cycle_are_ignored_and_counted)
 {
-    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     for (int i = 0; i < 10; i++) {
         pass_us(18 * MS);
@@ -143,7 +143,6 @@ TEST(times_of_the_pulse_are_options)
 TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
 {
     fathom_pulse_t pulse = {7, 7, false};
-    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     assert_true(level_in(110 * MS));
     arm(); /* within the pulse */
@@ -173,7 +172,6 @@ TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
 TEST(a_wire_can_break_stick_and_make_noise)
 {
     fathom_pulse_t pulse;
-    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     arm();
     fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_HIGH);
     pass_us(500);
@@ -198,7 +196,6 @@ TEST(a_wire_can_break_stick_and_make_noise)
 
 TEST(without_power_tx_is_low_and_no_edge_is_noticed)
 {
-    set(FATHOM_SIM_A16_PWM, 1000, DEFAULTS);
     trigger();
     assert_true(level_in(109 * MS));
     fathom_sim_device_power_on(bench.device, bench.line.now_us); /* off and on in no time */

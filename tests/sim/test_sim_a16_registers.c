@@ -15,7 +15,8 @@ static void set(uint8_t mode, a16_config_t config)
 #define AUTO_REAL_TIME "FF 02 EF F0" /* 751 mm */
 #define AUTO_PROCESSED "FF 02 F2 F3" /* 754 mm */
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 /* What is written is echoed, read back and kept without power, and so is another value. */
 static void is_kept(const char *read, const char *write, const char *value, const char *write_other,
@@ -53,7 +54,6 @@ TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 
 TEST(processed_and_real_time_values_are_two)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
     talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
     talk("01 03 01 01 00 01 D4 36", 200, "01 03 02 02 EF F8 A8"); /* example 2 */
     bench.a16.device.processed.distance = NULL;                   /* then they are one */
@@ -116,7 +116,6 @@ TEST(the_controlled_mode_stays_and_no_mode_is_kept)
 
 TEST(rs485_has_no_automatic_mode_to_return_to)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
     echoed("01 06 02 02 00 01 E8 72", 2000);
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
 }
@@ -139,7 +138,6 @@ static void refuse_all(void)
 
 TEST(a_value_that_a_register_does_not_have_is_silence_or_exception_3)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
     refuse_all();
     expect("");
     set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.exceptions = true});
@@ -155,7 +153,6 @@ TEST(a_value_that_a_register_does_not_have_is_silence_or_exception_3)
 
 TEST(flash_wears_with_each_setting_that_is_kept)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
     ask("01 06 02 05 00 01 59 B3", 50); /* as it is */
     ask("01 06 02 06 03 E8 68 CD", 50);
     ask("01 06 02 07 00 00 39 B3", 50);
@@ -169,7 +166,6 @@ TEST(flash_wears_with_each_setting_that_is_kept)
 
 TEST(a_broadcast_is_obeyed_without_an_answer)
 {
-    set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
     talk("FF 06 02 06 07 D0 7E 01", 50, "");
     talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
 }

@@ -50,7 +50,8 @@ static void go_until_it_listens(void)
         assert_int_equal(once(), FATHOM_PENDING);
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS, 0))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back)
 {
@@ -98,7 +99,6 @@ TEST(one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds)
 
 TEST(a_refusal_and_a_broken_port_are_told_as_they_are)
 {
-    set(FATHOM_SIM_A16_MODBUS, 0);
     FAULT(EXCEPTION, ALWAYS, 2);
     assert_int_equal(go_back(), FATHOM_ERR_EXCEPTION);
 
@@ -132,7 +132,6 @@ TEST(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames)
 /* A first answer with noise before it does not show whether the line echoes (line.h). */
 TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 {
-    set(FATHOM_SIM_A16_MODBUS, 0);
     s.config.echo = FATHOM_LINE_ECHO_AUTO;
     FAULT(BREAK, ALWAYS, 1);
     const uint32_t start_us = s.clock.now_us;
@@ -159,7 +158,6 @@ TEST(another_commands_outcome_comes_first)
 
 TEST(due_is_never_later_than_the_end_of_the_wait)
 {
-    set(FATHOM_SIM_A16_MODBUS, 0);
     go_until_it_listens();
     pass_us(1999 * MS);
     assert_true(fathom_a16_rs232_due_us(&rs232) <= 1 * MS);

@@ -43,7 +43,8 @@ static void marked(uint8_t kind, uint8_t flag)
     assert_int_equal(places, 0x7F);
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_faulty(A16_AUTO, 1))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(parity_marks_one_wrong_byte) { marked(FATHOM_SIM_FAULT_PARITY, FATHOM_RX_PARITY); }
 
@@ -75,7 +76,6 @@ TEST(overrun_loses_one_byte_and_marks_the_next_that_comes)
 
 TEST(break_is_a_marked_00_before_the_frame)
 {
-    set_faulty(A16_AUTO, 1);
     FAULT(BREAK, ALWAYS, 2)->us = 5 * MS;
     hear(150, A16_FRAME);
     hear(100, "00" A16_FRAME);
@@ -137,7 +137,6 @@ TEST(the_hosts_clock_jumps_and_the_line_does_not)
 {
     fathom_sim_uart_t uart;
     uint8_t bytes[16];
-    set_faulty(A16_AUTO, 1);
     fathom_sim_clock_init(&host_clock, bench_start_us, 0);
     fathom_sim_uart_init(&uart, &bench.line, &host_clock);
     port = fathom_sim_uart(&uart);
@@ -176,7 +175,6 @@ TEST(the_hosts_clock_jumps_and_the_line_does_not)
 
 TEST(stuck_says_the_value_of_the_frame_before)
 {
-    set_faulty(A16_AUTO, 1);
     FAULT(STUCK, ALWAYS, 2)->run = 2;
     hear(150, A16_FRAME); /* 751 */
     bench.fixed.value[0] = 1953;
@@ -204,7 +202,6 @@ TEST(always_stuck_holds_the_first_value)
 
 TEST(no_target_interference_and_fault_are_what_the_sensor_says)
 {
-    set_faulty(A16_AUTO, 1);
     FAULT(NO_TARGET, ALWAYS, 1);
     FAULT(INTERFERENCE, ALWAYS, 2);
     hear(350, "FF FF FD FB FF FF FE FC" A16_FRAME);

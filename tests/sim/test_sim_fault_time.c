@@ -13,7 +13,8 @@ static uint32_t at_us(size_t byte) { return bench.end_us[byte] - bench_start_us;
 /* A span that is right to 2 us: ends are rounded up to whole us. */
 #define ASSERT_AT(is_us, should_us) assert_in_range((is_us), (should_us), (should_us) + 2)
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_faulty(A16_MODBUS, 1))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(split_pauses_before_any_byte_but_the_first)
 {
@@ -56,7 +57,6 @@ TEST(a_pause_moves_with_its_byte_when_a_break_comes_first)
 
 TEST(duplicate_comes_twice_at_once_or_after_a_pause)
 {
-    set_faulty(A16_MODBUS, 1);
     FAULT(DUPLICATE, ALWAYS, 1);
     FAULT(DUPLICATE, ALWAYS, 2)->us = 30 * MS;
     next(A16_MODBUS);
@@ -236,7 +236,6 @@ TEST(unasked_is_a_measurement_also_where_something_else_was_asked)
 
 TEST(noise_and_unasked_frames_come_also_when_the_frame_does_not)
 {
-    set_faulty(A16_MODBUS, 1);
     FAULT(SILENCE, ALWAYS, 0);
     FAULT(UNASKED, ALWAYS, 1);
     next_is_golden(A16_MODBUS);
@@ -247,7 +246,6 @@ TEST(noise_and_unasked_frames_come_also_when_the_frame_does_not)
 
 TEST(echo_repeats_the_request_of_that_frame)
 {
-    set_faulty(A16_MODBUS, 1);
     FAULT(ECHO, ALWAYS, 2);
     for (uint32_t n = 1; n <= 3; n++) {
         next(A16_MODBUS);
@@ -267,7 +265,6 @@ TEST(echo_repeats_the_request_of_that_frame)
 
 TEST(a_line_that_has_an_echo_keeps_it)
 {
-    set_faulty(A16_MODBUS, 1);
     bench.line.echo = true;
     fathom_sim_fault_attach(&bench.fault, &bench.line, bench.device);
     FAULT(ECHO, ALWAYS, 2);

@@ -56,11 +56,11 @@ static void set(uint8_t mode)
 #define REQUEST "01 03 01 01 00 01 D4 36"
 #define ANSWER  "01 03 02 02 EF F8 A8"
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(a_hook_that_does_nothing_changes_nothing)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     talk(REQUEST, 200, ANSWER);
     assert_int_equal(out.seen, 1);
     assert_false(out.last_automatic);
@@ -72,14 +72,12 @@ TEST(a_hook_that_does_nothing_changes_nothing)
 
 TEST(a_bit_can_be_flipped)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     out.flip = 0x10;
     talk(REQUEST, 200, "01 03 02 12 EF F8 A8");
 }
 
 TEST(an_answer_can_be_shorter_or_longer)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     out.length = 4;
     talk(REQUEST, 200, "01 03 02 02");
     out.length = 0;
@@ -142,7 +140,6 @@ TEST(a_delay_counts_from_the_end_of_the_frame_before)
 
 TEST(a_request_can_be_missed_or_heard_wrong)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     faults.outgoing = NULL;
     faults.incoming = incoming;
     faults.ctx = &in;

@@ -11,13 +11,13 @@ static void set(uint8_t mode)
 #define REQUEST "01 03 01 01 00 01 D4 36" /* A16 6(4) example 2 */
 #define ANSWER  "01 03 02 02 EF F8 A8"
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 /* ---- what is no request ---- */
 
 TEST(every_flipped_bit_is_met_with_silence)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     for (size_t bit = 0; bit < 64; bit++) {
         uint8_t bytes[8];
         from_hex(REQUEST, bytes, 8);
@@ -31,7 +31,6 @@ TEST(every_flipped_bit_is_met_with_silence)
 
 TEST(every_torn_off_request_is_met_with_silence)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     uint8_t bytes[8];
     from_hex(REQUEST, bytes, 8);
     for (size_t length = 1; length < 8; length++) ask_bytes(bytes, length, 200 * MS);
@@ -43,7 +42,6 @@ TEST(garbage_of_any_length_is_met_with_silence)
 {
     uint8_t garbage[256];
     uint32_t random = 1;
-    set(FATHOM_SIM_A16_MODBUS);
     for (size_t length = 1; length <= 256; length++) {
         for (size_t i = 0; i < length; i++) {
             random = (uint32_t)(random * UINT32_C(1103515245) + 12345u);
@@ -58,7 +56,6 @@ TEST(garbage_of_any_length_is_met_with_silence)
 
 TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     ask("01 03 01 01 00 01 00 36 5F", 200); /* 9 bytes */
     ask("01 03 02 02 EF F8 A8", 200);       /* an answer, 7 bytes */
     talk("01 83 02 C0 F1", 200, "");        /* an exception */
@@ -77,7 +74,6 @@ TEST(the_crc_of_nothing_is_no_broadcast)
 
 TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     for (size_t first = 1; first < 8; first++) {
         ask_in_two(REQUEST, first, 3600); /* t3.5 is 3645.8 us */
         hear(200, ANSWER);
@@ -91,7 +87,6 @@ TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 
 TEST(a_device_hears_nothing_while_it_serves_a_request)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     ask(REQUEST, 20);
     ask(REQUEST, 20); /* it is measuring */
     COUNTED(.unheard = 8);
@@ -115,7 +110,6 @@ TEST(a_frame_that_ends_before_the_answer_does_not_open_its_ears)
 
 TEST(a_request_that_begins_during_an_answer_is_lost_with_it)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     ask(REQUEST, 5);
     while (bench.heard < 3) wait_us(100);
     ask(REQUEST, 500);
@@ -142,7 +136,6 @@ TEST(an_automatic_frame_deafens_a_device_on_two_wires)
 
 TEST(the_host_hears_itself_only_with_echo)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     bench.line.echo = true;
     talk(REQUEST, 200, "01 03 01 01 00 01 D4 36" ANSWER);
 }
@@ -151,7 +144,6 @@ TEST(the_host_hears_itself_only_with_echo)
 
 TEST(sent_turns_true_with_the_last_stop_bit)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     assert_true(fathom_sim_sent(&bench.line, bench.now_us));
     say(REQUEST);
     assert_false(fathom_sim_sent(&bench.line, bench.asked_us - 1));
@@ -161,7 +153,6 @@ TEST(sent_turns_true_with_the_last_stop_bit)
 
 TEST(due_leads_from_event_to_event_and_ends)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
     say(REQUEST);
     size_t steps = 0;
@@ -207,7 +198,6 @@ TEST(a_time_that_goes_back_changes_nothing)
 
 TEST(it_works_for_hours_across_every_wrap)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 30; i++) { /* 12.5 hours, 10 wraps */
         wait_us(UINT32_C(1500000000));
         talk(REQUEST, 200, ANSWER);
@@ -261,7 +251,6 @@ TEST(bytes_that_nobody_reads_are_lost_and_told)
 
 TEST(at_another_rate_or_parity_nobody_understands)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     at_rate(19200, FATHOM_PARITY_EVEN);
     ask(REQUEST, 200);
     at_rate(9600, FATHOM_PARITY_EVEN);
@@ -297,7 +286,6 @@ TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
 TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 {
     fathom_sim_fixed_t second = FIXED(2083);
-    set(FATHOM_SIM_A16_MODBUS);
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     add_hps((hps_config_t){.unit = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
     for (int round = 0; round < 3; round++) {
@@ -316,7 +304,6 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 
 TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     say(REQUEST);
     wait_us(3600);
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
@@ -333,7 +320,6 @@ TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 
 TEST(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing)
 {
-    set(FATHOM_SIM_A16_MODBUS);
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     ask("05 03 02 00 00 01 84 36", 5);
     while (bench.heard < 3) wait_us(100);

@@ -31,11 +31,11 @@ static void expect_both_work(void)
     assert_int_equal(bench.a05.device.carriers, 0);
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(0))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(without_power_it_hears_and_says_nothing)
 {
-    set(0);
     cycle(1000 * MS);
     for (int i = 0; i < 4; i++) talk(REALTIME, 200, ""); /* 833 ms */
     COUNTED(.unheard = 32, .requests = NONE);
@@ -56,7 +56,6 @@ TEST(it_starts_anew_when_power_is_back)
 
 TEST(power_that_is_back_at_once_still_ends_what_it_was_doing)
 {
-    set(0);
     ask(REALTIME, 50); /* 105..120 ms */
     cycle(0);
     hear(200, "");
@@ -120,7 +119,6 @@ TEST(a_neighbour_with_wires_of_its_own_never_heard_it)
 
 TEST(half_an_hour_is_the_longest)
 {
-    set(0);
     cycle(UINT32_C(1800000000));
     wait_us(UINT32_C(1799900000));
     talk(REALTIME, 50, "");

@@ -28,7 +28,8 @@ static bool is_understood(const char *answer)
     return false;
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(3))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(two_that_answer_within_each_others_answer_are_not_understood)
 {
@@ -50,7 +51,6 @@ TEST(two_that_answer_within_each_others_answer_are_not_understood)
 
 TEST(one_that_loses_power_leaves_the_other_understood)
 {
-    set(3);
     fathom_sim_power_cycle(&bench.line, &twin.device, 1000 * MS, bench.now_us);
     talk(MEASURE, 50, FIRST);
     fathom_sim_detach(&bench.line, &bench.hps.device, bench.now_us);
@@ -60,7 +60,6 @@ TEST(one_that_loses_power_leaves_the_other_understood)
 
 TEST(a_new_address_for_one_is_one_for_both)
 {
-    set(3);
     ask("01 06 00 10 00 05 48 0C", 50);
     assert_false(is_understood("01 06 00 10 00 05 48 0C"));
     assert_int_equal(bench.heard, 16);
@@ -70,7 +69,6 @@ TEST(a_new_address_for_one_is_one_for_both)
 
 TEST(one_at_another_rate_is_no_twin)
 {
-    set(3);
     twin.device.settings.baud = 115200;
     talk(MEASURE, 50, FIRST);
     assert_int_equal(twin.device.counters.requests, 0);

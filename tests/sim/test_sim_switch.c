@@ -27,13 +27,13 @@ static void set(int32_t mm, a16_config_t config)
 
 #define AS_IT_IS ((a16_config_t){0})
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set(999, AS_IT_IS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 /* ---- A16 4(2) ---- */
 
 TEST(three_measurements_500_ms_apart_make_it_high_and_five_low)
 {
-    set(999, AS_IT_IS);
     assert_false(level_in(1500 * MS - 1));
     assert_true(level_in(1));
     COUNTED(.measurements = 3);
@@ -82,7 +82,6 @@ TEST(the_period_the_threshold_and_the_start_are_options)
 
 TEST(a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing)
 {
-    set(999, AS_IT_IS);
     pass_us(100 * MS);
     (void)has_heard("", 0); /* what power-on made */
     assert_true(level_in(1600 * MS));
@@ -94,7 +93,6 @@ TEST(a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing)
 
 TEST(an_answer_from_a_high_pin_stands_alone)
 {
-    set(999, AS_IT_IS);
     pass_us(1600 * MS);
     (void)has_heard("", 0);
     say(THRESHOLD_2000);
@@ -120,7 +118,6 @@ TEST(an_answer_from_a_low_pin_has_a_break_before_and_behind_it)
 
 TEST(polarity_is_obeyed_at_once_and_kept_without_power)
 {
-    set(999, AS_IT_IS);
     assert_true(level_in(1700 * MS));
     (void)has_heard("", 0);
     say(NEGATIVE);
@@ -138,7 +135,6 @@ TEST(polarity_is_obeyed_at_once_and_kept_without_power)
 
 TEST(a_setting_does_not_move_the_measurements)
 {
-    set(999, AS_IT_IS);
     for (int i = 0; i != 7; i++) {
         say(THRESHOLD_2000);
         pass_us(200 * MS);
@@ -153,7 +149,6 @@ TEST(a_setting_does_not_move_the_measurements)
 
 TEST(other_values_of_polarity_and_other_registers_are_silence)
 {
-    set(999, AS_IT_IS);
     pass_us(1700 * MS);
     (void)has_heard("", 0);
     say("01 06 02 05 00 02 19 B2"); /* polarity 2; CRCs by the bitwise algorithm */

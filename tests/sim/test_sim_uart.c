@@ -46,11 +46,11 @@ static int write_to_hps(size_t count) { return uarts[2].write(uarts[2].ctx, requ
 static bool hps_sent(void) { return uarts[2].sent(uarts[2].ctx); }
 
 /* Two starts: the long runs pass every wrap anyhow. */
-static const suite_t suite = {BENCH_TWO_ROUNDS};
+EACH_BEGINS(set(0))
+static const suite_t suite = {BENCH_TWO_ROUNDS, .set_up = begins};
 
 TEST(write_takes_all_or_nothing_and_sent_tells_when)
 {
-    set(0);
     assert_true(hps_sent());
     assert_int_equal(write_to_hps(8), 8);
     assert_false(hps_sent());
@@ -65,7 +65,6 @@ TEST(write_takes_all_or_nothing_and_sent_tells_when)
 
 TEST(read_gives_only_what_has_arrived_and_when)
 {
-    set(0);
     fathom_sim_clock_advance(&desk_clock, 102 * MS);
     assert_int_equal(read_from(0, sizeof bytes), 1);
     assert_int_equal(bytes[0], 0xFF);
@@ -81,7 +80,6 @@ TEST(read_gives_only_what_has_arrived_and_when)
 
 TEST(a_port_may_know_nothing)
 {
-    set(0);
     ports[0].knows = 0;
     fathom_sim_clock_advance(&desk_clock, 250 * MS);
     assert_int_equal(read_from(0, sizeof bytes), 8); /* spans a silence it cannot see */
@@ -118,7 +116,6 @@ TEST(an_idle_hook_leads_through_an_exchange_in_few_steps)
     uint8_t answer[32];
     size_t heard = 0;
     int idles = 0;
-    set(0);
     assert_int_equal(write_to_hps(8), 8);
     while (heard < 13) {
         const size_t count = (size_t)read_from(2, sizeof answer - heard);
@@ -134,7 +131,6 @@ TEST(an_idle_hook_leads_through_an_exchange_in_few_steps)
 
 TEST(idle_goes_no_further_than_it_may)
 {
-    set(0);
     fathom_sim_clock_idle(&desk_clock, 30 * MS);
     assert_int_equal(fathom_elapsed_us(desk_clock.now_us, bench_start_us), 30 * MS);
     fathom_sim_clock_idle(&desk_clock, 0);
@@ -154,7 +150,6 @@ TEST(idle_with_nothing_to_come_moves_a_second)
 
 TEST(any_advance_is_lived_through)
 {
-    set(0);
     fathom_sim_clock_advance(&desk_clock, UINT32_C(4200000000)); /* 70 minutes at once */
     assert_int_equal(fathom_elapsed_us(desk_clock.now_us, bench_start_us), UINT32_C(4200000000));
     assert_int_equal(bench.a16.device.counters.automatic, 42000);
@@ -176,7 +171,6 @@ TEST(a_line_that_nobody_polls_keeps_up_with_a_stepping_clock)
 TEST(two_uarts_on_one_line_are_one_line_on_the_clock)
 {
     fathom_sim_uart_t again;
-    set(0);
     for (size_t i = 0; i < 3; i++) fathom_sim_uart_init(&again, &lines[i], &desk_clock);
     size_t count = 0;
     for (const fathom_sim_line_t *at = desk_clock.lines; at != NULL; at = at->next) {

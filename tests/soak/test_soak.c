@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,13 +17,9 @@ static struct {
     uint32_t broken;
 } seen;
 
-static int forget(void **state)
-{
-    memset(&seen, 0, sizeof seen);
-    return 0;
-}
+EACH_BEGINS(memset(&seen, 0, sizeof seen))
 
-static const suite_t suite = {.set_up = forget};
+static const suite_t suite = {.set_up = begins};
 
 static void report(void *ctx, uint8_t setting, const char *name, const cell_result_t *result)
 {

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "eight.h"

@@ -26,6 +26,14 @@ typedef struct {
     unsigned long_rounds; /* where suite_is_long, if that is more */
 } suite_t;
 
+/* The set-up of a file whose tests all begin with that call: .set_up = begins */
+#define EACH_BEGINS(call)                                                                                    \
+    static int begins(void **state)                                                                          \
+    {                                                                                                        \
+        call;                                                                                                \
+        return 0;                                                                                            \
+    }
+
 /* A file without a suite of its own has this one. */
 static const suite_t suite;
 

@@ -2,8 +2,6 @@
 
 /* Frames that A16 and A05 send by themselves, at their true spacing, with noise and lost bytes: each good one gives its
  * reading, and no other reading is ever given. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "fathom/hal.h"

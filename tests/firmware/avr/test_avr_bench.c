@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The bench against the ATmega328P's datasheet, with an image of which every cycle is known (images/bench.c). */
-#include <stdint.h>
 #include <stdio.h>
 
 #include "suite.h"

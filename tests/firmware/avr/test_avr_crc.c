@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The two CRCs of port/avr, with its table in program memory and without, against the definition. */
-#include <stdint.h>
 #include <string.h>
 
 #include "suite.h"

@@ -2,8 +2,6 @@
 
 /* HPS-167S over RS-485 when things go wrong: no reading is wrong, everything is told and counted, and the next exchange
  * is as before. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "fathom/status.h"

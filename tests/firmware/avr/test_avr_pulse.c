@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <simavr/sim_cycle_timers.h>
 #include <simavr/sim_interrupts.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
 /* What input capture makes of edges that come while its own interrupt runs; and INT0 by itself. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "board.h"

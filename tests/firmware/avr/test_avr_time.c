@@ -1,21 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The clock of port/avr against the cycles of the processor. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "remote.h"
 
 enum { PERIOD_CYCLES = 65536 * 8 }; /* of Timer1: 32768 us */
 
-static int start(void **state)
-{
-    remote_start();
-    return 0;
-}
+EACH_BEGINS(remote_start())
 
-static const suite_t suite = {.set_up = start, .tear_down = board_stop};
+static const suite_t suite = {.set_up = begins, .tear_down = board_stop};
 
 typedef struct {
     uint64_t cycle; /* just before it */

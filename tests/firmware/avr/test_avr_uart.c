@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
 /* What port/avr sends: its bits, its driver-enable pin, `sent`, refusals, breaks. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "remote.h"

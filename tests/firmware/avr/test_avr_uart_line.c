@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
 /* The rates and formats of port/avr: ATmega328P 20.10 at 16 MHz, by hand. */
-#include <stdint.h>
-
 #include "suite.h"
 
 #include "remote.h"

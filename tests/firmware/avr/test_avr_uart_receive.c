@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 
 /* What port/avr receives: each byte once, in order, with what the USART says of it. */
-#include <stdint.h>
 #include <string.h>
 
 #include "suite.h"

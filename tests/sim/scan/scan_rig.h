@@ -3,7 +3,6 @@
 #define FATHOM_TESTS_SCAN_RIG_H
 
 #include "suite.h"
-#include <stdint.h>
 
 #include "scan_walk.h"
 #include "sim/a05.h"
