@@ -76,19 +76,16 @@ static bool device_has_byte(void) { return polls == 3 && answer_at < answer_leng
 
 static uint8_t read_status(avr_t *a, avr_io_addr_t address, void *ctx)
 {
-    (void)a, (void)address, (void)ctx;
     return device_has_byte() ? RX_READY : 0;
 }
 
 static uint8_t read_data(avr_t *a, avr_io_addr_t address, void *ctx)
 {
-    (void)a, (void)address, (void)ctx;
     return device_has_byte() ? answer[answer_at++] : 0;
 }
 
 static void write_data(avr_t *a, avr_io_addr_t address, uint8_t byte, void *ctx)
 {
-    (void)a, (void)address, (void)ctx;
     if (polls != 0) asked = 0; /* the first of a frame */
     polls = 0;
     if (asked < FRAME) request[asked++] = byte;

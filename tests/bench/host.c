@@ -20,8 +20,6 @@ static int answered_at = 2;
 
 static int stub_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
-    (void)ctx;
-    (void)rx;
     if (reads < 0 || capacity < sizeof answer || ++reads != answered_at) return 0;
     for (size_t i = 0; i != sizeof answer; i++) bytes[i] = answer[i];
     return (int)sizeof answer;
@@ -29,30 +27,19 @@ static int stub_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
 
 static int stub_write(void *ctx, const uint8_t *bytes, size_t length)
 {
-    (void)ctx;
-    (void)bytes;
     reads = 0;
     return (int)length;
 }
 
-static bool stub_sent(void *ctx)
-{
-    (void)ctx;
-    return true;
-}
+static bool stub_sent(void *ctx) { return true; }
 
-static uint32_t stub_now_us(void *ctx)
-{
-    (void)ctx;
-    return time_us += 5000;
-}
+static uint32_t stub_now_us(void *ctx) { return time_us += 5000; }
 
 const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL, NULL};
 const fathom_clock_t clock = {stub_now_us, NULL};
 
 int main(int argc, char **argv)
 {
-    (void)argv;
     if (argc > 1) answered_at = 1;
     const uint16_t crc = fathom_crc16(answer, 11);
     answer[11] = (uint8_t)crc;

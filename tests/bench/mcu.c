@@ -13,31 +13,20 @@ extern volatile uint32_t timer_us;
 static int stub_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     size_t n = 0;
-    (void)ctx;
-    (void)rx;
     while (n != capacity && (uart_status & RX_READY) != 0) bytes[n++] = uart_data;
     return (int)n;
 }
 
 static int stub_write(void *ctx, const uint8_t *bytes, size_t length)
 {
-    (void)ctx;
     if ((uart_status & TX_BUSY) != 0) return 0;
     for (size_t i = 0; i != length; i++) uart_data = bytes[i];
     return (int)length;
 }
 
-static bool stub_sent(void *ctx)
-{
-    (void)ctx;
-    return (uart_status & TX_BUSY) == 0;
-}
+static bool stub_sent(void *ctx) { return (uart_status & TX_BUSY) == 0; }
 
-static uint32_t stub_now_us(void *ctx)
-{
-    (void)ctx;
-    return timer_us;
-}
+static uint32_t stub_now_us(void *ctx) { return timer_us; }
 
 const fathom_uart_t uart = {stub_read, stub_write, stub_sent, NULL, NULL, NULL};
 const fathom_clock_t clock = {stub_now_us, NULL};

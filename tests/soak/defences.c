@@ -33,8 +33,7 @@ static void window(uint64_t exchanges, uint32_t seed, defence_result_t *result)
                              .chance_ppm = 700000,
                              .seed = seed,
                              .options = {.max_mm = max_mm[i]}};
-        cell_result_t cell_result;
-        memset(&cell_result, 0, sizeof cell_result);
+        cell_result_t cell_result = {0};
         cell_run(&cell, 2 * exchanges, &cell_result);
         wrong[i] = cell_result.totals.wrong_answers;
     }
@@ -91,7 +90,6 @@ static uint64_t acknowledged(uint8_t echo, uint64_t writes)
 
 static void echo(uint64_t exchanges, uint32_t seed, defence_result_t *result)
 {
-    (void)seed;
     result->what = "writes to a dead unit that were acknowledged";
     result->with = acknowledged(FATHOM_LINE_ECHO_AUTO, exchanges / 100);
     result->without = acknowledged(FATHOM_LINE_ECHO_OFF, exchanges / 100);

@@ -41,11 +41,10 @@ static void run_rates(cell_t *cell, uint32_t *seed, uint8_t rates, uint64_t exch
 
 void plan_these(const plan_t *plan, uint8_t setting, const uint8_t *kinds, uint8_t count, uint64_t exchanges)
 {
-    cell_result_t result;
+    cell_result_t result = {0};
     cell_t cell = {.setting = setting, .kinds_used = count};
     char name[NAME] = "none";
     uint32_t seed = plan->seed;
-    memset(&result, 0, sizeof result);
     for (uint8_t i = 0; i < count; i++) {
         cell.kinds[i] = kinds[i];
         const size_t used = i == 0 ? 0 : strlen(name);
@@ -63,13 +62,12 @@ void plan_singles(const plan_t *plan, uint8_t setting, uint64_t exchanges)
     plan_these(plan, setting, NULL, 0, each);
     for (uint8_t i = 0; i < count; i++) plan_these(plan, setting, &kinds[i], 1, each);
     if (!soak_is_asked(setting)) return;
-    cell_result_t result;
+    cell_result_t result = {0};
     cell_t cell = {.setting = setting,
                    .kinds_used = 1,
                    .kinds = {FATHOM_SIM_FAULT_LATE},
                    .late_us = cell_late_beyond_us(setting)};
     uint32_t seed = plan->seed;
-    memset(&result, 0, sizeof result);
     run_rates(&cell, &seed, CELL_RATES, each, &result);
     plan->report(plan->ctx, setting, "too-late", &result);
 }
@@ -82,13 +80,11 @@ void plan_pairs(const plan_t *plan, uint8_t setting, uint64_t exchanges)
     const uint8_t rates = each >= (uint64_t)ENOUGH * CELL_RATES ? CELL_RATES : 1;
     uint32_t seed = plan->seed;
     for (uint8_t i = 0; i + 1 < count; i++) {
-        cell_result_t sum;
+        cell_result_t sum = {0};
         char name[NAME];
-        memset(&sum, 0, sizeof sum);
         for (uint8_t j = (uint8_t)(i + 1); j < count; j++) {
-            cell_result_t result;
+            cell_result_t result = {0};
             cell_t cell = {.setting = setting, .kinds_used = 2, .kinds = {kinds[i], kinds[j]}};
-            memset(&result, 0, sizeof result);
             run_rates(&cell, &seed, rates, each, &result);
             (void)snprintf(name, NAME, "%s+%s", fathom_sim_fault_name(kinds[i]),
                            fathom_sim_fault_name(kinds[j]));
@@ -109,9 +105,8 @@ void plan_mixtures(const plan_t *plan, uint8_t setting, uint64_t exchanges)
     const uint8_t count = plan_kinds(setting, kinds);
     uint32_t seed = plan->seed;
     for (uint8_t told_apart = 0; told_apart != 2; told_apart++) {
-        cell_result_t result;
+        cell_result_t result = {0};
         cell_t cell = {.setting = setting};
-        memset(&result, 0, sizeof result);
         for (uint8_t i = 0; i < count; i++)
             if (!told_apart ||
                 (kinds[i] != FATHOM_SIM_FAULT_UNASKED && kinds[i] != FATHOM_SIM_FAULT_CLOCK_JUMP))

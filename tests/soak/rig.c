@@ -34,7 +34,6 @@ static bool is_later(uint32_t a_us, uint32_t b_us) { return (int32_t)(a_us - b_u
 
 static int32_t look(void *ctx, uint8_t probe, uint32_t now_us)
 {
-    (void)now_us;
     return truth_look(&((rig_unit_t *)ctx)->truth, probe);
 }
 

@@ -24,113 +24,61 @@ const soak_facts_t soak_facts[SOAK_SETTINGS] = {
 
 bool soak_is_asked(uint8_t setting) { return soak_facts[setting].proof >= SOAK_CRC; }
 
-static fathom_sim_device_t *init_a16(fathom_sim_a16_t *a16, uint8_t setting, uint8_t address,
-                                     const fathom_sim_scene_t *scene, uint32_t seed)
-{
-    const fathom_sim_a16_config_t config = {
-        .unit = address,
-        .mode = soak_is_asked(setting) ? FATHOM_SIM_A16_MODBUS : FATHOM_SIM_A16_UART,
-        .seed = seed,
-        .scene = *scene,
-        .period_us = setting == SOAK_A16_TIGHT ? 1000 : 0}; /* less than a frame: one after the other */
-    fathom_sim_a16_init(a16, &config);
-    return &a16->device;
-}
-
-static fathom_sim_device_t *init_a05(fathom_sim_a05_t *a05, uint8_t setting, uint8_t address,
-                                     const fathom_sim_scene_t *scene, uint32_t seed)
-{
-    const uint8_t proof = soak_facts[setting].proof;
-    const fathom_sim_a05_config_t config = {.unit = address,
-                                            .mode = proof == SOAK_SUM   ? FATHOM_SIM_A05_DYP
-                                                    : proof == SOAK_CRC ? FATHOM_SIM_A05_MODBUS
-                                                                        : FATHOM_SIM_A05_AUTO,
-                                            .seed = seed,
-                                            .scene = *scene,
-                                            .period_us = setting == SOAK_A05_TIGHT ? 1000 : 0};
-    fathom_sim_a05_init(a05, &config);
-    return &a05->device;
-}
+/* A period of 1 ms is less than a frame: one after the other. */
+#define COMMON   .unit = address, .seed = seed, .scene = *scene
+#define TIGHT(s) .period_us = setting == (s) ? 1000 : 0
 
 fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, uint8_t address,
                                       const fathom_sim_scene_t *scene, uint32_t seed)
 {
-    if (soak_facts[setting].model == FATHOM_A16) return init_a16(&device->a16, setting, address, scene, seed);
-    if (soak_facts[setting].model == FATHOM_A05) return init_a05(&device->a05, setting, address, scene, seed);
-    const fathom_sim_hps167s_config_t config = {.unit = address, .seed = seed, .scene = *scene};
+    const uint8_t proof = soak_facts[setting].proof;
+    if (soak_facts[setting].model == FATHOM_A16) {
+        const uint8_t mode = soak_is_asked(setting) ? FATHOM_SIM_A16_MODBUS : FATHOM_SIM_A16_UART;
+        const fathom_sim_a16_config_t config = {COMMON, .mode = mode, TIGHT(SOAK_A16_TIGHT)};
+        fathom_sim_a16_init(&device->a16, &config);
+        return &device->a16.device;
+    }
+    if (soak_facts[setting].model == FATHOM_A05) {
+        const uint8_t mode = proof == SOAK_SUM   ? FATHOM_SIM_A05_DYP
+                             : proof == SOAK_CRC ? FATHOM_SIM_A05_MODBUS
+                                                 : FATHOM_SIM_A05_AUTO;
+        const fathom_sim_a05_config_t config = {COMMON, .mode = mode, TIGHT(SOAK_A05_TIGHT)};
+        fathom_sim_a05_init(&device->a05, &config);
+        return &device->a05.device;
+    }
+    const fathom_sim_hps167s_config_t config = {COMMON};
     fathom_sim_hps167s_init(&device->hps167s, &config);
     return &device->hps167s.device;
 }
 
-static fathom_sensor_t init_stream(soak_driver_t *driver, uint8_t setting, fathom_line_t *line,
-                                   const soak_options_t *options)
-{
-    if (soak_facts[setting].model == FATHOM_A16) {
-        const fathom_a16_auto_config_t config = {.line = line,
-                                                 .stale_us = options->stale_us,
-                                                 .gap_us = options->gap_us,
-                                                 .window = {.max_mm = options->max_mm}};
-        (void)fathom_a16_auto_init(&driver->a16_auto, &config);
-        return fathom_a16_auto_sensor(&driver->a16_auto);
-    }
-    const fathom_a05_auto_config_t config = {.line = line,
-                                             .stale_us = options->stale_us,
-                                             .gap_us = options->gap_us,
-                                             .window = {.max_mm = options->max_mm}};
-    (void)fathom_a05_auto_init(&driver->a05_auto, &config);
-    return fathom_a05_auto_sensor(&driver->a05_auto);
-}
+#define WINDOW .window = {.max_mm = options->max_mm}
+#define STREAM .line = line, .stale_us = options->stale_us, .gap_us = options->gap_us, WINDOW
+#define ASKED  .address = address, .backoff_us = options->backoff_us, .retries = options->retries
+#define MODBUS .modbus = modbus, .clock = clock, ASKED
 
-static fathom_sensor_t init_dyp(fathom_a05_dyp_t *driver, uint8_t setting, uint8_t address,
-                                fathom_line_t *line, const soak_options_t *options)
-{
-    const fathom_a05_dyp_config_t config = {.line = line,
-                                            .backoff_us = options->backoff_us,
-                                            .window = {.max_mm = options->max_mm},
-                                            .address = address,
-                                            .retries = options->retries,
-                                            .probes = setting == SOAK_A05_DYP_ONE ? 1 << 2 : 0};
-    (void)fathom_a05_dyp_init(driver, &config);
-    return fathom_a05_dyp_sensor(driver);
-}
+/* The driver of that kind and member, with its configuration. */
+#define DRIVER(kind, ...)                                                                                    \
+    {                                                                                                        \
+        const fathom_##kind##_config_t config = {__VA_ARGS__};                                               \
+        (void)fathom_##kind##_init(&driver->kind, &config);                                                  \
+        return fathom_##kind##_sensor(&driver->kind);                                                        \
+    }
 
 fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t address, fathom_line_t *line,
                                  const fathom_modbus_t *modbus, const fathom_clock_t *clock,
                                  const soak_options_t *options)
 {
+    const bool is_a16 = soak_facts[setting].model == FATHOM_A16;
+    const uint8_t probes = setting == SOAK_A05_DYP_ONE ? 1 << 2 : 0;
+    const fathom_a16_value_t value =
+        setting == SOAK_A16_REAL_TIME ? FATHOM_A16_REAL_TIME : FATHOM_A16_PROCESSED;
     memset(driver, 0, sizeof *driver);
-    if (!soak_is_asked(setting)) return init_stream(driver, setting, line, options);
-    if (soak_facts[setting].proof == SOAK_SUM)
-        return init_dyp(&driver->a05_dyp, setting, address, line, options);
-    if (setting == SOAK_HPS167S) {
-        const fathom_hps167s_config_t config = {.modbus = modbus,
-                                                .clock = clock,
-                                                .backoff_us = options->backoff_us,
-                                                .address = address,
-                                                .retries = options->retries};
-        (void)fathom_hps167s_init(&driver->hps167s, &config);
-        return fathom_hps167s_sensor(&driver->hps167s);
-    }
-    if (setting == SOAK_A05_MODBUS) {
-        const fathom_a05_modbus_config_t config = {.modbus = modbus,
-                                                   .clock = clock,
-                                                   .backoff_us = options->backoff_us,
-                                                   .window = {.max_mm = options->max_mm},
-                                                   .address = address,
-                                                   .retries = options->retries};
-        (void)fathom_a05_modbus_init(&driver->a05_modbus, &config);
-        return fathom_a05_modbus_sensor(&driver->a05_modbus);
-    }
-    const fathom_a16_modbus_config_t config = {.modbus = modbus,
-                                               .clock = clock,
-                                               .backoff_us = options->backoff_us,
-                                               .window = {.max_mm = options->max_mm},
-                                               .address = address,
-                                               .retries = options->retries,
-                                               .value = setting == SOAK_A16_REAL_TIME ? FATHOM_A16_REAL_TIME
-                                                                                      : FATHOM_A16_PROCESSED};
-    (void)fathom_a16_modbus_init(&driver->a16_modbus, &config);
-    return fathom_a16_modbus_sensor(&driver->a16_modbus);
+    if (!soak_is_asked(setting) && is_a16) DRIVER(a16_auto, STREAM)
+    if (!soak_is_asked(setting)) DRIVER(a05_auto, STREAM)
+    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, .line = line, ASKED, WINDOW, .probes = probes)
+    if (setting == SOAK_HPS167S) DRIVER(hps167s, MODBUS)
+    if (setting == SOAK_A05_MODBUS) DRIVER(a05_modbus, MODBUS, WINDOW)
+    DRIVER(a16_modbus, MODBUS, WINDOW, .value = value)
 }
 
 static const fathom_dyp_modbus_t *ultrasonic(const soak_driver_t *driver, uint8_t setting)

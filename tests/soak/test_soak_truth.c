@@ -18,6 +18,15 @@ static void say(uint32_t now_us, int32_t first, int32_t second)
     assert_non_null(truth_leaves(&truth, now_us));
 }
 
+static void begin(uint8_t setting)
+{
+    truth_init(&truth, setting, 0);
+    say(1000, 100, 200);
+}
+
+EACH_BEGINS(begin(SOAK_A05_MODBUS))
+static const suite_t suite = {.set_up = begins};
+
 static fathom_sample_t sample_of(uint8_t probe, uint16_t raw)
 {
     fathom_sample_t sample;
@@ -43,32 +52,21 @@ static truth_verdict_t stream(uint8_t probe, uint16_t raw, uint32_t now_us)
 
 TEST(what_it_has_said_since_the_request_is_right)
 {
-    truth_init(&truth, SOAK_A05_MODBUS, 0);
-    say(1000, 100, 200);
     assert_int_equal(ask(1, 100, 1500, 900), TRUTH_RIGHT);
     assert_int_equal(ask(2, 200, 1500, 900), TRUTH_RIGHT);
 }
 
 TEST(what_it_has_never_said_is_damaged)
 {
-    truth_init(&truth, SOAK_A05_MODBUS, 0);
-    say(1000, 100, 200);
     assert_int_equal(ask(1, 101, 1500, 900), TRUTH_DAMAGED);
     assert_int_equal(ask(0, 100, 1500, 900), TRUTH_DAMAGED);
     assert_int_equal(ask(5, 100, 1500, 900), TRUTH_DAMAGED);
 }
 
-TEST(what_another_probe_has_said_is_permuted)
-{
-    truth_init(&truth, SOAK_A05_MODBUS, 0);
-    say(1000, 100, 200);
-    assert_int_equal(ask(1, 200, 1500, 900), TRUTH_PERMUTED);
-}
+TEST(what_another_probe_has_said_is_permuted) { assert_int_equal(ask(1, 200, 1500, 900), TRUTH_PERMUTED); }
 
 TEST(what_it_has_said_before_the_request_or_says_later_is_stale)
 {
-    truth_init(&truth, SOAK_A05_MODBUS, 0);
-    say(1000, 100, 200);
     say(3000, 101, 201);
     assert_int_equal(ask(1, 100, 3500, 2000), TRUTH_STALE);
     assert_int_equal(ask(1, 101, 2900, 2000), TRUTH_STALE);
@@ -77,8 +75,7 @@ TEST(what_it_has_said_before_the_request_or_says_later_is_stale)
 
 TEST(a_stream_gives_each_frame_once_and_none_after_a_newer_one)
 {
-    truth_init(&truth, SOAK_A05_AUTO, 0);
-    say(1000, 100, 200);
+    begin(SOAK_A05_AUTO);
     say(2000, 101, 201);
     assert_int_equal(stream(1, 101, 2500), TRUTH_RIGHT);
     assert_int_equal(stream(2, 201, 2500), TRUTH_RIGHT);

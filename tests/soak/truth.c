@@ -24,7 +24,6 @@ int32_t truth_look(truth_t *truth, uint8_t probe)
     const soak_facts_t *const facts = &soak_facts[truth->setting];
     if (truth->held_mm != 0) return truth->held_mm;
     const uint32_t place = (truth->looks++ * UNITS + truth->index) % facts->span_mm;
-    (void)probe;
     /* 16807 = 7^5 has no factor with the spans in common: all their values in an order that looks like none */
     return (int32_t)(facts->least_mm + place * 16807u % facts->span_mm);
 }

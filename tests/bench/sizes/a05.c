@@ -40,7 +40,6 @@ ONLY(a05_relay, kind)
 /* The rule is fed with the samples of any driver; here with those of the least one that there can be. */
 static fathom_status_t stub_poll(void *ctx, fathom_sample_t *sample)
 {
-    (void)ctx;
     sample->distance_mm = argument;
     return FATHOM_READY;
 }

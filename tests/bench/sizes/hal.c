@@ -29,27 +29,14 @@ void *memcpy(void *restrict to, const void *restrict from, size_t length)
     return to;
 }
 
-static void stub_set(void *ctx, bool high)
-{
-    (void)ctx;
-    level = high;
-}
+static void stub_set(void *ctx, bool high) { level = high; }
 
-static bool stub_get(void *ctx)
-{
-    (void)ctx;
-    return level != 0;
-}
+static bool stub_get(void *ctx) { return level != 0; }
 
-static void stub_arm(void *ctx)
-{
-    (void)ctx;
-    level = 0;
-}
+static void stub_arm(void *ctx) { level = 0; }
 
 static int stub_take(void *ctx, fathom_pulse_t *pulse)
 {
-    (void)ctx;
     pulse->is_high = level != 0;
     if (pulse->is_high) return 0;
     pulse->width_us = argument;

@@ -97,7 +97,6 @@ static void soak(share_t *share, uint64_t exchanges)
 
 static void *work(void *unused)
 {
-    (void)unused;
     for (;;) {
         (void)pthread_mutex_lock(&job.lock);
         const uint8_t setting = job.next++;
@@ -152,11 +151,10 @@ static bool parse(int argc, char **argv)
 static uint32_t soak_all(void)
 {
     pthread_t threads[MOST_JOBS];
-    cell_result_t sum;
+    cell_result_t sum = {0};
     uint32_t broken = 0;
     uint32_t rows = 0;
     const time_t begin = time(NULL);
-    memset(&sum, 0, sizeof sum);
     for (uint32_t i = 1; i < job.jobs; i++)
         if (pthread_create(&threads[i], NULL, work, NULL) != 0) abort();
     (void)work(NULL);
