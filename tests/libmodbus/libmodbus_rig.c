@@ -96,6 +96,67 @@ void rig_run(uint32_t in_us, uint32_t step_us)
     }
 }
 
+fathom_status_t rig_poll(void)
+{
+    rig.fake.now_us += FINE_US;
+    return rig.seam.poll(rig.seam.ctx);
+}
+
+void rig_hang_up(void)
+{
+    assert_int_equal(close(rig.far), 0);
+    rig.far = -1;
+}
+
+static uint8_t junk[4096];
+
+size_t rig_fill(void)
+{
+    size_t filled = 0;
+    ssize_t n = 0;
+    while ((n = send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT)) > 0)
+        filled += (size_t)n;
+    return filled;
+}
+
+void rig_drain(size_t filled)
+{
+    while (filled != 0) {
+        const ssize_t n = recv(rig.far, junk, sizeof junk, MSG_DONTWAIT);
+        assert_true(n > 0);
+        filled -= (size_t)n;
+    }
+}
+
+void rig_expect_broken(fathom_libmodbus_error_t error)
+{
+    assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
+    assert_int_equal(status(), FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), error);
+}
+
+void rig_expect_no_settings(uint32_t in_us)
+{
+    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    rig_ask_three(&rig.request, 1, 0);
+    rig.request.exchange.settings = &settings;
+    rig_run_fine(in_us);
+    assert_int_equal(status(), FATHOM_ERR_UNSUPPORTED);
+    rig_expect_sent(NULL, 0);
+}
+
+void rig_expect_units_refused(unsigned first, unsigned last)
+{
+    assert_int_equal(modbus_set_slave(rig.modbus, 42), 0);
+    for (unsigned unit = 0; unit != 256; unit++) {
+        fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
+        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request),
+                         unit >= first && unit <= last ? FATHOM_ERR_UNSUPPORTED : FATHOM_PENDING);
+        rig.seam.cancel(rig.seam.ctx, &rig.request);
+        assert_int_equal(modbus_get_slave(rig.modbus), 42); /* the program's own */
+    }
+}
+
 void rig_say(const void *bytes, size_t length)
 {
     assert_int_equal(send(rig.far, bytes, length, MSG_NOSIGNAL), length);

@@ -63,6 +63,21 @@ void rig_answered(uint8_t transaction);
 /* rig_ask_three of unit 1 over TCP, whose first request has left. */
 void rig_ask(uint8_t retries);
 
+/* The far end hangs up; and the port's own end is full, until all of that was read again: returns how much it was. */
+void rig_hang_up(void);
+size_t rig_fill(void);
+void rig_drain(size_t filled);
+
+/* Is the port broken for that reason, and the request ended by it? */
+void rig_expect_broken(fathom_libmodbus_error_t error);
+
+/* Requests with line settings of their own are unsupported, and so is each unit from the first to the last. */
+void rig_expect_no_settings(uint32_t in_us);
+void rig_expect_units_refused(unsigned first, unsigned last);
+
+/* One poll, FINE_US later. */
+fathom_status_t rig_poll(void);
+
 /* Of rig.request. */
 static inline int status(void) { return rig.request.exchange.status; }
 

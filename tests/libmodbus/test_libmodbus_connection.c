@@ -11,35 +11,19 @@
 static const uint8_t request_1[] = {REQUEST(1)};
 static const uint8_t answer_1[] = {ANSWER(1)};
 
-static fathom_status_t poll_once(void)
-{
-    rig.fake.now_us += FINE_US;
-    return rig.seam.poll(rig.seam.ctx);
-}
-
 static void ask(void)
 {
     rig_ask_three(&rig.request, 1, 3); /* retries are not made on a broken connection */
-    assert_int_equal(poll_once(), FATHOM_PENDING);
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
     rig_expect_request(1);
-}
-
-static void hang_up(void)
-{
-    assert_int_equal(close(rig.far), 0);
-    rig.far = -1;
 }
 
 /* Everything queued has ended, and what is asked now ends too. */
 static void expect_broken(fathom_libmodbus_error_t error)
 {
-    assert_int_equal(poll_once(), FATHOM_ERR_PORT);
-    assert_int_equal(status(), FATHOM_ERR_PORT);
-    assert_int_equal(fathom_libmodbus_error(&rig.port), error);
+    rig_expect_broken(error);
     rig_ask_three(&rig.request, 1, 0);
-    assert_int_equal(poll_once(), FATHOM_ERR_PORT);
-    assert_int_equal(status(), FATHOM_ERR_PORT);
-    assert_int_equal(fathom_libmodbus_error(&rig.port), error); /* the first reason is kept */
+    rig_expect_broken(error); /* the first reason is kept */
     rig_expect_none();
 }
 
@@ -59,7 +43,7 @@ static const suite_t suite = {.set_up = rig_tcp_set_up, .tear_down = rig_tear_do
 TEST(a_server_that_closes_breaks_it_until_there_is_a_new_connection)
 {
     ask();
-    hang_up();
+    rig_hang_up();
     expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
     expect_to_go_on();
 }
@@ -68,8 +52,8 @@ TEST(an_answer_before_the_end_of_the_connection_is_read)
 {
     ask();
     rig_say_answer(1);
-    hang_up();
-    (void)poll_once();
+    rig_hang_up();
+    (void)rig_poll();
     rig_expect_three();
 }
 
@@ -79,8 +63,8 @@ TEST(half_an_answer_and_the_end_break_it)
         rig_again(cut == 1);
         ask();
         rig_say(answer_1, cut);
-        assert_int_equal(poll_once(), FATHOM_PENDING);
-        hang_up();
+        assert_int_equal(rig_poll(), FATHOM_PENDING);
+        rig_hang_up();
         expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
         expect_to_go_on();
     }
@@ -90,8 +74,8 @@ TEST(half_an_answer_and_the_end_break_it)
 TEST(a_reset_has_the_systems_number)
 {
     rig_ask_three(&rig.request, 1, 3);
-    assert_int_equal(poll_once(), FATHOM_PENDING);
-    hang_up();
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    rig_hang_up();
     expect_broken(FATHOM_LIBMODBUS_ERR_SYSTEM);
     assert_int_equal(rig.port.system_error, ECONNRESET);
     expect_to_go_on();
@@ -131,28 +115,19 @@ TEST(what_is_no_modbus_breaks_it_and_ends_the_connection)
 /* The socket waits if it is let; then the alarm ends the test. */
 TEST(a_full_connection_is_busy_and_nothing_waits)
 {
-    static uint8_t junk[4096];
-    const int fd = modbus_get_socket(rig.modbus);
-    size_t filled = 0;
-    ssize_t n = 0;
-    while ((n = send(fd, junk, sizeof junk, MSG_DONTWAIT)) > 0) filled += (size_t)n;
+    const size_t filled = rig_fill();
     rig_ask_three(&rig.request, 1, 0);
-    for (int i = 0; i != 10; i++) assert_int_equal(poll_once(), FATHOM_PENDING);
+    for (int i = 0; i != 10; i++) assert_int_equal(rig_poll(), FATHOM_PENDING);
     assert_int_equal(rig.request.exchange.attempts, 0);
-    while (filled != 0) {
-        n = recv(rig.far, junk, sizeof junk, MSG_DONTWAIT);
-        assert_true(n > 0);
-        filled -= (size_t)n;
-    }
-    assert_int_equal(poll_once(), FATHOM_PENDING);
+    rig_drain(filled);
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
     rig_expect_request(1);
     rig_answered(1);
 }
 
 TEST(a_connection_that_stays_full_is_broken_after_a_second)
 {
-    static uint8_t junk[4096];
-    while (send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT) > 0) continue;
+    (void)rig_fill();
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(FATHOM_LINE_SEND_US - FINE_US);
     assert_int_equal(status(), FATHOM_PENDING);
@@ -160,28 +135,9 @@ TEST(a_connection_that_stays_full_is_broken_after_a_second)
     assert_int_equal(status(), FATHOM_ERR_PORT);
 }
 
-TEST(units_that_modbus_set_slave_refuses_are_unsupported)
-{
-    assert_int_equal(modbus_set_slave(rig.modbus, 42), 0);
-    for (unsigned unit = 0; unit != 256; unit++) {
-        const bool is_unsupported = unit >= 248 && unit <= 254;
-        fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
-        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request),
-                         is_unsupported ? FATHOM_ERR_UNSUPPORTED : FATHOM_PENDING);
-        rig.seam.cancel(rig.seam.ctx, &rig.request);
-        assert_int_equal(modbus_get_slave(rig.modbus), 42); /* the program's own */
-    }
-}
+TEST(units_that_modbus_set_slave_refuses_are_unsupported) { rig_expect_units_refused(248, 254); }
 
-TEST(line_settings_are_unsupported_and_nothing_is_sent)
-{
-    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    rig_ask_three(&rig.request, 1, 0);
-    rig.request.exchange.settings = &settings;
-    assert_int_equal(poll_once(), FATHOM_PENDING);
-    assert_int_equal(status(), FATHOM_ERR_UNSUPPORTED);
-    rig_expect_sent(NULL, 0);
-}
+TEST(line_settings_are_unsupported_and_nothing_is_sent) { rig_expect_no_settings(FINE_US); }
 
 TEST(counts_out_of_range_and_reads_from_everybody_are_refused)
 {
@@ -210,7 +166,7 @@ TEST(libmodbus_does_not_recover_by_itself)
     assert_int_equal(modbus_set_error_recovery(rig.modbus, MODBUS_ERROR_RECOVERY_LINK), 0);
     assert_int_equal(modbus_set_response_timeout(rig.modbus, 2 * RIG_ALARM_S, 0), 0);
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
-    hang_up();
+    rig_hang_up();
     assert_true(modbus_send_raw_request(rig.modbus, request_1 + 6, 6) < 0);
 }
 
@@ -220,9 +176,9 @@ TEST(a_wait_ends_when_a_byte_is_there_or_the_far_end_has_gone)
     rig_say(answer_1, 1);
     fathom_libmodbus_wait(&rig.port, FATHOM_NO_DEADLINE);
     rig_say(answer_1 + 1, sizeof answer_1 - 1);
-    (void)poll_once();
+    (void)rig_poll();
     rig_expect_three();
     fathom_libmodbus_wait(&rig.port, 1000);
-    hang_up();
+    rig_hang_up();
     fathom_libmodbus_wait(&rig.port, FATHOM_NO_DEADLINE);
 }

@@ -43,6 +43,12 @@ static fathom_status_t poll_once(void)
     return (fathom_status_t)status();
 }
 
+static void ask(void)
+{
+    rig_ask_three(&rig.request, 1, 0);
+    assert_int_equal(poll_once(), FATHOM_PENDING);
+}
+
 /* Sends, and waits until so many bytes in all stand in the port's socket: if they do not, the alarm ends it. */
 static void say_and_arrive(const uint8_t *bytes, size_t length, int in_all)
 {
@@ -64,8 +70,7 @@ TEST(half_an_answer_wakes_nobody_a_second_time_and_the_rest_does)
 {
     for (size_t cut = 1; cut != sizeof first; cut++) {
         if (cut != 1) assert_int_equal(rig_tear_down(NULL) + set_up(NULL), 0);
-        rig_ask_three(&rig.request, 1, 0);
-        assert_int_equal(poll_once(), FATHOM_PENDING);
+        ask();
         assert_false(wakes());
         say_and_arrive(first, cut, (int)cut);
         assert_true(wakes()); /* it may be all there is of a connection that ends */
@@ -84,8 +89,7 @@ TEST(half_an_answer_wakes_nobody_a_second_time_and_the_rest_does)
 TEST(after_a_header_alone_it_waits_for_all_that_the_header_tells)
 {
     enum { HEADER = 6 };
-    rig_ask_three(&rig.request, 1, 0);
-    assert_int_equal(poll_once(), FATHOM_PENDING);
+    ask();
     say_and_arrive(first, 3, 3);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first + 3, HEADER - 3, HEADER);
@@ -101,14 +105,12 @@ TEST(after_a_header_alone_it_waits_for_all_that_the_header_tells)
 
 TEST(the_first_byte_of_the_next_answer_wakes_again)
 {
-    rig_ask_three(&rig.request, 1, 0);
-    assert_int_equal(poll_once(), FATHOM_PENDING);
+    ask();
     say_and_arrive(first, 8, 8);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first + 8, sizeof first - 8, sizeof first);
     assert_int_equal(poll_once(), FATHOM_READY);
-    rig_ask_three(&rig.request, 1, 0);
-    assert_int_equal(poll_once(), FATHOM_PENDING);
+    ask();
     say_and_arrive(second, 1, 1);
     assert_true(wakes());
     say_and_arrive(second + 1, sizeof second - 1, sizeof second);

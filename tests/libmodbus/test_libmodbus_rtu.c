@@ -167,25 +167,9 @@ TEST(the_config_has_the_silence_and_the_gap)
     assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* it broke off */
 }
 
-TEST(units_over_247_are_unsupported)
-{
-    for (unsigned unit = 0; unit != 256; unit++) {
-        fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
-        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request),
-                         unit > 247 ? FATHOM_ERR_UNSUPPORTED : FATHOM_PENDING);
-        rig.seam.cancel(rig.seam.ctx, &rig.request);
-    }
-}
+TEST(units_over_247_are_unsupported) { rig_expect_units_refused(248, 255); }
 
-TEST(line_settings_are_unsupported_and_nothing_is_sent)
-{
-    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    rig_ask_three(&rig.request, 1, 0);
-    rig.request.exchange.settings = &settings;
-    rig_run_fine(SILENCE_US + FINE_US);
-    assert_int_equal(status(), FATHOM_ERR_UNSUPPORTED);
-    rig_expect_sent(NULL, 0);
-}
+TEST(line_settings_are_unsupported_and_nothing_is_sent) { rig_expect_no_settings(SILENCE_US + FINE_US); }
 
 /* It would sleep until the request has left. */
 TEST(a_transceiver_that_libmodbus_switches_is_unsupported)
@@ -198,12 +182,8 @@ TEST(a_transceiver_that_libmodbus_switches_is_unsupported)
 TEST(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back)
 {
     ask(3);
-    assert_int_equal(close(rig.far), 0);
-    rig.far = -1;
-    rig.fake.now_us += FINE_US;
-    assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_ERR_PORT);
-    assert_int_equal(status(), FATHOM_ERR_PORT);
-    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
+    rig_hang_up();
+    rig_expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
     rig_connect();
     rig_run_fine(2 * RIG_TIMEOUT_US); /* what it owes */
     ask(0);
@@ -228,40 +208,27 @@ TEST(a_terminal_that_hangs_up_is_broken)
     rig_run_fine(SILENCE_US + FINE_US);
     assert_int_equal(rig.request.exchange.attempts, 1);
     assert_int_equal(close(far), 0);
-    rig.fake.now_us += FINE_US;
-    assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_ERR_PORT);
-    assert_int_equal(status(), FATHOM_ERR_PORT);
-    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
+    rig_expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
 }
 
 TEST(a_modbus_t_that_is_not_connected_is_a_broken_port)
 {
     modbus_close(rig.modbus);
     rig_ask_three(&rig.request, 1, 0);
-    rig.fake.now_us += SLOW_US;
-    assert_int_equal(rig.seam.poll(rig.seam.ctx), FATHOM_ERR_PORT);
-    assert_int_equal(status(), FATHOM_ERR_PORT);
-    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
+    rig_run_fine(SLOW_US);
+    rig_expect_broken(FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
     assert_true(rig.port.uart.write(rig.port.uart.ctx, request, sizeof request) < 0);
     assert_true(rig.port.uart.sent(rig.port.uart.ctx)); /* nobody waits for it */
 }
 
 TEST(a_full_port_is_busy_and_nothing_waits)
 {
-    static uint8_t junk[4096];
-    size_t filled = 0;
-    ssize_t n = 0;
-    while ((n = send(modbus_get_socket(rig.modbus), junk, sizeof junk, MSG_DONTWAIT)) > 0)
-        filled += (size_t)n;
+    const size_t filled = rig_fill();
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(2 * SILENCE_US);
     assert_int_equal(rig.request.exchange.attempts, 0);
     assert_false(rig.port.uart.sent(rig.port.uart.ctx));
-    while (filled != 0) {
-        n = recv(rig.far, junk, sizeof junk, MSG_DONTWAIT);
-        assert_true(n > 0);
-        filled -= (size_t)n;
-    }
+    rig_drain(filled);
     assert_true(rig.port.uart.sent(rig.port.uart.ctx));
     rig_run_fine(FINE_US);
     rig_expect_sent(request, sizeof request);

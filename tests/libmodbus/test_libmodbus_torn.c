@@ -35,10 +35,13 @@ int __wrap_modbus_send_raw_request(modbus_t *modbus, const uint8_t *bytes, int l
     return -1;
 }
 
-static void ask(void)
+/* While sending has that error. */
+static void ask(int error)
 {
+    sending.error = error;
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(5000);
+    sending.error = 0;
 }
 
 static void expect_port(fathom_libmodbus_error_t error)
@@ -54,7 +57,7 @@ TEST(a_part_of_a_request_ends_the_connection)
 {
     uint8_t byte = 0;
     sending.most = 5;
-    ask();
+    ask(0);
     sending.most = 0;
     expect_port(FATHOM_LIBMODBUS_ERR_TORN);
     for (int i = 0; i != 5; i++) assert_int_equal(recv(rig.far, &byte, 1, MSG_DONTWAIT), 1);
@@ -66,10 +69,8 @@ TEST(what_is_refused_for_a_while_is_sent_later)
     static const int errors[] = {EAGAIN, EINTR};
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
         rig_again(i == 0);
-        sending.error = errors[i];
-        ask();
+        ask(errors[i]);
         assert_int_equal(status(), FATHOM_PENDING);
-        sending.error = 0;
         rig_run_fine(FINE_US);
         rig_expect_request(1);
     }
@@ -77,28 +78,22 @@ TEST(what_is_refused_for_a_while_is_sent_later)
 
 TEST(what_the_system_says_else_is_kept)
 {
-    sending.error = EHOSTUNREACH;
-    ask();
-    sending.error = 0;
+    ask(EHOSTUNREACH);
     expect_port(FATHOM_LIBMODBUS_ERR_SYSTEM);
     assert_int_equal(rig.port.system_error, EHOSTUNREACH);
 }
 
 TEST_IN(with_rig_rtu_set_up, a_part_of_a_request_of_rtu_is_told_too)
 {
-    sending.error = EMBBADDATA;
-    ask();
-    sending.error = 0;
+    ask(EMBBADDATA);
     expect_port(FATHOM_LIBMODBUS_ERR_TORN);
 }
 
 TEST_IN(with_rig_rtu_set_up, what_rtu_is_refused_for_a_while_is_sent_later)
 {
-    sending.error = EAGAIN;
-    ask();
+    ask(EAGAIN);
     assert_int_equal(status(), FATHOM_PENDING);
     assert_int_equal(rig.request.exchange.attempts, 0);
-    sending.error = 0;
     rig_run_fine(FINE_US);
     assert_int_equal(rig.request.exchange.attempts, 1);
 }
@@ -108,9 +103,7 @@ TEST_IN(with_rig_rtu_set_up, an_adapter_that_was_unplugged_has_hung_up)
     static const int errors[] = {EIO, ENXIO, ENODEV};
     for (size_t i = 0; i != sizeof errors / sizeof errors[0]; i++) {
         rig_again(i == 0);
-        sending.error = errors[i];
-        ask();
-        sending.error = 0;
+        ask(errors[i]);
         expect_port(FATHOM_LIBMODBUS_ERR_HUNG_UP);
     }
 }
