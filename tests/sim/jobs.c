@@ -8,12 +8,20 @@ static fathom_a05_modbus_t *const a05 = &s.driver.a05;
 static fathom_a05_dyp_t *const dyp = &s.driver.dyp;
 static fathom_hps167s_t *const hps = &s.driver.hps;
 
-/* What is asked for is there with READY, and untouched without. */
-static fathom_status_t checked(fathom_status_t status, bool is_right, bool is_untouched)
-{
-    assert_true(status == FATHOM_READY ? is_right : is_untouched);
-    return status;
-}
+/* What is asked for, in `out`, is there with READY, and untouched without. */
+#define ASKS(name, type, before, ask, is_right, is_untouched)                                                \
+    static fathom_status_t name(void)                                                                        \
+    {                                                                                                        \
+        type out = before;                                                                                   \
+        const fathom_status_t status = ask;                                                                  \
+        assert_true(status == FATHOM_READY ? (is_right) : (is_untouched));                                   \
+        return status;                                                                                       \
+    }
+/* Of a struct, what is not 0 before. */
+#define WITH(...)                                                                                            \
+    {                                                                                                        \
+        __VA_ARGS__                                                                                          \
+    }
 
 /* ---- A16 (6(3)) ---- */
 
@@ -26,36 +34,14 @@ static fathom_status_t a16_set_0207(void)
     return fathom_a16_set_automatic_value(a16, FATHOM_A16_REAL_TIME);
 }
 
-static fathom_status_t a16_0200(void)
-{
-    uint8_t address = 99;
-    const fathom_status_t status = fathom_a16_address(a16, &address);
-    return checked(status, address == 1, address == 99);
-}
-static fathom_status_t a16_0205(void)
-{
-    fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
-    const fathom_status_t status = fathom_a16_switch_polarity(a16, &polarity);
-    return checked(status, polarity == FATHOM_A16_POSITIVE, polarity == FATHOM_A16_NEGATIVE);
-}
-static fathom_status_t a16_0206(void)
-{
-    uint16_t threshold_mm = 9;
-    const fathom_status_t status = fathom_a16_switch_threshold_mm(a16, &threshold_mm);
-    return checked(status, threshold_mm == 1000, threshold_mm == 9);
-}
-static fathom_status_t a16_0207(void)
-{
-    fathom_a16_value_t value = FATHOM_A16_REAL_TIME;
-    const fathom_status_t status = fathom_a16_automatic_value(a16, &value);
-    return checked(status, value == FATHOM_A16_PROCESSED, value == FATHOM_A16_REAL_TIME);
-}
-static fathom_status_t a16_0101(void)
-{
-    fathom_sample_t out = {.distance_mm = 9};
-    const fathom_status_t status = fathom_a16_measure(a16, FATHOM_A16_REAL_TIME, &out);
-    return checked(status, out.distance_mm == 1234 && out.unit == 1, out.distance_mm == 9 && out.unit == 0);
-}
+ASKS(a16_0200, uint8_t, 99, fathom_a16_address(a16, &out), out == 1, out == 99)
+ASKS(a16_0205, fathom_a16_polarity_t, FATHOM_A16_NEGATIVE, fathom_a16_switch_polarity(a16, &out),
+     out == FATHOM_A16_POSITIVE, out == FATHOM_A16_NEGATIVE)
+ASKS(a16_0206, uint16_t, 9, fathom_a16_switch_threshold_mm(a16, &out), out == 1000, out == 9)
+ASKS(a16_0207, fathom_a16_value_t, FATHOM_A16_REAL_TIME, fathom_a16_automatic_value(a16, &out),
+     out == FATHOM_A16_PROCESSED, out == FATHOM_A16_REAL_TIME)
+ASKS(a16_0101, fathom_sample_t, WITH(.distance_mm = 9), fathom_a16_measure(a16, FATHOM_A16_REAL_TIME, &out),
+     out.distance_mm == 1234 && out.unit == 1, out.distance_mm == 9 && out.unit == 0)
 
 static uint32_t a16_unit(void) { return bench.a16.device.unit; }
 static uint32_t a16_polarity(void) { return bench.a16.polarity; }
@@ -65,43 +51,23 @@ static uint32_t a16_automatic(void) { return bench.a16.data_type; }
 /* ---- A05 (2(3)5, 3(3)) ---- */
 
 static fathom_status_t a05_set_0200(void) { return fathom_a05_modbus_set_address(a05, 5); }
-static fathom_status_t a05_0200(void)
-{
-    uint8_t address = 99;
-    const fathom_status_t status = fathom_a05_modbus_address(a05, &address);
-    return checked(status, address == 1, address == 99);
-}
+ASKS(a05_0200, uint8_t, 99, fathom_a05_modbus_address(a05, &out), out == 1, out == 99)
 static fathom_status_t dyp_03(void) { return fathom_a05_dyp_set_every_address(dyp, 5); }
 static uint32_t a05_unit(void) { return bench.a05.device.unit; }
 
 /* ---- HPS-167S (3, #1 to #15) ---- */
 
-static fathom_status_t hps_1(void)
-{
-    fathom_hps167s_version_t out = {.year = 9};
-    const fathom_status_t status = fathom_hps167s_interface_version(hps, &out);
-    return checked(status, out.year == 2020 && out.month == 9 && out.day == 27 && out.major == 2,
-                   out.year == 9);
-}
-static fathom_status_t hps_2(void)
-{
-    fathom_hps167s_configuration_t out = {.baud = 9};
-    const fathom_status_t status = fathom_hps167s_configuration(hps, &out);
-    const bool is_right = out.baud == 19200 && out.reconnect_time_ms == 180 && out.warm_up_s == 0;
-    return checked(status, is_right && out.termination && out.measures_after_power_on, out.baud == 9);
-}
-static fathom_status_t hps_3(void)
-{
-    fathom_hps167s_details_t out = {.year = 9};
-    const fathom_status_t status = fathom_hps167s_details(hps, &out);
-    return checked(status, out.year == 2019, out.year == 9); /* 13 09 17 */
-}
-static fathom_status_t hps_4(void)
-{
-    fathom_hps167s_temperature_t out = {.fahrenheit = 9};
-    const fathom_status_t status = fathom_hps167s_temperature(hps, &out); /* (77 - 32) * 50 / 9 */
-    return checked(status, out.fahrenheit == 77 && out.temperature_dc == 250, out.fahrenheit == 9);
-}
+ASKS(hps_1, fathom_hps167s_version_t, WITH(.year = 9), fathom_hps167s_interface_version(hps, &out),
+     out.year == 2020 && out.month == 9 && out.day == 27 && out.major == 2, out.year == 9)
+ASKS(hps_2, fathom_hps167s_configuration_t, WITH(.baud = 9), fathom_hps167s_configuration(hps, &out),
+     out.baud == 19200 && out.reconnect_time_ms == 180 && out.warm_up_s == 0 && out.termination &&
+         out.measures_after_power_on,
+     out.baud == 9)
+ASKS(hps_3, fathom_hps167s_details_t, WITH(.year = 9), fathom_hps167s_details(hps, &out), out.year == 2019,
+     out.year == 9) /* 13 09 17 */
+ASKS(hps_4, fathom_hps167s_temperature_t, WITH(.fahrenheit = 9), fathom_hps167s_temperature(hps, &out),
+     out.fahrenheit == 77 && out.temperature_dc == 250, out.fahrenheit == 9) /* (77 - 32) * 50 / 9 */
+
 static fathom_status_t hps_6(void) { return fathom_hps167s_restore_factory_settings(hps); }
 static fathom_status_t hps_7(void) { return fathom_hps167s_set_warm_up_s(hps, 9); }
 static fathom_status_t hps_8(void) { return fathom_hps167s_set_address(hps, 5); }

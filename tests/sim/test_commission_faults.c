@@ -6,7 +6,9 @@
 
 enum { RUNS = 120 };
 static unsigned problems;
-#define problem(...) (print_error(__VA_ARGS__), print_error("\n"), problems++)
+/* Of `job`, after `what`. */
+#define problem(...)                                                                                         \
+    (print_error("%s, %s: ", job->name, what), print_error(__VA_ARGS__), print_error("\n"), problems++)
 
 #define BIT(kind) FATHOM_SIM_FAULT_BIT(FATHOM_SIM_FAULT_##kind)
 /* What can look like an answer at an address where nobody is, or talk into the question there. */
@@ -35,19 +37,18 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
 {
     const uint32_t has = job->has();
     const uint32_t writes = told();
-    if (writes > 1) problem("%s, %s: told %u times", job->name, what, (unsigned)writes);
-    if (has != job->before && has != job->wanted) problem("%s, %s: has %u", job->name, what, (unsigned)has);
+    if (writes > 1) problem("told %u times", (unsigned)writes);
+    if (has != job->before && has != job->wanted) problem("has %u", (unsigned)has);
     switch (status) {
     case FATHOM_READY:
         if (has != job->wanted && (job->kind != WRITE_ONLY || (kinds & BIT(ECHO)) == 0))
-            problem("%s, %s: READY, but it is not so", job->name, what);
+            problem("READY, but it is not so");
         break;
     case FATHOM_ERR_UNCONFIRMED:
-        if (job->kind == READS || job->kind == WRITE_ONLY) problem("%s, %s: unconfirmed", job->name, what);
+        if (job->kind == READS || job->kind == WRITE_ONLY) problem("unconfirmed");
         break;
     case FATHOM_ERR_IN_USE:
-        if (job->kind != MOVES || writes != 0 || (kinds & WHAT_TALKS) == 0)
-            problem("%s, %s: in use", job->name, what);
+        if (job->kind != MOVES || writes != 0 || (kinds & WHAT_TALKS) == 0) problem("in use");
         break;
     case FATHOM_ERR_NO_ANSWER:
     case FATHOM_ERR_CHECKSUM:
@@ -58,10 +59,10 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
     case FATHOM_ERR_CANCELLED:
         /* Of what is write-only, when the writing failed: it may hold or not. */
         if (has != job->before && job->kind != WRITE_ONLY && (kinds & BIT(EXCEPTION)) == 0)
-            problem("%s, %s: %d, but it was changed", job->name, what, (int)status);
+            problem("%d, but it was changed", (int)status);
         break;
     default:
-        problem("%s, %s: says %d", job->name, what, (int)status);
+        problem("says %d", (int)status);
     }
 }
 
@@ -71,15 +72,15 @@ static void expect_works(const job_t *job, fathom_status_t status, const char *w
     rest(8 * SECOND); /* what is late or without power comes back in that time */
     const bool seeks = s.model == HPS && s.driver.hps.is_seeking;
     if (!same_place() && !seeks) {
-        if (status != FATHOM_ERR_UNCONFIRMED) problem("%s, %s: device and driver apart", job->name, what);
+        if (status != FATHOM_ERR_UNCONFIRMED) problem("device and driver apart");
         return;
     }
-    if (!recovers()) problem("%s, %s: does not work afterwards", job->name, what);
+    if (!recovers()) problem("does not work afterwards");
     const fathom_status_t again = carry_out(job->call);
-    if (again != FATHOM_READY) problem("%s, %s: then %d", job->name, what, (int)again);
+    if (again != FATHOM_READY) problem("then %d", (int)again);
     if (job->has() != job->wanted && job->has != jobs[0].has && job->kind != WRITE_ONLY && job->before != 0)
-        problem("%s, %s: set again, but it is not so", job->name, what);
-    if (!recovers()) problem("%s, %s: set again, then it does not work", job->name, what);
+        problem("set again, but it is not so");
+    if (!recovers()) problem("set again, then it does not work");
 }
 
 static void with_fault(const job_t *job, uint8_t kind, uint32_t frame, uint32_t loop_us, uint8_t echo,

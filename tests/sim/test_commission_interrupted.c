@@ -5,7 +5,9 @@
  * requests to the unit, by a port that breaks for a while, by a device that loses its power. */
 
 static unsigned problems;
-#define problem(...) (print_error(__VA_ARGS__), print_error("\n"), problems++)
+/* Of `job`, after `what`. */
+#define problem(...)                                                                                         \
+    (print_error("%s, %s: ", job->name, what), print_error(__VA_ARGS__), print_error("\n"), problems++)
 
 typedef enum { GIVE_UP, POWER_ON, CANCEL_UNIT, BREAK_PORT, UNPLUG, CUT_POWER, ACTS } act_t;
 static const char *const act_names[] = {"given up",    "power-on",         "cancel_unit",
@@ -15,15 +17,13 @@ static const char *const act_names[] = {"given up",    "power-on",         "canc
 static void judge(const job_t *job, fathom_status_t status, const char *what)
 {
     const uint32_t has = job->has();
-    if (told() > 1) problem("%s, %s: told %u times", job->name, what, (unsigned)told());
-    if (has != job->before && has != job->wanted) problem("%s, %s: has %u", job->name, what, (unsigned)has);
-    if (status == FATHOM_READY && has != job->wanted)
-        problem("%s, %s: READY, but it is not so", job->name, what);
+    if (told() > 1) problem("told %u times", (unsigned)told());
+    if (has != job->before && has != job->wanted) problem("has %u", (unsigned)has);
+    if (status == FATHOM_READY && has != job->wanted) problem("READY, but it is not so");
     if (status == FATHOM_READY || status == FATHOM_ERR_UNCONFIRMED) return;
     if (status == FATHOM_ERR_BUSY || status == FATHOM_ERR_IN_USE || status == FATHOM_ERR_ARGUMENT)
-        problem("%s, %s: says %d", job->name, what, (int)status);
-    if (has != job->before && job->kind != WRITE_ONLY)
-        problem("%s, %s: %d, but it was changed", job->name, what, (int)status);
+        problem("says %d", (int)status);
+    if (has != job->before && job->kind != WRITE_ONLY) problem("%d, but it was changed", (int)status);
 }
 
 /* The job until its end, with a port that may be broken for the first `broken` rounds. */
@@ -49,17 +49,15 @@ static void expect_works(const job_t *job, bool may_move, const char *what)
     /* The warm-up too: so long silence at a new place does not prove that nobody is there. */
     rest(8 * SECOND);
     if (!same_place() && !(s.model == HPS && s.driver.hps.is_seeking)) {
-        if (job->kind != MOVES || !may_move || told() == 0)
-            problem("%s, %s: driver and device apart", job->name, what);
+        if (job->kind != MOVES || !may_move || told() == 0) problem("driver and device apart");
         return;
     }
-    if (!recovers()) problem("%s, %s: does not work afterwards", job->name, what);
+    if (!recovers()) problem("does not work afterwards");
     const fathom_status_t again = carry_out(job->call);
-    if (again != FATHOM_READY) problem("%s, %s: then %d", job->name, what, (int)again);
-    if (job->kind == KEPT && job->has() != job->wanted) problem("%s, %s: then not so", job->name, what);
-    if (told() > (job->kind == KEPT ? 1u : 2u))
-        problem("%s, %s: told %u times", job->name, what, (unsigned)told());
-    if (!recovers()) problem("%s, %s: set again, then it does not work", job->name, what);
+    if (again != FATHOM_READY) problem("then %d", (int)again);
+    if (job->kind == KEPT && job->has() != job->wanted) problem("then not so");
+    if (told() > (job->kind == KEPT ? 1u : 2u)) problem("told %u times", (unsigned)told());
+    if (!recovers()) problem("set again, then it does not work");
 }
 
 /* False: the job had ended before that step. */
@@ -77,7 +75,7 @@ static bool interrupted(const job_t *job, unsigned act, unsigned step, uint32_t 
             cancel();
         else
             power_on();
-        if (unit_of()->address != job->unit) problem("%s, %s: not where it was", job->name, what);
+        if (unit_of()->address != job->unit) problem("not where it was");
         expect_works(job, true, what);
         return true;
     case CANCEL_UNIT:

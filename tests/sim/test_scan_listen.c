@@ -4,8 +4,6 @@
 
 /* What `fathom scan` hears before it asks, and what it may not ask. */
 
-static const uint8_t junk[] = {0x02, 0x84, 0x31, 0x90, 0x11, 0xE7};
-
 /* ---- listening ---- */
 
 static scan_talk_t talk;
@@ -29,32 +27,32 @@ TEST(test_a_quiet_line_is_listened_to_for_just_that_long)
     assert_int_equal(rig.passed_us, 3000000);
 }
 
+/* Somebody is heard. */
+static void hear(scan_kind_t kind, uint8_t address)
+{
+    listen_for_3_s();
+    assert_true(talk.is_heard);
+    assert_int_equal(talk.finding.kind, kind);
+    assert_int_equal(talk.finding.address, address);
+}
+
 TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
 {
     /* Held still at values whose bytes look like frames one byte further: 511 mm is FF 01 FF FF. */
     static fathom_sim_fixed_t scenes[] = {
         {{511, 511, 511, 511}}, {{1000, 2000, 2047, 1339}}, {{-1, -1, -1, -1}}, {{65281, 0, 255, 65535}}};
-    for (unsigned i = 0; i != 4; i++) {
-        for (unsigned coarse = 0; coarse != 2; coarse++) {
-            rig_begin(UINT32_C(0xFFF00000));
-            rig.sim_line.full_duplex = true;
-            rig.coarse_us = coarse != 0 ? 20000 : 0;
-            rig_a16((a16_config_t){.mode = FATHOM_SIM_A16_AUTO, .scene = fathom_sim_fixed(&scenes[i])});
-            listen_for_3_s();
-            assert_true(talk.is_heard);
-            assert_int_equal(talk.finding.kind, SCAN_SENSOR);
-            assert_int_equal(talk.finding.model, FATHOM_A16);
-            assert_int_equal(talk.finding.mode, SCAN_AUTO);
-
-            rig_begin(UINT32_C(0xFFF00000));
-            rig.sim_line.full_duplex = true;
-            rig.coarse_us = coarse != 0 ? 20000 : 0;
-            rig_a05((a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&scenes[i])});
-            listen_for_3_s();
-            assert_true(talk.is_heard);
-            assert_int_equal(talk.finding.model, FATHOM_A05);
-            assert_int_equal(talk.finding.mode, SCAN_AUTO);
-        }
+    for (unsigned i = 0; i != 16; i++) {
+        const fathom_sim_scene_t scene = fathom_sim_fixed(&scenes[i / 4]);
+        rig_begin(UINT32_C(0xFFF00000));
+        rig.sim_line.full_duplex = true;
+        rig.coarse_us = i % 2 != 0 ? 20000 : 0;
+        if (i / 2 % 2 == 0)
+            rig_a16((a16_config_t){.mode = FATHOM_SIM_A16_AUTO, .scene = scene});
+        else
+            rig_a05((a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = scene});
+        hear(SCAN_SENSOR, 0);
+        assert_int_equal(talk.finding.model, i / 2 % 2 == 0 ? FATHOM_A16 : FATHOM_A05);
+        assert_int_equal(talk.finding.mode, SCAN_AUTO);
     }
 }
 
@@ -75,54 +73,36 @@ TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devi
     rig_finds(0);
 }
 
+static void hear_hps167s_at_115200(uint32_t period_us)
+{
+    const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
+    begin_speaker(&fast, period_us, hps_answer, sizeof hps_answer);
+    hear(SCAN_SENSOR, 1);
+    assert_int_equal(talk.finding.model, FATHOM_HPS167S);
+    assert_int_equal(talk.finding.line.baud, 115200);
+}
+
 TEST(test_an_hps167s_that_sends_unasked_is_found_at_its_rate)
 {
-    /* HPS-167S #5, the example's answer */
-    static const uint8_t answer[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
-                                     0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
-    const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
-    /* so often that what was heard at the wrong rate fills any memory */
-    rig_begin(0);
-    begin_speaker(&fast, 40000, answer, sizeof answer);
-    listen_for_3_s();
-    assert_true(talk.is_heard);
-    assert_int_equal(talk.finding.kind, SCAN_SENSOR);
-    assert_int_equal(talk.finding.model, FATHOM_HPS167S);
-    assert_int_equal(talk.finding.address, 1);
-    assert_int_equal(talk.finding.line.baud, 115200);
+    hear_hps167s_at_115200(40000); /* so often that what was heard at the wrong rate fills any memory */
 }
 
 TEST(test_a_rate_that_the_port_cannot_do_does_not_end_the_listening)
 {
-    static const uint8_t answer[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
-                                     0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
-    const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
-    rig_begin(0);
     rig.refused_baud = 57600;
-    begin_speaker(&fast, 180000, answer, sizeof answer);
-    listen_for_3_s();
-    assert_int_equal(talk.finding.model, FATHOM_HPS167S);
-    assert_int_equal(talk.finding.line.baud, 115200);
+    hear_hps167s_at_115200(180000);
 }
 
 TEST(test_another_master_is_told)
 {
-    /* A16 6, the first example: it asks address 1 for 0100 */
-    static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
-    begin_speaker(&scan_dyp_line, 500000, request, sizeof request);
-    listen_for_3_s();
-    assert_true(talk.is_heard);
-    assert_int_equal(talk.finding.kind, SCAN_MASTER);
-    assert_int_equal(talk.finding.address, 1);
+    begin_speaker(&scan_dyp_line, 500000, a16_request, sizeof a16_request);
+    hear(SCAN_MASTER, 1);
 }
 
 TEST(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise)
 {
     begin_speaker(&scan_dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
-    listen_for_3_s();
-    assert_true(talk.is_heard);
-    assert_int_equal(talk.finding.kind, SCAN_SENDER);
-    assert_int_equal(talk.finding.address, 0);
+    hear(SCAN_SENDER, 0);
 
     rig_begin(0);
     begin_speaker(&scan_dyp_line, 2000000, junk, sizeof junk); /* once */

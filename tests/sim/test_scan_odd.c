@@ -4,8 +4,6 @@
 /* What `fathom scan` makes of answers that are not as they should be: two units with one address, other devices, other
  * protocols, another master. */
 
-static const uint8_t junk[] = {0x02, 0x84, 0x31, 0x90, 0x11, 0xE7};
-
 /* ---- answers that are damaged ---- */
 
 EACH_BEGINS(rig_begin(0))
@@ -82,11 +80,19 @@ TEST(test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_on
 
 /* ---- devices that answer in Modbus ---- */
 
-static void expect_other(uint8_t address)
+static void begin_with(stranger_t with, const fathom_line_settings_t *line)
 {
+    rig_begin(0);
+    stranger = with;
+    begin_stranger(9, line);
+}
+
+static void expect_other(stranger_t with, const fathom_line_settings_t *line)
+{
+    begin_with(with, line);
     rig_finds(1);
-    assert_non_null(rig_find(address));
-    assert_int_equal(rig_find(address)->kind, SCAN_OTHER);
+    assert_non_null(rig_find(9));
+    assert_int_equal(rig_find(9)->kind, SCAN_OTHER);
 }
 
 TEST(test_whoever_answers_everything_or_nothing_is_another_modbus_device)
@@ -94,58 +100,39 @@ TEST(test_whoever_answers_everything_or_nothing_is_another_modbus_device)
     const fathom_line_settings_t *const lines[] = {&scan_dyp_line, &scan_hps167s_line};
     const uint16_t values[] = {0, 9, 0xFFFF, 0xB00B, 0x0909}; /* the last is a date */
     for (unsigned line = 0; line != 2; line++) {
-        for (unsigned i = 0; i != sizeof values / sizeof values[0]; i++) {
-            rig_begin(0);
-            stranger = (stranger_t){.value = values[i], .version = values[i], .address = 9};
-            begin_stranger(9, lines[line]);
-            expect_other(9);
-        }
-        for (uint8_t exception = 1; exception != 5; exception++) {
-            rig_begin(0);
-            stranger = (stranger_t){.exception = exception};
-            begin_stranger(9, lines[line]);
-            expect_other(9);
-        }
+        for (unsigned i = 0; i != sizeof values / sizeof values[0]; i++)
+            expect_other((stranger_t){.value = values[i], .version = values[i], .address = 9}, lines[line]);
+        for (uint8_t exception = 1; exception != 5; exception++)
+            expect_other((stranger_t){.exception = exception}, lines[line]);
     }
 }
 
 TEST(test_whoever_has_another_address_in_0200_than_its_own_is_no_a16)
 {
-    for (uint16_t address = 9; address != 12; address++) {
-        rig_begin(0);
-        stranger = (stranger_t){.value = 754, .address = address, .only = {0x0200, 0x0101}};
-        begin_stranger(9, &scan_dyp_line);
-        if (address != 9) expect_other(9);
-        if (address != 9) continue;
-        rig_walk();
-        rig_expect(9, FATHOM_A16);
-    }
+    stranger_t with = {.value = 754, .address = 9, .only = {0x0200, 0x0101}};
+    begin_with(with, &scan_dyp_line);
+    rig_walk();
+    rig_expect(9, FATHOM_A16);
+    for (with.address = 10; with.address != 12; with.address++) expect_other(with, &scan_dyp_line);
 }
 
 TEST(test_whoever_has_no_date_in_0001_is_no_hps167s)
 {
     /* #3 begins with the right byte; in #1 the month is 0, 13 or 32, or the day is 0 */
     const uint16_t versions[] = {0x1400, 0x140D, 0x0020, 0x0009};
-    for (unsigned i = 0; i != 4; i++) {
-        rig_begin(0);
-        stranger = (stranger_t){.value = 0xB000, .version = versions[i]};
-        begin_stranger(9, &scan_hps167s_line);
-        expect_other(9);
-    }
+    for (unsigned i = 0; i != 4; i++)
+        expect_other((stranger_t){.value = 0xB000, .version = versions[i]}, &scan_hps167s_line);
 }
 
 TEST(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
 {
     /* #2 is in its ranges but for the baud rate's code, 0 */
-    stranger = (stranger_t){.version = 0x0909};
-    begin_stranger(9, &scan_hps167s_line);
-    expect_other(9);
+    expect_other((stranger_t){.version = 0x0909}, &scan_hps167s_line);
 }
 
 TEST(test_an_a16_that_answers_0100_alone_is_known)
 {
-    stranger = (stranger_t){.value = 754, .address = 9, .only = {0x0200, 0x0100}};
-    begin_stranger(9, &scan_dyp_line);
+    begin_with((stranger_t){.value = 754, .address = 9, .only = {0x0200, 0x0100}}, &scan_dyp_line);
     rig_walk();
     rig_expect(9, FATHOM_A16);
     assert_int_equal(rig_find(9)->value, 754);
@@ -178,10 +165,9 @@ TEST(test_a_frame_of_an_address_that_was_not_asked_is_noted)
 
 TEST(test_another_master_that_begins_later_is_noted)
 {
-    static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
     rig.plan.first = 2;
     rig.plan.last = 4;
-    begin_speaker(&scan_dyp_line, 0, request, sizeof request);
+    begin_speaker(&scan_dyp_line, 0, a16_request, sizeof a16_request);
     rig_finds(0);
     assert_true(rig.walk.heard.has_master);
     assert_int_equal(rig.walk.heard.master_address, 1);

@@ -44,6 +44,14 @@ static fathom_status_t go_back(void)
     }
 }
 
+/* It acknowledges or not, and sends nothing within that time. */
+static void expect_unconfirmed(uint32_t least_ms, uint32_t most_ms)
+{
+    const uint32_t start_us = s.clock.now_us;
+    assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
+    assert_in_range(since_us(start_us), least_ms * MS, most_ms * MS);
+}
+
 static void go_until_it_listens(void)
 {
     for (; !rs232.is_listening; pass_until(fathom_a16_rs232_due_us(&rs232)))
@@ -90,9 +98,7 @@ TEST(one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds)
 {
     for (unsigned l = 0; l != 2; l++) {
         set(FATHOM_SIM_A16_MODBUS, loops_us[l]);
-        const uint32_t start_us = s.clock.now_us;
-        assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
-        assert_in_range(since_us(start_us), 2000 * MS, 3000 * MS);
+        expect_unconfirmed(2000, 3000);
         COUNTED(.answered = 2);
     }
 }
@@ -122,9 +128,7 @@ TEST(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames)
         set(FATHOM_SIM_A16_MODBUS, 0);
         /* the address is the first frame, the acknowledgement the second */
         assert_non_null(fathom_sim_fault_add(&bench.fault, kinds[i], ALWAYS, 2));
-        const uint32_t start_us = s.clock.now_us;
-        assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
-        assert_in_range(since_us(start_us), 2000 * MS, 4000 * MS);
+        expect_unconfirmed(2000, 4000);
         COUNTED(.writes = 1);
     }
 }
@@ -134,9 +138,7 @@ TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 {
     s.config.echo = FATHOM_LINE_ECHO_AUTO;
     FAULT(BREAK, ALWAYS, 1);
-    const uint32_t start_us = s.clock.now_us;
-    assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
-    assert_in_range(since_us(start_us), 3000 * MS, 4000 * MS); /* the time-out of the write before */
+    expect_unconfirmed(3000, 4000); /* the time-out of the write before */
 }
 
 static uint16_t threshold_mm;

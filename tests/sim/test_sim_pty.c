@@ -103,12 +103,17 @@ static void exchange(int client)
     assert_true(fathom_elapsed_us(fathom_sim_pty_now_us(), begin_us) >= 120 * MS);
 }
 
+static void exchange_at(const char *path)
+{
+    const int client = open_client(path, B9600);
+    exchange(client);
+    close(client);
+}
+
 TEST(a_client_gets_an_answer_in_true_time)
 {
     set_sending(FATHOM_SIM_A16_MODBUS);
-    const int client = open_client(fathom_sim_pty_path(&pty), B9600);
-    exchange(client);
-    close(client);
+    exchange_at(fathom_sim_pty_path(&pty));
 }
 
 TEST(the_port_is_raw_before_anyone_makes_it_so)
@@ -142,9 +147,7 @@ TEST(clients_come_and_go)
     set_sending(FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(pump(-1, &byte, 1, 20), 0); /* nobody is there: no error, no spinning */
-        const int client = open_client(link_path, B9600);
-        exchange(client);
-        close(client);
+        exchange_at(link_path);
     }
     /* one that leaves before its answer */
     int client = open_client(link_path, B9600);

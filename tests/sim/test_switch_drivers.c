@@ -49,39 +49,40 @@ TEST(a_program_that_sleeps_as_long_as_it_is_told_sees_each_change)
     assert_in_range(looks, 700, 1000); /* 8 s at 10 ms, and what happens besides */
 }
 
+/* `call` until it has ended, in that loop. */
+#define UNTIL_ENDED(status, call, step_us)                                                                   \
+    while ((status = (call)) == FATHOM_PENDING) run(step_us, step_us)
+
 static void set_threshold(uint16_t mm, uint32_t step_us)
 {
     fathom_status_t status;
-    while ((status = fathom_a16_set_switch_threshold_mm(settings, mm)) == FATHOM_PENDING)
-        run(step_us, step_us);
-    assert_int_equal(status, FATHOM_READY);
     uint16_t read_mm = 0;
-    while ((status = fathom_a16_switch_threshold_mm(settings, &read_mm)) == FATHOM_PENDING)
-        run(step_us, step_us);
+    UNTIL_ENDED(status, fathom_a16_set_switch_threshold_mm(settings, mm), step_us);
+    assert_int_equal(status, FATHOM_READY);
+    UNTIL_ENDED(status, fathom_a16_switch_threshold_mm(settings, &read_mm), step_us);
     assert_int_equal(status, FATHOM_READY);
     assert_int_equal(read_mm, mm);
 }
 
 TEST(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change)
 {
+    static const struct {
+        uint16_t mm[2]; /* one after the other; 0: none */
+        uint32_t then_ms;
+        const char *kinds;
+    } rows[] = {{{0, 0}, 3000, "F"},
+                {{1400, 1300}, 3000, "F"}, /* with the pin low */
+                {{1501, 0}, 3000, "FN"},
+                {{1600, 1502}, 3000, "FN"}, /* with the pin high */
+                {{1499, 0}, 3500, "FNF"}};
     for (unsigned i = 0; i != STEPS; i++) {
         set_switch(1500);
-        run(3000 * MS, steps_us[i]);
-        expect_kinds("F");
-        set_threshold(1400, steps_us[i]); /* with the pin low */
-        set_threshold(1300, steps_us[i]);
-        run(3000 * MS, steps_us[i]);
-        expect_kinds("F");
-        set_threshold(1501, steps_us[i]);
-        run(3000 * MS, steps_us[i]);
-        expect_kinds("FN");
-        set_threshold(1600, steps_us[i]); /* with the pin high */
-        set_threshold(1502, steps_us[i]);
-        run(3000 * MS, steps_us[i]);
-        expect_kinds("FN");
-        set_threshold(1499, steps_us[i]);
-        run(3500 * MS, steps_us[i]);
-        expect_kinds("FNF");
+        for (unsigned n = 0; n != sizeof rows / sizeof *rows; n++) {
+            for (unsigned m = 0; m != 2; m++)
+                if (rows[n].mm[m] != 0) set_threshold(rows[n].mm[m], steps_us[i]);
+            run(rows[n].then_ms * MS, steps_us[i]);
+            expect_kinds(rows[n].kinds);
+        }
         assert_int_equal(bench.a16.device.counters.writes, 6);
         assert_true(s.line.counters[FATHOM_LINE_BAD_BYTES] >= 10); /* breaks around answers */
         assert_int_equal(s.line.counters[FATHOM_LINE_NO_ANSWERS], 0);
@@ -109,8 +110,7 @@ TEST(a_port_that_knows_nothing_will_do)
 static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint32_t step_us)
 {
     fathom_status_t status;
-    while ((status = fathom_a16_switch_set_polarity(&a16, settings, polarity)) == FATHOM_PENDING)
-        run(step_us, step_us);
+    UNTIL_ENDED(status, fathom_a16_switch_set_polarity(&a16, settings, polarity), step_us);
     return status;
 }
 
