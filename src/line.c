@@ -263,14 +263,8 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 
 fathom_status_t fathom_line_poll(fathom_line_t *line)
 {
-    const fathom_clock_t *const clock = line->config->clock;
-    const uint32_t now_us = clock->now_us(clock->ctx);
-    const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
     fathom_status_t status = FATHOM_PENDING;
-    line->polled_us = now_us;
-    if (fathom_run_down(&line->owed_us, passed_us)) line->owing = 0;
-    fathom_run_down(&line->left_us, passed_us);
-    if (!receive(line, passed_us)) return broken(line);
+    if (!receive(line, look(line))) return broken(line);
     if (line->state > REFUSED) status = pass(line);
     if (line->state <= REFUSED && status == FATHOM_PENDING) status = send(line);
     return status;

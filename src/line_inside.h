@@ -57,6 +57,21 @@ static inline bool is_listeners_gap(const fathom_line_t *line)
     return line->listener != NULL && line->silent_us >= line->listener->gap_us;
 }
 
+/* Looks at the clock and lets the time since the look before pass; returns how long that was. Inline, since most polls
+ * do little else. */
+static inline uint32_t look(fathom_line_t *line)
+{
+    const fathom_clock_t *const clock = line->config->clock;
+    const uint32_t now_us = clock->now_us(clock->ctx);
+    const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
+    line->polled_us = now_us;
+    if (fathom_run_down(&line->owed_us, passed_us)) line->owing = 0;
+    fathom_run_down(&line->left_us, passed_us);
+    return passed_us;
+}
+
+void fathom_line_look(fathom_line_t *line);
+
 /* The bits of `owing` for a unit; all of them for any unit. */
 uint16_t fathom_line_owing_bits(uint8_t unit);
 

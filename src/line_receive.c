@@ -150,6 +150,8 @@ void fathom_line_scan(fathom_line_t *line, bool over)
     }
 }
 
+void fathom_line_look(fathom_line_t *line) { (void)look(line); }
+
 int fathom_line_read(fathom_line_t *line)
 {
     const fathom_line_config_t *const config = line->config;
@@ -159,7 +161,12 @@ int fathom_line_read(fathom_line_t *line)
     if (n <= 0) return n;
     if (line->have == 0 && ((rx.flags & FATHOM_RX_SILENCE) != 0 || is_listeners_gap(line)))
         line->known |= AFTER_GAP;
-    set_silent(line, (rx.flags & FATHOM_RX_TIMED) != 0 ? fathom_elapsed_us(line->polled_us, rx.last_us) : 0);
+    /* What came may be newer than the look at the clock before the read, stamped or not. */
+    fathom_line_look(line);
+    uint32_t silent_us =
+        (rx.flags & FATHOM_RX_TIMED) != 0 ? fathom_elapsed_us(line->polled_us, rx.last_us) : 0;
+    if (silent_us > INT32_MAX) silent_us = 0; /* a stamp that is ahead of the clock still */
+    set_silent(line, silent_us);
     if ((rx.flags & FATHOM_RX_OVERRUN) != 0) n |= LOST;
     if ((rx.flags & (FATHOM_RX_PARITY | FATHOM_RX_FRAMING)) != 0) n |= BAD;
     return n;

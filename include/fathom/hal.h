@@ -38,8 +38,12 @@ enum {
 };
 
 typedef struct {
-    uint32_t last_us; /* clock at the end of the last byte, with FATHOM_RX_TIMED */
-    uint8_t flags;    /* FATHOM_RX_... */
+    /* Clock at the end of the last byte, with FATHOM_RX_TIMED. It may be later than the core's last look at the clock:
+     * an interrupt stamps when the byte comes, and the core looks again after each read that has brought bytes. A stamp
+     * that is ahead of that look too (of another timer, rounded up) counts as "now"; so does one of 2^31 us or more
+     * ago. */
+    uint32_t last_us;
+    uint8_t flags; /* FATHOM_RX_... */
 } fathom_rx_t;
 
 /*

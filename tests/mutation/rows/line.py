@@ -32,7 +32,7 @@ ROWS = (
       'if (*link != NULL) return FATHOM_ERR_BUSY;',
       'if (*link != NULL && exchange->attempts != 0) return FATHOM_ERR_BUSY;')),
     ('clock-wrap', 'hal.h: the clock wraps, and nothing is noticed', 'unit/test_line',
-     ('src/line.c', 'fathom_line_poll',
+     ('src/line_inside.h', 'look',
       'const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);',
       'const uint32_t passed_us = now_us > line->polled_us ? now_us - line->polled_us : 0;')),
     ('marked-bytes-joined', 'line.h: what had begun before lost bytes is torn', 'unit/test_line_listener',
