@@ -72,7 +72,7 @@ static fathom_status_t broken(fathom_line_t *line)
     fathom_line_count(line, FATHOM_LINE_PORT_ERRORS, 1);
     line->have = 0;
     line->need = 0;
-    line->known = 0; /* perhaps it comes back as another one */
+    line->known &= IN_BREAK; /* perhaps it comes back as another one; but not lower than it was */
     while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_PORT);
     return FATHOM_ERR_PORT;
 }
@@ -242,13 +242,27 @@ bool fathom_line_is_idle(const fathom_line_t *line) { return line->state <= REFU
 
 void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener) { line->listener = listener; }
 
+/* A port that does not end a break is given as much time as one that does not take a request. */
+static fathom_status_t refused_break(fathom_line_t *line, bool on, int is_set)
+{
+    if (!on && (line->known & IN_BREAK) != 0) {
+        if ((line->known & ENDING) == 0) {
+            line->known |= ENDING;
+            line->left_us = FATHOM_LINE_SEND_US;
+        }
+        if (is_set < 0 || line->left_us == 0) return broken(line);
+    }
+    return is_set < 0 ? FATHOM_ERR_PORT : FATHOM_PENDING;
+}
+
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
     const fathom_uart_t *const uart = line->config->uart;
     if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
-    if (line->state > REFUSED) return FATHOM_ERR_BUSY;
+    if (line->state > REFUSED) return on ? FATHOM_ERR_BUSY : FATHOM_READY; /* what is sent is no break */
     const int is_set = uart->set_break(uart->ctx, on);
-    if (is_set <= 0) return is_set < 0 ? FATHOM_ERR_PORT : FATHOM_PENDING;
+    if (!on) fathom_line_look(line);
+    if (is_set <= 0) return refused_break(line, on, is_set);
     line->state = IDLE; /* a port that refused a request is given its time anew */
     if (on) {
         line->known |= IN_BREAK;
@@ -258,6 +272,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
         line->known &= (uint8_t)~IN_BREAK;
         line->silent_us = 0;
     }
+    line->known &= (uint8_t)~ENDING;
     return FATHOM_READY;
 }
 

@@ -29,8 +29,9 @@ enum {
     AFTER_GAP = 1,  /* of the listener's; before the first byte in the frame */
     ECHO_SHIFT = 1, /* fathom_line_echo() */
     ECHO_KNOWN = 6,
-    ECHO_DUE = 8, /* the request that was cancelled may still come back */
-    IN_BREAK = 16 /* the host holds the line low */
+    ECHO_DUE = 8,  /* the request that was cancelled may still come back */
+    IN_BREAK = 16, /* the host holds the line low */
+    ENDING = 32    /* no longer, but for the port, which has left_us to let it go */
 };
 
 static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }

@@ -63,8 +63,8 @@ typedef struct {
  *        < 0: this port cannot reach them within 2.5 %; the settings before still hold. NULL where they are
  *        fixed.
  * set_break  Holds TX low (true), or lets it go high again: the trigger and the mode select of modules whose RX
- *        pin is our TX. 1: done. 0: bytes are still leaving, ask again. < 0: the port is broken. NULL where it
- *        cannot.
+ *        pin is our TX. 1: done. 0: bytes are still leaving, ask again; after a second of that the port counts as
+ *        broken. < 0: the port is broken. NULL where it cannot.
  */
 typedef struct {
     int (*read)(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);

@@ -46,7 +46,7 @@ extern "C" {
 #define FATHOM_LINE_DEFAULT_SILENCE_US 4011 /* 3.5 characters of 11 bits at 9600 baud */
 #define FATHOM_LINE_DEFAULT_GAP_US     5000
 
-/* How long a port may refuse a request, or take to send it, before it counts as broken. */
+/* How long a port may refuse a request or the end of a break, or take to send a request, before it counts as broken. */
 #define FATHOM_LINE_SEND_US 1000000u
 
 /*
@@ -229,10 +229,16 @@ void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
 
 /*
  * Holds TX low (true), or lets it go high again: the trigger, or the mode select, of a module whose input is our TX.
- * While it is low nothing is sent and exchanges wait in the queue; after it the silence before a request is kept.
- * FATHOM_READY: it is so now, also where it was. FATHOM_PENDING: bytes of the port are still leaving, ask again.
- * FATHOM_ERR_BUSY: an exchange is on the wire. FATHOM_ERR_UNSUPPORTED: the port has no set_break. FATHOM_ERR_PORT: it
- * is broken. After all but READY nothing has changed.
+ * While it is low nothing is sent and exchanges wait in the queue; after it the silence before a request is kept. It is
+ * low until its end is FATHOM_READY, whatever fails meanwhile: also where a poll has said FATHOM_ERR_PORT and the port
+ * works again, perhaps as another one whose TX is high.
+ * FATHOM_READY: it is so now, also where it was.
+ * FATHOM_PENDING: bytes of the port are still leaving; ask again, 1 ms later say: no due_us reckons with it.
+ * FATHOM_ERR_BUSY: it cannot begin, an exchange is on the wire.
+ * FATHOM_ERR_UNSUPPORTED: the port has no set_break.
+ * FATHOM_ERR_PORT: it is broken, or it has refused to end the break for FATHOM_LINE_SEND_US. Where a break does not end
+ * that is an error of the line: every queued exchange has ended with it. Ask again all the same, or TX stays low.
+ * After all but READY it is as it was.
  */
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
 

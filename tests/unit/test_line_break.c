@@ -118,12 +118,3 @@ TEST(a_port_that_cannot_or_is_broken_says_so)
     ask_1(0);
     expect_written_after(T3_5_US + 100, 1);
 }
-
-TEST(a_port_that_breaks_in_a_break_comes_back_without_it)
-{
-    hold(true);
-    bench.fake.now_us += 100;
-    break_port();
-    ask_1(0);
-    expect_written_after(T3_5_US + 200, 1);
-}
