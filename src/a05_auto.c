@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/a05_auto.h"
 
-enum { ALL_PROBES = 0x0F };
+enum { ALL_PROBES = 0x0F, AGAIN_US = 1000 };
 
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config)
 {
@@ -54,21 +54,26 @@ fathom_status_t fathom_a05_auto_power_on(fathom_a05_auto_t *sensor, fathom_a05_v
     return fathom_stream_init(&base->stream, &base->stream_config, sensor->polled_us);
 }
 
-static void release(fathom_a05_auto_t *sensor)
+static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
+{
+    const fathom_status_t status = sensor->selecting ? select(sensor, false) : FATHOM_READY;
+    if (status == FATHOM_READY) sensor->selecting = false;
+    return status;
+}
+
+static fathom_status_t release(fathom_a05_auto_t *sensor)
 {
     const uint32_t now = now_us(sensor);
     const uint32_t passed_us = fathom_elapsed_us(now, sensor->polled_us);
     sensor->polled_us = now;
-    if (!sensor->selecting || !fathom_run_down(&sensor->select_left_us, passed_us)) return;
-    (void)select(sensor, false); /* a port that has broken meanwhile holds nothing low */
-    sensor->selecting = false;
+    if (!sensor->selecting || !fathom_run_down(&sensor->select_left_us, passed_us)) return FATHOM_PENDING;
+    return end_selection(sensor);
 }
 
-void fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
+fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
 {
-    if (sensor->selecting) (void)select(sensor, false);
-    sensor->selecting = false;
     fathom_dyp_auto_deinit(&sensor->base);
+    return end_selection(sensor);
 }
 
 /* ---- reading ---- */
@@ -77,8 +82,9 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a05_auto_t *const sensor = ctx;
     const fathom_sensor_t base = fathom_dyp_auto_sensor(&sensor->base);
-    release(sensor);
-    return base.poll(base.ctx, sample);
+    const fathom_status_t rx = release(sensor);
+    const fathom_status_t status = base.poll(base.ctx, sample);
+    return status == FATHOM_PENDING && rx < 0 ? rx : status;
 }
 
 static uint32_t due_us(void *ctx)
@@ -88,7 +94,8 @@ static uint32_t due_us(void *ctx)
     const uint32_t base_us = base.due_us(base.ctx);
     if (!sensor->selecting) return base_us;
     const uint32_t passed_us = fathom_elapsed_us(now_us(sensor), sensor->polled_us);
-    const uint32_t left_us = sensor->select_left_us > passed_us ? sensor->select_left_us - passed_us : 0;
+    uint32_t left_us = sensor->select_left_us != 0 ? sensor->select_left_us : AGAIN_US;
+    fathom_run_down(&left_us, passed_us);
     return left_us < base_us ? left_us : base_us;
 }
 

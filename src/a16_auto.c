@@ -36,10 +36,11 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, bool real_time
     return status;
 }
 
-void fathom_a16_auto_deinit(fathom_a16_auto_t *sensor)
+fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor)
 {
-    if (sensor->select == NULL && sensor->real_time) (void)fathom_a16_auto_select(sensor, false);
+    const bool is_break = sensor->select == NULL && sensor->real_time;
     fathom_dyp_auto_deinit(&sensor->base);
+    return is_break ? fathom_a16_auto_select(sensor, false) : FATHOM_READY;
 }
 
 fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor)

@@ -44,17 +44,23 @@ static void release(fathom_a16_controlled_t *sensor)
     if (sensor->left_us < sensor->low_us) sensor->left_us = sensor->low_us;
 }
 
-/* Drives the trigger where it is time to. A port that is busy is asked again by the next poll. */
-static fathom_status_t drive(fathom_a16_controlled_t *sensor)
+/* Drives the trigger where it is time to. A port that is busy is asked again by the next poll; `over`: it was to have
+ * begun by now. The line counts the time for the end. */
+static fathom_status_t drive(fathom_a16_controlled_t *sensor, bool over)
 {
     const bool was_low = sensor->low;
     if (was_low ? sensor->low_left_us != 0 : sensor->waiting || sensor->left_us != 0) return FATHOM_PENDING;
     const fathom_status_t status = hold(sensor, !was_low);
-    if (status == FATHOM_READY && was_low)
+    if (status == FATHOM_ERR_PORT) return FATHOM_ERR_PORT;
+    if (status == FATHOM_READY && was_low) {
         release(sensor);
-    else if (status == FATHOM_READY)
+    } else if (status == FATHOM_READY) {
         begin(sensor);
-    return status == FATHOM_ERR_PORT ? FATHOM_ERR_PORT : FATHOM_PENDING;
+    } else if (!was_low && sensor->answer_left_us == 0) {
+        sensor->answer_left_us = FATHOM_LINE_SEND_US;
+        if (over) return FATHOM_ERR_PORT;
+    }
+    return FATHOM_PENDING;
 }
 
 /* ---- the answer ---- */
@@ -84,6 +90,7 @@ static fathom_status_t judge(fathom_a16_controlled_t *sensor, const uint8_t *fra
         return FATHOM_PENDING;
     }
     sensor->waiting = false;
+    sensor->answer_left_us = 0;
     fathom_dyp_frame_decode(frame, answer->values, 1);
     if (!fathom_dyp_plausible(&answer->window, answer->values[0])) {
         if (answer->implausible != UINT16_MAX) answer->implausible++;
@@ -104,16 +111,16 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     sensor->polled_us = at_us;
     fathom_run_down(&sensor->left_us, passed_us);
     fathom_run_down(&sensor->low_left_us, passed_us);
-    const bool over = fathom_run_down(&sensor->answer_left_us, passed_us);
+    const bool over = sensor->answer_left_us != 0 && fathom_run_down(&sensor->answer_left_us, passed_us);
     if (port < 0) return port;
     /* its deadline means nothing here: who is not asked is silent */
     if (fathom_stream_poll(&sensor->stream, at_us, &frame) == FATHOM_READY)
         status = judge(sensor, frame, sample);
-    if (sensor->waiting && over && !sensor->stream.candidate) {
+    if (sensor->waiting && sensor->answer_left_us == 0 && !sensor->stream.candidate) {
         sensor->waiting = false;
         status = sensor->heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_ANSWER;
     }
-    const fathom_status_t trigger = drive(sensor);
+    const fathom_status_t trigger = drive(sensor, over);
     return status != FATHOM_PENDING ? status : trigger;
 }
 
@@ -176,11 +183,12 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
     return FATHOM_READY;
 }
 
-void fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
+fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
 {
-    if (sensor->low) (void)hold(sensor, false);
-    sensor->low = false;
+    const fathom_status_t status = sensor->low ? hold(sensor, false) : FATHOM_READY;
+    if (status == FATHOM_READY) sensor->low = false;
     if (sensor->line->listener == &sensor->listener) fathom_line_listen(sensor->line, NULL);
+    return status;
 }
 
 fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor)

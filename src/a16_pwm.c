@@ -27,7 +27,10 @@ fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_p
     return fathom_pulse_init(&sensor->meter, meter);
 }
 
-void fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor) { fathom_pulse_deinit(&sensor->meter); }
+fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor)
+{
+    return fathom_pulse_deinit(&sensor->meter);
+}
 
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {

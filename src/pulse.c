@@ -38,14 +38,24 @@ static uint32_t now_us(const fathom_pulse_meter_t *meter)
     return clock->now_us(clock->ctx);
 }
 
-/* 1: done. 0: not yet. < 0: the port is broken. */
-static int hold(const fathom_pulse_meter_t *meter, bool low)
+/* FATHOM_PENDING: not yet; said for a second at a time, and then FATHOM_ERR_PORT. */
+static fathom_status_t hold(fathom_pulse_meter_t *meter, bool low)
 {
     const fathom_pin_t *const trigger = meter->config->trigger;
     const fathom_uart_t *const uart = meter->config->uart;
-    if (trigger == NULL) return uart->set_break(uart->ctx, low);
-    trigger->set(trigger->ctx, !low);
-    return 1;
+    if (trigger != NULL) {
+        trigger->set(trigger->ctx, !low);
+        return FATHOM_READY;
+    }
+    const int is_done = uart->set_break(uart->ctx, low);
+    const bool was_refused = meter->refused;
+    meter->refused = is_done == 0;
+    if (is_done != 0) return is_done < 0 ? FATHOM_ERR_PORT : FATHOM_READY;
+    const uint32_t at_us = now_us(meter);
+    if (was_refused && fathom_elapsed_us(at_us, meter->refused_us) < FATHOM_PULSE_REFUSED_US)
+        return FATHOM_PENDING;
+    meter->refused_us = at_us;
+    return was_refused ? FATHOM_ERR_PORT : FATHOM_PENDING;
 }
 
 /* The falling edge. The cycle is counted from a look at the clock that comes after it: so it is never too short,
@@ -54,8 +64,8 @@ static fathom_status_t begin(fathom_pulse_meter_t *meter)
 {
     const fathom_capture_t *const capture = meter->config->capture;
     capture->arm(capture->ctx);
-    const int is_done = hold(meter, true);
-    if (is_done <= 0) return is_done < 0 ? FATHOM_ERR_PORT : FATHOM_PENDING;
+    const fathom_status_t status = hold(meter, true);
+    if (status != FATHOM_READY) return status;
     meter->polled_us = now_us(meter);
     meter->left_us = cycle_us(meter);
     meter->low_left_us = low_us(meter->config);
@@ -67,8 +77,8 @@ static fathom_status_t begin(fathom_pulse_meter_t *meter)
 /* The rising edge. Some high time must follow, or the next falling edge could be missed. */
 static fathom_status_t release(fathom_pulse_meter_t *meter)
 {
-    const int is_done = hold(meter, false);
-    if (is_done <= 0) return is_done < 0 ? FATHOM_ERR_PORT : FATHOM_PENDING;
+    const fathom_status_t status = hold(meter, false);
+    if (status != FATHOM_READY) return status;
     meter->low = false;
     if (meter->left_us < low_us(meter->config)) meter->left_us = low_us(meter->config);
     return FATHOM_PENDING;
@@ -116,13 +126,14 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
         return FATHOM_ERR_ARGUMENT;
     if (config->trigger == NULL && config->uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
     meter->config = config;
-    if (config->trigger != NULL) hold(meter, false);
+    if (config->trigger != NULL) (void)hold(meter, false);
     meter->polled_us = now_us(meter);
     meter->left_us = low_us(config);
     meter->low_left_us = 0;
     meter->noises = 0;
     meter->low = false;
     meter->waiting = false;
+    meter->refused = false;
     return FATHOM_READY;
 }
 
@@ -152,9 +163,10 @@ uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter)
     return due_us > passed_us ? due_us - passed_us : 0;
 }
 
-void fathom_pulse_deinit(fathom_pulse_meter_t *meter)
+fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter)
 {
-    if (meter->low) (void)hold(meter, false);
-    meter->low = false;
+    const fathom_status_t status = meter->low ? hold(meter, false) : FATHOM_READY;
+    if (status == FATHOM_READY) meter->low = false;
     meter->waiting = false;
+    return status;
 }

@@ -21,7 +21,9 @@ extern "C" {
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Said once every stale_us.
  *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again. Or it has refused for a
+ *                         second to end the break that selects; it is asked on, that is said once a second, and what
+ *                         the sensor sends goes on between
  */
 
 /* Read by init only. Members that are 0 mean their defaults. */
@@ -64,12 +66,19 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
  * it is high. The deadline for a frame begins anew.
  * FATHOM_READY: do switch it on now.
  * FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no pin, and the port cannot hold its TX low.
- * FATHOM_ERR_BUSY: something is being sent on the line; try again. FATHOM_ERR_PORT: the port is broken.
+ * FATHOM_ERR_BUSY: something is being sent on the line, or the break of a power-on before has not ended; try again.
+ * FATHOM_ERR_PORT: the port is broken.
  */
 fathom_status_t fathom_a05_auto_power_on(fathom_a05_auto_t *sensor, fathom_a05_value_t value);
 
-/* Stops listening; the memory is the caller's again. */
-void fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
+/*
+ * Stops listening and lets RX go high, if it is still held low; the memory is the caller's again. To be called again,
+ * and not poll, unless it returns
+ * FATHOM_READY: RX is high, always where it is a pin.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Whoever gives up here leaves TX low, and the line
+ * sends nothing until that is FATHOM_READY.
+ */
+fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor);

@@ -54,12 +54,19 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
  * one, low for the real-time one, by the `select` pin or else by a break of the line, during which nothing can be
  * sent there. Values in the first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; no
  * frame says of which kind it is.
- * FATHOM_READY, always where there is a pin; else what fathom_line_break returns, after which nothing has changed.
+ * FATHOM_READY, always where there is a pin; else what fathom_line_break returns, after which the selection is what it
+ * was: ask again.
  */
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, bool real_time);
 
-/* Stops listening and ends a break that selected; the memory is the caller's again. */
-void fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
+/*
+ * Stops listening and ends a break that selected; the memory is the caller's again. To be called again, and not poll,
+ * unless it returns
+ * FATHOM_READY: no break is held, always where there is a pin, which stays as it is.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Whoever gives up here leaves TX low, and the line
+ * sends nothing until that is FATHOM_READY.
+ */
+fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor);

@@ -25,7 +25,8 @@ extern "C" {
  *   FATHOM_ERR_NO_ANSWER  nothing came in time: no supply, a cut wire, not in this mode
  *   FATHOM_ERR_CHECKSUM   something came in time, and no good frame among it
  *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again. Or it has refused for a
+ *                         second to begin or to end the break; it is asked on, and that is said once a second
  *
  * A frame answers if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on either
  * side some for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come at any time
@@ -69,10 +70,10 @@ typedef struct {
     uint32_t latest_us;
     uint32_t edge_us; /* the trigger */
     uint32_t polled_us;
-    uint32_t came_us;     /* the earliest time at which the newest bytes can have come */
-    uint32_t left_us;     /* until the next trigger */
-    uint32_t low_left_us; /* until it may go high */
-    uint32_t answer_left_us;
+    uint32_t came_us;        /* the earliest time at which the newest bytes can have come */
+    uint32_t left_us;        /* until the next trigger */
+    uint32_t low_left_us;    /* until it may go high */
+    uint32_t answer_left_us; /* for the answer; where none is waited for, for a port that refuses to begin */
     uint16_t low_us;
     uint16_t late; /* frames that came at another time; stops at 65535, and the user may set it to 0 */
     bool low;
@@ -88,8 +89,14 @@ typedef struct {
 fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
                                            const fathom_a16_controlled_config_t *config);
 
-/* Lets the trigger go high and stops listening; the memory is the caller's again. */
-void fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
+/*
+ * Stops listening and lets the trigger go high; the memory is the caller's again. To be called again, and not poll,
+ * unless it returns
+ * FATHOM_READY: the trigger is high, always where it is a pin.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Whoever gives up here leaves TX low, and the line
+ * sends nothing until that is FATHOM_READY.
+ */
+fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor);

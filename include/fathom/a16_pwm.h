@@ -63,8 +63,9 @@ typedef struct {
  * min_mm over max_mm; FATHOM_ERR_UNSUPPORTED: the uart has no set_break. */
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
 
-/* Lets the trigger go high; the memory is the caller's again. */
-void fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
+/* Lets the trigger go high; the memory is the caller's again. What it returns, and when it is to be called again:
+ * fathom_pulse_deinit. */
+fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor);

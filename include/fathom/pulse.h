@@ -37,6 +37,9 @@ extern "C" {
 #define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000ul
 #define FATHOM_PULSE_DEFAULT_STUCK_US     105000ul
 
+/* How long the UART may refuse to begin or to end a break before it counts as broken. */
+#define FATHOM_PULSE_REFUSED_US 1000000ul
+
 /* Const and the caller's; read at every call, so it outlives the meter, as what it points at does. */
 typedef struct {
     const fathom_clock_t *clock;
@@ -76,6 +79,8 @@ typedef struct {
     uint16_t noises;      /* pulses that were too short; stops at 65535, and the user may set it to 0 */
     bool low;             /* the trigger is held low */
     bool waiting;         /* for a pulse */
+    bool refused;         /* what the UART was asked last */
+    uint32_t refused_us;  /* the clock when that began, or was last said */
 } fathom_pulse_meter_t;
 
 /*
@@ -90,7 +95,8 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
  * FATHOM_READY: *reading is new. The next cycle has begun, if it was time.
  * FATHOM_PENDING: nothing new. *reading is untouched, as after every error:
  * FATHOM_ERR_NO_ANSWER: a cycle without a pulse.
- * FATHOM_ERR_PORT: the capture or the break failed; said by every poll until it works again.
+ * FATHOM_ERR_PORT: the capture or the break failed; said by every poll until it works again. Or the UART has refused
+ * for a second to begin or to end the break; it is asked on, and that is said once a second.
  * Right across the wrap of the clock, if it is called once in 71 minutes. In a slow loop cycles are longer, and the
  * trigger is low until the call after low_us.
  */
@@ -100,8 +106,14 @@ fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_read
  * end of a pulse should wake who sleeps so long; if it does not, the reading comes when the cycle is over. */
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
 
-/* Lets the trigger go high again, if a cycle had made it low; the memory is the caller's. */
-void fathom_pulse_deinit(fathom_pulse_meter_t *meter);
+/*
+ * Lets the trigger go high again, if a cycle had made it low; the memory is the caller's. To be called again, and not
+ * poll, unless it returns
+ * FATHOM_READY: the trigger is high, always where it is a pin.
+ * FATHOM_PENDING: the UART has refused to end the break; the trigger is low until a later call.
+ * FATHOM_ERR_PORT: the break failed, or the UART has refused for a second. Whoever gives up here leaves it low.
+ */
+fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter);
 
 #ifdef __cplusplus
 }
