@@ -204,6 +204,7 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_exchange_t *excha
 {
     fathom_exchange_t **const link = find(line, exchange);
     if (*link != NULL) return FATHOM_ERR_BUSY;
+    if (exchange->timeout_us > INT32_MAX) return FATHOM_ERR_ARGUMENT;
     *link = exchange;
     exchange->link.next = NULL;
     exchange->attempts = 0;

@@ -101,7 +101,8 @@ struct fathom_exchange {
     /* Set before the request leaves; NULL: as they are. On a line where one exchange names them, all have to. */
     const fathom_line_settings_t *settings;
     uint32_t timeout_us; /* from the end of the request to the first byte of the answer; to all units: the
-                            time that they need before the next request, after which it is READY */
+                            time that they need before the next request, after which it is READY. Up to
+                            2^31 - 1, 35 minutes: twice that is what a unit may owe */
     uint8_t unit;        /* who is asked; units that are equal modulo 16 may delay, never confuse, each
                             other after a time-out */
     uint8_t retries;     /* further attempts after a failed one; 0..254 */
@@ -203,7 +204,7 @@ fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t
 
 /*
  * Puts an exchange at the end of the queue. FATHOM_PENDING: it is queued, and exchange->status tells the
- * rest. FATHOM_ERR_BUSY: it is queued already; nothing changed.
+ * rest. FATHOM_ERR_BUSY: it is queued already; FATHOM_ERR_ARGUMENT: its time-out is too long; nothing changed.
  */
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_exchange_t *exchange);
 
