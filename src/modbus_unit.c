@@ -72,6 +72,7 @@ static void describe(const fathom_modbus_unit_t *unit, const fathom_modbus_quest
     if (question->function == 0) return;
     message->head[1] = question->function;
     if (question->function != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return;
+    message->values = NULL; /* what it pointed to may be gone before the request is */
     message->head[4] = (uint8_t)(*question->values >> 8);
     message->head[5] = (uint8_t)*question->values;
 }

@@ -29,10 +29,12 @@ typedef struct {
                             line sends them, and the next one that much after the last of them */
     uint32_t backoff_us; /* the longest that a dead unit is left alone; 0: 16 time-outs; up to 2^31 */
     const fathom_line_settings_t *settings; /* fathom_exchange_t.settings */
-    uint16_t *values; /* count registers, the driver's: those of a read are written on FATHOM_READY only */
-    uint16_t first;   /* address of the first register, 1..0x3FFF; with is_command and the function it tells
+    /* count registers, the driver's: those of a read are written on FATHOM_READY only, those of a write of many read
+     * when it leaves. That of a write of one is read at once and need not live any longer. */
+    uint16_t *values;
+    uint16_t first; /* address of the first register, 1..0x3FFF; with is_command and the function it tells
                          the questions of a driver apart */
-    uint8_t count;    /* 1..125; 1..123 to write many */
+    uint8_t count;  /* 1..125; 1..123 to write many */
     uint8_t retries;
     bool is_command;
     uint8_t function; /* 0: FATHOM_MODBUS_READ_HOLDING_REGISTERS; or one of the two that write */

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "suite.h"
+
+#include "fake_modbus.h"
+#include "fathom/a05_dyp.h"
+#include "fathom/a16_settings.h"
+#include "line_bench.h"
+
+/* A request outlives the call that made it: it may point to nothing of that call. */
+
+/* Does the pointer live as long as the sensor, if it points anywhere? */
+static bool lives(const uint16_t *values, const void *sensor, size_t size)
+{
+    const uintptr_t at = (uintptr_t)values;
+    const uintptr_t first = (uintptr_t)sensor;
+    return values == NULL || (at >= first && at < first + size);
+}
+
+static fake_modbus_t modbus;
+
+TEST(a_setting_over_modbus_keeps_no_pointer_to_its_parameter)
+{
+    static const uint16_t is_10000[] = {10000};
+    fathom_a16_modbus_t a16;
+    const fathom_a16_modbus_config_t config = {.modbus = &modbus.modbus, .clock = &modbus.clock};
+    fake_modbus_init(&modbus);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
+    fake_modbus_answer(&modbus, is_10000, 1);
+    for (unsigned i = 0; modbus.submits != 2; i++) {
+        assert_true(i != 1000);
+        modbus.now_us += 1000;
+        assert_int_equal(fathom_a16_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
+    }
+    assert_int_equal(modbus.log[1][1], FATHOM_MODBUS_WRITE_SINGLE_REGISTER);
+    assert_int_equal(modbus.log[1][4] * 256 + modbus.log[1][5], 500);
+    assert_true(lives(modbus.request->message.values, &a16, sizeof a16));
+}
+
+TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
+{
+    static const uint8_t one_754[] = {0x55, 0xAA, 0x01, 0x10, 0x02, 0xF2, 0x04}; /* the sum is 204 */
+    fathom_a05_dyp_t a05;
+    (void)set_up(state);
+    const fathom_a05_dyp_config_t config = {.line = &bench.line, .probes = 1};
+    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
+    bool is_answered = false;
+    for (unsigned i = 0; bench.fake.written != 3; i++) {
+        assert_true(i != 10000);
+        if (bench.fake.written == 1 && !is_answered) /* there is one at its address, and none at the new */
+            fake_receive(&bench.fake, 65000, one_754, sizeof one_754);
+        is_answered = bench.fake.written != 0;
+        bench.fake.now_us += 1000;
+        assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 2), FATHOM_PENDING);
+    }
+    static const uint8_t set_2[] = {0x55, 0xAA, 0x02, 0x03, 0x04}; /* the sum is 104 */
+    assert_int_equal(bench.fake.writes[2].length, sizeof set_2);
+    assert_memory_equal(bench.fake.writes[2].bytes, set_2, sizeof set_2);
+    assert_true(lives(a05.base.unit.request.message.values, &a05, sizeof a05));
+}
