@@ -33,13 +33,15 @@ enum {
     TRANSFER = 1024,
     IDLE_BITS = 32, /* as the UART's own time-out has it: three characters */
     MARGIN = 4,     /* bytes that may come while the ring is read */
+    /* In `before`, a multiple of TRANSFER: it has the bytes of a transfer already, and the next one has not begun. */
+    BETWEEN = 1,
     ERRORS = RP2040_UART_DR_FE | RP2040_UART_DR_BE | RP2040_UART_DR_PE | RP2040_UART_DR_OE,
     US_PER_S = 1000000
 };
 
 static uint32_t now_us(void) { return fathom_rp2040_clock.now_us(fathom_rp2040_clock.ctx); }
 
-/* All bytes so far; wraps. */
+/* All bytes so far; wraps. For the main loop and any interrupt, also one that comes within dma_uart_ended. */
 static uint32_t count(const dma_uart_t *uart)
 {
     uint32_t before;
@@ -48,7 +50,9 @@ static uint32_t count(const dma_uart_t *uart)
         before = uart->before;
         left = DMA_TRANS_COUNT(uart->config->channel);
     } while (before != uart->before); /* a transfer ended in between */
-    return before + (TRANSFER - left);
+    if ((before & BETWEEN) == 0) return before + (TRANSFER - left);
+    before -= BETWEEN;
+    return left == 0 ? before : before + (TRANSFER - left);
 }
 
 void dma_uart_ended(dma_uart_t *uart)
@@ -56,8 +60,10 @@ void dma_uart_ended(dma_uart_t *uart)
     const uint32_t bit = UINT32_C(1) << uart->config->channel;
     if ((DMA_INTS0 & bit) == 0) return;
     DMA_INTS0 = bit;
-    uart->before += TRANSFER;
+    const uint32_t before = uart->before + TRANSFER;
+    uart->before = before + BETWEEN;
     DMA_AL1_TRANS_COUNT_TRIG(uart->config->channel) = TRANSFER; /* goes on in the ring where it stands */
+    uart->before = before;
 }
 
 /* ---- silence ---- */

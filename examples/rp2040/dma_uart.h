@@ -12,7 +12,7 @@
  * FIFO, and the DMA leaves none there. So a start bit, by the interrupt of the pin, sets an alarm, which looks again
  * every 32 bits; when neither a byte nor an edge has come in between, the line is silent, and the place in the ring and
  * the time are noted. Three or four interrupts a frame, and none in silence. Where there is an idle-line interrupt
- * (STM32), it takes the place of both.
+ * (STM32), it takes the place of both. The three interrupts may have any priorities.
  */
 enum {
     /* Bytes that wait for the main loop. A power of two: the DMA's addresses wrap by it. */
@@ -41,7 +41,7 @@ typedef struct {
 
     const dma_uart_config_t *config;
     uint32_t look_us;
-    volatile uint32_t before; /* bytes of the transfers that have ended */
+    volatile uint32_t before; /* bytes of the transfers that have ended, and a mark */
     uint32_t taken;           /* bytes so far; wraps */
     uint32_t seen;            /* bytes at the last look */
     uint32_t seen_us;
