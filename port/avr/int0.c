@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "internal/avr_port.h"
 
-static fathom_edges_t *seen;
+static fathom_edges_t *volatile seen; /* so that it is stored before the interrupt is enabled */
 
 ISR(INT0_vect)
 {
@@ -12,6 +12,7 @@ ISR(INT0_vect)
 
 void fathom_avr_int0_begin(fathom_edges_t *edges)
 {
+    EIMSK &= (uint8_t)~_BV(INT0); /* a pointer is stored in halves */
     seen = edges;
     DDRD &= (uint8_t)~_BV(DDD2);
     EICRA = (uint8_t)((EICRA & ~(_BV(ISC01) | _BV(ISC00))) | _BV(ISC00)); /* both edges */

@@ -106,6 +106,7 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
     uart->registers[CTRL] = 0;
     uart->registers[BAUDDIV] = by;
     uart->registers[INTSTATUS] = INTSTATUS_TX | INTSTATUS_RX;
+    __asm__ volatile("" ::: "memory"); /* all that is stored before the interrupts are enabled */
     NVIC_ISER[place->interrupt / 32] = 3u << place->interrupt % 32;
     uart->registers[CTRL] = CTRL_TX | CTRL_RX | CTRL_TX_INTERRUPT | CTRL_RX_INTERRUPT;
     return true;

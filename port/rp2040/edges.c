@@ -8,6 +8,7 @@ void fathom_rp2040_edges_begin(fathom_rp2040_edges_t *pin, fathom_edges_t *edges
     pin->edges = edges;
     pin->idle = idle;
     pin->gpio = (uint8_t)gpio;
+    __asm__ volatile("" ::: "memory");            /* all that is stored before the interrupt is enabled */
     RP2040_IO_INTR(gpio) = RP2040_IO_EDGES(gpio); /* what came before; a 1 clears */
     rp2040_set(&RP2040_IO_PROC0_INTE(gpio), RP2040_IO_EDGES(gpio));
     RP2040_NVIC_ISER = UINT32_C(1) << RP2040_IRQ_IO_BANK0;
