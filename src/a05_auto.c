@@ -56,24 +56,26 @@ fathom_status_t fathom_a05_auto_power_on(fathom_a05_auto_t *sensor, fathom_a05_v
 
 static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
 {
-    const fathom_status_t status = sensor->selecting ? select(sensor, false) : FATHOM_READY;
+    const fathom_status_t status = select(sensor, false);
     if (status == FATHOM_READY) sensor->selecting = false;
     return status;
 }
 
+/* FATHOM_PENDING, or what is wrong. */
 static fathom_status_t release(fathom_a05_auto_t *sensor)
 {
     const uint32_t now = now_us(sensor);
     const uint32_t passed_us = fathom_elapsed_us(now, sensor->polled_us);
     sensor->polled_us = now;
     if (!sensor->selecting || !fathom_run_down(&sensor->select_left_us, passed_us)) return FATHOM_PENDING;
-    return end_selection(sensor);
+    const fathom_status_t status = end_selection(sensor);
+    return status == FATHOM_READY ? FATHOM_PENDING : status;
 }
 
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
 {
     fathom_dyp_auto_deinit(&sensor->base);
-    return end_selection(sensor);
+    return sensor->selecting ? end_selection(sensor) : FATHOM_READY;
 }
 
 /* ---- reading ---- */
@@ -84,7 +86,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const fathom_sensor_t base = fathom_dyp_auto_sensor(&sensor->base);
     const fathom_status_t rx = release(sensor);
     const fathom_status_t status = base.poll(base.ctx, sample);
-    return status == FATHOM_PENDING && rx < 0 ? rx : status;
+    return status != FATHOM_PENDING ? status : rx;
 }
 
 static uint32_t due_us(void *ctx)

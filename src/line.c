@@ -262,7 +262,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
     if (line->state > REFUSED) return on ? FATHOM_ERR_BUSY : FATHOM_READY; /* what is sent is no break */
     const int is_set = uart->set_break(uart->ctx, on);
-    if (!on) fathom_line_look(line);
+    fathom_line_look(line);
     if (is_set <= 0) return refused_break(line, on, is_set);
     line->state = IDLE; /* a port that refused a request is given its time anew */
     if (on) {

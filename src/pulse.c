@@ -50,7 +50,8 @@ static fathom_status_t hold(fathom_pulse_meter_t *meter, bool low)
     const int is_done = uart->set_break(uart->ctx, low);
     const bool was_refused = meter->refused;
     meter->refused = is_done == 0;
-    if (is_done != 0) return is_done < 0 ? FATHOM_ERR_PORT : FATHOM_READY;
+    if (is_done > 0) return FATHOM_READY;
+    if (is_done < 0) return FATHOM_ERR_PORT;
     const uint32_t at_us = now_us(meter);
     if (was_refused && fathom_elapsed_us(at_us, meter->refused_us) < FATHOM_PULSE_REFUSED_US)
         return FATHOM_PENDING;

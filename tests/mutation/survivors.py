@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutants that mean the same as the code without them, so that no test can see them. A row: why it means the same,
 and the identities of those of which this is true, as run.py prints them; space does not count."""
-COUNT = 185  # of the identities; whoever adds one says so here
+COUNT = 179  # of the identities; whoever adds one says so here
 
 ROWS = [
     ('`need` is compared with `have` alone, which is not 0 then',
@@ -55,8 +55,6 @@ ROWS = [
      'src/pulse.c | fathom_pulse_due_us | relational: > -> >= | return due_us > passed_us ? due_us - passed_us : 0',
      'src/a16_controlled.c | due_us | relational: > -> >= | due = due > passed_us ? due - passed_us : 0',
      'src/contact.c | due_us | relational: > -> >= | us = us > passed_us ? us - passed_us : 0',
-     'src/a05_auto.c | due_us | relational: > -> >= | const uint32_t left_us = sensor->select_left_us > passed_us ? '
-     'sensor->select_left_us - passed_us : 0',
      'src/a16_rs232.c | fathom_a16_rs232_due_us | relational: < -> <= | const uint32_t left_us = passed_us < '
      'FATHOM_A16_RS232_RETURN_US ? FATHOM_A16_RS232_RETURN_US - passed_us : 0',
      'src/stream.c | silence_left_us | relational: > -> >= | return gap_us > passed_us ? gap_us - passed_us : 0',
@@ -217,18 +215,12 @@ ROWS = [
      'src/dyp_client.c | judge | logical: have >= FATHOM_DYP_REQUEST_LENGTH && frame[ADDRESS] == head[0] -> have >= '
      'FATHOM_DYP_REQUEST_LENGTH | if (have >= FATHOM_DYP_REQUEST_LENGTH && frame[ADDRESS] == head[0] && '
      'frame[COMMAND] == command_of(head) && fathom_dyp_protocol_valid(frame, FATHOM_DYP_REQUEST_LENGTH))'),
-    ('more than 0 either way',
-     'src/pulse.c | hold | constant: 1 -> 2 | return 1'),
     ('only looked at while the trigger is low, whose falling edge sets it',
      'src/pulse.c | fathom_pulse_init | statement dropped: it -> nothing | meter->low_left_us = 0',
      'src/pulse.c | fathom_pulse_init | constant: 0 -> 1 | meter->low_left_us = 0'),
     ('nothing but init may follow',
      'src/pulse.c | fathom_pulse_deinit | statement dropped: it -> nothing | meter->waiting = false',
-     'src/pulse.c | fathom_pulse_deinit | constant: false -> true | meter->waiting = false',
-     'src/a16_controlled.c | fathom_a16_controlled_deinit | statement dropped: it -> nothing | sensor->low = false',
-     'src/a16_controlled.c | fathom_a16_controlled_deinit | constant: false -> true | sensor->low = false',
-     'src/a05_auto.c | fathom_a05_auto_deinit | constant: false -> true | sensor->selecting = false',
-     'src/a05_auto.c | fathom_a05_auto_deinit | statement dropped: it -> nothing | sensor->selecting = false'),
+     'src/pulse.c | fathom_pulse_deinit | constant: false -> true | meter->waiting = false'),
     ('writes a value behind the last, which nobody reads; the bounds check of the sanitizer builds ends there',
      'src/a16_controlled.c | judge | constant: 1 -> 2 | fathom_dyp_frame_decode(frame, answer->values, 1)'),
     ('only looked at after bytes have come, which set it',

@@ -36,7 +36,7 @@ static void hold(void)
 {
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
     ask(&bench.request, 1, &bench.value, 0);
-    run(1000000);
+    run_in_steps(1000000, 1000);
     assert_true(bench.fake.in_break);
     assert_int_equal(bench.fake.written, 0);
 }
@@ -48,7 +48,7 @@ TEST(the_end_of_a_break_is_asked_for_until_the_port_takes_it)
     for (unsigned i = 0; i != 3; i++) {
         assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
         assert_true(bench.fake.in_break);
-        run(300000); /* nor does a poll send anything */
+        run_in_steps(300000, 1000); /* nor does a poll send anything */
         assert_int_equal(bench.fake.written, 0);
         assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
     }
@@ -73,13 +73,13 @@ TEST(a_break_that_the_port_does_not_end_in_a_second_is_an_error_and_who_waits_is
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
     for (unsigned second = 1; second <= 3; second++) {
         if (second == 2)
-            run(999900);
+            run_in_steps(999999, 9009);
         else
-            bench.fake.now_us += 999900;
+            bench.fake.now_us += 999999;
         assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING); /* gives it no more time */
         assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), second - 1);
         assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-        bench.fake.now_us += 100;
+        bench.fake.now_us++;
         assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_ERR_PORT);
         assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), second);
         assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
@@ -118,12 +118,25 @@ TEST(a_break_that_begins_anew_gives_its_end_a_second_anew)
     refusals = FOR_EVER;
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
     assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
-    run(2000000);
+    run_in_steps(2000000, 1000);
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-    run(999900);
+    run_in_steps(999900, 900);
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
     run(100);
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_ERR_PORT);
+}
+
+static int broken(void *ctx, bool on) { return (void)ctx, (void)on, -1; }
+
+TEST(a_break_that_cannot_begin_once_more_goes_on_and_who_waits_goes_on_waiting)
+{
+    hold();
+    bench.fake.uart.set_break = broken;
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_PORT);
+    assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), 0);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    run(T3_5_US + 200);
+    assert_int_equal(bench.fake.written, 0);
 }
 
 TEST(where_there_is_no_break_a_refused_end_changes_nothing)
@@ -165,7 +178,7 @@ TEST(no_request_is_written_into_a_break_in_which_a_read_failed)
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
     bench.fake.read_fails = false;
     ask(&bench.request, 1, &bench.value, 0);
-    run(1000000);
+    run_in_steps(1000000, 1000);
     assert_true(bench.fake.in_break);
     assert_int_equal(bench.fake.written, 0);
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);

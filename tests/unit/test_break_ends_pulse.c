@@ -69,7 +69,10 @@ TEST(a_trigger_that_cannot_begin_is_said_once_a_second)
     refused = true;
     refusals = FOR_EVER;
     assert_int_equal(ports_in(2 * MS + 999 * MS), 0);
-    assert_int_equal(ports_in(1 * MS), 1);
+    stand.fake.now_us += 999;
+    assert_int_equal(poll_meter(), FATHOM_PENDING);
+    stand.fake.now_us++;
+    assert_int_equal(poll_meter(), FATHOM_ERR_PORT);
     assert_int_equal(ports_in(3000 * MS), 3);
     assert_int_equal(stand.fake.breaks, 0);
     refusals = 0;

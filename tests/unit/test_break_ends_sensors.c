@@ -233,8 +233,9 @@ TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
     start_controlled();
     rig.fake.never_sent = true;
     rig_run(2 * MS + 999 * MS, 1000);
+    rig_run(999, 999);
     assert_int_equal(rig.ports, 0);
-    rig_run(1 * MS, 1000);
+    rig_run(1, 1);
     assert_int_equal(rig.ports, 1);
     rig_run(3000 * MS, 1000);
     assert_int_equal(rig.ports, 4);
@@ -251,6 +252,14 @@ TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
     rig.fake.never_sent = false;
     controlled_run_to_break(2, 1000);
     assert_int_equal(controlled_outcome(1000), FATHOM_ERR_NO_ANSWER);
+
+    /* In a slow loop the refusal is the first thing after the answer. */
+    controlled_run_to_break(3, 1000);
+    controlled_answer(controlled_511, 100 * MS);
+    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+    rig.fake.never_sent = true;
+    rig.fake.now_us += 200 * MS;
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
 }
 
 TEST(deinit_of_a_controlled_a16_tells_whether_rx_is_high)
