@@ -75,8 +75,8 @@ fathom_status_t fathom_a05_auto_power_on(fathom_a05_auto_t *sensor, fathom_a05_v
  * Stops listening and lets RX go high, if it is still held low; the memory is the caller's again. To be called again,
  * and not poll, unless it returns
  * FATHOM_READY: RX is high, always where it is a pin.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Whoever gives up here leaves TX low, and the line
- * sends nothing until that is FATHOM_READY.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Where it is given up here TX stays low, and the
+ * line sends nothing until that is FATHOM_READY.
  */
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 

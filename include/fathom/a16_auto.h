@@ -63,8 +63,8 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, bool real_time
  * Stops listening and ends a break that selected; the memory is the caller's again. To be called again, and not poll,
  * unless it returns
  * FATHOM_READY: no break is held, always where there is a pin, which stays as it is.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Whoever gives up here leaves TX low, and the line
- * sends nothing until that is FATHOM_READY.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Where it is given up here TX stays low, and the
+ * line sends nothing until that is FATHOM_READY.
  */
 fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 

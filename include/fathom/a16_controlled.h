@@ -93,8 +93,8 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
  * Stops listening and lets the trigger go high; the memory is the caller's again. To be called again, and not poll,
  * unless it returns
  * FATHOM_READY: the trigger is high, always where it is a pin.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Whoever gives up here leaves TX low, and the line
- * sends nothing until that is FATHOM_READY.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Where it is given up here TX stays low, and the
+ * line sends nothing until that is FATHOM_READY.
  */
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 

@@ -111,7 +111,7 @@ uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
  * poll, unless it returns
  * FATHOM_READY: the trigger is high, always where it is a pin.
  * FATHOM_PENDING: the UART has refused to end the break; the trigger is low until a later call.
- * FATHOM_ERR_PORT: the break failed, or the UART has refused for a second. Whoever gives up here leaves it low.
+ * FATHOM_ERR_PORT: the break failed, or the UART has refused for a second. Where it is given up here it stays low.
  */
 fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter);
 

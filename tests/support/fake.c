@@ -63,6 +63,10 @@ static int fake_set_break(void *ctx, bool on)
 {
     fake_t *const fake = ctx;
     if (!fake_sent(ctx)) return 0;
+    if (fake->refusals != 0 && on == fake->refuses_begin) {
+        if (fake->refusals > 0) fake->refusals--;
+        return fake->refusal;
+    }
     fake->breaks += on;
     fake->in_break = on;
     return 1;

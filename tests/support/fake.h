@@ -59,6 +59,9 @@ typedef struct {
     bool write_torn;
     bool never_sent;
     uint32_t unsupported_baud;
+    int refusals;       /* of a break, one each; < 0: without end */
+    bool refuses_begin; /* those of its begin, else of its end */
+    int refusal;        /* what set_break says then: 0 or < 0 */
 
     fathom_uart_t uart;
     fathom_clock_t clock;

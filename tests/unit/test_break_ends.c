@@ -1,201 +1,322 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "controlled_rig.h"
+#include "fathom/a05_auto.h"
+#include "fathom/a16_auto.h"
+#include "pulse_rig.h"
 
-/* A break that is over holds TX low for no longer than the port needs, and who waits for it is told. */
+/* Sensors whose RX is held low by a break: where the port refuses to end that, they ask again until it does, say so
+ * after a second, and deinit tells whether it has ended. */
 
-enum { FOR_EVER = -1 };
+enum { FOR_EVER = -1, SELECT_US = FATHOM_A05_SELECT_US };
 
-static int (*works)(void *ctx, bool on);
-static int refusals; /* of the end of a break */
-static int refusal;  /* what they say: 0 or < 0 */
-static unsigned ends;
+static fathom_a05_auto_t a05;
+static fathom_a16_auto_t a16;
 
-static int set_break(void *ctx, bool on)
+/* ---- each of them, from a start to a break that is held ---- */
+
+static void select_a05(void)
 {
-    if (on) return works(ctx, on);
-    ends++;
-    if (refusals == 0) return works(ctx, on);
-    if (refusals > 0) refusals--;
-    return refusal;
+    const fathom_a05_auto_config_t config = {.line = &rig.line, .stale_us = 60000000};
+    rig_start(RIG_START_US);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    rig.sensor = fathom_a05_auto_sensor(&a05);
+    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
 }
 
-static int set_up_refusing(void **state)
+static void select_a16(void)
 {
-    (void)set_up(state);
-    works = bench.fake.uart.set_break;
-    bench.fake.uart.set_break = set_break;
-    refusals = refusal = 0;
-    ends = 0;
-    return 0;
+    const fathom_a16_auto_config_t config = {.line = &rig.line, .real_time = true};
+    rig_start(RIG_START_US);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
 }
 
-static const suite_t suite = {.set_up = set_up_refusing};
-
-/* In a break for a second, with an exchange that waits. */
-static void hold(void)
+static void start_controlled(void)
 {
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
-    ask(&bench.request, 1, &bench.value, 0);
-    run_in_steps(1000000, 1000);
-    assert_true(bench.fake.in_break);
-    assert_int_equal(bench.fake.written, 0);
+    controlled.config.trigger = NULL;
+    controlled_start();
 }
 
-TEST(the_end_of_a_break_is_asked_for_until_the_port_takes_it)
+static void trigger_controlled(void)
 {
-    hold();
-    refusals = 3;
-    for (unsigned i = 0; i != 3; i++) {
-        assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-        assert_true(bench.fake.in_break);
-        run_in_steps(300000, 1000); /* nor does a poll send anything */
-        assert_int_equal(bench.fake.written, 0);
-        assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    start_controlled();
+    controlled_run_to_break(1, 1000);
+}
+
+static void start_pulse(void)
+{
+    stand.config.trigger = NULL;
+    stand.config.uart = &stand.fake.uart;
+    start_meter();
+}
+
+static void trigger_pulse(void)
+{
+    start_pulse();
+    run_meter(2 * MS);
+}
+
+static fathom_status_t end_a05(void) { return fathom_a05_auto_deinit(&a05); }
+static fathom_status_t end_a16(void) { return fathom_a16_auto_deinit(&a16); }
+static fathom_status_t end_controlled(void) { return fathom_a16_controlled_deinit(&controlled.a16); }
+static fathom_status_t end_pulse(void) { return fathom_pulse_deinit(&stand.meter); }
+
+static const struct {
+    void (*hold)(void);
+    fathom_status_t (*deinit)(void);
+    fake_t *fake;
+} sensors[] = {{select_a05, end_a05, &rig.fake},
+               {select_a16, end_a16, &rig.fake},
+               {trigger_controlled, end_controlled, &rig.fake},
+               {trigger_pulse, end_pulse, &stand.fake}};
+
+static void refuse(fake_t *fake, int times, int how)
+{
+    fake->refusals = times;
+    fake->refusal = how;
+}
+
+static fathom_status_t said_of(int how) { return how == 0 ? FATHOM_PENDING : FATHOM_ERR_PORT; }
+
+TEST(deinit_tells_whether_rx_is_high)
+{
+    for (unsigned i = 0; i != 2 * COUNT_OF(sensors); i++) {
+        fake_t *const fake = sensors[i / 2].fake;
+        const int how = -(int)(i % 2);
+        sensors[i / 2].hold();
+        refuse(fake, 2, how);
+        for (unsigned n = 0; n != 2; n++) {
+            assert_int_equal(sensors[i / 2].deinit(), said_of(how));
+            assert_true(fake->in_break);
+            if (fake == &rig.fake) assert_null(rig.line.listener);
+        }
+        assert_int_equal(sensors[i / 2].deinit(), FATHOM_READY);
+        assert_false(fake->in_break);
+        refuse(fake, FOR_EVER, how);
+        assert_int_equal(sensors[i / 2].deinit(), FATHOM_READY);
     }
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
-    assert_false(bench.fake.in_break);
-    assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US);
-    run(T3_5_US - 100);
-    assert_int_equal(bench.fake.written, 0);
-    run(200);
-    assert_int_equal(bench.fake.written, 1);
-    run(8 * BYTE_US);
-    receive_answer(1, 111);
-    run(100);
-    assert_int_equal(bench.value, 111);
 }
 
-/* It need not be polled for that. */
-TEST(a_break_that_the_port_does_not_end_in_a_second_is_an_error_and_who_waits_is_told)
+/* No poll is needed between the calls. */
+TEST(deinit_gives_the_port_a_second)
 {
-    hold();
-    refusals = FOR_EVER;
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-    for (unsigned second = 1; second <= 3; second++) {
-        if (second == 2)
-            run_in_steps(999999, 9009);
-        else
-            bench.fake.now_us += 999999;
-        assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING); /* gives it no more time */
-        assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), second - 1);
-        assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-        bench.fake.now_us++;
-        assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_ERR_PORT);
-        assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), second);
-        assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
-        ask(&bench.request, 1, &bench.value, 0);
-        assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING); /* for another second */
+    for (unsigned i = 0; i != COUNT_OF(sensors); i++) {
+        sensors[i].hold();
+        refuse(sensors[i].fake, FOR_EVER, 0);
+        for (unsigned ms = 0; ms != 1000; ms++) {
+            assert_int_equal(sensors[i].deinit(), FATHOM_PENDING);
+            sensors[i].fake->now_us += 1000;
+        }
+        assert_int_equal(sensors[i].deinit(), FATHOM_ERR_PORT);
     }
-    assert_true(bench.fake.in_break);
-    assert_int_equal(bench.fake.written, 0);
-    refusals = 0;
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 1);
 }
 
-TEST(a_port_that_is_broken_at_the_end_of_a_break_is_said_at_once)
+/* ---- A05 and A16, automatic ---- */
+
+TEST(a_selection_of_an_a05_ends_although_the_port_refused_that_once)
 {
-    hold();
-    refusals = 2;
-    refusal = -1;
-    for (unsigned i = 1; i <= 2; i++) {
-        assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_ERR_PORT);
-        assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), i);
-        assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
-        ask(&bench.request, 1, &bench.value, 0);
-        run(T3_5_US + 200);
-        assert_int_equal(bench.fake.written, 0);
+    for (int how = 0; how >= -1; how--) {
+        select_a05();
+        refuse(&rig.fake, 1, how);
+        rig_run(SELECT_US - 1000, 1000);
+        rig.fake.now_us += 1000;
+        assert_int_equal(rig_poll(), said_of(how));
+        assert_true(rig.fake.in_break);
+        assert_int_equal(rig.sensor.due_us(rig.sensor.ctx), 1000);
+        rig.fake.now_us += 700;
+        assert_int_equal(rig.sensor.due_us(rig.sensor.ctx), 300);
+        rig.fake.now_us += 300;
+        assert_int_equal(rig_poll(), FATHOM_PENDING);
+        assert_false(rig.fake.in_break);
+        assert_true(rig.sensor.due_us(rig.sensor.ctx) > 1000);
     }
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 1);
 }
 
-TEST(a_break_that_begins_anew_gives_its_end_a_second_anew)
+/* The sensor sends all the same. */
+TEST(a_selection_of_an_a05_that_does_not_end_is_said_once_a_second_beside_the_samples)
 {
-    hold();
-    refusals = FOR_EVER;
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
-    run_in_steps(2000000, 1000);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-    run_in_steps(999900, 900);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-    run(100);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_ERR_PORT);
+    static const uint8_t example[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0,
+                                      0x07, 0xA1, 0x0D, 0xEA, 0x60}; /* A05 1(4) */
+    select_a05();
+    refuse(&rig.fake, FOR_EVER, 0);
+    rig_run(SELECT_US + 999000, 1000);
+    assert_int_equal(rig.ports, 0);
+    rig_run(3001000, 1000);
+    assert_int_equal(rig.ports, 3);
+    rig_send(example, sizeof example, 500);
+    assert_int_equal(rig.samples, 4);
+    assert_true(rig.fake.in_break);
+    rig.fake.refusals = 0;
+    rig_run(1000, 1000);
+    assert_false(rig.fake.in_break);
+    const unsigned ports = rig.ports;
+    rig_run(3000000, 1000);
+    assert_int_equal(rig.ports, ports);
+
+    /* and with each poll where the port is broken; a sample comes first */
+    select_a05();
+    refuse(&rig.fake, FOR_EVER, -1);
+    rig_run(SELECT_US - 1000, 1000);
+    assert_int_equal(rig.ports, 0);
+    fake_receive(&rig.fake, 1000, example, sizeof example);
+    rig_run(5000, 1000);
+    assert_int_equal(rig.ports, 5);
+    rig.fake.now_us += 1000;
+    for (unsigned i = 0; i != 4; i++) assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
 }
 
-static int broken(void *ctx, bool on) { return (void)ctx, (void)on, -1; }
-
-TEST(a_break_that_cannot_begin_once_more_goes_on_and_who_waits_goes_on_waiting)
+TEST(a_selection_that_has_not_ended_is_not_forgotten)
 {
-    hold();
-    bench.fake.uart.set_break = broken;
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_PORT);
-    assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), 0);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 0);
+    select_a05();
+    refuse(&rig.fake, 2, 0);
+    rig_run(SELECT_US, 1000);
+    assert_true(rig.fake.in_break);
+    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_READY);
+    assert_false(rig.fake.in_break);
+
+    select_a16();
+    refuse(&rig.fake, 1, 0);
+    assert_int_equal(fathom_a16_auto_select(&a16, false), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_auto_deinit(&a16), FATHOM_READY);
+    assert_false(rig.fake.in_break);
 }
 
-TEST(where_there_is_no_break_a_refused_end_changes_nothing)
+/* ---- A16, controlled ---- */
+
+TEST(a_trigger_of_an_a16_ends_although_the_port_refused_that_once)
 {
-    ask(&bench.request, 1, &bench.value, 0);
-    for (refusal = 0; refusal >= -1; refusal--) {
-        refusals = 1;
-        assert_int_equal(fathom_line_break(&bench.line, false),
-                         refusal == 0 ? FATHOM_PENDING : FATHOM_ERR_PORT);
+    for (int how = 0; how >= -1; how--) {
+        trigger_controlled();
+        refuse(&rig.fake, 1, how);
+        rig_run(1000, 1000);
+        rig.fake.now_us += 1000;
+        assert_int_equal(rig_poll(), said_of(how));
+        assert_true(rig.fake.in_break);
+        rig_run(1000, 1000);
+        assert_false(rig.fake.in_break);
+        controlled_answer(controlled_1953, 97 * MS);
+        assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+        assert_int_equal(rig.sample.distance_mm, 1953);
     }
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-    assert_int_equal(counter(FATHOM_LINE_PORT_ERRORS), 0);
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 1);
-    assert_int_equal(ends, 2);
 }
 
-TEST(while_a_request_is_on_the_wire_no_break_has_to_end)
+TEST(a_trigger_of_an_a16_that_does_not_end_is_said_once_a_second)
 {
-    ask(&bench.request, 1, &bench.value, 0);
-    run(T3_5_US + 100);
-    assert_int_equal(bench.fake.written, 1);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_ERR_BUSY);
-    assert_int_equal(ends, 0);
-    run(8 * BYTE_US);
-    receive_answer(1, 111);
-    run(100);
-    assert_int_equal(bench.value, 111);
+    trigger_controlled();
+    refuse(&rig.fake, FOR_EVER, 0);
+    rig_run(2 * MS + 999 * MS, 1000);
+    assert_int_equal(rig.ports, 0);
+    rig_run(1 * MS, 1000);
+    assert_int_equal(rig.ports, 1);
+    assert_in_range(rig.sensor.due_us(rig.sensor.ctx), 1, 1000);
+    rig_run(3000 * MS, 1000);
+    assert_int_equal(rig.ports, 3);
+    assert_int_equal(rig.fake.breaks, 1);
+    rig.fake.refusals = 0;
+    rig_run(1 * MS, 1000);
+    assert_false(rig.fake.in_break);
+    controlled_run_to_break(2, 1000);
+    controlled_answer(controlled_511, 100 * MS);
+    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
 }
 
-/* A USB adapter may have failed for a moment, and holds TX low still. */
-TEST(no_request_is_written_into_a_break_in_which_a_read_failed)
+/* Something else is sent there without end, or what is sent does not leave. */
+TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
 {
-    hold();
-    bench.fake.read_fails = true;
-    bench.fake.now_us += 100;
-    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_PORT);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
-    bench.fake.read_fails = false;
-    ask(&bench.request, 1, &bench.value, 0);
-    run_in_steps(1000000, 1000);
-    assert_true(bench.fake.in_break);
-    assert_int_equal(bench.fake.written, 0);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 1);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    start_controlled();
+    rig.fake.never_sent = true;
+    rig_run(2 * MS + 999 * MS, 1000);
+    rig_run(999, 999);
+    assert_int_equal(rig.ports, 0);
+    rig_run(1, 1);
+    assert_int_equal(rig.ports, 1);
+    rig_run(3000 * MS, 1000);
+    assert_int_equal(rig.ports, 4);
+    rig.fake.never_sent = false;
+    controlled_run_to_break(1, 1000);
+    controlled_answer(controlled_511, 100 * MS);
+    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+
+    /* Nor is what was left of the time for the last answer, 30 ms of it here, taken for that second. */
+    rig.fake.never_sent = true;
+    rig.ports = 0;
+    rig_run(900 * MS, 1000);
+    assert_int_equal(rig.ports, 0);
+    rig.fake.never_sent = false;
+    controlled_run_to_break(2, 1000);
+    assert_int_equal(controlled_outcome(1000), FATHOM_ERR_NO_ANSWER);
+
+    /* In a slow loop the refusal is the first thing after the answer. */
+    controlled_run_to_break(3, 1000);
+    controlled_answer(controlled_511, 100 * MS);
+    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+    rig.fake.never_sent = true;
+    rig.fake.now_us += 200 * MS;
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
 }
 
-/* The silence begins where the break ends, not where the poll before that was. */
-TEST(after_a_break_the_silence_is_kept_in_a_slow_loop)
+/* ---- a pulse meter ---- */
+
+/* Polls for so long; returns how often the port was said to be broken. */
+static unsigned ports_in(uint32_t for_us)
 {
-    hold();
-    bench.fake.now_us += 20000;
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
-    const uint32_t ended_us = bench.fake.now_us;
-    assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US);
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 1);
-    assert_in_range(bench.fake.writes[0].at_us - ended_us, T3_5_US, T3_5_US + 100);
+    const unsigned before = stand.port_errors;
+    run_meter_in_steps(for_us, 1000);
+    return stand.port_errors - before;
+}
+
+TEST(a_trigger_of_a_pulse_that_does_not_end_is_said_once_a_second)
+{
+    trigger_pulse();
+    refuse(&stand.fake, FOR_EVER, 0);
+    assert_int_equal(ports_in(2 * MS + 999 * MS), 0);
+    assert_int_equal(ports_in(1 * MS), 1);
+    assert_in_range(fathom_pulse_due_us(&stand.meter), 1, 1000);
+    assert_int_equal(ports_in(999 * MS), 0);
+    assert_int_equal(ports_in(1 * MS), 1);
+    assert_true(stand.fake.in_break);
+    stand.fake.refusals = 0;
+    assert_int_equal(ports_in(1 * MS), 0);
+    assert_false(stand.fake.in_break);
+    assert_int_equal(ports_in(2 * MS), 0);
+    assert_int_equal(stand.fake.breaks, 2);
+}
+
+TEST(a_trigger_of_a_pulse_that_cannot_begin_is_said_once_a_second)
+{
+    start_pulse();
+    stand.fake.refuses_begin = true;
+    refuse(&stand.fake, FOR_EVER, 0);
+    assert_int_equal(ports_in(2 * MS + 999 * MS), 0);
+    stand.fake.now_us += 999;
+    expect_poll(FATHOM_PENDING);
+    stand.fake.now_us++;
+    expect_poll(FATHOM_ERR_PORT);
+    assert_int_equal(ports_in(3000 * MS), 3);
+    assert_int_equal(stand.fake.breaks, 0);
+    stand.fake.refusals = 0;
+    assert_int_equal(ports_in(1 * MS), 0);
+    assert_int_equal(stand.fake.breaks, 1);
+}
+
+/* What was taken in between ends a refusal, and so does an error. */
+TEST(refusals_of_less_than_a_second_are_never_added_up)
+{
+    start_pulse();
+    for (unsigned i = 0; i != 4; i++) {
+        stand.fake.refuses_begin = i % 2 == 0;
+        refuse(&stand.fake, FOR_EVER, 0);
+        assert_int_equal(ports_in(900 * MS), 0);
+        stand.fake.refusals = 0;
+        assert_int_equal(ports_in(1 * MS), 0);
+        assert_int_equal(stand.fake.in_break, i % 2 == 0);
+    }
+    stand.fake.refuses_begin = true;
+    refuse(&stand.fake, FOR_EVER, 0);
+    assert_int_equal(ports_in(900 * MS), 0);
+    stand.fake.refusal = -1;
+    assert_int_equal(ports_in(1 * MS), 1);
+    stand.fake.refusal = 0;
+    assert_int_equal(ports_in(999 * MS), 0);
 }

@@ -107,14 +107,144 @@ TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
     assert_int_equal(ear.gaps, 1);
 }
 
-static int broken(void *ctx, bool on) { return (void)ctx, (void)on, -1; }
+/* ---- a port that refuses ---- */
+
+enum { FOR_EVER = -1 };
+
+static void refuse(int times, int how)
+{
+    bench.fake.refusals = times;
+    bench.fake.refusal = how;
+}
+
+static fathom_status_t end(void) { return fathom_line_break(&bench.line, false); }
+
+/* In a break, with an exchange that waits. */
+static void hold_and_ask(void)
+{
+    hold(true);
+    ask_1(0);
+}
 
 TEST(a_port_that_cannot_or_is_broken_says_so)
 {
-    bench.fake.uart.set_break = broken;
+    bench.fake.refuses_begin = true;
+    refuse(1, -1);
     assert_int_equal(hold_low(), FATHOM_ERR_PORT);
     bench.fake.uart.set_break = NULL;
     assert_int_equal(hold_low(), FATHOM_ERR_UNSUPPORTED);
     ask_1(0);
     expect_written_after(T3_5_US + 100, 1);
+}
+
+TEST(a_break_that_cannot_begin_once_more_goes_on_and_what_waits_goes_on_waiting)
+{
+    hold_and_ask();
+    bench.fake.refuses_begin = true;
+    refuse(1, -1);
+    assert_int_equal(hold_low(), FATHOM_ERR_PORT);
+    expect_count(FATHOM_LINE_PORT_ERRORS, 0);
+    expect_written_after(T3_5_US + 200, 0);
+    expect(FATHOM_PENDING);
+}
+
+TEST(the_end_of_a_break_is_asked_for_until_the_port_takes_it)
+{
+    hold_and_ask();
+    refuse(3, 0);
+    for (unsigned i = 0; i != 3; i++) {
+        assert_int_equal(end(), FATHOM_PENDING);
+        run_in_steps(300000, 1000);
+        expect(FATHOM_PENDING);
+    }
+    assert_true(bench.fake.in_break);
+    expect_written(0);
+    hold(false);
+    assert_false(bench.fake.in_break);
+    expect_sent(T3_5_US - 100, 200);
+}
+
+/* Whether it is polled meanwhile or not. */
+TEST(a_break_that_the_port_does_not_end_in_a_second_is_an_error_of_all_that_waits)
+{
+    hold(true);
+    refuse(FOR_EVER, 0);
+    for (unsigned second = 1; second <= 3; second++) {
+        ask_1(0);
+        assert_int_equal(end(), FATHOM_PENDING);
+        if (second == 2)
+            run_in_steps(999999, 9009);
+        else
+            bench.fake.now_us += 999999;
+        assert_int_equal(end(), FATHOM_PENDING); /* gives it no more time */
+        expect(FATHOM_PENDING);
+        bench.fake.now_us++;
+        assert_int_equal(end(), FATHOM_ERR_PORT);
+        expect_count(FATHOM_LINE_PORT_ERRORS, second);
+        expect(FATHOM_ERR_PORT);
+    }
+    assert_true(bench.fake.in_break);
+    expect_written(0);
+}
+
+TEST(a_break_that_begins_anew_gives_its_end_a_second_anew)
+{
+    hold(true);
+    refuse(FOR_EVER, 0);
+    assert_int_equal(end(), FATHOM_PENDING);
+    hold(true);
+    run_in_steps(2000000, 1000);
+    assert_int_equal(end(), FATHOM_PENDING);
+    bench.fake.now_us += 999999;
+    assert_int_equal(end(), FATHOM_PENDING);
+    bench.fake.now_us++;
+    assert_int_equal(end(), FATHOM_ERR_PORT);
+}
+
+/* A USB adapter may have failed for a moment, and holds TX low still: in a read, or when the break was to end. */
+TEST(no_request_is_written_into_a_break_in_which_the_port_failed)
+{
+    for (unsigned i = 0; i != 2; i++) {
+        set_up(state);
+        hold_and_ask();
+        if (i == 0) {
+            bench.fake.now_us += 100;
+            break_port();
+        } else {
+            refuse(1, -1);
+            assert_int_equal(end(), FATHOM_ERR_PORT);
+        }
+        expect(FATHOM_ERR_PORT);
+        expect_count(FATHOM_LINE_PORT_ERRORS, 1);
+        ask_1(0);
+        run_in_steps(1000000, 1000);
+        assert_true(bench.fake.in_break);
+        expect_written(0);
+        hold(false);
+        expect_sent(T3_5_US - 100, 200);
+    }
+}
+
+TEST(where_there_is_no_break_a_refused_end_changes_nothing)
+{
+    ask_1(0);
+    refuse(1, 0);
+    assert_int_equal(end(), FATHOM_PENDING);
+    refuse(1, -1);
+    assert_int_equal(end(), FATHOM_ERR_PORT);
+    expect_count(FATHOM_LINE_PORT_ERRORS, 0);
+    expect_written_after(T3_5_US + 200, 1);
+    refuse(1, -1); /* with a request on the wire the port is not even asked */
+    hold(false);
+    assert_int_equal(bench.fake.refusals, 1);
+}
+
+/* It begins where the break ends, not where the poll before that was. */
+TEST(after_a_break_the_silence_is_kept_in_a_slow_loop)
+{
+    hold_and_ask();
+    bench.fake.now_us += 20000;
+    hold(false);
+    expect_due(T3_5_US);
+    expect_sent(T3_5_US - 100, 200);
 }
