@@ -23,19 +23,26 @@ static void suit_tcp(channel_t *channel)
     channel->config.echo = FATHOM_LINE_ECHO_OFF;
 }
 
-bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings)
+static uint32_t now_us(void *ctx)
 {
+    const channel_t *const channel = ctx;
+    return (uint32_t)channel->host->now_us(channel->host->ctx);
+}
+
+bool channel_open(channel_t *channel, const host_t *host, const char *path,
+                  const fathom_line_settings_t *settings)
+{
+    channel->host = host;
     if (tcp_names(path)) {
         channel->tcp = tcp_open(path, &channel->port, &channel->uart);
         if (channel->tcp == NULL) return false;
         suit_tcp(channel);
     } else {
         channel->tcp = NULL;
-        if (fathom_posix_open(&channel->port, path, settings) != FATHOM_POSIX_OK) return false;
-        channel->uart = fathom_posix_uart(&channel->port);
+        if (!host->open(host->ctx, path, settings, &channel->port, &channel->uart)) return false;
         suit_serial(channel, settings);
     }
-    channel->clock = fathom_posix_clock();
+    channel->clock = (fathom_clock_t){now_us, channel};
     ear_begin(&channel->ear, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;
     channel->config.clock = &channel->clock;
@@ -49,7 +56,7 @@ bool channel_open(channel_t *channel, const char *path, const fathom_line_settin
 void channel_close(channel_t *channel)
 {
     if (channel->tcp == NULL)
-        fathom_posix_close(&channel->port);
+        channel->host->close(channel->host->ctx, &channel->port);
     else
         tcp_close(channel->tcp);
     channel->tcp = NULL;

@@ -8,12 +8,13 @@
 #include "ear.h"
 #include "fathom/line.h"
 #include "fathom/modbus_client.h"
-#include "fathom_posix.h"
+#include "host.h"
 #include "tcp.h"
 
 /* A serial port, or a connection to a Modbus TCP server, with a line and a Modbus client on it: what every command
  * that talks to sensors needs. */
 typedef struct {
+    const host_t *host;
     fathom_posix_uart_t port;
     tcp_t *tcp; /* then `port` stands in for it (tcp.h); NULL: a serial port */
     fathom_uart_t uart;
@@ -36,7 +37,8 @@ enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
 
 /* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may
  * not be moved. One that was closed may be opened again. */
-bool channel_open(channel_t *channel, const char *path, const fathom_line_settings_t *settings);
+bool channel_open(channel_t *channel, const host_t *host, const char *path,
+                  const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
 
 /* "9600 8N1", in a buffer of the caller's. */

@@ -4,12 +4,15 @@
 
 #include <stdio.h>
 
-/* A command of the tool: a row in main.c's table. */
+#include "host.h"
+
+/* A command of the tool: a row in commands.c's table. */
 typedef struct {
     const char *name;
-    const char *summary;               /* a line of `fathom --help` */
-    void (*help)(FILE *to);            /* `fathom NAME --help` */
-    int (*run)(int argc, char **argv); /* argv[0] is the command's name; returns the exit status */
+    const char *summary;    /* a line of `fathom --help` */
+    void (*help)(FILE *to); /* `fathom NAME --help` */
+    /* argv[0] is the command's name; returns the exit status */
+    int (*run)(const host_t *host, int argc, char **argv);
 } command_t;
 
 extern const command_t scan_command;
@@ -28,6 +31,9 @@ enum {
     STATUS_FAILED = 1, /* the line, the port or the output failed */
     STATUS_USAGE = 2
 };
+
+/* The tool: argv[1] names the command. Returns the exit status. */
+int run_command(const host_t *host, int argc, char **argv);
 
 /* Says on stderr, in one line, what is wrong with the command line and where help is. command: "" before one
  * is known. Returns STATUS_USAGE. */

@@ -173,11 +173,12 @@ static int decode(const settings_t *settings, const decode_input_t *input)
     return status;
 }
 
-static int run(int argc, char **argv)
+static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     settings_t settings = {DECODE_ALL, DECODE_SENSORS, NULL};
     decode_input_t input;
+    (void)host; /* it opens no port */
     const int rest = options_parse(command, argc, argv, table, values);
     if (rest < 0) return STATUS_USAGE;
     if (values[HELP] != NULL) {

@@ -141,15 +141,15 @@ static int list(const char *name)
     return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-static int tell_on_port(const setting_t *settings, size_t count)
+static int tell_on_port(const host_t *host, const setting_t *settings, size_t count)
 {
-    if (!talk_open(&talk)) return STATUS_FAILED;
+    if (!talk_open(&talk, host)) return STATUS_FAILED;
     const int status = tell(settings, count);
     talk_close(&talk);
     return status;
 }
 
-static int run_info(int argc, char **argv)
+static int run_info(const host_t *host, int argc, char **argv)
 {
     const char *values[TALK_OPTIONS] = {NULL};
     char **words = NULL;
@@ -159,10 +159,10 @@ static int run_info(int argc, char **argv)
         return STATUS_USAGE;
     if (wants_help) return help_of(true);
     if (count != 0) return usage_error("info", "one sensor at a time; '%s' is too much", words[0]);
-    return tell_on_port(talk_settings(&talk), SIZE_MAX);
+    return tell_on_port(host, talk_settings(&talk), SIZE_MAX);
 }
 
-static int run_get(int argc, char **argv)
+static int run_get(const host_t *host, int argc, char **argv)
 {
     const char *values[TALK_OPTIONS] = {NULL};
     char **words = NULL;
@@ -182,7 +182,7 @@ static int run_get(int argc, char **argv)
     if (setting->get == NULL)
         return usage_error("get", "%s is write-only: the device does not tell it", setting->name);
     if (!talk_set_mode(&talk, "get", values, setting->mode)) return STATUS_USAGE;
-    return tell_on_port(setting, 1);
+    return tell_on_port(host, setting, 1);
 }
 
 static void help_info(FILE *to) { help(to, true); }

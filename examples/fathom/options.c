@@ -15,6 +15,7 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
 {
     int row = 0;
     opterr = 0;
+    optind = 0; /* from the beginning, whatever was read before */
     for (;;) {
         const int found = getopt_long(argc, argv, ":", table, &row);
         if (found == -1) return optind;

@@ -18,11 +18,11 @@ static void tell(plug_t *plug, const fathom_posix_uart_t *port)
         (void)fprintf(stderr, "fathom: still waiting: %s\n", fathom_posix_error_text(port));
 }
 
-bool plug_try(plug_t *plug, channel_t *channel, const fathom_line_settings_t *settings)
+bool plug_try(plug_t *plug, channel_t *channel, const host_t *host, const fathom_line_settings_t *settings)
 {
     const bool is_usb = plug->adapter.vendor[0] != '\0';
     if (is_usb && !adapter_find(&plug->adapter, ADAPTER_SYSFS, plug->found)) return false;
-    if (!channel_open(channel, plug_path(plug), settings)) {
+    if (!channel_open(channel, host, plug_path(plug), settings)) {
         tell(plug, &channel->port);
         return false;
     }

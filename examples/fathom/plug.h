@@ -22,7 +22,7 @@ enum { PLUG_RETRY_US = 500000 };
  * Tries once. A USB adapter is looked for by what it is, anything else by its path. False: it is not there, or not
  * to be had; if that lasts and is something else than "not there", it says so once on stderr.
  */
-bool plug_try(plug_t *plug, channel_t *channel, const fathom_line_settings_t *settings);
+bool plug_try(plug_t *plug, channel_t *channel, const host_t *host, const fathom_line_settings_t *settings);
 
 /* Where it is. */
 const char *plug_path(const plug_t *plug);

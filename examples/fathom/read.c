@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): clock_gettime */
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
-#include <time.h>
 
 #include "command.h"
-#include "events.h"
 #include "read_options.h"
 #include "session.h"
 
@@ -16,13 +13,6 @@ typedef struct {
     uint64_t stats_us; /* when all counters are told next */
     int output_error;  /* errno */
 } reading_run_t;
-
-static uint64_t utc_now_us(void)
-{
-    struct timespec now = {0, 0};
-    (void)clock_gettime(CLOCK_REALTIME, &now);
-    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
-}
 
 /* Readers of a pipe see each line at once. */
 static void flush(reading_run_t *run)
@@ -44,6 +34,7 @@ static bool has_optics(const reading_run_t *run)
 static bool write_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
 {
     reading_run_t *const run = ctx;
+    const host_t *const host = run->session.host;
     const uint64_t time_us = session_sample_us(&run->session, sample);
     const reading_t reading = {
         .sensor = station->sensor,
@@ -51,7 +42,7 @@ static bool write_reading(void *ctx, const station_t *station, const fathom_samp
         .name = is_shared(run) ? station->name : station->sensor->name,
         .sample = sample,
         .time_us = time_us,
-        .utc_us = utc_now_us() - (session_time_us(&run->session) - time_us),
+        .utc_us = host->utc_us(host->ctx) - (session_time_us(&run->session) - time_us),
         .has_optics = has_optics(run),
     };
     errno = 0;
@@ -105,11 +96,12 @@ static bool is_over(const void *ctx) { return ((const reading_run_t *)ctx)->outp
 
 static int finish(reading_run_t *run)
 {
+    const host_t *const host = run->session.host;
     account_t account;
     /* A signal may have cut a write short: then ending was asked for, and is no failure. */
-    if (run->output_error == EINTR && events_ended()) run->output_error = 0;
+    if (run->output_error == EINTR && host->has_ended(host->ctx)) run->output_error = 0;
     /* The reader of a pipe has seen enough, as head does: no reason for words. */
-    if (run->output_error == EPIPE || events_output_gone()) return STATUS_FAILED;
+    if (run->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written: %s\n", strerror(run->output_error));
     session_account(&run->session, &account);
@@ -118,18 +110,19 @@ static int finish(reading_run_t *run)
     return account.sum.failed != 0 || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
-static int run_read(int argc, char **argv)
+static int run_read(const host_t *host, int argc, char **argv)
 {
     static const session_user_t user = {write_reading, write_failure, write_port, tick, is_over};
-    static reading_run_t run; /* all zero, and too large for a small stack */
+    static reading_run_t run; /* too large for a small stack */
     session_t *const session = &run.session;
-    session_begin(session, &user, &run);
+    run.output_error = 0;
+    session_begin(session, host, &user, &run);
     if (!read_options(&run.options, &session->options, argc, argv)) return STATUS_USAGE;
     if (run.options.wants_help) {
         read_help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    if (!events_begin()) return STATUS_FAILED;
+    if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
     if (!session_open(session)) return session->is_lost ? finish(&run) : STATUS_FAILED;
     errno = 0;

@@ -90,7 +90,7 @@ static void help(FILE *to)
                 to);
 }
 
-static int run(int argc, char **argv)
+static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     char **words = NULL;
@@ -111,7 +111,7 @@ static int run(int argc, char **argv)
         return usage_error(command, "what was set is lost: say so by "
                                     "--yes-restore-factory-settings (the interface) or "
                                     "--yes-load-factory-sensor-settings");
-    if (!talk_open(&talk)) return STATUS_FAILED;
+    if (!talk_open(&talk, host)) return STATUS_FAILED;
     const int status = finish(is_restore, talk_call(&talk, is_restore ? restore : load, NULL));
     talk_close(&talk);
     return status;

@@ -5,7 +5,6 @@
 
 #include "channel.h"
 #include "command.h"
-#include "events.h"
 #include "scan_listen.h"
 #include "scan_options.h"
 #include "scan_progress.h"
@@ -15,6 +14,7 @@
 enum { PROGRESS_US = 100000 };
 
 typedef struct {
+    const host_t *host;
     scan_options_t options;
     channel_t channel;
     scan_wire_t wire;
@@ -27,6 +27,8 @@ typedef struct {
     uint32_t awakened;     /* of these, those of the model that was heard to send by itself */
     int output_error;      /* errno */
 } session_t;
+
+static uint64_t now_us(const session_t *session) { return session->host->now_us(session->host->ctx); }
 
 /* ---- what it tells ---- */
 
@@ -55,8 +57,7 @@ static void tell_progress(void *ctx, uint64_t done_us, const fathom_line_setting
     char settings[SETTINGS_TEXT];
     char what[SETTINGS_TEXT + 16];
     (void)snprintf(what, sizeof what, "%s address %u", settings_text(line, settings), address);
-    scan_progress_show(&session->progress, fathom_posix_now_us(), session->options.plan.listen_us + done_us,
-                       what);
+    scan_progress_show(&session->progress, now_us(session), session->options.plan.listen_us + done_us, what);
 }
 
 static void tell_unsupported(void *ctx, const fathom_line_settings_t *line)
@@ -109,9 +110,10 @@ static void announce(const scan_plan_t *plan)
 static bool wait_for(void *ctx, uint32_t max_us)
 {
     session_t *const session = ctx;
-    const fathom_posix_uart_t *const port = &session->channel.port;
-    if (events_ended() || events_output_gone() || session->output_error != 0) return false;
-    events_wait(fathom_posix_fd(port), fathom_posix_poll_events(port), max_us, true);
+    const host_t *const host = session->host;
+    if (host->has_ended(host->ctx) || host->is_output_gone(host->ctx) || session->output_error != 0)
+        return false;
+    host->wait(host->ctx, &session->channel.port, max_us, true);
     return true;
 }
 
@@ -119,8 +121,8 @@ static bool wait_for(void *ctx, uint32_t max_us)
 static bool wait_and_show(void *ctx, uint32_t max_us)
 {
     session_t *const session = ctx;
-    const uint64_t now_us = fathom_posix_now_us();
-    scan_progress_show(&session->progress, now_us, now_us - session->start_us, "listens");
+    const uint64_t now = now_us(session);
+    scan_progress_show(&session->progress, now, now - session->start_us, "listens");
     return wait_for(ctx, max_us < PROGRESS_US ? max_us : PROGRESS_US);
 }
 
@@ -193,7 +195,7 @@ static void advise_on_nothing(const session_t *session)
 static void conclude_walk(const session_t *session)
 {
     const scan_heard_t *const heard = &session->walk.heard;
-    const uint64_t took_us = fathom_posix_now_us() - session->start_us;
+    const uint64_t took_us = now_us(session) - session->start_us;
     char duration[DURATION_TEXT];
     if (heard->has_master)
         (void)fprintf(stderr,
@@ -218,11 +220,12 @@ static void conclude_walk(const session_t *session)
 
 static int finish(session_t *session, fathom_status_t status)
 {
+    const host_t *const host = session->host;
     scan_progress_clear(&session->progress);
     const bool is_cut = status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
-    if (session->output_error == EINTR && events_ended()) session->output_error = 0;
+    if (session->output_error == EINTR && host->has_ended(host->ctx)) session->output_error = 0;
     /* The reader of a pipe has seen enough, as head does: no reason for words. */
-    if (session->output_error == EPIPE || events_output_gone()) return STATUS_FAILED;
+    if (session->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (session->output_error != 0) {
         (void)fprintf(stderr, "fathom: what was found cannot be written: %s\n",
                       strerror(session->output_error));
@@ -247,18 +250,20 @@ static int finish(session_t *session, fathom_status_t status)
     return session->sensors != 0 && session->output_error == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-static int run(int argc, char **argv)
+static int run(const host_t *host, int argc, char **argv)
 {
-    static session_t session; /* all zero, and too large for a small stack */
+    static session_t session; /* too large for a small stack */
     const scan_options_t *const options = &session.options;
+    memset(&session, 0, sizeof session);
+    session.host = host;
     if (!scan_options(&session.options, argc, argv)) return STATUS_USAGE;
     if (options->wants_help) {
         scan_help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (options->estimate) return print_estimate(options);
-    if (!events_begin()) return STATUS_FAILED;
-    if (!channel_open(&session.channel, options->port, &scan_dyp_line)) {
+    if (!host->begin(host->ctx)) return STATUS_FAILED;
+    if (!channel_open(&session.channel, host, options->port, &scan_dyp_line)) {
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&session.channel.port));
         return STATUS_FAILED;
     }
@@ -268,7 +273,7 @@ static int run(int argc, char **argv)
     session.wire.clock = &session.channel.clock;
     session.wire.ctx = &session;
     announce(&options->plan);
-    session.start_us = fathom_posix_now_us();
+    session.start_us = now_us(&session);
     scan_progress_begin(&session.progress, stderr, scan_plan_us(&options->plan));
     const int status = finish(&session, scan_line(&session));
     channel_close(&session.channel);

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "session.h"
 
-#include "events.h"
+#include <string.h>
+
 #include "output.h"
 
 enum { TEXT = 512 };
+
+static uint64_t now_us(const session_t *session) { return session->host->now_us(session->host->ctx); }
 
 static bool is_done(const session_t *session, const station_t *station)
 {
@@ -21,20 +24,21 @@ static station_t *end_of(session_t *session)
 
 static bool is_over(const session_t *session)
 {
+    const host_t *const host = session->host;
     const session_options_t *const options = &session->options;
     const station_t *const end = options->stations + options->station_count;
     const station_t *station = options->stations;
     while (station != end && is_done(session, station)) station++;
-    return events_ended() || events_output_gone() || session->user->is_over(session->ctx) ||
-           (session->is_lost && !options->reconnect) || station == end ||
-           (options->duration_us != 0 && session_time_us(session) >= options->duration_us);
+    return host->has_ended(host->ctx) || host->is_output_gone(host->ctx) ||
+           session->user->is_over(session->ctx) || (session->is_lost && !options->reconnect) ||
+           station == end || (options->duration_us != 0 && session_time_us(session) >= options->duration_us);
 }
 
-uint64_t session_time_us(const session_t *session) { return fathom_posix_now_us() - session->start_us; }
+uint64_t session_time_us(const session_t *session) { return now_us(session) - session->start_us; }
 
 uint64_t session_sample_us(const session_t *session, const fathom_sample_t *sample)
 {
-    return time_extend(fathom_posix_now_us(), sample->time_us) - session->start_us;
+    return time_extend(now_us(session), sample->time_us) - session->start_us;
 }
 
 /* ---- what was heard, and of whom ---- */
@@ -131,13 +135,13 @@ static void begin_attempt(station_t *station)
 
 static void end_attempt(const session_t *session, station_t *station)
 {
-    const uint64_t now_us = fathom_posix_now_us();
+    const uint64_t now = now_us(session);
     station->tally.attempts++;
     if (station->has_failed) station->tally.failed++;
     station->has_failed = false;
     station->answering = false;
     station->next_us += session->options.interval_us;
-    if (station->next_us < now_us) station->next_us = now_us; /* what is late is not made up for */
+    if (station->next_us < now) station->next_us = now; /* what is late is not made up for */
     begin_attempt(station);
 }
 
@@ -145,11 +149,11 @@ static void end_attempt(const session_t *session, station_t *station)
  * A sensor that sends by itself does not keep the user's interval: what comes between two attempts is dropped,
  * a whole answer at a time. The driver of a sensor that is asked keeps the interval itself.
  */
-static bool is_early(station_t *station, fathom_status_t status)
+static bool is_early(const session_t *session, station_t *station, fathom_status_t status)
 {
     if (station->reader.is_paced || station->answering) return false;
     const bool is_first = !station->skipping;
-    if (is_first) station->skipping = fathom_posix_now_us() < station->next_us;
+    if (is_first) station->skipping = now_us(session) < station->next_us;
     if (!station->skipping) return false;
     if (is_first && status != FATHOM_ERR_STALE) station->tally.skipped++;
     station->skipping = reader_has_more(&station->reader);
@@ -162,7 +166,7 @@ static void take_outcome(session_t *session, station_t *station, fathom_status_t
                          const fathom_sample_t *sample)
 {
     tally_take(&station->tally, &session->port_counts, &session->channel, &station->reader);
-    if (status != FATHOM_ERR_PORT && is_early(station, status)) return;
+    if (status != FATHOM_ERR_PORT && is_early(session, station, status)) return;
     if (status == FATHOM_READY && station->reader.unit != NULL && !station->answering)
         tally_time(&station->tally, fathom_elapsed_us(sample->time_us, station->ear->asked_us));
     station->answering = true;
@@ -177,7 +181,7 @@ static void take_outcome(session_t *session, station_t *station, fathom_status_t
 /* ---- the loop ---- */
 
 /* Sleeps for max_us at most. */
-static void wait_for(session_t *session, int fd, short events, uint32_t max_us)
+static void wait_for(session_t *session, const fathom_posix_uart_t *port, uint32_t max_us)
 {
     const uint64_t duration_us = session->options.duration_us;
     const uint64_t time_us = session_time_us(session);
@@ -185,7 +189,7 @@ static void wait_for(session_t *session, int fd, short events, uint32_t max_us)
     const uint32_t tick_us = session->user->tick(session->ctx);
     if (max_us > tick_us) max_us = tick_us;
     if (duration_us != 0 && max_us > left_us) max_us = (uint32_t)left_us;
-    events_wait(fd, events, max_us, true);
+    session->host->wait(session->host->ctx, port, max_us, true);
 }
 
 /* False: it has nothing to say now. */
@@ -249,7 +253,7 @@ static bool begin_station(session_t *session, station_t *station)
     *station->reader.sequence = sequence;
     station->ear = is_shared(session) ? &station->own_ear : &session->channel.ear;
     begin_attempt(station);
-    station->next_us = fathom_posix_now_us();
+    station->next_us = now_us(session);
     station->skipping = false;
     station->answering = false;
     return true;
@@ -271,8 +275,8 @@ static bool begin_reading(session_t *session)
 static bool wait_for_port(session_t *session)
 {
     const fathom_line_settings_t *const line = &session->options.line;
-    do wait_for(session, -1, 0, PLUG_RETRY_US);
-    while (!is_over(session) && !plug_try(&session->plug, &session->channel, line));
+    do wait_for(session, NULL, PLUG_RETRY_US);
+    while (!is_over(session) && !plug_try(&session->plug, &session->channel, session->host, line));
     return !is_over(session);
 }
 
@@ -301,11 +305,10 @@ bool session_run(session_t *session)
     if (!begin_reading(session)) return false;
     while (!is_over(session)) {
         const bool has_come = poll_all(session);
-        const fathom_posix_uart_t *const port = &session->channel.port;
         if (session->is_lost) {
             if (!is_over(session) && !reconnect(session)) return false;
         } else if (!has_come) {
-            wait_for(session, fathom_posix_fd(port), fathom_posix_poll_events(port), due_us(session));
+            wait_for(session, &session->channel.port, due_us(session));
         }
     }
     return true;
@@ -313,9 +316,11 @@ bool session_run(session_t *session)
 
 /* ---- begin and end ---- */
 
-void session_begin(session_t *session, const session_user_t *user, void *ctx)
+void session_begin(session_t *session, const host_t *host, const session_user_t *user, void *ctx)
 {
-    session->start_us = fathom_posix_now_us();
+    memset(session, 0, sizeof *session);
+    session->host = host;
+    session->start_us = now_us(session);
     session->user = user;
     session->ctx = ctx;
 }
@@ -327,7 +332,7 @@ bool session_open(session_t *session)
     char text[TEXT];
     session->channel.echo = options->echo;
     session->plug.path = options->port;
-    if (plug_try(&session->plug, &session->channel, &options->line)) return true;
+    if (plug_try(&session->plug, &session->channel, session->host, &options->line)) return true;
     session->is_lost = options->reconnect && fathom_posix_error(port) == FATHOM_POSIX_ERR_NOT_FOUND;
     (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(port),
                    session->is_lost ? "; waiting until it is there" : "");

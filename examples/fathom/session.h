@@ -27,6 +27,7 @@ typedef struct {
 
 struct session {
     session_options_t options;
+    const host_t *host;
     const session_user_t *user;
     void *ctx;
     channel_t channel;
@@ -37,8 +38,8 @@ struct session {
     bool is_lost; /* the port */
 };
 
-/* To be called first. */
-void session_begin(session_t *session, const session_user_t *user, void *ctx);
+/* To be called first; all of it is cleared. */
+void session_begin(session_t *session, const host_t *host, const session_user_t *user, void *ctx);
 
 /* Opens the port. False, after saying why: it cannot be opened, or (is_lost) it was waited for until the user ended
  * that. */

@@ -204,7 +204,7 @@ static char **mark_negative(int *argc, char **argv, char *copy[MAX_WORDS])
     return copy;
 }
 
-static int run(int argc, char **argv)
+static int run(const host_t *host, int argc, char **argv)
 {
     char *copy[MAX_WORDS];
     argv = mark_negative(&argc, argv, copy);
@@ -233,7 +233,7 @@ static int run(int argc, char **argv)
     if (!setting_parse(command, setting, words[1], &value) ||
         !talk_set_mode(&talk, command, values, setting->mode))
         return STATUS_USAGE;
-    if (!talk_open(&talk)) return STATUS_FAILED;
+    if (!talk_open(&talk, host)) return STATUS_FAILED;
     const int status = set(setting, value);
     talk_close(&talk);
     return status;

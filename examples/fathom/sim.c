@@ -99,9 +99,10 @@ static void print_counters(const session_t *session)
         sim_print_counters(stderr, &session->options, i, session->devices[i].base, &session->line);
 }
 
-static int run(int argc, char **argv)
+static int run(const host_t *host, int argc, char **argv)
 {
     static session_t session;
+    (void)host; /* it runs in real time, on a pseudo terminal */
     if (!sim_options(&session.options, argc, argv)) return STATUS_USAGE;
     if (session.options.wants_help) {
         sim_help(stdout);

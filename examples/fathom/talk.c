@@ -5,7 +5,6 @@
 
 #include "advice.h"
 #include "command.h"
-#include "events.h"
 #include "options.h"
 
 const struct option talk_table[TALK_OPTIONS + 1] = {
@@ -70,7 +69,7 @@ bool talk_set_mode(talk_t *talk, const char *command, const char *const *values,
 
 const setting_t *talk_settings(const talk_t *talk) { return talk->station->sensor->settings; }
 
-bool talk_open(talk_t *talk)
+bool talk_open(talk_t *talk, const host_t *host)
 {
     const session_options_t *const options = &talk->options;
     station_t *const station = talk->station;
@@ -81,8 +80,8 @@ bool talk_open(talk_t *talk)
                                         .address = station->address,
                                         .retries = options->retries};
     talk->channel.echo = options->echo;
-    if (!events_begin()) return false;
-    if (!channel_open(&talk->channel, options->port, &options->line)) {
+    if (!host->begin(host->ctx)) return false;
+    if (!channel_open(&talk->channel, host, options->port, &options->line)) {
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&talk->channel.port));
         return false;
     }
@@ -98,15 +97,15 @@ void talk_close(talk_t *talk) { channel_close(&talk->channel); }
 fathom_status_t talk_call(talk_t *talk, talk_call_t call, void *ctx)
 {
     reader_t *const reader = &talk->station->reader;
-    fathom_posix_uart_t *const port = &talk->channel.port;
+    const host_t *const host = talk->channel.host;
+    const fathom_posix_uart_t *const port = &talk->channel.port;
     tally_begin_attempt(&talk->station->tally);
     ear_forget(&talk->channel.ear);
-    while (!events_ended()) {
+    while (!host->has_ended(host->ctx)) {
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
-        events_wait(fathom_posix_fd(port), fathom_posix_poll_events(port), fathom_due_us(&reader->sensor, 1),
-                    false);
+        host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
     }
     return FATHOM_ERR_CANCELLED;
 }

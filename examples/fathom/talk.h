@@ -33,7 +33,7 @@ bool talk_set_mode(talk_t *talk, const char *command, const char *const *values,
 const setting_t *talk_settings(const talk_t *talk);
 
 /* False after saying why. */
-bool talk_open(talk_t *talk);
+bool talk_open(talk_t *talk, const host_t *host);
 void talk_close(talk_t *talk);
 
 /* Calls until it is not FATHOM_PENDING, waiting as long as it may. A signal ends it: FATHOM_ERR_CANCELLED. */

@@ -142,11 +142,12 @@ static bool is_over(const void *ctx) { return ((const watch_t *)ctx)->output_err
 
 static int finish(watch_t *watch)
 {
+    const host_t *const host = watch->session.host;
     account_t account;
     const bool is_lost = watch->session.is_lost;
     terminal_give_back();
-    if (watch->output_error == EINTR && events_ended()) watch->output_error = 0;
-    if (watch->output_error == EPIPE || events_output_gone()) return STATUS_FAILED;
+    if (watch->output_error == EINTR && host->has_ended(host->ctx)) watch->output_error = 0;
+    if (watch->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (watch->output_error != 0)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
     /* On the screen that has just gone, this stood last. */
@@ -202,23 +203,26 @@ static bool take_options(session_options_t *options, int argc, char **argv, bool
     return true;
 }
 
-static int run(int argc, char **argv)
+static int run(const host_t *host, int argc, char **argv)
 {
     static const session_user_t user = {take_reading, take_failure, take_port, tick, is_over};
-    static watch_t watch; /* all zero, and too large for any stack */
+    static watch_t watch; /* too large for any stack */
     session_t *const session = &watch.session;
     bool wants_help = false;
-    session_begin(session, &user, &watch);
+    memset(&watch, 0, sizeof watch);
+    session_begin(session, host, &user, &watch);
     if (!take_options(&session->options, argc, argv, &wants_help)) return STATUS_USAGE;
     if (wants_help) {
         help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    if (!events_begin()) return STATUS_FAILED;
-    events_note(SIGWINCH);
+    if (!host->begin(host->ctx)) return STATUS_FAILED;
     lanes_begin(&watch.lanes, &session->options);
     watch.draws = terminal_can_draw();
-    if (watch.draws) terminal_take();
+    if (watch.draws) {
+        events_note(SIGWINCH);
+        terminal_take();
+    }
     terminal_size(&watch.rows, &watch.columns);
     if (!session_open(session)) {
         if (session->is_lost) return finish(&watch);

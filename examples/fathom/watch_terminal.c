@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): ioctl, tcgetpgrp */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): ioctl, tcgetpgrp, fileno */
 #include "watch_terminal.h"
 
 #include <errno.h>
@@ -29,7 +29,7 @@ static const char *environment(const char *name)
 bool terminal_can_draw(void)
 {
     const char *const type = environment("TERM");
-    return isatty(STDOUT_FILENO) == 1 && type[0] != '\0' && strcmp(type, "dumb") != 0;
+    return isatty(fileno(stdout)) == 1 && type[0] != '\0' && strcmp(type, "dumb") != 0;
 }
 
 bool terminal_has_colours(void) { return environment("NO_COLOR")[0] == '\0'; }
@@ -74,6 +74,7 @@ void terminal_take(void)
         (void)tcsetattr(STDIN_FILENO, TCSADRAIN, &quiet);
     }
     terminal.is_taken = true;
+    terminal.shown.rows = 0;
     /* Another screen, no cursor, no new line at the right edge, nothing on it. */
     (void)write_all("\x1B[?1049h\x1B[?25l\x1B[?7l\x1B[2J");
 }

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdarg.h>
+#include <string.h>
+
+#include "command.h"
+#include "fathom/version.h"
+
+static const command_t *const commands[] = {
+    &scan_command, &read_command,  &watch_command,  &info_command, &get_command,
+    &set_command,  &reset_command, &decode_command, &sim_command,
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+int usage_error(const char *command, const char *format, ...)
+{
+    const char *const gap = command[0] != '\0' ? " " : "";
+    va_list arguments;
+    (void)fprintf(stderr, "fathom%s%s: ", gap, command);
+    va_start(arguments, format);
+    (void)vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    (void)fprintf(stderr, "; try: fathom%s%s --help\n", gap, command);
+    return STATUS_USAGE;
+}
+
+static int no_command(void)
+{
+    char names[80] = "";
+    for (size_t i = 0; i != COMMANDS; i++) {
+        const size_t length = strlen(names);
+        (void)snprintf(names + length, sizeof names - length, "%s%s", i != 0 ? ", " : "", commands[i]->name);
+    }
+    return usage_error("", "a command is missing: %s", names);
+}
+
+static void print_help(void)
+{
+    (void)printf("fathom reads the range sensors A16, A05 and HPS-167S on a serial port.\n\n"
+                 "usage: fathom COMMAND [ARGUMENTS]\n\n");
+    for (size_t i = 0; i != COMMANDS; i++)
+        (void)printf("  %-6s %s\n", commands[i]->name, commands[i]->summary);
+    (void)printf("\nfathom COMMAND --help   explains a command, with examples\n"
+                 "fathom --version        prints the version\n\n"
+                 "Without a sensor at hand, in two terminals:\n\n"
+                 "  fathom sim  a16 --link ./tank\n"
+                 "  fathom read a16 --port ./tank\n\n"
+                 "Exit status: 0 when nothing failed, 1 when the line, the port or the output did, 2 for "
+                 "wrong usage.\n");
+}
+
+int run_command(const host_t *host, int argc, char **argv)
+{
+    if (argc < 2) return no_command();
+    const char *const name = argv[1];
+    for (size_t i = 0; i != COMMANDS; i++)
+        if (strcmp(name, commands[i]->name) == 0) return commands[i]->run(host, argc - 1, argv + 1);
+    if (strcmp(name, "--version") == 0) {
+        (void)printf("fathom %s\n", FATHOM_VERSION_STRING);
+    } else if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        print_help();
+    } else {
+        return usage_error("", "there is no command '%s'", name);
+    }
+    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT */
+/* Every command of the tool in one process: what it prints, what it does to the device, and that nothing of it is left
+ * for the next one. */
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int set_up(void **state)
+{
+    bench_begin();
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+static const fathom_sim_a16_config_t any_a16;
+static const fathom_sim_a05_config_t any_a05;
+static const fathom_sim_hps167s_config_t any_hps167s;
+
+/* Of the last run: on the standard output, in this order. */
+static void expect_out(const tool_run_t *run, const char *const *texts)
+{
+    const char *at = run->out;
+    for (; *texts != NULL; texts++) {
+        at = strstr(at, *texts);
+        if (at == NULL) fail_msg("'%s' is not in\n%s%s", *texts, run->out, run->err);
+    }
+}
+
+#define EXPECT_OUT(run, ...) expect_out(run, (const char *const[]){__VA_ARGS__, NULL})
+
+TEST(a_line_without_a_sensor_is_no_answer_within_the_time_out)
+{
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a16:1:modbus --timeout 400 --count 1 --port line");
+    assert_int_equal(run->status, 1);
+    assert_string_equal(run->out, "");
+    assert_non_null(strstr(run->err, "nothing was heard"));
+    /* the time-out, and the request of 8 characters of 10 bits at 9600: 8.3 ms */
+    assert_in_range(run->took_us, 400000, 450000);
+}
+
+TEST(read_prints_a_frame_of_an_a16_that_sends_by_itself_every_100_ms)
+{
+    bench.line.full_duplex = true;
+    bench_a16((fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO});
+    const tool_run_t *const run = tool_run(&bench.tool, "read a16 --count 20 --format csv --port line");
+    assert_int_equal(run->status, 0);
+    EXPECT_OUT(run, ",1234,1234\n", ",1234,1234\n", ",1234,1234\n");
+    assert_in_range(run->took_us, 1900000, 2100000);
+    assert_int_equal(bench.a16.device.counters.requests, 0);
+}
+
+TEST(read_prints_the_four_probes_of_an_a05)
+{
+    bench_a05(any_a05);
+    bench.scene = (fathom_sim_fixed_t){{1000, 2000, 3000, FATHOM_SIM_NO_TARGET}};
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a05:1:modbus --count 1 --format csv --port line");
+    assert_int_equal(run->status, 0);
+    EXPECT_OUT(run, ",1000,1000\n", ",2000,2000\n", ",3000,3000\n", "no_target");
+}
+
+TEST(read_prints_what_an_hps167s_measures)
+{
+    bench_hps167s(any_hps167s);
+    const tool_run_t *const run = tool_run(&bench.tool, "read hps167s --count 2 --format json --port line");
+    assert_int_equal(run->status, 0);
+    EXPECT_OUT(run, "\"utc\":\"2025-11-24T16:00:0", "\"distance_mm\":1234", "\n{", "\"distance_mm\":1234");
+}
+
+TEST(info_prints_the_settings_of_an_a16)
+{
+    bench_a16(any_a16);
+    const tool_run_t *const run = tool_run(&bench.tool, "info a16 --port line");
+    assert_int_equal(run->status, 0);
+    EXPECT_OUT(run, "\naddress                    1\n", "\nswitch-threshold           1000 mm\n");
+    assert_int_equal(bench.a16.device.counters.writes, 0);
+}
+
+TEST(info_prints_the_settings_of_an_a05)
+{
+    bench_a05((fathom_sim_a05_config_t){.unit = 9});
+    EXPECT_OUT(tool_run(&bench.tool, "info a05:9 --port line"), "\naddress                    9\n");
+    assert_int_equal(bench.a05.device.counters.writes, 0);
+}
+
+TEST(info_prints_the_settings_of_an_hps167s)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.no_termination = true});
+    EXPECT_OUT(tool_run(&bench.tool, "info hps167s --port line"),
+               /* 77 degrees Fahrenheit are (77 - 32) * 5 / 9 = 25.0 Celsius */
+               "\ntemperature                25.0", "\ntermination                off\n");
+    assert_int_equal(bench.hps167s.device.counters.writes, 0);
+}
+
+TEST(set_moves_an_a16_to_another_address_where_it_is_read_then)
+{
+    bench_a16(any_a16);
+    ASSERT_RUN(0, "set a16 address 200 --port line");
+    assert_int_equal(bench.a16.device.unit, 200);
+    assert_int_equal(bench.a16.device.counters.writes, 1);
+    ASSERT_RUN(1, "get a16 address --port line");
+    EXPECT_OUT(tool_run(&bench.tool, "get a16:200 address --port line"), "200\n");
+}
+
+TEST(set_moves_an_a05_to_another_address_where_it_is_read_then)
+{
+    bench_a05(any_a05);
+    ASSERT_RUN(0, "set a05 address 2 --port line");
+    assert_int_equal(bench.a05.device.unit, 2);
+    ASSERT_RUN(0, "read a05:2:modbus --count 1 --port line");
+}
+
+TEST(set_switches_the_termination_of_an_hps167s_off)
+{
+    bench_hps167s(any_hps167s);
+    assert_true(bench.hps167s.termination);
+    ASSERT_RUN(0, "set hps167s termination off --port line");
+    assert_false(bench.hps167s.termination);
+}
+
+TEST(reset_gives_an_hps167s_its_factory_settings)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 7, .no_termination = true});
+    ASSERT_RUN(0, "reset hps167s:7 --yes-restore-factory-settings --port line");
+    assert_int_equal(bench.hps167s.device.unit, 1);
+    assert_true(bench.hps167s.termination);
+}
+
+TEST(scan_finds_one_of_each_sensor_on_a_line)
+{
+    bench_a16((fathom_sim_a16_config_t){.unit = 2});
+    bench_a05((fathom_sim_a05_config_t){.unit = 3});
+    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 32});
+    const tool_run_t *const run = tool_run(&bench.tool, "scan --port line");
+    assert_int_equal(run->status, 0);
+    EXPECT_OUT(run, "a16      address 2  ", "a05      address 3  ", "hps167s  address 32 ");
+    /* 3 s of listening, 32 addresses at 150 ms and at 100 ms, and a second for each sensor at most */
+    assert_in_range(run->took_us, 8000000, 17000000);
+    assert_int_equal(bench.a16.device.counters.writes + bench.a05.device.counters.writes +
+                         bench.hps167s.device.counters.writes,
+                     0);
+}
+
+TEST(watch_prints_a_line_a_second_until_it_is_over)
+{
+    bench_hps167s(any_hps167s);
+    const tool_run_t *const run = tool_run(&bench.tool, "watch hps167s --duration 3 --port line");
+    assert_int_equal(run->status, 0);
+    EXPECT_OUT(run, " 0.0 s  ", "\n     1.0 s  hps167s:1 1.234 m ", "\n     2.0 s  hps167s:1 1.234 m ");
+    assert_int_equal(run->took_us, 3000000);
+}
+
+TEST(decode_needs_no_line)
+{
+    /* the example of A16 6(2)1 */
+    const tool_run_t *const run = tool_run(&bench.tool, "decode 01 03 01 00 00 01 85 F6");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(run->took_us, 0);
+    EXPECT_OUT(run, "01 03 01 00 00 01 85 F6");
+}
+
+TEST(the_user_can_end_a_command)
+{
+    bench_hps167s(any_hps167s);
+    bench.tool.ctrl_c_us = 5000000;
+    const tool_run_t *const run = tool_run(&bench.tool, "read hps167s --interval 1000 --port line");
+    assert_int_equal(run->status, 0);
+    assert_in_range(run->took_us, 5000000, 5100000);
+    assert_non_null(strstr(run->err, "attempts 5, failed 0"));
+}
+
+/* ---- one after the other ---- */
+
+enum { COPY = 2048 };
+
+static void copy_of(char to[COPY], const tool_run_t *run)
+{
+    assert_in_range(snprintf(to, COPY, "%d\n%s%s", run->status, run->out, run->err), 1, COPY - 1);
+}
+
+/* Wherever the command line was left by the one before: wrong words, help, a sensor that was not there. */
+TEST(a_command_keeps_nothing_of_the_one_before)
+{
+    static const char *const befores[] = {"read",
+                                          "read --help",
+                                          "read a16 --bogus --port line",
+                                          "read a16 hps167s:9 --parity",
+                                          "read a16 a05:7:dyp --timeout 50 --count 9 --stats --port line",
+                                          "get a05 --format json --port line address",
+                                          "info hps167s:3 --address 3",
+                                          "set a16 -- --port line",
+                                          "scan --port line --address 9 --listen 1 --format json",
+                                          "watch a05:2:modbus --timeout 10 --duration 1 --port line",
+                                          "--version",
+                                          "bogus"};
+    static const char command[] = "read hps167s --count 3 --timeout 300 --format json --port line";
+    char alone[COPY];
+    char after[COPY];
+    for (size_t i = 0; i != sizeof befores / sizeof befores[0]; i++) {
+        bench_begin();
+        bench_hps167s(any_hps167s);
+        copy_of(alone, tool_run(&bench.tool, command));
+        assert_non_null(strstr(alone, "attempts 3, failed 0, readings 3\n"));
+        (void)tool_run(&bench.tool, "%s", befores[i]);
+        bench_begin();
+        bench_hps167s(any_hps167s);
+        copy_of(after, tool_run(&bench.tool, command));
+        assert_string_equal(alone, after);
+    }
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+#include "tool_bench.h"
+
+#include <string.h>
+
+tool_bench_t bench;
+
+void bench_begin(void)
+{
+    const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    memset(&bench, 0, sizeof bench);
+    for (int i = 0; i != 4; i++) bench.scene.value[i] = 1234;
+    fathom_sim_clock_init(&bench.clock, UINT32_MAX - 1000000, 0);
+    fathom_sim_line_init(&bench.line, &settings, bench.clock.now_us);
+    fathom_sim_uart_init(&bench.uart, &bench.line, &bench.clock);
+    bench.uart.knows = 0; /* as a tty, which says nothing of single bytes */
+    bench.tool = (tool_line_t){.uart = fathom_sim_uart(&bench.uart),
+                               .clock = fathom_sim_clock(&bench.clock),
+                               .idle = fathom_sim_clock_idle,
+                               .ctx = &bench.clock};
+}
+
+void bench_a16(fathom_sim_a16_config_t config)
+{
+    if (config.mode == 0) config.mode = FATHOM_SIM_A16_MODBUS;
+    if (config.scene.distance == NULL) config.scene = fathom_sim_fixed(&bench.scene);
+    fathom_sim_a16_init(&bench.a16, &config);
+    fathom_sim_attach(&bench.line, &bench.a16.device, bench.clock.now_us);
+}
+
+void bench_a05(fathom_sim_a05_config_t config)
+{
+    if (config.mode == 0) config.mode = FATHOM_SIM_A05_MODBUS;
+    if (config.scene.distance == NULL) config.scene = fathom_sim_fixed(&bench.scene);
+    fathom_sim_a05_init(&bench.a05, &config);
+    fathom_sim_attach(&bench.line, &bench.a05.device, bench.clock.now_us);
+}
+
+void bench_hps167s(fathom_sim_hps167s_config_t config)
+{
+    if (config.scene.distance == NULL) config.scene = fathom_sim_fixed(&bench.scene);
+    fathom_sim_hps167s_init(&bench.hps167s, &config);
+    fathom_sim_attach(&bench.line, &bench.hps167s.device, bench.clock.now_us);
+}

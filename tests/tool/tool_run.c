@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream; stdout is a variable */
+#include "tool_run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "command.h"
+
+enum { WORDS = 64, TEXT = 1024 };
+static const uint64_t longest_us = UINT64_C(7200000000);
+static const uint64_t began_utc_us = UINT64_C(1764000000000000); /* 2025-11-24, 16:00 */
+
+typedef struct {
+    const tool_line_t *line;
+    uint32_t last_us; /* of the line's clock */
+    uint64_t now_us;  /* since the begin */
+    bool is_endless;
+} machine_t;
+
+static uint64_t now_us(void *ctx)
+{
+    machine_t *const machine = ctx;
+    const fathom_clock_t *const clock = &machine->line->clock;
+    const uint32_t now = clock->now_us(clock->ctx);
+    machine->now_us += fathom_elapsed_us(now, machine->last_us);
+    machine->last_us = now;
+    return machine->now_us;
+}
+
+static uint64_t utc_us(void *ctx) { return began_utc_us + now_us(ctx); }
+
+/* As fathom_posix_open: what came before is thrown away. */
+static bool open_port(void *ctx, const char *path, const fathom_line_settings_t *settings,
+                      fathom_posix_uart_t *port, fathom_uart_t *uart)
+{
+    const machine_t *const machine = ctx;
+    uint8_t bytes[64];
+    fathom_rx_t rx;
+    memset(port, 0, sizeof *port);
+    port->fd = -1;
+    (void)snprintf(port->path, sizeof port->path, "%s", path);
+    *uart = machine->line->uart;
+    if (uart->set_line != NULL && uart->set_line(uart->ctx, settings) < 0) {
+        port->error = FATHOM_POSIX_ERR_REFUSED;
+        (void)snprintf(port->text, sizeof port->text, "%s: refused", path);
+        return false;
+    }
+    do memset(&rx, 0, sizeof rx);
+    while (uart->read(uart->ctx, bytes, sizeof bytes, &rx) > 0);
+    return true;
+}
+
+static void close_port(void *ctx, fathom_posix_uart_t *port) {}
+
+static bool begin(void *ctx) { return true; }
+
+static bool has_ended(void *ctx)
+{
+    machine_t *const machine = ctx;
+    const uint64_t ctrl_c_us = machine->line->ctrl_c_us;
+    const uint64_t now = now_us(ctx);
+    if (now >= longest_us) machine->is_endless = true;
+    return machine->is_endless || (ctrl_c_us != 0 && now >= ctrl_c_us);
+}
+
+static bool is_output_gone(void *ctx) { return false; }
+
+static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us, bool watch_output)
+{
+    const tool_line_t *const line = ((const machine_t *)ctx)->line;
+    line->idle(line->ctx, max_us != 0 ? max_us : 1);
+    (void)now_us(ctx);
+}
+
+/* Into argv, whose first word is "fathom". */
+static int split(char *text, char *argv[WORDS])
+{
+    static char name[] = "fathom";
+    int count = 1;
+    argv[0] = name;
+    for (char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
+        assert_true(count < WORDS - 1);
+        argv[count++] = word;
+    }
+    argv[count] = NULL;
+    return count;
+}
+
+const tool_run_t *tool_run(const tool_line_t *line, const char *format, ...)
+{
+    static tool_run_t run;
+    static char *out;
+    static char *err;
+    machine_t machine = {.line = line, .last_us = line->clock.now_us(line->clock.ctx)};
+    const host_t host = {open_port, close_port,     now_us,   utc_us,  begin,
+                         has_ended, is_output_gone, wait_for, &machine};
+    char text[TEXT];
+    char *argv[WORDS];
+    size_t out_size;
+    size_t err_size;
+    va_list arguments;
+    va_start(arguments, format);
+    assert_in_range(vsnprintf(text, sizeof text, format, arguments), 1, sizeof text - 1);
+    va_end(arguments);
+    const int argc = split(text, argv);
+    free(out);
+    free(err);
+    FILE *const own_stdout = stdout;
+    FILE *const own_stderr = stderr;
+    stdout = open_memstream(&out, &out_size);
+    stderr = open_memstream(&err, &err_size);
+    run.status = run_command(&host, argc, argv);
+    (void)fclose(stdout);
+    (void)fclose(stderr);
+    stdout = own_stdout;
+    stderr = own_stderr;
+    run.out = out;
+    run.err = err;
+    run.took_us = now_us(&machine);
+    if (machine.is_endless) fail_msg("it does not end: fathom %s ...\n%s%s", argv[1], out, err);
+    return &run;
+}
