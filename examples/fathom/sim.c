@@ -49,7 +49,9 @@ static bool open_line(session_t *session)
     for (uint32_t i = 0; i != options->count; i++) hang_device(session, i, now_us);
     if (fathom_sim_pty_open(&session->pty, &session->line, &config) == 0) return true;
     if (options->link != NULL && errno == EEXIST)
-        (void)fprintf(stderr, "fathom: %s is there already and is no link; choose another --link\n",
+        (void)fprintf(stderr,
+                      "fathom: %s is there already, and is no link that a killed fathom sim has left behind; "
+                      "choose another --link, or remove it first\n",
                       options->link);
     else
         (void)fprintf(stderr, "fathom: the simulated port%s%s: %s\n",

@@ -37,12 +37,24 @@ uint32_t fathom_sim_pty_now_us(void)
 
 /* ---- the link ---- */
 
-/* A link to a name that exists only then, moved over the old one: nobody ever sees it missing. */
+/* Was it left behind by a pty that was killed? Then it leads to a terminal that is gone, or whose number is this one's. */
+static bool is_left_behind(const char *link, const char *path)
+{
+    char to[FATHOM_SIM_PTY_PATH];
+    const ssize_t length = readlink(link, to, sizeof to - 1);
+    const size_t folder = (size_t)(strrchr(path, '/') - path) + 1;
+    if (length < 0) return false;
+    to[length] = '\0';
+    return strncmp(to, path, folder) == 0 && (strcmp(to, path) == 0 || access(to, F_OK) < 0);
+}
+
+/* One that is replaced is never missing: the new one has another name first. */
 static int make_link(const char *path, const char *link)
 {
     char fresh[FATHOM_SIM_PTY_LINK + 24];
-    struct stat there;
-    if (lstat(link, &there) == 0 && !S_ISLNK(there.st_mode)) {
+    if (symlink(path, link) == 0) return 0;
+    if (errno != EEXIST) return -1;
+    if (!is_left_behind(link, path)) {
         errno = EEXIST;
         return -1;
     }

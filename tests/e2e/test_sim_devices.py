@@ -69,20 +69,32 @@ class Link(Case):
     def test_a_link_that_was_left_behind_is_replaced(self):
         self.sim(f'a16 --link {self.link}').end(signal.SIGKILL)
         self.assertTrue(os.path.lexists(self.link))
+        os.unlink(self.link)
+        os.symlink('/dev/pts/99999999', self.link)  # because another test may have got its number by now
         sim = self.sim(f'a16 --distance 754 --link {self.link}')
         self.assertEqual(self.read_json(f'a16 --port {self.link} --count 1')[0]['distance_mm'], 754)
         sim.end()
         self.assertFalse(os.path.lexists(self.link))
 
-    def test_a_link_that_is_now_anothers_stays(self):
-        first, second = (self.sim(f'a16 --link {self.link}') for _ in range(2))
+    def refuses_the_link(self):
+        self.ends(f'sim a16 --link {self.link}', 1, f'fathom: {self.link} is there already, and is no link that',
+                  out='')
+
+    def test_a_link_of_the_users_is_neither_replaced_nor_removed(self):
+        first = self.sim(f'a16 --link {self.link}')
+        self.refuses_the_link()
+        self.assertEqual(os.readlink(self.link), first.port)
+        for target in ('/', '/dev/ttyUSB_none'):
+            os.unlink(self.link)
+            os.symlink(target, self.link)
+            self.refuses_the_link()
         self.assertEqual(first.end().code, 0)
-        self.assertEqual(os.readlink(self.link), second.port)
+        self.assertEqual(os.readlink(self.link), target)
 
     def test_a_file_in_the_way_is_kept_and_told(self):
         with open(self.link, 'w', encoding='ascii') as file:
             file.write('precious')
-        self.ends(f'sim a16 --link {self.link}', 1, f'{self.link} is there already and is no link', out='')
+        self.refuses_the_link()
         with open(self.link, encoding='ascii') as file:
             self.assertEqual(file.read(), 'precious')
 

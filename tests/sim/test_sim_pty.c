@@ -223,24 +223,71 @@ TEST(what_nobody_reads_does_not_pile_up)
     close(client);
 }
 
-TEST(the_link_leads_to_the_terminal_and_replaces_an_old_one)
+static void expect_link_to(const char *path)
 {
-    char target[64] = {0};
-    fathom_sim_pty_t second;
-    set_up(&bench_9600);
+    char target[128] = {0};
     assert_true(readlink(link_path, target, sizeof target - 1) > 0);
-    assert_string_equal(target, fathom_sim_pty_path(&pty));
-    fathom_sim_line_t line;
-    fathom_sim_line_init(&line, &bench_9600, fathom_sim_pty_now_us());
+    assert_string_equal(target, path);
+}
+
+static void put_link_to(const char *path)
+{
+    (void)unlink(link_path);
+    assert_int_equal(symlink(path, link_path), 0);
+}
+
+static int open_again(void)
+{
     const fathom_sim_pty_config_t config = {.link = link_path};
-    assert_int_equal(fathom_sim_pty_open(&second, &line, &config), 0);
-    memset(target, 0, sizeof target);
-    assert_true(readlink(link_path, target, sizeof target - 1) > 0);
-    assert_string_equal(target, fathom_sim_pty_path(&second));
-    fathom_sim_pty_close(&pty); /* it is not the first one's any more */
-    assert_int_equal(access(link_path, F_OK), 0);
-    fathom_sim_pty_close(&second);
-    fathom_sim_pty_close(&second); /* twice is no error */
+    return fathom_sim_pty_open(&pty, &bench.line, &config);
+}
+
+TEST(the_link_leads_to_the_terminal_and_replaces_one_that_was_left_behind)
+{
+    set_up(&bench_9600);
+    expect_link_to(fathom_sim_pty_path(&pty));
+    fathom_sim_pty_close(&pty);
+    put_link_to("/dev/pts/99999999");
+    assert_int_equal(open_again(), 0);
+    expect_link_to(fathom_sim_pty_path(&pty));
+    fathom_sim_pty_close(&pty);
+    fathom_sim_pty_close(&pty); /* twice is no error */
+}
+
+/* The next one opened has the lowest number that is free: mostly that of the one which was killed. */
+TEST(a_link_left_behind_may_lead_to_the_new_terminal)
+{
+    bool is_replaced = false;
+    set_up(&bench_9600);
+    for (int tries = 0; tries != 100 && !is_replaced; tries++) { /* another program may get it first */
+        char old[FATHOM_SIM_PTY_PATH];
+        strcpy(old, fathom_sim_pty_path(&pty));
+        fathom_sim_pty_close(&pty);
+        put_link_to(old);
+        is_replaced = open_again() == 0;
+    }
+    assert_true(is_replaced);
+    expect_link_to(fathom_sim_pty_path(&pty));
+}
+
+/* To what is there, or to what only the user knows, such as an adapter that is unplugged. */
+TEST(a_link_of_the_users_is_neither_replaced_nor_removed)
+{
+    set_up(&bench_9600);
+    const char *const targets[] = {fathom_sim_pty_path(&pty), "/tmp", "/dev/ttyUSB_none", "port", "nowhere"};
+    for (size_t i = 0; i != 5; i++) {
+        fathom_sim_pty_t second;
+        fathom_sim_line_t line;
+        fathom_sim_line_init(&line, &bench_9600, fathom_sim_pty_now_us());
+        put_link_to(targets[i]);
+        const fathom_sim_pty_config_t config = {.link = link_path};
+        assert_int_equal(fathom_sim_pty_open(&second, &line, &config), -1);
+        assert_int_equal(errno, EEXIST);
+        expect_link_to(targets[i]);
+    }
+    fathom_sim_pty_close(&pty); /* it is not its any more */
+    expect_link_to("nowhere");
+    assert_int_equal(unlink(link_path), 0);
 }
 
 /* Nor is a place where none can be made an invention. */
