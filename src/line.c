@@ -80,7 +80,8 @@ static fathom_status_t broken(fathom_line_t *line)
 /* Reads what has come and looks at it; false: the port is broken. */
 static bool receive(fathom_line_t *line, uint32_t passed_us)
 {
-    for (uint8_t reads = MAX_READS; reads != 0; reads--) {
+    uint8_t reads = MAX_READS;
+    for (; reads != 0; reads--) {
         int came = fathom_line_read(line);
         if (came <= 0) {
             set_silent(line, line->silent_us + passed_us);
@@ -96,6 +97,7 @@ static bool receive(fathom_line_t *line, uint32_t passed_us)
         line->have = (uint8_t)(line->have + came);
         fathom_line_scan(line, false);
     }
+    if (reads == 0) line->silent_us = 0; /* the port may hold more, whatever a stamp says of what it gave */
     /* Asked here, since most polls find nothing: on an AVR that is a quarter of such a poll. */
     if (line->have != 0 && line->silent_us >= gap_us(line)) fathom_line_scan(line, true);
     return true;

@@ -105,6 +105,24 @@ TEST(a_time_stamp_half_way_round_the_clock_is_in_the_future)
     }
 }
 
+/* The loop has slept for 9 s, and a unit that sends by itself has filled the port's buffer, a read each frame. */
+TEST(no_request_leaves_while_the_port_may_hold_bytes_from_before_it)
+{
+    ahead_us = (uint32_t)-9000000;
+    run(T3_5_US);
+    ask(&bench.request, 1, &bench.value, 0);
+    for (unsigned read = 0; read != 40; read++) fake_receive(&bench.fake, read + 1, answer_1_754, 7);
+    bench.fake.now_us += 100;
+    for (unsigned poll = 0; poll != 2; poll++) {
+        (void)fathom_line_poll(&bench.line);
+        assert_int_equal(bench.fake.written, 0);
+        assert_false(fake_drained(&bench.fake));
+    }
+    run(T3_5_US); /* the third finds the end of it, and the last stamp is older than any silence */
+    assert_true(fake_drained(&bench.fake));
+    assert_int_equal(bench.fake.written, 1);
+}
+
 /* Another task has run for 20 ms; without stamps the bytes may be as new as the read. */
 TEST(the_silence_before_a_request_is_counted_from_a_byte_that_came_after_the_look_at_the_clock)
 {
