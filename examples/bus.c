@@ -105,7 +105,8 @@ static void use(uint32_t time_us, int i, fathom_status_t status, const fathom_sa
     else if (sample->kind == FATHOM_TARGET)
         (void)printf("probe %u  %5u mm\n", sample->probe, sample->distance_mm);
     else
-        (void)printf("probe %u  %s\n", sample->probe, sample->kind == FATHOM_FAULT ? "fault" : "no target");
+        (void)printf("probe %u  %s\n", sample->probe,
+                     sample->kind == FATHOM_NO_TARGET ? "no target" : "no distance");
 }
 
 /* The main loop, until so long after the start. `idle` sleeps until bytes come, at most so long; a loop that has other

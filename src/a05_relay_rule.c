@@ -8,6 +8,7 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
 {
     fathom_debounce_config_t own;
     own.hold_us = config->hold_us != 0 ? config->hold_us : FATHOM_A05_RELAY_HOLD_US;
+    own.unknown_us = config->unknown_us;
     own.threshold_mm =
         config->threshold_mm != 0 ? config->threshold_mm : (uint16_t)FATHOM_A05_RELAY_DEFAULT_MM;
     own.near_count = 1; /* A05 4 knows no rows */
@@ -23,11 +24,12 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
     return fathom_debounce_init(&rule->debounce, &own);
 }
 
-/* What one probe says; 0: neither, the level holds. */
+/* What one probe says; 0: it stands at the threshold; FATHOM_UNKNOWN: nothing. */
 static uint8_t verdict_of(const fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
 {
     if (sample->kind == FATHOM_TARGET) return fathom_debounce_compare(&rule->debounce, sample->distance_mm);
-    return sample->kind == FATHOM_NO_TARGET ? (uint8_t)FATHOM_FAR : (uint8_t)0;
+    if (sample->kind == FATHOM_NO_TARGET) return FATHOM_FAR;
+    return sample->kind == FATHOM_NEAR ? (uint8_t)FATHOM_NEAR : (uint8_t)FATHOM_UNKNOWN;
 }
 
 bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
@@ -39,6 +41,7 @@ bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sa
         rule->missing = rule->probes;
         rule->verdict = FATHOM_FAR;
     }
+    if (verdict == FATHOM_UNKNOWN) return fathom_debounce_time(&rule->debounce, sample->time_us);
     if ((rule->missing & bit) == 0) return false;
     rule->missing &= (uint8_t)~bit;
     if (verdict != FATHOM_FAR) rule->verdict = verdict;

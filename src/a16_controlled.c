@@ -92,10 +92,6 @@ static fathom_status_t judge(fathom_a16_controlled_t *sensor, const uint8_t *fra
     sensor->waiting = false;
     sensor->answer_left_us = 0;
     fathom_dyp_frame_decode(frame, answer->values, 1);
-    if (!fathom_dyp_plausible(&answer->window, answer->values[0])) {
-        if (answer->implausible != UINT16_MAX) answer->implausible++;
-        return FATHOM_ERR_MALFORMED;
-    }
     fathom_dyp_answer(answer, 1, sensor->stream.time_us);
     return fathom_dyp_next(answer, sample);
 }

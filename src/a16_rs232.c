@@ -12,6 +12,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
 {
     rs232->modbus = modbus;
     rs232->automatic = automatic;
+    rs232->return_us = FATHOM_A16_RS232_DEFAULT_RETURN_US;
     rs232->since_us = 0;
     rs232->is_listening = false;
 }
@@ -57,8 +58,7 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     if (status == FATHOM_READY && is_since(rs232, heard.time_us)) {
         *sample = heard;
     } else if (status != FATHOM_ERR_PORT) {
-        if (fathom_elapsed_us(now_us(rs232), rs232->since_us) < FATHOM_A16_RS232_RETURN_US)
-            return FATHOM_PENDING;
+        if (fathom_elapsed_us(now_us(rs232), rs232->since_us) < rs232->return_us) return FATHOM_PENDING;
         status = FATHOM_ERR_UNCONFIRMED;
     }
     rs232->is_listening = false;
@@ -77,7 +77,6 @@ uint32_t fathom_a16_rs232_due_us(const fathom_a16_rs232_t *rs232)
     const fathom_sensor_t automatic = fathom_a16_auto_sensor(rs232->automatic);
     const uint32_t due_us = fathom_due_us(&automatic, 1);
     const uint32_t passed_us = fathom_elapsed_us(now_us(rs232), rs232->since_us);
-    const uint32_t left_us =
-        passed_us < FATHOM_A16_RS232_RETURN_US ? FATHOM_A16_RS232_RETURN_US - passed_us : 0;
+    const uint32_t left_us = passed_us < rs232->return_us ? rs232->return_us - passed_us : 0;
     return left_us < due_us ? left_us : due_us;
 }

@@ -9,6 +9,7 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
 {
     fathom_debounce_config_t *const own = &debounce->config;
     own->hold_us = config->hold_us;
+    own->unknown_us = config->unknown_us != 0 ? config->unknown_us : FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US;
     own->threshold_mm =
         config->threshold_mm != 0 ? config->threshold_mm : (uint16_t)FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM;
     own->near_count =
@@ -20,22 +21,42 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
     debounce->level = NEITHER;
     debounce->verdict = NEITHER;
     debounce->row = 0;
+    debounce->is_fed = false;
     return config->equal > FATHOM_EQUAL_IS_FAR ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
+}
+
+bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
+{
+    const uint32_t passed_us = fathom_elapsed_us(now_us, debounce->fed_us);
+    const uint8_t before = debounce->level;
+    /* Half a turn of the clock and more: it is a time before the measurement. */
+    if (!debounce->is_fed || passed_us <= debounce->config.unknown_us || passed_us > INT32_MAX) return false;
+    debounce->is_fed = false;
+    debounce->level = FATHOM_UNKNOWN;
+    debounce->row = 0;
+    debounce->left_us = 0;
+    return before != FATHOM_UNKNOWN;
 }
 
 bool fathom_debounce_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us)
 {
+    const uint8_t before = debounce->level;
+    (void)fathom_debounce_time(debounce, now_us);
     const bool is_over = fathom_run_down(&debounce->left_us, fathom_elapsed_us(now_us, debounce->fed_us));
     debounce->fed_us = now_us;
+    debounce->is_fed = true;
     if (debounce->verdict != verdict) debounce->row = 0;
     debounce->verdict = verdict;
-    if (verdict != FATHOM_NEAR && verdict != FATHOM_FAR) return false;
-    if (debounce->row != UINT8_MAX) debounce->row++;
-    const uint8_t enough = verdict == FATHOM_NEAR ? debounce->config.near_count : debounce->config.far_count;
-    if (debounce->level == verdict || debounce->row < enough || !is_over) return false;
-    debounce->level = verdict;
-    debounce->left_us = debounce->config.hold_us;
-    return true;
+    if (verdict == FATHOM_NEAR || verdict == FATHOM_FAR) {
+        if (debounce->row != UINT8_MAX) debounce->row++;
+        const uint8_t enough =
+            verdict == FATHOM_NEAR ? debounce->config.near_count : debounce->config.far_count;
+        if (debounce->level != verdict && debounce->row >= enough && is_over) {
+            debounce->level = verdict;
+            debounce->left_us = debounce->config.hold_us;
+        }
+    }
+    return debounce->level != before;
 }
 
 uint8_t fathom_debounce_compare(const fathom_debounce_t *debounce, uint16_t distance_mm)
@@ -63,6 +84,6 @@ bool fathom_debounce_sample(fathom_debounce_t *debounce, const fathom_sample_t *
     case FATHOM_FAR:
         return fathom_debounce_verdict(debounce, sample->kind, sample->time_us);
     default:
-        return false;
+        return fathom_debounce_time(debounce, sample->time_us);
     }
 }

@@ -13,6 +13,7 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 {
     fathom_status_t status = fathom_dyp_answer_init(&sensor->answer, default_max_mm);
     if (sensor->line == NULL || status < 0) return FATHOM_ERR_ARGUMENT;
+    sensor->was_odd = true; /* there is no frame before the first that could say otherwise */
     status = fathom_stream_init(&sensor->stream, &sensor->stream_config, now_us(sensor));
     fathom_line_listen(sensor->line, &sensor->stream.listener);
     return status;
@@ -23,12 +24,24 @@ void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor)
     if (sensor->line->listener == &sensor->stream.listener) fathom_line_listen(sensor->line, NULL);
 }
 
-static bool all_plausible(const fathom_dyp_auto_t *sensor)
+/* The first fitted probe, as a bit, whose value is refused; 0: none. */
+static uint8_t odd_probe(const fathom_dyp_auto_t *sensor)
 {
     const uint16_t *value = sensor->answer.values;
-    for (uint8_t left = sensor->probes; left != 0; left >>= 1, value++)
-        if ((left & 1) != 0 && !fathom_dyp_plausible(&sensor->answer.window, *value)) return false;
-    return true;
+    for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1), value++)
+        if ((sensor->probes & bit) != 0 &&
+            fathom_dyp_meaning(&sensor->answer.window, *value) == FATHOM_MEANS_REFUSED)
+            return bit;
+    return 0;
+}
+
+/* The probes of which the newest frame speaks: all that are fitted, or the odd one alone. */
+static uint8_t believed(fathom_dyp_auto_t *sensor)
+{
+    const uint8_t odd = odd_probe(sensor);
+    const bool is_whole = odd == 0 || (sensor->stream.sure && sensor->was_odd);
+    sensor->was_odd = odd != 0;
+    return is_whole ? sensor->probes : odd;
 }
 
 /* An exchange that is open makes the line hold bytes back. They are newer than the frame: no silence has ended it. */
@@ -51,11 +64,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const fathom_status_t status = fathom_stream_poll(&sensor->stream, now_us(sensor), &frame);
     if (status != FATHOM_READY) return status;
     fathom_dyp_frame_decode(frame, answer->values, (uint8_t)(sensor->stream_config.length / 2 - 1));
-    if (!all_plausible(sensor)) {
-        if (answer->implausible != UINT16_MAX) answer->implausible++;
-        return FATHOM_ERR_MALFORMED;
-    }
-    fathom_dyp_answer(answer, sensor->probes, sensor->stream.time_us);
+    fathom_dyp_answer(answer, believed(sensor), sensor->stream.time_us);
     return fathom_dyp_next(answer, sample);
 }
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/stream.h"
 
+enum { SURE_STEPS = 2 };
+
 static void count(fathom_stream_t *stream, uint8_t which)
 {
     if (stream->counters[which] != UINT16_MAX) stream->counters[which]++;
@@ -27,7 +29,7 @@ static void copy_ring(const fathom_stream_t *stream, uint8_t *to)
 }
 
 /* What comes after the candidate is known: is it the end of a frame? */
-static void decide(fathom_stream_t *stream, bool is_end)
+static void decide(fathom_stream_t *stream, bool is_end, bool is_silence)
 {
     if (!stream->candidate) return;
     stream->candidate = false;
@@ -39,6 +41,7 @@ static void decide(fathom_stream_t *stream, bool is_end)
     if (stream->fresh) count(stream, FATHOM_STREAM_MISSED);
     count(stream, FATHOM_STREAM_FRAMES);
     stream->fresh = true;
+    stream->sure = (is_silence && stream->first) || stream->steps >= SURE_STEPS;
     stream->time_us = stream->candidate_us;
 }
 
@@ -46,8 +49,10 @@ static void decide(fathom_stream_t *stream, bool is_end)
 static void judge(fathom_stream_t *stream, uint32_t time_us)
 {
     const uint8_t length = stream->config->length;
-    const bool is_first = stream->gap && stream->run == length;
-    if (is_first || (stream->since == length && !stream->doubtful)) {
+    const bool is_step = stream->since == length && !stream->doubtful;
+    stream->first = stream->gap && stream->run == length;
+    stream->steps = is_step ? one_more(stream->steps) : 0;
+    if (stream->first || is_step) {
         stream->candidate = true;
         stream->candidate_us = time_us;
     } else {
@@ -62,7 +67,7 @@ static void take(fathom_stream_t *stream, uint8_t byte, uint32_t time_us)
     const uint8_t length = stream->config->length;
     uint8_t *const ring = stream->config->storage;
     uint8_t frame[FATHOM_DYP_MAX_LENGTH];
-    decide(stream, byte == FATHOM_DYP_START);
+    decide(stream, byte == FATHOM_DYP_START, false);
     ring[stream->oldest] = byte;
     if (++stream->oldest == length) stream->oldest = 0;
     count(stream, FATHOM_STREAM_BYTES);
@@ -77,7 +82,7 @@ void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t c
                         uint32_t time_us)
 {
     if (after_gap) {
-        decide(stream, true);
+        decide(stream, true, true);
         stream->run = 0;
         stream->gap = true;
     } else if (count_of_bytes == 0) { /* some were lost: the next one is in no known place */
@@ -113,9 +118,12 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
     stream->run = 0;
     stream->since = UINT8_MAX;
     stream->gap = false;
+    stream->steps = 0;
     stream->doubtful = false;
+    stream->first = false;
     stream->candidate = false;
     stream->fresh = false;
+    stream->sure = false;
     return FATHOM_READY;
 }
 
@@ -131,7 +139,7 @@ fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us, con
 {
     const bool over = fathom_run_down(&stream->left_us, fathom_elapsed_us(now_us, stream->polled_us));
     stream->polled_us = now_us;
-    if (silence_left_us(stream, now_us) == 0) decide(stream, true);
+    if (silence_left_us(stream, now_us) == 0) decide(stream, true, true);
     if (!stream->fresh && !over) return FATHOM_PENDING;
     stream->left_us = stale_us(stream);
     if (!stream->fresh) {

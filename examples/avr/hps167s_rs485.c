@@ -80,7 +80,8 @@ int main(void)
     for (;;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, NULL);
-        const bool is_good = status == FATHOM_READY && sample.kind != FATHOM_FAULT;
+        const bool is_good =
+            status == FATHOM_READY && (sample.kind == FATHOM_TARGET || sample.kind == FATHOM_NO_TARGET);
         if (is_good)
             fathom_debounce_sample(&level, &sample);
         else

@@ -34,6 +34,10 @@ void text_sample(text_t *text, const fathom_sample_t *sample)
     case FATHOM_NO_TARGET:
         text_say(text, sample->interference ? PSTR("disturbed") : PSTR("nothing in range"));
         break;
+    case FATHOM_UNKNOWN:
+        text_say(text, PSTR("unknown value "));
+        text_number(text, (uint16_t)sample->raw);
+        break;
     default:
         text_say(text, PSTR("sensor fault"));
         break;

@@ -34,7 +34,9 @@ void report(const fathom_uart_t *uart, fathom_status_t status, const fathom_samp
             add_number(&text, sample->distance_mm);
             add(&text, " mm");
         } else {
-            add(&text, sample->kind == FATHOM_NO_TARGET ? "no target" : "fault");
+            add(&text, sample->kind == FATHOM_NO_TARGET ? "no target"
+                       : sample->kind == FATHOM_UNKNOWN ? "unknown"
+                                                        : "fault");
         }
         add(&text, ", raw ");
         add_number(&text, sample->raw);

@@ -16,11 +16,14 @@ extern "C" {
  * frame period. The first Modbus command ends automatic output; power alone brings it back.
  *
  * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
- * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET
- * or FATHOM_NO_TARGET (with the interference mark where the module reports it). The errors of fathom_poll:
+ * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET,
+ * or what the window says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Said once every stale_us.
- *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
+ *   FATHOM_ERR_MALFORMED  this probe's value is refused: outside the window, or FFFF. The other probes' samples are
+ *                         given, but where the frame's place is not sure (stream.h) and in the frame in which a
+ *                         probe turns odd, which may be damaged: then all of it is refused.
+ *                         base.answer.refused_probe and refused_raw tell which; counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again. Or it has refused for a
  *                         second to end the break that selects; it is asked on, that is said once a second, and what
  *                         the sensor sends goes on between
@@ -29,12 +32,13 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    uint32_t stale_us;   /* 0: 2 s; the datasheet prints no period: 6 frames of one that was assumed */
-    uint16_t gap_us;     /* a silence of so much starts and ends a frame (stream.h); behind an operating
+    uint32_t stale_us; /* 0: 10 s, as the A16; the datasheet prints no period. Who knows the period of a unit
+                            sets less: some 6 frames */
+    uint16_t gap_us;   /* a silence of so much starts and ends a frame (stream.h); behind an operating
                             system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint8_t probes; /* bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it
-                       gives no sample */
+                       gives neither a sample nor an error */
     /* The module's RX pin, which outlives the sensor, for fathom_a05_auto_power_on; NULL: it is the line's TX. */
     const fathom_pin_t *select;
 } fathom_a05_auto_config_t;

@@ -14,13 +14,14 @@ extern "C" {
  * the first request until it is powered off. 9600 8N1. Each read starts a measurement of the probes it names,
  * one after the other, about 100 ms each.
  *
- * A sample a wanted probe and answer, with one sequence number and one time: FATHOM_TARGET or FATHOM_NO_TARGET
- * (with the interference mark where the module reports it). The errors of fathom_poll, each of one attempt:
+ * A sample a wanted probe and answer, with one sequence number and one time: FATHOM_TARGET, or what the window
+ * says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_ANSWER  nothing from the unit in timeout_us, retries included. The datasheet documents no
  *                         exceptions: a wrong register may be silence too
  *   FATHOM_ERR_CHECKSUM   its answer was damaged
  *   FATHOM_ERR_EXCEPTION  it refused; base.unit.request.message.exception has the number
- *   FATHOM_ERR_MALFORMED  it answered something else, or this probe's distance is outside the window
+ *   FATHOM_ERR_MALFORMED  it answered something else, or this probe's value is refused: outside the window, or FFFF;
+ *                         base.answer.refused_probe and refused_raw tell which, and it is counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
  */
 

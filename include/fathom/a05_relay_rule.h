@@ -13,16 +13,18 @@ extern "C" {
  * closes when at least one probe has something nearer than the threshold, and each state lasts at least 1 s.
  *
  *   if (fathom_poll(&bumper, &sample) == FATHOM_READY && fathom_a05_relay_rule_sample(&rule, &sample))
- *       stop_or_go(rule.debounce.level == FATHOM_NEAR);
+ *       stop_or_go(rule.debounce.level);
+ *   if (fathom_debounce_time(&rule.debounce, clock.now_us(clock.ctx))) stop();
  *
  * All samples of one sequence number are one measurement:
  *  - it is nearer as soon as one fitted probe is, without waiting for the others;
  *  - it is farther when every fitted probe has given a sample and all of them are;
- *  - it is equal, and the level holds, when none is nearer and some stand at the threshold, or gave a fault;
- *  - it is nothing, and the level holds, when a probe's sample is missing (refused as implausible, not read) and
- *    none of the others is nearer: nobody knows what stands before that one.
- * Probes that are not fitted count for nothing: their values are not defined. What else counts as what stands in
- * debounce.h. One sensor a rule.
+ *  - it is equal, and the level holds, when none is nearer and some stand at the threshold;
+ *  - it is nothing, and the level holds until it becomes unknown (debounce.h), when a probe's sample is missing
+ *    (refused, not read), unknown or a fault, and none of the others is nearer: what stands before that one is not
+ *    known.
+ * So one probe that is near closes the relay, whatever the others say. Probes that are not fitted count for nothing:
+ * their values are not defined. What else counts as what stands in debounce.h. One sensor a rule.
  */
 
 /* The threshold's range and its factory setting, mm, and how long a state lasts at least (A05 4). */
@@ -34,14 +36,15 @@ typedef struct {
     /* Each state lasts at least so long: "pull-in and cut-off time will be maintained for 1 second" (A05 4(1)) is read
      * so. 0: 1 s; 1: as good as none. */
     uint32_t hold_us;
+    uint32_t unknown_us;   /* so long after the last measurement that counted the level is unknown; 0: 5 s */
     uint16_t threshold_mm; /* 250..4500; 0: 1000 mm */
     uint8_t probes;        /* bit probe - 1: fitted, and read by the sensor's driver; 0: all four */
     uint8_t equal;         /* fathom_equal_t */
 } fathom_a05_relay_rule_config_t;
 
 typedef struct {
-    /* debounce.level may be read: FATHOM_NEAR is closed; 0 is not known yet, which a relay without power shows as
-     * open. */
+    /* debounce.level may be read: FATHOM_NEAR is closed; FATHOM_UNKNOWN is an error, and 0 not known yet, which a relay
+     * without power shows as open. */
     fathom_debounce_t debounce;
     uint16_t sequence; /* of the measurement under way */
     uint8_t probes;

@@ -15,11 +15,12 @@ extern "C" {
  * of 2.5 to 7.5 s and of 500 ms for them, and no frame period.
  *
  * One sample a frame, given when the line has been silent for gap_us behind it or the next frame begins;
- * time_us is when its last byte came. FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the
- * module reports it). The errors of fathom_poll:
+ * time_us is when its last byte came. FATHOM_TARGET, or what the window says that the values 0, FFFD, FFFE and FFFF are
+ * (dyp.h). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Said once every stale_us.
- *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
+ *   FATHOM_ERR_MALFORMED  a good frame with a value that is refused: outside the window, or FFFF; it is in
+ *                         base.answer.refused_raw, and counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
  */
 
@@ -29,8 +30,9 @@ typedef struct {
     /* The module's RX pin, which outlives the sensor; NULL: it is open, or the TX of the line's port, whose break
      * then selects. */
     const fathom_pin_t *select;
-    uint32_t stale_us; /* 0: 2 s; the datasheet prints no period: 20 frames of one that was assumed */
-    uint16_t gap_us;   /* a silence of so much starts and ends a frame (stream.h); behind an operating
+    uint32_t
+        stale_us; /* 0: 10 s: the datasheet prints no period, and 7.5 s for the processed value to settle */
+    uint16_t gap_us; /* a silence of so much starts and ends a frame (stream.h); behind an operating
                             system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
     /* What fathom_a16_auto_select selects at init; false: the processed value, as where nobody selects. */

@@ -20,11 +20,12 @@ extern "C" {
  * adapter will do.
  *
  * One sample an answer, given when the line has been silent for gap_us behind it; time_us is when its last byte came.
- * FATHOM_TARGET or FATHOM_NO_TARGET (with the interference mark where the module reports it). The errors of
+ * FATHOM_TARGET, or what the window says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of
  * fathom_poll, each of one trigger:
  *   FATHOM_ERR_NO_ANSWER  nothing came in time: no supply, a cut wire, not in this mode
  *   FATHOM_ERR_CHECKSUM   something came in time, and no good frame among it
- *   FATHOM_ERR_MALFORMED  a good frame with a distance outside the window; refused and counted
+ *   FATHOM_ERR_MALFORMED  a good frame with a value that is refused: outside the window, or FFFF; it is in
+ *                         answer.refused_raw, and counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again. Or it has refused for a
  *                         second to begin or to end the break; it is asked on, and that is said once a second
  *

@@ -12,13 +12,14 @@ extern "C" {
  * A16 asked by Modbus RTU (A16 6): the RS485 variant, and the RS232 variant, whose automatic output ends with
  * the first request and does not come back by itself. 9600 8N1.
  *
- * One sample an answer, as often as polling and the pace allow: FATHOM_TARGET or FATHOM_NO_TARGET (with the
- * interference mark where the module reports it). The errors of fathom_poll, each of one attempt:
+ * One sample an answer, as often as polling and the pace allow: FATHOM_TARGET, or what the window says that the
+ * values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_ANSWER  nothing from the unit in timeout_us, retries included. The datasheet documents no
  *                         exceptions: a wrong register may be silence too
  *   FATHOM_ERR_CHECKSUM   its answer was damaged
  *   FATHOM_ERR_EXCEPTION  it refused; base.unit.request.message.exception has the number
- *   FATHOM_ERR_MALFORMED  it answered something else, or a distance outside the window
+ *   FATHOM_ERR_MALFORMED  it answered something else, or a value that is refused: outside the window, or FFFF;
+ *                         then it is in base.answer.refused_raw, and counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
  * The other registers are in a16_settings.h.
  */

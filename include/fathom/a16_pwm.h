@@ -42,7 +42,7 @@ typedef struct {
     uint16_t noise_us;               /* shorter pulses are noise; 0: 2.7 ms */
     uint32_t no_target_us;           /* from here on: nothing in range; 0: 92 ms */
     uint32_t stuck_us;               /* longer than this: a fault; 0: 105 ms */
-    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm, 18000 with in_air */
+    fathom_dyp_window_t window;      /* min_mm and max_mm alone; 0: 1 and 16350 mm, 18000 with in_air */
     /* false: the datasheet's formula. true: with air_dc, which is not in the datasheet; off by default, since the
      * module may compensate by itself. */
     bool in_air;

@@ -21,12 +21,16 @@ extern "C" {
 typedef struct {
     fathom_a16_modbus_t *modbus; /* initialised; over the same line */
     fathom_a16_auto_t *automatic;
+    /* How long frames may take to begin after the acknowledgement: init makes it 10 s, and it is the caller's to
+     * change after that. */
+    uint32_t return_us;
     uint32_t since_us;
     bool is_listening;
 } fathom_a16_rs232_t;
 
-/* How long frames may take to begin after the acknowledgement; the datasheet gives no period. */
-#define FATHOM_A16_RS232_RETURN_US 2000000ul
+/* The datasheet prints no period of the frames. Its "response time" of the processed value is 2.5 to 7.5 s, within
+ * which that value settles; the first frame may be that late, so this is more. */
+#define FATHOM_A16_RS232_DEFAULT_RETURN_US 10000000ul
 
 /* Both drivers outlive it. */
 void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbus,
@@ -38,7 +42,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  * meanwhile.
  *   FATHOM_READY            *sample is the first reading that the sensor has sent by itself. From now on poll the
  *                           automatic driver only
- *   FATHOM_ERR_UNCONFIRMED  no frame in 2 s
+ *   FATHOM_ERR_UNCONFIRMED  no frame in return_us
  *   FATHOM_ERR_EXCEPTION    refused: it is no RS232 variant?
  *   FATHOM_ERR_BUSY         another command is not finished
  *   FATHOM_ERR_PORT         the port is broken

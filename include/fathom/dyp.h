@@ -14,23 +14,34 @@ extern "C" {
 
 /*
  * What the ultrasonic sensors A16 and A05 have in common: what their 16 bits mean. Their drivers are built on
- * it; whoever uses those needs no more of this page than the window.
+ * it; their users need no more of this page than the window and the meanings.
  *
- * The datasheets give no code for "nothing there". Of sister models it is known that 0xFFFD is no object and
- * 0xFFFE interference by another unit of the same frequency, and that older firmware sends 0 for no object.
- * Fathom reads them so. Any other value outside the plausible window is none that the sensor can mean.
+ * The datasheets print distances and no other value. Of sister models it is known that 0xFFFD is no object and
+ * 0xFFFE interference by another unit of the same frequency. 0 has been seen with nothing in range and with a hand
+ * on the probe, so it is unknown until the user says what it is. Any other value outside the window is none that the
+ * sensor can mean.
  */
-#define FATHOM_DYP_NO_OBJECT     0xFFFDu
-#define FATHOM_DYP_INTERFERENCE  0xFFFEu
-#define FATHOM_DYP_NO_OBJECT_OLD 0u
 
-/* The distances that are believed, in mm, both included. In a driver's config 0 stands for its default. */
+/* What a value is that is no distance: the kind of its sample. */
+typedef enum {
+    FATHOM_MEANS_DEFAULT = 0,
+    FATHOM_MEANS_UNKNOWN = FATHOM_UNKNOWN,
+    FATHOM_MEANS_NO_TARGET = FATHOM_NO_TARGET,
+    FATHOM_MEANS_TOO_NEAR = FATHOM_NEAR, /* something is nearer than the probe can measure */
+    FATHOM_MEANS_FAULT = FATHOM_FAULT,
+    FATHOM_MEANS_INTERFERENCE = 7, /* FATHOM_NO_TARGET with the mark of interference */
+    FATHOM_MEANS_REFUSED = 8       /* no sample: FATHOM_ERR_MALFORMED */
+} fathom_meaning_t;
+
+/* The distances that are believed, in mm, both included, and what each of the four values is that may be no distance;
+ * those are never distances, whatever the window. In a driver's config 0 stands for a member's default. */
 typedef struct {
     uint16_t min_mm;
     uint16_t max_mm;
-    /* False: 0, 0xFFFD and 0xFFFE are read as above, since sister models send them. True, for modules of which it is
-     * known that they do not: they are refused like any other value outside the window. */
-    bool no_codes;
+    uint8_t value_0;    /* fathom_meaning_t; 0: FATHOM_MEANS_UNKNOWN */
+    uint8_t value_fffd; /* 0: FATHOM_MEANS_NO_TARGET */
+    uint8_t value_fffe; /* 0: FATHOM_MEANS_INTERFERENCE */
+    uint8_t value_ffff; /* 0: FATHOM_MEANS_REFUSED */
 } fathom_dyp_window_t;
 
 /* Member by member: of a whole struct of this size compilers make a call of memcpy. */
@@ -38,7 +49,10 @@ static inline void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_
 {
     to->min_mm = from->min_mm;
     to->max_mm = from->max_mm;
-    to->no_codes = from->no_codes;
+    to->value_0 = from->value_0;
+    to->value_fffd = from->value_fffd;
+    to->value_fffe = from->value_fffe;
+    to->value_ffff = from->value_ffff;
 }
 
 /* The default windows. 16350 mm is the longest pulse of A16 1(3), 94 ms; 6000 mm leaves the A05 a third beyond
@@ -52,15 +66,19 @@ typedef struct {
     uint32_t time_us;
     uint16_t sequence;
     uint16_t implausible; /* values that were refused; stops at 65535 */
-    uint8_t model;        /* fathom_model_t */
-    uint8_t unit;         /* 0 from a sensor that sends by itself */
-    uint8_t first;        /* 1..4 */
-    uint8_t left;         /* bit probe - 1: has not been handed over */
+    uint16_t refused_raw; /* the last value that was refused, and its probe; 0: none yet. They belong to the
+                             FATHOM_ERR_MALFORMED that was said last, if that made `implausible` grow */
+    uint8_t refused_probe;
+    uint8_t model; /* fathom_model_t */
+    uint8_t unit;  /* 0 from a sensor that sends by itself */
+    uint8_t first; /* 1..4 */
+    uint8_t left;  /* bit probe - 1: has not been handed over */
 } fathom_dyp_answer_t;
 
 /*
- * The next probe's sample. FATHOM_READY: written. FATHOM_ERR_MALFORMED: the value is not plausible; nothing
- * written, counted, the next call goes on with the next probe. FATHOM_PENDING: none is left.
+ * The next probe's sample. FATHOM_READY: written. FATHOM_ERR_MALFORMED: the value is refused, and kept in
+ * refused_probe and refused_raw; nothing written, counted, the next call goes on with the next probe.
+ * FATHOM_PENDING: none is left.
  */
 fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sample);
 
@@ -68,11 +86,11 @@ fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sa
 void fathom_dyp_answer(fathom_dyp_answer_t *answer, uint8_t probes, uint32_t time_us);
 
 /* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: the window is upside down. Where the window's
- * members are 0 they become 1 and default_max_mm. */
+ * members are 0 they become 1, default_max_mm and the default meanings. */
 fathom_status_t fathom_dyp_answer_init(fathom_dyp_answer_t *answer, uint16_t default_max_mm);
 
-/* Could the sensor have meant this value? */
-bool fathom_dyp_plausible(const fathom_dyp_window_t *window, uint16_t value);
+/* What a value is, by a window whose members are not 0: FATHOM_TARGET, a distance; or a fathom_meaning_t. */
+uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value);
 
 #ifdef __cplusplus
 }

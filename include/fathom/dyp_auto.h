@@ -19,6 +19,7 @@ typedef struct {
     fathom_dyp_answer_t answer;
     fathom_line_t *line;
     uint8_t probes; /* bit probe - 1: fitted */
+    bool was_odd;   /* the frame before had a fitted probe whose value was refused, or there was none */
 } fathom_dyp_auto_t;
 
 /*
@@ -31,8 +32,10 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 /* Stops listening. */
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
-/* For fathom_poll and fathom_due_us. A frame is one claim: where one fitted probe's value is not
- * plausible all of it is refused, since out of step the others could be permuted. */
+/* For fathom_poll and fathom_due_us. Where a fitted probe's value is refused, it is refused alone if the place of the
+ * frame is sure (stream.h) and the frame before, if there was one, had an odd probe too. Else all of it is refused: out
+ * of step the other distances could be permuted, and after frames in which all was well, damage is more likely, of
+ * which an 8-bit sum misses one in 256. So one frame is lost when a probe turns odd, and none after it. */
 fathom_sensor_t fathom_dyp_auto_sensor(fathom_dyp_auto_t *sensor);
 
 #ifdef __cplusplus

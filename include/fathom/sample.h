@@ -16,7 +16,8 @@ typedef enum {
     FATHOM_FAULT = 3,     /* the device says that it is broken (HPS-167S command #5, abnormal packet), or its
                              output does what no working one can */
     FATHOM_NEAR = 4,      /* a switch or a contact says: something is nearer than its threshold, ... */
-    FATHOM_FAR = 5        /* ... nothing is. Neither has a distance */
+    FATHOM_FAR = 5,       /* ... nothing is. Neither has a distance */
+    FATHOM_UNKNOWN = 6    /* a value that has been given no meaning: it is in raw. No distance */
 } fathom_sample_kind_t;
 
 typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model_t;

@@ -26,6 +26,10 @@ extern "C" {
  * 25 ms behind an operating system. fathom_stream_due_us tells when; time_us stays the time of its last byte.
  * A gap_us that is longer than the pauses only means that the next frame decides.
  *
+ * The place of a frame is `sure` where silence was seen before it and behind it, or where two frames or more came
+ * right before it and it follows in step with them. In any other place that is believed, a frame could still be made of
+ * the halves of two.
+ *
  * Everything else is counted and dropped. So with gaps seen no stream of whole frames can show a value of
  * another alignment; without them, a value that is valid in two alignments (511 mm held still) is never
  * shown: the stream turns stale and says so by its AMBIGUOUS counter. What 8 bits of sum cannot see stays
@@ -40,7 +44,7 @@ extern "C" {
 
 /* Zero-valued members of fathom_stream_config_t mean these. */
 #define FATHOM_STREAM_DEFAULT_GAP_US   5000
-#define FATHOM_STREAM_DEFAULT_STALE_US 2000000ul
+#define FATHOM_STREAM_DEFAULT_STALE_US 10000000ul
 
 /* Bytes of memory that a stream of frames of `length` bytes needs. */
 #define FATHOM_STREAM_STORAGE(length) (2 * (length))
@@ -59,7 +63,7 @@ enum {
 
 typedef struct {
     uint8_t *storage;  /* FATHOM_STREAM_STORAGE(length) bytes, the stream's alone */
-    uint32_t stale_us; /* without a good frame for so long, the stream is stale; 0: 2 s */
+    uint32_t stale_us; /* without a good frame for so long, the stream is stale; 0: 10 s */
     uint16_t gap_us;   /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at
                           9600 baud) and less than the pause between frames; behind an operating system
                           25000. 0: 5000 */
@@ -78,9 +82,12 @@ typedef struct {
     uint8_t run;    /* bytes since a gap; stops at 255 */
     uint8_t since;  /* bytes since the end of the last valid window; stops at 255 */
     bool gap;       /* the run began with a gap that was seen */
+    uint8_t steps;  /* valid windows right upon one another without a doubt, less one; stops at 255 */
     bool doubtful;  /* the last valid window overlapped a valid one before it */
+    bool first;     /* that window was the first thing after a gap */
     bool candidate; /* the ring holds a frame, if the next byte begins another one or none comes for gap_us */
     bool fresh;     /* the newest good frame has not been polled */
+    bool sure;      /* its place is sure; to be read after a poll that gave it */
 } fathom_stream_t;
 
 /* Makes a stream ready; it is stale config->stale_us from now_us. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no

@@ -152,7 +152,7 @@ TEST(a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came)
     assert_int_equal(set_threshold(750), FATHOM_READY);
     for (; !rs232.is_listening; pass_us(1 * MS))
         assert_int_equal(fathom_a16_rs232_return_to_automatic(&rs232, &s.sample), FATHOM_PENDING);
-    pass_us(3 * SECOND); /* over FATHOM_A16_RS232_RETURN_US */
+    pass_us(11 * SECOND); /* over FATHOM_A16_RS232_DEFAULT_RETURN_US */
     assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
     assert_int_equal(return_to_automatic(), FATHOM_READY);
 }

@@ -39,7 +39,7 @@ static fathom_status_t go_back(void)
     for (;;) {
         const fathom_status_t status = once();
         if (status != FATHOM_PENDING) return status;
-        assert_true(since_us(start_us) < 10 * SECOND);
+        assert_true(since_us(start_us) < 15 * SECOND);
         pass_until(fathom_a16_rs232_due_us(&rs232));
     }
 }
@@ -94,11 +94,11 @@ TEST(a_frame_from_before_the_command_confirms_nothing)
     assert_true(automatic.base.stream.counters[FATHOM_STREAM_FRAMES] != 0);
 }
 
-TEST(one_that_acknowledges_and_does_not_send_is_found_out_after_two_seconds)
+TEST(one_that_acknowledges_and_does_not_send_is_found_out_after_ten_seconds)
 {
     for (unsigned l = 0; l != 2; l++) {
         set(FATHOM_SIM_A16_MODBUS, loops_us[l]);
-        expect_unconfirmed(2000, 3000);
+        expect_unconfirmed(10000, 11000);
         COUNTED(.answered = 2);
     }
 }
@@ -128,7 +128,7 @@ TEST(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames)
         set(FATHOM_SIM_A16_MODBUS, 0);
         /* the address is the first frame, the acknowledgement the second */
         assert_non_null(fathom_sim_fault_add(&bench.fault, kinds[i], ALWAYS, 2));
-        expect_unconfirmed(2000, 4000);
+        expect_unconfirmed(10000, 12000);
         COUNTED(.writes = 1);
     }
 }
@@ -138,7 +138,7 @@ TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 {
     s.config.echo = FATHOM_LINE_ECHO_AUTO;
     FAULT(BREAK, ALWAYS, 1);
-    expect_unconfirmed(3000, 4000); /* the time-out of the write before */
+    expect_unconfirmed(11000, 12000); /* the time-out of the write before */
 }
 
 static uint16_t threshold_mm;
@@ -161,7 +161,7 @@ TEST(another_commands_outcome_comes_first)
 TEST(due_is_never_later_than_the_end_of_the_wait)
 {
     go_until_it_listens();
-    pass_us(1999 * MS);
+    pass_us(9999 * MS);
     assert_true(fathom_a16_rs232_due_us(&rs232) <= 1 * MS);
     pass_us(1 * MS);
     assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);

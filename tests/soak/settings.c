@@ -52,7 +52,7 @@ fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, ui
 }
 
 #define WINDOW .window = {.max_mm = options->max_mm}
-#define STREAM .line = line, .stale_us = options->stale_us, .gap_us = options->gap_us, WINDOW
+#define STREAM .line = line, .stale_us = stale_us, .gap_us = options->gap_us, WINDOW
 #define ASKED  .address = address, .backoff_us = options->backoff_us, .retries = options->retries
 #define MODBUS .modbus = modbus, .clock = clock, ASKED
 
@@ -72,6 +72,8 @@ fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t
     const uint8_t probes = setting == SOAK_A05_DYP_ONE ? 1 << 2 : 0;
     const fathom_a16_value_t value =
         setting == SOAK_A16_REAL_TIME ? FATHOM_A16_REAL_TIME : FATHOM_A16_PROCESSED;
+    /* the bounds of recovery are of streams that are stale after the time that the setting tells */
+    const uint32_t stale_us = options->stale_us != 0 ? options->stale_us : soak_facts[setting].timeout_us;
     memset(driver, 0, sizeof *driver);
     if (!soak_is_asked(setting) && is_a16) DRIVER(a16_auto, STREAM)
     if (!soak_is_asked(setting)) DRIVER(a05_auto, STREAM)

@@ -34,8 +34,9 @@ void rig_run(uint32_t for_us, uint32_t step_us)
 {
     for (uint32_t passed_us = 0; passed_us < for_us; passed_us += step_us) {
         rig.fake.now_us += step_us;
-        while (rig_poll() == FATHOM_READY) {
-        }
+        fathom_status_t status;
+        do status = rig_poll();
+        while (status == FATHOM_READY || status == FATHOM_ERR_MALFORMED);
     }
 }
 

@@ -101,7 +101,6 @@ static fathom_status_t a16_modbus_command(void)
 const contract_driver_t contract_a16_modbus = {
     ON_SEAM(a16_modbus),
     DYP(a16_modbus, a16_modbus.base.answer, 16350, FATHOM_A16, 1),
-    .numbers_answers = true,
     .first = 0x0100,
     .count = 1,
     .most_address = 254,
@@ -125,7 +124,6 @@ static fathom_status_t a05_modbus_command(void)
 const contract_driver_t contract_a05_modbus = {
     ON_SEAM(a05_modbus),
     DYP(a05_modbus, a05_modbus.base.answer, 6000, FATHOM_A05, 1),
-    .numbers_answers = true,
     .first = 0x0106,
     .count = 1,
     .most_address = 254,
@@ -293,7 +291,6 @@ const contract_driver_t contract_a05_dyp = {ITSELF(a05_dyp, asked_on_line),
                                             .power_on = a05_dyp_power_on,
                                             .start_us = &a05_dyp_config.start_us,
                                             .frame = a05_dyp_frame,
-                                            .numbers_answers = true,
                                             .wrong = {NONE(a05_dyp, line), IS(a05_dyp, address, 255),
                                                       RANGE(a05_dyp, probes, 16, 255),
                                                       WINDOW(a05_dyp, 6000)}};

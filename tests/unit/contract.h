@@ -51,7 +51,6 @@ struct contract_driver {
     uint16_t good, other, refused;
     fathom_sample_t sample;
     uint16_t *sequence, *implausible;
-    bool numbers_answers; /* those too of which every value is refused */
 
     /* Members of the config. */
     uint8_t *address, *retries;

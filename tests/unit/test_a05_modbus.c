@@ -132,11 +132,13 @@ TEST(the_samples_of_one_answer_share_sequence_and_time)
 
 TEST(a_value_that_cannot_be_is_refused_alone)
 {
-    config.window = (fathom_dyp_window_t){250, 4500, false};
+    config.window = (fathom_dyp_window_t){.min_mm = 250, .max_mm = 4500};
     start();
     IS_TOLD(249, 250, 4501, 4500);
     for (unsigned probe = 1; probe <= 4; probe++) {
         assert_int_equal(desk_poll(), probe % 2 != 0 ? FATHOM_ERR_MALFORMED : FATHOM_READY);
+        assert_int_equal(a05.base.answer.refused_probe, probe < 3 ? 1 : 3);
+        assert_int_equal(a05.base.answer.refused_raw, probe < 3 ? 249 : 4501);
         if (probe % 2 == 0) assert_int_equal(desk.sample.probe, probe);
         if (probe % 2 == 0) assert_int_equal(desk.sample.distance_mm, probe == 2 ? 250 : 4500);
     }

@@ -148,13 +148,66 @@ TEST(a_measurement_without_one_of_its_probes_holds_unless_another_is_near)
     for (int i = 0; i != 9; i++) {
         begin_after(HALF_S);
         for (uint8_t probe = 1; probe <= 3; probe++) assert_false(give(probe, FATHOM_TARGET, 2000));
-        if (i > 4) assert_false(give(4, FATHOM_FAULT, 0));
+        if (i > 4) assert_false(give(4, i % 2 != 0 ? FATHOM_FAULT : FATHOM_UNKNOWN, 0));
     }
     is(FATHOM_NEAR);
     all(2000, true);
     begin_after(1000000);
     assert_true(give(4, FATHOM_TARGET, 999));
     is(FATHOM_NEAR);
+}
+
+/* ---- First contact 3 and 4 ---- */
+
+/* 1000 2000 7000 3000: the third is refused and gives no sample. */
+TEST(a_probe_that_is_near_closes_though_another_is_refused_unknown_or_a_fault)
+{
+    static const uint8_t kinds[] = {0, FATHOM_UNKNOWN, FATHOM_FAULT};
+    for (unsigned i = 0; i != 3; i++) {
+        for (uint8_t near = 1; near <= 4; near += 3) { /* before and behind the odd one */
+            start();
+            begin_after(HALF_S);
+            for (uint8_t probe = 1; probe <= 4; probe++) {
+                if (probe != 3)
+                    assert_int_equal(give(probe, FATHOM_TARGET, probe == near ? 999 : 2000), probe == near);
+                if (probe == 3 && kinds[i] != 0) assert_false(give(3, kinds[i], 0));
+            }
+            is(FATHOM_NEAR);
+        }
+    }
+}
+
+TEST(a_probe_that_is_too_near_to_measure_closes)
+{
+    begin_after(HALF_S);
+    assert_true(give(2, FATHOM_NEAR, 0));
+    is(FATHOM_NEAR);
+}
+
+TEST(an_unknown_probe_neither_opens_it_nor_holds_it_for_ever)
+{
+    for (unsigned i = 0; i != 2; i++) {
+        config.unknown_us = i == 0 ? 0 : 2 * HALF_S;
+        start();
+        all(999, true);
+        for (unsigned n = 1; n <= 20; n++) {
+            begin_after(HALF_S);
+            for (uint8_t probe = 1; probe <= 4; probe++)
+                assert_int_equal(give(probe, probe != 2 ? FATHOM_NO_TARGET : FATHOM_UNKNOWN, 0),
+                                 probe == 2 && n == (i == 0 ? 11 : 3));
+            is(n < (i == 0 ? 11 : 3) ? FATHOM_NEAR : FATHOM_UNKNOWN);
+        }
+        all(2000, true);
+        is(FATHOM_FAR);
+    }
+}
+
+TEST(without_samples_the_loop_finds_it_unknown)
+{
+    all(999, true);
+    assert_false(fathom_debounce_time(&rule.debounce, now_us + 5000000));
+    assert_true(fathom_debounce_time(&rule.debounce, now_us + 5000001));
+    is(FATHOM_UNKNOWN);
 }
 
 TEST(a_sample_of_a_measurement_before_completes_none)

@@ -83,8 +83,8 @@ TEST(distances_up_to_16350_mm_are_believed)
     assert_int_equal(controlled.a16.answer.implausible, 1);
 }
 
-/* "FATHOM_ERR_MALFORMED: ... refused and counted": it is no sample, so the next one is the second. */
-TEST(a_refused_frame_takes_no_number_of_the_samples)
+/* sample.h: the number is that of the answer, of which one was refused. */
+TEST(a_refused_frame_takes_a_number)
 {
     static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
     trigger();
@@ -95,8 +95,10 @@ TEST(a_refused_frame_takes_no_number_of_the_samples)
     assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
     poll_after(16 * MS);
     assert_int_equal(rig.fake.breaks, 3);
+    assert_int_equal(controlled.a16.answer.refused_raw, 16351);
+    assert_int_equal(controlled.a16.answer.refused_probe, 1);
     assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
-    assert_int_equal(rig.sample.sequence, 2);
+    assert_int_equal(rig.sample.sequence, 3);
 }
 
 /* FATHOM_ERR_ARGUMENT: "earliest_us over latest_us". */

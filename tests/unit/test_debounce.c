@@ -158,7 +158,8 @@ TEST(a_row_that_is_held_back_for_long_is_not_forgotten)
 /* 71.58 minutes are one turn of the clock: 2 * 2147.48 s and a little would look like a little. */
 TEST(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again)
 {
-    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 1});
+    start_with((fathom_debounce_config_t){
+        .hold_us = 1000000, .unknown_us = UINT32_MAX, .near_count = 1, .far_count = 1});
     expect_at(0, 999, true);
     expect_at(0x80000000u, 999, false);
     expect_at(10, 1001, true);
@@ -192,15 +193,89 @@ TEST(interference_counts_as_farther)
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
-TEST(a_fault_holds_the_level_and_the_row_goes_on_behind_it)
+/* ---- First contact 4: what counts for nothing holds a level for a while, and not for ever ---- */
+
+static const uint8_t silent_kinds[] = {FATHOM_FAULT, FATHOM_UNKNOWN};
+
+TEST(a_fault_or_an_unknown_value_holds_the_level_and_the_row_goes_on_behind_it)
 {
-    expect_sample(FATHOM_TARGET, 999, false);
-    expect_sample(FATHOM_FAULT, 0, false);
-    expect_sample(FATHOM_TARGET, 999, false);
-    for (int i = 0; i != 20; i++) expect_sample(FATHOM_FAULT, 0, false);
-    expect_sample(FATHOM_TARGET, 999, true);
-    for (int i = 0; i != 20; i++) expect_sample(FATHOM_FAULT, 0, false);
+    for (unsigned i = 0; i != 2; i++) {
+        start();
+        expect_sample(FATHOM_TARGET, 999, false);
+        expect_sample(silent_kinds[i], 0, false);
+        expect_sample(FATHOM_TARGET, 999, false);
+        for (int n = 0; n != 9; n++) expect_sample(silent_kinds[i], 0, false);
+        expect_sample(FATHOM_TARGET, 999, true); /* 5 s after the last measurement */
+        for (int n = 1; n <= 30; n++) {
+            expect_sample(silent_kinds[i], 0, n == 11);
+            assert_int_equal(gate.level, n < 11 ? FATHOM_NEAR : FATHOM_UNKNOWN);
+        }
+        expect_changes("nnNffffF");
+    }
+}
+
+static void expect_time(uint32_t after_us, bool changes)
+{
+    assert_int_equal(fathom_debounce_time(&gate, now_us + after_us), changes);
+}
+
+/* The loop tells the time when nothing comes at all. */
+TEST(a_level_without_measurements_becomes_unknown_after_5_s_or_as_the_config_says)
+{
+    for (uint32_t s = 5; s <= 1000; s += 995) {
+        start_with((fathom_debounce_config_t){.unknown_us = s != 5 ? s * 1000000 : 0, .near_count = 1});
+        expect_time(0, false);
+        assert_int_equal(gate.level, 0);
+        expect_at(0, 999, true);
+        expect_time((uint32_t)-1000, false); /* read before the measurement came */
+        expect_time(s * 1000000, false);
+        assert_int_equal(gate.level, FATHOM_NEAR);
+        expect_time(s * 1000000 + 1, true);
+        assert_int_equal(gate.level, FATHOM_UNKNOWN);
+        expect_time(s * 1000000 + 2, false); /* said once */
+    }
+}
+
+TEST(a_measurement_at_the_threshold_is_one_and_keeps_the_level)
+{
+    start_with((fathom_debounce_config_t){.near_count = 1});
+    expect_at(0, 999, true);
+    for (uint32_t n = 1; n <= 10; n++) expect_at(n * 4000000, 1000, false);
+    expect_time(45000000, false);
+    expect_time(45000001, true);
+}
+
+TEST(behind_a_silence_a_row_begins_anew_and_does_not_wait_for_hold_us)
+{
+    start_with((fathom_debounce_config_t){.hold_us = 60000000, .near_count = 2, .far_count = 2});
+    expect_at(0, 999, false);
+    expect_at(5000001, 999, true); /* unknown; the first of a new row */
+    assert_int_equal(gate.level, FATHOM_UNKNOWN);
+    expect_at(5500000, 999, true);
+    expect_at(11000000, 1001, true);
+    assert_int_equal(gate.level, FATHOM_UNKNOWN);
+    expect_at(11500000, 1001, true);
+    assert_int_equal(gate.level, FATHOM_FAR);
+}
+
+/* The same level again is no change. */
+TEST(one_measurement_that_ends_a_silence_with_the_level_before_changes_nothing)
+{
+    start_with((fathom_debounce_config_t){.near_count = 1, .far_count = 1});
+    expect_at(0, 999, true);
+    expect_at(6000000, 999, false);
     assert_int_equal(gate.level, FATHOM_NEAR);
+    expect_at(12000000, 1001, true);
+    assert_int_equal(gate.level, FATHOM_FAR);
+}
+
+TEST(a_level_is_kept_for_ever_on_request)
+{
+    start_with((fathom_debounce_config_t){.unknown_us = UINT32_MAX, .near_count = 1});
+    expect_at(0, 999, true);
+    expect_time(2147483647, false);
+    expect_time(2147483648, false);
+    expect_time(UINT32_MAX, false);
 }
 
 /* ---- everything, against a slow reference ---- */
@@ -220,13 +295,21 @@ typedef struct {
     unsigned count;
     char level;
     uint64_t since_us;
+    uint64_t last_us;
 } reference_t;
 
 /* Looks at all that has come so far, each time anew; times of 64 bits. */
 static bool refer(reference_t *reference, char verdict, uint64_t at_us)
 {
     const char rows[2][LONGEST] = {"nnnnnnnnn", "fffffffff"};
-    if (verdict == 0) return false;
+    const char before = reference->level;
+    if (reference->count != 0 && at_us - reference->last_us > config.unknown_us) {
+        reference->count = 0;
+        reference->level = 'u';
+        reference->since_us = 0;
+    }
+    if (verdict == 0) return reference->level != before;
+    reference->last_us = at_us;
     reference->verdicts[reference->count++] = verdict;
     reference->verdicts[reference->count] = 0;
     for (unsigned i = 0; i != 2; i++) {
@@ -236,9 +319,8 @@ static bool refer(reference_t *reference, char verdict, uint64_t at_us)
         if (reference->level != 0 && at_us - reference->since_us < config.hold_us) continue;
         reference->level = rows[i][0];
         reference->since_us = at_us;
-        return true;
     }
-    return false;
+    return reference->level != before;
 }
 
 static unsigned long compared;
@@ -254,7 +336,8 @@ static void go_on(const fathom_debounce_t *before, const reference_t *until, uns
             .time_us = (uint32_t)next_us, .kind = words[i].kind, .distance_mm = words[i].mm};
         const bool changes = refer(&reference, words[i].verdict, next_us);
         if (fathom_debounce_sample(&own, &s) != changes) fail();
-        const uint8_t level = reference.level == 'n' ? FATHOM_NEAR : FATHOM_FAR;
+        const uint8_t known = reference.level == 'n' ? FATHOM_NEAR : FATHOM_FAR;
+        const uint8_t level = reference.level == 'u' ? (uint8_t)FATHOM_UNKNOWN : known;
         if (own.level != (reference.level == 0 ? 0 : level)) fail();
         compared++;
         go_on(&own, &reference, depth - 1, next_us, period_us);
@@ -263,10 +346,12 @@ static void go_on(const fathom_debounce_t *before, const reference_t *until, uns
 
 TEST(every_sequence_of_up_to_ten_measurements_is_right)
 {
-    /* counts and hold_us; the A16, the A05's relay, and between */
-    static const fathom_debounce_config_t configs[] = {
-        {0, 0, 3, 5, 0}, {1000000, 0, 1, 1, 0}, {1000000, 0, 2, 1, 0}, {2000000, 0, 3, 2, 0}};
-    const reference_t empty = {{0}, 0, 0, 0};
+    /* hold_us, unknown_us and counts; the A16, the A05's relay, and between */
+    static const fathom_debounce_config_t configs[] = {{0, UINT32_MAX, 0, 3, 5, 0},
+                                                       {1000000, 600000, 0, 1, 1, 0},
+                                                       {1000000, 900000, 0, 2, 1, 0},
+                                                       {2000000, UINT32_MAX, 0, 3, 2, 0}};
+    const reference_t empty = {{0}, 0, 0, 0, 0};
     for (unsigned i = 0; i != sizeof configs / sizeof *configs; i++) {
         config = configs[i];
         start();

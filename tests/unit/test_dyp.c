@@ -48,15 +48,23 @@ static void expect_mm(uint8_t probe, uint16_t mm)
     assert_int_equal(sample.distance_mm, mm);
 }
 
-/* The rule, stated apart: FFFD and 0 are no object, FFFE is no object and interference, the window is a target,
- * everything else cannot be. */
-typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE } meaning_t;
+/* The rule, stated apart: 0 is unknown, FFFD is no object, FFFE is no object and interference, FFFF is refused, the window
+ * is a target, everything else is refused too. */
+typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE, UNKNOWN } meaning_t;
 
 static meaning_t meaning_of(uint32_t value, unsigned min_mm, unsigned max_mm)
 {
-    if (value == 0 || value == 0xFFFD) return NOTHING;
+    if (value == 0) return UNKNOWN;
+    if (value == 0xFFFD) return NOTHING;
+    if (value == 0xFFFF) return CANNOT_BE;
     if (value == 0xFFFE) return INTERFERENCE;
     return min_mm <= value && value <= max_mm ? TARGET : CANNOT_BE;
+}
+
+static unsigned kind_of(meaning_t meaning)
+{
+    if (meaning == UNKNOWN) return FATHOM_UNKNOWN;
+    return meaning == TARGET ? FATHOM_TARGET : FATHOM_NO_TARGET;
 }
 
 static void assert_next_means(uint32_t value, meaning_t meaning)
@@ -68,7 +76,7 @@ static void assert_next_means(uint32_t value, meaning_t meaning)
     assert_int_equal(answer.implausible, meaning == CANNOT_BE);
     if (meaning != CANNOT_BE) {
         assert_int_equal(sample.raw, value);
-        assert_int_equal(sample.kind, meaning == TARGET ? FATHOM_TARGET : FATHOM_NO_TARGET);
+        assert_int_equal(sample.kind, kind_of(meaning));
         assert_int_equal(sample.distance_mm, meaning == TARGET ? value : 0);
         assert_int_equal(sample.interference, meaning == INTERFERENCE);
     }
@@ -84,7 +92,7 @@ typedef struct {
     unsigned targets;
 } window_case_t;
 
-/* Targets: max - min + 1, less those of 0, FFFD and FFFE that lie inside. */
+/* Targets: max - min + 1, less those of FFFD, FFFE and FFFF that lie inside. */
 static const window_case_t windows[] = {
     {0, 0, 16350, 1, 16350, 16350}, /* an A16 by default: 94 ms of A16 1(3) */
     {0, 0, 6000, 1, 6000, 6000},    /* an A05 by default */
@@ -92,8 +100,8 @@ static const window_case_t windows[] = {
     {250, 0, 6000, 250, 6000, 5751},
     {0, 4500, 6000, 1, 4500, 4500},
     {1000, 1000, 6000, 1000, 1000, 1},
-    {1, 65535, 6000, 1, 65535, 65533},
-    {65535, 65535, 6000, 65535, 65535, 1},
+    {1, 65535, 6000, 1, 65535, 65532},
+    {65535, 65535, 6000, 65535, 65535, 0},
 };
 
 TEST(every_value_means_what_the_rule_says)
@@ -106,11 +114,45 @@ TEST(every_value_means_what_the_rule_says)
         assert_int_equal(fathom_dyp_answer_init(&answer, w->default_max_mm), FATHOM_READY);
         for (uint32_t value = 0; value != 65536; value++) {
             const meaning_t meaning = meaning_of(value, w->rule_min_mm, w->rule_max_mm);
-            assert_true(fathom_dyp_plausible(&answer.window, (uint16_t)value) == (meaning != CANNOT_BE));
             assert_next_means(value, meaning);
             targets += meaning == TARGET;
         }
         assert_int_equal(targets, w->targets);
+    }
+}
+
+/* ---- First contact 4: what a value means is the user's to say, one by one ---- */
+
+TEST(each_of_the_four_values_takes_each_meaning_and_no_other_value_does)
+{
+    static const uint16_t four[] = {0, 0xFFFD, 0xFFFE, 0xFFFF};
+    static const struct {
+        uint8_t meaning, kind;
+    } meanings[] = {{FATHOM_MEANS_UNKNOWN, FATHOM_UNKNOWN},
+                    {FATHOM_MEANS_NO_TARGET, FATHOM_NO_TARGET},
+                    {FATHOM_MEANS_INTERFERENCE, FATHOM_NO_TARGET},
+                    {FATHOM_MEANS_TOO_NEAR, FATHOM_NEAR},
+                    {FATHOM_MEANS_FAULT, FATHOM_FAULT},
+                    {FATHOM_MEANS_REFUSED, 0}};
+    uint8_t *const members[] = {&answer.window.value_0, &answer.window.value_fffd, &answer.window.value_fffe,
+                                &answer.window.value_ffff};
+    for (unsigned v = 0; v != 4; v++) {
+        for (unsigned m = 0; m != 6; m++) {
+            memset(&answer.window, 0, sizeof answer.window);
+            *members[v] = meanings[m].meaning;
+            assert_int_equal(fathom_dyp_answer_init(&answer, 65535), FATHOM_READY);
+            for (unsigned other = 0; other != 4; other++) {
+                if (other != v) assert_next_means(four[other], meaning_of(four[other], 1, 65535));
+            }
+            values[0] = four[v];
+            fathom_dyp_answer(&answer, 1, 123456);
+            expect_next(meanings[m].kind != 0 ? FATHOM_READY : FATHOM_ERR_MALFORMED);
+            if (meanings[m].kind == 0) continue;
+            assert_int_equal(sample.kind, meanings[m].kind);
+            assert_int_equal(sample.raw, four[v]);
+            assert_int_equal(sample.distance_mm, 0);
+            assert_int_equal(sample.interference, meanings[m].meaning == FATHOM_MEANS_INTERFERENCE);
+        }
     }
 }
 
@@ -171,6 +213,8 @@ TEST(after_a_value_that_cannot_be_the_next_probe_follows)
     values[1] = 2000;
     fathom_dyp_answer(&answer, 0x03, 0);
     expect_next(FATHOM_ERR_MALFORMED);
+    assert_int_equal(answer.refused_probe, 1);
+    assert_int_equal(answer.refused_raw, 6001);
     expect_mm(2, 2000);
     assert_int_equal(answer.implausible, 1);
 }

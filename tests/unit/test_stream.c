@@ -22,7 +22,8 @@ static const uint8_t *frame;
 /* A stream that begins at this time, with this gap_us; 0: 5 ms. */
 static void begin_with(uint8_t length, uint32_t now_us, uint16_t gap_us)
 {
-    config = (fathom_stream_config_t){.storage = storage, .length = length, .gap_us = gap_us};
+    config =
+        (fathom_stream_config_t){.storage = storage, .length = length, .gap_us = gap_us, .stale_us = 2000000};
     memset(&stream, 0xA5, sizeof stream);
     memset(storage, 0xFF, sizeof storage);
     frame = NULL;
@@ -101,6 +102,59 @@ TEST(the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it)
     begin_with(10, 1000, 0);
     feed(four, 10, true, 1500);
     expect_frame(6500, four, 1500);
+}
+
+/* ---- First contact 3: is the place of a frame sure? ---- */
+
+TEST(a_place_is_sure_between_two_silences)
+{
+    feed_first(1500);
+    expect(6500, FATHOM_READY);
+    assert_true(stream.sure);
+    feed_first(100000);
+    feed_first(200000); /* the silence was told with the bytes behind it */
+    expect(200000, FATHOM_READY);
+    assert_true(stream.sure);
+    begin(4);
+    feed_first(10);
+    feed_start(10);
+    expect(10, FATHOM_READY);
+    assert_false(stream.sure);
+}
+
+TEST(a_place_is_sure_from_the_third_frame_in_step)
+{
+    for (unsigned with_gap = 0; with_gap != 2; with_gap++) {
+        begin(4);
+        feed(mm_1953, 4, with_gap != 0, 10);
+        for (unsigned n = 2; n <= 300; n++) {
+            feed_frame(10 * n);
+            expect(10 * n, with_gap != 0 || n > 2 ? FATHOM_READY : FATHOM_PENDING);
+            if (stream.counters[FATHOM_STREAM_FRAMES] != 0) assert_int_equal(stream.sure, n > 3);
+        }
+    }
+}
+
+/* A byte between two frames, bytes that were lost, and a sum that is right in two places each end the run. */
+TEST(a_run_that_is_broken_begins_anew)
+{
+    static const uint8_t noise[] = {0x55};
+    for (unsigned way = 0; way != 3; way++) {
+        begin(4);
+        for (unsigned n = 0; n != 5; n++) feed_frame(n);
+        if (way == 0) feed(noise, 1, false, 5);
+        if (way == 1) feed_loss(5);
+        for (unsigned n = 0; way == 2 && n != 2; n++) feed(mm_511, 4, false, 5);
+        (void)poll_at(5);
+        for (unsigned n = 0; n <= 4; n++) {
+            feed_frame(6 + n);
+            assert_int_equal(poll_at(6 + n), n > 1 ? FATHOM_READY : FATHOM_PENDING);
+            if (n > 1) assert_int_equal(stream.sure, n > 2);
+        }
+        feed_start(20);
+        expect(20, FATHOM_READY);
+        assert_true(stream.sure);
+    }
 }
 
 TEST(a_frame_may_come_in_any_two_pieces)
@@ -241,10 +295,13 @@ TEST(a_silent_stream_is_stale_once_every_deadline)
     expect_counted(FATHOM_STREAM_STALES, 2);
 }
 
-TEST(the_deadline_is_two_seconds_unless_told_otherwise)
+/* More than the 7.5 s of A16 2(2), the longest time that a datasheet prints of a value that is sent by itself. */
+TEST(the_deadline_is_ten_seconds_unless_told_otherwise)
 {
-    expect(1999999, FATHOM_PENDING);
-    expect(2000000, FATHOM_ERR_STALE);
+    config.stale_us = 0;
+    expect_init(FATHOM_READY);
+    expect(9999999, FATHOM_PENDING);
+    expect(10000000, FATHOM_ERR_STALE);
 }
 
 TEST(only_a_good_frame_moves_the_deadline)

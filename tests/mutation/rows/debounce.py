@@ -4,4 +4,9 @@ ROWS = (
      ('src/debounce.c', 'fathom_debounce_sample',
       'case FATHOM_NO_TARGET:',
       'case FATHOM_NO_TARGET: case FATHOM_FAULT:')),
+    ('unknown-is-far', 'debounce.h: an unknown value neither changes the level nor holds it for ever',
+     'unit/test_debounce',
+     ('src/debounce.c', 'fathom_debounce_sample',
+      'case FATHOM_NO_TARGET:',
+      'case FATHOM_NO_TARGET: case FATHOM_UNKNOWN:')),
 )
