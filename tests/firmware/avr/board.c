@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "suite.h"
+
 #include "board_inside.h"
 
 enum { GPIOR0 = 0x3E, GPIOR1 = 0x4A, GPIOR2 = 0x4B }; /* ATmega328P 36, in data space */
@@ -148,6 +150,14 @@ const board_record_t *board_next_record(uint64_t most_us)
     if (!board_run(has_record, NULL, most_us) && !has_record(NULL)) return NULL;
     if (board.recorded - board.taken > BOARD_RECORDS) board_give_up("records were lost");
     return &board.records[board.taken++ % BOARD_RECORDS];
+}
+
+const board_record_t *board_await(uint8_t kind, uint64_t most_us)
+{
+    const board_record_t *record;
+    do assert_non_null(record = board_next_record(most_us));
+    while (record->kind != kind);
+    return record;
 }
 
 /* ---- text ---- */

@@ -169,6 +169,9 @@ void board_stall(uint64_t cycles);
 /* The next record, running until there is one; NULL: none came within most_us. Valid until the next call. */
 const board_record_t *board_next_record(uint64_t most_us);
 
+/* The next record of that kind, running until there is one. Fails the test when none comes within most_us. */
+const board_record_t *board_await(uint8_t kind, uint64_t most_us);
+
 /* The next line of text that the image sends by its UART, without its end, running until there is one; "": none came
  * within most_us. Valid until the next call. */
 const char *board_line(uint64_t most_us);

@@ -12,22 +12,22 @@
 static int start(void **state)
 {
     board_start("bench");
-    board_drive('D', 2, false);
-    board_drive('D', 3, false);
-    board_drive('D', 4, false);
+    for (uint8_t bit = 2; bit <= 4; bit++) board_drive('D', bit, false);
     return 0;
 }
 
 static const suite_t suite = {.set_up = start, .tear_down = board_stop};
 
 /* Runs until it reports a record of that kind. */
-static board_record_t reported(char kind)
+static board_record_t reported(char kind) { return *board_await((uint8_t)kind, 1000000); }
+
+static void assert_cost(const profile_cost_t *cost, uint32_t calls, uint32_t cycles, uint16_t stack)
 {
-    for (;;) {
-        const board_record_t *const record = board_next_record(1000000);
-        assert_non_null(record);
-        if (record->kind == kind) return *record;
-    }
+    assert_int_equal(cost->calls, calls);
+    assert_int_equal(cost->longest_cycles, cycles);
+    assert_int_equal(cost->shortest_cycles, cycles);
+    assert_int_equal(cost->total_cycles, calls * cycles);
+    assert_int_equal(cost->stack, stack);
 }
 
 TEST(functions_cost_what_the_instruction_set_says)
@@ -36,14 +36,8 @@ TEST(functions_cost_what_the_instruction_set_says)
     const profile_cost_t *const forty = profile_function("forty_cycles");
     const profile_cost_t *const pushes = profile_function("three_pushes");
     reported('2');
-    assert_int_equal(forty->calls, 10);
-    assert_int_equal(forty->longest_cycles, 40);
-    assert_int_equal(forty->shortest_cycles, 40);
-    assert_int_equal(forty->total_cycles, 400);
-    assert_int_equal(forty->stack, 2);
-    assert_int_equal(pushes->calls, 5);
-    assert_int_equal(pushes->longest_cycles, 59);
-    assert_int_equal(pushes->stack, 7);
+    assert_cost(forty, 10, 40, 2);
+    assert_cost(pushes, 5, 59, 7);
     assert_int_equal(profile_awake_cycles(), board.avr->cycle);
     assert_int_equal(profile.asleep_cycles, 0);
     assert_true(profile_deepest_stack() >= 2 + 7); /* main's return address */
@@ -59,10 +53,7 @@ TEST(interrupts_are_no_cycles_and_no_stack_of_the_function_that_they_interrupt)
     for (int i = 0; i < 8; i++) board_drive_at('D', 2, i % 2 == 0, board.avr->cycle + 20 + 53 * (uint64_t)i);
     reported('2');
     assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 8);
-    assert_int_equal(forty->calls, 10);
-    assert_int_equal(forty->longest_cycles, 40);
-    assert_int_equal(forty->shortest_cycles, 40);
-    assert_int_equal(forty->stack, 2);
+    assert_cost(forty, 10, 40, 2);
     assert_int_equal(profile_deepest_stack(),
                      2 + 7 + 2); /* main's return address, three_pushes, the interrupt's */
 }
@@ -83,10 +74,7 @@ TEST(an_interrupt_costs_its_cycles_and_four_of_entry)
     board_drive_at('D', 2, true, begin_cycle + 30);
     board_drive_at('D', 2, false, begin_cycle + 100);
     assert_int_equal(reported('d').cycle - begin_cycle + 1, without + 2 * (18 + 4));
-    assert_int_equal(profile.interrupts[PROFILE_INT0].calls, 2);
-    assert_int_equal(profile.interrupts[PROFILE_INT0].shortest_cycles, 18);
-    assert_int_equal(profile.interrupts[PROFILE_INT0].longest_cycles, 18);
-    assert_int_equal(profile.interrupts[PROFILE_INT0].stack, 2);
+    assert_cost(&profile.interrupts[PROFILE_INT0], 2, 18, 2);
     assert_int_equal(profile.entries, 2);
 }
 

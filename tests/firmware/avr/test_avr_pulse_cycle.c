@@ -57,6 +57,12 @@ static void assert_next(const char *expected)
     assert_string_equal(board_line(PATIENCE_US), expected);
 }
 
+static void set_wire(fathom_sim_tx_wire_t wire)
+{
+    fathom_sim_tx_wire(&pins, wire);
+    board_plan();
+}
+
 TEST(each_distance_is_printed_to_the_mm)
 {
     /* The time of flight is mm * 5.75 us (A16 1(4)), and never under 3 ms: 522 mm (A16 1(3)). */
@@ -105,23 +111,19 @@ TEST(the_trigger_is_low_for_2_ms_once_in_221_ms)
 TEST(a_cut_wire_is_an_error_and_no_reading)
 {
     assert_next("1000 mm");
-    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
-    board_plan();
+    set_wire(FATHOM_SIM_WIRE_LOW);
     assert_next("error -3: no answer");
     assert_string_equal(board_line(PATIENCE_US), "error -3: no answer");
-    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
-    board_plan();
+    set_wire(FATHOM_SIM_WIRE_WHOLE);
     assert_next("1000 mm");
 }
 
 TEST(a_line_that_is_stuck_high_is_a_fault)
 {
     assert_next("1000 mm");
-    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
-    board_plan();
+    set_wire(FATHOM_SIM_WIRE_HIGH);
     assert_next("sensor fault");
-    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
-    board_plan();
+    set_wire(FATHOM_SIM_WIRE_WHOLE);
     assert_next("1000 mm");
 }
 
@@ -130,8 +132,7 @@ static void noise(uint32_t us)
 {
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
     assert_true(board_run_us(us));
-    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
-    board_plan();
+    set_wire(FATHOM_SIM_WIRE_WHOLE);
 }
 
 TEST(short_pulses_before_the_right_one_are_noise)

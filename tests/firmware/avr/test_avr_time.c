@@ -151,6 +151,8 @@ TEST(overflows_that_wait_for_16_ms_are_in_each_reading)
 
 /* ---- sleep ---- */
 
+static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
+
 TEST(idle_returns_when_its_time_is_up)
 {
     static const uint32_t most_us[] = {100, 1000, 5000, 20000, 32000};
@@ -178,7 +180,6 @@ TEST(idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time)
 TEST(a_byte_ends_the_sleep_and_one_that_waits_prevents_it)
 {
     static const uint8_t byte = 0x5A;
-    static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
     uint8_t got, flags;
     assert_true(remote_begin(&line, false, 8));
     remote_idle(0);
@@ -199,7 +200,6 @@ TEST(a_byte_ends_the_sleep_and_one_that_waits_prevents_it)
 TEST(the_last_stop_bit_ends_the_sleep)
 {
     static const uint8_t request[] = {1, 2, 3};
-    static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
     assert_true(remote_begin(&line, false, 8));
     remote_idle(0);
     remote_write(request, sizeof request);

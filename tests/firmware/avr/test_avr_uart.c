@@ -48,6 +48,22 @@ static void assert_driver_around(uint8_t length)
     assert_in_range(board.driver_edges[1].cycle, end_cycle, end_cycle + MOST_AFTER_STOP_BIT);
 }
 
+/* HPS-167S #5 leaves, whole: start, 8, parity, stop; UBRR 51. */
+enum { CHARACTER = 11 * 52 * 16 };
+
+static void assert_request_left(uint8_t length)
+{
+    wait_until_out();
+    assert_sent(request, length, CHARACTER);
+}
+
+static void assert_request_leaves(void)
+{
+    assert_int_equal(remote_write(request, sizeof request), sizeof request);
+    assert_request_left(sizeof request);
+    assert_driver_around(sizeof request);
+}
+
 static void forget(void)
 {
     board.bytes_seen = 0;
@@ -57,10 +73,7 @@ static void forget(void)
 TEST(a_request_leaves_without_a_gap_and_the_driver_is_on_around_it)
 {
     assert_false(board.driver_on);
-    assert_int_equal(remote_write(request, sizeof request), sizeof request);
-    wait_until_out();
-    assert_sent(request, sizeof request, 11 * 52 * 16); /* start, 8, parity, stop; UBRR 51 */
-    assert_driver_around(sizeof request);
+    assert_request_leaves();
 }
 
 TEST(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length)
@@ -92,13 +105,12 @@ TEST(the_driver_falls_after_the_last_stop_bit_at_every_rate_and_length)
 TEST(a_receive_interrupt_delays_the_driver_by_no_more_than_itself)
 {
     static const uint8_t noise = 0x55;
-    const uint32_t length_cycles = 11 * 52 * 16;
     for (int phase = -80; phase <= 20; phase++) {
         forget();
         remote_write(request, 1);
         assert_int_equal(board.bytes_seen, 1);
         const uint64_t end_cycle = board.bytes[0].end_cycle;
-        board_feed(&noise, NULL, 1, (uint64_t)((int64_t)end_cycle + phase) - length_cycles, length_cycles);
+        board_feed(&noise, NULL, 1, (uint64_t)((int64_t)end_cycle + phase) - CHARACTER, CHARACTER);
         wait_until_out();
         assert_in_range(board.driver_edges[1].cycle, end_cycle,
                         end_cycle + MOST_AFTER_STOP_BIT + MOST_OF_RECEIVE);
@@ -166,8 +178,7 @@ TEST(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall)
         board_run_us((uint32_t)(board.bytes[0].end_cycle - board.avr->cycle - NEAR) / BOARD_CYCLES_PER_US);
         board.taken = board.recorded;
         remote_call(REMOTE_PIN)->flags = high;
-        while (board_next_record(1000)->kind != REMOTE_MARK) {
-        }
+        board_await(REMOTE_MARK, 1000);
         const uint64_t left = board.bytes[0].end_cycle - board.avr->cycle;
         assert_in_range(left, 100, NEAR);
         board_stall(left + phase - 100);
@@ -206,8 +217,7 @@ TEST(a_write_is_refused_while_bytes_leave_and_does_not_touch_them)
     while (board.bytes_seen < sizeof request ||
            board.avr->cycle + 2000 < board.bytes[sizeof request - 1].end_cycle)
         assert_int_equal(remote_write(other, sizeof other), 0);
-    wait_until_out();
-    assert_sent(request, sizeof request, 11 * 52 * 16);
+    assert_request_left(sizeof request);
     assert_driver_around(sizeof request);
 }
 
@@ -222,8 +232,7 @@ TEST(a_write_of_nothing_or_more_than_its_memory_is_an_error_and_nothing_leaves)
     assert_int_equal(board.bytes_seen, 0);
     assert_int_equal(board.driver_edges_seen, 0);
     assert_int_equal(remote_write(request, 8), 8);
-    wait_until_out();
-    assert_sent(request, 8, 11 * 52 * 16);
+    assert_request_left(8);
 }
 
 TEST(without_a_driver_pin_none_is_driven)
@@ -232,7 +241,7 @@ TEST(without_a_driver_pin_none_is_driven)
     board.has_driver = false;
     remote_write(request, sizeof request);
     board_run_us(20000);
-    assert_sent(request, sizeof request, 11 * 52 * 16);
+    assert_sent(request, sizeof request, CHARACTER);
     assert_int_equal(board.driver_edges_seen, 0);
 }
 
@@ -244,17 +253,21 @@ TEST(begin_refuses_what_it_cannot_do)
     assert_false(remote_begin(&at_19200, true, 0));
     assert_int_equal(board.avr->data[0xC4], ubrr);
     remote_write(request, sizeof request);
-    wait_until_out();
-    assert_sent(request, sizeof request, 11 * 52 * 16);
+    assert_request_left(sizeof request);
 }
 
 /* ---- breaks ---- */
 
-TEST(a_break_holds_txd_low_for_its_time_with_the_driver_on)
+static fathom_sim_line_t line;
+static void begin_line(void)
 {
-    fathom_sim_line_t line;
     fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
     board_join_line(&line);
+}
+
+TEST(a_break_holds_txd_low_for_its_time_with_the_driver_on)
+{
+    begin_line();
     assert_false(line.in_break);
     assert_int_equal(remote_set_break(true), 1);
     assert_true(line.in_break);
@@ -267,17 +280,12 @@ TEST(a_break_holds_txd_low_for_its_time_with_the_driver_on)
     assert_false(board.driver_on);
     assert_int_equal(board.bytes_seen, 0);
     forget();
-    assert_int_equal(remote_write(request, sizeof request), sizeof request);
-    wait_until_out();
-    assert_sent(request, sizeof request, 11 * 52 * 16);
-    assert_driver_around(sizeof request);
+    assert_request_leaves();
 }
 
 TEST(a_break_waits_for_the_last_stop_bit)
 {
-    fathom_sim_line_t line;
-    fathom_sim_line_init(&line, &at_19200, board.clock.now_us);
-    board_join_line(&line);
+    begin_line();
     remote_write(request, sizeof request);
     int refused = 0;
     while (remote_set_break(true) == 0) {

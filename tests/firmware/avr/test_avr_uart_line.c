@@ -9,6 +9,9 @@ enum { UCSR0A = 0xC0, UCSR0C = 0xC2, UBRR0L = 0xC4, UBRR0H = 0xC5, U2X = 0x02 };
 
 static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
 
+static const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
+static const uint8_t request[] = {1, 2, 3};
+
 static int start(void **state)
 {
     remote_start();
@@ -94,8 +97,6 @@ TEST(every_format_has_its_bits)
 
 TEST(settings_wait_until_all_bytes_have_left)
 {
-    static const uint8_t request[] = {1, 2, 3};
-    const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     const fathom_line_settings_t never = {230400, FATHOM_PARITY_NONE, 1};
     remote_write(request, sizeof request);
     int refused = 0;
@@ -121,8 +122,6 @@ TEST(settings_wait_until_all_bytes_have_left)
 
 TEST(settings_that_hold_already_do_so_at_once_also_while_bytes_leave)
 {
-    static const uint8_t request[] = {1, 2, 3};
-    const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     assert_int_equal(remote_write(request, sizeof request), 3);
     assert_int_equal(remote_set_line(&at_19200), 1);
     assert_int_equal(remote_set_line(&at_9600), 0);
@@ -138,7 +137,6 @@ TEST(settings_that_hold_already_do_so_at_once_also_while_bytes_leave)
 TEST(what_was_received_before_is_kept)
 {
     static const uint8_t bytes[] = {5, 6, 7};
-    const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     uint8_t got[8], flags;
     board_feed(bytes, NULL, 3, board.avr->cycle, 0);
     board_run_us(3000);

@@ -33,16 +33,10 @@ typedef struct {
     uint16_t parity, framing, overruns;
 } counters_t;
 
-static counters_t counters(void)
-{
-    counters_t read;
-    memcpy(&read, board_data("fathom_avr_usart0_counters"), sizeof read); /* as avr-gcc lays it out */
-    return read;
-}
-
 static void assert_counters(uint16_t parity, uint16_t framing, uint16_t overruns)
 {
-    const counters_t now = counters();
+    counters_t now;
+    memcpy(&now, board_data("fathom_avr_usart0_counters"), sizeof now); /* as avr-gcc lays it out */
     assert_int_equal(now.parity, parity);
     assert_int_equal(now.framing, framing);
     assert_int_equal(now.overruns, overruns);
@@ -60,6 +54,15 @@ static uint16_t read_all(uint8_t *bytes, uint8_t capacity)
         if (more == 0) return count;
         count = (uint16_t)(count + more);
     }
+}
+
+/* One read of so many bytes at most: it gives those of the pattern, with these flags. */
+static void assert_read(uint8_t capacity, uint8_t flags, const uint8_t *expected, int count)
+{
+    uint8_t got[64], told;
+    assert_int_equal(remote_read(got, capacity, &told), count);
+    assert_int_equal(told, flags);
+    assert_memory_equal(got, expected, (size_t)count);
 }
 
 TEST(a_frame_of_32_bytes_at_115200_comes_whole_with_no_gap_between_bytes)
@@ -112,8 +115,7 @@ TEST(a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is)
         uint8_t flags;
         board.taken = board.recorded;
         remote_call(REMOTE_READ)->length = 64;
-        while (board_next_record(1000)->kind != REMOTE_MARK) {
-        }
+        board_await(REMOTE_MARK, 1000);
         board_feed(&last, NULL, 1, board.avr->cycle + phase - 150, 150);
         board_run_us(200);
         sent++;
@@ -152,10 +154,8 @@ TEST(errors_are_told_of_their_byte_and_counted)
     board_feed(bytes, marks, sizeof bytes, board.avr->cycle, 0);
     board_run_us(10000);
     for (size_t i = 0; i < sizeof reads / sizeof reads[0]; i++) {
-        uint8_t got[64] = {0}, flags;
-        assert_int_equal(remote_read(got, 64, &flags), reads[i].count);
-        assert_int_equal(flags, reads[i].flags);
-        for (uint8_t at = 0; at < reads[i].count; at++) assert_int_equal(got[at], reads[i].first + at);
+        const uint8_t *const expected = reads[i].count != 0 ? bytes + reads[i].first - 1 : bytes;
+        assert_read(64, reads[i].flags, expected, reads[i].count);
     }
     assert_counters(2, 1, 1);
 }
@@ -180,27 +180,21 @@ TEST(counters_stop_at_their_end)
     memcpy(board_data("fathom_avr_usart0_counters"), &nearly, sizeof nearly);
     board_feed(bytes, marks, 3, board.avr->cycle, 0);
     board_run_us(5000);
-    for (int i = 0; i < 3; i++) {
-        uint8_t byte, flags;
-        assert_int_equal(remote_read(&byte, 1, &flags), 1);
-        assert_int_equal(flags, 28);
-    }
+    for (int i = 0; i < 3; i++) assert_read(1, 28, bytes + i, 1);
     assert_counters(65535, 65535, 65535);
 }
 
 TEST(a_full_ring_keeps_what_it_has_and_the_next_byte_tells_of_the_loss)
 {
     for (int round = 0; round < 3; round++) { /* wherever the ring begins */
-        uint8_t bytes[128], flags;
+        uint8_t bytes[128];
         board_feed(pattern, NULL, 100, board.avr->cycle, CHARACTER_115200);
         board_run_us(20000); /* the main loop is away */
         assert_int_equal(read_all(bytes, 40), RING);
         assert_memory_equal(bytes, pattern, RING);
         board_feed(pattern + 200, NULL, 3, board.avr->cycle, CHARACTER_115200);
         board_run_us(1000);
-        assert_int_equal(remote_read(bytes, 64, &flags), 1);
-        assert_int_equal(flags, FATHOM_RX_OVERRUN);
-        assert_int_equal(bytes[0], pattern[200]);
+        assert_read(64, FATHOM_RX_OVERRUN, pattern + 200, 1);
         assert_int_equal(read_all(bytes, 64), 2);
         assert_memory_equal(bytes, pattern + 201, 2);
         assert_counters(0, 0, (uint16_t)(round + 1));
@@ -222,25 +216,19 @@ TEST(a_ring_that_is_just_full_has_lost_nothing)
 /* With interrupts off for 16 ms, the USART keeps three of ten bytes; those that come afterwards are behind a loss. */
 TEST(bytes_that_the_interrupt_comes_too_late_for_are_told_of)
 {
-    uint8_t bytes[64], flags;
     const fathom_line_settings_t at_9600 = {9600, FATHOM_PARITY_NONE, 1};
     assert_true(remote_begin(&at_9600, false, 8));
     board.taken = board.recorded;
     remote_watch_clock(true, 255);
-    while (board_next_record(100000)->kind != REMOTE_CLOCK) {
-    }
+    board_await(REMOTE_CLOCK, 100000);
     board_run_us(100);
     board_feed(pattern, NULL, 10, board.avr->cycle, 0);
     board_run_us(12000); /* the bytes took 10.4 */
     remote_watch_clock(false, 0);
     board_run_us(20000);
     assert_int_equal(board.usart.overruns, 7);
-    assert_int_equal(remote_read(bytes, 64, &flags), 2);
-    assert_int_equal(flags, 0);
-    assert_memory_equal(bytes, pattern, 2);
-    assert_int_equal(remote_read(bytes, 64, &flags), 1);
-    assert_int_equal(flags, FATHOM_RX_OVERRUN);
-    assert_int_equal(bytes[0], pattern[9]);
+    assert_read(64, 0, pattern, 2);
+    assert_read(64, FATHOM_RX_OVERRUN, pattern + 9, 1);
     assert_counters(0, 0, 1);
 }
 

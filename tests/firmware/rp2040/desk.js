@@ -3,7 +3,6 @@
 'use strict';
 const {Machine} = require('./machine.js');
 
-const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_desk.elf`;
 const RAM = 0x20000000;
 const ASK = 0, OPERATION = 4, ARGUMENTS = 8, RESULT = 40, FLAGS = 44, LAST_US = 48, BYTES = 52;
 const OPERATIONS = ['begin', 'read', 'write', 'sent', 'setLine', 'setBreak', 'idle', 'output', 'set', 'input', 'get', 'now',
@@ -13,7 +12,7 @@ const PARITY = {N: 0, E: 1, O: 2};
 
 class Desk {
   constructor(options) {
-    this.machine = new Machine(IMAGE, options);
+    this.machine = new Machine('desk', options);
     this.base = this.machine.symbols.get('desk') - RAM;
     this.machine.run(0.1); // to where it looks at the desk
   }

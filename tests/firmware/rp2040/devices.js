@@ -68,6 +68,12 @@ class Hps167s {
   }
 }
 
+const READING = 'target 2083 mm, raw 2083'; // what is printed of ANSWER
+const MEASURING = {after: 3000}; // what the device takes
+const NEVER = {after: undefined};
+const NO_ANSWER = 'error -3', CHECKSUM = 'error -4', STALE = 'error -7';
+const WRAP_NS = 2 ** 32 * US; // of TIMER
+
 // The lines of text that UART 0 has sent.
 class Terminal {
   constructor(machine) {
@@ -89,4 +95,6 @@ class Terminal {
   }
 }
 
-module.exports = {A16, Hps167s, Terminal, REQUEST, ANSWER, CHARACTER_NS, T3_5_NS, US, MS};
+module.exports = {
+  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_ANSWER, CHECKSUM, STALE, WRAP_NS,
+};

@@ -18,8 +18,8 @@ const WATCHDOG = 0x40058, TICK = 0x2c;
 const SCRATCH0 = 0x4005800c, SCRATCH1 = 0x40058010, ENDED = 0x454e4421; // examples/rp2040/board.h
 
 class Machine {
-  // startUs: what TIMER shows at reset, up to 2^32. scratch: {number: value} of the watchdog's registers.
-  constructor(path, {startUs = 0, scratch = {}} = {}) {
+  // image: rp2040_IMAGE.elf. startUs: what TIMER shows at reset, up to 2^32. scratch: {number: value} of the watchdog's registers.
+  constructor(image, {startUs = 0, scratch = {}} = {}) {
     Machine.change(this);
     this.mcu = new Simulator().rp2040;
     this.clock = this.mcu.clock;
@@ -34,7 +34,7 @@ class Machine {
     this.watchResets();
     this.watchTick();
     this.mendPrimask();
-    const {segments, symbols} = readElf(path);
+    const {segments, symbols} = readElf(`${process.env.FATHOM_IMAGES}/rp2040_${image}.elf`);
     this.symbols = symbols;
     for (const {address, bytes} of segments) this.mcu.flash.set(bytes, address - FLASH);
     for (const [number, value] of Object.entries(scratch)) this.mcu.writeUint32(SCRATCH0 + 4 * number, value);

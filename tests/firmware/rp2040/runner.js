@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tests of one file, in their order; its last statement is run(). The last line is "N passed, 0 failed". With
+// The tests of one file, in their order, when all of it has been read. The last line is "N passed, 0 failed". With
 // FATHOM_FIRST_FAILURE in the environment the first one that fails is the last.
 'use strict';
 const {Machine} = require('./machine.js');
@@ -7,7 +7,7 @@ const {Machine} = require('./machine.js');
 const tests = [];
 
 function test(name, body) {
-  tests.push({name, body});
+  if (tests.push({name, body}) === 1) setImmediate(run);
 }
 
 // A measured value that somebody may want to keep.
@@ -31,7 +31,7 @@ function run() {
     }
   }
   console.log(`${passed} passed, ${failed} failed`);
-  process.exitCode = failed === 0 && tests.length > 0 ? 0 : 1;
+  process.exitCode = failed === 0 ? 0 : 1;
 }
 
-module.exports = {test, figure, run};
+module.exports = {test, figure};

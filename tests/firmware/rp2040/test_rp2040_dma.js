@@ -3,25 +3,23 @@
 // images/dma_loop.c: the same in loops that are slow.
 'use strict';
 const assert = require('assert');
-const {test, figure, run} = require('./runner.js');
+const {test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {PE, FE, OE} = require('./pl011.js');
-const {Terminal, US, MS} = require('./devices.js');
+const {Terminal, US, MS, STALE, WRAP_NS} = require('./devices.js');
 
-const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_a16_dma.elf`;
-const LOOP = `${process.env.FATHOM_IMAGES}/rp2040_dma_loop.elf`;
+const IMAGE = 'a16_dma';
+const LOOP = 'dma_loop';
 const RX = 5, UART1_IRQ = 21, DMA_IRQ_0 = 11, IO_IRQ_BANK0 = 13, TIMER_IRQ_0 = 0;
 const SCRATCH3 = 0x40058018, SCRATCH4 = 0x4005801c;
 const BIT_US = 1e6 / 9600;
 const LOOK_MS = 32 * BIT_US / 1000;
-const WRAP_NS = 2 ** 32 * US;
 
 const GOLDEN = [0xff, 0x07, 0xa1, 0xa7]; // A16 2(4): 1953 mm
 // Where no silence is known, FF 01 FF FF over and over reads 65281 mm as well as 511, and neither is shown (stream.h).
 const HELD_511 = [0xff, 0x01, 0xff, 0xff];
 const frame = (mm) => [0xff, mm >> 8, mm & 0xff, 0xff + (mm >> 8) + mm & 0xff];
 const says = (mm) => `target ${mm} mm, raw ${mm}`;
-const STALE = 'error -7';
 
 // The A16's TX: bits at the pin, and each character to the UART at the end of its stop bit.
 class Sender {
@@ -203,5 +201,3 @@ test('the core sleeps while bytes come', () => {
   go(bench, 2050);
   figure('rp2040_dma_cpu_share', (bench.machine.awake(0.005) * 100).toFixed(3), '%');
 });
-
-run();

@@ -2,7 +2,7 @@
 // Sleep, the clock and the pins of the port.
 'use strict';
 const assert = require('assert');
-const {test, run} = require('./runner.js');
+const {test} = require('./runner.js');
 const {Desk} = require('./desk.js');
 
 const NO_DEADLINE = 0xffffffff;
@@ -128,5 +128,3 @@ test('an input tells the level of its pin, with the pull-up or with none', () =>
     }
   }
 });
-
-run();

@@ -3,21 +3,18 @@
 // sleep, beside an A16.
 'use strict';
 const assert = require('assert');
-const {test, figure, run} = require('./runner.js');
+const {test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {PE, FE} = require('./pl011.js');
-const {A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS} = require('./devices.js');
+const {
+  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_ANSWER, CHECKSUM, WRAP_NS,
+} = require('./devices.js');
 
-const EXAMPLE = `${process.env.FATHOM_IMAGES}/rp2040_hps167s_rs485.elf`;
-const BOTH = `${process.env.FATHOM_IMAGES}/rp2040_both.elf`;
+const EXAMPLE = 'hps167s_rs485';
+const BOTH = 'both';
 const DI = 4, RO = 5, DE = 6, TRIGGER = 2, ECHO = 3;
 const UART1_IRQ = 21, TIMER_IRQ_0 = 0;
 const LOOPS = {fine: 0, coarse: 20000}; // us
-const WRAP_NS = 2 ** 32 * US;
-
-const READING = 'target 2083 mm, raw 2083'; // the datasheet's answer to #5
-const MEASURING = {after: 3000}; // what the device takes
-const NO_ANSWER = 'error -3', CHECKSUM = 'error -4';
 
 function start(image, answers, options) {
   const machine = new Machine(image, options);
@@ -88,7 +85,7 @@ test('the line is 19200 8E1: divider, format and pins', () => {
 
 test('no answer and a late one are errors, and no reading is made of them', () => {
   // The time-out of a measurement is 500 ms; the unit is owed its late answer and asked nothing until it has come.
-  const bench = start(EXAMPLE, [MEASURING, {after: undefined}, {after: 620000}, MEASURING]);
+  const bench = start(EXAMPLE, [MEASURING, NEVER, {after: 620000}, MEASURING]);
   const said = lines(bench, 4, 6000);
   assert.deepStrictEqual(said, [READING, NO_ANSWER, NO_ANSWER, READING]);
   const {exchanges} = bench.hps;
@@ -187,5 +184,3 @@ test('a poll takes 1 % longer at most than the line and one silence allow, in a 
 test('a poll takes 1 % longer at most also asleep', () => {
   assertBusTime('rp2040_poll_bus_time_asleep', EXAMPLE);
 });
-
-run();

@@ -2,11 +2,11 @@
 // examples/rp2040/a16_pulse.c: the whole PWM cycle of an A16 (A16 1).
 'use strict';
 const assert = require('assert');
-const {test, figure, run} = require('./runner.js');
+const {test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
-const {A16, Terminal, US, MS} = require('./devices.js');
+const {A16, Terminal, MS, NO_ANSWER, WRAP_NS} = require('./devices.js');
 
-const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_a16_pulse.elf`;
+const IMAGE = 'a16_pulse';
 const TRIGGER = 2, ECHO = 3, IO_IRQ_BANK0 = 13;
 const CYCLE_MS = 221; // the datasheet: more than 220
 
@@ -28,10 +28,15 @@ function assertTarget(line, us) {
   assert.strictEqual(Number(/\d+/.exec(line)[0]), mm(measured(line)));
 }
 
+function assertCycle(before, behind) {
+  const cycle = behind.at - before.at;
+  assert.ok(cycle >= CYCLE_MS * MS && cycle < (CYCLE_MS + 0.1) * MS, `a cycle of ${cycle} ns`);
+}
+
 test('the pulses of the datasheet are readings, each within 1 us of its width', () => {
   const bench = start([0, 3000, 10100, 86250, 94000]);
   const said = lines(bench, 5);
-  assert.strictEqual(said[0], 'error -3'); // FATHOM_ERR_NO_ANSWER: no pulse, a cut wire
+  assert.strictEqual(said[0], NO_ANSWER); // no pulse, a cut wire
   assertTarget(said[1], 3000);
   assertTarget(said[2], 10100);
   assertTarget(said[3], 86250);
@@ -46,16 +51,14 @@ test('the trigger is low for 2 ms, once every 221 ms', () => {
   const {triggers} = bench.a16;
   assert.ok(triggers.length >= 4);
   for (const {low} of triggers) assert.ok(low >= 2 * MS && low < 2.05 * MS, `low for ${low} ns`);
-  for (let i = 1; i < triggers.length; i++) {
-    const cycle = triggers[i].at - triggers[i - 1].at;
-    assert.ok(cycle >= CYCLE_MS * MS && cycle < (CYCLE_MS + 0.1) * MS, `a cycle of ${cycle} ns`);
-  }
+  for (let i = 1; i < triggers.length; i++)
+    assertCycle(triggers[i - 1], triggers[i]);
 });
 
 test('a pulse of 1 ms, out of the blind zone, is noise', () => {
   const bench = start([1000, 3000]);
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], 'error -3');
+  assert.strictEqual(said[0], NO_ANSWER);
   assertTarget(said[1], 3000);
 });
 
@@ -69,7 +72,6 @@ test('noise before the pulse does not become the reading', () => {
   assertTarget(lines(bench, 1)[0], 10100);
 });
 
-const WRAP_NS = 2 ** 32 * US;
 const FIRST_US = 114000; // about when the first pulse begins, after reset
 
 test('a pulse during which the clock wraps is right, also between whole microseconds', () => {
@@ -84,11 +86,11 @@ test('a pulse during which the clock wraps is right, also between whole microsec
 test('a cycle whose time-out is beyond the wrap ends in time', () => {
   const bench = start([0, 3000], {startUs: 2 ** 32 - FIRST_US});
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], 'error -3');
+  assert.strictEqual(said[0], NO_ANSWER);
   assertTarget(said[1], 3000);
-  const cycle = bench.a16.triggers[1].at - bench.a16.triggers[0].at;
-  assert.ok(bench.a16.triggers[0].at < WRAP_NS && bench.a16.triggers[1].at > WRAP_NS);
-  assert.ok(cycle >= CYCLE_MS * MS && cycle < (CYCLE_MS + 0.1) * MS, `a cycle of ${cycle} ns`);
+  const [before, behind] = bench.a16.triggers;
+  assert.ok(before.at < WRAP_NS && behind.at > WRAP_NS);
+  assertCycle(before, behind);
 });
 
 test('a line that never falls is a fault', () => {
@@ -108,7 +110,7 @@ test('edges that both wait when the interrupt runs give no width, and the next p
     if (state === 1 && bench.a16.triggers.length === 1) machine.after(115000, flicker);
   });
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], 'error -3');
+  assert.strictEqual(said[0], NO_ANSWER);
   assertTarget(said[1], 10100);
 });
 
@@ -151,5 +153,3 @@ test('it sleeps between the edges', () => {
   lines(bench, 2);
   figure('rp2040_pulse_cpu_share', (bench.machine.awake(0.001) * 100).toFixed(3), '%');
 });
-
-run();

@@ -2,20 +2,16 @@
 // examples/rp2040/hps167s_battery.c: power for one reading, then sleep, also for longer than the clock takes to wrap.
 'use strict';
 const assert = require('assert');
-const {test, figure, run} = require('./runner.js');
+const {test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {FE, BE} = require('./pl011.js');
-const {Hps167s, Terminal, MS} = require('./devices.js');
+const {Hps167s, Terminal, MS, READING, MEASURING, NEVER, NO_ANSWER, WRAP_NS} = require('./devices.js');
 
-const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_hps167s_battery.elf`;
-const IMAGE_75 = `${process.env.FATHOM_IMAGES}/rp2040_battery_75.elf`;
+const IMAGE = 'hps167s_battery';
+const IMAGE_75 = 'battery_75';
 const DE = 6, POWER = 7;
-const MINUTE_MS = 60000, WRAP_NS = 2 ** 32 * 1000;
+const MINUTE_MS = 60000;
 const WARM_UP_MS = 5000; // HPS-167S 1.1
-
-const READING = 'target 2083 mm, raw 2083'; // the datasheet's answer to #5
-const MEASURING = {after: 3000};
-const NO_ANSWER = 'error -3';
 
 // Hears nothing without power and for 5 s after it; where its power is switched, noise comes out of the transceiver.
 class Switched extends Hps167s {
@@ -80,7 +76,7 @@ test('the core sleeps for more than 99.9 % of the time', () => {
 });
 
 test('a sensor that does not answer is an error, and it does not keep its power', () => {
-  const bench = start(IMAGE, [{after: undefined}, MEASURING]);
+  const bench = start(IMAGE, [NEVER, MEASURING]);
   assert.deepStrictEqual(lines(bench, 2, 11), [NO_ANSWER, READING]);
   for (const {from, to} of powered(bench)) assert.ok(to - from < WARM_UP_MS + 1200, `power for ${to - from} ms`);
 });
@@ -100,5 +96,3 @@ test('the clock may wrap while it warms up, is asked, or sleeps', () => {
     assertEvery(10, powered(bench));
   }
 });
-
-run();

@@ -2,16 +2,14 @@
 // examples/rp2040/tasks.c: a task for each of two lines, and one that blinks.
 'use strict';
 const assert = require('assert');
-const {test, figure, run} = require('./runner.js');
+const {test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {Answering, A16_REAL_TIME} = require('./answering.js');
-const {Hps167s, MS} = require('./devices.js');
+const {Hps167s, MS, MEASURING, NEVER, WRAP_NS} = require('./devices.js');
 
-const IMAGE = `${process.env.FATHOM_IMAGES}/rp2040_tasks.elf`;
+const IMAGE = 'tasks';
 const DE = 6, NEAR = 15, LAMP = 25;
-const WRAP_NS = 2 ** 32 * 1000;
 const TANK_MM = 751, GATE_MM = 2083, NONE = 65535; // of the datasheets' examples
-const MEASURING = {after: 3000}, NEVER = {after: undefined};
 const UNUSED = 0x5afe5afe, STACK_WORDS = 320;
 
 function start({tank = 50000, gate = [MEASURING], ...options} = {}) {
@@ -32,6 +30,12 @@ function reading({machine}, name) {
   return {readings, errors, mm, status: status | 0};
 }
 
+const both = (bench) => ['tank', 'gate'].map((name) => reading(bench, name));
+
+function assertReadings({readings}, least, most) {
+  assert.ok(readings >= least && readings <= most, `${readings} readings, not ${least} to ${most}`);
+}
+
 // From now on: the lamp changes every 250 ms, as if nobody else were there.
 function assertBlinks({lamp}, ms) {
   const changes = lamp.filter(({at}, i) => i > 0 && lamp[i - 1].high !== lamp[i].high);
@@ -45,13 +49,12 @@ function assertBlinks({lamp}, ms) {
 test('each task reads its own sensor at its own pace, while the lamp blinks', () => {
   const bench = start();
   bench.machine.run(3000);
-  const tank = reading(bench, 'tank');
-  const gate = reading(bench, 'gate');
+  const [tank, gate] = both(bench);
   assert.deepStrictEqual([tank.mm, tank.status, tank.errors], [TANK_MM, 1, 0]);
   assert.deepStrictEqual([gate.mm, gate.status, gate.errors], [GATE_MM, 1, 0]);
   // One in 120 ms and one in 18.519 ms: 25 and 162 in 3 s, less one that is under way.
-  assert.ok(tank.readings === 24 || tank.readings === 25, `${tank.readings} readings of the A16`);
-  assert.ok(gate.readings >= 160 && gate.readings <= 162, `${gate.readings} readings of the HPS-167S`);
+  assertReadings(tank, 24, 25);
+  assertReadings(gate, 160, 162);
   assert.deepStrictEqual(bench.tank.strays, []);
   assertBlinks(bench, 3000);
 });
@@ -59,9 +62,8 @@ test('each task reads its own sensor at its own pace, while the lamp blinks', ()
 test('a line that is dead holds up neither the other one nor the lamp', () => {
   const bench = start({gate: [NEVER]});
   bench.machine.run(3000);
-  const tank = reading(bench, 'tank');
-  const gate = reading(bench, 'gate');
-  assert.ok(tank.readings === 24 || tank.readings === 25, `${tank.readings} readings of the A16`);
+  const [tank, gate] = both(bench);
+  assertReadings(tank, 24, 25);
   assert.strictEqual(tank.errors, 0);
   assert.deepStrictEqual([gate.readings, gate.mm, gate.status], [0, NONE, -3]); // FATHOM_ERR_NO_ANSWER
   assert.ok(gate.errors >= 2);
@@ -177,10 +179,9 @@ test('all of them wait across the wrap of the clock', () => {
     const bench = start({startUs: 2 ** 32 - early * 1000});
     bench.machine.run(2000);
     assert.ok(bench.machine.clock.nanos > WRAP_NS);
-    const tank = reading(bench, 'tank');
-    const gate = reading(bench, 'gate');
-    assert.ok(tank.readings >= 15 && tank.readings <= 17, `${tank.readings} readings of the A16`);
-    assert.ok(gate.readings >= 106 && gate.readings <= 108, `${gate.readings} readings of the HPS-167S`);
+    const [tank, gate] = both(bench);
+    assertReadings(tank, 15, 17);
+    assertReadings(gate, 106, 108);
     assertBlinks(bench, 2000);
   }
 });
@@ -190,5 +191,3 @@ test('the core sleeps when all tasks wait', () => {
   bench.machine.run(2000);
   figure('rp2040_tasks_cpu_share', (bench.machine.awake(0.02) * 100).toFixed(3), '%');
 });
-
-run();

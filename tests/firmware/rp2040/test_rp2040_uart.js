@@ -2,7 +2,7 @@
 // The port's UART, function by function.
 'use strict';
 const assert = require('assert');
-const {test, run} = require('./runner.js');
+const {test} = require('./runner.js');
 const {Desk} = require('./desk.js');
 const {FE, PE, BE} = require('./pl011.js');
 
@@ -14,6 +14,23 @@ function begin(line, where = {}, options) {
   const desk = new Desk(options);
   assert.strictEqual(desk.begin(line, where), 1);
   return {desk, machine: desk.machine, uart: desk.machine.uart[where.number === undefined ? 1 : where.number]};
+}
+
+// With its driver at GPIO 6, whose levels are in `levels`.
+function beginDriven(line, options) {
+  const bench = begin(line, {driver: 6}, options);
+  return {...bench, levels: bench.machine.record(6)};
+}
+
+// All that waits, with no flags.
+function readAll({desk}, capacity) {
+  const heard = [];
+  for (let more = [0]; more.length > 0;) {
+    const got = desk.read(capacity);
+    assert.strictEqual(got.flags, 0);
+    heard.push(...(more = got.bytes));
+  }
+  return heard;
 }
 
 const TIMER = 0x40054, DE_ALARM = 1;
@@ -124,8 +141,7 @@ test('sent is exact: false until the last stop bit has left, then true', () => {
 test('the driver is on from before the first start bit until the last stop bit has left, at every rate', () => {
   for (const [line, bits] of [['9600 8N1', 10], ['19200 8E1', 11], ['115200 8E1', 11], ['230400 8E2', 12]])
     for (const length of [1, 8, 33, 200]) {
-      const bench = begin(line, {driver: 6});
-      const levels = bench.machine.record(6);
+      const {levels, ...bench} = beginDriven(line);
       bench.desk.write(bytesUpTo(length));
       bench.machine.until(() => levels.length === 2);
       assert.strictEqual(bench.uart.sent.length, length);
@@ -138,8 +154,7 @@ test('the driver is on from before the first start bit until the last stop bit h
 });
 
 test('the driver stays on if a request follows at once', () => {
-  const bench = begin('19200 8E1', {driver: 6});
-  const levels = bench.machine.record(6);
+  const {levels, ...bench} = beginDriven('19200 8E1');
   bench.desk.write([1, 2, 3]);
   for (let n = 0; n < 5; n++) {
     while (bench.desk.call('sent') === 0);
@@ -154,9 +169,8 @@ test('the driver stays on if a request follows at once', () => {
 
 test('the alarm of the request before leaves the driver on, at whichever instruction of write it comes', () => {
   for (let instructions = 1; instructions < 200; instructions++) {
-    const bench = begin('115200 8N1', {driver: 6});
+    const {levels, ...bench} = beginDriven('115200 8N1');
     const {mcu} = bench.machine;
-    const levels = bench.machine.record(6);
     bench.desk.write([1]);
     bench.machine.until(() => bench.uart.sent.length === 1);
     bench.machine.beforeInstruction(instructions, () => mcu.peripherals[TIMER].fireAlarm(DE_ALARM));
@@ -171,8 +185,7 @@ test('the alarm of the request before leaves the driver on, at whichever instruc
 
 test('the driver is let go in time when the clock wraps while bytes leave', () => {
   for (let early = 0; early < 8; early++) {
-    const bench = begin('19200 8E1', {driver: 6}, {startUs: 2 ** 32 - 1000});
-    const levels = bench.machine.record(6);
+    const {levels, ...bench} = beginDriven('19200 8E1', {startUs: 2 ** 32 - 1000});
     // 573 us a character: its end, and the alarm for it, come at the wrap, a microsecond apart from run to run.
     bench.machine.runTo(2 ** 32 - 580 + early);
     bench.desk.write([1]);
@@ -184,8 +197,7 @@ test('the driver is let go in time when the clock wraps while bytes leave', () =
 
 test('the driver is let go in time when a receive interrupt comes at any instruction of write', () => {
   // Of a character that takes 1.28 us, so that the alarm for its end has passed when the interrupt is over.
-  const bench = begin('7812500 8N1', {driver: 6});
-  const levels = bench.machine.record(6);
+  const {levels, ...bench} = beginDriven('7812500 8N1');
   for (let instructions = 1; instructions < 250; instructions++) {
     const come = () => [1, 2, 3, 4].forEach((value) => bench.uart.receive(value));
     const one = bench.machine.beforeInstruction(instructions, come);
@@ -198,8 +210,7 @@ test('the driver is let go in time when a receive interrupt comes at any instruc
 });
 
 test('a break holds TX low and the driver high; nothing is written meanwhile', () => {
-  const bench = begin('9600 8N1', {driver: 6});
-  const levels = bench.machine.record(6);
+  const {levels, ...bench} = beginDriven('9600 8N1');
   bench.desk.write([1]);
   assert.strictEqual(bench.desk.call('setBreak', 1), 0);
   bench.machine.until(() => bench.uart.sent.length === 1);
@@ -232,9 +243,7 @@ test('ring and FIFO hold 96 bytes and go on after that, many times over the wrap
   for (let turn = 0; turn < 12; turn++) {
     const sent = bytesUpTo(RING + FIFO).map((value) => (value + turn) & 0xff);
     bench.desk.receive(bench.uart, sent);
-    const heard = [];
-    for (let more = [0]; more.length > 0;) heard.push(...(more = bench.desk.read(50).bytes));
-    assert.deepStrictEqual(heard, sent);
+    assert.deepStrictEqual(readAll(bench, 50), sent);
   }
   assert.strictEqual(bench.desk.call('counter', 2), 0);
 });
@@ -243,13 +252,7 @@ test('bytes that found no room are told as an overrun, before the byte that came
   const bench = begin('115200 8N1');
   const sent = bytesUpTo(RING + FIFO + 5);
   bench.desk.receive(bench.uart, sent);
-  const heard = [];
-  for (let more = [0]; more.length > 0;) {
-    const got = bench.desk.read();
-    assert.strictEqual(got.flags, 0);
-    heard.push(...(more = got.bytes));
-  }
-  assert.deepStrictEqual(heard, sent.slice(0, RING + FIFO));
+  assert.deepStrictEqual(readAll(bench), sent.slice(0, RING + FIFO));
   bench.desk.receive(bench.uart, [77, 78]);
   assert.deepStrictEqual(bench.desk.read(), {bytes: [77], flags: OVERRUN});
   assert.deepStrictEqual(bench.desk.read(), {bytes: [78], flags: 0});
@@ -296,5 +299,3 @@ test('where the receiver\'s time-out has come a read ends, and the time of its l
     assert.deepStrictEqual(bench.desk.read(), {bytes: [4, 5], flags: 0});
   }
 });
-
-run();
