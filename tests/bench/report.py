@@ -103,11 +103,10 @@ def keep(figures, sizes):
         for row in ROWS:
             print(f'{row[0]},{figures[row[0]]}', file=file)
     with open(SIZES, 'w', encoding='utf-8') as file:
-        print(','.join(('row', 'machine', *HEAD)), file=file)
+        print(','.join(['row', *(f'{machine.name}.{what}' for machine in MACHINES for what in HEAD)]), file=file)
         for row in rows():
-            for machine in MACHINES:
-                print(','.join((row, machine.name, *(str(sizes[row, machine.name][what]) for what in HEAD))),
-                      file=file)
+            print(','.join([row, *(str(sizes[row, machine.name][what]) for machine in MACHINES for what in HEAD)]),
+                  file=file)
     # count=1: after an empty table a second match would begin in the same place.
     text = TABLE.sub(readme_table(figures), readme(), count=1)
     text = SIZE_TABLE.sub(readme_sizes(sizes), text, count=1)
@@ -121,8 +120,8 @@ def kept():
         made_with = file.readline()[1:].strip()
         figures = {row['name']: int(row['figure']) for row in csv.DictReader(file)}
     with open(SIZES, encoding='utf-8') as file:
-        sizes = {(row['row'], row['machine']): {what: int(row[what]) for what in HEAD}
-                 for row in csv.DictReader(file)}
+        sizes = {(row['row'], machine.name): {what: int(row[f'{machine.name}.{what}']) for what in HEAD}
+                 for row in csv.DictReader(file) for machine in MACHINES if f'{machine.name}.flash' in row}
     return made_with, figures, sizes
 
 
