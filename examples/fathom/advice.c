@@ -36,7 +36,7 @@ static void print_settings(FILE *to, const failure_t *failure)
     const uint64_t *const port = failure->tally->attempt.port;
     char text[SETTINGS_TEXT];
     (void)fprintf(to, "check --baud and --parity (now %s)", settings_text(now, text));
-    if (now->baud != factory->baud || now->parity != factory->parity)
+    if (now->baud != factory->baud || now->parity != factory->parity || now->stop_bits != factory->stop_bits)
         (void)fprintf(to, ", try without them (%s, as from the factory)", settings_text(factory, text));
     else if (failure->sensor->other_settings != NULL)
         (void)fprintf(to, ", try %s", failure->sensor->other_settings);

@@ -3,17 +3,33 @@
 
 #include <string.h>
 
+#include "channel.h"
 #include "command.h"
 #include "options.h"
 
 static const char command[] = "scan";
 
-enum { PORT, BAUD, PARITY, ADDRESS, TIMEOUT, RETRIES, LISTEN, WAKE, ESTIMATE, FORMAT, HELP, OPTIONS };
+enum {
+    PORT,
+    BAUD,
+    PARITY,
+    STOP_BITS,
+    ADDRESS,
+    TIMEOUT,
+    RETRIES,
+    LISTEN,
+    WAKE,
+    ESTIMATE,
+    FORMAT,
+    HELP,
+    OPTIONS
+};
 
 static const struct option table[OPTIONS + 1] = {
     [PORT] = {"port", required_argument, NULL, 256},
     [BAUD] = {"baud", required_argument, NULL, 256},
     [PARITY] = {"parity", required_argument, NULL, 256},
+    [STOP_BITS] = {"stop-bits", required_argument, NULL, 256},
     [ADDRESS] = {"address", required_argument, NULL, 256},
     [TIMEOUT] = {"timeout", required_argument, NULL, 256},
     [RETRIES] = {"retries", required_argument, NULL, 256},
@@ -89,8 +105,6 @@ static bool take_bauds(const char *list, uint32_t bauds[SCAN_RATES + 1])
 /* One bit each. */
 static bool take_parities(const char *list, unsigned *parities)
 {
-    static const char *const names[SCAN_PARITIES] = {
-        [FATHOM_PARITY_NONE] = "none", [FATHOM_PARITY_EVEN] = "even", [FATHOM_PARITY_ODD] = "odd"};
     if (strcmp(list, "all") == 0) {
         *parities = ALL_PARITIES;
         return true;
@@ -100,7 +114,7 @@ static bool take_parities(const char *list, unsigned *parities)
         unsigned bit = 0;
         list = next_item(list, item);
         for (uint8_t i = 0; i != SCAN_PARITIES; i++)
-            if (strcmp(item, names[i]) == 0) bit = 1u << i;
+            if (strcmp(item, parity_name(i)) == 0) bit = 1u << i;
         if (bit == 0) {
             (void)usage_error(command,
                               "--parity takes all, or some of none, even and odd with commas between them, "
@@ -113,26 +127,33 @@ static bool take_parities(const char *list, unsigned *parities)
     return true;
 }
 
-static void add_settings(scan_plan_t *plan, uint32_t baud, uint8_t parity)
+static void add_settings(scan_plan_t *plan, uint32_t baud, uint8_t parity, uint32_t stop_bits)
 {
-    const fathom_line_settings_t settings = {baud, parity, 1};
+    const fathom_line_settings_t settings = {baud, parity, (uint8_t)stop_bits};
     plan->settings[plan->setting_count++] = settings;
 }
 
-/* A sensor's own parity comes first: where something answers, the others of this rate are left out. */
-static bool take_settings(scan_options_t *options, const char *baud_list, const char *parity_list)
+/* A sensor's own parity comes first: where something answers, the others of this rate are left out. Two stop bits take
+ * the place of the parity bit (HPS-167S 2.2.2). */
+static bool take_settings(scan_options_t *options, const char *const *values)
 {
+    const char *const baud_list = values[BAUD];
+    const char *const parity_list = values[PARITY];
+    uint32_t stop_bits = 1;
     uint32_t bauds[SCAN_RATES + 1] = {scan_dyp_line.baud, scan_hps167s_line.baud};
     unsigned parities = 0;
     if (baud_list != NULL) memset(bauds, 0, sizeof bauds);
     if (baud_list != NULL && !take_bauds(baud_list, bauds)) return false;
     if (parity_list != NULL && !take_parities(parity_list, &parities)) return false;
+    if (!option_number(command, "stop-bits", values[STOP_BITS], 1, 2, &stop_bits)) return false;
+    if (parities == 0 && stop_bits == 2) parities = 1u << FATHOM_PARITY_NONE;
     for (uint8_t i = 0; bauds[i] != 0; i++) {
         const uint8_t factory = scan_factory_parity(bauds[i]);
-        if (parities == 0 || (parities & 1u << factory) != 0) add_settings(&options->plan, bauds[i], factory);
+        if (parities == 0 || (parities & 1u << factory) != 0)
+            add_settings(&options->plan, bauds[i], factory, stop_bits);
         for (uint8_t parity = 0; parity != SCAN_PARITIES; parity++)
             if (parity != factory && (parities & 1u << parity) != 0)
-                add_settings(&options->plan, bauds[i], parity);
+                add_settings(&options->plan, bauds[i], parity, stop_bits);
     }
     return true;
 }
@@ -194,11 +215,11 @@ bool scan_options(scan_options_t *options, int argc, char **argv)
         (void)usage_error(command, "it takes options only, not '%s'", argv[rest]);
         return false;
     }
-    if (!take_settings(options, values[BAUD], values[PARITY]) ||
-        !take_addresses(&options->plan, values[ADDRESS]) || !take_numbers(&options->plan, values) ||
-        !take_format(options, values[FORMAT]))
+    if (!take_settings(options, values) || !take_addresses(&options->plan, values[ADDRESS]) ||
+        !take_numbers(&options->plan, values) || !take_format(options, values[FORMAT]))
         return false;
-    options->is_default = values[BAUD] == NULL && values[PARITY] == NULL && values[ADDRESS] == NULL;
+    options->is_default = values[BAUD] == NULL && values[PARITY] == NULL && values[STOP_BITS] == NULL &&
+                          values[ADDRESS] == NULL;
     options->wake = values[WAKE] != NULL;
     options->estimate = values[ESTIMATE] != NULL;
     options->port = values[PORT];
@@ -229,6 +250,7 @@ void scan_help(FILE *to)
         "  --baud LIST       the rates, such as 9600,57600, or all; default 9600,19200\n"
         "  --parity LIST     some of none,even,odd, or all; default: as from the factory, none at 9600 and "
         "even above\n"
+        "  --stop-bits N     1 (default) or 2; 2 means no parity too unless --parity is given\n"
         "  --timeout MS      how long an address may take to answer; default 150 at 9600 8N1, else 100\n"
         "  --retries N       how often a silent address is asked again; default 0\n"
         "  --listen SECONDS  how long it listens first; default 3\n"

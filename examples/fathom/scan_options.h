@@ -10,7 +10,7 @@
 typedef struct {
     const char *port; /* NULL: with --estimate none is needed */
     scan_plan_t plan;
-    bool is_default; /* the plan: neither --address nor --baud nor --parity was given */
+    bool is_default; /* the plan: none of its options was given */
     bool wake;
     bool estimate;
     bool is_json;

@@ -35,13 +35,6 @@ static const char *mode_name(const scan_finding_t *finding)
     return names[finding->mode];
 }
 
-static const char *parity_name(const fathom_line_settings_t *line)
-{
-    static const char *const names[] = {
-        [FATHOM_PARITY_NONE] = "none", [FATHOM_PARITY_EVEN] = "even", [FATHOM_PARITY_ODD] = "odd"};
-    return names[line->parity];
-}
-
 /* Adds to a text of `capacity` bytes; what does not fit is left out. */
 #define ADD(text, capacity, ...) (void)snprintf((text) + strlen(text), (capacity)-strlen(text), __VA_ARGS__)
 
@@ -69,15 +62,13 @@ static void next_command(const scan_finding_t *finding, const char *port, char t
 {
     text[0] = '\0';
     if (finding->kind != SCAN_SENSOR) return;
+    char options[LINE_OPTIONS];
     const bool is_hps167s = finding->model == FATHOM_HPS167S;
     const fathom_line_settings_t *const factory = is_hps167s ? &scan_hps167s_line : &scan_dyp_line;
     ADD(text, NEXT_TEXT, "fathom read %s", model_name(finding));
     if (!is_hps167s && finding->mode != SCAN_AUTO) ADD(text, NEXT_TEXT, " --mode %s", mode_name(finding));
     if (finding->mode != SCAN_AUTO) ADD(text, NEXT_TEXT, " --address %u", finding->address);
-    if (finding->line.baud != factory->baud) ADD(text, NEXT_TEXT, " --baud %" PRIu32, finding->line.baud);
-    if (finding->line.parity != factory->parity)
-        ADD(text, NEXT_TEXT, " --parity %s", parity_name(&finding->line));
-    ADD(text, NEXT_TEXT, " --port ");
+    ADD(text, NEXT_TEXT, "%s --port ", line_options(&finding->line, factory, options));
     add_word(text, NEXT_TEXT, port);
 }
 
@@ -224,8 +215,8 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
         (void)fprintf(to, "%u", finding->address);
     else
         (void)fputs("null", to);
-    (void)fprintf(to, ",\"baud\":%" PRIu32 ",\"parity\":\"%s\"", finding->line.baud,
-                  parity_name(&finding->line));
+    (void)fprintf(to, ",\"baud\":%" PRIu32 ",\"parity\":\"%s\",\"stop_bits\":%u", finding->line.baud,
+                  parity_name(finding->line.parity), finding->line.stop_bits);
     if (finding->kind == SCAN_SENSOR) print_sensor(to, finding);
     if (finding->is_double) (void)fputs(",\"double\":true", to);
     (void)fputs(",\"next\":", to);

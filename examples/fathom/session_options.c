@@ -29,16 +29,24 @@ static bool take_baud(const char *command, const char *text, uint32_t *baud)
 
 static bool take_parity(const char *command, const char *text, uint8_t *parity)
 {
-    static const char *const names[] = {
-        [FATHOM_PARITY_NONE] = "none", [FATHOM_PARITY_EVEN] = "even", [FATHOM_PARITY_ODD] = "odd"};
     if (text == NULL) return true;
-    for (uint8_t i = 0; i != sizeof names / sizeof names[0]; i++) {
-        if (strcmp(text, names[i]) != 0) continue;
+    for (uint8_t i = FATHOM_PARITY_NONE; i <= FATHOM_PARITY_ODD; i++) {
+        if (strcmp(text, parity_name(i)) != 0) continue;
         *parity = i;
         return true;
     }
     (void)usage_error(command, "--parity takes none, even or odd, not '%s'", text);
     return false;
+}
+
+/* Two of them take the place of the parity bit: a character has 11 bits either way (HPS-167S 2.2.2). */
+static bool take_stop_bits(const char *command, const char *text, fathom_line_settings_t *line)
+{
+    uint32_t number = line->stop_bits;
+    if (!option_number(command, "stop-bits", text, 1, 2, &number)) return false;
+    line->stop_bits = (uint8_t)number;
+    if (number == 2) line->parity = FATHOM_PARITY_NONE;
+    return true;
 }
 
 /* In the order of fathom_line_config_t.echo: found out, told that there is none, told that there is. */
@@ -99,6 +107,7 @@ static bool take_lines(session_options_t *options, const char *command, const ch
         fathom_line_settings_t *const line = &options->stations[i].line;
         *line = options->stations[i].sensor->line;
         if (!take_baud(command, values[OPTION_BAUD], &line->baud) ||
+            !take_stop_bits(command, values[OPTION_STOP_BITS], line) ||
             !take_parity(command, values[OPTION_PARITY], &line->parity))
             return false;
         if (i == 0 || line->baud < options->line.baud) options->line = *line;
@@ -154,9 +163,10 @@ void session_options_help(FILE *to)
         "or\n"
         "                    gateway: tcp:HOST, tcp:HOST:PORT (502 if not given), tcp:[IPV6]:PORT, for mode "
         "modbus;\n"
-        "                    --baud, --parity and --echo mean nothing there\n"
+        "                    --baud, --parity, --stop-bits and --echo mean nothing there\n"
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"
+        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --duration S      ends after so many seconds; without it Ctrl-C does\n"
         "  --interval MS     from one attempt to the next; default: as fast as the sensor can\n"
         "  --timeout MS      how long to wait for an answer (default: as the sensor needs, 0.5 to 1 s), or "

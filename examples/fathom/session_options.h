@@ -11,6 +11,7 @@ enum {
     OPTION_PORT,
     OPTION_BAUD,
     OPTION_PARITY,
+    OPTION_STOP_BITS,
     OPTION_INTERVAL,
     OPTION_TIMEOUT,
     OPTION_RETRIES,
@@ -25,6 +26,7 @@ enum {
     [OPTION_PORT] = {"port", required_argument, NULL, 256},                                                  \
     [OPTION_BAUD] = {"baud", required_argument, NULL, 256},                                                  \
     [OPTION_PARITY] = {"parity", required_argument, NULL, 256},                                              \
+    [OPTION_STOP_BITS] = {"stop-bits", required_argument, NULL, 256},                                        \
     [OPTION_INTERVAL] = {"interval", required_argument, NULL, 256},                                          \
     [OPTION_TIMEOUT] = {"timeout", required_argument, NULL, 256},                                            \
     [OPTION_RETRIES] = {"retries", required_argument, NULL, 256},                                            \

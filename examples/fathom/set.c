@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <inttypes.h>
 #include <string.h>
 
 #include "command.h"
@@ -23,11 +22,10 @@ static void print_next(const setting_t *setting)
     const sensor_t *const sensor = station->sensor;
     const fathom_modbus_unit_t *const unit = station->reader.unit;
     const fathom_line_settings_t *const line = unit->settings != NULL ? unit->settings : &station->line;
+    char options[LINE_OPTIONS];
     if (!setting->moves) return;
-    (void)printf("from now on: fathom read %s:%u:%s --port %s", sensor->name, unit->address,
-                 station->mode->name, talk.options.port);
-    if (line->baud != sensor->line.baud) (void)printf(" --baud %" PRIu32, line->baud);
-    (void)puts("");
+    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", sensor->name, unit->address,
+                 station->mode->name, talk.options.port, line_options(line, &sensor->line, options));
 }
 
 static bool is_later(const setting_t *setting)

@@ -176,6 +176,7 @@ void talk_options_help(FILE *to)
         "  --mode MODE       modbus (default), or dyp for an a05 with frames 55 AA\n"
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"
+        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --timeout MS      how long to wait for a measurement\n"
         "  --retries N       how often a failed question is repeated; what changes something never is\n"
         "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n"

@@ -165,6 +165,8 @@ class Estimate(Case):
         ('--baud 57600,9600,57600', '57600 8E1, 9600 8N1'),
         ('--parity odd,none', '9600 8N1, 9600 8O1, 19200 8N1, 19200 8O1'),
         ('--baud 38400 --parity all', '38400 8E1, 38400 8N1, 38400 8O1'),
+        ('--stop-bits 2', '9600 8N2, 19200 8N2'),
+        ('--baud 19200 --parity even,none --stop-bits 2', '19200 8E2, 19200 8N2'),
         ('--baud all', '9600 8N1, 19200 8E1, 57600 8E1, 115200 8E1, 230400 8E1')))})
     def lists(self, options, settings):
         done = self.run_fathom(f'scan --estimate --address 7 {options}')

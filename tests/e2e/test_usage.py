@@ -38,6 +38,7 @@ WRONG = [
         ('--format xml', "there is no format 'xml', only text, json, csv"),
         ('--parity mark', "--parity takes none, even or odd, not 'mark'"),
         *told('--parity', 'Even'),
+        ('--stop-bits 3', '--stop-bits takes a whole number from 1 to 2'),
         ('--baud 12345', '--baud takes 9600, 19200,'),
         *told('--baud', '9600x', ''),
         ('--count 0', f'--count takes a whole number from {COUNTED}'),
@@ -161,6 +162,7 @@ WRONG = [
         ('--parity mark',
          "--parity takes all, or some of none, even and odd with commas between them, not 'mark'"),
         ('--parity none,', "not ''"),
+        ('--stop-bits 0', '--stop-bits takes a whole number from 1 to 2'),
         ('--timeout 0', '--timeout takes a whole number from 1 to 10000'),
         ('--retries 10', '--retries takes a whole number from 0 to 9'),
         ('--listen 0', '--listen takes a whole number from 1 to 60'),
@@ -223,13 +225,13 @@ class Help(e2e.Case):
 
     @e2e.each(
         help_of_read_names_sensors_options_and_examples=(
-            'read', 'a16 a05 hps167s --port --mode --address --baud --parity --count --interval --timeout '
+            'read', 'a16 a05 hps167s --port --mode --address --baud --parity --stop-bits --count --interval --timeout '
                     '--retries '
             '--format --reconnect --echo --stats[=SECONDS] examples:', '19200 8E1'),
         help_names_what_is_to_be_seen=(
             'watch', '--port --interval --duration --reconnect NO_COLOR examples:', 'x no answer'),
         the_help_names_every_option_and_its_examples_are_right_usage=(
-            'scan', '--port --address --baud --parity --timeout --retries --listen --wake --estimate '
+            'scan', '--port --address --baud --parity --stop-bits --timeout --retries --listen --wake --estimate '
                     '--format '
             'examples:'),
         help_of_sim_names_sensors_options_and_examples=(
