@@ -6,9 +6,9 @@
 #include "fathom/hps167s.h"
 #include "scan_plan.h"
 
-/* HPS-167S #1 to #3 */
-enum { VERSION = 0x0001, CONFIGURATION = 0x0002, DETAILS = 0x0003 };
-enum { VERSION_COUNT = 3, CONFIGURATION_COUNT = 4, DETAILS_COUNT = 11, ACK = 0xB0, RECONNECT_STEP_MS = 18 };
+/* HPS-167S #1 to #3, and #5 */
+enum { VERSION = 0x0001, CONFIGURATION = 0x0002, DETAILS = 0x0003, MEASUREMENT = 0x0008 };
+enum { VERSION_COUNT = 3, DETAILS_COUNT = 11, ACK = 0xB0, FOUR_REGISTERS = 8 };
 
 /* A16 6(3), A05 3(3) */
 enum { PROCESSED = 0x0100, REALTIME = 0x0101, FIRST_PROBE = 0x0106, ADDRESS = 0x0200 };
@@ -40,7 +40,8 @@ typedef struct {
     fathom_status_t failed; /* FATHOM_READY, or why it cannot go on */
 } inquiry_t;
 
-/* Reads; what is damaged or, silence_tries > 1, silent is asked again. True: the values are in inquiry->answer. */
+/* Reads; what is damaged, is another answer (perhaps a measurement that came unasked) or, silence_tries > 1, silent is
+ * asked again. True: the values are in inquiry->answer. */
 static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us, uint8_t silence_tries)
 {
     scan_question_t question = *inquiry->question;
@@ -51,9 +52,9 @@ static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t time
     for (uint8_t tries = DAMAGED_TRIES; tries != 0 && inquiry->failed == FATHOM_READY; tries--) {
         scan_ask(inquiry->wire, &question, &inquiry->answer);
         const fathom_status_t status = inquiry->answer.status;
-        if (scan_is_answered(status)) return status == FATHOM_READY;
+        if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_READY;
         if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) inquiry->failed = status;
-        if (status != FATHOM_ERR_CHECKSUM && --silence_tries == 0) break;
+        if (status != FATHOM_ERR_CHECKSUM && status != FATHOM_ERR_MALFORMED && --silence_tries == 0) break;
     }
     return false;
 }
@@ -76,27 +77,25 @@ static bool is_date(const uint8_t *date)
 
 static bool is_switch(uint8_t byte) { return byte == 0x00 || byte == 0xFF; }
 
-static uint32_t get32(const uint8_t *bytes)
+static bool ask_four(inquiry_t *inquiry, uint16_t first, uint8_t bytes[FOUR_REGISTERS])
 {
-    uint32_t sum = 0;
-    for (uint8_t i = 0; i != 4; i++) sum = sum * 256u + bytes[i];
-    return sum;
+    if (!ask(inquiry, first, FOUR_REGISTERS / 2, MEASURE_US, 2)) return false;
+    get_bytes(inquiry->answer.values, FOUR_REGISTERS / 2, bytes);
+    return true;
 }
 
-/* The answer of #2 has the shape of a measurement (#5), which may come unasked: so it has to be in its ranges, and two
- * in succession have to agree. */
+/* The answer of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ from
+ * a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {
-    enum { TERMINATION = 0, OUTPUT = 1, RECONNECT = 3, BAUD = 7, LENGTH = 8, MAX_BAUD = 4 };
-    uint8_t bytes[2][LENGTH];
-    for (uint8_t i = 0; i != 2; i++) {
-        if (!ask(inquiry, CONFIGURATION, CONFIGURATION_COUNT, MEASURE_US, 2)) return false;
-        get_bytes(inquiry->answer.values, CONFIGURATION_COUNT, bytes[i]);
-    }
-    const uint8_t *const config = bytes[0];
-    if (memcmp(config, bytes[1], LENGTH) != 0 || !is_switch(config[TERMINATION]) ||
-        !is_switch(config[OUTPUT]) || config[BAUD] < 1 || config[BAUD] > MAX_BAUD ||
-        get32(config + RECONNECT) % RECONNECT_STEP_MS != 0)
+    enum { TERMINATION = 0, OUTPUT = 1 };
+    uint8_t config[FOUR_REGISTERS];
+    uint8_t again[FOUR_REGISTERS];
+    uint8_t measured[FOUR_REGISTERS];
+    if (!ask_four(inquiry, CONFIGURATION, config) || !ask_four(inquiry, MEASUREMENT, measured) ||
+        !ask_four(inquiry, CONFIGURATION, again) || memcmp(config, again, sizeof config) != 0 ||
+        memcmp(config, measured, sizeof config) == 0 || !is_switch(config[TERMINATION]) ||
+        !is_switch(config[OUTPUT]))
         return false;
     inquiry->finding->has_termination = config[TERMINATION] != 0x00;
     return true;
@@ -105,6 +104,8 @@ static bool ask_configuration(inquiry_t *inquiry)
 static bool is_hps167s(inquiry_t *inquiry, const scan_answer_t *first)
 {
     scan_finding_t *const finding = inquiry->finding;
+    if (first->status == FATHOM_ERR_MALFORMED && ask(inquiry, VERSION, VERSION_COUNT, MEASURE_US, 2))
+        first = &inquiry->answer;
     if (first->status != FATHOM_READY) return false;
     get_bytes(first->values, VERSION_COUNT, finding->interface);
     finding->has_interface = is_date(finding->interface);

@@ -17,7 +17,7 @@ void scan_first_question(const fathom_line_settings_t *line, uint8_t address, sc
 /*
  * Who is it that has answered the first question? Asks for what only one model has:
  *
- *   HPS-167S  #1 has a date, #3 begins with the acknowledge byte B0, #2 is in its ranges twice in succession
+ *   HPS-167S  #1 has a date, #3 begins with the acknowledge byte B0, #2 has two switches and is the same before and after another measurement
  *   A05       0x0200 is its address, 0x0106 (probe 1) is answered, 0x0101 is not
  *   A16       0x0200 is its address, 0x0101 or 0x0100 (distance) is answered, 0x0106 is not
  *

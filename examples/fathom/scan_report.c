@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "channel.h"
+#include "fathom/dyp.h"
 #include "scan_plan.h"
 
 enum { TOLD_TEXT = 160, NEXT_TEXT = 1024 };
@@ -82,15 +83,20 @@ static void add_version(char text[TOLD_TEXT], const char *what, const uint8_t *d
     ADD(text, TOLD_TEXT, " of 20%02u-%02u-%02u", date[0], date[1], date[2]);
 }
 
-/* 0, FFFD and FFFE are not in the datasheets; sister models say these. */
+/* FFFD and FFFE are not in the datasheets; sister models say these. */
 static void add_value(char text[TOLD_TEXT], const scan_finding_t *finding)
 {
     const char *const probe = finding->model == FATHOM_A05 ? "probe 1: " : "";
     if (!finding->has_value) return;
-    if (finding->value == 0 || finding->value >= 0xFFFD)
+    const uint16_t max_mm = finding->model == FATHOM_A05 ? FATHOM_A05_MAX_MM : FATHOM_A16_MAX_MM;
+    if (finding->value == 0xFFFD)
         ADD(text, TOLD_TEXT, "%sno target", probe);
-    else
+    else if (finding->value == 0xFFFE)
+        ADD(text, TOLD_TEXT, "%sno target, interference", probe);
+    else if (finding->value != 0 && finding->value <= max_mm)
         ADD(text, TOLD_TEXT, "%s%u mm", probe, finding->value);
+    else
+        ADD(text, TOLD_TEXT, "%sthe value %u, which is no distance", probe, finding->value);
 }
 
 static void tell_sensor(const scan_finding_t *finding, char text[TOLD_TEXT])

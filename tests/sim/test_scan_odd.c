@@ -126,7 +126,7 @@ TEST(test_whoever_has_no_date_in_0001_is_no_hps167s)
 
 TEST(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
 {
-    /* #2 is in its ranges but for the baud rate's code, 0 */
+    /* #2 has two switches and is the same twice, but so is what it measures */
     expect_other((stranger_t){.version = 0x0909}, &scan_hps167s_line);
 }
 
@@ -192,4 +192,56 @@ TEST(test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same)
     rig_expect(1, FATHOM_A16);
     rig_expect(2, FATHOM_A05);
     rig_expect(3, FATHOM_HPS167S);
+}
+
+/* ---- HPS-167S #2 ---- */
+
+static bool knows_termination(void)
+{
+    rig.plan.setting_count = 1;
+    rig.plan.settings[0] = scan_hps167s_line;
+    rig.plan.first = rig.plan.last = 1;
+    rig.plan.listen_us = 0;
+    rig_finds(1);
+    rig_expect(1, FATHOM_HPS167S);
+    rig_expect_unharmed();
+    return rig_find(1)->has_config;
+}
+
+/* Table 12 prints no encoding of the rate, and the multiple of 18 of #15 is a rule for what is set. */
+TEST(test_a_configuration_is_believed_whatever_its_rate_and_its_reconnect_time_are)
+{
+    const uint32_t times_ms[] = {0, 1, 1000, UINT32_MAX};
+    const uint8_t codes[] = {0, 5, 0xFF, 19};
+    for (unsigned i = 0; i != 4; i++) {
+        rig_begin(0);
+        rig_hps((hps_config_t){0});
+        rig.hps[0].reconnect_ms = times_ms[i];
+        rig.hps[0].baud_code = codes[i];
+        assert_true(knows_termination());
+        assert_true(rig_find(1)->has_termination);
+    }
+}
+
+static int (*write_to_line)(void *ctx, const uint8_t *bytes, size_t length);
+
+/* #2 does not reach the device. */
+static int write_all_but_2(void *ctx, const uint8_t *bytes, size_t length)
+{
+    return bytes[3] == 0x02 ? (int)length : write_to_line(ctx, bytes, length);
+}
+
+/* 255 mm are 00 FF, two switches; and of a sensor that has failed (table 18) all but the magnitude is FF. */
+TEST(test_a_measurement_that_comes_unasked_is_no_configuration)
+{
+    static fathom_sim_fixed_t near = {{255, 0, 0, 0}};
+    for (uint32_t i = 0; i != 60; i++) {
+        rig_begin(0);
+        rig_hps((hps_config_t){.unasked_us = 25000 + i * 7000, .scene = fathom_sim_fixed(&near)});
+        rig.walk.is_talking = true;
+        if (i % 2 != 0) fathom_sim_hps167s_lose(&rig.hps[0], true, rig.sim_clock.now_us);
+        write_to_line = rig.inner.write;
+        rig.inner.write = write_all_but_2;
+        assert_false(knows_termination());
+    }
 }

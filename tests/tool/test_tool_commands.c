@@ -144,6 +144,27 @@ TEST(scan_finds_one_of_each_sensor_on_a_line)
                      0);
 }
 
+/* The datasheets print no meaning of 0 and of what is beyond the range; FFFD and FFFE are those of sister models. */
+TEST(scan_calls_nothing_a_distance_that_is_none)
+{
+    const struct {
+        int32_t value;
+        const char *text;
+    } rows[] = {{1, "  1 mm  "},
+                {16350, "  16350 mm  "},
+                {0, "  the value 0, which is no distance  "},
+                {16351, "  the value 16351, which is no distance  "},
+                {0xFFFD, "  no target  "},
+                {0xFFFE, "  no target, interference  "},
+                {0xFFFF, "  the value 65535, which is no distance  "}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        bench_begin();
+        bench_a16(any_a16);
+        bench.scene.value[0] = rows[i].value;
+        EXPECT_OUT(tool_run(&bench.tool, "scan --address 1 --baud 9600 --port line"), rows[i].text);
+    }
+}
+
 TEST(watch_prints_a_line_a_second_until_it_is_over)
 {
     bench_hps167s(any_hps167s);
