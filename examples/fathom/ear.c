@@ -122,6 +122,13 @@ static void note_request(evidence_t *evidence, uint8_t to)
     if (evidence->masters++ == 0) evidence->masters_address = to;
 }
 
+static bool is_fitting(const ear_t *ear, const uint8_t *answer, uint8_t length)
+{
+    enum { FUNCTION = 1, COUNT = 5, READ_REQUEST = 8, READ_ANSWER = 5 };
+    return answer[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS || ear->request_length != READ_REQUEST ||
+           length == READ_ANSWER + 2 * ear->request[COUNT];
+}
+
 /* As account, for the frames 55 AA. A request that is no echo has the length and the sum of one and the command of a
  * measurement. */
 static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, evidence_t *evidence)
@@ -153,6 +160,7 @@ static uint16_t account(const ear_t *ear, uint16_t at, uint8_t address, evidence
     uint8_t length = whole(bytes, have, fathom_modbus_rtu_response_length(bytes, have));
     if (length != 0) {
         note_answer(evidence, bytes[0], address);
+        if (bytes[0] == address && is_fitting(ear, bytes, length)) evidence->fitting++;
         return length;
     }
     length = whole(bytes, have, fathom_modbus_rtu_request_length(bytes, have));

@@ -34,11 +34,12 @@ struct ear {
 
 /* What is in the window. */
 typedef struct {
-    uint32_t bytes;          /* all that was heard */
-    uint32_t echoes;         /* of the request that was sent last */
-    uint32_t rest;           /* bytes of the window that were neither echo nor frame */
-    uint32_t own;            /* answers with a right CRC from the unit that was asked */
-    uint32_t foreign;        /* frames with a right CRC from another unit than the one that was asked, ... */
+    uint32_t bytes;   /* all that was heard */
+    uint32_t echoes;  /* of the request that was sent last */
+    uint32_t rest;    /* bytes of the window that were neither echo nor frame */
+    uint32_t own;     /* answers with a right CRC from the unit that was asked; ... */
+    uint32_t fitting; /* ... and those of them that are no measurement which came unasked, by their length */
+    uint32_t foreign; /* frames with a right CRC from another unit than the one that was asked, ... */
     uint8_t foreign_address; /* ... and the first of these units */
     uint32_t masters;        /* requests of somebody else with a right CRC, ... */
     uint8_t masters_address; /* ... and whom the first one asked */

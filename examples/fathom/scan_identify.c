@@ -162,7 +162,7 @@ fathom_status_t scan_identify(const scan_wire_t *wire, const scan_question_t *qu
     finding->line = *question->line;
     finding->address = question->address;
     finding->mode = SCAN_MODBUS;
-    finding->is_double = first->evidence.own >= 2;
+    finding->is_double = first->evidence.fitting >= 2;
     finding->model = find_model(&inquiry, first);
     finding->kind = finding->model != 0 ? SCAN_SENSOR : SCAN_OTHER;
     return inquiry.failed;
