@@ -53,6 +53,8 @@ fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor)
 
 void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
 
+bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor) { return sensor->base.unit.is_written; }
+
 void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
 /* The driver's seam to the line while the address is being set, and at no other time: so nothing else can send the
@@ -79,7 +81,8 @@ fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8
     uint16_t value = address;
     fathom_modbus_question_t write = sensor->base.question;
     fathom_modbus_setting_t setting;
-    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT || sensor->base.unit.is_blind)
+        return FATHOM_ERR_ARGUMENT;
     write.timeout_us = ONE_PROBE_TIMEOUT_US;
     write.values = &value;
     write.first = FATHOM_DYP_REGISTER_ADDRESS;

@@ -41,6 +41,8 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
 
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
+bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor) { return sensor->base.unit.is_written; }
+
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
 void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }

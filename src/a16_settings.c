@@ -3,6 +3,13 @@
 
 void fathom_a16_cancel(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
+bool fathom_a16_is_written(const fathom_a16_modbus_t *sensor) { return sensor->base.unit.is_written; }
+
+fathom_status_t fathom_a16_next_is_blind(fathom_a16_modbus_t *sensor)
+{
+    return fathom_modbus_next_is_blind(&sensor->base.unit);
+}
+
 fathom_status_t fathom_a16_measure(fathom_a16_modbus_t *sensor, fathom_a16_value_t value,
                                    fathom_sample_t *sample)
 {

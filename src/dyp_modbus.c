@@ -72,6 +72,7 @@ static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16
                            bool is_readable)
 {
     place_t place = {sensor, address};
+    if (address == FATHOM_DYP_REGISTER_ADDRESS && sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
     fathom_modbus_question_t write;
     fathom_modbus_setting_t setting;
     describe(sensor, address, &value, &write);
@@ -93,7 +94,7 @@ fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t addr
 
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
-    if (sensor->unit.setting == 0) {
+    if (sensor->unit.setting == 0 && !sensor->unit.is_blind) {
         uint8_t own;
         const fathom_status_t status = fathom_dyp_modbus_address(sensor, &own);
         if (status != FATHOM_READY) return status;

@@ -7,7 +7,7 @@ enum { MEASURE_FIRST = 0x0008, MEASURE_COUNT = 4 };
 
 /* What a distance can say (#5). Over range is 65.53 m: the note has two decimals, so from 65530 to all ones,
  * which is the abnormal packet. */
-#define MIN_MM         1u
+#define MIN_MM         80u
 #define MAX_MM         30000u
 #define MIN_OVER_RANGE 65530u
 #define FAILURE        65535u
@@ -24,7 +24,9 @@ fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_limits_t *limits,
 {
     limits->max_mm = wanted->max_mm != 0 ? wanted->max_mm : MAX_MM;
     limits->over_range_mm = wanted->over_range_mm != 0 ? wanted->over_range_mm : MIN_OVER_RANGE;
-    const bool is_good = limits->max_mm < limits->over_range_mm && limits->over_range_mm < FAILURE;
+    limits->min_mm = wanted->min_mm != 0 ? wanted->min_mm : MIN_MM;
+    const bool is_good = limits->min_mm <= limits->max_mm && limits->max_mm < limits->over_range_mm &&
+                         limits->over_range_mm < FAILURE;
     return is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
 }
 
@@ -53,8 +55,9 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     question->settings = config->settings;
     question->is_command = false;
     question->function = 0;
-    fathom_hps167s_expect_warm_up(sensor, config->warm_up_s != 0 ? config->warm_up_s
-                                                                 : FATHOM_HPS167S_FACTORY_WARM_UP_S);
+    uint8_t warm_up_s = config->warm_up_s;
+    if (warm_up_s == 0 && !config->no_warm_up) warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
+    fathom_hps167s_expect_warm_up(sensor, warm_up_s);
     sensor->sequence = 0;
     sensor->implausible = 0;
     sensor->told[0] = NEVER_TOLD;
@@ -62,13 +65,15 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     sensor->answers = 0;
     sensor->same_answers = config->same_answers != 0 ? config->same_answers : SAME_ANSWERS;
     sensor->steps_per_degree = config->steps_per_degree != 0 ? config->steps_per_degree : 1;
-    sensor->unknown_baud_is_19200 = config->unknown_baud_is_19200;
     sensor->low_word_first = config->low_word_first;
     sensor->is_seeking = false;
     sensor->reset_answer = FATHOM_HPS167S_NO_RESET_ANSWER;
     sensor->next_baud = 0;
-    return fathom_modbus_unit_init(&sensor->unit, config->modbus, config->clock,
-                                   config->address != 0 ? config->address : 1);
+    const fathom_status_t status = fathom_modbus_unit_init(&sensor->unit, config->modbus, config->clock,
+                                                           config->address != 0 ? config->address : 1);
+    if (status == FATHOM_READY)
+        sensor->unasked_us = (uint32_t)(sensor->unit.polled_us - FATHOM_HPS167S_UNASKED_US);
+    return status;
 }
 
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor) { fathom_hps167s_cancel(sensor); }
@@ -157,22 +162,29 @@ bool fathom_hps167s_has_asked(const fathom_hps167s_t *sensor, uint16_t first)
     return sensor->unit.asked == fathom_modbus_unit_name(&question);
 }
 
+bool fathom_hps167s_is_abnormal(const uint16_t registers[4])
+{
+    return registers[0] == FAILURE && registers[1] == 0 && low(registers[2]) == 0xFF &&
+           registers[3] == 0xFFFF;
+}
+
 fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,
                                              const uint16_t registers[4], fathom_sample_t *sample)
 {
     const uint16_t raw = registers[0];
     const uint8_t exponent = high(registers[2]);
-    const bool is_target = raw >= MIN_MM && raw <= limits->max_mm;
+    uint8_t kind = FATHOM_FAULT;
     uint32_t magnitude = 0;
-    if (raw != FAILURE) {
-        if (!is_target && raw < limits->over_range_mm) return FATHOM_ERR_MALFORMED;
-        if (exponent > MAX_EXPONENT) return FATHOM_ERR_MALFORMED;
+    if (!fathom_hps167s_is_abnormal(registers)) {
+        const bool is_over = raw >= limits->over_range_mm;
+        if (raw == 0 || raw == FAILURE || exponent > MAX_EXPONENT) return FATHOM_ERR_MALFORMED;
+        if (raw > limits->max_mm && !is_over) return FATHOM_ERR_MALFORMED;
+        kind = is_over ? FATHOM_NO_TARGET : raw < limits->min_mm ? FATHOM_UNKNOWN : FATHOM_TARGET;
         magnitude = (uint32_t)registers[1] << exponent;
     }
-    /* The abnormal packet has ones in ambient and precision too, but a distance of all ones is none either way. */
-    sample->kind = is_target ? FATHOM_TARGET : raw == FAILURE ? FATHOM_FAULT : FATHOM_NO_TARGET;
+    sample->kind = kind;
     sample->raw = raw;
-    sample->distance_mm = is_target ? raw : 0;
+    sample->distance_mm = kind == FATHOM_TARGET ? raw : 0;
     sample->magnitude = magnitude;
     sample->ambient = low(registers[2]);
     sample->precision = registers[3];
@@ -185,6 +197,7 @@ fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample
     fathom_hps167s_limits_t limits;
     limits.max_mm = MAX_MM;
     limits.over_range_mm = MIN_OVER_RANGE;
+    limits.min_mm = MIN_MM;
     return fathom_hps167s_decode_within(&limits, registers, sample);
 }
 
@@ -194,7 +207,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const uint16_t *const values = sensor->values;
     fathom_status_t status = ask(sensor, &sensor->question);
     if (status != FATHOM_READY) return status;
-    if (values[0] == FAILURE && fathom_modbus_unit_is_warming_up(&sensor->unit)) return FATHOM_ERR_WARMING_UP;
+    if (fathom_modbus_unit_is_warming_up(&sensor->unit) && fathom_hps167s_is_abnormal(values))
+        return FATHOM_ERR_WARMING_UP;
     status = FATHOM_ERR_MALFORMED;
     /* The very answer to #2 again: it came late. */
     if (!same_4(values, sensor->told)) status = fathom_hps167s_decode_within(&sensor->limits, values, sample);

@@ -40,26 +40,15 @@ static void slip(fathom_hps167s_auto_t *sensor)
     for (uint8_t left = --sensor->have; left != 0; left--) *to++ = *++from;
 }
 
-/* May this be an answer to #2 that was not waited for any more? */
-static bool is_configuration(const fathom_hps167s_t *asking, const uint16_t *registers)
-{
-    if (same_4(registers, asking->told)) return true;
-    return fathom_hps167s_has_asked(asking, FATHOM_HPS167S_CONFIGURATION) &&
-           fathom_hps167s_may_be_configuration(asking, registers);
-}
-
 static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
     const uint8_t *at = sensor->bytes + DATA;
     uint16_t registers[4];
     for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)(at[0] * 256u + at[1]);
     sensor->have = 0;
-    if (sensor->asking != NULL) {
-        if (is_configuration(sensor->asking, registers)) {
-            count(&sensor->implausible);
-            return;
-        }
-        copy_4(sensor->asking->measured, registers);
+    if (sensor->asking != NULL && !fathom_hps167s_heard(sensor->asking, registers)) {
+        count(&sensor->implausible);
+        return;
     }
     if (sensor->is_new) count(&sensor->missed);
     copy_4(sensor->registers, registers);

@@ -9,7 +9,7 @@ enum { CONFIGURATION = FATHOM_HPS167S_CONFIGURATION, CONFIGURATION_COUNT = 4 };
 enum { DETAILS = 0x0003, DETAILS_COUNT = 11, DETAILS_ACK = 0xB0 };
 enum { TEMPERATURE = 0x0004, TEMPERATURE_COUNT = 1 };
 
-enum { FIRST_YEAR = 2000, MAX_ANSWERS = 8, RECONNECT_STEP_MS = 18 };
+enum { FIRST_YEAR = 2000, MAX_ANSWERS = 8, ANSWERS_AMONG_UNASKED = 3 };
 
 fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out)
 {
@@ -45,27 +45,48 @@ static uint32_t reconnect_time_ms(const fathom_hps167s_t *sensor, const uint16_t
 
 static bool is_switch(uint8_t byte) { return byte == 0x00 || byte == 0xFF; }
 
-bool fathom_hps167s_may_be_configuration(const fathom_hps167s_t *sensor, const uint16_t registers[4])
+bool fathom_hps167s_may_be_configuration(const uint16_t registers[4])
 {
-    const uint8_t code = low(registers[3]);
     return is_switch(high(registers[0])) && is_switch(low(registers[0])) &&
-           (sensor->unknown_baud_is_19200 || (code >= 1 && code <= 4)) &&
-           reconnect_time_ms(sensor, registers) % RECONNECT_STEP_MS == 0;
+           !fathom_hps167s_is_abnormal(registers);
+}
+
+bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4])
+{
+    const fathom_clock_t *const clock = sensor->unit.clock;
+    const bool is_last_asked = fathom_hps167s_has_asked(sensor, CONFIGURATION);
+    sensor->unasked_us = clock->now_us(clock->ctx);
+    if (same_4(registers, sensor->told) ||
+        (is_last_asked && fathom_hps167s_may_be_configuration(registers))) {
+        sensor->agreed = 0; /* what comes unasked may have been what came as an answer */
+        return false;
+    }
+    copy_4(sensor->measured, registers);
+    return true;
 }
 
 /* A frame of the right shape has come: is it enough now? One that is a measurement counts neither way. */
 static bool is_believed(fathom_hps167s_t *sensor)
 {
+    fathom_modbus_unit_t *const unit = &sensor->unit;
     const uint16_t *const values = sensor->values;
+    uint8_t needed = sensor->same_answers;
     if (sensor->answers++ == 0) sensor->agreed = 0;
-    if (!fathom_hps167s_may_be_configuration(sensor, values) || same_4(values, sensor->measured)) {
-        /* Whoever asks in step with what the device sends by itself gets that each time. */
-        sensor->unit.pause_us = (uint32_t)(sensor->answers * FATHOM_HPS167S_MIN_PERIOD_US);
-        return false;
+    if (!fathom_hps167s_may_be_configuration(values) || same_4(values, sensor->measured)) {
+        copy_4(sensor->measured, values);
+        sensor->unasked_us = unit->polled_us;
+        needed = UINT8_MAX;
+    } else {
+        if (!same_4(values, sensor->told)) sensor->agreed = 0;
+        copy_4(sensor->told, values);
+        sensor->agreed++;
     }
-    if (!same_4(values, sensor->told)) sensor->agreed = 0;
-    copy_4(sensor->told, values);
-    return ++sensor->agreed >= sensor->same_answers;
+    if (fathom_elapsed_us(unit->polled_us, sensor->unasked_us) < FATHOM_HPS167S_UNASKED_US) {
+        /* A question in step with what the device sends by itself would get that each time. */
+        unit->pause_us += (uint32_t)((2u * sensor->answers + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2));
+        if (needed < ANSWERS_AMONG_UNASKED) needed = ANSWERS_AMONG_UNASKED;
+    }
+    return sensor->agreed >= needed;
 }
 
 fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out)
@@ -86,7 +107,8 @@ fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hp
     out->measures_after_power_on = low(values[0]) != 0;
     out->warm_up_s = high(values[1]);
     out->reconnect_time_ms = reconnect_time_ms(sensor, values);
-    out->baud = baud_of(low(values[3]));
+    out->baud_code = low(values[3]);
+    out->baud = baud_of(out->baud_code);
     return FATHOM_READY;
 }
 

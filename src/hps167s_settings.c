@@ -20,6 +20,7 @@ enum {
 
 enum { OFF = 0x0000, ON = 0x00FF, USER = 0x0000, FACTORY = 0x00FF };
 enum { RESET_DONE = 1, RECONNECT_STEP_MS = 18 };
+enum { TO_ALL = 1 }; /* in wanted[1], where settings of one register have 0 */
 
 #define FACTORY_BAUD 19200ul
 
@@ -55,14 +56,23 @@ static bool is_reset_refused(const fathom_hps167s_t *sensor)
     return sensor->reset_answer != FATHOM_HPS167S_NO_RESET_ANSWER && sensor->reset_answer != RESET_DONE;
 }
 
+static bool is_baud_code(uint8_t code) { return code >= 1 && code <= 4; }
+
+/* At which rate is it asked now? For settings of the baud rate, which have line settings. */
+static uint32_t present_baud(const fathom_hps167s_t *sensor)
+{
+    const fathom_line_settings_t *const settings = sensor->unit.settings;
+    return settings != NULL ? settings->baud : sensor->question.settings->baud;
+}
+
 static fathom_status_t look_at(const look_t *look, const fathom_hps167s_configuration_t *is, uint32_t *value)
 {
     switch (look->command) {
     case WARM_UP:
         *value = is->warm_up_s;
         break;
-    case BAUD:
-        *value = is->baud;
+    case BAUD: /* a code without a rate of its own tells less than where the answer came from */
+        *value = is_baud_code(is->baud_code) ? is->baud : present_baud(look->sensor);
         break;
     case MEASURES:
         *value = is->measures_after_power_on ? ON : OFF;
@@ -125,7 +135,7 @@ static fathom_status_t prepare(fathom_hps167s_t *sensor, const fathom_modbus_set
         const bool is_this = under_way == fathom_modbus_unit_name(setting->write);
         return is_this && wanted[0] == first && wanted[1] == second ? FATHOM_READY : FATHOM_ERR_BUSY;
     }
-    if (sensor->is_seeking || setting->read == NULL) {
+    if (!sensor->unit.is_blind && (sensor->is_seeking || setting->read == NULL)) {
         fathom_hps167s_version_t version;
         const fathom_status_t status = fathom_hps167s_interface_version(sensor, &version);
         if (status != FATHOM_READY) return status;
@@ -133,6 +143,12 @@ static fathom_status_t prepare(fathom_hps167s_t *sensor, const fathom_modbus_set
     wanted[0] = first;
     wanted[1] = second;
     return FATHOM_READY;
+}
+
+/* Would this setting, which is not to be, begin blind? */
+static bool is_to_be_blind(const fathom_hps167s_t *sensor)
+{
+    return sensor->unit.is_blind && sensor->unit.setting == 0;
 }
 
 static fathom_status_t set(fathom_hps167s_t *sensor, const fathom_modbus_setting_t *setting, uint16_t first,
@@ -154,6 +170,13 @@ static fathom_status_t set_register(fathom_hps167s_t *sensor, uint16_t command, 
     return set(sensor, &setting, value, 0);
 }
 
+fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor)
+{
+    return fathom_modbus_next_is_blind(&sensor->unit);
+}
+
+bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor) { return sensor->unit.is_written; }
+
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s)
 {
     const fathom_status_t status = set_register(sensor, WARM_UP, warm_up_s, true);
@@ -173,6 +196,8 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
 
 fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
 {
+    /* it may add to the offset that is there, so that none is ever written twice */
+    if (is_to_be_blind(sensor)) return FATHOM_ERR_ARGUMENT;
     return set_register(sensor, OFFSET, (uint16_t)offset_mm, false);
 }
 
@@ -204,6 +229,42 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
     write.count = 2;
     setting.value = reconnect_time_ms;
     return sensor->low_word_first ? set(sensor, &setting, below, above) : set(sensor, &setting, above, below);
+}
+
+/* ---- to all units ---- */
+
+static fathom_status_t set_all(fathom_hps167s_t *sensor, uint16_t command, bool is_on)
+{
+    fathom_modbus_unit_t *const unit = &sensor->unit;
+    const bool begins = unit->setting == 0;
+    const uint8_t home = begins ? unit->address : unit->home_address;
+    const uint16_t value = is_on ? ON : OFF;
+    fathom_modbus_question_t write;
+    fathom_modbus_setting_t setting;
+    look_t wanted;
+    begin(sensor, command, &write, &wanted, &setting);
+    setting.value = value;
+    if (begins) unit->is_blind = true;
+    fathom_status_t status = prepare(sensor, &setting, value, TO_ALL);
+    if (status != FATHOM_READY) return status;
+    unit->address = FATHOM_MODBUS_BROADCAST;
+    status = fathom_modbus_set(unit, &setting);
+    if (status == FATHOM_PENDING)
+        unit->home_address = home;
+    else
+        unit->address = home;
+    return status;
+}
+
+fathom_status_t fathom_hps167s_set_measures_after_power_on_of_all_units(fathom_hps167s_t *sensor,
+                                                                        bool measures)
+{
+    return set_all(sensor, MEASURES, measures);
+}
+
+fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *sensor, bool termination)
+{
+    return set_all(sensor, TERMINATION, termination);
 }
 
 /* ---- what moves the device ---- */
@@ -266,6 +327,7 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
     fathom_modbus_question_t write;
     fathom_modbus_setting_t setting;
     look_t wanted;
+    if (is_to_be_blind(sensor)) return FATHOM_ERR_ARGUMENT;
     begin(sensor, FACTORY_RESET, &write, &wanted, &setting);
     write.function = 0;
     write.values = &sensor->reset_answer;

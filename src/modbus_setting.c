@@ -19,6 +19,7 @@ static void go_home(fathom_modbus_unit_t *unit)
 static fathom_status_t end(fathom_modbus_unit_t *unit, fathom_status_t status)
 {
     unit->setting = 0;
+    unit->is_blind = false;
     return status;
 }
 
@@ -59,9 +60,11 @@ static bool never_left(fathom_status_t status)
 static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                fathom_status_t status)
 {
-    if (setting->read == NULL || status == FATHOM_ERR_EXCEPTION || never_left(status))
-        return end(unit, status);
     unit->outcome = (int8_t)status;
+    if (never_left(status)) unit->is_written = false;
+    if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return end(unit, status);
+    if (unit->is_blind) return end(unit, FATHOM_ERR_UNCONFIRMED);
+    if (setting->read == NULL) return end(unit, status < 0 ? FATHOM_ERR_UNCONFIRMED : status);
     unit->step = CONFIRM_HERE;
     if (moves(setting)) {
         unit->step = CONFIRM_THERE;
@@ -81,7 +84,7 @@ static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus
         return FATHOM_PENDING;
     }
     if (status < 0) return end(unit, FATHOM_ERR_UNCONFIRMED);
-    return end(unit, unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_MALFORMED);
+    return end(unit, unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS);
 }
 
 static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
@@ -99,13 +102,21 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
     }
 }
 
+fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
+{
+    if (unit->setting != 0) return FATHOM_ERR_BUSY;
+    unit->is_blind = true;
+    return FATHOM_READY;
+}
+
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     const uint16_t name = fathom_modbus_unit_name(setting->write);
     fathom_status_t status;
     if (unit->setting == 0) {
         unit->setting = name;
-        unit->step = setting->read != NULL ? LOOK : WRITE;
+        unit->is_written = false;
+        unit->step = setting->read != NULL && !unit->is_blind ? LOOK : WRITE;
         unit->home_address = unit->address;
         unit->home_settings = unit->settings;
     } else if (unit->setting != name) {

@@ -92,6 +92,7 @@ static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_quest
         unit->attempts = 0;
         unit->is_command = question->is_command;
         unit->asked = fathom_modbus_unit_name(question);
+        if (unit->asked == unit->setting) unit->is_written = true;
         unit->pace_us = question->pace_us;
         unit->backoff_us = question->backoff_us != 0 ? question->backoff_us : LONGEST_US;
         unit->pause_us = question->pace_us;
@@ -123,6 +124,8 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->settings = NULL;
     unit->asked = 0;
     unit->setting = 0;
+    unit->is_written = false;
+    unit->is_blind = false;
     unit->request.message.exception = 0;
     return FATHOM_READY;
 }
@@ -184,6 +187,7 @@ void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit)
     if (unit->state == ASKED) unit->modbus->cancel(unit->modbus->ctx, &unit->request);
     unit->state = IDLE;
     unit->waiting = 0;
+    unit->is_blind = false;
     if (unit->setting == 0) return;
     unit->setting = 0;
     unit->address = unit->home_address;

@@ -79,9 +79,11 @@ void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers at neither address: it is at one of the two
  *   FATHOM_ERR_BUSY         another command is not finished
  *   others                  of fathom_poll: nothing was changed
+ * is_written: has the last command, or the one under way, been handed to the line?
  * Its answer equals the request, and so counts for nothing here: only the reading at the new address does.
  */
 fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address);
+bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor);
 
 /* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
 void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor);

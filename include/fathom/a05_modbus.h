@@ -77,10 +77,12 @@ void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers at neither: it is at one of the two
  *   FATHOM_ERR_BUSY         another command is not finished
  *   others                  of fathom_poll: nothing was changed
+ * is_written: has the last setting, or the one under way, been handed to the line?
  * Requests of others that wait for the old address end with FATHOM_ERR_CANCELLED.
  */
 fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
+bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor);
 
 /* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);

@@ -23,11 +23,13 @@ extern "C" {
  *   FATHOM_ERR_MALFORMED    a value that the register cannot have
  *   FATHOM_ERR_BUSY         another command is not finished, or nobody has taken its outcome
  * Setting: the value is read first, written only if it is another one (flash wears), and read back.
- *   FATHOM_READY            it is so
+ * fathom_a16_is_written tells whether it was written:
+ *   FATHOM_READY            it is so; not written: it was so before
  *   FATHOM_ERR_ARGUMENT     out of range; nothing was sent
- *   FATHOM_ERR_MALFORMED    the device acknowledged the value and has another one afterwards
+ *   FATHOM_ERR_DIFFERS      the device acknowledged the value and has another one afterwards
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may hold or not
- *   others                  as reading: nothing was changed
+ *   others                  as reading. Not written: nothing was changed. Written: the device refused it (exception), or
+ *                           the write failed so and the device says that it has another value
  * Whether a setting outlives power-off is in the datasheet for 0x0202 alone: it does not.
  */
 
@@ -39,6 +41,18 @@ enum {
     FATHOM_A16_REGISTER_SWITCH_THRESHOLD = 0x0206,
     FATHOM_A16_REGISTER_AUTOMATIC_VALUE = 0x0207
 };
+
+/* Has the last setting, or the one under way, been handed to the line? */
+bool fathom_a16_is_written(const fathom_a16_modbus_t *sensor);
+
+/*
+ * The next setting is BLIND: it is written without reading anything before or afterwards, once, and to this unit alone.
+ * The address, 0x0200, is FATHOM_ERR_ARGUMENT then. Whatever the setting ends with, the one after it is none:
+ * FATHOM_ERR_UNCONFIRMED: it was sent, and may hold or not, also where it was acknowledged; FATHOM_ERR_EXCEPTION: it
+ * refused; others: nothing was written.
+ * Here: FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. fathom_a16_cancel and power_on forget it.
+ */
+fathom_status_t fathom_a16_next_is_blind(fathom_a16_modbus_t *sensor);
 
 /* Gives up what is under way, also a measurement. A setting that was under way may hold or not. */
 void fathom_a16_cancel(fathom_a16_modbus_t *sensor);
@@ -64,7 +78,8 @@ typedef enum {
 
 /*
  * The operating mode, 0x0202; WRITE-ONLY, not kept over power-off. The address is read before. It means something only
- * where a Modbus command has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more: whether
+ * where a Modbus command has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more
+ * (FATHOM_ERR_UNCONFIRMED: there was none): whether
  * frames come is heard, not read, since a read would end them again: a16_rs232.h.
  */
 fathom_status_t fathom_a16_set_operating_mode(fathom_a16_modbus_t *sensor, fathom_a16_operating_mode_t mode);

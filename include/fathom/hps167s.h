@@ -20,15 +20,18 @@ extern "C" {
  * place can reset it. What is declared here sends command #5 of the datasheet and nothing else.
  *
  * One sample an answer, as often as polling and the pace allow:
- *   FATHOM_TARGET     1..30000 mm (the range is 80 to 18000)
+ *   FATHOM_TARGET     80..30000 mm (the range is 80 to 18000)
  *   FATHOM_NO_TARGET  out of range or too weak: the device says 65.53 m
- *   FATHOM_FAULT      the device says that it has failed: all ones for a distance (#5, abnormal packet)
+ *   FATHOM_UNKNOWN    1..79 mm, below its range
+ *   FATHOM_FAULT      the device says that it has failed, with the abnormal packet of #5: all ones for distance, ambient
+ *                     and precision, and magnitude 0. The text says nothing of the exponent, so that any will do
  * The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_ANSWER  nothing from the unit in timeout_us, retries included. It is silent for some
  *                         seconds after power-on
  *   FATHOM_ERR_CHECKSUM   its answer was damaged
  *   FATHOM_ERR_EXCEPTION  it refused; unit.request.message.exception has the number (1..4: table 39)
- *   FATHOM_ERR_MALFORMED  it answered something else, or figures that it cannot mean
+ *   FATHOM_ERR_MALFORMED  it answered something else, or figures that it cannot mean: those are counted (implausible).
+ *                         A distance of all ones in any other packet is one of them
  *   FATHOM_ERR_WARMING_UP one of the first three, or the abnormal packet, so soon after fathom_hps167s_power_on
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
  */
@@ -39,8 +42,9 @@ extern "C" {
 /* What a distance is taken for. The datasheet says "65.53 meters" for over range (#5), two decimals of a figure in mm,
  * and gives a range of 18 m and a note about 20 m; what lies between is no figure of this device. */
 typedef struct {
-    uint16_t max_mm;        /* 1..max_mm is a target; 0: 30000 */
+    uint16_t max_mm;        /* min_mm..max_mm is a target; 0: 30000 */
     uint16_t over_range_mm; /* from here to 65534 is no target; over max_mm; 0: 65530 */
+    uint16_t min_mm;        /* 1..min_mm - 1 is FATHOM_UNKNOWN; up to max_mm; 0: 80 */
 } fathom_hps167s_limits_t;
 
 /* Read by init only; modbus and clock outlive the sensor. Members that are 0 mean their defaults. */
@@ -56,18 +60,17 @@ typedef struct {
     uint8_t address;             /* 1..32; 0: 1, the factory's */
     uint8_t retries;             /* after a failed attempt, of commands that only read too; 0: none */
     uint8_t warm_up_s;           /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
+    bool no_warm_up;             /* it was set to 0 s */
     fathom_hps167s_limits_t limits;
 
     /* How to read what the datasheet leaves open, beside the limits. */
     uint8_t same_answers; /* the configuration (#2) is believed when so many answers in succession agree: its
-                                   frame has the shape of a measurement's. 1..8; 0: 2 */
+                                   frame has the shape of a measurement's. 1..8; 0: 2. 3 at least for 2 s after
+                                   a frame that nobody asked for was heard */
     uint8_t
         steps_per_degree; /* the temperature (#4) counts in steps of one degree Fahrenheit, by so much finer:
                                    10 for tenths. 0: 1 */
-    bool
-        unknown_baud_is_19200; /* #9 says that any other code means 19200. False: #2 with a code that is not 1..4 is
-                                   refused, since it may be a measurement */
-    bool low_word_first; /* the reconnect time (#15, #2) has its low word first. False: the high word, as all
+    bool low_word_first;  /* the reconnect time (#15, #2) has its low word first. False: the high word, as all
                                    other integers of the device */
 } fathom_hps167s_config_t;
 
@@ -87,11 +90,11 @@ typedef struct {
     /* Answers to #2 and to #5 have one shape: neither may be what the other was last. */
     uint16_t told[4];
     uint16_t measured[4];
-    uint8_t answers; /* to #2, this time */
-    uint8_t agreed;  /* of them, in succession */
+    uint32_t unasked_us; /* the clock when a frame that nobody asked for was heard */
+    uint8_t answers;     /* to #2, this time */
+    uint8_t agreed;      /* of them, in succession */
     uint8_t same_answers;
     uint8_t steps_per_degree;
-    bool unknown_baud_is_19200;
     bool low_word_first;
 
     /* hps167s_settings.h: */
@@ -107,7 +110,7 @@ typedef struct {
 } fathom_hps167s_t;
 
 /* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, an address over 32, over_range_mm that is 65535 or not over
- * max_mm, more than 8 same_answers. */
+ * max_mm, min_mm over max_mm, more than 8 same_answers. */
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */
@@ -132,7 +135,7 @@ void fathom_hps167s_cancel(fathom_hps167s_t *sensor);
  * Reads the four registers of a measurement's answer (#5, table 18), also one that nobody asked for. Sets the
  * members of *sample that come from the device: kind, raw, distance_mm, magnitude, ambient, precision, and
  * interference (false). FATHOM_READY, or FATHOM_ERR_MALFORMED, with nothing written: a distance that it cannot
- * mean, or an exponent over 16. decode_within: with other limits, none of them 0.
+ * mean, or an exponent over 16. decode_within: with other limits, of which none is 0.
  */
 fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample);
 fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,

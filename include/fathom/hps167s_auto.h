@@ -29,10 +29,10 @@ extern "C" {
 /* Read by init only. line and asking outlive this. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* it becomes the line's listener; its frame holds 13 bytes or more */
-    /* The driver that asks the same device on this line; NULL: nobody does. An answer to its #2 has the same shape and
-     * may come after something else was taken for it: what equals the last one is no measurement, nor, from #2 until
-     * another question is asked, is anything that could be one; both are counted as implausible. Of distances that is
-     * 255 mm alone. */
+    /* The driver that asks the same device on this line; NULL: nobody does. It is told of each frame
+     * (fathom_hps167s_heard). An answer to its #2 has the same shape and may come after something else was taken for it:
+     * what equals the last one is no measurement, nor, from #2 until another question is asked, is anything that could
+     * be one; both are counted as implausible. Of distances that is 255 mm alone. */
     fathom_hps167s_t *asking;
     uint32_t stale_us;              /* 0: 2 s; the slowest rate is 6 a second */
     uint8_t address;                /* 1..32; 0: that of asking, wherever it moves, or 1 */

@@ -34,9 +34,10 @@ typedef struct {
 
 /* Command #2, table 12. What takes effect at the next power-on (hps167s_settings.h) is told as it was set. */
 typedef struct {
-    uint32_t baud;              /* 19200, 57600, 115200 or 230400: the code of #9 */
-    uint32_t reconnect_time_ms; /* a multiple of 18 */
+    uint32_t baud;              /* what baud_code means by #9, whose "others are all 19200" */
+    uint32_t reconnect_time_ms; /* what #15 sets is a multiple of 18; what is told may be anything */
     uint8_t warm_up_s;
+    uint8_t baud_code; /* as it is told; table 12 has no encoding of its own */
     bool termination; /* the resistor; on in every unit from the factory, and eight of them overload a line */
     bool measures_after_power_on;
 } fathom_hps167s_configuration_t;
@@ -63,9 +64,12 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
 
 /*
  * #2. The answer has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
- * first two bytes are 00 or FF, the baud code is 1..4 and the reconnect time a multiple of 18, if it is not what was
- * last measured, and if two such in succession agree (config.same_answers). It is asked up to 8 times;
- * FATHOM_ERR_MALFORMED: that was not enough. Of what can be measured only exactly 255 mm can pass the first test.
+ * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such in
+ * succession agree (config.same_answers). Whatever its baud code and reconnect time are.
+ * What does not count was asked by nobody. For 2 s after such a frame three answers have to agree, and the questions
+ * come at intervals that are no multiple of 18519 us, or they would go in step with what the device sends by itself.
+ * It is asked up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Of what can be measured only exactly 255 mm can
+ * pass the first test.
  */
 fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out);
 
@@ -75,8 +79,13 @@ fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_
 /* #4. FATHOM_ERR_MALFORMED also: tenths of a degree Celsius would not fit an int16_t. */
 fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
 
-/* Can these four registers be an answer to #2? Of its figures alone. */
-bool fathom_hps167s_may_be_configuration(const fathom_hps167s_t *sensor, const uint16_t registers[4]);
+/* Can these four registers be an answer to #2? Of their figures alone. */
+bool fathom_hps167s_may_be_configuration(const uint16_t registers[4]);
+
+/* A frame of the shape of #5's answer was heard from the sensor's address that no question of the sensor's waited for,
+ * with these registers. False: it may be an answer to #2 that comes late, so that it is no measurement.
+ * hps167s_auto.h says so by itself; other listeners of the line may. */
+bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4]);
 
 #ifdef __cplusplus
 }

@@ -17,20 +17,36 @@ extern "C" {
  * is for reading alone.
  *
  * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one, since
- * flash wears, and it is read again. 5 answers at most, some ms each.
- *   FATHOM_READY            the device says that it is so
- *   FATHOM_ERR_MALFORMED    it acknowledged the value and says that it has another one; or #2 could not be made out
- *                           and nothing was written
+ * flash wears, and it is read again. 17 answers at most, some ms each. fathom_hps167s_is_written tells whether it was
+ * written:
+ *   FATHOM_READY            the device says that it is so; not written: it was so before
+ *   FATHOM_ERR_DIFFERS      it acknowledged the value and says that it has another one
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may hold or not
  *   FATHOM_ERR_EXCEPTION    it refused; unit.request.message.exception has the number
  *   FATHOM_ERR_BUSY         another command or setting is not finished, or this one with another value
- *   others                  of fathom_poll: nothing was changed
+ *   others                  of fathom_poll. Not written: nothing was changed; FATHOM_ERR_MALFORMED: #2 could not be made
+ *                           out. Written: the write failed so, and the device says that it has another value
  * WRITE-ONLY (#12, #13, #14): #1 is read first, so that a device that is not there is told nothing and an echo of the
  * line is known, and then it is written. There is nothing to read back.
  *   FATHOM_READY            it was acknowledged, which is all that can be known
+ *   FATHOM_ERR_UNCONFIRMED  it was sent and not acknowledged: it may hold or not
  *   FATHOM_ERR_EXCEPTION, FATHOM_ERR_BUSY   as above
- *   others                  of fathom_poll, where the writing itself failed: it may hold or not
+ *   others                  of fathom_poll: nothing was written
  */
+
+/* Has the last setting, or the one under way, been handed to the line? */
+bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
+
+/*
+ * The next setting is BLIND: for a device whose #2 cannot be made out. It is written without reading anything before or
+ * afterwards, so also without a look whether an address is free; once, and to this unit alone. #12, which may add to
+ * what is there, and #6 are FATHOM_ERR_ARGUMENT then. Whatever the setting ends with, the one after it is none:
+ *   FATHOM_ERR_UNCONFIRMED  it was sent, and may hold or not, also where it was acknowledged
+ *   FATHOM_ERR_EXCEPTION    it refused
+ *   others                  nothing was written
+ * Here: FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. fathom_hps167s_cancel and _power_on forget it.
+ */
+fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor);
 
 /* #7: seconds after power-on without measuring; holds from the next power-on. fathom_hps167s_power_on then counts with
  * it. */
@@ -64,6 +80,18 @@ fathom_status_t fathom_hps167s_set_measures_after_power_on(fathom_hps167s_t *sen
 /* #11: the terminating resistor; from the next power-on. On from the factory in every unit: leave it on in the last one
  * of a line only, at the end that is not the host's. */
 fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool termination);
+
+/*
+ * #10 and #11 for ALL units on the line, whatever their addresses are (2.2.1), so also where several that are new from
+ * the factory share address 1. No unit answers that: it is sent once, nothing is read, and the outcome is
+ *   FATHOM_ERR_UNCONFIRMED  it was sent. Ask each unit for its configuration
+ *   FATHOM_ERR_BUSY         another command or setting is not finished
+ *   others                  of fathom_poll: nothing was sent
+ * Nothing else in this library is ever sent to unit 0.
+ */
+fathom_status_t fathom_hps167s_set_measures_after_power_on_of_all_units(fathom_hps167s_t *sensor,
+                                                                        bool measures);
+fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *sensor, bool termination);
 
 /* #12: is added to what it measures; real 200 and measured 215 mm make -15. WRITE-ONLY; whether it replaces the offset
  * before or adds to it is not in the datasheet: measure afterwards. */

@@ -20,6 +20,9 @@ extern "C" {
  *     end with FATHOM_ERR_CANCELLED.
  *  5. The device is asked again; where that fails at the new place, at the old one too.
  *
+ * A setting that unit->is_blind was set for consists of the third alone: for a device whose answers cannot be made out.
+ * The setting clears it, whatever it ends with.
+ *
  * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING.
  */
 typedef struct {
@@ -35,22 +38,28 @@ typedef struct {
 } fathom_modbus_setting_t;
 
 /*
- * To be called with the same setting until it is not FATHOM_PENDING:
- *   FATHOM_READY            it was so already, or is now, and was read back; where there is nothing to read back, it
- *                           was acknowledged
+ * To be called with the same setting until it is not FATHOM_PENDING. unit->is_written tells whether anything was sent
+ * that changes the device:
+ *   FATHOM_READY            not written: it was so already. Written: it was read back; where there is nothing to read
+ *                           back, it was acknowledged
  *   FATHOM_ERR_IN_USE       somebody answers at the new place already, be it damaged (so noise in that time is taken
  *                           for somebody, to be safe); nothing was written
  *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke when it was to be, and then the device could not be
  *                           read, at the new place nor at the old: it is at one of the two. The driver goes on asking
- *                           at the old one
+ *                           at the old one. Where there is nothing to read back: it was not acknowledged. Blind: also
+ *                           where it was
  *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that nobody is at the new place; nothing was
  *                           written
- *   FATHOM_ERR_MALFORMED    it acknowledged the value, and says afterwards that it has another
+ *   FATHOM_ERR_DIFFERS      it acknowledged the value, and says afterwards that it has another
  *   FATHOM_ERR_BUSY         another command or setting is not finished
- *   any other               of fathom_modbus_unit_ask: nothing was written, or the device refused it (exception), or
- *                           the write failed and the device says that it has the value that it had
+ *   any other               of fathom_modbus_unit_ask. Not written: nothing was changed. Written: the device refused
+ *                           it (exception), or the write failed so and the device says that it has another value
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
+
+/* The next setting is blind. FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. Cancelling and power_on forget
+ * it. */
+fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus
 }

@@ -67,8 +67,10 @@ typedef struct {
     const fathom_line_settings_t *home_settings; /* where the device was, while a setting moves it */
     uint16_t setting;                            /* the question that is carried out; 0: none */
     uint8_t home_address;
-    uint8_t step;   /* FATHOM_MODBUS_UNIT_INSIDE: what is asked now belongs to the setting */
-    int8_t outcome; /* of the write */
+    uint8_t step;    /* FATHOM_MODBUS_UNIT_INSIDE: what is asked now belongs to the setting */
+    int8_t outcome;  /* of the write */
+    bool is_written; /* the write of the last setting has been handed to the line */
+    bool is_blind;   /* the next setting is, or the present one */
 } fathom_modbus_unit_t;
 
 enum { FATHOM_MODBUS_UNIT_INSIDE = 8 };

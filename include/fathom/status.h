@@ -33,7 +33,8 @@ typedef enum {
     FATHOM_ERR_UNSUPPORTED = -12, /* the port, or what carries the request, cannot do this */
     FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (the driver was told of it) */
     FATHOM_ERR_UNCONFIRMED = -14, /* a setting was sent and could not be read back: it may hold, or not */
-    FATHOM_ERR_IN_USE = -15       /* a unit answers at the address that was to be set; nothing was changed */
+    FATHOM_ERR_IN_USE = -15,      /* a unit answers at the address that was to be set; nothing was changed */
+    FATHOM_ERR_DIFFERS = -16 /* a setting was acknowledged, and the device says that it has another value */
 } fathom_status_t;
 
 #ifdef __cplusplus

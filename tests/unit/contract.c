@@ -166,7 +166,8 @@ const contract_driver_t contract_hps167s = {
               RANGE(hps167s, same_answers, 9, 255), IS(hps167s, limits.over_range_mm, 65535),
               IS(hps167s, limits.over_range_mm, 30000), IS(hps167s, limits.max_mm, 65530),
               BOTH(hps167s, limits.max_mm, 100, limits.over_range_mm, 100),
-              BOTH(hps167s, limits.max_mm, 65534, limits.over_range_mm, 65534)}};
+              BOTH(hps167s, limits.max_mm, 65534, limits.over_range_mm, 65534),
+              IS(hps167s, limits.min_mm, 30001), BOTH(hps167s, limits.max_mm, 79, limits.min_mm, 0)}};
 
 /* ---- on a line ---- */
 

@@ -477,6 +477,7 @@ TEST(a_write_through_the_seam_is_refused_at_every_time)
         seen++;
     }
     assert_int_equal(status, FATHOM_READY);
+    assert_true(fathom_a05_dyp_is_written(&a05));
     assert_int_equal(seen, COUNT(steps));
     assert_refused();
 }
@@ -487,7 +488,11 @@ TEST(what_was_refused_or_given_up_leaves_the_seam_closed)
     assert_refused();
     assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 255), FATHOM_ERR_ARGUMENT);
     assert_refused();
+    assert_int_equal(fathom_modbus_next_is_blind(&a05.base.unit), FATHOM_READY); /* an address never is */
+    assert_int_equal(set_7(), FATHOM_ERR_ARGUMENT);
+    fathom_a05_dyp_cancel(&a05);
     assert_int_equal(set_7(), FATHOM_PENDING);
+    assert_false(fathom_a05_dyp_is_written(&a05));
     fathom_a05_dyp_cancel(&a05);
     assert_refused();
     assert_int_equal(rig.fake.written, 0);

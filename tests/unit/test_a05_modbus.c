@@ -164,6 +164,7 @@ TEST(an_a05_that_has_moved_measures_at_its_new_address)
     start();
     PLAY(move, FATHOM_READY, READ(1, 0x0200, FATHOM_READY, 1), READ(5, 0x0200, FATHOM_ERR_NO_ANSWER, 0),
          WRITE(1, 0x0200, 5, FATHOM_READY), READ(5, 0x0200, FATHOM_READY, 5));
+    assert_true(fathom_a05_modbus_is_written(&a05));
     IS_TOLD(1001, 2001, 3001, 4001);
     fake_modbus_assert_asked(&fake, 1, 5, 0x0106, 4);
     for (unsigned probe = 1; probe <= 4; probe++) {

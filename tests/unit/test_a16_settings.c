@@ -185,6 +185,23 @@ TEST(the_address_is_read_and_followed_when_it_is_set)
     assert_int_equal(desk.sample.distance_mm, 754);
 }
 
+/* a16_settings.h: "it is written without reading anything before or afterwards, once ... The address, 0x0200, is
+ * FATHOM_ERR_ARGUMENT then". */
+TEST(each_setting_can_be_written_blind_but_the_address)
+{
+    desk.argument = 1;
+    assert_int_equal(fathom_a16_next_is_blind(&a16), OK);
+    PLAY(set_polarity, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0205, 1, OK));
+    assert_true(fathom_a16_is_written(&a16));
+    assert_int_equal(fathom_a16_next_is_blind(&a16), OK);
+    PLAY(set_mode, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0202, 1, NOBODY));
+    PLAY(set_polarity, OK, READ(1, 0x0205, OK, 1)); /* that was the last one */
+    assert_false(fathom_a16_is_written(&a16));
+    assert_int_equal(fathom_a16_next_is_blind(&a16), OK);
+    assert_int_equal(set_address(), FATHOM_ERR_ARGUMENT);
+    assert_null(fake.request);
+}
+
 TEST(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is)
 {
     desk.argument = 1; /* is it there, and does the line echo? */

@@ -248,7 +248,9 @@ TEST(an_answer_to_2_that_comes_by_itself_is_no_measurement)
     assert_int_equal(run_both(2000000, ask_2), FATHOM_ERR_NO_ANSWER);
     hears(FATHOM_PENDING, 1, LOOKS_LIKE_2); /* asked and not answered: this may be the answer */
     assert_int_equal(hps.implausible, 1);
-    hears(FATHOM_READY, 1, 0x00FF, 0x0500, 0x0000, 0xB400); /* no such code */
+    hears(FATHOM_PENDING, 1, 0x00FF, 0x0500, 0x0003, 0xE800); /* whatever its rate and reconnect time are */
+    assert_int_equal(hps.implausible, 2);
+    hears(FATHOM_READY, 1, 0xFFFF, 0x0000, 0x00FF, 0xFFFF); /* but not the abnormal packet */
     assert_int_equal(run_both(2000000, ask_1), FATHOM_ERR_NO_ANSWER);
     hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* there was another question */
 }
@@ -271,6 +273,21 @@ TEST(a_held_value_is_never_taken_for_the_configuration)
     ask_too();
     hears(FATHOM_READY, 1, LOOKS_LIKE_2);
     rig_hps_frame(frame, 1, LOOKS_LIKE_2);
+    for (unsigned i = 0; i != 60 && status == FATHOM_PENDING; i++) {
+        fake_trickle(&rig.fake, 60000, RIG_BYTE_US, frame, LENGTH);
+        status = run_both(100000, ask_2);
+    }
+    assert_int_equal(status, FATHOM_ERR_MALFORMED);
+    assert_int_equal(asking.unit.answers, 8);
+}
+
+/* Command #5: "If a sensor failure occurs during continuous measurement, an abnormal data packet will be returned". */
+TEST(a_faulted_sensor_that_talks_never_yields_a_configuration)
+{
+    uint8_t frame[LENGTH];
+    fathom_status_t status = FATHOM_PENDING;
+    ask_too();
+    rig_hps_frame(frame, 1, 0xFFFF, 0x0000, 0x00FF, 0xFFFF);
     for (unsigned i = 0; i != 60 && status == FATHOM_PENDING; i++) {
         fake_trickle(&rig.fake, 60000, RIG_BYTE_US, frame, LENGTH);
         status = run_both(100000, ask_2);

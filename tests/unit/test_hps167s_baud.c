@@ -52,6 +52,32 @@ TEST(the_rate_that_it_has_is_not_written)
     hps_asks(1, 19200);
 }
 
+/* Table 12 has no encoding of the rate: with a code that #9 does not have, where it answers says more. */
+TEST(a_code_that_is_not_ours_keeps_no_rate_from_being_set_or_found)
+{
+    PLAY_AT(1, &hps_factory, 115200, set_baud, OK, IS(1, 0, 19200), TWO(1, NOBODY, 0, 115200),
+            RATE(1, 3, OK, 19200), IS(1, 0x73, 115200));
+    hps_asks(1, 115200);
+    hps_answers();
+    desk.argument = 19200;
+    PLAY(set_baud, OK, IS(1, 5, 115200), TWO(1, NOBODY, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 0, 19200));
+    PLAY(set_baud, OK, IS(1, 0, 19200)); /* it is so already */
+    PLAY_AT(1, &hps_factory, 115200, set_baud, FATHOM_ERR_DIFFERS, IS(1, 0, 19200), TWO(1, NOBODY, 0, 115200),
+            RATE(1, 3, OK, 19200), TWO(1, NOBODY, 0, 115200), IS(1, 0, 19200));
+}
+
+TEST(a_rate_that_was_written_blind_is_sought_at_both)
+{
+    hps_start_at(1, &hps_factory);
+    desk.argument = 57600;
+    assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+    PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, RATE(1, 2, OK, 19200));
+    hps_asks(1, 19200);
+    hps_is_silent(NOBODY);
+    hps_asks(1, 57600);
+    hps_answers();
+}
+
 FOLLOWS(a_rate_that_the_port_cannot_do_is_not_set, 1, 19200, 1, &hps_factory, 230400, set_baud,
         FATHOM_ERR_UNSUPPORTED, IS(1, 1, 19200), TWO(1, FATHOM_ERR_UNSUPPORTED, 0, 230400))
 

@@ -17,18 +17,20 @@ static void assert_guard(const void *object, size_t size)
     for (size_t i = 0; i != size; i++) assert_int_equal(((const uint8_t *)object)[i], GUARD);
 }
 
-/* The rule, stated apart: 1..30000 a distance, 65530..65534 nothing in range, 65535 a fault, else it cannot be. */
+/* The rule, stated apart: 80..30000 a distance, below that it is below its range, 65530..65534 nothing in range; else,
+ * and these are figures of no abnormal packet, it cannot be. */
 static int kind_of(uint32_t raw)
 {
-    if (raw == 65535) return FATHOM_FAULT;
+    if (raw == 65535) return 0;
     if (raw / 10 == 6553) return FATHOM_NO_TARGET; /* 65530..65534, 65535 is gone */
     if (raw == 0) return 0;
+    if (raw < 80) return FATHOM_UNKNOWN;
     return raw <= 30000 ? FATHOM_TARGET : 0;
 }
 
 TEST(every_distance_is_what_the_rule_says)
 {
-    unsigned counted[4] = {0, 0, 0, 0};
+    unsigned counted[7] = {0};
     for (uint32_t raw = 0; raw != 65536; raw++) {
         const uint16_t registers[4] = {(uint16_t)raw, 0xDCB2, 0x0742, 0x1234};
         const int kind = kind_of(raw);
@@ -46,11 +48,11 @@ TEST(every_distance_is_what_the_rule_says)
         assert_int_equal(sample.ambient, 0x42);
         assert_int_equal(sample.precision, 0x1234);
         assert_false(sample.interference);
-        if (kind != FATHOM_FAULT) assert_int_equal(sample.magnitude, 7231744);
+        assert_int_equal(sample.magnitude, 7231744);
     }
-    assert_int_equal(counted[FATHOM_TARGET], 30000);
+    assert_int_equal(counted[FATHOM_TARGET], 29921);
+    assert_int_equal(counted[FATHOM_UNKNOWN], 79);
     assert_int_equal(counted[FATHOM_NO_TARGET], 5);
-    assert_int_equal(counted[FATHOM_FAULT], 1);
 }
 
 TEST(decode_leaves_the_members_that_are_not_the_devices)

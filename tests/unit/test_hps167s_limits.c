@@ -57,7 +57,7 @@ TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
     assert_int_equal(desk.sample.distance_mm, 2083);
 }
 
-/* 01000008 hexadecimal = 16777224 = 18 * 932068. */
+/* 01000008 hexadecimal = 16777224. */
 TEST(the_first_configuration_is_believed_whatever_stood_in_the_memory)
 {
     static const uint16_t first[4] = {0x0000, 0x0101, 0x0000, 0x0801};
@@ -96,16 +96,26 @@ TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
     }
 }
 
-/* is_believed(): who asks in step with what the device sends by itself is out of step after that, so each time it waits
- * one period longer. */
-TEST(after_the_fourth_measurement_in_the_place_of_an_answer_it_waits_four_periods)
+/* hps167s_info.h: "the questions come at intervals that are no multiple of 18519 us": from question to question the pace,
+ * and then n periods and 9259 us. */
+TEST(after_a_measurement_in_the_place_of_an_answer_no_interval_is_a_multiple_of_a_period)
 {
     for (uint32_t n = 1; n != 5; n++) {
         asks(configuration);
-        fake_modbus_answer(&fake, hps_measured, 4);
+        fake_modbus_answer(&fake, n < 4 ? hps_measured : tells, 4);
         PENDS(configuration());
-        assert_int_equal(due_us(), n * PERIOD_US); /* 74076 us at last */
+        /* 46296, 64814, 83332 and, after an answer that may count, 101850 us */
+        assert_int_equal(due_us(), PERIOD_US + n * 18518 + 9259);
     }
+}
+
+TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_first_answer_on)
+{
+    assert_true(fathom_hps167s_heard(&hps, hps_measured));
+    asks(configuration);
+    fake_modbus_answer(&fake, tells, 4);
+    PENDS(configuration());
+    assert_int_equal(due_us(), PERIOD_US + 18518 + 9259);
 }
 
 /* No answer came, so none was a measurement, whatever the registers hold from before. */

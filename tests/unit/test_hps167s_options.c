@@ -71,10 +71,27 @@ TEST(the_warm_up_is_an_option_and_its_last_question_counts)
     }
 }
 
+#define WARMS_UP(s) TELLS(0xFFFF, (s)*256, 0x0000, 0xB401)
+
+static fathom_status_t none(void) { return fathom_hps167s_set_warm_up_s(&hps, 0); }
+
+/* #7 takes 0 s, with which silence is an error one time-out after power-on. */
+TEST(a_warm_up_of_0_s_can_be_told_and_can_be_set)
+{
+    for (unsigned is_set = 0; is_set != 2; is_set++) {
+        hps_set_up(NULL);
+        hps_config.no_warm_up = is_set == 0;
+        hps_start();
+        if (is_set == 1) PLAY(none, OK, WARMS_UP(5), HPS_WRITE(1, 0x0A, 0, OK, 0), WARMS_UP(0));
+        fake.now_us += 20000;
+        fathom_hps167s_power_on(&hps);
+        assert_int_equal(ends_after(499999, NOBODY), FATHOM_ERR_WARMING_UP);
+        assert_int_equal(ends_after(1, NOBODY), NOBODY);
+    }
+}
+
 static fathom_status_t nine(void) { return fathom_hps167s_set_warm_up_s(&hps, 9); }
 static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
-
-#define WARMS_UP(s) TELLS(0xFFFF, (s)*256, 0x0000, 0xB401)
 
 TEST(a_warm_up_that_was_set_counts_from_then_on)
 {
@@ -125,8 +142,8 @@ static void kinds_as_in(void **state)
     }
 }
 
-#define LIMITS(promise, max_mm, over_range_mm, ...)                                                          \
-    static const limits_t promise = {{max_mm, over_range_mm}, {__VA_ARGS__}};                                \
+#define LIMITS(promise, max, over_range, ...)                                                                \
+    static const limits_t promise = {{.max_mm = max, .over_range_mm = over_range}, {__VA_ARGS__}};           \
     TEST_ROW(promise, kinds_as_in, &promise)
 
 LIMITS(by_default_distances_end_at_30000_and_over_range_begins_at_65530, 0, 0, {30000, FATHOM_TARGET},
@@ -134,20 +151,45 @@ LIMITS(by_default_distances_end_at_30000_and_over_range_begins_at_65530, 0, 0, {
 LIMITS(the_largest_distance_is_an_option, 18000, 0, {18000, FATHOM_TARGET}, {18001, 0}, {65529, 0},
        {65530, FATHOM_NO_TARGET})
 LIMITS(where_over_range_begins_is_an_option, 0, 65500, {65499, 0}, {65500, FATHOM_NO_TARGET},
-       {65534, FATHOM_NO_TARGET}, {65535, FATHOM_FAULT})
-LIMITS(the_two_limits_may_touch, 65533, 65534, {65533, FATHOM_TARGET}, {65534, FATHOM_NO_TARGET},
-       {65535, FATHOM_FAULT}, {0, 0})
+       {65534, FATHOM_NO_TARGET}, {65535, 0})
+LIMITS(the_two_limits_may_touch, 65533, 65534, {65533, FATHOM_TARGET}, {65534, FATHOM_NO_TARGET}, {65535, 0},
+       {0, 0})
 
-/* Never a distance, whatever the rest of the packet says. */
-TEST(all_ones_are_a_fault_without_the_full_pattern_too)
+/* Features: "0.08 to 18 m". */
+LIMITS(below_80_mm_is_below_its_range, 0, 0, {0, 0}, {1, FATHOM_UNKNOWN}, {79, FATHOM_UNKNOWN},
+       {80, FATHOM_TARGET})
+
+static const limits_t from_1 = {{.min_mm = 1},
+                                {{0, 0}, {1, FATHOM_TARGET}, {79, FATHOM_TARGET}, {80, FATHOM_TARGET}}};
+static const limits_t only_500 = {
+    {.max_mm = 500, .min_mm = 500},
+    {{1, FATHOM_UNKNOWN}, {499, FATHOM_UNKNOWN}, {500, FATHOM_TARGET}, {501, 0}}};
+TEST_ROW(whatever_is_near_is_a_target_if_that_is_chosen, kinds_as_in, &from_1)
+TEST_ROW(the_least_distance_may_be_the_largest, kinds_as_in, &only_500)
+
+TEST(a_value_below_its_range_is_in_raw_and_is_no_distance)
 {
-    static const uint16_t packets[][4] = {{0xFFFF, 0x0001, 0x00FF, 0xFFFF},
-                                          {0xFFFF, 0x0000, 0x0000, 0xFFFF},
-                                          {0xFFFF, 0x0000, 0x00FF, 0x0000},
+    static const uint16_t near[4] = {79, 0xDCB2, 0x0701, 0x0003};
+    assert_int_equal(says(near), OK);
+    assert_int_equal(desk.sample.kind, FATHOM_UNKNOWN);
+    assert_int_equal(desk.sample.raw, 79);
+    assert_int_equal(desk.sample.distance_mm, 0);
+    assert_int_equal(desk.sample.magnitude, 7231744); /* the rest is as ever */
+    assert_int_equal(desk.sample.precision, 3);
+    assert_int_equal(hps.implausible, 0);
+}
+
+/* Each differs from the abnormal packet (#5, table 18) in one thing: nobody has said that the sensor has failed. */
+TEST(all_ones_without_the_full_pattern_are_malformed_and_no_fault)
+{
+    static const uint16_t packets[][4] = {{0xFFFF, 0x0001, 0x00FF, 0xFFFF}, {0xFFFF, 0x0100, 0x00FF, 0xFFFF},
+                                          {0xFFFF, 0x0000, 0x0000, 0xFFFF}, {0xFFFF, 0x0000, 0x00FE, 0xFFFF},
+                                          {0xFFFF, 0x0000, 0x00FF, 0x0000}, {0xFFFF, 0x0000, 0x00FF, 0xFFFE},
                                           {0xFFFF, 0xDCB2, 0x0701, 0x0000}};
-    for (unsigned i = 0; i != 4; i++) {
-        assert_int_equal(says(packets[i]), OK);
-        assert_int_equal(desk.sample.kind, FATHOM_FAULT);
-        assert_int_equal(desk.sample.distance_mm, 0);
+    for (uint16_t i = 0; i != COUNT(packets); i++) {
+        assert_int_equal(says(packets[i]), FATHOM_ERR_MALFORMED);
+        assert_int_equal(hps.implausible, i + 1);
     }
+    fathom_hps167s_power_on(&hps); /* and no warming up either */
+    assert_int_equal(says(packets[0]), FATHOM_ERR_MALFORMED);
 }

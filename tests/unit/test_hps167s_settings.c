@@ -22,6 +22,8 @@ static fathom_status_t filter(void)
     return fathom_hps167s_set_filter_sensitivity(&hps, (int16_t)desk.argument);
 }
 static fathom_status_t load_user(void) { return fathom_hps167s_load_user_settings(&hps); }
+static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
+static fathom_status_t address(void) { return fathom_hps167s_set_address(&hps, (uint8_t)desk.argument); }
 static fathom_status_t load_factory(void) { return fathom_hps167s_load_factory_settings(&hps); }
 
 #define ASK_1    HPS_1(1, OK, 0)
@@ -112,12 +114,111 @@ TEST(what_goes_wrong_is_told_as_it_is)
 {
     desk.argument = 9;
     PLAY(warm_up, NOBODY, FAILS(NOBODY));
+    assert_false(fathom_hps167s_is_written(&hps));
     PLAY(warm_up, FATHOM_ERR_EXCEPTION, FACTORY, PUTS(0x0A, 9, FATHOM_ERR_EXCEPTION));
     assert_int_equal(hps.unit.request.message.exception, 2);
-    PLAY(warm_up, FATHOM_ERR_MALFORMED, FACTORY, PUTS(0x0A, 9, OK), FACTORY);
+    PLAY(warm_up, FATHOM_ERR_DIFFERS, FACTORY, PUTS(0x0A, 9, OK), FACTORY);
+    assert_true(fathom_hps167s_is_written(&hps));
     PLAY(warm_up, FATHOM_ERR_UNCONFIRMED, FACTORY, PUTS(0x0A, 9, OK), FAILS(FATHOM_ERR_CHECKSUM));
     PLAY(warm_up, NOBODY, FACTORY, PUTS(0x0A, 9, NOBODY), FACTORY);
     PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 9, NOBODY), TELLS(0xFFFF, 0x0900, 0x0000, 0xB401));
+}
+
+/* Six settings of a device whose reconnect time is 1000 ms and whose rate has the code 00 (table 12 has no encoding):
+ * #6, #7, #10, #11 and #15; test_hps167s_baud.c has #9. */
+TEST(a_reconnect_time_or_rate_that_is_not_ours_keeps_nothing_from_being_set)
+{
+    static const struct {
+        fathom_status_t (*set)(void);
+        row_t write;
+        uint16_t after[4];
+    } rows[] = {
+        {reset, HPS_6(1, OK, 1, 0), {0xFFFF, 0x0500, 0x0003, 0xE800}},
+        {warm_up, PUTS(0x0A, 0, OK), {0xFFFF, 0x0000, 0x0003, 0xE800}},
+        {measures, PUTS(0x12, 0, OK), {0xFF00, 0x0500, 0x0003, 0xE800}},
+        {termination, PUTS(0x13, 0, OK), {0x00FF, 0x0500, 0x0003, 0xE800}},
+        {reconnect, RECONNECT(0, 0), {0xFFFF, 0x0500, 0x0000, 0x0000}},
+    };
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        const uint16_t *const r = rows[i].after;
+        hps_set_up(NULL);
+        PLAY(rows[i].set, OK, TELLS(0xFFFF, 0x0500, 0x0003, 0xE800), rows[i].write,
+             TELLS(r[0], r[1], r[2], r[3]));
+    }
+}
+
+/* ---- blind ---- */
+
+TEST(each_setting_can_be_written_blind_but_the_offset_and_the_reset)
+{
+    static const struct {
+        fathom_status_t (*set)(void);
+        row_t write;
+    } rows[] = {{warm_up, PUTS(0x0A, 1, OK)},     {address, PUTS(0x10, 1, OK)},
+                {measures, PUTS(0x12, 0xFF, OK)}, {termination, PUTS(0x13, 0xFF, OK)},
+                {load_user, PUTS(0x15, 0, OK)},   {load_factory, PUTS(0x15, 0xFF, OK)},
+                {filter, PUTS(0x16, 1, OK)}};
+    desk.argument = 1;
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+        assert_int_equal(desk_play(rows[i].set, &rows[i].write, 1), FATHOM_ERR_UNCONFIRMED);
+        assert_true(fathom_hps167s_is_written(&hps));
+    }
+    desk.argument = 18;
+    assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+    PLAY(reconnect, FATHOM_ERR_UNCONFIRMED, RECONNECT(0, 18));
+    assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+    assert_int_equal(offset(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(reset(), FATHOM_ERR_ARGUMENT);
+    assert_null(fake.request);
+}
+
+/* ---- to all units ---- */
+
+static fathom_status_t measures_all(void)
+{
+    return fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, desk.argument != 0);
+}
+static fathom_status_t termination_all(void)
+{
+    return fathom_hps167s_set_termination_of_all_units(&hps, desk.argument != 0);
+}
+
+/* 2.2.1: "For the request sent by the host in broadcast mode, the slave does not respond": the line ends it as sent. */
+TEST(what_goes_to_all_units_is_sent_once_and_not_confirmed)
+{
+    for (int32_t is_on = 0; is_on != 2; is_on++) {
+        desk.argument = is_on;
+        PLAY(measures_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x12, is_on * 0xFF, OK, 0));
+        PLAY(termination_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x13, is_on * 0xFF, OK, 0));
+        assert_true(fathom_hps167s_is_written(&hps));
+        hps_asks(1, 0); /* the driver is where it was */
+        hps_answers();
+        fake.submits = 0;
+    }
+}
+
+TEST(one_unit_and_all_are_not_mixed_and_a_cancelled_one_leaves_the_driver_where_it_was)
+{
+    hps_start_at(7, NULL);
+    PENDS(termination_all());
+    assert_int_equal(fake.request->message.head[0], 0);
+    assert_int_equal(termination(), FATHOM_ERR_BUSY);
+    PENDS(desk_poll());
+    fathom_hps167s_cancel(&hps);
+    assert_int_equal(hps.unit.address, 7);
+    PENDS(termination());
+    assert_int_equal(termination_all(), FATHOM_ERR_BUSY);
+    assert_int_equal(hps.unit.address, 7);
+}
+
+TEST(while_another_command_is_asked_nothing_goes_to_all)
+{
+    fathom_hps167s_version_t version;
+    PENDS(fathom_hps167s_interface_version(&hps, &version));
+    assert_int_equal(termination_all(), FATHOM_ERR_BUSY);
+    assert_false(fathom_hps167s_is_written(&hps));
+    assert_int_equal(hps.unit.address, 1);
 }
 
 /* ---- write-only ---- */
@@ -182,13 +283,13 @@ TEST(a_device_that_is_not_there_is_told_nothing)
 
 TEST(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again)
 {
-    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
+    static const fathom_status_t errors[] = {FATHOM_ERR_EXCEPTION, NOBODY, FATHOM_ERR_CHECKSUM,
                                              FATHOM_ERR_ECHO, FATHOM_ERR_MALFORMED};
     for (unsigned i = 0; i != 5; i++) {
         hps_set_up(NULL);
         hps_config.retries = desk.retries = 3;
         hps_start();
-        PLAY(load_factory, errors[i], ASK_1, LOAD(0xFF, errors[i]));
+        PLAY(load_factory, i == 0 ? errors[i] : FATHOM_ERR_UNCONFIRMED, ASK_1, LOAD(0xFF, errors[i]));
         hps_asks(1, 0);
     }
 }

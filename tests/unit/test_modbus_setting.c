@@ -72,7 +72,16 @@ static fathom_status_t set(void) { return fathom_modbus_set(&unit, &setting); }
 
 /* ---- where it is ---- */
 
-SETTING(what_is_so_already_is_not_written, 0, OK, HERE, IS(HERE, NEW))
+/* modbus_setting.h: "unit->is_written tells whether anything was sent that changes the device". */
+static void was_written(bool is) { assert_int_equal(unit.is_written, is); }
+
+TEST(what_is_so_already_is_not_written)
+{
+    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
+    was_written(true);
+    SETS(OK, HERE, IS(HERE, NEW));
+    was_written(false);
+}
 
 TEST(a_value_is_read_written_once_and_read_back_and_can_be_set_again)
 {
@@ -84,7 +93,10 @@ TEST(what_cannot_be_looked_at_is_not_written)
 {
     static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
                                              FATHOM_ERR_EXCEPTION, FATHOM_ERR_PORT};
-    for (size_t i = 0; i != COUNT(errors); i++) SETS(errors[i], HERE, FAILS(HERE, errors[i]));
+    for (size_t i = 0; i != COUNT(errors); i++) {
+        SETS(errors[i], HERE, FAILS(HERE, errors[i]));
+        was_written(false);
+    }
 }
 
 SETTING(a_refusal_ends_it, 0, FATHOM_ERR_EXCEPTION, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_EXCEPTION))
@@ -100,11 +112,29 @@ TEST(what_is_never_sent_ends_it)
         assert_int_equal(set(), errors[i]);
         assert_null(fake.request);
         assert_int_equal(fake.submits, 0);
+        was_written(false);
     }
+    set_up(state); /* the port cannot do the line settings, which is seen when the request is to leave */
+    SETS(FATHOM_ERR_UNSUPPORTED, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_UNSUPPORTED));
+    was_written(false);
 }
 
-SETTING(a_device_that_acknowledges_and_does_not_obey_is_found_out, 0, FATHOM_ERR_MALFORMED, HERE,
-        IS(HERE, OLD), PUT(OK), IS(HERE, OLD))
+TEST(a_port_that_is_broken_before_the_write_is_asked_is_not_unconfirmed)
+{
+    PART(set, IS(HERE, OLD));
+    fake.carrier = FATHOM_ERR_PORT;
+    fathom_status_t status = set(); /* takes the answer */
+    if (status == FATHOM_PENDING) status = set();
+    assert_int_equal(status, FATHOM_ERR_PORT);
+    was_written(false);
+}
+
+/* It was acknowledged and reads otherwise: nothing malformed has come. */
+TEST(a_device_that_acknowledges_and_does_not_obey_is_found_out)
+{
+    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
+    was_written(true);
+}
 
 TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
 {
@@ -113,17 +143,59 @@ TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
     for (size_t i = 0; i != COUNT(errors); i++) SETS(OK, HERE, IS(HERE, OLD), PUT(errors[i]), IS(HERE, NEW));
 }
 
-SETTING(a_write_that_was_not_heard_is_told_as_it_failed, 0, NOBODY, HERE, IS(HERE, OLD), PUT(NOBODY),
-        IS(HERE, OLD))
+TEST(a_write_that_was_not_heard_is_told_as_it_failed)
+{
+    SETS(NOBODY, HERE, IS(HERE, OLD), PUT(NOBODY), IS(HERE, OLD));
+    was_written(true);
+}
 
 SETTING(without_a_reading_afterwards_it_is_unconfirmed, 0, FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD),
         PUT(OK), FAILS(HERE, NOBODY))
 
-TEST(what_cannot_be_read_is_acknowledged_or_not)
+TEST(what_cannot_be_read_is_acknowledged_or_unconfirmed_or_refused)
 {
     setting.read = NULL;
     SETS(OK, HERE, PUT(OK));
-    SETS(NOBODY, HERE, PUT(NOBODY));
+    SETS(FATHOM_ERR_EXCEPTION, HERE, PUT(FATHOM_ERR_EXCEPTION));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(NOBODY));
+    was_written(true);
+}
+
+/* ---- blind ---- */
+
+TEST(a_blind_setting_is_written_once_and_nothing_is_read)
+{
+    static const fathom_status_t ends[] = {OK, NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
+                                           FATHOM_ERR_PORT};
+    for (size_t i = 0; i != COUNT(ends); i++) {
+        setting.address = i % 2 != 0 ? THERE : 0;
+        assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+        SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(ends[i]));
+        was_written(true);
+    }
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+    SETS(FATHOM_ERR_EXCEPTION, HERE, PUT(FATHOM_ERR_EXCEPTION));
+    setting.address = 0;
+    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW)); /* the next is none */
+}
+
+TEST(what_is_under_way_cannot_become_blind)
+{
+    PART(set, IS(HERE, OLD));
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_ERR_BUSY);
+    SETS(OK, HERE, PUT(OK), IS(HERE, NEW));
+}
+
+TEST(cancelling_and_power_forget_that_the_next_is_blind)
+{
+    for (unsigned is_power = 0; is_power != 2; is_power++) {
+        assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+        if (is_power != 0)
+            fathom_modbus_unit_power_on(&unit, 0);
+        else
+            fathom_modbus_unit_cancel(&unit);
+        SETS(OK, HERE, IS(HERE, NEW));
+    }
 }
 
 /* ---- to another address ---- */

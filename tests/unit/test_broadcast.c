@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#include "hps_desk.h"
+
+#include "fathom/a05_modbus.h"
+#include "fathom/a16_settings.h"
+
+/* All that any driver ever sends to unit 0, which every unit on the line obeys (HPS-167S 2.2.1): a list of four. An A05
+ * on 55 AA has no unit in its frames; test_a05_dyp.c has what it sends. */
+
+static fathom_a16_modbus_t a16;
+static fathom_a05_modbus_t a05;
+
+static union {
+    fathom_hps167s_version_t version;
+    fathom_hps167s_configuration_t configuration;
+    fathom_hps167s_details_t details;
+    fathom_hps167s_temperature_t temperature;
+    fathom_sample_t sample;
+    uint16_t word;
+    uint8_t byte;
+    fathom_a16_polarity_t polarity;
+    fathom_a16_value_t value;
+} out;
+
+#define COMMAND(name, call)                                                                                  \
+    static fathom_status_t name(void) { return call; }
+
+COMMAND(hps_version, fathom_hps167s_interface_version(&hps, &out.version))
+COMMAND(hps_configuration, fathom_hps167s_configuration(&hps, &out.configuration))
+COMMAND(hps_details, fathom_hps167s_details(&hps, &out.details))
+COMMAND(hps_temperature, fathom_hps167s_temperature(&hps, &out.temperature))
+COMMAND(hps_reset, fathom_hps167s_restore_factory_settings(&hps))
+COMMAND(hps_warm_up, fathom_hps167s_set_warm_up_s(&hps, 9))
+COMMAND(hps_address, fathom_hps167s_set_address(&hps, 5))
+COMMAND(hps_no_address, fathom_hps167s_set_address(&hps, 0))
+COMMAND(hps_baud, fathom_hps167s_set_baud(&hps, 115200))
+COMMAND(hps_measures, fathom_hps167s_set_measures_after_power_on(&hps, false))
+COMMAND(hps_termination, fathom_hps167s_set_termination(&hps, false))
+COMMAND(hps_offset, fathom_hps167s_set_distance_offset_mm(&hps, -15))
+COMMAND(hps_user, fathom_hps167s_load_user_settings(&hps))
+COMMAND(hps_factory_settings, fathom_hps167s_load_factory_settings(&hps))
+COMMAND(hps_filter, fathom_hps167s_set_filter_sensitivity(&hps, 7))
+COMMAND(hps_reconnect, fathom_hps167s_set_reconnect_time_ms(&hps, 18))
+COMMAND(hps_measures_all, fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, false))
+COMMAND(hps_measures_all_on, fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, true))
+COMMAND(hps_termination_all, fathom_hps167s_set_termination_of_all_units(&hps, false))
+COMMAND(hps_termination_all_on, fathom_hps167s_set_termination_of_all_units(&hps, true))
+COMMAND(a16_measure, fathom_a16_measure(&a16, FATHOM_A16_REAL_TIME, &out.sample))
+COMMAND(a16_address, fathom_a16_address(&a16, &out.byte))
+COMMAND(a16_set_address, fathom_a16_set_address(&a16, 5))
+COMMAND(a16_no_address, fathom_a16_set_address(&a16, 0))
+COMMAND(a16_mode, fathom_a16_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC))
+COMMAND(a16_polarity, fathom_a16_switch_polarity(&a16, &out.polarity))
+COMMAND(a16_set_polarity, fathom_a16_set_switch_polarity(&a16, FATHOM_A16_NEGATIVE))
+COMMAND(a16_threshold, fathom_a16_switch_threshold_mm(&a16, &out.word))
+COMMAND(a16_set_threshold, fathom_a16_set_switch_threshold_mm(&a16, 2000))
+COMMAND(a16_value, fathom_a16_automatic_value(&a16, &out.value))
+COMMAND(a16_set_value, fathom_a16_set_automatic_value(&a16, FATHOM_A16_PROCESSED))
+COMMAND(a05_address, fathom_a05_modbus_address(&a05, &out.byte))
+COMMAND(a05_set_address, fathom_a05_modbus_set_address(&a05, 5))
+COMMAND(a05_no_address, fathom_a05_modbus_set_address(&a05, 0))
+
+static fathom_status_t (*const commands[])(void) = {desk_poll,
+                                                    hps_version,
+                                                    hps_configuration,
+                                                    hps_details,
+                                                    hps_temperature,
+                                                    hps_reset,
+                                                    hps_warm_up,
+                                                    hps_address,
+                                                    hps_no_address,
+                                                    hps_baud,
+                                                    hps_measures,
+                                                    hps_termination,
+                                                    hps_offset,
+                                                    hps_user,
+                                                    hps_factory_settings,
+                                                    hps_filter,
+                                                    hps_reconnect,
+                                                    hps_measures_all,
+                                                    a16_measure,
+                                                    a16_address,
+                                                    hps_measures_all_on,
+                                                    a16_set_address,
+                                                    a16_no_address,
+                                                    a16_mode,
+                                                    a16_polarity,
+                                                    hps_termination_all,
+                                                    a16_set_polarity,
+                                                    a16_threshold,
+                                                    a16_set_threshold,
+                                                    a16_value,
+                                                    hps_termination_all_on,
+                                                    a16_set_value,
+                                                    a05_address,
+                                                    a05_set_address,
+                                                    a05_no_address};
+
+/* #10 and #11 (tables 27 and 29), and in which order the list above has them. */
+static const uint8_t allowed[4][6] = {
+    {0, 6, 0, 0x12, 0, 0x00}, {0, 6, 0, 0x12, 0, 0xFF}, {0, 6, 0, 0x13, 0, 0x00}, {0, 6, 0, 0x13, 0, 0xFF}};
+
+static int set_up(void **state)
+{
+    hps_set_up(state);
+    const fathom_a16_modbus_config_t a16_config = {.modbus = &fake.modbus, .clock = &fake.clock};
+    const fathom_a05_modbus_config_t a05_config = {.modbus = &fake.modbus, .clock = &fake.clock};
+    assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
+    hps_config.settings = &hps_factory;
+    hps_start();
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+/* The device at address 1 answers, with the registers of the factory's configuration, and nobody else does. */
+static void device(bool is_there)
+{
+    static const uint16_t registers[11] = {0xFFFF, 0x0500, 0x0000, 0xB401};
+    const uint8_t *const head = fake.request->message.head;
+    if (!is_there || head[0] > 1)
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+    else if (head[1] == 3)
+        fake_modbus_answer(&fake, registers, head[5]);
+    else
+        fake_modbus_acknowledge(&fake);
+}
+
+/* Runs the command to its end; what goes to unit 0 has to be the next of the list. */
+static void run(fathom_status_t (*command)(void), bool is_there, unsigned *listed)
+{
+    for (unsigned ms = 0;; ms++) {
+        assert_true(ms < 3000);
+        fake.now_us += 1000;
+        fake.submits = 0;
+        if (command() != FATHOM_PENDING) return;
+        if (fake.submits == 0) continue;
+        if (fake.request->message.head[0] == 0) {
+            assert_true(*listed < 4);
+            assert_memory_equal(fake.request->message.head, allowed[*listed], 6);
+            ++*listed;
+        }
+        device(is_there);
+    }
+}
+
+TEST(two_settings_of_the_hps167s_are_all_that_is_ever_sent_to_all_units)
+{
+    for (unsigned is_there = 0; is_there != 2; is_there++) {
+        for (unsigned is_blind = 0; is_blind != 2; is_blind++) {
+            unsigned listed = 0;
+            for (unsigned i = 0; i != COUNT(commands); i++) {
+                set_up(state);
+                if (is_blind != 0) {
+                    assert_int_equal(fathom_hps167s_next_is_blind(&hps), FATHOM_READY);
+                    assert_int_equal(fathom_a16_next_is_blind(&a16), FATHOM_READY);
+                }
+                run(commands[i], is_there != 0, &listed);
+            }
+            assert_int_equal(listed, 4);
+        }
+    }
+}
