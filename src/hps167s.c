@@ -63,6 +63,7 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     sensor->told[0] = NEVER_TOLD;
     sensor->measured[0] = NEVER_TOLD;
     sensor->answers = 0;
+    sensor->is_owed = false;
     sensor->same_answers = config->same_answers != 0 ? config->same_answers : SAME_ANSWERS;
     sensor->steps_per_degree = config->steps_per_degree != 0 ? config->steps_per_degree : 1;
     sensor->low_word_first = config->low_word_first;

@@ -54,13 +54,16 @@ bool fathom_hps167s_may_be_configuration(const uint16_t registers[4])
 bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4])
 {
     const fathom_clock_t *const clock = sensor->unit.clock;
-    const bool is_last_asked = fathom_hps167s_has_asked(sensor, CONFIGURATION);
+    const bool is_told = same_4(registers, sensor->told);
     sensor->unasked_us = clock->now_us(clock->ctx);
-    if (same_4(registers, sensor->told) ||
-        (is_last_asked && fathom_hps167s_may_be_configuration(registers))) {
-        sensor->agreed = 0; /* what comes unasked may have been what came as an answer */
-        return false;
+    if (is_told) {
+        /* Was it that which came as an answer? Not if an answer is still to come. */
+        if (!sensor->is_owed) sensor->agreed = 0;
+        sensor->is_owed = false;
     }
+    if (is_told ||
+        (fathom_hps167s_has_asked(sensor, CONFIGURATION) && fathom_hps167s_may_be_configuration(registers)))
+        return false;
     copy_4(sensor->measured, registers);
     return true;
 }
@@ -75,18 +78,21 @@ static bool is_believed(fathom_hps167s_t *sensor)
     if (!fathom_hps167s_may_be_configuration(values) || same_4(values, sensor->measured)) {
         copy_4(sensor->measured, values);
         sensor->unasked_us = unit->polled_us;
+        sensor->is_owed = true;
         needed = UINT8_MAX;
     } else {
         if (!same_4(values, sensor->told)) sensor->agreed = 0;
         copy_4(sensor->told, values);
         sensor->agreed++;
     }
-    if (fathom_elapsed_us(unit->polled_us, sensor->unasked_us) < FATHOM_HPS167S_UNASKED_US) {
-        /* A question in step with what the device sends by itself would get that each time. */
+    const bool is_among_unasked =
+        fathom_elapsed_us(unit->polled_us, sensor->unasked_us) < FATHOM_HPS167S_UNASKED_US;
+    if (is_among_unasked && needed < ANSWERS_AMONG_UNASKED) needed = ANSWERS_AMONG_UNASKED;
+    if (sensor->agreed >= needed) return true;
+    /* A question in step with what the device sends by itself would get that each time. */
+    if (is_among_unasked)
         unit->pause_us += (uint32_t)((2u * sensor->answers + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2));
-        if (needed < ANSWERS_AMONG_UNASKED) needed = ANSWERS_AMONG_UNASKED;
-    }
-    return sensor->agreed >= needed;
+    return false;
 }
 
 fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out)

@@ -91,6 +91,7 @@ typedef struct {
     uint16_t told[4];
     uint16_t measured[4];
     uint32_t unasked_us; /* the clock when a frame that nobody asked for was heard */
+    bool is_owed;        /* an answer to #2 is still to come: something else was taken for it */
     uint8_t answers;     /* to #2, this time */
     uint8_t agreed;      /* of them, in succession */
     uint8_t same_answers;

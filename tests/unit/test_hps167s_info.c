@@ -108,6 +108,11 @@ TEST(what_is_heard_unasked_between_two_answers_takes_away_their_agreement)
     PENDS(configuration());
     assert_false(fathom_hps167s_heard(&hps, told));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
+    /* but not the one answer that is still to come, where a measurement was taken for it */
+    PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
+    PENDS(configuration());
+    assert_false(fathom_hps167s_heard(&hps, told));
+    PLAY(configuration, OK, TELLS(RATE_1));
 }
 
 TEST(two_answers_that_differ_are_not_enough)
