@@ -17,21 +17,6 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
     rs232->is_listening = false;
 }
 
-/* Was the register written, as far as its acknowledgement tells? */
-static bool may_hold(fathom_status_t status)
-{
-    switch (status) {
-    case FATHOM_READY:
-    case FATHOM_ERR_NO_ANSWER:
-    case FATHOM_ERR_CHECKSUM:
-    case FATHOM_ERR_MALFORMED:
-    case FATHOM_ERR_ECHO:
-        return true;
-    default:
-        return false;
-    }
-}
-
 static bool is_since(const fathom_a16_rs232_t *rs232, uint32_t time_us)
 {
     return fathom_elapsed_us(time_us, rs232->since_us) <= INT32_MAX;
@@ -49,7 +34,8 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     fathom_status_t status;
     if (!rs232->is_listening) {
         status = fathom_a16_set_operating_mode(rs232->modbus, FATHOM_A16_AUTOMATIC);
-        if (status == FATHOM_PENDING || !may_hold(status)) return status;
+        /* where it was not acknowledged it may hold all the same */
+        if (status != FATHOM_READY && status != FATHOM_ERR_UNCONFIRMED) return status;
         rs232->is_listening = true;
         rs232->since_us = now_us(rs232);
     }

@@ -95,6 +95,7 @@ fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t addr
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
     if (sensor->unit.setting == 0 && !sensor->unit.is_blind) {
+        sensor->unit.is_written = false; /* nor will it be before that is answered */
         uint8_t own;
         const fathom_status_t status = fathom_dyp_modbus_address(sensor, &own);
         if (status != FATHOM_READY) return status;

@@ -135,6 +135,7 @@ static fathom_status_t prepare(fathom_hps167s_t *sensor, const fathom_modbus_set
         const bool is_this = under_way == fathom_modbus_unit_name(setting->write);
         return is_this && wanted[0] == first && wanted[1] == second ? FATHOM_READY : FATHOM_ERR_BUSY;
     }
+    sensor->unit.is_written = false; /* nor will it be before that is answered */
     if (!sensor->unit.is_blind && (sensor->is_seeking || setting->read == NULL)) {
         fathom_hps167s_version_t version;
         const fathom_status_t status = fathom_hps167s_interface_version(sensor, &version);

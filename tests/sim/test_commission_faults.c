@@ -45,7 +45,7 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
             problem("READY, but it is not so");
         break;
     case FATHOM_ERR_UNCONFIRMED:
-        if (job->kind == READS || job->kind == WRITE_ONLY) problem("unconfirmed");
+        if (job->kind == READS) problem("unconfirmed");
         break;
     case FATHOM_ERR_IN_USE:
         if (job->kind != MOVES || writes != 0 || (kinds & WHAT_TALKS) == 0) problem("in use");
@@ -53,12 +53,12 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
     case FATHOM_ERR_NO_ANSWER:
     case FATHOM_ERR_CHECKSUM:
     case FATHOM_ERR_MALFORMED:
+    case FATHOM_ERR_DIFFERS:
     case FATHOM_ERR_EXCEPTION:
     case FATHOM_ERR_ECHO:
     case FATHOM_ERR_PORT:
     case FATHOM_ERR_CANCELLED:
-        /* Of what is write-only, when the writing failed: it may hold or not. */
-        if (has != job->before && job->kind != WRITE_ONLY && (kinds & BIT(EXCEPTION)) == 0)
+        if (has != job->before && (kinds & BIT(EXCEPTION)) == 0)
             problem("%d, but it was changed", (int)status);
         break;
     default:

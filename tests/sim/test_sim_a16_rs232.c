@@ -89,8 +89,11 @@ TEST(a_frame_from_before_the_command_confirms_nothing)
         pass_us(1 * MS);
         (void)fathom_line_poll(&s.line);
     }
+    go_until_it_listens();
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
+    assert_int_equal(go_back(), FATHOM_ERR_NO_ANSWER); /* and of one that is not there nothing is claimed */
+    assert_false(fathom_a16_is_written(rs232.modbus));
     assert_true(automatic.base.stream.counters[FATHOM_STREAM_FRAMES] != 0);
 }
 

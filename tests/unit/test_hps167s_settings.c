@@ -278,7 +278,12 @@ TEST(a_device_that_is_not_there_is_told_nothing)
 {
     static fathom_status_t (*const commands[])(void) = {offset, filter, load_user, load_factory};
     desk.argument = -15;
-    for (unsigned i = 0; i != COUNT(commands); i++) PLAY(commands[i], NOBODY, HPS_1(1, NOBODY, 0));
+    for (unsigned i = 0; i != COUNT(commands); i++) {
+        PLAY(filter, OK, ASK_1, PUTS(0x16, 0xFFF1, OK));
+        assert_true(fathom_hps167s_is_written(&hps));
+        PLAY(commands[i], NOBODY, HPS_1(1, NOBODY, 0));
+        assert_false(fathom_hps167s_is_written(&hps));
+    }
 }
 
 TEST(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again)
