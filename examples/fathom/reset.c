@@ -53,7 +53,10 @@ static int finish(bool is_restore, fathom_status_t status)
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     (void)fprintf(stderr, "fathom: %s: ", station->name);
-    if (status == FATHOM_ERR_UNCONFIRMED) {
+    if (status == FATHOM_ERR_UNCONFIRMED && !is_restore) {
+        (void)fputs("it was sent, and no acknowledgement came: it may hold or not, and cannot be read back",
+                    stderr);
+    } else if (status == FATHOM_ERR_UNCONFIRMED) {
         char line[SETTINGS_TEXT];
         (void)fprintf(stderr,
                       "the reset was sent, and then the device could not be read: "

@@ -129,6 +129,44 @@ TEST(reset_gives_an_hps167s_its_factory_settings)
     assert_true(bench.hps167s.termination);
 }
 
+static bool is_deaf; /* the host, once it has sent what resets a device */
+
+static int write_and_be_deaf(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const fathom_uart_t uart = fathom_sim_uart(ctx);
+    if (bytes[3] == 0x09 || bytes[3] == 0x15) is_deaf = true; /* HPS-167S #6, #13 */
+    return uart.write(ctx, bytes, length);
+}
+
+static int read_unless_deaf(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    const fathom_uart_t uart = fathom_sim_uart(ctx);
+    const int n = uart.read(ctx, bytes, capacity, rx);
+    return is_deaf && n > 0 ? 0 : n;
+}
+
+static const char *reset_unheard(const char *option)
+{
+    bench_begin();
+    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 7});
+    is_deaf = false;
+    bench.tool.uart.write = write_and_be_deaf;
+    bench.tool.uart.read = read_unless_deaf;
+    const tool_run_t *const run = tool_run(&bench.tool, "reset hps167s:7 %s --port line", option);
+    assert_int_equal(run->status, 1);
+    return run->err;
+}
+
+TEST(a_reset_that_is_not_acknowledged_says_what_is_not_known)
+{
+    assert_string_equal(
+        reset_unheard("--yes-load-factory-sensor-settings"),
+        "fathom: hps167s:7: it was sent, and no acknowledgement came: it may hold or not, and "
+        "cannot be read back\n");
+    assert_non_null(strstr(reset_unheard("--yes-restore-factory-settings"),
+                           "it is at address 1, 19200 8E1, or still at address 7, 19200 8E1"));
+}
+
 TEST(scan_finds_one_of_each_sensor_on_a_line)
 {
     bench_a16((fathom_sim_a16_config_t){.unit = 2});
