@@ -16,6 +16,9 @@ static void go_home(fathom_modbus_unit_t *unit)
     unit->settings = unit->home_settings;
 }
 
+/* Two settings whose registers are equal modulo 16 share one: then one is written without need, once. */
+static uint16_t doubt_of(const fathom_modbus_unit_t *unit) { return (uint16_t)(1u << (unit->setting & 15)); }
+
 static fathom_status_t end(fathom_modbus_unit_t *unit, fathom_status_t status)
 {
     unit->setting = 0;
@@ -28,11 +31,17 @@ static bool moves(const fathom_modbus_setting_t *setting)
     return setting->address != 0 || setting->settings != NULL;
 }
 
+/* Is what the device says of this setting all that there is to know of it? */
+static bool is_told(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
+{
+    return moves(setting) || (unit->doubts & doubt_of(unit)) == 0;
+}
+
 /* After the first look: is there anything to do? */
 static fathom_status_t looked(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                               fathom_status_t status, uint32_t value)
 {
-    if (status < 0 || value == setting->value) return end(unit, status);
+    if (status < 0 || (value == setting->value && is_told(unit, setting))) return end(unit, status);
     unit->step = WRITE;
     if (setting->address != 0) {
         unit->step = LOOK_THERE;
@@ -77,13 +86,17 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
 static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                  fathom_status_t status, uint32_t value)
 {
-    if (status == FATHOM_READY && value == setting->value) return end(unit, FATHOM_READY);
+    if (status == FATHOM_READY && value == setting->value) {
+        unit->doubts &= (uint16_t)~doubt_of(unit);
+        return end(unit, FATHOM_READY);
+    }
     if (unit->step == CONFIRM_THERE) {
         unit->step = CONFIRM_HERE;
         go_home(unit);
         return FATHOM_PENDING;
     }
     if (status < 0) return end(unit, FATHOM_ERR_UNCONFIRMED);
+    unit->doubts |= doubt_of(unit);
     return end(unit, unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS);
 }
 

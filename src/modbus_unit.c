@@ -124,6 +124,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->settings = NULL;
     unit->asked = 0;
     unit->setting = 0;
+    unit->doubts = 0;
     unit->is_written = false;
     unit->is_blind = false;
     unit->request.message.exception = 0;
@@ -202,6 +203,7 @@ void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us)
     unit->pause_us = 0;
     unit->alone_us = 0;
     unit->silences = 0;
+    unit->doubts = 0;
 }
 
 bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit) { return unit->warm_us != 0; }

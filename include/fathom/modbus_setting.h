@@ -12,7 +12,9 @@ extern "C" {
  * A setting of a device, from asking what it is to having seen that it is what was wanted. The set functions of the
  * drivers are built on it, and share these rules:
  *
- *  1. The device is asked for the value that it has. If that is the one, nothing is written: flash wears.
+ *  1. The device is asked for the value that it has. If that is the one, nothing is written: flash wears. But where the
+ *     last time that this was set it was written and did not read so, it is written: until the next power-on a device
+ *     may tell the value that it works with, and keep another.
  *  2. Where the setting has an address (the new one, or with new line settings also the present one), it is asked there
  *     whether somebody answers; that costs a time-out. It also shows whether the port can do the line settings.
  *  3. The value is written, once: a write is never retried.

@@ -136,6 +136,41 @@ TEST(a_device_that_acknowledges_and_does_not_obey_is_found_out)
     was_written(true);
 }
 
+static void want(uint16_t value) { setting.value = wanted = value; }
+
+#define PUTS(value) WRITE(HERE, REGISTER, value, OK)
+
+/* HPS-167S #7, #10, #11: from the next power-on; what #2 tells until then, the datasheet does not say. */
+TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
+{
+    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
+    want(OLD); /* what it tells now, and may not keep */
+    SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
+    was_written(true);
+    SETS(OK, HERE, IS(HERE, OLD));
+    was_written(false);
+    want(NEW); /* nor is one believed whose acknowledgement was lost */
+    SETS(NOBODY, HERE, IS(HERE, OLD), PUT(NOBODY), IS(HERE, OLD));
+    want(OLD);
+    SETS(FATHOM_ERR_EXCEPTION, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, FATHOM_ERR_EXCEPTION));
+    SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
+    want(NEW);
+    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
+    fathom_modbus_unit_power_on(&unit, 0);
+    SETS(OK, HERE, IS(HERE, NEW)); /* it holds now */
+    was_written(false);
+}
+
+TEST(where_a_device_is_is_not_doubted)
+{
+    setting.address = THERE;
+    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), FAILS(THERE, NOBODY), PUT(OK), IS(THERE, OLD),
+         IS(HERE, OLD));
+    want(OLD);
+    SETS(OK, HERE, IS(HERE, OLD));
+    was_written(false);
+}
+
 TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
 {
     static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
