@@ -208,19 +208,32 @@ static void print_stale(FILE *to, const failure_t *failure)
     }
 }
 
-/* Which values were refused: all of a frame that came by itself, one probe's of an answer, or all of it. */
+/* Which value of an A16 or A05 was refused and why, and what became of the other probes. */
+static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
+{
+    const fathom_dyp_answer_t *const answer = failure->reader->answer;
+    const uint16_t raw = answer->refused_raw;
+    const bool is_code = raw == 0 || raw >= 0xFFFD;
+    const bool has_probes = failure->sensor->probes > 1;
+    if (has_probes) (void)fprintf(to, "probe %u: ", probe);
+    if (is_code)
+        (void)fprintf(to, "%u (%X) is refused", raw, raw);
+    else
+        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw, answer->window.min_mm,
+                      answer->window.max_mm);
+    if (has_probes && failure->is_whole && failure->reader->stream != NULL)
+        (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
+    if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
+    if (has_probes) (void)fputs("; --probes leaves out a probe that is not fitted", to);
+    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
+}
+
+/* Which values of an HPS-167S were refused. */
 static void print_values(FILE *to, const failure_t *failure)
 {
     const reader_t *const reader = failure->reader;
-    uint8_t first = 0;
-    uint8_t end = reader->value_count;
-    if (reader->unit != NULL && reader->left != NULL) {
-        for (uint8_t left = *reader->left; left != 0; left &= (uint8_t)(left - 1)) end--;
-        first = (uint8_t)(end - 1);
-        if (failure->sensor->probes > 1) (void)fprintf(to, "probe %u: ", end);
-    }
     (void)fputs("a value that cannot be a distance:", to);
-    for (uint8_t i = first; i != end; i++) (void)fprintf(to, " %u", reader->values[i]);
+    for (uint8_t i = 0; i != reader->value_count; i++) (void)fprintf(to, " %u", reader->values[i]);
     (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
 }
 
@@ -263,6 +276,8 @@ void advice_print(FILE *to, const failure_t *failure)
                           "address %u answered something else than was asked; check that it is %s, and alone "
                           "at this address",
                           failure->address, failure->sensor->name);
+        else if (reader_refused_probe(failure->reader) != 0)
+            print_refused(to, failure, reader_refused_probe(failure->reader));
         else
             print_values(to, failure);
         break;

@@ -83,13 +83,16 @@ void decode_ultrasonic(decode_meaning_t *meaning, const char *name, uint16_t val
     decode_field_t *const field = decode_number(meaning, name, value, "mm");
     switch (value) { /* not in the datasheets of A16 and A05, but in those of their family */
     case 0:
-        field->note = "no target, as older firmware says it";
+        field->note = "unknown: no target, or something at the probe; --means of fathom read says which";
         break;
     case 0xFFFD:
         field->note = "no target";
         break;
     case 0xFFFE:
         field->note = "no target: interference by another unit";
+        break;
+    case 0xFFFF:
+        field->note = "refused: no distance, and no value of the family";
         break;
     default:
         break;

@@ -26,6 +26,10 @@ static const char *status_name(const fathom_sample_t *sample)
         return "target";
     case FATHOM_NO_TARGET:
         return "no_target";
+    case FATHOM_NEAR:
+        return "too_near";
+    case FATHOM_UNKNOWN:
+        return "unknown";
     default:
         return "fault";
     }
@@ -174,6 +178,11 @@ static void write_text(FILE *to, const reading_t *reading)
                       sample->distance_mm % 1000u);
     else if (sample->kind == FATHOM_NO_TARGET)
         (void)fprintf(to, "  no target in range%s", sample->interference ? " (interference)" : "");
+    else if (sample->kind == FATHOM_NEAR)
+        (void)fputs("  nearer than it can measure", to);
+    else if (sample->kind == FATHOM_UNKNOWN)
+        (void)fprintf(to, "  unknown: the value %" PRIu32 "%s", sample->raw,
+                      reading->sensor->has_optics ? "" : " has been given no meaning (--means)");
     else
         (void)fputs("  fault: the sensor says that it has failed", to);
     if (reading->sensor->has_optics && sample->kind != FATHOM_FAULT) {

@@ -107,7 +107,7 @@ static int finish(reading_run_t *run)
     session_account(&run->session, &account);
     if (!run->options.stats || run->options.format->is_json) tally_print(&account, stderr);
     if (run->options.stats) tell_stats(run, &account);
-    return account.sum.failed != 0 || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+    return !session_is_good(&run->session) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
 static int run_read(const host_t *host, int argc, char **argv)

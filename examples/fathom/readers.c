@@ -23,7 +23,7 @@ static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_
     reader->stream = &base->stream;
     reader->values = base->answer.values;
     reader->value_count = (uint8_t)(base->stream_config.length / 2 - 1);
-    reader->left = &base->answer.left;
+    reader->answer = &base->answer;
     reader->sequence = &base->answer.sequence;
     return true;
 }
@@ -37,7 +37,7 @@ static bool begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sens
     reader->unit = &base->unit;
     reader->values = base->answer.values;
     reader->value_count = base->question.count;
-    reader->left = &base->answer.left;
+    reader->answer = &base->answer;
     reader->sequence = &base->answer.sequence;
     return true;
 }
@@ -46,7 +46,11 @@ bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     const fathom_a16_auto_config_t config = {
-        .line = &channel->line, .stale_us = settings->timeout_us, .gap_us = CHANNEL_STREAM_GAP_US};
+        .line = &channel->line,
+        .stale_us = settings->timeout_us,
+        .gap_us = CHANNEL_STREAM_GAP_US,
+        .window = settings->window,
+    };
     begin(reader, channel);
     return fathom_a16_auto_init(driver, &config) == FATHOM_READY &&
            begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
@@ -56,7 +60,12 @@ bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings
 {
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {
-        .line = &channel->line, .stale_us = settings->timeout_us, .gap_us = CHANNEL_STREAM_GAP_US};
+        .line = &channel->line,
+        .stale_us = settings->timeout_us,
+        .gap_us = CHANNEL_STREAM_GAP_US,
+        .window = settings->window,
+        .probes = settings->probes,
+    };
     begin(reader, channel);
     return fathom_a05_auto_init(driver, &config) == FATHOM_READY &&
            begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
@@ -67,14 +76,18 @@ bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_se
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
     const fathom_a16_controlled_config_t config = {
-        .line = &channel->line, .period_us = settings->period_us, .gap_us = CHANNEL_STREAM_GAP_US};
+        .line = &channel->line,
+        .period_us = settings->period_us,
+        .gap_us = CHANNEL_STREAM_GAP_US,
+        .window = settings->window,
+    };
     begin(reader, channel);
     if (fathom_a16_controlled_init(driver, &config) != FATHOM_READY) return false;
     reader->sensor = fathom_a16_controlled_sensor(driver);
     reader->stream = &driver->stream;
     reader->values = driver->values;
     reader->value_count = 1;
-    reader->left = &driver->answer.left;
+    reader->answer = &driver->answer;
     reader->sequence = &driver->answer.sequence;
     reader->is_paced = true;
     return true;
@@ -91,6 +104,7 @@ bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
+        .window = settings->window,
         .settings = line_of(channel, settings),
     };
     begin(reader, channel);
@@ -109,6 +123,8 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
+        .window = settings->window,
+        .probes = settings->probes,
         .settings = line_of(channel, settings),
     };
     begin(reader, channel);
@@ -126,6 +142,8 @@ bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_
         .address = settings->address,
         .retries = settings->retries,
         .backoff_us = settings->backoff_us,
+        .window = settings->window,
+        .probes = settings->probes,
         .settings = line_of(channel, settings),
     };
     begin(reader, channel);
@@ -163,4 +181,9 @@ bool reader_was_answered_wrong(const reader_t *reader)
     return reader->unit != NULL && reader->unit->request.exchange.status == FATHOM_ERR_MALFORMED;
 }
 
-bool reader_has_more(const reader_t *reader) { return reader->left != NULL && *reader->left != 0; }
+uint8_t reader_refused_probe(const reader_t *reader)
+{
+    return reader->answer != NULL && !reader_was_answered_wrong(reader) ? reader->answer->refused_probe : 0;
+}
+
+bool reader_has_more(const reader_t *reader) { return reader->answer != NULL && reader->answer->left != 0; }

@@ -20,6 +20,8 @@ typedef struct {
     uint32_t period_us;  /* between two requests */
     const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
     uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
+    fathom_dyp_window_t window;         /* of A16 and A05 */
+    uint8_t probes;                     /* of an A05: bit probe - 1 */
     uint8_t address;
     uint8_t retries;
 } reader_settings_t;
@@ -31,15 +33,14 @@ enum { READER_BACKOFF_US = 1 };
 /* Any driver, with what the library's common interface does not show: the causes of an error. */
 typedef struct {
     fathom_sensor_t sensor;
-    const uint16_t *values;     /* the 16-bit values of the last answer, ... */
-    uint8_t value_count;        /* ... and how many there are */
-    const uint8_t *left;        /* probes of the last answer that poll has not handed over yet, a
-                                               bit each; NULL: an answer is one sample */
-    uint16_t *sequence;         /* of the last answer */
-    fathom_modbus_unit_t *unit; /* NULL: it sends by itself */
-    fathom_stream_t *stream;    /* NULL: it is asked */
-    const char *protocol;       /* with which it is asked */
-    bool is_paced;              /* it keeps the user's interval by itself */
+    const uint16_t *values;            /* the 16-bit values of the last answer, ... */
+    uint8_t value_count;               /* ... and how many there are */
+    const fathom_dyp_answer_t *answer; /* of A16 and A05; NULL: an answer is one sample */
+    uint16_t *sequence;                /* of the last answer */
+    fathom_modbus_unit_t *unit;        /* NULL: it sends by itself */
+    fathom_stream_t *stream;           /* NULL: it is asked */
+    const char *protocol;              /* with which it is asked */
+    bool is_paced;                     /* it keeps the user's interval by itself */
     fathom_line_t *line;
     union {
         fathom_a16_auto_t a16_auto;
@@ -65,6 +66,9 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
 
 /* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the answer that did not fit, and not a value in it? */
 bool reader_was_answered_wrong(const reader_t *reader);
+
+/* The same, where a value of A16 or A05 was refused: of which probe? 0: it was not that. */
+uint8_t reader_refused_probe(const reader_t *reader);
 
 /* Has the last answer more samples? Then poll again before anything else. */
 bool reader_has_more(const reader_t *reader);

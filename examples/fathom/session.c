@@ -106,7 +106,7 @@ static bool has_more_to_do(const session_t *session, const station_t *station)
     return false;
 }
 
-static void report_failure(session_t *session, station_t *station, fathom_status_t status)
+static void report_failure(session_t *session, station_t *station, fathom_status_t status, bool is_first)
 {
     failure_t failure = {
         .status = status,
@@ -119,6 +119,7 @@ static void report_failure(session_t *session, station_t *station, fathom_status
         .address = station->address,
         .others_answer = others_answer(session, station),
         .waits = session->options.reconnect && has_more_to_do(session, station),
+        .is_whole = is_first && !reader_has_more(&station->reader),
     };
     tally_failure(&station->tally, status, &station->reader);
     judge(session, station, &failure.evidence);
@@ -169,11 +170,13 @@ static void take_outcome(session_t *session, station_t *station, fathom_status_t
     if (status != FATHOM_ERR_PORT && is_early(session, station, status)) return;
     if (status == FATHOM_READY && station->reader.unit != NULL && !station->answering)
         tally_time(&station->tally, fathom_elapsed_us(sample->time_us, station->ear->asked_us));
+    const bool is_first = !station->answering;
     station->answering = true;
     if (status == FATHOM_READY) {
         if (session->user->reading(session->ctx, station, sample)) station->tally.readings++;
+        if (sample->kind != FATHOM_UNKNOWN) station->has_good = true;
     } else {
-        report_failure(session, station, status);
+        report_failure(session, station, status, is_first);
     }
     if (status == FATHOM_ERR_PORT || !reader_has_more(&station->reader)) end_attempt(session, station);
 }
@@ -240,6 +243,8 @@ static bool begin_station(session_t *session, station_t *station)
         .period_us = options->interval_us,
         .line = options->has_mixed_lines ? &station->line : NULL,
         .backoff_us = is_shared(session) ? 0 : READER_BACKOFF_US,
+        .window = options->window,
+        .probes = options->probes,
         .address = station->address,
         .retries = options->retries,
     };
@@ -344,6 +349,14 @@ bool session_open(session_t *session)
 }
 
 void session_close(session_t *session) { channel_close(&session->channel); }
+
+bool session_is_good(const session_t *session)
+{
+    const session_options_t *const options = &session->options;
+    for (size_t i = 0; i != options->station_count; i++)
+        if (!options->stations[i].has_good || options->stations[i].tally.failed != 0) return false;
+    return true;
+}
 
 void session_account(session_t *session, account_t *account)
 {

@@ -50,6 +50,9 @@ bool session_run(session_t *session);
 
 void session_close(session_t *session);
 
+/* Has nothing failed, and has each sensor given a reading that is not unknown? */
+bool session_is_good(const session_t *session);
+
 /* Takes and adds up all counters. */
 void session_account(session_t *session, account_t *account);
 

@@ -2,6 +2,7 @@
 #include "session_options.h"
 
 #include <string.h>
+#include <strings.h>
 
 #include "command.h"
 #include "options.h"
@@ -11,6 +12,7 @@ static const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400};
 enum { RATES = sizeof rates / sizeof rates[0] };
 
 /* The longest ones keep every sum of times below the 32 bits of the library's clock. */
+enum { MAX_WORD = 24 };
 enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
 
 static bool take_baud(const char *command, const char *text, uint32_t *baud)
@@ -81,6 +83,100 @@ static bool take_numbers(session_options_t *options, const char *command, const 
     return true;
 }
 
+/* The next word of a list, without its separator. Returns what follows it; NULL: the list ends, or the word is too
+ * long, when it is empty. */
+static const char *next_word(const char *list, char separator, char word[MAX_WORD])
+{
+    const char *const end = strchr(list, separator);
+    const size_t length = end != NULL ? (size_t)(end - list) : strlen(list);
+    (void)snprintf(word, MAX_WORD, "%.*s", length < MAX_WORD ? (int)length : 0, list);
+    return end != NULL ? end + 1 : NULL;
+}
+
+static bool has_sensor(const session_options_t *options, const char *a, const char *b)
+{
+    for (size_t i = 0; i != options->station_count; i++) {
+        const char *const name = options->stations[i].sensor->name;
+        if (strcmp(name, a) == 0 || strcmp(name, b) == 0) return true;
+    }
+    return false;
+}
+
+static bool take_probes(session_options_t *options, const char *command, const char *text)
+{
+    if (text == NULL) return true;
+    if (!has_sensor(options, "a05", "a05")) {
+        (void)usage_error(command, "--probes is for an a05, which has four");
+        return false;
+    }
+    for (const char *at = text; at != NULL;) {
+        char word[MAX_WORD];
+        uint32_t probe = 0;
+        at = next_word(at, ',', word);
+        if (!number_parse(word, 1, FATHOM_DYP_PROBES, &probe) || (options->probes >> (probe - 1) & 1) != 0) {
+            (void)usage_error(command, "--probes takes some of 1,2,3,4, each once, not '%s'", text);
+            return false;
+        }
+        options->probes |= (uint8_t)(1u << (probe - 1));
+    }
+    return true;
+}
+
+static const struct {
+    const char *name;
+    uint8_t meaning;
+} meanings[] = {
+    {"unknown", FATHOM_MEANS_UNKNOWN},
+    {"no-target", FATHOM_MEANS_NO_TARGET},
+    {"interference", FATHOM_MEANS_INTERFERENCE},
+    {"too-near", FATHOM_MEANS_TOO_NEAR},
+    {"fault", FATHOM_MEANS_FAULT},
+    {"refused", FATHOM_MEANS_REFUSED},
+};
+
+/* "0", "fffd" ...: where its meaning stands; NULL: it is none of the four. */
+static uint8_t *place_of(fathom_dyp_window_t *window, const char *value)
+{
+    if (strcmp(value, "0") == 0) return &window->value_0;
+    if (strcasecmp(value, "fffd") == 0) return &window->value_fffd;
+    if (strcasecmp(value, "fffe") == 0) return &window->value_fffe;
+    return strcasecmp(value, "ffff") == 0 ? &window->value_ffff : NULL;
+}
+
+/* VALUE=MEANING */
+static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
+{
+    char value[MAX_WORD];
+    const char *const name = next_word(pair, '=', value);
+    uint8_t *const place = place_of(window, value);
+    for (size_t i = 0; place != NULL && name != NULL && i != sizeof meanings / sizeof meanings[0]; i++) {
+        if (strcmp(name, meanings[i].name) != 0) continue;
+        *place = meanings[i].meaning;
+        return true;
+    }
+    return false;
+}
+
+static bool take_means(session_options_t *options, const char *command, const char *text)
+{
+    if (text == NULL) return true;
+    if (!has_sensor(options, "a16", "a05")) {
+        (void)usage_error(command, "--means is for a16 and a05");
+        return false;
+    }
+    for (const char *at = text; at != NULL;) {
+        char pair[MAX_WORD];
+        at = next_word(at, ',', pair);
+        if (take_meaning(&options->window, pair)) continue;
+        (void)usage_error(command,
+                          "--means takes 0, fffd, fffe or ffff, each with =unknown, no-target, interference, "
+                          "too-near, fault or refused, such as 0=no-target,ffff=unknown, not '%s'",
+                          text);
+        return false;
+    }
+    return true;
+}
+
 static bool take_stations(session_options_t *options, const char *command, char **words, size_t count,
                           const char *address, const char *mode)
 {
@@ -128,7 +224,9 @@ bool session_options(session_options_t *options, const char *command, char **wor
     if (!take_stations(options, command, words, (size_t)word_count, address, mode) ||
         !take_lines(options, command, values) ||
         !stations_check(options->stations, options->station_count, command, has_settings) ||
-        !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo))
+        !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo) ||
+        !take_probes(options, command, values[OPTION_PROBES]) ||
+        !take_means(options, command, values[OPTION_MEANS]))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
     options->port = port;
@@ -171,7 +269,7 @@ void session_options_help(FILE *to)
         "  --interval MS     from one attempt to the next; default: as fast as the sensor can\n"
         "  --timeout MS      how long to wait for an answer (default: as the sensor needs, 0.5 to 1 s), or "
         "for a\n"
-        "                    good frame of a sensor that sends by itself (default 2000)\n"
+        "                    good frame of a sensor that sends by itself (default 10000)\n"
         "  --retries N       how often a failed request is repeated before it counts; default 0\n"
         "  --reconnect       when the adapter is unplugged, or not there yet: waits for it and goes on. A "
         "USB "
@@ -179,6 +277,12 @@ void session_options_help(FILE *to)
         "                    is known again by its serial number, also as another /dev/ttyUSB; one without "
         "by the\n"
         "                    USB socket that it was in. Any other port is known by its path\n"
+        "  --probes LIST     of an a05: those that are fitted or wanted, such as 1,2,4; default: all four\n"
+        "  --means LIST      of a16 and a05: what a value is that is no distance, such as "
+        "0=no-target,ffff=unknown; 0,\n"
+        "                    fffd, fffe or ffff = unknown, no-target, interference, too-near, fault or "
+        "refused.\n"
+        "                    Default: 0=unknown,fffd=no-target,fffe=interference,ffff=refused\n"
         "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n",
         to);
 }

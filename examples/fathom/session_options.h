@@ -18,6 +18,8 @@ enum {
     OPTION_ECHO,
     OPTION_RECONNECT,
     OPTION_DURATION,
+    OPTION_PROBES,
+    OPTION_MEANS,
     SESSION_OPTIONS
 };
 
@@ -32,7 +34,9 @@ enum {
     [OPTION_RETRIES] = {"retries", required_argument, NULL, 256},                                            \
     [OPTION_ECHO] = {"echo", required_argument, NULL, 256},                                                  \
     [OPTION_RECONNECT] = {"reconnect", no_argument, NULL, 256},                                              \
-    [OPTION_DURATION] = {"duration", required_argument, NULL, 256}
+    [OPTION_DURATION] = {"duration", required_argument, NULL, 256},                                          \
+    [OPTION_PROBES] = {"probes", required_argument, NULL, 256},                                              \
+    [OPTION_MEANS] = {"means", required_argument, NULL, 256}
 
 /* A line has 32 unit loads. */
 enum { SESSION_STATIONS = 32 };
@@ -47,7 +51,9 @@ typedef struct {
     uint32_t count;              /* attempts of each sensor; 0: endless */
     uint32_t interval_us;
     uint32_t timeout_us;
-    uint64_t duration_us; /* 0: endless */
+    uint64_t duration_us;       /* 0: endless */
+    fathom_dyp_window_t window; /* of A16 and A05: what their values mean; 0: the default */
+    uint8_t probes;             /* of A05, bit probe - 1; 0: all */
     uint8_t retries;
     uint8_t echo; /* fathom_line_config_t.echo */
     bool reconnect;

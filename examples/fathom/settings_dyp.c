@@ -30,8 +30,10 @@ static void print_distance(char text[SETTING_TEXT], fathom_status_t status, cons
     if (status != FATHOM_READY) return;
     if (sample->kind == FATHOM_TARGET)
         print_number(text, status, sample->distance_mm);
-    else
+    else if (sample->kind == FATHOM_NO_TARGET)
         (void)snprintf(text, SETTING_TEXT, "%s", sample->interference ? "interference" : "no target");
+    else
+        (void)snprintf(text, SETTING_TEXT, "unknown value %u", (unsigned)sample->raw);
 }
 
 /* ---- A16 ---- */

@@ -22,6 +22,7 @@ typedef struct {
     bool skipping;    /* the present answer came before it */
     bool answering;   /* the present attempt has begun to hand over an answer, ... */
     bool has_failed;  /* ... or a part of it was an error */
+    bool has_good;    /* there has been a reading that is not unknown */
 } station_t;
 
 /*

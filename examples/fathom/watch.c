@@ -154,7 +154,7 @@ static int finish(watch_t *watch)
     if (is_lost && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->message);
     session_account(&watch->session, &account);
     tally_print(&account, stderr);
-    return account.sum.failed != 0 || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+    return !session_is_good(&watch->session) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
 static void help(FILE *to)
@@ -172,7 +172,9 @@ static void help(FILE *to)
         "attempts were lost; below, time goes from left to right, a column 0.25 s or one --interval. What "
         "came "
         "instead of a\n"
-        "distance stands there as a letter: - no target, ~ no target and interference, x no answer, ! a "
+        "distance stands there as a letter: - no target, ~ no target and interference, ? a value without a "
+        "meaning, n\n"
+        "something nearer than it can measure, x no answer, ! a "
         "damaged, wrong or\n"
         "impossible answer, s nothing for too long, F the sensor says that it has failed, P the port is "
         "lost.\n\n"

@@ -21,6 +21,8 @@ static const struct {
     [MARK_NONE] = {' ', false, ""},
     [MARK_NO_TARGET] = {'-', false, "no target"},
     [MARK_INTERFERENCE] = {'~', false, "interference"},
+    [MARK_UNKNOWN] = {'?', false, "unknown"},
+    [MARK_TOO_NEAR] = {'n', false, "too near"},
     [MARK_STALE] = {'s', true, "stale"},
     [MARK_NO_ANSWER] = {'x', true, "no answer"},
     [MARK_BAD_ANSWER] = {'!', true, "bad answer"},
@@ -42,6 +44,7 @@ void lanes_begin(lanes_t *lanes, const session_options_t *options)
         const station_t *const station = &options->stations[i];
         const uint8_t probes = station->sensor->probes;
         for (uint8_t probe = 1; probe <= probes; probe++) {
+            if (probes > 1 && options->probes != 0 && (options->probes >> (probe - 1) & 1) == 0) continue;
             lane_t *const lane = &lanes->lane[lanes->count++];
             lane->station = station;
             lane->probe = probe;
@@ -75,6 +78,7 @@ static void take(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm
 {
     step_t *const step = &lane->steps[number_now(lanes) % LANE_STEPS];
     if (mark > step->mark) step->mark = (uint8_t)mark;
+    lanes->seen |= 1u << mark;
     if (mark == MARK_NONE) {
         step->has_distance = true;
         step->distance_mm = distance_mm;
@@ -93,25 +97,18 @@ void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample
 {
     mark_t mark = MARK_NONE;
     if (sample->kind == FATHOM_NO_TARGET) mark = sample->interference ? MARK_INTERFERENCE : MARK_NO_TARGET;
+    if (sample->kind == FATHOM_UNKNOWN) mark = MARK_UNKNOWN;
+    if (sample->kind == FATHOM_NEAR) mark = MARK_TOO_NEAR;
     if (sample->kind == FATHOM_FAULT) mark = MARK_FAULT;
     for (size_t i = 0; i != lanes->count; i++)
         if (lanes->lane[i].station == station && lanes->lane[i].probe == sample->probe)
             take(lanes, &lanes->lane[i], mark, sample->distance_mm);
 }
 
-/* A value of one probe alone was refused: whose? 0: the failure is one of all. */
-static uint8_t refused_probe(const reader_t *reader, fathom_status_t status)
-{
-    uint8_t probe = reader->value_count;
-    if (status != FATHOM_ERR_MALFORMED || reader_was_answered_wrong(reader)) return 0;
-    if (reader->unit == NULL || reader->left == NULL) return 0;
-    for (uint8_t left = *reader->left; left != 0; left &= (uint8_t)(left - 1)) probe--;
-    return probe;
-}
-
 void lanes_failure(lanes_t *lanes, const station_t *station, fathom_status_t status)
 {
-    const uint8_t probe = refused_probe(&station->reader, status);
+    /* 0: it is the failure of all */
+    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
     mark_t mark = MARK_BAD_ANSWER;
     if (status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_ECHO) mark = MARK_NO_ANSWER;
     if (status == FATHOM_ERR_STALE) mark = MARK_STALE;

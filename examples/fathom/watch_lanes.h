@@ -11,6 +11,8 @@ typedef enum {
     MARK_NONE = 0,
     MARK_NO_TARGET,
     MARK_INTERFERENCE,
+    MARK_UNKNOWN,  /* a value without a meaning */
+    MARK_TOO_NEAR, /* ... to be measured */
     MARK_STALE,
     MARK_NO_ANSWER,
     MARK_BAD_ANSWER, /* damaged, refused, or with a value that cannot be */
@@ -56,6 +58,7 @@ typedef struct {
     lane_t lane[MAX_LANES];
     size_t count;
     uint64_t now_us; /* since the start */
+    uint32_t seen;   /* bit mark_t: it has come */
     uint32_t step_us;
 } lanes_t;
 

@@ -130,10 +130,12 @@ static void draw_axis(picture_t *picture, const lanes_t *lanes, uint16_t row, ui
     (void)put_text(picture, row, (uint16_t)(picture->columns - 4), " now", COLOUR_PLAIN);
 }
 
-static void draw_legend(picture_t *picture, uint16_t row)
+/* The two that most sensors never say stand there from when they have come. */
+static void draw_legend(picture_t *picture, const lanes_t *lanes, uint16_t row)
 {
     uint16_t column = 0;
     for (mark_t mark = MARK_NO_TARGET; mark != MARKS; mark++) {
+        if ((mark == MARK_UNKNOWN || mark == MARK_TOO_NEAR) && (lanes->seen >> mark & 1) == 0) continue;
         put(picture, row, column, (uint8_t)mark_character(mark), colour_of(mark));
         column =
             (uint16_t)(put_text(picture, row, (uint16_t)(column + 2), mark_name(mark), COLOUR_PLAIN) + 1);
@@ -191,7 +193,7 @@ void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lan
     draw_hidden(picture, lanes->count - shown);
     if (!has_footer) return;
     draw_axis(picture, lanes, end, room == shown ? NARROW : GUTTER);
-    draw_legend(picture, (uint16_t)(end + 1));
+    draw_legend(picture, lanes, (uint16_t)(end + 1));
     draw_message(picture, message, (uint16_t)(end + 2));
 }
 
