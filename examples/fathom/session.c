@@ -353,8 +353,10 @@ void session_close(session_t *session) { channel_close(&session->channel); }
 bool session_is_good(const session_t *session)
 {
     const session_options_t *const options = &session->options;
-    for (size_t i = 0; i != options->station_count; i++)
-        if (!options->stations[i].has_good || options->stations[i].tally.failed != 0) return false;
+    for (size_t i = 0; i != options->station_count; i++) {
+        const station_t *const station = &options->stations[i];
+        if (station->tally.failed != 0 || (station->tally.readings != 0 && !station->has_good)) return false;
+    }
     return true;
 }
 

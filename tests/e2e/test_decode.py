@@ -335,7 +335,8 @@ class Meaning(Case):
             ([dyp(0xFF, 1)], {'note': 'FF is the broadcast address'}),
             ([dyp(5, 3)], {'note': 'every a05 on the line obeys'})],
         distances_that_are_none_are_told=[
-            row for value, note in ((0, 'no target, as older firmware says it'), (0xFFFD, 'no target'),
+            row for value, note in ((0, 'unknown: no target, or something at the probe; --means of fathom read says which'),
+                                     (0xFFFF, 'refused: no distance, and no value of the family'), (0xFFFD, 'no target'),
                                     (0xFFFE, 'no target: interference by another unit')) for row in (
                 ([e2e.frame(value)], {'notes': {'distance_mm': note}}),
                 ([dyp(1, 0x10, *divmod(value, 256))], {'notes': {'probe_1_mm': note}}))],

@@ -25,7 +25,6 @@ SEEN = [
     ('a16 auto no-target', [NO_TARGET]),
     ('a16 auto interference', [INTERFERENCE]),
     ('a16 modbus 754', [target(754)]),
-    ('a16 modbus 0', [('no_target', False, None, 0)]),
     ('a05 auto 1000,2000,1953,3562', [target(mm) for mm in (1000, 2000, 1953, 3562)]),
     # out of step by six it would be 1339 2047 1000 2000
     ('a05 auto 1000,2000,2047,1339', [target(mm) for mm in (1000, 2000, 2047, 1339)]),
@@ -50,6 +49,53 @@ class Values(e2e.Case):
         first = got[0][1]
         self.assertEqual(got, [(probe, sequence, *one) for sequence in (first, first + 1)
                                for probe, one in enumerate(expected, 1)])
+
+
+class FirstContact(e2e.Case):
+    """3 and 4: one odd probe does not hide the others, and 0 is not taken for "nothing in range"."""
+
+    def test_an_odd_probe_is_told_and_the_three_others_are_read_each_time(self):
+        sim = self.sim('a05 --distance 1000,2000,7000,3000')
+        done = self.ends(f'read a05 --port {sim} --count 3 --format csv', 1, 'attempts 3, failed 3, readings 9\n')
+        self.assertEqual([(row['probe'], row['distance_mm']) for row in done.rows],
+                         [('1', '1000'), ('2', '2000'), ('4', '3000')] * 3)
+        self.assertEqual(re.findall(r'attempt (\d): (probe 3: 7000 is refused: no distance from 1 to 6000 mm); '
+                                    r'--probes leaves out', done.err),
+                         [(n, 'probe 3: 7000 is refused: no distance from 1 to 6000 mm') for n in '123'])
+
+    @e2e.each(auto='auto', modbus='modbus', dyp='dyp')
+    def probes(self, mode):
+        """An odd probe that is left out is no failure."""
+        sim = self.sim(f'a05::{mode} --distance 1000,2000,7000,3000')
+        got = self.read_json(f'a05 --mode {mode} --port {sim} --count 3 --probes 1,2,4')
+        self.assertEqual([(one['probe'], one['raw']) for one in got], [(1, 1000), (2, 2000), (4, 3000)] * 3)
+
+    # what is sent, the option, status: kind and interference
+    @e2e.each(
+        a_zero_is_unknown=('0', '', 'unknown', False, 1),
+        a_zero_that_is_no_target=('0', '--means 0=no-target', 'no_target', False, 0),
+        a_zero_that_is_too_near=('0', '--means fffd=fault,0=too-near', 'too_near', False, 0),
+        fffd_that_is_unknown=('no-target', '--means FFFD=unknown', 'unknown', False, 1),
+        fffe_that_is_a_fault=('interference', '--means fffe=fault', 'fault', False, 0),
+        ffff_that_is_interference=('65535', '--means ffff=interference', 'no_target', True, 0))
+    def means(self, sent, option, status, interference, code):
+        """A sensor that gave nothing but unknown values gave no good reading."""
+        for device, reader in (('a16', 'a16'), ('a16::modbus', 'a16 --mode modbus')):
+            sim = self.sim(f'{device} --distance {sent}')
+            one, = self.ends(f'read {reader} --port {sim} --count 1 --format json {option}', code).json
+            self.assertEqual((one['status'], one['interference'], one['distance_mm']),
+                             (status, interference, None))
+
+    @e2e.each(
+        refused_by_default=('65535', '', r'attempt 1: 65535 \(FFFF\) is refused; --means FFFF='),
+        refused_on_request=('no-target', '--means fffd=refused', r'65533 \(FFFD\) is refused; --means FFFD='))
+    def refused(self, sent, option, words):
+        sim = self.sim(f'a16 --distance {sent}')
+        self.assertRegex(self.ends(f'read a16 --port {sim} --count 1 {option}', 1).err, words)
+
+    def test_one_good_sensor_does_not_make_up_for_another_that_gave_nothing_good(self):
+        sim = self.sim('a16:1:modbus a05:2:modbus --distance 1@0 --distance 2@1000')
+        self.ends(f'read a16:1 a05:2 --port {sim} --count 1', 1, 'attempts 2, failed 0, readings 5\n')
 
 
 class Json(e2e.Case):
@@ -117,6 +163,11 @@ class Formats(e2e.Case):
                              'a05 probe 1    1000 mm    1.000 m', 'a05 probe 2      20 mm    0.020 m',
                              'a05 probe 3  no target in range',
                              'a05 probe 4  no target in range (interference)'),
+        text_of_what_is_no_distance=(
+            'a05', '0,65533,1000,1000', '--means fffd=too-near',
+            'a05 probe 1  unknown: the value 0 has been given no meaning (--means)',
+            'a05 probe 2  nearer than it can measure', 'a05 probe 3    1000 mm    1.000 m',
+            'a05 probe 4    1000 mm    1.000 m'),
         text_of_an_hps167s=('hps167s', '17999', '',
                             'hps167s   17999 mm   17.999 m  magnitude 723.1744  ambient 1  precision 0'),
         text_of_a_fault=('hps167s', 'fault', '', 'hps167s  fault: the sensor says that it has failed'))

@@ -86,6 +86,16 @@ WRONG = [
         ('a17 --port /nowhere', "there is no sensor 'a17'"),
         ('a16 --count 3', 'there is no option --count'),
         ('a16 --duration 1s --port /nowhere', '--duration takes a whole number'),
+        ('a05 --probes 5 --port /nowhere', "--probes takes some of 1,2,3,4, each once, not '5'"),
+        ('a16 --means 0 --port /nowhere', "not '0'"),
+    ]),
+    ('probes_and_meanings_of_values', 'read', [
+        *told('a05 --port /nowhere --probes', '0', '5', '1,', ',1', '1,1', '1-3', '', '1' * 40),
+        ('a16 --port /nowhere --probes 1', '--probes is for an a05'),
+        ('a16:1 hps167s:2 --port /nowhere --probes 1', '--probes is for an a05'),
+        *told('a16 --port /nowhere --means', '', '0', '0=', '0=far', '=unknown', '1=unknown', 'fffc=fault',
+              '0=unknown,', '0=no-target=1', '0=' + 'x' * 40),
+        ('hps167s --port /nowhere --means 0=unknown', '--means is for a16 and a05'),
     ]),
     ('wrong_usage', 'sim', [
         ('', 'which sensor?'),

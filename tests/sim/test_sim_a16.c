@@ -60,7 +60,7 @@ TEST(no_target_and_interference_are_fffd_and_fffe)
     hear(110, "FF FF FD FB");
     bench.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
     hear(100, "FF FF FE FC");
-    bench.fixed.value[0] = 0; /* what older firmware says; any number can be said */
+    bench.fixed.value[0] = 0; /* any number can be said */
     hear(100, "FF 00 00 FF");
     bench.a16.device.scene.distance = NULL;
     hear(100, "FF FF FD FB");
