@@ -46,7 +46,8 @@ enum {
     MAX_ADDRESS = 254,
     MAX_TIMEOUT_MS = 10000,
     MAX_RETRIES = 9,
-    DEFAULT_LISTEN_S = 3,
+    /* No period of the frames is printed. A16 2(2) gives its value 7.5 s to settle; two frames at 3 s fit too. */
+    DEFAULT_LISTEN_S = 8,
     MAX_LISTEN_S = 60,
     ALL_PARITIES = 1 << FATHOM_PARITY_NONE | 1 << FATHOM_PARITY_EVEN | 1 << FATHOM_PARITY_ODD,
     ITEM_TEXT = 16
@@ -253,7 +254,7 @@ void scan_help(FILE *to)
         "  --stop-bits N     1 (default) or 2; 2 means no parity too unless --parity is given\n"
         "  --timeout MS      how long an address may take to answer; default 150 at 9600 8N1, else 100\n"
         "  --retries N       how often a silent address is asked again; default 0\n"
-        "  --listen SECONDS  how long it listens first; default 3\n"
+        "  --listen SECONDS  how long it listens first; default 8\n"
         "  --wake            asks also where something sends by itself\n"
         "  --estimate        only tells how long the scan would take\n"
         "  --format FORMAT   text (default) or json, an object a line\n\n"

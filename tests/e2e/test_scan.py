@@ -147,7 +147,7 @@ class Estimate(Case):
     def test_the_default_is_32_addresses_at_the_factory_settings_and_needs_no_port(self):
         told = self.seconds()
         self.assertEqual((told['settings'], told['addresses']), (2, 32))
-        self.assertEqual(told['seconds'], 13)  # 3 + 32 * (0.163 + 0.110) + 0.755 is 12.5
+        self.assertEqual(told['seconds'], 18)  # 8 + 32 * (0.163 + 0.110) + 0.755 is 17.5
         self.ends('scan --estimate', 0,
                   out='addresses 1 to 32 at 9600 8N1, 19200 8E1: about 13 s, and a second for '
                                             'each sensor\n')

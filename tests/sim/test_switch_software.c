@@ -112,3 +112,31 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
     assert_in_range(changes, 100, 1000);
     assert_int_equal(errors, 0);
 }
+
+/* First contact 3: probe 3 says 7000 mm, which none can measure; probe 1 is near, then it is not, and what stands before
+ * probe 3 stays unknown. */
+TEST(an_odd_probe_neither_hides_one_that_is_near_nor_keeps_the_level_for_ever)
+{
+    static const uint8_t levels[] = {FATHOM_NEAR, FATHOM_UNKNOWN};
+    fathom_a05_auto_t automatic;
+    fathom_a05_relay_rule_t rule;
+    set_relay(3000, (a05_config_t){0}, 0);
+    const a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&bench.fixed)};
+    fathom_sim_a05_init(&s.other.a05, &config);
+    begin_beside();
+    assert_int_equal(fathom_a05_auto_init(&automatic, &(fathom_a05_auto_config_t){.line = &beside.line}),
+                     FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &(fathom_a05_relay_rule_config_t){0}), FATHOM_READY);
+    const fathom_sensor_t sensor = fathom_a05_auto_sensor(&automatic);
+    for (unsigned i = 0; i != 2; i++) {
+        fathom_sample_t sample;
+        bench.fixed = (fathom_sim_fixed_t){{i == 0 ? 500 : 2000, 2000, 7000, 3000}};
+        for (unsigned ms = 0; ms != 6000; ms += 20) {
+            run(20 * MS, 20 * MS);
+            while (fathom_poll(&sensor, &sample) == FATHOM_READY)
+                (void)fathom_a05_relay_rule_sample(&rule, &sample);
+            (void)fathom_debounce_time(&rule.debounce, s.clock.now_us);
+        }
+        assert_int_equal(rule.debounce.level, levels[i]);
+    }
+}
