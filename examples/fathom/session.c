@@ -353,9 +353,12 @@ void session_close(session_t *session) { channel_close(&session->channel); }
 bool session_is_good(const session_t *session)
 {
     const session_options_t *const options = &session->options;
+    const bool is_over_time =
+        options->duration_us != 0 && !session->is_lost && session_time_us(session) >= options->duration_us;
     for (size_t i = 0; i != options->station_count; i++) {
         const station_t *const station = &options->stations[i];
-        if (station->tally.failed != 0 || (station->tally.readings != 0 && !station->has_good)) return false;
+        if (station->tally.failed != 0) return false;
+        if (!station->has_good && (station->tally.readings != 0 || is_over_time)) return false;
     }
     return true;
 }

@@ -50,7 +50,8 @@ bool session_run(session_t *session);
 
 void session_close(session_t *session);
 
-/* Has nothing failed, and has each sensor that said anything given a reading that is not unknown? */
+/* Has nothing failed, and has each sensor given a reading that is not unknown? One that has said nothing is forgiven where
+ * the user ended it, or the port was still waited for. */
 bool session_is_good(const session_t *session);
 
 /* Takes and adds up all counters. */

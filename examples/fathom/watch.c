@@ -184,14 +184,15 @@ static void help(FILE *to)
         "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
         to);
     session_options_help(to);
-    (void)fputs(
-        "\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, 2 for wrong "
-        "usage.\n\n"
-        "examples:\n"
-        "  fathom watch a16 --port /dev/ttyUSB0\n"
-        "  fathom watch a05:2:modbus hps167s:7 --port /dev/ttyUSB0 --interval 500\n"
-        "  fathom watch hps167s --port /dev/ttyUSB0 --duration 60 > log.txt\n",
-        to);
+    (void)fputs("\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a "
+                "sensor gave no "
+                "good\n"
+                "reading, 2 for wrong usage.\n\n"
+                "examples:\n"
+                "  fathom watch a16 --port /dev/ttyUSB0\n"
+                "  fathom watch a05:2:modbus hps167s:7 --port /dev/ttyUSB0 --interval 500\n"
+                "  fathom watch hps167s --port /dev/ttyUSB0 --duration 60 > log.txt\n",
+                to);
 }
 
 static bool take_options(session_options_t *options, int argc, char **argv, bool *wants_help)

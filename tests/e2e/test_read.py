@@ -93,6 +93,9 @@ class FirstContact(e2e.Case):
         sim = self.sim(f'a16 --distance {sent}')
         self.assertRegex(self.ends(f'read a16 --port {sim} --count 1 {option}', 1).err, words)
 
+    def test_a_sensor_that_says_nothing_in_the_time_that_it_has_is_a_failure(self):
+        self.ends(f'read a16 --port {self.device()} --duration 1', 1, 'attempts 0, failed 0, readings 0\n')
+
     def test_one_good_sensor_does_not_make_up_for_another_that_gave_nothing_good(self):
         sim = self.sim('a16:1:modbus a05:2:modbus --distance 1@0 --distance 2@1000')
         self.ends(f'read a16:1 a05:2 --port {sim} --count 1', 1, 'attempts 2, failed 0, readings 5\n')
