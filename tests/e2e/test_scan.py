@@ -149,7 +149,7 @@ class Estimate(Case):
         self.assertEqual((told['settings'], told['addresses']), (2, 32))
         self.assertEqual(told['seconds'], 18)  # 8 + 32 * (0.163 + 0.110) + 0.755 is 17.5
         self.ends('scan --estimate', 0,
-                  out='addresses 1 to 32 at 9600 8N1, 19200 8E1: about 13 s, and a second for '
+                  out='addresses 1 to 32 at 9600 8N1, 19200 8E1: about 18 s, and a second for '
                                             'each sensor\n')
 
     def test_time_outs_and_retries_are_in_it(self):
