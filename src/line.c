@@ -128,6 +128,11 @@ static fathom_status_t pass(fathom_line_t *line)
     return FATHOM_PENDING;
 }
 
+static bool is_late(const fathom_line_t *line)
+{
+    return (line->known & (COMPANY | LATE)) == (COMPANY | LATE);
+}
+
 /* Gives the request to the port, which may have to change its settings for it: > 0 when it has all of it, 0
  * when it is busy, FATHOM_ERR_UNSUPPORTED when it cannot do the settings, else < 0: it is broken. */
 static int hand_over(fathom_line_t *line, fathom_exchange_t *exchange)
@@ -145,14 +150,24 @@ static int hand_over(fathom_line_t *line, fathom_exchange_t *exchange)
     return n == 0 || n == (int)request.length ? n : FATHOM_ERR_PORT;
 }
 
+/* Has the line been silent for long enough? A device that sends by itself leaves room for a request behind each of its
+ * frames and nowhere else: not behind an answer, which one of its frames may have waited for, nor later in a silence. */
+static bool has_room(fathom_line_t *line)
+{
+    if (line->have != 0 || line->silent_us < silence_us(line) || (line->known & IN_BREAK) != 0) return false;
+    if (line->silent_us == QUIET_US) line->known &= (uint8_t) ~(COMPANY | LATE);
+    if (is_late(line)) return false;
+    line->known |= LATE;
+    return true;
+}
+
 /*
- * After a silence the first in the queue whose unit owes nothing goes to the front and out. A port that takes
- * nothing is asked again by the next poll, for so long and no longer.
+ * The first in the queue whose unit owes nothing goes to the front and out. A port that takes nothing is asked again by
+ * the next poll, for so long and no longer.
  */
 static fathom_status_t send(fathom_line_t *line)
 {
-    if (line->have != 0 || line->silent_us < silence_us(line) || (line->known & IN_BREAK) != 0)
-        return FATHOM_PENDING;
+    if (!has_room(line)) return FATHOM_PENDING;
     for (fathom_exchange_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
         if ((line->owing & fathom_line_owing_bits(x->unit)) != 0) continue;
         *link = x->link.next;
@@ -188,6 +203,7 @@ fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t
     line->have = 0;
     line->need = 0;
     line->known = 0;
+    line->unasked = 0;
     line->owing = 0;
     line->silent_us = 0;
     line->config = config;
@@ -311,7 +327,7 @@ static uint32_t queue_due_us(const fathom_line_t *line)
     if ((line->known & IN_BREAK) != 0) return FATHOM_NO_DEADLINE;
     for (const fathom_exchange_t *x = line->head; x != NULL; x = x->link.next)
         if ((line->owing & fathom_line_owing_bits(x->unit)) == 0)
-            return still_to_be_silent(line, silence_us(line));
+            return still_to_be_silent(line, is_late(line) ? QUIET_US : silence_us(line));
     return line->head != NULL ? line->owed_us : FATHOM_NO_DEADLINE;
 }
 

@@ -31,8 +31,14 @@ enum {
     ECHO_KNOWN = 6,
     ECHO_DUE = 8,  /* the request that was cancelled may still come back */
     IN_BREAK = 16, /* the host holds the line low */
-    ENDING = 32    /* no longer, but for the port, which has left_us to let it go */
+    ENDING = 32,   /* no longer, but for the port, which has left_us to let it go */
+    COMPANY = 64,  /* others send here too, unasked; forgotten after a silence of QUIET_US */
+    LATE = 128     /* since they did, there has been time for a request: the next one may come any time */
 };
+
+/* So many bytes that nobody has asked for are no glitch: the shortest frame of all protocols here, FF .. SUM. And as much
+ * as silent_us can tell. */
+enum { LEAST_COMPANY = 4, QUIET_US = UINT16_MAX };
 
 static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
 

@@ -19,7 +19,13 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
 {
     uint8_t *to = line->config->frame;
     fathom_listener_t *const listener = line->listener;
-    if (!taken) {
+    if (taken) {
+        line->unasked = 0;
+        line->known |= LATE;
+    } else {
+        const uint8_t unasked = (uint8_t)(line->unasked + length);
+        line->unasked = unasked < length ? UINT8_MAX : unasked;
+        if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
         if (listener == NULL)
             fathom_line_count(line, FATHOM_LINE_DROPPED_BYTES, length);
         else
@@ -159,6 +165,7 @@ int fathom_line_read(fathom_line_t *line)
     fathom_rx_t rx = {0, 0};
     int n = uart->read(uart->ctx, config->frame + line->have, (size_t)(config->frame_size - line->have), &rx);
     if (n <= 0) return n;
+    line->known &= (uint8_t)~LATE;
     if (line->have == 0 && ((rx.flags & FATHOM_RX_SILENCE) != 0 || is_listeners_gap(line)))
         line->known |= AFTER_GAP;
     /* What came may be newer than the look at the clock before the read, stamped or not. */

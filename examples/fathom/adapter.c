@@ -120,3 +120,16 @@ bool adapter_find(const adapter_t *adapter, const char *sysfs, char path[ADAPTER
     (void)snprintf(path, ADAPTER_PATH, "/dev/%s", name);
     return true;
 }
+
+unsigned adapter_latency_ms(const char *sysfs, const char *path)
+{
+    char real[PATH_MAX];
+    char folder[PATH_MAX];
+    char word[ADAPTER_WORD];
+    if (realpath(path, real) == NULL ||
+        snprintf(folder, sizeof folder, "%s/class/tty/%s/device", sysfs, last_name(real)) >=
+            (int)sizeof folder ||
+        !read_attribute(folder, "latency_timer", word))
+        return 0;
+    return (unsigned)strtoul(word, NULL, 10);
+}

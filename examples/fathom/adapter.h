@@ -34,4 +34,7 @@ bool adapter_identify(adapter_t *adapter, const char *sysfs, const char *path);
  */
 bool adapter_find(const adapter_t *adapter, const char *sysfs, char path[ADAPTER_PATH]);
 
+/* How long it keeps what has come before it hands that over, in ms; 0: nothing is known of that. */
+unsigned adapter_latency_ms(const char *sysfs, const char *path);
+
 #endif

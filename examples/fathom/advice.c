@@ -2,6 +2,9 @@
 #include "advice.h"
 
 #include <inttypes.h>
+#include <string.h>
+
+#include "adapter.h"
 
 typedef struct {
     const char *name;
@@ -120,6 +123,30 @@ static void print_untriggered(FILE *to, const failure_t *failure)
     }
 }
 
+/* A device that sends by itself leaves little room, and none at all where its frames are known late. */
+static bool print_unasked(FILE *to, const failure_t *failure)
+{
+    enum { LEAST = 3, LITTLE_MS = 2 };
+    const char *const path = failure->channel->port.path;
+    if (failure->channel->tcp != NULL || failure->reader->protocol == NULL ||
+        strcmp(failure->sensor->name, "hps167s") != 0 || failure->evidence.own < LEAST)
+        return false;
+    const unsigned latency_ms = adapter_latency_ms(ADAPTER_SYSFS, path);
+    (void)fprintf(to,
+                  "it sends measurements by itself, %" PRIu32
+                  " were heard, and a request has to fit between two of them; ",
+                  failure->evidence.own);
+    if (latency_ms != 0 && latency_ms < LITTLE_MS)
+        (void)fputs("try again", to);
+    else if (latency_ms != 0)
+        (void)fprintf(to, "the adapter keeps them back for %u ms: `setserial %s low_latency` ends that",
+                      latency_ms, path);
+    else
+        (void)fprintf(to, "if the adapter keeps them back, as USB adapters do: `setserial %s low_latency`",
+                      path);
+    return true;
+}
+
 static void print_no_answer(FILE *to, const failure_t *failure)
 {
     const evidence_t *const evidence = &failure->evidence;
@@ -135,6 +162,8 @@ static void print_no_answer(FILE *to, const failure_t *failure)
                     "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
                     "supply, and --address",
                     to);
+    } else if (print_unasked(to, failure)) {
+        return;
     } else if (evidence->own != 0) {
         (void)fputs("frames of this address were heard, but none that answers; check that no other master "
                     "asks, and that only one sensor has this address",
@@ -164,7 +193,7 @@ static void print_damaged(FILE *to, const failure_t *failure)
 {
     const tally_t *const tally = failure->tally;
     (void)fprintf(to, "the answer of address %u was damaged; ", failure->address);
-    if (print_others(to, failure)) return;
+    if (print_others(to, failure) || print_unasked(to, failure)) return;
     if (failure->channel->tcp != NULL)
         (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
     else if (tally->readings != 0)
@@ -271,6 +300,7 @@ void advice_print(FILE *to, const failure_t *failure)
         print_stale(to, failure);
         break;
     case FATHOM_ERR_MALFORMED:
+        if (print_unasked(to, failure)) break;
         if (reader_was_answered_wrong(failure->reader))
             (void)fprintf(to,
                           "address %u answered something else than was asked; check that it is %s, and alone "

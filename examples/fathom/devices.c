@@ -90,7 +90,7 @@ void device_hps167s(device_t *device, const device_settings_t *settings)
         .baud_at_power_on = traits[DEVICE_BAUD_LATER] != 0,
         .offset_adds = traits[DEVICE_OFFSET_ADDS] != 0,
         .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
-        .unasked_us = traits[DEVICE_UNASKED] * 1000,
+        .unasked_us = traits[DEVICE_UNASKED],
         .seed = settings->seed,
         .scene = settings->scene};
     fathom_sim_hps167s_init(&device->model.hps167s, &config);

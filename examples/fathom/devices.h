@@ -15,7 +15,7 @@ typedef enum {
     DEVICE_WARM_UP, /* seconds */
     DEVICE_WARM_UP_REFUSES,
     DEVICE_WARM_UP_ABNORMAL,
-    DEVICE_UNASKED, /* milliseconds */
+    DEVICE_UNASKED, /* microseconds */
     DEVICE_NO_OUTPUT,
     DEVICE_NO_TERMINATION,
     DEVICE_BAUD_LATER,

@@ -63,6 +63,26 @@ static bool unknown(const char *command, const sensor_t *sensor, const char *tex
     return false;
 }
 
+static bool is_ms(const trait_t *trait) { return strcmp(trait->unit, "MS") == 0; }
+
+/* Milliseconds with up to three decimals: 18.5. As microseconds. */
+static bool ms_parse(const char *text, uint32_t most, uint32_t *us)
+{
+    enum { DIGITS = 5, US = 1000 };
+    const size_t whole = strcspn(text, ".");
+    char digits[DIGITS + 1] = "";
+    uint32_t ms = 0;
+    if (whole > DIGITS) return false;
+    memcpy(digits, text, whole);
+    if (!number_parse(digits, 1, most, &ms)) return false;
+    *us = ms * US;
+    if (text[whole] == '\0') return true;
+    uint32_t part = US / 10;
+    for (text += whole + 1; *text >= '0' && *text <= '9' && part != 0; text++, part /= 10)
+        *us += (uint32_t)(*text - '0') * part;
+    return *text == '\0' && part != US / 10 && *us <= most * US;
+}
+
 bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const sensor_t *sensor,
                     const char *text)
 {
@@ -71,9 +91,11 @@ bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const s
     if (!has(sensor, trait)) return unknown(command, sensor, text);
     uint32_t value = 1;
     const bool has_value = text[length] == '=';
-    const bool is_right = trait->unit == NULL
-                              ? !has_value
-                              : has_value && number_parse(text + length + 1, 1, trait->most, &value);
+    const char *const number = text + length + 1;
+    const bool is_right = trait->unit == NULL ? !has_value
+                          : !has_value        ? false
+                          : is_ms(trait)      ? ms_parse(number, trait->most, &value)
+                                              : number_parse(number, 1, trait->most, &value);
     if (is_right) {
         values[trait - traits] = value;
         return true;
@@ -81,8 +103,8 @@ bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const s
     if (trait->unit == NULL)
         (void)usage_error(command, "--with %s takes no value, so not '%s'", trait->name, text);
     else
-        (void)usage_error(command, "--with takes %s=%s, a whole number from 1 to %" PRIu32 ", not '%s'",
-                          trait->name, trait->unit, trait->most, text);
+        (void)usage_error(command, "--with takes %s=%s, a %snumber from 1 to %" PRIu32 ", not '%s'",
+                          trait->name, trait->unit, is_ms(trait) ? "" : "whole ", trait->most, text);
     return false;
 }
 

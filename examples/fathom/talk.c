@@ -69,6 +69,19 @@ bool talk_set_mode(talk_t *talk, const char *command, const char *const *values,
 
 const setting_t *talk_settings(const talk_t *talk) { return talk->station->sensor->settings; }
 
+/* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
+static void listen(talk_t *talk)
+{
+    enum { LISTEN_US = 66000 };
+    channel_t *const channel = &talk->channel;
+    const host_t *const host = channel->host;
+    const uint64_t end_us = host->now_us(host->ctx) + LISTEN_US;
+    for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
+        if (fathom_line_poll(&channel->line) < 0) return;
+        host->wait(host->ctx, &channel->port, (uint32_t)(end_us - now_us), false);
+    }
+}
+
 bool talk_open(talk_t *talk, const host_t *host)
 {
     const session_options_t *const options = &talk->options;
@@ -86,6 +99,7 @@ bool talk_open(talk_t *talk, const host_t *host)
         return false;
     }
     tally_begin_port(&talk->port_counts, &talk->channel);
+    if (talk->channel.tcp == NULL) listen(talk);
     if (station->mode->read(&station->reader, &talk->channel, &settings)) return true;
     (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->sensor->name);
     channel_close(&talk->channel);

@@ -35,6 +35,13 @@ extern "C" {
  *    write whose answer equals its request (Modbus function 06, 55 AA 03) is not taken as acknowledged by a
  *    single copy: FATHOM_ERR_ECHO. So read something first, or tell the line in its config. Where there is
  *    echo, a write needs two copies.
+ *  - A device that sends by itself leaves room for requests: where its frame ends the silence begins, and a request
+ *    that is waiting then leaves behind it. Once four bytes or more have come that belong to no exchange (those of a
+ *    late answer are such), requests leave only so: neither behind an answer, for which the device may have put a frame
+ *    off, nor later in a silence, where they would meet the next frame. After 65 ms of silence that is over. An HPS-167S
+ *    that sends every 18.5 ms at 19200 8E1 is asked in this way, where bytes come in at once and the silence is 2006 us:
+ *    7.4 ms of frame, 2 ms, 4.6 ms of request. What it has sent before the first request is known where the line was
+ *    polled before that, for 65 ms say.
  *
  * The echo of a request to all units belongs to nobody, and goes where such bytes go.
  *
@@ -183,7 +190,8 @@ typedef struct {
     uint8_t state;
     uint8_t have;       /* bytes in the frame */
     uint8_t need;       /* below so many there is nothing new to say */
-    uint8_t known;      /* of gaps and echo, bit by bit */
+    uint8_t known;      /* of gaps, echo and company, bit by bit */
+    uint8_t unasked;    /* bytes since the last answer that belonged to no exchange; stops at 255 */
     uint16_t owing;     /* bit unit % 16: may still answer */
     uint16_t silent_us; /* known silence since the last byte either way; stops at 65535 */
     const fathom_line_config_t *config;
@@ -246,8 +254,9 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
 /*
  * Does all that can be done without waiting: reads what has come (at most 16 reads of the port), ends and
  * begins exchanges. Call it often; at the latest every 71 minutes. Several users of one line may each call it.
- * Where a device sends by itself and every call comes right after one of its frames, in step with it, no silence is
- * ever seen and so nothing is sent: sleep by due_us, or by another period.
+ * Where a device sends by itself, sleep by due_us, and look when bytes come: a loop that comes round more slowly than
+ * the room behind a frame is long sends into the next one; and one in step with the device, whose every call comes right
+ * after a frame, sees no silence at all and sends nothing.
  * FATHOM_PENDING, or FATHOM_ERR_PORT: the port is broken; every queued exchange has ended with that. Go on
  * polling and it works again when the port does.
  */

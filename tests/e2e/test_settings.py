@@ -40,6 +40,20 @@ class What(Settings):
         for word in words:
             self.assertIn(word, out)
 
+    # 54 a second; a request fits between two. With 12 ms it does not: 7.4 of frame, 2 of silence, 4.6 of request.
+    def test_an_hps167s_that_sends_every_18_5_ms_is_told_and_set(self):
+        sim = self.sim('hps167s --with unasked=18.5 --counters')
+        for n in range(3):
+            told = self.json(f'info hps167s --port {sim}')
+            self.assertEqual((told['uuid'], told['temperature'], told['measure-after-power-on']),
+                             ('00390025423457142034383501060705', 25.0, 'off' if n else 'on'))
+            self.assertIn('is off', self.told(f'set hps167s --port {sim} measure-after-power-on off'))
+        self.assertEqual(self.counters(sim, 'writes'), [(1,)])
+
+    def test_one_that_leaves_no_room_for_a_request_is_told_apart_from_a_bad_line(self):
+        sim = self.sim('hps167s --with unasked=12')
+        self.ends(f'info hps167s --port {sim}', 1, 'it sends measurements by itself', f'setserial {sim} low_latency')
+
     @e2e.each(
         # the examples of #3; a temperature of 77 degrees Fahrenheit is (77 - 32) * 5 / 9 = 25.0
         everything_that_an_hps167s_tells=('hps167s:7', 'hps167s:7', {

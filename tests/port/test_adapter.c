@@ -119,6 +119,18 @@ TEST(an_adapter_is_what_its_usb_device_says)
     assert_false(adapter.needs_socket);
 }
 
+/* FTDI's, of which `setserial PORT low_latency` makes 1. */
+TEST(the_time_for_which_an_adapter_keeps_bytes_back_is_told_where_it_is_known)
+{
+    char device[LONG];
+    plug_in_as("ttyUSB0", "1-2", "0403", "6001", "A50285BI");
+    (void)snprintf(device, sizeof device, "%s/dev/ttyUSB0", root);
+    assert_int_equal(adapter_latency_ms(root, device), 0);
+    write_file("usb1/1-2/1-2:1.0/ttyUSB0", "latency_timer", "16");
+    assert_int_equal(adapter_latency_ms(root, device), 16);
+    assert_int_equal(adapter_latency_ms(root, "/no/such/port"), 0);
+}
+
 TEST(an_adapter_of_the_cdc_class_too_and_through_a_link)
 {
     char target[LONG];

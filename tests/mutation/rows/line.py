@@ -49,7 +49,7 @@ ROWS = (
       'while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);')),
     ('settings-before-silence', 'line.h: the silence is kept before a request, with its settings',
      'unit/test_line_settings',
-     ('src/line.c', 'send',
+     ('src/line.c', 'has_room',
       'if (line->have != 0',
       'if (line->head != NULL && line->head->settings != NULL && line->config->uart->set_line != NULL) '
       '(void)line->config->uart->set_line(line->config->uart->ctx, line->head->settings); '
@@ -65,8 +65,8 @@ ROWS = (
       'const bool is_asked = exchange != NULL;')),
     ('listener-gets-answer', 'line.h: a listener gets what nobody asked for', 'unit/test_line_listener',
      ('src/line_receive.c', 'drop',
-      'if (!taken) {',
-      'if (!taken || listener != NULL) {')),
+      'if (taken) {',
+      'if (taken && listener == NULL) {')),
     ('noise-drops-all', 'line.h: noise before an answer is dropped, the answer is found',
      'unit/test_line_hostile',
      ('src/line_receive.c', 'judge',

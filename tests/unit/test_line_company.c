@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* A device that sends by itself: requests leave behind its frames, and nowhere else. */
+
+enum { QUIET_US = 65535, PERIOD_US = 35000, FRAME_US = 13 * BYTE_US };
+
+/* The example of HPS-167S #5. */
+static const uint8_t unasked[13] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
+                                    0x07, 0x01, 0x00, 0x00, 0x5B, 0xD8};
+
+static const suite_t suite = {.set_up = set_up};
+
+/* A frame that begins now, byte by byte; it has ended when this returns. */
+static void send_unasked(uint8_t length)
+{
+    fake_trickle(&bench.fake, 0, BYTE_US, unasked, length);
+    run((uint32_t)(length * BYTE_US / 100 * 100 + 100));
+}
+
+/* Nothing but the next frame, or a silence of 65 ms, lets the request leave. */
+static void expect_behind_the_next_frame(unsigned before)
+{
+    expect_written_after(20000, before);
+    send_unasked(13);
+    expect_written(before);
+    expect_sent(T3_5_US - 200, 400);
+}
+
+TEST(a_request_in_the_middle_of_a_silence_waits_for_the_next_frame_of_a_device_that_sends_by_itself)
+{
+    for (uint32_t in_us = T3_5_US + 200; in_us < 40000; in_us += 5000) {
+        set_up(state);
+        send_unasked(13);
+        run(in_us);
+        ask_1(0);
+        expect_behind_the_next_frame(0);
+    }
+}
+
+TEST(a_request_that_waits_when_a_frame_ends_leaves_behind_it)
+{
+    for (unsigned listens = 0; listens != 2; listens++) {
+        set_up(state);
+        if (listens != 0) listen_for(500);
+        send_unasked(13);
+        run(T3_5_US / 2);
+        ask_1(0);
+        expect_sent(T3_5_US / 2 - 200, 400);
+    }
+}
+
+/* A frame may have waited for the answer, and comes as soon as a request might. */
+TEST(behind_an_answer_no_request_leaves_before_the_next_frame)
+{
+    send_unasked(13);
+    ask_1(0);
+    run(REQUEST_US);
+    expect_written(1);
+    answer_1(111);
+    ask_1(0);
+    expect_behind_the_next_frame(1);
+}
+
+TEST(what_is_sent_unasked_is_forgotten_after_65_ms_of_silence)
+{
+    send_unasked(13);
+    run(T3_5_US + 200);
+    ask_1(0);
+    const uint32_t left_us = due();
+    assert_in_range(left_us, QUIET_US - T3_5_US - 500, QUIET_US - T3_5_US);
+    bench.fake.now_us += left_us - 100;
+    (void)poll_line();
+    expect_written(0);
+    run(100);
+    expect_written(1);
+    run(8 * BYTE_US);
+    answer_1(111);
+    ask_1(0);
+    expect_due(T3_5_US); /* as on any line */
+    expect_sent(T3_5_US - 200, 400);
+}
+
+/* A driver that lets go of an RS-485 pair leaves a byte or two there. Only what is sent between two answers adds up. */
+TEST(a_glitch_behind_each_answer_delays_nothing)
+{
+    for (unsigned i = 0; i != 4; i++) {
+        ask_1(0);
+        run(REQUEST_US);
+        expect_written(i + 1);
+        answer_1(111);
+        deliver_hex("00 00 00");
+        run(T3_5_US + 1000);
+    }
+    deliver_hex("00");
+    run(T3_5_US + 1000);
+    ask_1(0);
+    expect_written_after(20000, 4);
+}
+
+TEST(bytes_that_belong_to_no_exchange_are_counted_without_coming_round)
+{
+    for (unsigned i = 0; i != 20; i++) send_unasked(13); /* 260 of them */
+    run(T3_5_US + 200);
+    ask_1(0);
+    expect_behind_the_next_frame(0);
+}
+
+/* At another rate: the port marks each of its bytes, and their end is the end of a frame all the same. */
+TEST(a_device_that_has_gone_to_another_rate_holds_up_nothing)
+{
+    send_unasked(13);
+    run(T3_5_US + 200);
+    ask_1(0);
+    expect_written_after(20000, 0);
+    receive_rx(unasked, 13, FATHOM_RX_FRAMING);
+    run(100);
+    expect_sent(T3_5_US - 200, 400);
+}
