@@ -52,6 +52,16 @@ size_t posix_pty_receive(const posix_pty_t *pty, uint8_t *bytes, size_t capacity
     return n < 0 ? 0 : (size_t)n;
 }
 
+void posix_pty_receive_all(const posix_pty_t *pty, uint8_t *bytes, size_t length)
+{
+    uint8_t more;
+    for (size_t have = 0; have != length;) {
+        assert_true(posix_wait_for(pty->master, POLLIN));
+        have += posix_pty_receive(pty, bytes + have, length - have);
+    }
+    assert_int_equal(posix_pty_receive(pty, &more, 1), 0);
+}
+
 bool posix_wait_for(int fd, short events)
 {
     struct pollfd entry = {fd, events, 0};

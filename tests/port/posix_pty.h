@@ -26,6 +26,9 @@ void posix_pty_send(const posix_pty_t *pty, const uint8_t *bytes, size_t length)
 /* Takes what the slave has written, once; 0 when there is none. */
 size_t posix_pty_receive(const posix_pty_t *pty, uint8_t *bytes, size_t capacity);
 
+/* Takes `length` bytes that the slave has written or writes now, and fails if more have come by then. */
+void posix_pty_receive_all(const posix_pty_t *pty, uint8_t *bytes, size_t length);
+
 /* Waits for poll(2)'s `events`; false after POSIX_LIMIT_MS. */
 bool posix_wait_for(int fd, short events);
 

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include <termios.h>
+
 #include "suite.h"
 
 #include "fathom_posix.h"
@@ -56,6 +58,14 @@ static inline int port_rig_tear_down(void **state)
     {                                                                                                        \
         .set_up = (its_set_up), .tear_down = port_rig_tear_down, .begin_round = posix_start_watchdog         \
     }
+
+/* As the other end of the pseudo terminal sees it. */
+static inline speed_t port_rig_speed(void)
+{
+    struct termios seen;
+    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0);
+    return cfgetospeed(&seen);
+}
 
 static inline int port_rig_read(void *bytes, size_t capacity)
 {

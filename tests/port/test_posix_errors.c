@@ -70,24 +70,24 @@ static int open_is_denied(void *arg)
     return 0;
 }
 
-/* Not root's group, which a pseudo terminal of root may have. */
-static void give_to_tty(void)
+/* Of a group that is not root's, which a pseudo terminal of root may have. */
+static gid_t deny(mode_t mode)
 {
+    struct stat status;
     if (geteuid() == 0) assert_int_equal(chown(rig.pty.path, 65534, getgrnam("tty")->gr_gid), 0);
+    assert_int_equal(chmod(rig.pty.path, mode), 0);
+    assert_int_equal(stat(rig.pty.path, &status), 0);
+    return status.st_gid;
 }
 
 /* A real EACCES: the owner may do nothing, which stops him even where his group may, and the port is opened
  * by a child that is not root. */
 TEST_IN(fresh, a_denied_permission_names_the_group_and_how_to_join_it)
 {
-    struct stat status;
-    char belongs[64];
-    char command[64];
-    give_to_tty();
-    assert_int_equal(chmod(rig.pty.path, 0060), 0);
-    assert_int_equal(stat(rig.pty.path, &status), 0);
-    assert_true(status.st_gid != 0);
-    const struct group *const group = getgrgid(status.st_gid);
+    char belongs[64], command[64];
+    const gid_t gid = deny(0060);
+    assert_true(gid != 0);
+    const struct group *const group = getgrgid(gid);
     assert_non_null(group);
     (void)snprintf(belongs, sizeof belongs, "permission denied: it belongs to the group %s;", group->gr_name);
     (void)snprintf(command, sizeof command, "sudo usermod -aG %s $USER", group->gr_name);
@@ -107,14 +107,10 @@ int __wrap_getgrgid_r(gid_t gid, struct group *entry, char *memory, size_t size,
 
 TEST_IN(fresh, a_denied_permission_shows_a_group_without_a_name_as_its_number)
 {
-    struct stat status;
-    char belongs[64];
-    char command[64];
-    give_to_tty();
-    assert_int_equal(chmod(rig.pty.path, 0060), 0);
-    assert_int_equal(stat(rig.pty.path, &status), 0);
-    (void)snprintf(belongs, sizeof belongs, "the group %lu;", (unsigned long)status.st_gid);
-    (void)snprintf(command, sizeof command, "usermod -aG %lu ", (unsigned long)status.st_gid);
+    char belongs[64], command[64];
+    const unsigned long gid = deny(0060);
+    (void)snprintf(belongs, sizeof belongs, "the group %lu;", gid);
+    (void)snprintf(command, sizeof command, "usermod -aG %lu ", gid);
     denied_t denied = {rig.pty.path, {belongs, command, rig.pty.path}};
     groups_have_no_names = true;
     const int result = posix_run_unprivileged(open_is_denied, &denied);
@@ -126,8 +122,7 @@ TEST_IN(fresh, a_denied_permission_names_no_group_that_would_not_help)
 {
     denied_t denied = {rig.pty.path,
                        {"permission denied", "mode 0020", "udev"}}; /* may write, may not read */
-    give_to_tty();
-    assert_int_equal(chmod(rig.pty.path, 0020), 0);
+    (void)deny(0020);
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
     if (geteuid() != 0) return;
     denied.texts[1] = "the group root with mode 0660";

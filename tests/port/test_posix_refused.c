@@ -17,13 +17,6 @@ static void open_fails(const fathom_line_settings_t *settings, fathom_posix_stat
     assert_int_equal(fathom_posix_fd(&rig.port), -1);
 }
 
-static speed_t speed_seen(void)
-{
-    struct termios seen;
-    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0);
-    return cfgetospeed(&seen);
-}
-
 TEST(a_rate_that_the_driver_refused_silently_is_an_error_with_both_rates)
 {
     driver.most = B115200;
@@ -41,7 +34,7 @@ TEST(a_refused_change_puts_the_line_back_and_the_port_goes_on)
     assert_int_equal(open_with(&slower), FATHOM_POSIX_OK);
     assert_int_equal(fathom_posix_set_line(&rig.port, &port_rig_fast), FATHOM_POSIX_ERR_REFUSED);
     port_rig_says("asked for raw 230400 8N1, the driver set 9600 8N1");
-    assert_int_equal(speed_seen(), B57600);
+    assert_int_equal(port_rig_speed(), B57600);
     assert_int_equal(port_rig_read_one(), 0);
     assert_int_equal(port_rig_write_one(), 1);
 }
@@ -88,7 +81,7 @@ TEST(an_interrupted_change_is_repeated)
 {
     driver.set_interrupts = 3;
     port_rig_open();
-    assert_int_equal(speed_seen(), B230400);
+    assert_int_equal(port_rig_speed(), B230400);
     assert_int_equal(driver.sets, 4);
 }
 

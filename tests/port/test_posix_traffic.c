@@ -36,7 +36,6 @@ TEST(a_request_taken_in_parts_leaves_whole_through_any_call)
 {
     static const char request[] = "0123456789abcdefghij";
     char got[2 * sizeof request];
-    size_t have = 0;
     port_rig_open();
     driver.write_most = 5;
     assert_int_equal(port_rig_write(request, 20), 20); /* 5 */
@@ -54,11 +53,7 @@ TEST(a_request_taken_in_parts_leaves_whole_through_any_call)
     fathom_posix_wait(&rig.port, 0); /* 20 */
     driver.write_most = 0;
     assert_int_equal(port_rig_write(request, 20), 20);
-    while (have < 40) {
-        assert_true(posix_wait_for(rig.pty.master, POLLIN));
-        have += posix_pty_receive(&rig.pty, (uint8_t *)got + have, sizeof got - have);
-    }
-    assert_int_equal(have, 40);
+    posix_pty_receive_all(&rig.pty, (uint8_t *)got, 40);
     assert_memory_equal(got, request, 20);
     assert_memory_equal(got + 20, request, 20);
 }

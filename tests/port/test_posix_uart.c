@@ -16,6 +16,13 @@ static void fill_all(uint8_t *bytes)
     for (unsigned i = 0; i != 512; i++) bytes[256 + i] = (uint8_t)(255 - i / 2);
 }
 
+/* That has been received. */
+static void come(const char *text)
+{
+    posix_pty_send(&rig.pty, (const uint8_t *)text, strlen(text));
+    assert_true(posix_wait_for(fathom_posix_fd(&rig.port), POLLIN));
+}
+
 static const suite_t suite = PORT_RIG_SUITE(port_rig_set_up_open);
 static const suite_t plain;
 
@@ -40,16 +47,10 @@ TEST(every_byte_value_arrives_as_it_was_sent)
 
 TEST(every_byte_value_leaves_as_it_was_written)
 {
-    uint8_t all[ALL];
-    uint8_t got[ALL + 1];
-    size_t have = 0;
+    uint8_t all[ALL], got[ALL];
     fill_all(all);
     for (size_t at = 0; at != sizeof all; at += 256) assert_int_equal(port_rig_write(all + at, 256), 256);
-    while (have < sizeof all) {
-        assert_true(posix_wait_for(rig.pty.master, POLLIN));
-        have += posix_pty_receive(&rig.pty, got + have, sizeof got - have);
-    }
-    assert_int_equal(have, sizeof all);
+    posix_pty_receive_all(&rig.pty, got, sizeof all);
     assert_memory_equal(got, all, sizeof all);
 }
 
@@ -64,8 +65,7 @@ TEST(reading_an_empty_port_returns_zero_every_time)
 TEST(a_small_buffer_gets_the_bytes_in_portions)
 {
     uint8_t got[4] = {0};
-    posix_pty_send(&rig.pty, (const uint8_t *)"abc", 3);
-    assert_true(posix_wait_for(fathom_posix_fd(&rig.port), POLLIN));
+    come("abc");
     assert_int_equal(port_rig_read(got, 0), 0); /* no room is no hang-up */
     assert_int_equal(port_rig_read(got, 2), 2);
     assert_int_equal(port_rig_read(got + 2, 2), 1);
@@ -175,33 +175,22 @@ TEST(sent_takes_as_long_as_the_bytes_take_on_a_wire)
 TEST(the_line_is_not_changed_under_bytes_that_leave)
 {
     const uint8_t bytes[200] = {0};
-    struct termios seen;
     assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_OK);
     assert_int_equal(port_rig_write(bytes, sizeof bytes), sizeof bytes);
     assert_int_equal(fathom_posix_set_line(&rig.port, &port_rig_fast), FATHOM_POSIX_ERR_BUSY);
-    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0);
-    assert_int_equal(cfgetospeed(&seen), B9600);
+    assert_int_equal(port_rig_speed(), B9600);
     while (!port_rig_sent()) fathom_posix_wait(&rig.port, 1000);
     assert_int_equal(fathom_posix_set_line(&rig.port, &port_rig_fast), FATHOM_POSIX_OK);
-    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0);
-    assert_int_equal(cfgetospeed(&seen), B230400);
+    assert_int_equal(port_rig_speed(), B230400);
 }
 
 TEST(a_change_of_the_line_keeps_what_was_received)
 {
     uint8_t byte = 0;
-    posix_pty_send(&rig.pty, (const uint8_t *)"x", 1);
-    assert_true(posix_wait_for(fathom_posix_fd(&rig.port), POLLIN));
+    come("x");
     assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_OK);
     assert_int_equal(port_rig_read(&byte, 1), 1);
     assert_int_equal(byte, 'x');
-}
-
-static speed_t speed_at_the_other_end(void)
-{
-    struct termios seen;
-    assert_int_equal(tcgetattr(rig.pty.master, &seen), 0);
-    return cfgetospeed(&seen);
 }
 
 /* hal.h: 1 they hold, 0 bytes are still leaving, < 0 it cannot. */
@@ -212,19 +201,19 @@ TEST(the_hal_changes_the_line_between_two_requests)
     const fathom_line_settings_t odd_rate = {31250, FATHOM_PARITY_NONE, 1};
     const uint8_t bytes[50] = {0};
     assert_int_equal(uart.set_line(uart.ctx, &usual), 1);
-    assert_int_equal(speed_at_the_other_end(), B9600);
+    assert_int_equal(port_rig_speed(), B9600);
     assert_int_equal(uart.set_line(uart.ctx, &even), 1);
     assert_int_equal(rig.port.line.parity, FATHOM_PARITY_EVEN);
     assert_int_equal(port_rig_write(bytes, sizeof bytes), sizeof bytes);
     assert_int_equal(uart.set_line(uart.ctx, &even), 1); /* nothing to change, so nothing to wait for */
     assert_int_equal(uart.set_line(uart.ctx, &port_rig_fast), 0);
-    assert_int_equal(speed_at_the_other_end(), B9600);
+    assert_int_equal(port_rig_speed(), B9600);
     while (!port_rig_sent()) fathom_posix_wait(&rig.port, 1000);
     assert_true(uart.set_line(uart.ctx, &odd_rate) < 0);
     assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_ARGUMENT);
-    assert_int_equal(speed_at_the_other_end(), B9600);
+    assert_int_equal(port_rig_speed(), B9600);
     assert_int_equal(uart.set_line(uart.ctx, &port_rig_fast), 1);
-    assert_int_equal(speed_at_the_other_end(), B230400);
+    assert_int_equal(port_rig_speed(), B230400);
 }
 
 TEST(a_closed_port_fails_and_can_be_closed_again)

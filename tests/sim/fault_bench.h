@@ -8,10 +8,6 @@
 
 typedef enum { A16_AUTO, A16_MODBUS, A05_AUTO, A05_DYP, HPS167S, SETTINGS, A05_MODBUS = SETTINGS } setting_t;
 
-#define A16_FRAME  "FF 02 EF F0" /* FF + 02 + EF = 1F0 */
-#define A16_ASKED  "01 03 01 01 00 01 D4 36"
-#define A16_ANSWER "01 03 02 02 EF F8 A8"
-
 /* The frame of each setting but A05_MODBUS, undamaged: A16 5(3), 6; A05 1(2), 2(3)3; HPS-167S #5. */
 static const struct {
     const char *request; /* NULL: it sends by itself */

@@ -72,10 +72,10 @@ TEST(the_first_command_ends_automatic_output_with_frames_around_the_answer)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
     wait_ms(50);
-    talk("01 03 01 01 00 01 D4 36", 300,
-         "FF 02 EF F0"          /* at 100 ms, nobody stopped it yet */
-         "01 03 02 02 EF F8 A8" /* the answer, A16 6(4) example 2, about 175 ms */
-         "FF 02 EF F0");        /* at 200 ms, within the 150 ms */
+    talk(A16_ASKED, 300,
+         A16_FRAME           /* at 100 ms, nobody stopped it yet */
+             A16_ANSWER      /* the answer, A16 6(4) example 2, about 175 ms */
+                 A16_FRAME); /* at 200 ms, within the 150 ms */
     hear(60000, "");
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
 }
@@ -83,15 +83,15 @@ TEST(the_first_command_ends_automatic_output_with_frames_around_the_answer)
 TEST(without_lingering_the_command_is_the_end)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
-    hear(105, "FF 02 EF F0");
-    talk("01 03 01 01 00 01 D4 36", 1000, "01 03 02 02 EF F8 A8");
+    hear(105, A16_FRAME);
+    talk(A16_ASKED, 1000, A16_ANSWER);
 }
 
 TEST(a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
     wait_ms(95); /* the request lasts from 95 to 103.3 ms, the frame from 100 to 104.2 */
-    talk("01 03 01 01 00 01 D4 36", 1000, "FF 02 EF F0 01 03 02 02 EF F8 A8");
+    talk(A16_ASKED, 1000, A16_FRAME A16_ANSWER);
 }
 
 TEST(only_a_command_for_it_ends_automatic_output)
@@ -111,20 +111,20 @@ TEST(only_a_command_for_it_ends_automatic_output)
 TEST(a_uart_module_takes_no_command)
 {
     set_a16(FATHOM_SIM_A16_UART, 751, DEFAULTS);
-    ask("01 03 01 01 00 01 D4 36", 10);
-    hear(400, "FF 02 EF F0 FF 02 EF F0 FF 02 EF F0 FF 02 EF F0");
+    ask(A16_ASKED, 10);
+    hear(400, A16_FRAME A16_FRAME A16_FRAME A16_FRAME);
     COUNTED(.unheard = 8, .requests = NONE);
 }
 
 TEST(power_makes_it_automatic_again)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
-    talk("01 03 01 01 00 01 D4 36", 500, "01 03 02 02 EF F8 A8");
+    talk(A16_ASKED, 500, A16_ANSWER);
     fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us);
     fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us); /* twice is no error */
     hear(500, "");
     attach(&bench.a16.device);
-    hear(110, "FF 02 EF F0");
+    hear(110, A16_FRAME);
 }
 
 /* ---- Modbus: A16 6 ---- */
@@ -135,11 +135,11 @@ TEST(reads_are_those_of_a16_6_4)
     hear(10000, "");
     talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1, 0x0100 */
     bench.fixed.value[0] = 751;
-    talk("01 03 01 01 00 01 D4 36", 600, "01 03 02 02 EF F8 A8"); /* example 2, 0x0101 */
+    talk(A16_ASKED, 600, A16_ANSWER); /* example 2, 0x0101 */
     bench.fixed.value[0] = FATHOM_SIM_NO_TARGET;
-    talk("01 03 01 01 00 01 D4 36", 600, "01 03 02 FF FD 38 35");
+    talk(A16_ASKED, 600, "01 03 02 FF FD 38 35");
     bench.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
-    talk("01 03 01 01 00 01 D4 36", 600, "01 03 02 FF FE 78 34");
+    talk(A16_ASKED, 600, "01 03 02 FF FE 78 34");
     COUNTED(.requests = 4, .answered = 4, .measurements = 4);
 }
 
@@ -159,7 +159,7 @@ TEST(answers_take_their_time_and_the_seed_decides_which)
     for (size_t run = 0; run < 3; run++) {
         set_a16(FATHOM_SIM_A16_MODBUS, 754, (a16_config_t){.seed = run == 2 ? 99 : 7});
         for (size_t i = 0; i < 8; i++) {
-            ask(i % 2 == 0 ? "01 03 01 00 00 01 85 F6" : "01 03 01 01 00 01 D4 36", 600);
+            ask(i % 2 == 0 ? "01 03 01 00 00 01 85 F6" : A16_ASKED, 600);
             assert_int_equal(bench.heard, 7);
             /* from the last bit of the request to the last bit of the first byte */
             first_us[run][i] = fathom_elapsed_us(bench.end_us[0], bench.asked_us) - 1042;
@@ -177,7 +177,7 @@ TEST(the_answer_times_are_options)
 {
     set_a16(FATHOM_SIM_A16_MODBUS, 754,
             (a16_config_t){.realtime_us = 40 * MS, .processed_us = 1, .settings_us = 200 * MS});
-    ask("01 03 01 01 00 01 D4 36", 60);
+    ask(A16_ASKED, 60);
     ASSERT_ANSWERED_IN(35 * MS + 1042, 40 * MS + 1042);
     forget();
     /* never before it can know that the request has ended: t3.5 */
@@ -192,7 +192,7 @@ TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 {
     echoed("01 06 02 00 00 05 48 71", 50);
     COUNTED(.writes = 1);
-    talk("01 03 01 01 00 01 D4 36", 300, "");
+    talk(A16_ASKED, 300, "");
     talk("05 03 01 01 00 01 D5 B2", 300, "05 03 02 02 EF 09 68");
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }

@@ -12,7 +12,7 @@ static void set(uint8_t mode, a16_config_t config)
 }
 
 #define DEFAULTS       ((a16_config_t){0})
-#define AUTO_REAL_TIME "FF 02 EF F0" /* 751 mm */
+#define AUTO_REAL_TIME A16_FRAME     /* 751 mm */
 #define AUTO_PROCESSED "FF 02 F2 F3" /* 754 mm */
 
 EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS, DEFAULTS))
@@ -55,9 +55,9 @@ TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 TEST(processed_and_real_time_values_are_two)
 {
     talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
-    talk("01 03 01 01 00 01 D4 36", 200, "01 03 02 02 EF F8 A8"); /* example 2 */
+    talk(A16_ASKED, 200, A16_ANSWER);                             /* example 2 */
     bench.a16.device.processed.distance = NULL;                   /* then they are one */
-    talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 EF F8 A8");
+    talk("01 03 01 00 00 01 85 F6", 600, A16_ANSWER);
 }
 
 TEST(automatic_frames_say_the_value_of_the_data_type)

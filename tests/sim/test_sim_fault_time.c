@@ -249,10 +249,7 @@ TEST(echo_repeats_the_request_of_that_frame)
     FAULT(ECHO, ALWAYS, 2);
     for (uint32_t n = 1; n <= 3; n++) {
         next(A16_MODBUS);
-        if (n == 2)
-            expect(A16_ASKED A16_ANSWER);
-        else
-            expect(A16_ANSWER);
+        expect(n == 2 ? A16_ASKED A16_ANSWER : A16_ANSWER);
         assert_int_equal(HITS(ECHO), n < 2 ? 0 : 1);
     }
     set_faulty(A16_MODBUS, 1); /* also the very first */

@@ -53,37 +53,34 @@ static void set(uint8_t mode)
     add_a16(mode, (a16_config_t){.faults = &faults});
 }
 
-#define REQUEST "01 03 01 01 00 01 D4 36"
-#define ANSWER  "01 03 02 02 EF F8 A8"
-
 EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS))
 static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(a_hook_that_does_nothing_changes_nothing)
 {
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
     assert_int_equal(out.seen, 1);
     assert_false(out.last_automatic);
     assert_int_equal(out.copied, 7);
     faults.outgoing = NULL;
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
     assert_int_equal(out.seen, 1);
 }
 
 TEST(a_bit_can_be_flipped)
 {
     out.flip = 0x10;
-    talk(REQUEST, 200, "01 03 02 12 EF F8 A8");
+    talk(A16_ASKED, 200, "01 03 02 12 EF F8 A8");
 }
 
 TEST(an_answer_can_be_shorter_or_longer)
 {
     out.length = 4;
-    talk(REQUEST, 200, "01 03 02 02");
+    talk(A16_ASKED, 200, "01 03 02 02");
     out.length = 0;
     out.longer = true;
     for (int i = 0; i < 4; i++) {
-        ask(REQUEST, 100);
+        ask(A16_ASKED, 100);
         for (int part = 0; part < 5; part++) wait_ms(100); /* 255 characters: 266 ms */
         assert_int_equal(bench.heard, 255);
         assert_int_equal(bench.bytes[254], 0xEE);
@@ -133,9 +130,9 @@ TEST(a_delay_counts_from_the_end_of_the_frame_before)
     set(FATHOM_SIM_A16_AUTO);
     out.delay_us = 30 * MS;
     const uint32_t start_us = bench.now_us;
-    ask(REQUEST, 180); /* answered between 113 and 128 ms, the frame lasts from 130 to 134 */
+    ask(A16_ASKED, 180); /* answered between 113 and 128 ms, the frame lasts from 130 to 134 */
     ASSERT_SPAN(bench.end_us[4], start_us, 165208, 165209);
-    expect("FF 02 EF F0" ANSWER);
+    expect(A16_FRAME A16_ANSWER);
 }
 
 TEST(a_request_can_be_missed_or_heard_wrong)
@@ -144,13 +141,13 @@ TEST(a_request_can_be_missed_or_heard_wrong)
     faults.incoming = incoming;
     faults.ctx = &in;
     in.drop = true;
-    talk(REQUEST, 200, "");
+    talk(A16_ASKED, 200, "");
     assert_int_equal(bench.a16.device.counters.requests + bench.a16.device.counters.crc_errors, 0);
     in.drop = false;
     in.flip = 0x80;
-    talk(REQUEST, 200, "");
+    talk(A16_ASKED, 200, "");
     COUNTED(.crc_errors = 1);
     in.flip = 0;
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
     assert_int_equal(in.seen, 3);
 }

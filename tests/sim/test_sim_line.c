@@ -8,9 +8,6 @@ static void set(uint8_t mode)
     add_a16(mode, (a16_config_t){.linger_us = 1});
 }
 
-#define REQUEST "01 03 01 01 00 01 D4 36" /* A16 6(4) example 2 */
-#define ANSWER  "01 03 02 02 EF F8 A8"
-
 EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS))
 static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
@@ -20,19 +17,19 @@ TEST(every_flipped_bit_is_met_with_silence)
 {
     for (size_t bit = 0; bit < 64; bit++) {
         uint8_t bytes[8];
-        from_hex(REQUEST, bytes, 8);
+        from_hex(A16_ASKED, bytes, 8);
         bytes[bit / 8] = (uint8_t)(bytes[bit / 8] ^ (1u << (bit % 8)));
         ask_bytes(bytes, 8, 200 * MS);
     }
     expect("");
     COUNTED(.crc_errors = 64);
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
 }
 
 TEST(every_torn_off_request_is_met_with_silence)
 {
     uint8_t bytes[8];
-    from_hex(REQUEST, bytes, 8);
+    from_hex(A16_ASKED, bytes, 8);
     for (size_t length = 1; length < 8; length++) ask_bytes(bytes, length, 200 * MS);
     expect("");
     COUNTED(.crc_errors = 7, .requests = NONE);
@@ -51,13 +48,13 @@ TEST(garbage_of_any_length_is_met_with_silence)
     }
     expect("");
     COUNTED(.crc_errors = 255, .torn = 1); /* 256 bytes are longer than any frame */
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
 }
 
 TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
     ask("01 03 01 01 00 01 00 36 5F", 200); /* 9 bytes */
-    ask("01 03 02 02 EF F8 A8", 200);       /* an answer, 7 bytes */
+    ask(A16_ANSWER, 200);                   /* an answer, 7 bytes */
     talk("01 83 02 C0 F1", 200, "");        /* an exception */
     COUNTED(.unserved = 3, .measurements = NONE);
 }
@@ -75,9 +72,9 @@ TEST(the_crc_of_nothing_is_no_broadcast)
 TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 {
     for (size_t first = 1; first < 8; first++) {
-        ask_in_two(REQUEST, first, 3600); /* t3.5 is 3645.8 us */
-        hear(200, ANSWER);
-        ask_in_two(REQUEST, first, 3700);
+        ask_in_two(A16_ASKED, first, 3600); /* t3.5 is 3645.8 us */
+        hear(200, A16_ANSWER);
+        ask_in_two(A16_ASKED, first, 3700);
         hear(200, "");
     }
     COUNTED(.crc_errors = 14);
@@ -87,10 +84,10 @@ TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 
 TEST(a_device_hears_nothing_while_it_serves_a_request)
 {
-    ask(REQUEST, 20);
-    ask(REQUEST, 20); /* it is measuring */
+    ask(A16_ASKED, 20);
+    ask(A16_ASKED, 20); /* it is measuring */
     COUNTED(.unheard = 8);
-    hear(500, ANSWER); /* one */
+    hear(500, A16_ANSWER); /* one */
     COUNTED(.requests = 1);
 }
 
@@ -99,45 +96,45 @@ TEST(a_frame_that_ends_before_the_answer_does_not_open_its_ears)
     set(FATHOM_SIM_A16_AUTO);
     bench.line.full_duplex = true;
     wait_ms(89); /* the request is known at 101 ms, in the frame of 100..104.2 */
-    ask(REQUEST, 20);
+    ask(A16_ASKED, 20);
     assert_int_equal(bench.heard, 4);
     COUNTED(.requests = 1);
-    ask(REQUEST, 20); /* before the answer */
+    ask(A16_ASKED, 20); /* before the answer */
     COUNTED(.unheard = 8);
-    hear(500, "FF 02 EF F0" ANSWER);
+    hear(500, A16_FRAME A16_ANSWER);
     COUNTED(.requests = 1);
 }
 
 TEST(a_request_that_begins_during_an_answer_is_lost_with_it)
 {
-    ask(REQUEST, 5);
+    ask(A16_ASKED, 5);
     while (bench.heard < 3) wait_us(100);
-    ask(REQUEST, 500);
+    ask(A16_ASKED, 500);
     assert_int_equal(bench.heard, 7);
     COUNTED(.requests = 1);
     assert_true(bench.a16.device.counters.unheard >= 3);
     assert_true(bench.a16.device.counters.unheard < 8); /* the rest was heard, and is no frame */
     assert_int_equal(bench.a16.device.counters.crc_errors + bench.a16.device.counters.torn, 1);
     assert_true(bench.line.counters.collisions >= 4);
-    assert_false(is_hex(bench.bytes, ANSWER)); /* the host hears a mess */
+    assert_false(is_hex(bench.bytes, A16_ANSWER)); /* the host hears a mess */
 }
 
 TEST(an_automatic_frame_deafens_a_device_on_two_wires)
 {
     set(FATHOM_SIM_A16_AUTO); /* full_duplex stays false */
     wait_ms(95);
-    ask(REQUEST, 20); /* the frame begins in the middle of it */
+    ask(A16_ASKED, 20); /* the frame begins in the middle of it */
     COUNTED(.requests = NONE);
     assert_true(bench.a16.device.counters.unheard >= 3);
     COUNTED(.torn = 1, .crc_errors = NONE);
-    ask(REQUEST, 20); /* between two frames it hears */
+    ask(A16_ASKED, 20); /* between two frames it hears */
     COUNTED(.requests = 1);
 }
 
 TEST(the_host_hears_itself_only_with_echo)
 {
     bench.line.echo = true;
-    talk(REQUEST, 200, "01 03 01 01 00 01 D4 36" ANSWER);
+    talk(A16_ASKED, 200, A16_ASKED A16_ANSWER);
 }
 
 /* ---- time ---- */
@@ -145,7 +142,7 @@ TEST(the_host_hears_itself_only_with_echo)
 TEST(sent_turns_true_with_the_last_stop_bit)
 {
     assert_true(fathom_sim_sent(&bench.line, bench.now_us));
-    say(REQUEST);
+    say(A16_ASKED);
     assert_false(fathom_sim_sent(&bench.line, bench.asked_us - 1));
     assert_true(fathom_sim_sent(&bench.line, bench.asked_us));
     assert_int_equal(bench.line.counters.from_host, 8);
@@ -154,7 +151,7 @@ TEST(sent_turns_true_with_the_last_stop_bit)
 TEST(due_leads_from_event_to_event_and_ends)
 {
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
-    say(REQUEST);
+    say(A16_ASKED);
     size_t steps = 0;
     for (;; steps++) {
         const uint32_t due_us = fathom_sim_due_us(&bench.line, bench.now_us);
@@ -165,7 +162,7 @@ TEST(due_leads_from_event_to_event_and_ends)
         assert_true(bench.heard - before <= 1);
         assert_true(steps < 100);
     }
-    expect(ANSWER);
+    expect(A16_ANSWER);
     assert_int_equal(steps, 8 + 1 + 1 + 7); /* bytes, t3.5, the answer, its bytes */
 }
 
@@ -175,7 +172,7 @@ TEST(one_jump_and_many_steps_tell_the_same)
     for (int steps = 0; steps != 2; steps++) {
         bench_begin(&bench_9600, true);
         add_a16(FATHOM_SIM_A16_AUTO, (a16_config_t){.linger_us = 1});
-        say(REQUEST);
+        say(A16_ASKED);
         for (int i = 0; i != 5000 && steps != 0; i++) wait_us(100);
         if (steps != 0) break;
         wait_ms(500);
@@ -200,7 +197,7 @@ TEST(it_works_for_hours_across_every_wrap)
 {
     for (int i = 0; i < 30; i++) { /* 12.5 hours, 10 wraps */
         wait_us(UINT32_C(1500000000));
-        talk(REQUEST, 200, ANSWER);
+        talk(A16_ASKED, 200, A16_ANSWER);
     }
 }
 
@@ -252,12 +249,12 @@ TEST(bytes_that_nobody_reads_are_lost_and_told)
 TEST(at_another_rate_or_parity_nobody_understands)
 {
     at_rate(19200, FATHOM_PARITY_EVEN);
-    ask(REQUEST, 200);
+    ask(A16_ASKED, 200);
     at_rate(9600, FATHOM_PARITY_EVEN);
-    talk(REQUEST, 200, "");
+    talk(A16_ASKED, 200, "");
     COUNTED(.wrong_settings = 16, .torn = 2);
     at_rate(9700, FATHOM_PARITY_NONE);
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
 }
 
 TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
@@ -289,7 +286,7 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     add_hps((hps_config_t){.unit = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
     for (int round = 0; round < 3; round++) {
-        talk(REQUEST, 200, ANSWER);
+        talk(A16_ASKED, 200, A16_ANSWER);
         talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
         at_rate(19200, FATHOM_PARITY_EVEN);
         talk("01 03 00 08 00 04 C5 CB", 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
@@ -304,17 +301,17 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 
 TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 {
-    say(REQUEST);
+    say(A16_ASKED);
     wait_us(3600);
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
-    hear(200, ANSWER);
+    hear(200, A16_ANSWER);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
-    say(REQUEST);
+    say(A16_ASKED);
     while (bench.heard < 3) wait_us(100); /* and once more, in an answer */
     wait_us(300);
     fathom_sim_detach(&bench.line, &bench.a05.device, bench.now_us);
     attach(&bench.a05.device);
-    hear(50, ANSWER);
+    hear(50, A16_ANSWER);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
@@ -328,7 +325,7 @@ TEST(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing)
     wait_ms(50);
     assert_int_equal(bench.heard, 3);
     forget();
-    talk(REQUEST, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
     /* and it comes back as from power-on */
     attach(&bench.a05.device);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");

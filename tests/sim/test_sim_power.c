@@ -17,16 +17,14 @@ static void cycle(uint32_t off_us)
     fathom_sim_power_cycle(&bench.line, bench.device, off_us, bench.now_us);
 }
 
-#define REALTIME "01 03 01 01 00 01 D4 36" /* A16 6(4) example 2 */
-#define ANSWER   "01 03 02 02 EF F8 A8"
-#define OTHER    "05 03 02 00 00 01 84 36"
-#define OTHERS   "05 03 02 00 05 89 87"
+#define OTHER  "05 03 02 00 00 01 84 36"
+#define OTHERS "05 03 02 00 05 89 87"
 
 static void expect_both_work(void)
 {
     forget();
     talk(OTHER, 200, OTHERS);
-    talk(REALTIME, 200, ANSWER);
+    talk(A16_ASKED, 200, A16_ANSWER);
     assert_int_equal(bench.a16.device.carriers, 0);
     assert_int_equal(bench.a05.device.carriers, 0);
 }
@@ -37,7 +35,7 @@ static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 TEST(without_power_it_hears_and_says_nothing)
 {
     cycle(1000 * MS);
-    for (int i = 0; i < 4; i++) talk(REALTIME, 200, ""); /* 833 ms */
+    for (int i = 0; i < 4; i++) talk(A16_ASKED, 200, ""); /* 833 ms */
     COUNTED(.unheard = 32, .requests = NONE);
     wait_ms(168);
     expect_both_work();
@@ -49,14 +47,14 @@ TEST(it_starts_anew_when_power_is_back)
     wait_ms(1000);
     cycle(100 * MS);
     wait_ms(985);
-    ask(REALTIME, 5); /* ends at 993 ms, it is up at 1000 */
+    ask(A16_ASKED, 5); /* ends at 993 ms, it is up at 1000 */
     hear(200, "");
     expect_both_work();
 }
 
 TEST(power_that_is_back_at_once_still_ends_what_it_was_doing)
 {
-    ask(REALTIME, 50); /* 105..120 ms */
+    ask(A16_ASKED, 50); /* 105..120 ms */
     cycle(0);
     hear(200, "");
     COUNTED(.requests = 1, .answered = NONE);
@@ -66,10 +64,10 @@ TEST(power_that_is_back_at_once_still_ends_what_it_was_doing)
 TEST(it_is_cut_off_at_any_moment_of_an_answer)
 {
     uint8_t answer[7];
-    from_hex(ANSWER, answer, sizeof answer);
+    from_hex(A16_ANSWER, answer, sizeof answer);
     for (uint32_t into_us = 0; into_us < 7300; into_us += 130) { /* seven characters */
         set(0);
-        say(REALTIME);
+        say(A16_ASKED);
         while (!bench.a16.device.sender.on_wire) wait_us(10);
         wait_us(into_us);
         const size_t heard = bench.heard;
@@ -86,7 +84,7 @@ TEST(it_hears_nothing_of_a_request_that_it_woke_up_in)
 {
     for (uint32_t into_us = 1050; into_us < 8300; into_us += 130) { /* the second character to the eighth */
         set(0);
-        say(REALTIME);
+        say(A16_ASKED);
         wait_us(into_us);
         cycle(into_us % 3 * 100);
         hear(300, "");
@@ -121,7 +119,7 @@ TEST(half_an_hour_is_the_longest)
 {
     cycle(UINT32_C(1800000000));
     wait_us(UINT32_C(1799900000));
-    talk(REALTIME, 50, "");
+    talk(A16_ASKED, 50, "");
     wait_ms(100);
     expect_both_work();
 }

@@ -11,14 +11,6 @@ static const char left_out[] = FATHOM_LEFT_OUT;
 static jmp_buf failed;
 static int is_running; /* a test, its set-up or what comes after it: there is somewhere to go */
 
-void print_message(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    vprintf(format, arguments);
-    va_end(arguments);
-}
-
 void print_error(const char *format, ...)
 {
     va_list arguments;
@@ -29,36 +21,33 @@ void print_error(const char *format, ...)
 
 static void stop(const char *file, int line)
 {
-    printf("[   LINE   ] --- %s:%d: error: Failure!\n", file, line);
+    printf("\n[   LINE   ] --- %s:%d: error: Failure!\n", file, line);
     if (is_running) longjmp(failed, 1);
 }
 
 void stand_in_true(int holds, const char *what, const char *file, int line)
 {
     if (holds) return;
-    printf("[  ERROR   ] --- %s\n", what);
+    printf("[  ERROR   ] --- %s", what);
     stop(file, line);
 }
 
-/* Numbers in hexadecimal, by halves: not every printf knows 64 bits. */
-static void print_number(uintmax_t number)
+/* In hexadecimal, by halves: not every printf knows 64 bits. */
+static void print_number(const char *before, uintmax_t number)
 {
     const unsigned long high = (unsigned long)((number >> 32) & 0xFFFFFFFF);
     const unsigned long low = (unsigned long)(number & 0xFFFFFFFF);
-    if (high != 0)
-        printf("0x%lx%08lx", high, low);
-    else
-        printf("0x%lx", low);
+    printf("%s0x", before);
+    if (high != 0) printf("%lx", high);
+    printf(high != 0 ? "%08lx" : "%lx", low);
 }
 
 void stand_in_equal(uintmax_t a, uintmax_t b, int wanted, const char *what, const char *file, int line)
 {
     if ((a == b) == wanted) return;
-    printf("[  ERROR   ] --- %s: ", what);
-    print_number(a);
-    printf(", ");
-    print_number(b);
-    printf("\n");
+    printf("[  ERROR   ] --- %s", what);
+    print_number(": ", a);
+    print_number(", ", b);
     stop(file, line);
 }
 
@@ -66,34 +55,28 @@ void stand_in_range(uintmax_t a, uintmax_t least, uintmax_t most, const char *wh
                     int line)
 {
     if (a >= least && a <= most) return;
-    printf("[  ERROR   ] --- %s: ", what);
-    print_number(a);
-    printf(" is not within ");
-    print_number(least);
-    printf(" and ");
-    print_number(most);
-    printf("\n");
+    printf("[  ERROR   ] --- %s", what);
+    print_number(": ", a);
+    print_number(" is not within ", least);
+    print_number(" and ", most);
     stop(file, line);
 }
 
 void stand_in_memory(const void *a, const void *b, size_t size, int wanted, const char *file, int line)
 {
-    const unsigned char *const left = a;
-    const unsigned char *const right = b;
+    const unsigned char *const left = a, *const right = b;
     size_t at = 0;
     while (at != size && left[at] == right[at]) at++;
     if ((at == size) == wanted) return;
-    if (at == size)
-        printf("[  ERROR   ] --- %u bytes are the same\n", (unsigned)size);
-    else
-        printf("[  ERROR   ] --- byte %u: 0x%02x, 0x%02x\n", (unsigned)at, left[at], right[at]);
+    printf("[  ERROR   ] --- the same up to byte %u of %u", (unsigned)at, (unsigned)size);
+    if (at != size) printf(": 0x%02x, 0x%02x", left[at], right[at]);
     stop(file, line);
 }
 
 void stand_in_string(const char *a, const char *b, const char *file, int line)
 {
     if (strcmp(a, b) == 0) return;
-    printf("[  ERROR   ] --- \"%s\" is not \"%s\"\n", a, b);
+    printf("[  ERROR   ] --- \"%s\" is not \"%s\"", a, b);
     stop(file, line);
 }
 
@@ -113,12 +96,8 @@ static int passes(const struct CMUnitTest *test)
         good = is_set_up;
     }
     if (is_set_up && test->teardown_func != NULL) {
-        if (setjmp(failed) == 0) {
-            void *now = state;
-            if (test->teardown_func(&now) != 0) good = 0;
-        } else {
-            good = 0;
-        }
+        void *now = state;
+        if (setjmp(failed) != 0 || test->teardown_func(&now) != 0) good = 0;
     }
     is_running = 0;
     return good;

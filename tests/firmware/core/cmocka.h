@@ -52,7 +52,7 @@ void stand_in_range(uintmax_t a, uintmax_t least, uintmax_t most, const char *wh
 void stand_in_memory(const void *a, const void *b, size_t size, int wanted, const char *file, int line);
 void stand_in_string(const char *a, const char *b, const char *file, int line);
 
-__attribute__((format(printf, 1, 2))) void print_message(const char *format, ...);
 __attribute__((format(printf, 1, 2))) void print_error(const char *format, ...);
+#define print_message print_error
 
 #endif
