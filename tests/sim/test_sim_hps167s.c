@@ -4,25 +4,23 @@
 #define DEFAULTS ((hps_config_t){0})
 #define MEASURE  "01 03 00 08 00 04 C5 CB" /* table 17 */
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_hps(2083, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(single_measurement_is_that_of_command_5)
 {
-    set_hps(2083, DEFAULTS);
     talk(MEASURE, 20, "01 03 08 08 23 DC B2 07 01 00 00 FD 41"); /* table 17 */
     COUNTED(.measurements = 1);
 }
 
 TEST(the_misprinted_crc_of_the_abnormal_response_is_no_request)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 03 00 08 00 04 C5 C8", 50, "");
     COUNTED(.crc_errors = 1, .requests = NONE);
 }
 
 TEST(sensor_details_are_those_of_command_3)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 03 00 03 00 0B F4 0D", 30,
          "01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC"); /* table 13 */
 }
@@ -54,7 +52,6 @@ TEST(a_fault_is_the_abnormal_packet_of_command_5)
 
 TEST(the_first_answer_comes_at_once_and_the_next_a_period_later)
 {
-    set_hps(2083, DEFAULTS);
     ask(MEASURE, 12);
     assert_int_equal(bench.heard, 13);
     const uint32_t first_us = bench.end_us[0];
@@ -83,7 +80,6 @@ static uint32_t answers_in_10_s(void)
 
 TEST(it_measures_54_times_a_second_and_6_times_as_an_option)
 {
-    set_hps(2083, DEFAULTS);
     assert_in_range(answers_in_10_s(), 538, 540);
     set_hps(2083, (hps_config_t){.period_us = 166667});
     assert_in_range(answers_in_10_s(), 59, 60);
@@ -99,14 +95,12 @@ TEST(without_automatic_measuring_each_takes_a_period)
 
 TEST(it_says_nothing_unless_asked)
 {
-    set_hps(2083, DEFAULTS);
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
     hear(600000, "");
 }
 
 TEST(a_command_with_another_length_is_exception_2)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 03 00 08 00 03 84 09", 30, "01 83 02 C0 F1"); /* the datasheet's own example */
     talk("01 03 00 08 00 05 04 0B", 30, "01 83 02 C0 F1");
     talk("01 03 00 08 00 00 C4 08", 30, "01 83 02 C0 F1");
@@ -140,7 +134,6 @@ TEST(every_length_but_the_right_one_is_refused_at_every_address)
 
 TEST(an_unknown_function_is_exception_1_whatever_its_length)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 04 00 08 00 04 70 0B", 30, "01 84 01 82 C0");
     talk("01 11 C0 2C", 30, "01 91 01 8C 50");
     talk("01 83 02 C0 F1", 30, ""); /* but an answer is no request */
@@ -175,7 +168,6 @@ TEST(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_to_a_re
 
 TEST(nothing_else_resets_it)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 03 00 09 00 02 14 09", 30, "01 83 02 C0 F1");
     talk("01 03 00 09 00 00 95 C8", 30, "01 83 02 C0 F1");
     talk("01 03 00 09 01 01 55 98", 30, "01 83 02 C0 F1");
@@ -188,7 +180,6 @@ TEST(nothing_else_resets_it)
 
 TEST(a_broadcast_is_not_answered)
 {
-    set_hps(2083, DEFAULTS);
     talk("00 03 00 08 00 04 C4 1A", 30, "");
     COUNTED(.requests = 1);
     /* and does not make it busy */
@@ -198,7 +189,6 @@ TEST(a_broadcast_is_not_answered)
 
 TEST(another_unit_is_not_meant)
 {
-    set_hps(2083, DEFAULTS);
     talk("02 03 00 08 00 04 C5 F8", 30, "");
     COUNTED(.others = 1);
     set_hps(2083, (hps_config_t){.unit = 2});
@@ -245,7 +235,6 @@ TEST(a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request)
 
 TEST(a_request_behind_another_one_without_a_silence_is_none)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 03 00 04 00 01 C5 CB" /* and at once */ MEASURE, 50, "");
     COUNTED(.crc_errors = 1);
     talk("FF 01 03 00 08 00 04 C5 CB", 50, ""); /* noise before it */

@@ -13,7 +13,8 @@ static void expect_factory(void)
     COUNTED(.writes = NONE, .flash_writes = NONE, .resets = NONE);
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_hps(2083, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(a_value_that_a_command_does_not_have_is_exception_3)
 {
@@ -47,7 +48,6 @@ TEST(which_exception_a_wrong_value_is_is_an_option)
 
 TEST(a_reconnect_time_is_a_multiple_of_18_in_two_registers)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 10 00 20 00 02 04 00 00 01 69 30 09", 30, "01 90 03 0C 01"); /* 361 */
     talk("01 10 00 20 00 02 04 00 00 01 71 30 03", 30, "01 90 03 0C 01"); /* 369, of 9 */
     talk("01 10 00 20 00 02 04 FF FF FF FF F0 23", 30,
@@ -92,7 +92,6 @@ TEST(function_6_has_the_addresses_of_7_to_14_and_no_other)
 
 TEST(function_16_has_the_address_of_15_and_no_other)
 {
-    set_hps(2083, DEFAULTS);
     for (uint8_t address = 0; address < 0x40; address++) {
         uint8_t bytes[13] = {0x01, 0x10, 0x00, address, 0x00, 0x01, 0x02, 0x00, 0x00};
         if (address == 0x20) continue;
@@ -106,7 +105,6 @@ TEST(function_16_has_the_address_of_15_and_no_other)
 
 TEST(what_is_written_is_not_to_be_read)
 {
-    set_hps(2083, DEFAULTS);
     for (uint8_t address = 0x0A; address <= 0x20; address++) {
         uint8_t bytes[8] = {0x01, 0x03, 0x00, address, 0x00, 0x01};
         ask_sealed(bytes, 6, 50);
@@ -119,7 +117,6 @@ TEST(what_is_written_is_not_to_be_read)
 TEST(the_longest_write_of_many_is_refused_and_does_no_harm)
 {
     uint8_t bytes[255] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x7B, 246}; /* 123 registers */
-    set_hps(2083, DEFAULTS);
     ask_sealed(bytes, 253, 50);
     expect("01 90 02 CD C1");
     expect_factory();
@@ -128,7 +125,6 @@ TEST(the_longest_write_of_many_is_refused_and_does_no_harm)
 TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
 {
     fathom_sim_hps167s_t other;
-    set_hps(2083, DEFAULTS);
     fathom_sim_hps167s_init(&other, &(hps_config_t){.unit = 2, .seed = 9});
     attach(&other.device);
     ask("00 06 00 0A 00 07 E9 DB", 30);
@@ -153,7 +149,6 @@ TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
 
 TEST(flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there)
 {
-    set_hps(2083, DEFAULTS);
     for (uint32_t i = 1; i <= 3; i++) {
         ask("01 06 00 0A 00 05 69 CB", 30);
         assert_int_equal(bench.hps.device.counters.flash_writes, i);
@@ -166,7 +161,6 @@ TEST(flash_wears_with_every_write_that_is_obeyed_also_of_what_is_there)
 
 TEST(the_reset_of_the_interface_brings_back_all_but_12_and_14)
 {
-    set_hps(2083, DEFAULTS);
     ask("01 06 00 0A 00 07 E8 0A", 30);
     ask("01 06 00 12 00 00 29 CF", 30);
     ask("01 06 00 13 00 00 78 0F", 30);

@@ -23,40 +23,36 @@ static uint32_t distance(void)
     return bench.bytes[3] * 256u + bench.bytes[4];
 }
 
-static const suite_t suite = {BENCH_ROUNDS};
+EACH_BEGINS(set_hps(2083, DEFAULTS))
+static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 /* ---- #7 ---- */
 
-TEST(warm_up_of_tables_21_and_22_acts_from_the_next_power_on)
+/* After the next power-on it measures no sooner. */
+static void acts_from_the_next_power_on(const char *write, uint32_t warm_up_s)
 {
-    set_hps(2083, DEFAULTS);
-    echoed("01 06 00 0A 00 05 69 CB", 30);
-    assert_int_equal(configuration()[WARM_UP], 5);
+    echoed(write, 30);
+    assert_int_equal(configuration()[WARM_UP], warm_up_s);
     assert_int_equal(distance(), 2083);
     cycle_power(100, 150); /* 50 ms ago it came */
-    assert_int_equal(configuration()[WARM_UP], 5);
-    wait_ms(4850);
+    assert_int_equal(configuration()[WARM_UP], warm_up_s);
+    wait_ms(warm_up_s * 1000 - 150);
     talk("01 03 00 08 00 04 C5 CB", 10, "");
     wait_ms(100);
     assert_int_equal(distance(), 2083);
 }
 
-TEST(the_longest_warm_up_is_255_s)
+TEST(warm_up_of_tables_21_and_22_acts_from_the_next_power_on)
 {
-    set_hps(2083, DEFAULTS);
-    echoed("01 06 00 0A 00 FF E9 88", 30);
-    cycle_power(100, 150);
-    wait_ms(254900);
-    talk("01 03 00 08 00 04 C5 CB", 10, "");
-    wait_ms(100);
-    assert_int_equal(distance(), 2083);
+    acts_from_the_next_power_on("01 06 00 0A 00 05 69 CB", 5);
 }
+
+TEST(the_longest_warm_up_is_255_s) { acts_from_the_next_power_on("01 06 00 0A 00 FF E9 88", 255); }
 
 /* ---- #8 ---- */
 
 TEST(a_new_address_counts_at_once_and_is_acknowledged_from_the_old_one)
 {
-    set_hps(2083, DEFAULTS);
     echoed("01 06 00 10 00 05 48 0C", 30);
     talk("01 03 00 04 00 01 C5 CB", 30, "");
     talk("05 03 00 04 00 01 C4 4F", 30, "05 03 02 00 4D 89 B1");
@@ -76,7 +72,6 @@ TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 
 TEST(rate_of_tables_25_and_26_is_echoed)
 {
-    set_hps(2083, DEFAULTS);
     echoed("01 06 00 11 00 01 18 0F", 30);
     assert_int_equal(configuration()[BAUD], 1);
 }
@@ -130,7 +125,6 @@ TEST(every_other_code_is_19200)
 
 TEST(a_lost_acknowledgement_leaves_it_at_the_new_rate)
 {
-    set_hps(2083, DEFAULTS);
     set_faults(1);
     FAULT(SILENCE, ALWAYS, 2);
     assert_int_equal(configuration()[BAUD], 1); /* frame 1 */
@@ -155,7 +149,6 @@ static uint32_t measurement_us(void)
 
 TEST(measuring_by_itself_ends_with_the_power_on_after_table_27)
 {
-    set_hps(2083, DEFAULTS);
     echoed("01 06 00 12 00 00 29 CF", 50);
     assert_int_equal(configuration()[AUTO_OUTPUT], 0x00);
     assert_in_range(measurement_us(), 2186, 2500); /* one was ready */
@@ -246,7 +239,6 @@ TEST(an_offset_moves_distances_and_nothing_else)
 
 TEST(a_filter_is_kept)
 {
-    set_hps(2083, DEFAULTS);
     assert_int_equal(bench.hps.sensor.filter, 0);
     echoed("01 06 00 16 FF 9C 29 97", 30);
     assert_int_equal(bench.hps.sensor.filter, -100);
@@ -282,7 +274,6 @@ TEST(settings_are_loaded_from_the_user_or_from_the_factory)
 
 TEST(reconnect_time_is_acknowledged_as_in_table_38_with_its_high_word_first)
 {
-    set_hps(2083, DEFAULTS);
     talk("01 10 00 20 00 02 04 00 00 01 68 F1 C9", 30, "01 10 00 20 00 02 40 02"); /* 360 ms */
     assert_true(is_hex(configuration() + RECONNECT, "00 00 01 68"));
     talk("01 10 00 20 00 02 04 00 01 00 02 21 B6", 30, "01 10 00 20 00 02 40 02"); /* 65538 = 3641 * 18 */
