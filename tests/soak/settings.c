@@ -70,8 +70,7 @@ fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t
 {
     const bool is_a16 = soak_facts[setting].model == FATHOM_A16;
     const uint8_t probes = setting == SOAK_A05_DYP_ONE ? 1 << 2 : 0;
-    const fathom_a16_value_t value =
-        setting == SOAK_A16_REAL_TIME ? FATHOM_A16_REAL_TIME : FATHOM_A16_PROCESSED;
+    const uint8_t value = setting == SOAK_A16_REAL_TIME ? FATHOM_A16_REAL_TIME : FATHOM_A16_PROCESSED;
     /* the bounds of recovery are of streams that are stale after the time that the setting tells */
     const uint32_t stale_us = options->stale_us != 0 ? options->stale_us : soak_facts[setting].timeout_us;
     memset(driver, 0, sizeof *driver);
