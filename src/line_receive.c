@@ -23,9 +23,11 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
         line->unasked = 0;
         line->known |= LATE;
     } else {
-        const uint8_t unasked = (uint8_t)(line->unasked + length);
-        line->unasked = unasked < length ? UINT8_MAX : unasked;
-        if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
+        if (asked(line) == NULL) { /* else they may be what is left of its answer */
+            const uint8_t unasked = (uint8_t)(line->unasked + length);
+            line->unasked = unasked < length ? UINT8_MAX : unasked;
+            if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
+        }
         if (listener == NULL)
             fathom_line_count(line, FATHOM_LINE_DROPPED_BYTES, length);
         else

@@ -98,6 +98,19 @@ TEST(a_glitch_behind_each_answer_delays_nothing)
     expect_written_after(20000, 4);
 }
 
+/* It owes nothing that comes later in the silence: the next request leaves as on any line. */
+TEST(what_is_left_of_a_damaged_answer_is_nobodys_company)
+{
+    ask_1(0);
+    run(REQUEST_US);
+    deliver_hex("01 03 02 00 6F 00 00"); /* the CRC is F8 68 */
+    run(GAP_US + 200);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
+    ask(&bench.other, 2, &bench.other_value, 0);
+    run(200);
+    expect_written(2);
+}
+
 TEST(bytes_that_belong_to_no_exchange_are_counted_without_coming_round)
 {
     for (unsigned i = 0; i != 20; i++) send_unasked(13); /* 260 of them */
