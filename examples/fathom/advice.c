@@ -250,7 +250,7 @@ static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
     else
         (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw, answer->window.min_mm,
                       answer->window.max_mm);
-    if (has_probes && failure->is_whole && failure->reader->stream != NULL)
+    if (failure->is_whole)
         (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
     if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
     if (has_probes) (void)fputs("; --probes leaves out a probe that is not fitted", to);

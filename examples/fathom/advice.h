@@ -20,7 +20,7 @@ typedef struct {
     uint8_t address;
     bool others_answer; /* on this line */
     bool waits;         /* for a lost port, which is opened again */
-    bool is_whole;      /* nothing of the answer was taken */
+    bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
 } failure_t;
 
 /* What happened and what to try, without a line feed: the cause as far as the evidence tells it. */

@@ -106,6 +106,13 @@ static bool has_more_to_do(const session_t *session, const station_t *station)
     return false;
 }
 
+/* Does more than one probe of this sensor speak? */
+static bool has_probes(const session_t *session, const station_t *station)
+{
+    const uint8_t probes = session->options.probes;
+    return station->sensor->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
+}
+
 static void report_failure(session_t *session, station_t *station, fathom_status_t status, bool is_first)
 {
     failure_t failure = {
@@ -119,7 +126,7 @@ static void report_failure(session_t *session, station_t *station, fathom_status
         .address = station->address,
         .others_answer = others_answer(session, station),
         .waits = session->options.reconnect && has_more_to_do(session, station),
-        .is_whole = is_first && !reader_has_more(&station->reader),
+        .is_whole = is_first && !reader_has_more(&station->reader) && has_probes(session, station),
     };
     tally_failure(&station->tally, status, &station->reader);
     judge(session, station, &failure.evidence);

@@ -69,7 +69,7 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
     fathom_status_t *const told = &watch->told[station - watch->session.options.stations];
     char text[MESSAGE] = "";
     lanes_pass(&watch->lanes, session_time_us(&watch->session));
-    lanes_failure(&watch->lanes, station, failure->status);
+    lanes_failure(&watch->lanes, failure, station);
     get_advice(text, failure, station);
     say(watch, text, MESSAGE_US);
     if (!watch->draws && *told != failure->status) (void)fprintf(stderr, "fathom: %s\n", text);

@@ -105,10 +105,12 @@ void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample
             take(lanes, &lanes->lane[i], mark, sample->distance_mm);
 }
 
-void lanes_failure(lanes_t *lanes, const station_t *station, fathom_status_t status)
+void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *station)
 {
+    const fathom_status_t status = failure->status;
     /* 0: it is the failure of all */
-    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
+    const bool is_of_one = status == FATHOM_ERR_MALFORMED && !failure->is_whole;
+    const uint8_t probe = is_of_one ? reader_refused_probe(&station->reader) : 0;
     mark_t mark = MARK_BAD_ANSWER;
     if (status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_ECHO) mark = MARK_NO_ANSWER;
     if (status == FATHOM_ERR_STALE) mark = MARK_STALE;

@@ -68,7 +68,7 @@ void lanes_begin(lanes_t *lanes, const session_options_t *options);
 void lanes_pass(lanes_t *lanes, uint64_t now_us);
 
 void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample_t *sample);
-void lanes_failure(lanes_t *lanes, const station_t *station, fathom_status_t status);
+void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *station);
 
 /* All of them: the port is lost. */
 void lanes_port_lost(lanes_t *lanes);

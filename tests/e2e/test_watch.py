@@ -129,6 +129,29 @@ class Picture(Case):
         it.wait(lambda screen: re.search(r'(?m)^a16 +stale ', screen.text()))
         it.wait(lambda screen: re.search(f'{FULL} {{2,}}s', foot_of(screen, 'a16')))
 
+    def test_a_value_without_a_meaning_is_a_mark_that_stands_in_the_legend_from_then_on(self):
+        device = self.device()
+        it = self.watch(f'a16:1 --port {device} --interval 300')
+        device.asked(e2e.ASK_A16, e2e.registers(1, 1000))
+        it.wait(lambda screen: '1.000 m' in screen.text())
+        self.assertNotIn('? unknown', it.screen.text())
+        device.asked(e2e.ASK_A16, e2e.registers(1, 0))
+        it.wait(lambda screen: '~ interference ? unknown s stale' in screen.text() and
+                re.search(r'(?m)^a16:1 +unknown ', screen.text()) and '?' in foot_of(screen, 'a16:1'))
+
+    def test_a_frame_in_which_a_probe_turns_odd_is_lost_for_all(self):
+        device = self.device()
+        it = self.watch(f'a05 --port {device}')
+        it.wait(lambda screen: 'waiting' in screen.text())
+        for _ in range(4):
+            device.write(e2e.frame(1000, 2000, 3000, 4000))
+            it.changes()
+        it.wait(lambda screen: '3.000 m' in screen.text())
+        device.write(e2e.frame(1000, 2000, 40000, 4000))
+        for probe in range(1, 5):
+            it.wait(lambda screen, which=probe: re.search(rf'(?m)^a05 probe {which} +bad answer .* lost 1 of \d$',
+                                                          screen.text()))
+
     def test_a_refused_value_is_its_probes_alone(self):
         device = self.device()
         it = self.watch(f'a05:1 --port {device}')
@@ -267,6 +290,12 @@ class Lines(Case):
                 'a05:2 probe 4 4.500 m', 'hps167s:7 2.500 m')
         self.assertRegex(lines[-1], r'^ +\d\.\d s' + ''.join(rf'  {re.escape(one)} \d\.\d/s'
                                                              for one in told) + '$')
+
+    def test_probes_that_are_left_out_have_no_lane_and_values_have_their_meaning(self):
+        sim = self.sim('a05 --distance 0,1000,7000,no-target')
+        done = self.ends(f'watch a05 --port {sim} --duration 3 --probes 1,2,4 --means fffd=too-near', 0)
+        self.assertRegex(done.out.splitlines()[-1], r' s  a05 probe 1 unknown \d\.\d/s  a05 probe 2 1\.000 m '
+                         r'\d\.\d/s  a05 probe 4 too near \d\.\d/s$')
 
     def test_losses_are_in_the_lines_and_advice_is_given_once(self):
         done = self.ends(f'watch a16:1 --port {self.device()} --timeout 200 --duration 3', 1)
