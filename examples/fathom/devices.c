@@ -89,6 +89,8 @@ void device_hps167s(device_t *device, const device_settings_t *settings)
         .no_auto_output = traits[DEVICE_NO_OUTPUT] != 0,
         .baud_at_power_on = traits[DEVICE_BAUD_LATER] != 0,
         .offset_adds = traits[DEVICE_OFFSET_ADDS] != 0,
+        .reconnect_ms = traits[DEVICE_RECONNECT],
+        .no_baud_code = traits[DEVICE_NO_BAUD_CODE] != 0,
         .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
         .unasked_us = traits[DEVICE_UNASKED],
         .seed = settings->seed,

@@ -20,6 +20,8 @@ typedef enum {
     DEVICE_NO_TERMINATION,
     DEVICE_BAUD_LATER,
     DEVICE_OFFSET_ADDS,
+    DEVICE_RECONNECT, /* milliseconds */
+    DEVICE_NO_BAUD_CODE,
     DEVICE_COUNT_EXCEPTION,
     DEVICE_TRAITS
 } device_trait_t;

@@ -18,7 +18,7 @@ static const char *reason(fathom_status_t status)
 {
     if (status == FATHOM_ERR_NO_ANSWER) return "no answer; not every variant has it";
     return status == FATHOM_ERR_EXCEPTION ? "refused; not every variant has it"
-                                          : "a value that it cannot have";
+                                          : "its answers cannot be that";
 }
 
 static void print_text(const setting_t *setting, fathom_status_t status, const char *text)
@@ -59,7 +59,7 @@ static bool can_be_told(const setting_t *setting)
 }
 
 /* False: nothing further can be told, for a reason that was said. */
-static bool tell_one(const setting_t *setting, bool *is_known)
+static bool tell_one(const setting_t *setting, bool *is_known, unsigned *told)
 {
     char text[SETTING_TEXT];
     const fathom_status_t status = talk_get(&talk, setting, text);
@@ -72,6 +72,7 @@ static bool tell_one(const setting_t *setting, bool *is_known)
     }
     if (!*is_known) begin();
     *is_known = true;
+    *told += status == FATHOM_READY;
     if (talk.is_json)
         print_json(setting, status, text);
     else
@@ -84,14 +85,21 @@ static int tell(const setting_t *settings, size_t count)
 {
     bool is_known = false;
     bool is_good = true;
-    for (size_t i = 0; i != count && settings[i].name != NULL && is_good; i++)
-        if (can_be_told(&settings[i])) is_good = tell_one(&settings[i], &is_known);
+    unsigned told = 0;
+    unsigned all = 0;
+    for (size_t i = 0; i != count && settings[i].name != NULL; i++) {
+        if (!can_be_told(&settings[i])) continue;
+        if (is_good) is_good = tell_one(&settings[i], &is_known, &told);
+        all++;
+    }
     if (is_known && talk.is_json) (void)puts("}");
     if (fflush(stdout) != 0 || ferror(stdout)) {
         (void)fputs("fathom: the output cannot be written\n", stderr);
         is_good = false;
     }
-    return is_good ? STATUS_OK : STATUS_FAILED;
+    if (is_known && told != all)
+        (void)fprintf(stderr, "fathom: %u of %u values could not be read\n", all - told, all);
+    return is_good && told == all ? STATUS_OK : STATUS_FAILED;
 }
 
 static void help(FILE *to, bool is_info)
@@ -113,7 +121,7 @@ static void help(FILE *to, bool is_info)
     (void)fputs(
         "\nThe first question ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
         "until\npower-off, for an A16 `fathom set a16 automatic-output on` brings it back.\n"
-        "Exit status: 0 when it was told, 1 when the device or the port failed, 2 for wrong usage.\n\n"
+        "Exit status: 0 when all of it was told, 1 when some of it was not, 2 for wrong usage.\n\n"
         "examples:\n",
         to);
     (void)fputs(is_info ? "  fathom info hps167s:7 --port /dev/ttyUSB0\n"

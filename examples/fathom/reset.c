@@ -13,11 +13,7 @@ static const char command[] = "reset";
 enum { RESTORE = TALK_OPTIONS, LOAD, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [TALK_MODE] = {"mode", required_argument, NULL, 256},
-    [TALK_ADDRESS] = {"address", required_argument, NULL, 256},
-    [TALK_FORMAT] = {"format", required_argument, NULL, 256},
-    [TALK_HELP] = {"help", no_argument, NULL, 256},
+    TALK_OPTION_ROWS,
     [RESTORE] = {"yes-restore-factory-settings", no_argument, NULL, 256},
     [LOAD] = {"yes-load-factory-sensor-settings", no_argument, NULL, 256},
 };

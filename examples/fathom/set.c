@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <inttypes.h>
 #include <string.h>
 
 #include "command.h"
@@ -8,6 +9,15 @@
 
 static const char command[] = "set";
 static talk_t talk;
+
+enum { BLIND = TALK_OPTIONS, ALL_UNITS, YES, OPTIONS };
+
+static const struct option table[OPTIONS + 1] = {
+    TALK_OPTION_ROWS,
+    [BLIND] = {"blind", no_argument, NULL, 256},
+    [ALL_UNITS] = {"all-units", no_argument, NULL, 256},
+    [YES] = {"yes", no_argument, NULL, 256},
+};
 
 static void print_value(const setting_t *setting, const char *text)
 {
@@ -33,133 +43,212 @@ static bool is_later(const setting_t *setting)
     return setting->is_later != NULL && setting->is_later(&talk.station->reader);
 }
 
-static void print_done(const setting_t *setting, const char *was, const char *is)
+/* What has become of a setting, and whether it holds now is known. */
+typedef enum {
+    UNCHANGED,
+    DONE, /* confirmed, or acknowledged where it cannot be read */
+    UNCONFIRMED,
+    DIFFERS,
+    REFUSED,
+    NOT_WRITTEN,
+    SENT /* to all units */
+} outcome_t;
+
+static const char *const outcomes[] = {"unchanged, it had that value",
+                                       "written",
+                                       "written, not confirmed",
+                                       "written, and it reads otherwise",
+                                       "refused",
+                                       "nothing was written",
+                                       "sent, not confirmed"};
+
+typedef struct {
+    const setting_t *setting;
+    int32_t value;
+    const char *wanted;
+    const char *was; /* "": it was not read */
+    bool is_blind;
+    bool is_for_all;
+} change_t;
+
+static bool is_read_back(const change_t *change)
+{
+    const setting_t *const setting = change->setting;
+    return !change->is_blind && (setting->get != NULL || setting->moves || setting->confirmed != NULL);
+}
+
+static outcome_t outcome_of(const change_t *change, fathom_status_t status)
+{
+    const fathom_modbus_unit_t *const unit = talk.station->reader.unit;
+    const bool has_ended = unit->setting == 0;
+    if (!unit->is_written) return status == FATHOM_READY ? UNCHANGED : NOT_WRITTEN;
+    if (status == FATHOM_READY) return DONE;
+    if (change->is_for_all) return unit->outcome == FATHOM_READY ? SENT : UNCONFIRMED;
+    if (status == FATHOM_ERR_EXCEPTION) return REFUSED;
+    const bool is_unknown =
+        !has_ended || status == FATHOM_ERR_UNCONFIRMED || change->setting->confirmed != NULL;
+    return is_unknown || !is_read_back(change) ? UNCONFIRMED : DIFFERS;
+}
+
+static void print_json(const change_t *change, outcome_t outcome)
 {
     const station_t *const station = talk.station;
-    const bool was_so = was[0] != '\0' && strcmp(was, is) == 0;
-    if (talk.is_json) {
-        (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->sensor->name,
-                     setting->name);
-        talk_print_json(stdout, is);
-        (void)fputs(", \"was\": ", stdout);
-        if (was[0] != '\0')
-            talk_print_json(stdout, was);
-        else
-            (void)fputs("null", stdout);
-        (void)printf(", \"written\": %s, \"confirmed\": %s, \"address\": %u}\n", was_so ? "false" : "true",
-                     setting->get != NULL || setting->moves || setting->confirmed != NULL ? "true" : "false",
-                     station->reader.unit->address);
-        return;
-    }
-    (void)printf("%s: %s is ", station->name, setting->name);
-    print_value(setting, is);
+    const bool is_written = outcome != UNCHANGED && outcome != NOT_WRITTEN;
+    (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->sensor->name,
+                 change->setting->name);
+    talk_print_json(stdout, change->wanted);
+    (void)fputs(", \"was\": ", stdout);
+    if (change->was[0] != '\0')
+        talk_print_json(stdout, change->was);
+    else
+        (void)fputs("null", stdout);
+    (void)printf(", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
+                 is_written ? "true" : "false",
+                 outcome == UNCHANGED || (outcome == DONE && is_read_back(change)) ? "true" : "false",
+                 outcomes[outcome], change->is_for_all ? 0 : station->reader.unit->address);
+}
+
+static void print_done(const change_t *change, outcome_t outcome)
+{
+    const setting_t *const setting = change->setting;
+    (void)printf("%s: %s is ", talk.station->name, setting->name);
+    print_value(setting, change->wanted);
     if (is_later(setting))
-        (void)printf(" from the next power-on (%s until then)\n", was);
-    else if (was_so)
-        (void)puts(" already; nothing was written");
+        (void)printf(" from the next power-on (%s until then)\n", change->was);
+    else if (outcome == UNCHANGED)
+        (void)printf(": %s\n", outcomes[UNCHANGED]);
     else if (setting->get != NULL)
-        (void)printf(" (was %s)\n", was);
+        (void)printf(" (was %s)\n", change->was);
     else if (setting->moves || setting->confirmed != NULL)
         (void)printf("%s%s\n", setting->confirmed != NULL ? ": " : "",
                      setting->confirmed != NULL ? setting->confirmed : "");
     else
         (void)puts(" as far as the device has acknowledged it; it cannot be read back");
-    if (!was_so) print_next(setting);
+    if (outcome != UNCHANGED) print_next(setting);
 }
 
 /* The two places at which the device may be, or what else is not known. */
-static void print_unknown(const setting_t *setting, const char *was, const char *wanted)
+static void print_unknown(FILE *to, const change_t *change)
 {
     const station_t *const station = talk.station;
+    const setting_t *const setting = change->setting;
+    const bool is_acknowledged =
+        station->reader.unit->setting == 0 && station->reader.unit->outcome == FATHOM_READY;
+    (void)fputs(is_acknowledged ? "it was acknowledged; " : "no acknowledgement came; ", to);
     if (setting->is_baud) {
-        (void)fprintf(
-            stderr,
-            "it was sent, and then the device could not be read: it is at %s or at %s baud, perhaps "
-            "from the next power-on; try fathom scan --port %s --baud %s,%s",
-            was, wanted, talk.options.port, was, wanted);
+        const uint32_t was = station->line.baud;
+        (void)fprintf(to,
+                      "it is at %" PRIu32 " or at %s baud, perhaps from the next power-on; try fathom scan "
+                      "--port %s --baud %" PRIu32 ",%s",
+                      was, change->wanted, talk.options.port, was, change->wanted);
     } else if (setting->moves) {
         char line[SETTINGS_TEXT];
-        (void)fprintf(
-            stderr,
-            "it was sent, and then the device could not be read: it is at address %u or at address %s, "
-            "%s; try fathom read with either",
-            station->address, wanted, talk_line_text(&talk, line));
+        (void)fprintf(to, "it is at address %u or at address %s, %s; try fathom read with either",
+                      station->address, change->wanted, talk_line_text(&talk, line));
     } else if (setting->unconfirmed != NULL) {
-        (void)fputs(setting->unconfirmed, stderr);
+        (void)fputs(setting->unconfirmed, to);
     } else {
-        (void)fputs("it was sent, and could not be read back: it may hold or not; ask for it with fathom get",
-                    stderr);
+        (void)fprintf(to, "it may hold or not%s",
+                      setting->get != NULL && !change->is_blind ? "; ask for it with fathom get" : "");
     }
 }
 
-static void explain(fathom_status_t status)
+static void print_not_written(const change_t *change, fathom_status_t status)
 {
-    talk_explain(&talk, status);
-    (void)fputs("; nothing was changed", stderr);
-}
-
-static int fail(const setting_t *setting, fathom_status_t status, const char *was, const char *wanted)
-{
-    (void)fprintf(stderr, "fathom: %s: %s %s: ", talk.station->name, setting->name, wanted);
     switch (status) {
-    case FATHOM_ERR_UNCONFIRMED:
-        print_unknown(setting, was, wanted);
-        break;
     case FATHOM_ERR_ARGUMENT: /* the value was in range: the driver does not know the line's settings */
     case FATHOM_ERR_UNSUPPORTED:
-        (void)fputs("not over this port, whose line settings nobody here can change; nothing was changed",
-                    stderr);
+        (void)fputs("the settings of this port's line cannot be changed", stderr);
         break;
     case FATHOM_ERR_IN_USE:
-        (void)fprintf(
-            stderr,
-            "a device answers at address %s already, so nothing was changed; two at one address would "
-            "answer at once",
-            wanted);
+        (void)fprintf(stderr,
+                      "a device answers at address %s already; two at one address would answer at once",
+                      change->wanted);
         break;
-    case FATHOM_ERR_NO_ANSWER:
-        if (was[0] == '\0') {
-            explain(status);
-            break;
-        }
-        (void)fputs(
-            "the device answers questions, but nothing came to this, and it has the value that it had; not "
-            "every variant has it",
-            stderr);
-        break;
-    case FATHOM_ERR_MALFORMED:
-        if (talk.station->reader.unit->request.exchange.status == FATHOM_READY) {
-            (void)fputs(
-                "the device has acknowledged it and tells another value afterwards; perhaps this variant "
-                "does not have it",
-                stderr);
-            break;
-        } /* fall through */
     default:
-        explain(status);
+        talk_explain(&talk, status);
+        break;
+    }
+}
+
+static void print_failed(const change_t *change, outcome_t outcome, fathom_status_t status)
+{
+    const fathom_modbus_unit_t *const unit = talk.station->reader.unit;
+    (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", talk.station->name, change->setting->name,
+                  change->wanted, outcomes[outcome]);
+    switch (outcome) {
+    case UNCONFIRMED:
+        print_unknown(stderr, change);
+        break;
+    case DIFFERS:
+        (void)fprintf(stderr, "%s, and the device tells another value; perhaps this variant does not have it",
+                      unit->outcome == FATHOM_READY ? "it was acknowledged" : "no acknowledgement came");
+        break;
+    case REFUSED:
+        talk_explain(&talk, status);
+        break;
+    default:
+        print_not_written(change, status);
         break;
     }
     (void)fputs("\n", stderr);
-    return STATUS_FAILED;
 }
 
-static int set(const setting_t *setting, int32_t value)
+/* What was asked for is done, and more than that cannot be known. */
+static bool is_done_blind(const change_t *change, outcome_t outcome)
+{
+    const int8_t answer = talk.station->reader.unit->outcome;
+    /* what came back is its acknowledgement, or may be: nothing was read that could tell an echo from one */
+    const bool is_answered = answer == FATHOM_READY || answer == FATHOM_ERR_ECHO;
+    return outcome == SENT || (change->is_blind && outcome == UNCONFIRMED && is_answered);
+}
+
+static int tell(const change_t *change, fathom_status_t status)
+{
+    const outcome_t outcome = outcome_of(change, status);
+    const bool is_blind = is_done_blind(change, outcome);
+    const bool is_done = outcome == UNCHANGED || outcome == DONE || is_blind;
+    if (talk.is_json) print_json(change, outcome);
+    if (!is_done) {
+        (void)fflush(stdout);
+        print_failed(change, outcome, status);
+    } else if (is_blind && !talk.is_json) {
+        (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : talk.station->name,
+                     change->setting->name, change->wanted, outcomes[outcome]);
+    } else if (!talk.is_json) {
+        print_done(change, outcome);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        (void)fprintf(stderr, "fathom: the output cannot be written; the setting: %s\n", outcomes[outcome]);
+        return STATUS_FAILED;
+    }
+    return is_done ? STATUS_OK : STATUS_FAILED;
+}
+
+static fathom_status_t call_all(reader_t *reader, void *ctx)
+{
+    const change_t *const change = ctx;
+    return change->setting->set_all(reader, change->value);
+}
+
+static int set(change_t *change)
 {
     char was[SETTING_TEXT] = "";
     char wanted[SETTING_TEXT];
-    setting_print_value(setting, value, wanted);
-    if (setting->get != NULL) {
-        const fathom_status_t status = talk_get(&talk, setting, was);
-        if (status != FATHOM_READY) return fail(setting, status, "", wanted);
+    setting_print_value(change->setting, change->value, wanted);
+    change->wanted = wanted;
+    change->was = was;
+    if (change->is_for_all) return tell(change, talk_call(&talk, call_all, change));
+    if (change->is_blind) {
+        (void)fathom_modbus_next_is_blind(talk.station->reader.unit);
+    } else if (change->setting->get != NULL) {
+        const fathom_status_t status = talk_get(&talk, change->setting, was);
+        if (status != FATHOM_READY) {
+            was[0] = '\0';
+            return tell(change, status);
+        }
     }
-    const fathom_status_t status = talk_set(&talk, setting, value);
-    if (status != FATHOM_READY) return fail(setting, status, was, wanted);
-    print_done(setting, was, wanted);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        (void)fputs("fathom: the output cannot be written; the setting holds\n", stderr);
-        return STATUS_FAILED;
-    }
-    return STATUS_OK;
+    return tell(change, talk_set(&talk, change->setting, change->value));
 }
 
 static void help(FILE *to)
@@ -172,15 +261,23 @@ static void help(FILE *to)
                 to);
     talk_options_help(to);
     (void)fputs(
-        "\nA new address is asked first whether somebody is there. What the device does not tell is written "
+        "  --blind           write it once without reading anything, for a device whose settings cannot be "
+        "made out;\n"
+        "                    not for an address of a16 and a05 nor a distance-offset\n"
+        "  --all-units       tell every hps167s on the line at once, whatever its address; for termination "
+        "and\n"
+        "                    measure-after-power-on, and with --yes only\n"
+        "\nA new address is asked first whether a device is there. What the device does not tell is written "
         "without a look.\n"
-        "Exit status: 0 when it holds (or was acknowledged, where it cannot be read), 1 when not or when "
-        "that "
-        "is not\nknown, 2 for wrong usage.\n\n"
+        "What became of it is said: unchanged, it had that value; nothing was written; written, not "
+        "confirmed; written,\nand it reads otherwise. Of --all-units: sent, not confirmed.\n"
+        "Exit status: 0 when it holds (or was acknowledged, where it is not read), or was sent to all units; "
+        "1 when not\nor when that is not known, 2 for wrong usage.\n\n"
         "examples:\n"
         "  fathom set hps167s --port /dev/ttyUSB0 address 7\n"
         "  fathom set hps167s:7 --port /dev/ttyUSB0 termination off\n"
         "  fathom set hps167s --port /dev/ttyUSB0 baud 115200\n"
+        "  fathom set hps167s --port /dev/ttyUSB0 termination off --all-units --yes\n"
         "  fathom set a16 --port /dev/ttyUSB0 switch-threshold 2000\n"
         "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -15\n",
         to);
@@ -202,16 +299,41 @@ static char **mark_negative(int *argc, char **argv, char *copy[MAX_WORDS])
     return copy;
 }
 
+/* False after a usage error. */
+static bool take_kind(change_t *change, const char *const *values)
+{
+    const setting_t *const setting = change->setting;
+    change->is_blind = values[BLIND] != NULL;
+    change->is_for_all = values[ALL_UNITS] != NULL;
+    if (change->is_blind && change->is_for_all)
+        (void)usage_error(command, "--all-units reads nothing anyway; leave --blind out");
+    else if (change->is_blind && setting->is_never_blind)
+        (void)usage_error(command, "%s is not written --blind: it has to be read before or afterwards",
+                          setting->name);
+    else if (change->is_for_all && setting->set_all == NULL)
+        (void)usage_error(command,
+                          "%s is of one unit; --all-units is for termination and "
+                          "measure-after-power-on of an hps167s",
+                          setting->name);
+    else if (change->is_for_all && values[YES] == NULL)
+        (void)usage_error(
+            command,
+            "with --all-units every hps167s on the line obeys, whatever its address: say so by --yes");
+    else
+        return true;
+    return false;
+}
+
 static int run(const host_t *host, int argc, char **argv)
 {
     char *copy[MAX_WORDS];
     argv = mark_negative(&argc, argv, copy);
-    const char *values[TALK_OPTIONS] = {NULL};
+    const char *values[OPTIONS] = {NULL};
     char **words = NULL;
     int count = 0;
-    int32_t value = 0;
+    change_t change = {0};
     bool wants_help = false;
-    if (!talk_options(&talk, command, argc, argv, talk_table, values, &words, &count, &wants_help))
+    if (!talk_options(&talk, command, argc, argv, table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
     if (wants_help) {
         help(stdout);
@@ -228,11 +350,12 @@ static int run(const host_t *host, int argc, char **argv)
     if (setting == NULL) return STATUS_USAGE;
     if (setting->set == NULL)
         return usage_error(command, "%s is told by the device and cannot be set", setting->name);
-    if (!setting_parse(command, setting, words[1], &value) ||
-        !talk_set_mode(&talk, command, values, setting->mode))
+    change.setting = setting;
+    if (!setting_parse(command, setting, words[1], &change.value) ||
+        !talk_set_mode(&talk, command, values, setting->mode) || !take_kind(&change, values))
         return STATUS_USAGE;
     if (!talk_open(&talk, host)) return STATUS_FAILED;
-    const int status = set(setting, value);
+    const int status = set(&change);
     talk_close(&talk);
     return status;
 }

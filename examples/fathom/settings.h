@@ -26,6 +26,7 @@ typedef struct {
     int32_t step;             /* a multiple of this */
     bool moves;               /* from then on the device is elsewhere: its address, ... */
     bool is_baud;             /* ... or its line settings */
+    bool is_never_blind;      /* it has to be read before it is written, or afterwards */
     const char
         *confirmed; /* where it cannot be read: what shows that it holds; NULL: its acknowledgement alone */
     const char *unconfirmed; /* the same for what does not */
@@ -33,6 +34,8 @@ typedef struct {
      * number or the number of a word. */
     fathom_status_t (*get)(reader_t *reader, char text[SETTING_TEXT]);
     fathom_status_t (*set)(reader_t *reader, int32_t value);
+    fathom_status_t (*set_all)(reader_t *reader,
+                               int32_t value); /* of all units on a line; NULL: there is none */
     /* After a set: does it hold from the next power-on only? NULL: it holds now, or as `effect` says. */
     bool (*is_later)(const reader_t *reader);
     void (*remark)(FILE *to, const char *text); /* what to know of this value; NULL: nothing */

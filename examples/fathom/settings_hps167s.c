@@ -146,6 +146,16 @@ static fathom_status_t set_termination(reader_t *reader, int32_t value)
     return fathom_hps167s_set_termination(driver(reader), value != 0);
 }
 
+static fathom_status_t set_measures_of_all(reader_t *reader, int32_t value)
+{
+    return fathom_hps167s_set_measures_after_power_on_of_all_units(driver(reader), value != 0);
+}
+
+static fathom_status_t set_termination_of_all(reader_t *reader, int32_t value)
+{
+    return fathom_hps167s_set_termination_of_all_units(driver(reader), value != 0);
+}
+
 static fathom_status_t set_reconnect(reader_t *reader, int32_t value)
 {
     return fathom_hps167s_set_reconnect_time_ms(driver(reader), (uint32_t)value);
@@ -212,7 +222,8 @@ const setting_t settings_hps167s[] = {
      .effect = NEXT_POWER,
      .words = off_on,
      .get = get_measures,
-     .set = set_measures},
+     .set = set_measures,
+     .set_all = set_measures_of_all},
     {.name = "termination",
      .what = "the termination resistor, on in every unit from the factory (#11)",
      .mode = "modbus",
@@ -220,6 +231,7 @@ const setting_t settings_hps167s[] = {
      .words = off_on,
      .get = get_termination,
      .set = set_termination,
+     .set_all = set_termination_of_all,
      .remark = remark_termination},
     {.name = "reconnect-time",
      .what = "without data from its sensor for so long it sends abnormal "
@@ -239,6 +251,7 @@ const setting_t settings_hps167s[] = {
      .effect = KEPT,
      .least = INT16_MIN,
      .most = INT16_MAX,
+     .is_never_blind = true,
      .set = set_offset},
     {.name = "filter-sensitivity",
      .what = "larger is steadier and slower; 0 from the factory, within -100 "

@@ -32,6 +32,8 @@ static const trait_t traits[DEVICE_TRAITS] = {
     [DEVICE_NO_TERMINATION] = {"termination-off", "hps167s", NULL, 0, "as #11 has set it"},
     [DEVICE_BAUD_LATER] = {"baud-later", "hps167s", NULL, 0, "#9 acts from the next power-on, not at once"},
     [DEVICE_OFFSET_ADDS] = {"offset-adds", "hps167s", NULL, 0, "#12 adds to the offset before"},
+    [DEVICE_RECONNECT] = {"reconnect", "hps167s", "MS", 1000000, "#2 tells this reconnect time"},
+    [DEVICE_NO_BAUD_CODE] = {"baud-code-00", "hps167s", NULL, 0, "#2 tells 00 for its rate"},
     [DEVICE_COUNT_EXCEPTION] = {"count-03", "hps167s", NULL, 0, "exception 03 to a wrong length, not 02"},
 };
 

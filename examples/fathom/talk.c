@@ -8,11 +8,7 @@
 #include "options.h"
 
 const struct option talk_table[TALK_OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [TALK_MODE] = {"mode", required_argument, NULL, 256},
-    [TALK_ADDRESS] = {"address", required_argument, NULL, 256},
-    [TALK_FORMAT] = {"format", required_argument, NULL, 256},
-    [TALK_HELP] = {"help", no_argument, NULL, 256},
+    TALK_OPTION_ROWS,
 };
 
 static bool has_mode(const char *word)
@@ -99,8 +95,15 @@ bool talk_open(talk_t *talk, const host_t *host)
         return false;
     }
     tally_begin_port(&talk->port_counts, &talk->channel);
-    if (talk->channel.tcp == NULL) listen(talk);
-    if (station->mode->read(&station->reader, &talk->channel, &settings)) return true;
+    if (station->mode->read(&station->reader, &talk->channel, &settings)) {
+        if (talk->channel.tcp == NULL && station->reader.unit == &station->reader.driver.hps167s.unit) {
+            const fathom_hps167s_auto_config_t hears = {.line = &talk->channel.line,
+                                                        .asking = &station->reader.driver.hps167s};
+            (void)fathom_hps167s_auto_init(&talk->hears, &hears);
+        }
+        if (talk->channel.tcp == NULL) listen(talk);
+        return true;
+    }
     (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->sensor->name);
     channel_close(&talk->channel);
     return false;
@@ -178,6 +181,12 @@ void talk_explain(talk_t *talk, fathom_status_t status)
     ear_judge(&talk->channel.ear, station->address, &failure.evidence);
     if (status == FATHOM_ERR_CANCELLED)
         (void)fputs("ended before the answer came", stderr);
+    else if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(&station->reader))
+        (void)fprintf(stderr, "its answers cannot be that%s; check that it is %s, and alone at this address",
+                      strcmp(station->sensor->name, "hps167s") == 0
+                          ? ", or what it sends unasked stands between them"
+                          : "",
+                      station->sensor->name);
     else
         advice_print(stderr, &failure);
 }

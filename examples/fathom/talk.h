@@ -2,6 +2,7 @@
 #ifndef TALK_H
 #define TALK_H
 
+#include "fathom/hps167s_auto.h"
 #include "session_options.h"
 #include "settings.h"
 
@@ -11,11 +12,17 @@ typedef struct {
     station_t *station; /* the only one */
     channel_t channel;
     port_counts_t port_counts;
+    fathom_hps167s_auto_t hears; /* frames that an hps167s sends unasked, so that the driver knows of them */
     bool is_json;
 } talk_t;
 
 /* The options of these commands: the first rows of a command's table. */
 enum { TALK_MODE = SESSION_OPTIONS, TALK_ADDRESS, TALK_FORMAT, TALK_HELP, TALK_OPTIONS };
+#define TALK_OPTION_ROWS                                                                                     \
+    SESSION_OPTION_ROWS, [TALK_MODE] = {"mode", required_argument, NULL, 256},                               \
+                         [TALK_ADDRESS] = {"address", required_argument, NULL, 256},                         \
+                         [TALK_FORMAT] = {"format", required_argument, NULL, 256},                           \
+                         [TALK_HELP] = {"help", no_argument, NULL, 256}
 extern const struct option talk_table[TALK_OPTIONS + 1];
 
 /*
@@ -45,7 +52,8 @@ fathom_status_t talk_set(talk_t *talk, const setting_t *setting, int32_t value);
 /* "9600 8N1", at which the sensor is asked; of a connection "Modbus TCP". */
 const char *talk_line_text(const talk_t *talk, char text[SETTINGS_TEXT]);
 
-/* What has gone wrong with the last call, and what to try, without a line feed. */
+/* What has gone wrong with the last call, and what to try, without a line feed. An answer that cannot be what was asked
+ * for is no distance here. */
 void talk_explain(talk_t *talk, fathom_status_t status);
 
 /* The help of the options. */

@@ -165,7 +165,7 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
         values[0] = pair(hps->termination ? 0xFF : 0, hps->auto_output ? 0xFF : 0);
         values[1] = pair(hps->warm_up_s, (uint8_t)(hps->reconnect_ms >> 24));
         values[2] = (uint16_t)(hps->reconnect_ms >> 8);
-        values[3] = pair((uint8_t)hps->reconnect_ms, hps->baud_code);
+        values[3] = pair((uint8_t)hps->reconnect_ms, hps->no_baud_code ? 0 : hps->baud_code);
         break;
     case DETAILS:
         put_bytes(values, hps->details, 11);
@@ -238,6 +238,7 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
         config->baud_code >= 1 && config->baud_code <= 4 ? config->baud_code : FATHOM_SIM_HPS167S_BAUD_CODE;
     hps->baud_at_power_on = config->baud_at_power_on;
     hps->offset_adds = config->offset_adds;
+    hps->no_baud_code = config->no_baud_code;
     hps->termination = !config->no_termination;
     hps->auto_output = !config->no_auto_output;
     fathom_sim_hps167s_power_on(device, 0); /* as it will be; nothing is lost yet, so that no time counts */

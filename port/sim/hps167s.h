@@ -77,9 +77,10 @@ typedef struct {
     bool baud_at_power_on;    /* #9 acts from the next power-on; default: behind its acknowledgement, which
                                leaves at the old rate */
     bool offset_adds;         /* #12 is added to the offset that is there; default: it replaces that */
+    bool no_baud_code;        /* #2 reports 00 for its rate, whatever that is: table 12 has no encoding */
     bool answers_from_new;    /* #8 and #6 are answered from the new address; default: the old one */
     int16_t temperature_f;    /* #4; default 77 degrees Fahrenheit */
-    uint32_t reconnect_ms;    /* #15, #2; default 180; a multiple of 18 */
+    uint32_t reconnect_ms;    /* #15, #2; default 180; any, also what #15 could not set */
     uint32_t unasked_us;      /* sends frames of the shape of #5 by itself, so often, when #10 was on at
                                power-on ("continuous output", #15); default never (2.2.1) */
     uint32_t seed;            /* of the spread of the answer times; any */
@@ -117,6 +118,7 @@ typedef struct {
     uint8_t baud_code;
     bool baud_at_power_on;
     bool offset_adds;
+    bool no_baud_code;
     bool termination;
     bool auto_output;
     bool terminated; /* in truth, since power-on */

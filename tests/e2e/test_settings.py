@@ -135,7 +135,7 @@ class Change(Settings):
     def test_an_address_in_use_is_not_given(self):
         sim = self.sim('a05:1:modbus a16:5:modbus --counters')
         self.told(f'set a05 --port {sim} address 5',
-                  'a device answers at address 5 already, so nothing was changed', code=1)
+                  'nothing was written: a device answers at address 5 already', code=1)
         self.assertEqual(self.counters(sim, 'writes'), [(0,), (0,)])
 
     def test_every_a05_gets_the_address_by_55_aa(self):
@@ -163,6 +163,26 @@ class Change(Settings):
         said = self.json(f'set {sensor} --port {sim} {name} {value}')
         self.assertEqual((said['written'], said['confirmed'], str(said['value'])), (True, True, value))
         self.assertEqual(str(self.json(f'get {sensor} --port {sim} {name}')[name]), value)
+
+    @e2e.each(**{f'whatever_2_tells_can_be_set_{setting.split()[0]}': setting for setting in (
+        'warm-up 3', 'measure-after-power-on off', 'termination off', 'reconnect-time 36', 'baud 57600')})
+    def odd(self, setting):
+        sim = self.sim('hps167s --with reconnect=1000 --with baud-code-00 --counters')
+        self.told(f'set hps167s --port {sim} {setting}')
+        self.assertEqual(self.counters(sim, 'writes'), [(1,)])
+
+    def test_the_terminations_of_two_at_one_address_are_switched_off_at_once(self):
+        sim = self.sim('hps167s hps167s --counters')
+        line = f'set hps167s --port {sim} termination off --all-units'
+        self.told(line, '--yes', code=2)
+        self.assertEqual(self.told(f'{line} --yes'), 'all units: termination off: sent, not confirmed\n')
+        self.assertEqual(self.counters(sim, 'writes', 'answered'), [(1, 0), (1, 0)])
+
+    def test_a_setting_is_written_without_reading_anything(self):
+        sim = self.sim('hps167s --counters')
+        self.assertEqual(self.told(f'set hps167s --port {sim} termination off --blind'),
+                         'hps167s:1: termination off: written, not confirmed\n')
+        self.assertEqual(self.counters(sim, 'writes', 'answered'), [(1, 1)])
 
     def test_what_cannot_be_read_back_is_said_to_be_acknowledged(self):
         sim = self.sim('hps167s --distance 1000')
