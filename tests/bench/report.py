@@ -23,8 +23,6 @@ def verdict(value, bound, stretch):
     return 'ok, stretch too' if stretch is not None and value <= stretch else 'ok'
 
 
-# ---- printed ----
-
 def show(figures):
     print(f'{"":50} {"measured":>8} {"bound":>6} {"stretch":>7}')
     for name, what, unit, bound, stretch in ROWS:
@@ -73,8 +71,6 @@ def write_csv(path, figures, sizes):
             for what in HEAD:
                 out.writerow([f'{row}.{machine}.{what}', 'B', size[what], None, None, ''])
 
-
-# ---- kept ----
 
 def readme_table(figures):
     lines = ['| | measured | bound |', '|---|---|---|']

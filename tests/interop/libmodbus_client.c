@@ -58,8 +58,7 @@ static void coils(modbus_t *client, const step_t *step)
 /* libmodbus adds the CRC, checks that of the answer, and leaves the rest to its caller. */
 static void raw(modbus_t *client, const step_t *step)
 {
-    uint8_t request[STEP_VALUES + 1];
-    uint8_t answer[MODBUS_RTU_MAX_ADU_LENGTH];
+    uint8_t request[STEP_VALUES + 1], answer[MODBUS_RTU_MAX_ADU_LENGTH];
     uint16_t bytes[MODBUS_RTU_MAX_ADU_LENGTH];
     request[0] = (uint8_t)modbus_get_slave(client);
     for (int i = 0; i != step->count; i++) request[i + 1] = (uint8_t)step->values[i];

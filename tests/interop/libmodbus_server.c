@@ -21,8 +21,7 @@
 enum { WRITE_SINGLE = 0x06, MAX_REGISTERS = 256 };
 
 typedef struct {
-    int first;
-    int count;
+    int first, count;
     uint8_t exceptions[MAX_REGISTERS]; /* 0: none */
 } refusals_t;
 

@@ -2,8 +2,6 @@
 #ifndef LIBMODBUS_RIG_H
 #define LIBMODBUS_RIG_H
 
-#include <string.h>
-
 #include "suite.h"
 
 #include "fake.h"

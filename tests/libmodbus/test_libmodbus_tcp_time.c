@@ -93,8 +93,7 @@ TEST(a_cancelled_request_is_nobodys_and_its_answer_too)
 
 TEST(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not)
 {
-    fathom_modbus_request_t second;
-    fathom_modbus_request_t third;
+    fathom_modbus_request_t second, third;
     rig_ask(0);
     rig_ask_three(&second, 2, 0);
     rig_ask_three(&third, 1, 0);

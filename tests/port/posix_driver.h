@@ -25,19 +25,13 @@ typedef struct {
     int queued;          /* TIOCOUTQ */
     int queue_error;
     int lsr; /* TIOCSERGETLSR */
-    int lsr_error;
-    int count_error;
+    int lsr_error, count_error;
     int exclusive; /* TIOCEXCL minus TIOCNXCL */
-    int exclusive_calls;
-    int exclusive_error;
+    int exclusive_calls, exclusive_error;
     int breaks; /* TIOCSBRK minus TIOCCBRK */
-    int break_calls;
-    int break_error;
-    int read_error;
-    int read_interrupts;
+    int break_calls, break_error, read_error, read_interrupts;
     int write_most; /* bytes that one write takes; 0: all */
-    int write_error;
-    int write_interrupts;
+    int write_error, write_interrupts;
     int write_refusals; /* so many calls give EAGAIN first */
     int sets;           /* calls of tcsetattr */
     int writes;         /* calls of write */

@@ -2,8 +2,6 @@
 #ifndef FATHOM_TESTS_POSIX_RIG_H
 #define FATHOM_TESTS_POSIX_RIG_H
 
-#include <string.h>
-
 #include <termios.h>
 
 #include "suite.h"

@@ -4,7 +4,6 @@
 #define _DEFAULT_SOURCE 1
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

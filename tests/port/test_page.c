@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
 #include "suite.h"
 
 #include "fathom/a16_modbus.h"
@@ -17,8 +15,7 @@ fathom_capture_t port_capture(void);
 
 #include "port_page.c" /* all blocks of C of port/README.md, cut out by support/cut.py */
 
-/* ---- the chip, and an A16 at the end of its line ---- */
-
+/* The chip, and an A16 at the end of its line. */
 enum { BIT_US = 104, CHARACTER_US = 1040, DEVICE_US = 50000, MOST = 32 };
 
 /* A16 6(4), example 2: real-time value, 0x02EF = 751 mm. */
@@ -33,13 +30,11 @@ static struct {
     bool on_room, on_sent, driver, is_register_full, is_shifting;
     uint8_t in_register, in_shifter;
     uint32_t shift_left_us;
-    uint8_t out[MOST];
-    uint8_t sent;
+    uint8_t out[MOST], sent;
     unsigned undriven;      /* us of a character without the driver */
     uint32_t last_us;       /* the end of the last stop bit */
     uint32_t driver_off_us; /* when it was let go */
-    uint32_t driver_on_us;
-    uint32_t first_start_us;
+    uint32_t driver_on_us, first_start_us;
 
     uint8_t byte, flags; /* that have come */
     uint32_t answer_left_us;
@@ -169,8 +164,6 @@ static int start(void **state)
 static const suite_t suite = {.set_up = start};
 static const suite_t plain;
 
-/* ---- the clock ---- */
-
 static void begin_at(uint32_t us)
 {
     chip.us = us;
@@ -189,8 +182,7 @@ TEST(the_clock_is_right_wherever_the_timer_wraps_while_it_is_read)
                 for (int locked = 0; locked != 2; locked++) {
                     begin_at(around[i] - early);
                     chip.is_locked = locked != 0; /* as within another interrupt */
-                    const uint32_t from = chip.us;
-                    const uint32_t read = now();
+                    const uint32_t from = chip.us, read = now();
                     assert_in_range(fathom_elapsed_us(read, from), 0, fathom_elapsed_us(chip.us, from));
                     assert_int_equal(chip.is_locked, locked != 0);
                     chip.is_locked = false;
@@ -221,8 +213,6 @@ TEST_IN(plain, a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tic
     assert_int_not_equal(fathom_elapsed_us((uint16_t)(tick_16 + 1) * 1000u, tick_16 * 1000u), 1000);
     assert_int_equal(fathom_elapsed_us((uint32_t)(tick_32 + 1) * 1000u, tick_32 * 1000u), 1000);
 }
-
-/* ---- the UART ---- */
 
 static int read_port(uint8_t *bytes, size_t capacity, uint8_t *flags)
 {
@@ -339,8 +329,6 @@ TEST_IN(plain, a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap)
         read_sensor(from_us[i], 20000);
     }
 }
-
-/* ---- pulses ---- */
 
 static void edge(bool high)
 {

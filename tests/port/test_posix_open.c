@@ -122,8 +122,7 @@ static int open_it(void *path)
 
 TEST(a_second_open_is_refused_even_to_root_and_allowed_after_close)
 {
-    fathom_posix_uart_t first;
-    fathom_posix_uart_t second;
+    fathom_posix_uart_t first, second;
     assert_int_equal(chmod(rig.pty.path, 0666), 0);
     assert_int_equal(fathom_posix_open(&first, rig.pty.path, &usual), FATHOM_POSIX_OK);
     assert_int_equal(fathom_posix_open(&second, rig.pty.path, &usual), FATHOM_POSIX_ERR_IN_USE);

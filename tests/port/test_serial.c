@@ -8,8 +8,7 @@
 enum { RING = 128, SIZE = 8 }; /* the ring as its header has it */
 
 static fathom_serial_t serial;
-static uint8_t request[SIZE];
-static uint8_t got[256];
+static uint8_t request[SIZE], got[256];
 static fathom_rx_t rx;
 
 EACH_BEGINS(fathom_serial_init(&serial, request, SIZE))
@@ -37,8 +36,7 @@ static void put(unsigned from, unsigned count)
 
 TEST(bytes_come_out_as_they_went_in_through_many_rounds)
 {
-    unsigned in = 0;
-    unsigned out = 0;
+    unsigned in = 0, out = 0;
     /* Chunks of 1..128 bytes from every place in the ring; 8256 bytes, so that the indices wrap 32 times. */
     for (unsigned chunk = 1; chunk <= RING; chunk++) {
         put(in, chunk);
@@ -119,8 +117,7 @@ TEST(counters_stop_at_65535)
 
 TEST(a_request_is_kept_and_handed_out_byte_by_byte)
 {
-    uint8_t bytes[SIZE] = {1, 2, 3, 4, 5, 6, 7, 8};
-    uint8_t byte = 99;
+    uint8_t bytes[SIZE] = {1, 2, 3, 4, 5, 6, 7, 8}, byte = 99;
     assert_false(fathom_serial_next(&serial, &byte));
     assert_int_equal(byte, 99);
     for (int round = 0; round != 2; round++) {

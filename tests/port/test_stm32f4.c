@@ -4,7 +4,6 @@
  * register keeps what was written to it last. */
 #define _GNU_SOURCE 1 /* MAP_FIXED_NOREPLACE */
 #include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 
 #include "suite.h"

@@ -122,8 +122,7 @@ typedef struct {
     const char *name;
     fathom_status_t (*call)(void);
     uint32_t (*has)(void); /* what the device has */
-    uint32_t before;
-    uint32_t wanted;
+    uint32_t before, wanted;
     model_t model;
     kind_t kind;
     uint8_t unit; /* of the device, at first */

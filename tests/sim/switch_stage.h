@@ -14,8 +14,7 @@ static fathom_a05_relay_t a05;
 static fathom_a16_modbus_t *const settings = &s.driver.a16;
 static uint8_t kinds[LOG]; /* of all samples */
 static uint32_t times_us[LOG];
-static unsigned samples;
-static unsigned errors;
+static unsigned samples, errors;
 
 static inline void begin(int32_t mm)
 {

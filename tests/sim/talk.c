@@ -202,8 +202,7 @@ void bench_counted(const fathom_sim_counters_t *counters, const fathom_sim_count
                                         "wrong_settings", "automatic",  "writes",         "writes_refused",
                                         "flash_writes",   "resets",     "resets_refused", "measurements"};
     enum { COUNTERS = sizeof(fathom_sim_counters_t) / sizeof(uint32_t) };
-    uint32_t is[COUNTERS];
-    uint32_t should[COUNTERS];
+    uint32_t is[COUNTERS], should[COUNTERS];
     assert_int_equal(COUNTERS, sizeof names / sizeof names[0]);
     memcpy(is, counters, sizeof is);
     memcpy(should, expected, sizeof should);

@@ -6,8 +6,6 @@
  * UART says of it and the time of its last bit, and with sensors at the far end. Frames are bytes in hexadecimal, from
  * the datasheets where they print them; no codec has a part in them. */
 
-#include <string.h>
-
 #include "bench.h"
 #include "sim/a05.h"
 #include "sim/a16.h"

@@ -105,8 +105,6 @@ TEST(a_dead_device_does_not_look_like_success_where_the_line_echoes)
     }
 }
 
-/* ---- the hazard of 55 AA 03 ---- */
-
 TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
 {
     for (model_t model = A05; model <= A05_DYP; model++) {
@@ -119,8 +117,6 @@ TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
         assert_int_equal(other->unit, model == A05 ? 9 : NEW);
     }
 }
-
-/* ---- requests of others ---- */
 
 TEST(what_waits_for_the_old_address_is_cancelled)
 {

@@ -4,8 +4,6 @@
 /* What the headers say of every command: one at a time, across the wrap of the clock at any step, left alone less and
  * less often, and back at once. */
 
-/* ---- one at a time ---- */
-
 static void with_a_second(const job_t *first, const job_t *second)
 {
     set_up_for(first, 20 * MS, FATHOM_LINE_ECHO_AUTO);
@@ -69,8 +67,6 @@ TEST(a_command_is_busy_for_as_long_as_another_is_not_finished)
         }
 }
 
-/* ---- the wrap ---- */
-
 TEST(the_clock_may_wrap_at_any_step)
 {
     const uint32_t start_us = bench_start_us;
@@ -84,8 +80,6 @@ TEST(the_clock_may_wrap_at_any_step)
         }
     bench_start_us = start_us;
 }
-
-/* ---- a unit that does not answer ---- */
 
 static uint32_t time_of_next_outcome_us(fathom_status_t expected)
 {
@@ -120,8 +114,6 @@ TEST(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands)
         assert_true(time_of_next_outcome_us(FATHOM_READY) <= SECOND);
     }
 }
-
-/* ---- a broken port ---- */
 
 TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
 {

@@ -4,8 +4,6 @@
 /* Every command and setting in company: another driver asks the same unit, others fill the queue, 55 AA and Modbus are
  * on one line, an HPS-167S sends what nobody asked for. */
 
-/* ---- a second driver of the same unit ---- */
-
 /* What one that measures beside it may say. */
 static bool is_fair(fathom_status_t status, bool moves)
 {
@@ -60,8 +58,6 @@ TEST(another_driver_of_the_same_unit_takes_no_outcome_away)
             for (uint8_t echo = 0; echo != 3; echo++) beside_another_driver(&jobs[j], loops_us[l], echo);
 }
 
-/* ---- a queue full of others ---- */
-
 TEST(a_queue_that_is_never_empty_delays_and_no_more)
 {
     enum { OTHERS = 10 };
@@ -95,8 +91,6 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
     }
 }
 
-/* ---- 55 AA and Modbus on one line ---- */
-
 static fathom_a05_modbus_t second;
 static fathom_status_t set_by_dyp(void) { return fathom_a05_dyp_set_every_address(&s.driver.dyp, 5); }
 static fathom_status_t set_by_modbus(void) { return fathom_a05_modbus_set_address(&second, 5); }
@@ -120,8 +114,6 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         assert_true(readings >= 4);
     }
 }
-
-/* ---- an HPS-167S that sends what nobody asked for ---- */
 
 /* True: READY. */
 static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_us)
@@ -147,16 +139,13 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
 
 TEST(unasked_measurements_are_no_answers)
 {
-    unsigned ready = 0;
-    unsigned all = 0;
+    unsigned ready = 0, all = 0;
     for (unsigned j = 0; j != jobs_count; j++)
         for (uint32_t unasked_us = 19 * MS; unasked_us < 300 * MS; unasked_us += 27 * MS)
             for (unsigned l = 0; l != 3 && jobs[j].model == HPS; l++, all++)
                 if (among_unasked(&jobs[j], unasked_us, loops_us[l])) ready++;
     assert_true(ready > all / 2); /* they collide with answers and requests, as on a real pair */
 }
-
-/* ---- a rate that holds from the next power-on ---- */
 
 static fathom_status_t set_230400(void) { return fathom_hps167s_set_baud(&s.driver.hps, 230400); }
 

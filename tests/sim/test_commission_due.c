@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
 #include "bench.h"
 #include "fake.h"
 #include "fathom/fathom.h"
@@ -80,8 +78,6 @@ TEST(a_request_behind_part_of_a_late_answer_is_due_when_that_has_broken_off)
     pass(500);
     assert_int_equal(other.exchange.attempts, 1);
 }
-
-/* ---- the stream of the same line ---- */
 
 static fathom_a16_auto_t a16;
 static fathom_sensor_t sensor;

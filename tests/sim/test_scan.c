@@ -92,8 +92,7 @@ TEST(test_an_echo_alone_is_no_device_at_any_address)
 
 TEST(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers)
 {
-    static fathom_sim_fault_t noise;
-    static fathom_sim_fault_t flips;
+    static fathom_sim_fault_t noise, flips;
     uint32_t flipped = 0;
     for (uint32_t seed = 1; seed != 9; seed++) {
         begin_eight(0);

@@ -4,8 +4,6 @@
 
 /* What `fathom scan` hears before it asks, and what it may not ask. */
 
-/* ---- listening ---- */
-
 static scan_talk_t talk;
 
 static void listen_for_3_s(void)
@@ -109,8 +107,6 @@ TEST(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise)
     listen_for_3_s();
     assert_false(talk.is_heard);
 }
-
-/* ---- what it may not ask ---- */
 
 TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
 {

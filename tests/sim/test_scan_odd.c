@@ -4,8 +4,6 @@
 /* What `fathom scan` makes of answers that are not as they should be: two units with one address, other devices, other
  * protocols, another master. */
 
-/* ---- answers that are damaged ---- */
-
 EACH_BEGINS(rig_begin(0))
 static const suite_t suite = {.set_up = begins};
 
@@ -77,8 +75,6 @@ TEST(test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_on
         assert_int_equal(rig.findings[0].address, last == 3 ? 0 : 3);
     }
 }
-
-/* ---- devices that answer in Modbus ---- */
 
 static void begin_with(stranger_t with, const fathom_line_settings_t *line)
 {

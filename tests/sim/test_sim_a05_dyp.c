@@ -35,8 +35,7 @@ TEST(no_target_and_interference_are_sent_as_in_the_other_modes)
 /* The spread of the first byte's end less its own 1042 us, over many seeds. */
 static void times(const char *request, uint32_t least_ms, uint32_t most_ms)
 {
-    uint32_t least_us = UINT32_MAX;
-    uint32_t most_us = 0;
+    uint32_t least_us = UINT32_MAX, most_us = 0;
     for (uint32_t seed = 0; seed < 200; seed++) {
         set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.seed = seed * 7919});
         ask(request, 300);

@@ -12,8 +12,7 @@ static fathom_capture_t capture;
 static fathom_a16_pwm_t pwm;
 static fathom_a16_controlled_t controlled;
 static fathom_sample_t last;
-static unsigned samples;
-static unsigned no_answers;
+static unsigned samples, no_answers;
 static unsigned errors; /* others */
 
 static void set(uint8_t mode, int32_t distance, uint32_t step_us, a16_config_t config)
@@ -66,8 +65,6 @@ static void run(uint32_t for_us)
 }
 
 #define DEFAULTS ((a16_config_t){0})
-
-/* ---- PWM ---- */
 
 /* By hand, T2 = 3..94 ms (A16 1(3)), mm = T * 4 / 23. */
 static const struct {
@@ -221,8 +218,6 @@ TEST(who_sleeps_until_it_is_due_or_woken_reads_each_cycle)
     assert_in_range(since_us(start_us), 4320999, 4321100);
 }
 
-/* ---- controlled ---- */
-
 static void controlled_reads_each_trigger(bool by_break, bool knows)
 {
     for (size_t n = 0; n < STEPS; n++) {
@@ -269,8 +264,6 @@ TEST(late_and_lost_answers_are_no_answer_and_never_the_next_ones)
         assert_in_range(controlled.late, no_answers - 2, no_answers + 1);
     }
 }
-
-/* ---- automatic, with its select ---- */
 
 static void the_select_of_the_automatic_mode_reaches_the_module(bool by_break)
 {

@@ -138,8 +138,6 @@ TEST(times_of_the_pulse_are_options)
     assert_int_equal(fathom_elapsed_us(edge_us[1], from_us), 113 * MS);
 }
 
-/* ---- the host's side of the pins ---- */
-
 TEST(the_capture_takes_pulses_that_begin_after_arm_in_their_order)
 {
     fathom_pulse_t pulse = {7, 7, false};
@@ -232,8 +230,6 @@ TEST(a_break_a_pin_and_a_byte_are_one_wire)
     COUNTED(.requests = 3, .unserved = NONE);
 }
 
-/* ---- a TX pin that is a UART's as well ---- */
-
 TEST(the_bits_of_a_byte_can_be_seen_at_the_pin)
 {
     static const char bits[] = "0111111111"   /* FF */
@@ -324,8 +320,7 @@ TEST(a_break_spoils_the_frame_that_a_device_hears)
 TEST(each_edge_brings_one_frame_90_to_110_ms_later)
 {
     static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 3(5) */
-    uint32_t least_us = UINT32_MAX;
-    uint32_t most_us = 0;
+    uint32_t least_us = UINT32_MAX, most_us = 0;
     set(FATHOM_SIM_A16_CONTROLLED, 1953, DEFAULTS);
     pass_us(500 * MS);
     for (int i = 0; i < 50; i++) {

@@ -120,8 +120,6 @@ TEST(rs485_has_no_automatic_mode_to_return_to)
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
 }
 
-/* ---- what it does not take, and what it counts ---- */
-
 #define REFUSED "01 86 03 02 61"
 static void refuse_all(void)
 {

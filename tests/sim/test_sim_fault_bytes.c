@@ -138,8 +138,6 @@ TEST(trailing_adds_one_to_four_bytes_without_a_gap)
     damage(FATHOM_SIM_FAULT_TRAILING, of_a_late_end, 1, 4);
 }
 
-/* ---- with a right checksum ---- */
-
 /* Kinds that change one byte before the end. */
 static void replaced(setting_t setting, uint8_t kind, size_t at, uint8_t least, uint8_t most)
 {
@@ -210,8 +208,7 @@ TEST(count_is_one_less_or_more_where_there_is_one)
 
 TEST(exception_is_of_the_code_given_or_any)
 {
-    uint8_t least = 255;
-    uint8_t most = 0;
+    uint8_t least = 255, most = 0;
     second_frame(A16_MODBUS, FATHOM_SIM_FAULT_EXCEPTION, 2, 0);
     expect("01 83 02 C0 F1"); /* HPS-167S, abnormal response */
     third_frame_is_good(A16_MODBUS, FATHOM_SIM_FAULT_EXCEPTION);

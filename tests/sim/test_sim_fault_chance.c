@@ -87,8 +87,7 @@ TEST(each_kind_comes_as_often_as_it_is_told)
 
 TEST(what_the_host_finds_damaged_is_what_was_counted)
 {
-    uint32_t missing = 0;
-    uint32_t wrong = 0;
+    uint32_t missing = 0, wrong = 0;
     set_faulty(A16_AUTO, 3);
     FAULT(SILENCE, 100000, 0);
     FAULT(FLIP_BIT, 100000, 0);
@@ -185,8 +184,7 @@ TEST(two_kinds_may_hit_one_frame)
 
 TEST(a_run_of_frames_is_hit_together)
 {
-    uint32_t longest = 0;
-    uint32_t length = 0;
+    uint32_t longest = 0, length = 0;
     set_faulty(A16_AUTO, 1);
     FAULT(SILENCE, ALWAYS, 3)->run = 4;
     for (uint32_t n = 1; n <= 9; n++) {
@@ -216,8 +214,7 @@ TEST(all_stops_when_they_are_switched_off_and_goes_on_again)
     assert_true(bench.fault.frames_hit > 150);
     fathom_sim_fault_enable(&bench.fault, false);
     (void)run_frames(230); /* what was under way */
-    const uint32_t hit = bench.fault.frames_hit;
-    const uint32_t frames = bench.fault.frames;
+    const uint32_t hit = bench.fault.frames_hit, frames = bench.fault.frames;
     for (uint32_t n = 1; n <= 300; n++) {
         next(A16_AUTO);
         assert_int_equal(bench.heard % 4, 0);

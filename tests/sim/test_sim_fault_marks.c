@@ -171,8 +171,6 @@ TEST(the_hosts_clock_jumps_and_the_line_does_not)
     }
 }
 
-/* ---- what is measured ---- */
-
 TEST(stuck_says_the_value_of_the_frame_before)
 {
     FAULT(STUCK, ALWAYS, 2)->run = 2;

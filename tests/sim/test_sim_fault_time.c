@@ -217,8 +217,7 @@ TEST(unasked_is_a_frame_of_the_devices_own)
 
 TEST(unasked_is_a_measurement_also_where_something_else_was_asked)
 {
-    bool before = false;
-    bool after = false;
+    bool before = false, after = false;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         set_faulty(HPS167S, seed);
         FAULT(UNASKED, ALWAYS, 0);

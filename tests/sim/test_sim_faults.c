@@ -6,12 +6,10 @@ typedef struct {
     int seen;
     bool last_automatic;
     uint8_t flip; /* bit of byte 3 */
-    bool drop;
-    bool longer;
+    bool drop, longer;
     uint8_t length; /* 0: as it is */
     uint32_t delay_us;
-    uint8_t copy[FATHOM_SIM_MAX_FRAME];
-    uint8_t copied;
+    uint8_t copy[FATHOM_SIM_MAX_FRAME], copied;
 } plan_t;
 
 static void outgoing(void *ctx, fathom_sim_frame_t *frame)

@@ -60,8 +60,6 @@ static void cut_power(void) { fathom_sim_power_cycle(&bench.line, bench.device, 
 
 static const suite_t suite = {BENCH_ROUNDS};
 
-/* ---- what it tells ---- */
-
 TEST(commands_1_to_4_tell_what_the_device_has)
 {
     IN_BOTH_LOOPS
@@ -84,8 +82,6 @@ TEST(commands_1_to_4_tell_what_the_device_has)
         COUNTED(.flash_writes = NONE, .resets = NONE, .resets_refused = NONE, .exceptions = NONE);
     }
 }
-
-/* ---- what is read back ---- */
 
 TEST(settings_with_read_back_are_written_once_and_kept)
 {
@@ -125,8 +121,6 @@ TEST(a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not)
     }
 }
 
-/* ---- what is not ---- */
-
 TEST(write_only_commands_are_acknowledged)
 {
     IN_BOTH_LOOPS
@@ -158,8 +152,6 @@ TEST(a_write_only_command_is_told_once_where_the_line_echoes)
         assert_int_equal(with(twelve, 7), FATHOM_ERR_NO_ANSWER);
     }
 }
-
-/* ---- warm-up ---- */
 
 TEST(silence_refusal_and_the_abnormal_packet_of_a_warm_up_are_no_error)
 {

@@ -8,8 +8,7 @@ enum { TARGET_MM = 2083 };
 static fathom_hps167s_t *const hps = &s.driver.hps;
 static fathom_hps167s_auto_t hears;
 static fathom_sensor_t asking;
-static unsigned heard;
-static unsigned wrong;
+static unsigned heard, wrong;
 
 static fathom_hps167s_version_t version;
 static fathom_hps167s_details_t details;

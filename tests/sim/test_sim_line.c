@@ -11,8 +11,6 @@ static void set(uint8_t mode)
 EACH_BEGINS(set(FATHOM_SIM_A16_MODBUS))
 static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
-/* ---- what is no request ---- */
-
 TEST(every_flipped_bit_is_met_with_silence)
 {
     for (size_t bit = 0; bit < 64; bit++) {
@@ -80,8 +78,6 @@ TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
     COUNTED(.crc_errors = 14);
 }
 
-/* ---- half-duplex ---- */
-
 TEST(a_device_hears_nothing_while_it_serves_a_request)
 {
     ask(A16_ASKED, 20);
@@ -136,8 +132,6 @@ TEST(the_host_hears_itself_only_with_echo)
     bench.line.echo = true;
     talk(A16_ASKED, 200, A16_ASKED A16_ANSWER);
 }
-
-/* ---- time ---- */
 
 TEST(sent_turns_true_with_the_last_stop_bit)
 {
@@ -201,8 +195,6 @@ TEST(it_works_for_hours_across_every_wrap)
     }
 }
 
-/* ---- what the host's UART knows ---- */
-
 static uint8_t bytes_read[512];
 static fathom_rx_t rx; /* of them */
 
@@ -244,8 +236,6 @@ TEST(bytes_that_nobody_reads_are_lost_and_told)
     expect_read(6650 * MS, 512, FATHOM_RX_OVERRUN, 4, FATHOM_RX_OVERRUN);
 }
 
-/* ---- rates ---- */
-
 TEST(at_another_rate_or_parity_nobody_understands)
 {
     at_rate(19200, FATHOM_PARITY_EVEN);
@@ -277,8 +267,6 @@ TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
     expect_read(10 * MS, 8, FATHOM_RX_FRAMING, 2, 0);
     assert_true(is_hex(bytes_read, "EF F0"));
 }
-
-/* ---- more than one ---- */
 
 TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 {

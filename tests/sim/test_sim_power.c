@@ -137,8 +137,6 @@ TEST(an_accident_in_an_acknowledgement_keeps_what_was_set)
     talk("01 03 00 02 00 04 E5 C9", 50, "01 03 08 FF FF 00 00 00 00 B4 03 E2 DD");
 }
 
-/* ---- how often the line is looked at ---- */
-
 static void in_steps(uint32_t us, uint32_t step_us)
 {
     for (; us > step_us; us -= step_us) wait_us(step_us);

@@ -6,8 +6,7 @@
 /* What the module measures, one after the other; the last one stays. */
 typedef struct {
     const int32_t *values;
-    unsigned count;
-    unsigned next;
+    unsigned count, next;
 } script_t;
 
 static int32_t next_value(void *ctx, uint8_t probe, uint32_t now_us)
@@ -74,8 +73,6 @@ TEST(the_period_the_threshold_and_the_start_are_options)
     bench.fixed.value[0] = 301;
     assert_false(level_in(500 * MS));
 }
-
-/* ---- Modbus on the same pins ---- */
 
 #define THRESHOLD_2000 "01 06 02 06 07 D0 6B DF" /* A16 6(4): the threshold to 2000 mm */
 #define NEGATIVE       "01 06 02 05 00 00 98 73" /* A16 6(4): the polarity to negative */

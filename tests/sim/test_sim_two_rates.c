@@ -7,8 +7,7 @@ enum { A16_MM = 1234, HPS_MM = 5678, SENSORS = 3 };
 static const fathom_sim_fixed_t probes = {{1000, 2000, 1953, 3562}};
 static driver_t drivers[SENSORS];
 static fathom_sensor_t sensors[SENSORS];
-static unsigned readings[SENSORS];
-static unsigned errors[SENSORS];
+static unsigned readings[SENSORS], errors[SENSORS];
 
 static void begin(const fathom_line_settings_t *slow, const fathom_line_settings_t *fast, bool echo)
 {

@@ -8,8 +8,6 @@ enum { STEPS = sizeof steps_us / sizeof *steps_us };
 
 static const suite_t suite = {BENCH_ROUNDS};
 
-/* ---- A16 ---- */
-
 TEST(the_switch_of_an_a16_is_read_in_any_loop)
 {
     for (unsigned i = 0; i != STEPS; i++) {
@@ -167,8 +165,6 @@ TEST(while_the_polarity_is_being_set_the_level_is_not_looked_at)
     run(100 * MS, 20000);
     expect_kinds("FNF");
 }
-
-/* ---- A05 ---- */
 
 TEST(the_relay_of_an_a05_is_read_in_any_loop_and_by_either_contact)
 {

@@ -104,9 +104,7 @@ static void account_stream(rig_unit_t *unit)
 static void account_line(rig_t *rig)
 {
     const uint16_t *const counters = rig->line.counters;
-    uint64_t requests = 0;
-    uint64_t answers = 0;
-    uint64_t open = 0;
+    uint64_t requests = 0, answers = 0, open = 0;
     uint64_t failures = counters[FATHOM_LINE_NO_ANSWERS];
     failures += (uint64_t)counters[FATHOM_LINE_CHECKSUM_ERRORS] + counters[FATHOM_LINE_EXCEPTIONS];
     failures += (uint64_t)counters[FATHOM_LINE_MALFORMED] + counters[FATHOM_LINE_PORT_ERRORS];

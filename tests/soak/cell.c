@@ -81,8 +81,7 @@ static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t exchanges, cel
 
 void cell_run(const cell_t *cell, uint64_t exchanges, cell_result_t *result)
 {
-    uint32_t seed = cell->seed;
-    uint32_t kinds = 0;
+    uint32_t seed = cell->seed, kinds = 0;
     for (uint8_t i = 0; i < cell->kinds_used; i++) kinds |= FATHOM_SIM_FAULT_BIT(cell->kinds[i]);
     if (theory_is_alike(cell->setting, kinds, late_us_of(cell)) != NULL) result->is_alike = true;
     /* at least one chunk for each way of polling, if there is enough for that */

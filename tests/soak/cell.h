@@ -13,8 +13,7 @@ enum { CELL_KINDS = FATHOM_SIM_FAULT_END };
 
 typedef struct {
     uint8_t setting; /* soak_setting_t */
-    uint8_t kinds_used;
-    uint8_t kinds[CELL_KINDS];
+    uint8_t kinds_used, kinds[CELL_KINDS];
     uint32_t chance_ppm;
     uint32_t late_us; /* of FATHOM_SIM_FAULT_LATE; 0: after the time-out, before twice the time-out */
     uint32_t seed;

@@ -10,8 +10,7 @@
 
 typedef struct {
     const char *what; /* is counted */
-    uint64_t with;
-    uint64_t without;
+    uint64_t with, without;
 } defence_result_t;
 
 typedef struct {

@@ -42,12 +42,10 @@ typedef struct {
     fathom_sensor_t sensor;
     truth_t truth;
     struct rig *rig;
-    uint8_t setting;
-    uint8_t address;
+    uint8_t setting, address;
     /* asked: the exchange that is open, and the answer that is being handed over */
     bool is_open;
-    uint32_t open_us;
-    uint32_t answer_us;
+    uint32_t open_us, answer_us;
     uint32_t requests;       /* written */
     uint32_t answers;        /* outcomes with samples */
     uint32_t failures;       /* outcomes without */

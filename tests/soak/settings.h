@@ -49,10 +49,8 @@ bool soak_is_asked(uint8_t setting);
 
 /* What can be changed of a driver, to see what it is good for. 0: as ever. */
 typedef struct {
-    uint32_t stale_us;
-    uint32_t backoff_us;
-    uint16_t gap_us;
-    uint16_t max_mm;
+    uint32_t stale_us, backoff_us;
+    uint16_t gap_us, max_mm;
     uint8_t retries;
     uint8_t echo; /* FATHOM_LINE_ECHO_... */
 } soak_options_t;

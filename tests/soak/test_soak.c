@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
-#include <string.h>
 
 #include "suite.h"
 
@@ -13,8 +12,7 @@ enum { SINGLES = 5000, PAIRS = 4000, MIXTURES = 1000, SEED = 1 };
 static uint32_t so_many(uint32_t exchanges) { return suite_is_long ? exchanges : exchanges / 2; }
 
 static struct {
-    uint32_t rows;
-    uint32_t broken;
+    uint32_t rows, broken;
 } seen;
 
 EACH_BEGINS(memset(&seen, 0, sizeof seen))

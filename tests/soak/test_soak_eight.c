@@ -59,8 +59,7 @@ TEST(with_one_of_eight_always_damaged_seven_keep_nine_tenths_and_it_comes_back_i
 TEST(without_back_off_one_dead_unit_takes_more_than_a_tenth)
 {
     for (uint8_t mix = 0; mix < EIGHT_MIXES; mix++) {
-        eight_result_t alive;
-        eight_result_t result;
+        eight_result_t alive, result;
         eight_run(mix, EIGHT_ALIVE, NEVER_LESS_OFTEN, seconds(mix), SEED, &alive);
         eight_run(mix, EIGHT_DEAD, NEVER_LESS_OFTEN, seconds(mix), SEED, &result);
         expect_sound(&result, eight_mix_names[mix]);

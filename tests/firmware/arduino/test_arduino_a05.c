@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The sketch a05_auto, which hears an A05 by SoftwareSerial, bit by bit on pin 10 (PB2), and prints. */
-#include <string.h>
-
 #include "suite.h"
 
 #include "board.h"

@@ -2,7 +2,6 @@
 /* The sketch a16_pulse against a module that answers the trigger with pulses of known width (A16 1). */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "suite.h"
 
@@ -18,8 +17,7 @@ enum { STEP_US = 4, BOUND_US = 11 };
 static struct {
     uint64_t width_cycles;   /* of the answer; 0: none */
     uint64_t rise_at_cycles; /* not 0: the edge is so long after an overflow of Timer0 */
-    uint64_t fall_at_cycles;
-    uint64_t rise_cycle;
+    uint64_t fall_at_cycles, rise_cycle;
     uint64_t fell_cycles; /* width of the last answer in truth */
     bool stays_high;
     uint64_t overflow_cycle;
@@ -100,8 +98,7 @@ static const char *line(void) { return board_line(2 * CYCLE_US); }
 /* How far the printed width is off, in us; the distance has to be 4/23 of it, rounded (A16 1(4)). */
 static double off_us(void)
 {
-    unsigned mm = 0;
-    unsigned us = 0;
+    unsigned mm = 0, us = 0;
     const char *const text = line();
     if (sscanf(text, "%u mm, %u us", &mm, &us) != 2) fail_msg("%s", text);
     assert_int_equal(mm, (us * 8 + 23) / 46);

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The sketch hps167s_rs485 against the simulated HPS-167S behind a transceiver. */
 #include <stdio.h>
-#include <string.h>
 
 #include "suite.h"
 
-#include "sim/hps167s.h"
-#include "sim/scene.h"
 #include "wire.h"
 
 /* 19200 8E1: 11 bits of 104 cycles of 8, the divider that UBRR0 = 103 with U2X0 makes (ATmega328P 20.3.1, 20.10). */

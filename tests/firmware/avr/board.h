@@ -7,7 +7,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "sim/a05.h"
+#include "sim/a16.h"
+#include "sim/fault.h"
+#include "sim/hps167s.h"
 #include "sim/pin.h"
+#include "sim/scene.h"
 #include "sim/uart.h"
 #include "usart.h"
 
@@ -33,21 +38,12 @@
  * (2 cycles) and the noise canceller.
  */
 enum { BOARD_HZ = 16000000, BOARD_CYCLES_PER_US = 16, BOARD_ENTRY_CYCLES = 4 };
-enum {
-    BOARD_RECORD = 32,
-    BOARD_RECORDS = 64,
-    BOARD_BYTES = 4096,
-    BOARD_EDGES = 512,
-    BOARD_WATCHES = 8,
-    BOARD_PLANNED = 16,
-    BOARD_LINE = 80
-};
+enum { BOARD_RECORD = 32, BOARD_RECORDS = 64, BOARD_BYTES = 4096, BOARD_EDGES = 512, BOARD_LINE = 80 };
+enum { BOARD_WATCHES = 8, BOARD_PLANNED = 16 };
 
 /* What the image has reported. */
 typedef struct {
-    uint8_t kind;
-    uint8_t length;
-    uint8_t bytes[BOARD_RECORD];
+    uint8_t kind, length, bytes[BOARD_RECORD];
     uint64_t cycle;
 } board_record_t;
 
@@ -79,8 +75,7 @@ typedef struct {
 typedef struct {
     char port;
     uint8_t bit;
-    bool high;
-    bool waits;
+    bool high, waits;
 } board_planned_t;
 
 /* One who follows each instruction; see profile.h. */
@@ -123,8 +118,7 @@ typedef struct {
     uint8_t driven[3]; /* inputs that the bench drives, ports B to D */
     uint8_t levels[3];
     const board_observer_t *observer;
-    bool has_driver;
-    bool driver_on;
+    bool has_driver, driver_on;
     uint64_t driver_off_cycle;
     bool in_break;
     struct {
@@ -136,8 +130,7 @@ typedef struct {
     struct {
         fathom_sim_pins_t *pins;
         char port[2];
-        uint8_t bit[2];
-        uint8_t inputs;
+        uint8_t bit[2], inputs;
     } joined;
     struct {
         uint32_t seen; /* of `bytes` */

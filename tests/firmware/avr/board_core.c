@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* The processor's turn: simavr 1.6's own loop, but for its interrupts and their flags. */
 #include <simavr/avr_extint.h>
 #include <simavr/sim_core.h>

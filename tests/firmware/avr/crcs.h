@@ -9,8 +9,7 @@ enum { CRCS_BYTES = 64, CRCS_RECORD = 1 };
 
 typedef struct {
     uint8_t go; /* set by the test last of all, and to 0 by the image */
-    uint8_t length;
-    uint8_t bytes[CRCS_BYTES];
+    uint8_t length, bytes[CRCS_BYTES];
 } crcs_t;
 
 #endif

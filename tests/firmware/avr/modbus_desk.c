@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "modbus_desk.h"
 
-#include <string.h>
-
 #include "suite.h"
 
 #include "fathom/sample.h"
@@ -109,8 +107,7 @@ void desk_run(uint32_t reports)
 void desk_order(uint8_t order)
 {
     *board_data("ordered") = order;
-    while (next()->kind != REPORT_ASKED) {
-    }
+    while (next()->kind != REPORT_ASKED) continue;
 }
 
 void desk_counters(uint16_t line[FATHOM_LINE_COUNTERS], uint16_t port[3])

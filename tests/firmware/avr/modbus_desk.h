@@ -5,8 +5,6 @@
 #include "board.h"
 #include "fathom/line.h"
 #include "reports.h"
-#include "sim/fault.h"
-#include "sim/hps167s.h"
 
 /* The image "sensors" on RS-485 with two HPS-167S, addresses 1 and 2, each with faults of its own. */
 

@@ -15,10 +15,7 @@
 enum { PROFILE_VECTORS = 26, PROFILE_NESTED = 8, PROFILE_FUNCTIONS = 8 };
 
 typedef struct {
-    uint32_t calls;
-    uint32_t longest_cycles;
-    uint32_t shortest_cycles;
-    uint32_t last_cycles;
+    uint32_t calls, longest_cycles, shortest_cycles, last_cycles;
     uint64_t total_cycles;
     uint16_t stack; /* bytes, the deepest: with the return address, and all that it calls */
 } profile_cost_t;
@@ -38,8 +35,7 @@ typedef struct {
 typedef struct {
     uint8_t vector;
     uint32_t cycles;
-    uint16_t stack_pointer;
-    uint16_t deepest;
+    uint16_t stack_pointer, deepest;
 } profile_frame_t;
 
 typedef struct {
@@ -75,14 +71,8 @@ uint16_t profile_deepest_stack(void);
 /* Awake, in interrupts or in the main loop, since the beginning. */
 uint64_t profile_awake_cycles(void);
 
-enum { /* the vectors of interest */
-       PROFILE_INT0 = 1,
-       PROFILE_TIMER1_CAPTURE = 10,
-       PROFILE_TIMER1_COMPARE_B = 12,
-       PROFILE_TIMER1_OVERFLOW = 13,
-       PROFILE_USART_RECEIVE = 18,
-       PROFILE_USART_EMPTY = 19,
-       PROFILE_USART_TRANSMIT = 20
-};
+/* The vectors of interest. */
+enum { PROFILE_INT0 = 1, PROFILE_USART_RECEIVE = 18, PROFILE_USART_EMPTY = 19, PROFILE_USART_TRANSMIT = 20 };
+enum { PROFILE_TIMER1_CAPTURE = 10, PROFILE_TIMER1_COMPARE_B = 12, PROFILE_TIMER1_OVERFLOW = 13 };
 
 #endif

@@ -7,30 +7,14 @@
 /* Between images/remote.c and remote.c: laid out alike on both sides, little-endian, no padding on either. */
 enum { REMOTE_BYTES = 64, REMOTE_REQUEST = 40 };
 
-enum { /* call */
-       REMOTE_BEGIN = 1,
-       REMOTE_READ,
-       REMOTE_WRITE,
-       REMOTE_SENT,
-       REMOTE_SET_LINE,
-       REMOTE_SET_BREAK,
-       REMOTE_NOW,
-       REMOTE_IDLE,
-       REMOTE_CLOCK,
-       REMOTE_PIN,
-       REMOTE_READY,
-       REMOTE_MARK
-};
+/* call */
+enum { REMOTE_BEGIN = 1, REMOTE_READ, REMOTE_WRITE, REMOTE_SENT, REMOTE_SET_LINE, REMOTE_SET_BREAK };
+enum { REMOTE_NOW = 7, REMOTE_IDLE, REMOTE_CLOCK, REMOTE_PIN, REMOTE_READY, REMOTE_MARK };
 
 typedef struct {
-    uint32_t baud;
-    uint32_t time_us;
+    uint32_t baud, time_us;
     int16_t result;
-    uint8_t parity;
-    uint8_t stop_bits;
-    uint8_t length;
-    uint8_t flags;
-    uint8_t bytes[REMOTE_BYTES];
+    uint8_t parity, stop_bits, length, flags, bytes[REMOTE_BYTES];
     uint8_t call; /* 0: done */
     uint8_t unused;
 } remote_t;

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* Frames that A16 and A05 send by themselves, at their true spacing, with noise and lost bytes: each good one gives its
  * reading, and no other reading is ever given. */
 #include "suite.h"
@@ -7,8 +6,6 @@
 #include "fathom/hal.h"
 #include "fathom/sample.h"
 #include "modbus_desk.h"
-#include "sim/a05.h"
-#include "sim/a16.h"
 
 /* A processor that sleeps is simulated fast. In the long run there are twice as many. */
 enum { FRAMES = 100, FRAMES_AWAKE = 15, MOST_FRAMES = 2 * FRAMES };
@@ -113,8 +110,7 @@ static void assert_time_of_last_byte(uint8_t length)
 /* Each of so many frames gives its reading, or its four; one may be on its way. */
 typedef struct {
     uint8_t orders;
-    uint32_t frames;
-    uint32_t clock_us;
+    uint32_t frames, clock_us;
 } all_t;
 
 static void assert_all(void **state)

@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-
 /* The bench against the ATmega328P's datasheet, with an image of which every cycle is known (images/bench.c). */
 #include <stdio.h>
 
 #include "suite.h"
 
 #include "profile.h"
-#include "sim/a16.h"
-#include "sim/scene.h"
 
 static int start(void **state)
 {

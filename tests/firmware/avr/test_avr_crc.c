@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-
 /* The two CRCs of port/avr, with its table in program memory and without, against the definition. */
-#include <string.h>
-
 #include "suite.h"
 
 #include "board.h"

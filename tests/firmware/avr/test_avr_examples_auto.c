@@ -1,24 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
-#include <string.h>
 
 #include "suite.h"
 
 #include "board.h"
-#include "sim/a05.h"
-#include "sim/a16.h"
-#include "sim/scene.h"
 
 /* The image of examples/avr/a16_a05_auto.c: an A16 and an A05 that send by themselves, each on a line of its own; a
  * multiplexer gives one of them to RXD, chosen by PD4. */
 enum { PATIENCE_US = 6000000 };
 
-static fathom_sim_line_t a16_line;
-static fathom_sim_line_t a05_line;
+static fathom_sim_line_t a16_line, a05_line;
 static fathom_sim_a16_t a16;
 static fathom_sim_a05_t a05;
-static fathom_sim_fixed_t a16_scene;
-static fathom_sim_fixed_t a05_scene;
+static fathom_sim_fixed_t a16_scene, a05_scene;
 static unsigned turns;
 
 /* What the line has brought while nobody listened is gone. */
@@ -90,8 +84,7 @@ TEST(a_turn_in_the_middle_of_a_frame_gives_no_wrong_value)
     a16_scene.value[0] = 511;
     for (size_t i = 0; i < sizeof periods_us / sizeof *periods_us; i++) {
         start(periods_us[i][0], periods_us[i][1]);
-        unsigned of_a16 = 0;
-        unsigned of_a05 = 0;
+        unsigned of_a16 = 0, of_a05 = 0;
         for (int lines = 0; lines < 200; lines++) {
             static const char *const good[] = {"A16 511 mm", "A05 1 1000 mm", "A05 2 2000 mm",
                                                "A05 3 2047 mm", "A05 4 1339 mm"};
@@ -142,8 +135,7 @@ TEST(a_dead_one_is_said_to_be_silent_and_the_other_goes_on)
 {
     assert_says("A16 1234 mm");
     power_off(&a05_line, &a05.device, 20000000);
-    unsigned of_a16 = 0;
-    unsigned silent = 0;
+    unsigned of_a16 = 0, silent = 0;
     const uint64_t begin_cycle = board.avr->cycle;
     while (board.avr->cycle < begin_cycle + 18000000ull * BOARD_CYCLES_PER_US) {
         const char *const text = board_line(PATIENCE_US);

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
 #include "suite.h"
 
 #include "board.h"
-#include "sim/hps167s.h"
-#include "sim/scene.h"
 
 /* The image of examples/avr/hps167s_rs485.c: three LEDs, each lit by a low pin, of what an HPS-167S sees. */
 enum { NEAR = 0, FAR = 1, ERROR = 2, LEDS = 3 };

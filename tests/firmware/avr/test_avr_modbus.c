@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* HPS-167S over RS-485: the driver-enable pin, the silences, readings in any loop and across the wrap. */
 #include "suite.h"
 
@@ -11,10 +10,8 @@ static const suite_t suite = {.tear_down = desk_stop};
 /* Each request has its answer, all is well on the wire and nothing is counted. */
 typedef struct {
     uint8_t orders;
-    bool
-        echo; /* of the line: an adapter, or a transceiver whose receiver stays on, hands back what is sent */
-    uint32_t clock_us;
-    uint32_t readings;
+    bool echo; /* of the line: an adapter or a transceiver whose receiver stays on hands back what is sent */
+    uint32_t clock_us, readings;
     uint32_t more_requests; /* that may have been made */
     uint32_t least_us;      /* the shortest silence before a request; 0: any */
     uint32_t most_us;

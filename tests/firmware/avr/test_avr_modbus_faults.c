@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* HPS-167S over RS-485 when things go wrong: no reading is wrong, everything is told and counted, and the next exchange
  * is as before. */
 #include "suite.h"
@@ -15,11 +14,8 @@ enum { PARITY = 0, FRAMING = 1, OVERRUNS = 2 }; /* of the port */
 
 /* 40 reports, while every fifth answer up to `last` has a fault, of these kinds in turns. */
 typedef struct {
-    uint8_t orders;
-    uint8_t kinds[2];
-    uint32_t last;
-    uint32_t late_us;
-    uint32_t requests;
+    uint8_t orders, kinds[2];
+    uint32_t last, late_us, requests;
     uint32_t no_answers; /* FATHOM_ERR_NO_ANSWER, or where the line saw the damage FATHOM_ERR_CHECKSUM */
     uint16_t parity;     /* that the port counts */
     uint16_t framing;

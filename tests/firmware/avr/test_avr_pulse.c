@@ -2,7 +2,6 @@
 #include <simavr/sim_cycle_timers.h>
 #include <simavr/sim_interrupts.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "suite.h"
 
@@ -32,8 +31,7 @@ static struct {
     uint64_t overflow_cycle; /* of Timer1, the last one */
     uint64_t rise_cycle;     /* of the last pulse: when its edges really were, */
     uint64_t fall_cycle;
-    bool
-        masked; /* and whether, at one of them, another interrupt ran or was due, or the main loop had shut them out */
+    bool masked; /* and whether another interrupt ran or was due at one, or the main loop kept it out */
     uint64_t fall_at_cycle; /* when it is to fall */
     uint32_t passed_over_us;
     uint8_t byte;   /* of the traffic */
@@ -42,8 +40,7 @@ static struct {
 
 /* What the image says of one pulse, by BY_ICP1 and by BY_INT0. */
 typedef struct {
-    uint32_t us[3];
-    uint32_t end_us[3];
+    uint32_t us[3], end_us[3];
     uint8_t missed; /* edges, by either, so far */
 } told_t;
 
@@ -172,11 +169,9 @@ static uint32_t longest_cycles(void)
 static const suite_t suite = {.set_up = set_up, .tear_down = board_stop};
 
 typedef struct {
-    uint32_t pulses;
-    uint32_t masked;
+    uint32_t pulses, masked;
     int64_t icp1; /* the largest errors, in cycles */
-    int64_t int0;
-    int64_t int0_masked;
+    int64_t int0, int0_masked;
 } errors_t;
 
 static void keep(int64_t *largest, int64_t error)

@@ -4,8 +4,6 @@
 #include "suite.h"
 
 #include "board.h"
-#include "sim/a16.h"
-#include "sim/scene.h"
 
 /*
  * The whole cycle of an A16 with PWM output, by the image of examples/avr/a16_pulse.c: trigger at PB1, pulse at ICP1,

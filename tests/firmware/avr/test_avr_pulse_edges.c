@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* What input capture makes of edges that come while its own interrupt runs; and INT0 by itself. */
 #include "suite.h"
 

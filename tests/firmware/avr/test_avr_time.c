@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* The clock of port/avr against the cycles of the processor. */
 #include "suite.h"
 
@@ -93,8 +92,6 @@ TEST(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap)
     assert_true(board.asleep_cycles > board.avr->cycle / 100 * 99);
 }
 
-/* ---- an overflow that no interrupt has counted yet ---- */
-
 static int64_t zero_of_stall;
 static int phase_of_stall;
 static bool has_stalled;
@@ -148,8 +145,6 @@ TEST(overflows_that_wait_for_16_ms_are_in_each_reading)
     }
     assert_in_range(pending, 150, 250);
 }
-
-/* ---- sleep ---- */
 
 static const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
 

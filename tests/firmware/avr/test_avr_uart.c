@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* What port/avr sends: its bits, its driver-enable pin, `sent`, refusals, breaks. */
 #include "suite.h"
 
@@ -255,8 +254,6 @@ TEST(begin_refuses_what_it_cannot_do)
     remote_write(request, sizeof request);
     assert_request_left(sizeof request);
 }
-
-/* ---- breaks ---- */
 
 static fathom_sim_line_t line;
 static void begin_line(void)

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* The rates and formats of port/avr: ATmega328P 20.10 at 16 MHz, by hand. */
 #include "suite.h"
 

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-
 /* What port/avr receives: each byte once, in order, with what the USART says of it. */
-#include <string.h>
-
 #include "suite.h"
 
 #include "fathom/hal.h"
@@ -13,9 +10,8 @@ enum { RING = 63 }; /* FATHOM_AVR_RX_RING, less one */
 
 static const fathom_line_settings_t at_115200 = {115200, FATHOM_PARITY_NONE, 1};
 static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
-enum {
-    CHARACTER_115200 = 10 * 16000000 / 115200
-}; /* what a far end at the nominal rate takes: 1388 cycles */
+/* What a far end at the nominal rate takes: 1388 cycles. */
+enum { CHARACTER_115200 = 10 * 16000000 / 115200 };
 
 static uint8_t pattern[1024];
 
@@ -131,8 +127,6 @@ TEST(a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is)
     assert_true(seen[0] > 20 && seen[1] > 20); /* it did come on both sides of the look */
     assert_counters(0, 0, 0);
 }
-
-/* ---- errors ---- */
 
 TEST(errors_are_told_of_their_byte_and_counted)
 {

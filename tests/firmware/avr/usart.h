@@ -37,8 +37,7 @@ typedef struct {
     /* transmitter */
     bool shifting; /* `shift` is on the wire */
     bool buffered; /* `buffer` waits in UDR0: data register not empty */
-    uint8_t shift;
-    uint8_t buffer;
+    uint8_t shift, buffer;
     uint64_t begin_cycle; /* of `shift` */
     uint64_t end_cycle;
 

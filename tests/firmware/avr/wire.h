@@ -8,8 +8,7 @@
 typedef struct {
     uint32_t requests;     /* so far */
     uint64_t before_cycle; /* the end of whatever came before it; 0: nothing */
-    uint64_t begin_cycle;
-    uint64_t end_cycle;
+    uint64_t begin_cycle, end_cycle;
     uint64_t on_cycle;  /* when the driver was switched on for it, */
     uint64_t off_cycle; /* and off; 0: not yet */
     uint32_t at;        /* of board.bytes */

@@ -127,9 +127,7 @@ static unsigned count_left_out(const char *file)
 int _cmocka_run_group_tests(const char *file, const struct CMUnitTest *tests, size_t count,
                             int (*set_up)(void **state), int (*tear_down)(void **state))
 {
-    unsigned run = 0;
-    unsigned passed = 0;
-    unsigned to_leave_out = count_left_out(file);
+    unsigned run = 0, passed = 0, to_leave_out = count_left_out(file);
     printf("[==========] Running %u test(s).\n", (unsigned)count);
     for (size_t i = 0; i != count; i++) {
         if (is_left_out(file, tests[i].name)) {

@@ -35,8 +35,7 @@ uint32_t counted_in_us(const counter_t *counter, const fathom_clock_t *clock, ui
 {
     const uint32_t since_us = clock->now_us(clock->ctx);
     const uint32_t since = *counter->at;
-    while (fathom_elapsed_us(clock->now_us(clock->ctx), since_us) < length_us) {
-    }
+    while (fathom_elapsed_us(clock->now_us(clock->ctx), since_us) < length_us) continue;
     const uint32_t now = *counter->at;
     return (counter->is_down ? since - now : now - since) & counter->bits;
 }

@@ -2,6 +2,7 @@
 // The tests of one file, in their order, when all of it has been read. The last line is "N passed, 0 failed". With
 // FATHOM_FIRST_FAILURE in the environment the first one that fails is the last.
 'use strict';
+const assert = require('assert');
 const {Machine} = require('./machine.js');
 
 const tests = [];
@@ -34,4 +35,4 @@ function run() {
   process.exitCode = failed === 0 ? 0 : 1;
 }
 
-module.exports = {test, figure};
+module.exports = {assert, test, figure};

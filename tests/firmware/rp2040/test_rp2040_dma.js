@@ -2,8 +2,7 @@
 // examples/rp2040/a16_dma.c: automatic frames of an A16 (A16 2) by DMA, with every silence between them; and
 // images/dma_loop.c: the same in loops that are slow.
 'use strict';
-const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {PE, FE, OE} = require('./pl011.js');
 const {Terminal, US, MS, STALE, WRAP_NS} = require('./devices.js');

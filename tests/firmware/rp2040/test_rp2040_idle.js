@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sleep, the clock and the pins of the port.
 'use strict';
-const assert = require('assert');
-const {test} = require('./runner.js');
+const {assert, test} = require('./runner.js');
 const {Desk} = require('./desk.js');
 
 const NO_DEADLINE = 0xffffffff;

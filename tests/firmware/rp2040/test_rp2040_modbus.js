@@ -2,8 +2,7 @@
 // examples/rp2040/hps167s_rs485.c: an HPS-167S over RS-485 with its driver-enable, and images/both.c: the same without
 // sleep, beside an A16.
 'use strict';
-const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {PE, FE} = require('./pl011.js');
 const {

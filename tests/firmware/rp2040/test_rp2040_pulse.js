@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // examples/rp2040/a16_pulse.c: the whole PWM cycle of an A16 (A16 1).
 'use strict';
-const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {A16, Terminal, MS, NO_ANSWER, WRAP_NS} = require('./devices.js');
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // examples/rp2040/hps167s_battery.c: power for one reading, then sleep, also for longer than the clock takes to wrap.
 'use strict';
-const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {FE, BE} = require('./pl011.js');
 const {Hps167s, Terminal, MS, READING, MEASURING, NEVER, NO_ANSWER, WRAP_NS} = require('./devices.js');

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // examples/rp2040/tasks.c: a task for each of two lines, and one that blinks.
 'use strict';
-const assert = require('assert');
-const {test, figure} = require('./runner.js');
+const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {Answering, A16_REAL_TIME} = require('./answering.js');
 const {Hps167s, MS, MEASURING, NEVER, WRAP_NS} = require('./devices.js');

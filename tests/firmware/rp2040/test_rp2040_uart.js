@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The port's UART, function by function.
 'use strict';
-const assert = require('assert');
-const {test} = require('./runner.js');
+const {assert, test} = require('./runner.js');
 const {Desk} = require('./desk.js');
 const {FE, PE, BE} = require('./pl011.js');
 

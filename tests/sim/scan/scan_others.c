@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan_others.h"
 
-#include <string.h>
-
-/* ---- one that answers in Modbus ---- */
-
 stranger_t stranger;
 
 static uint16_t first_of(const fathom_modbus_message_t *message)
@@ -42,8 +38,6 @@ void begin_stranger(uint8_t unit, const fathom_line_settings_t *line)
     device.protocols[0] = &fathom_sim_modbus;
     rig_attach(&device);
 }
-
-/* ---- one that says always the same ---- */
 
 const uint8_t hps_answer[13] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2, 0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
 const uint8_t a16_request[8] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan_rig.h"
 
-#include <string.h>
-
 rig_t rig;
 
 /* What a scan may send: function 03 of some other register than 0009 to one unit, or 55 AA FF 10, "probe 1 of any

@@ -35,18 +35,15 @@ typedef struct {
     char *text;
     size_t size;
     cell_result_t sum;
-    uint32_t broken;
-    uint32_t rows;
+    uint32_t broken, rows;
 } share_t;
 
 static struct {
     uint64_t exchanges;
-    uint32_t seed;
-    uint32_t jobs;
+    uint32_t seed, jobs;
     uint8_t only; /* SOAK_SETTINGS: all */
     bool only_eight;
-    uint8_t kinds[CELL_KINDS];
-    uint8_t kinds_used;
+    uint8_t kinds[CELL_KINDS], kinds_used;
     pthread_mutex_t lock;
     uint8_t next;
     share_t shares[SOAK_SETTINGS];
@@ -152,8 +149,7 @@ static uint32_t soak_all(void)
 {
     pthread_t threads[MOST_JOBS];
     cell_result_t sum = {0};
-    uint32_t broken = 0;
-    uint32_t rows = 0;
+    uint32_t broken = 0, rows = 0;
     const time_t begin = time(NULL);
     for (uint32_t i = 1; i < job.jobs; i++)
         if (pthread_create(&threads[i], NULL, work, NULL) != 0) abort();

@@ -6,10 +6,6 @@
 #include "board.h"
 #include "crcs.h"
 #include "profile.h"
-#include "sim/a05.h"
-#include "sim/a16.h"
-#include "sim/hps167s.h"
-#include "sim/scene.h"
 
 /*
  * What the port and the library cost on an ATmega328P at 16 MHz, as lines "figure NAME VALUE UNIT" for figures.py.
@@ -142,8 +138,7 @@ static double silence_us(const fathom_line_settings_t *settings)
  * t3.5. The worst of them, in us and in percent.
  */
 typedef struct {
-    double over_us;
-    double over_percent;
+    double over_us, over_percent;
 } bus_t;
 
 static bus_t bus_time(const fathom_line_settings_t *settings, uint8_t answer)

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* What the bench itself is tested with (../test_avr_bench.c): instructions whose cycles the instruction set manual has. */
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -39,8 +38,7 @@ ISR(USART_RX_vect)
 
 static void send(uint8_t byte)
 {
-    while ((UCSR0A & _BV(UDRE0)) == 0) {
-    }
+    while ((UCSR0A & _BV(UDRE0)) == 0) continue;
     UDR0 = byte;
     GPIOR1 = 'd';
 }
@@ -65,13 +63,11 @@ int main(void)
     send(0x41); /* into the shift register */
     send(0x42); /* into UDR0, at once */
     send(0x43); /* when the first is out */
-    while ((UCSR0A & _BV(TXC0)) == 0) {
-    }
+    while ((UCSR0A & _BV(TXC0)) == 0) continue;
     GPIOR1 = 't';
 
     GPIOR1 = '3'; /* bytes come here that nobody reads */
-    while ((PIND & _BV(PIND4)) == 0) {
-    }
+    while ((PIND & _BV(PIND4)) == 0) continue;
     while ((UCSR0A & _BV(RXC0)) != 0) {
         GPIOR0 = UCSR0A;
         GPIOR0 = UDR0;

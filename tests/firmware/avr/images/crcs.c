@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* Both CRCs of the port over the bytes that the test puts into `asked`, one record of 4 bytes each time. */
 #include <avr/io.h>
 
@@ -21,8 +20,7 @@ int main(void)
 {
     uint8_t bytes[CRCS_BYTES];
     for (;;) {
-        while (asked.go == 0) {
-        }
+        while (asked.go == 0) continue;
         for (uint8_t i = 0; i < CRCS_BYTES; i++) bytes[i] = asked.bytes[i];
         for (uint8_t i = 0; i < 2; i++) {
             const uint16_t crc = ways[i](bytes, asked.length);

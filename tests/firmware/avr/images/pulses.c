@@ -16,8 +16,7 @@ static const fathom_avr_usart_config_t usart = {
 
 static const fathom_avr_pin_t icp1_at = {&PORTB, _BV(PB0)};
 static const fathom_avr_pin_t int0_at = {&PORTD, _BV(PD2)};
-static fathom_edges_t by_icp1;
-static fathom_edges_t by_int0;
+static fathom_edges_t by_icp1, by_int0;
 
 static void tell_us(uint32_t us)
 {

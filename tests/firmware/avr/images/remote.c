@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* The port's functions, called one by one by a test that writes what it wants into `remote`: see ../remote.h. */
 #include <avr/interrupt.h>
 #include <avr/io.h>

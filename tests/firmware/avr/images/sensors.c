@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-
 /* Listens to an A16 or an A05 that sends by itself, or asks one or two HPS-167S over RS-485, driver-enable on PD3. */
 #include <avr/interrupt.h>
 #include <stddef.h>
@@ -55,18 +54,14 @@ volatile uint8_t ordered;
 static uint8_t await_orders(void)
 {
     GPIOR1 = REPORT_READY;
-    while (ordered == 0) {
-    }
+    while (ordered == 0) continue;
     const uint8_t orders = ordered;
     ordered = 0;
     GPIOR1 = REPORT_BEGUN;
     return orders;
 }
 
-/* ---- the sensors ---- */
-
-static uint8_t request[8];
-static uint8_t frame[16];
+static uint8_t request[8], frame[16];
 static fathom_line_t line;
 static fathom_modbus_t modbus;
 static fathom_a16_auto_t a16;

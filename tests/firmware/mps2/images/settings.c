@@ -54,8 +54,8 @@ int main(void)
     check(set(&uart, 230400, FATHOM_PARITY_NONE, 1) == 1, "but the same one");
     __asm__ volatile("cpsie i");
     const uint32_t since_us = fathom_mps2_clock.now_us(0);
-    while (!uart.sent(uart.ctx) && fathom_elapsed_us(fathom_mps2_clock.now_us(0), since_us) < 100000) {
-    }
+    while (!uart.sent(uart.ctx) && fathom_elapsed_us(fathom_mps2_clock.now_us(0), since_us) < 100000)
+        continue;
     /* At 230400 baud a character is 43 us. */
     check_within(fathom_elapsed_us(fathom_mps2_clock.now_us(0), since_us), 30, 500, "until it has left");
     check(set(&uart, 9600, FATHOM_PARITY_NONE, 1) == 1, "when it is set");

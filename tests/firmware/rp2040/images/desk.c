@@ -13,11 +13,9 @@ enum { DE_ALARM = 1, IDLE_ALARM = 2, REQUEST_SIZE = 200 };
 
 typedef struct {
     volatile uint32_t ask;
-    uint32_t operation;
-    uint32_t argument[8];
+    uint32_t operation, argument[8];
     int32_t result;
-    uint32_t flags;
-    uint32_t last_us;
+    uint32_t flags, last_us;
     uint8_t bytes[256];
 } desk_t;
 

@@ -59,8 +59,8 @@ int main(void)
     check(uart.set_break(uart.ctx, true) == 0, "and no break");
     __asm__ volatile("csrs mstatus, %0" ::"r"(8));
     const uint32_t since_us = fathom_virt_clock.now_us(0);
-    while (!uart.sent(uart.ctx) && fathom_elapsed_us(fathom_virt_clock.now_us(0), since_us) < 100000) {
-    }
+    while (!uart.sent(uart.ctx) && fathom_elapsed_us(fathom_virt_clock.now_us(0), since_us) < 100000)
+        continue;
     check(set(&uart, 9600, FATHOM_PARITY_NONE, 1) == 1, "until it has left");
     return check_result();
 }
