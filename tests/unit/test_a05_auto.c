@@ -212,6 +212,34 @@ TEST(where_the_place_is_not_sure_an_odd_probe_has_all_of_the_frame_refused)
     assert_int_equal(rig.last[3].distance_mm, 3000);
 }
 
+/* 7000 2000 2047 1459 mm, the first odd: FF + 1B + 58 + 07 + D0 + 07 + FF + 05 + B3 = 407. Six bytes on it reads 1459 2047
+ * 7000 2000 with a right sum, as test_probes_permuted.c explains. */
+static const uint8_t permutable[] = {0xFF, 0x1B, 0x58, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0xB3, 0x07};
+
+TEST(probes_with_an_odd_one_are_never_permuted_wherever_listening_begins)
+{
+    for (unsigned gaps = 0; gaps != 2; gaps++) {
+        for (unsigned first = 0; first != 10; first++) {
+            start();
+            if (gaps != 0) rig_run(10000, 1000);
+            fake_receive(&rig.fake, 0, permutable + first, 10 - first);
+            rig_run(gaps != 0 ? 10000 : 1000, 1000);
+            for (unsigned n = 0; n != 20; n++) {
+                fake_receive(&rig.fake, 0, permutable, 10);
+                rig_run(gaps != 0 ? 10000 : 1000, 1000);
+                if (rig.samples == 0) continue;
+                assert_int_equal(rig.last[0].probe, 0);
+                assert_int_equal(rig.last[1].distance_mm, 2000);
+                assert_int_equal(rig.last[2].distance_mm, 2047);
+                assert_int_equal(rig.last[3].distance_mm, 1459);
+            }
+            /* Without pauses nothing tells the one place from the other. */
+            if (gaps != 0) assert_int_equal(rig.samples, first == 0 ? 63 : 60);
+            if (gaps == 0) assert_int_equal(rig.samples, 0);
+        }
+    }
+}
+
 TEST(an_odd_probe_that_is_not_fitted_is_neither_given_nor_told_in_any_place)
 {
     config.probes = 0x0B;
