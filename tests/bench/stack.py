@@ -6,6 +6,7 @@ own arithmetic, and calls, on AVR with the return address that they push. It is 
 table of a switch any instruction behind it may come next; and a call through a pointer leads wherever INDIRECT says,
 of what is linked. What it does not know makes it fail. Nothing of the user or the HAL is counted.
 """
+import glob
 import os
 import re
 
@@ -140,6 +141,19 @@ def avr(op, args, address, size):
 DECODERS = {'arm': arm, 'riscv': riscv, 'avr': avr}
 
 
+def statement(path, number):
+    """What begins in that line of a source, up to a sign that ends it; '' where there is none."""
+    with open(path, encoding='utf-8') as file:
+        lines = file.read().splitlines()[number - 1:]
+    ends = [i for i, line in enumerate(lines) if re.search('[;{}]', line)]
+    return ' '.join(lines[:1 + ends[0]]) if ends else ''
+
+
+def defines(path, function):
+    with open(path, encoding='utf-8') as file:
+        return re.search(rf'^\w[^;{{}}()]*\b{function}\([^;{{}}]*\)\n{{', file.read(), re.M)
+
+
 class Image:
     """The functions of an ELF file, and how deep each of them goes."""
 
@@ -194,10 +208,14 @@ class Image:
         if self.where[address] is None:
             raise Failed(f'an indirect call without a source: {self.names[self.owner[address]]}')
         path, number = self.where[address]
-        with open(path, encoding='utf-8') as file:
-            lines = file.read().splitlines()[number - 1:]
-        line = ' '.join(lines[:1 + next(i for i, end in enumerate(lines) if re.search('[;{}]', end))])
+        line = statement(path, number)
         known = [call for call in CALL.findall(line) if call in INDIRECT or call in PERHAPS]
+        if not known:  # avr-objdump 2.26 names the header of an inline function for the file around it
+            name = self.names[self.owner[address]].split(':')[-1]
+            for other in glob.glob(os.path.join(ROOT, 'src', '*.c')):
+                if defines(other, name) and CALL.search(statement(other, number)):
+                    line = statement(other, number)
+            known = [call for call in CALL.findall(line) if call in INDIRECT or call in PERHAPS]
         if len(known) == 1:
             targets = INDIRECT.get(known[0]) or PERHAPS[known[0]]
             found = [self.by_name[name] for name in targets if name in self.by_name]
