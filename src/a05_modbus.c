@@ -36,7 +36,8 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     base->answer.first = (uint8_t)(first + 1);
     base->probes = probes;
     return fathom_dyp_modbus_init(base, config->modbus, config->clock,
-                                  config->address != 0 ? config->address : 1, FATHOM_A05_MAX_MM);
+                                  fathom_dyp_modbus_place(config->address, config->address_zero),
+                                  FATHOM_A05_MAX_MM);
 }
 
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
@@ -55,6 +56,11 @@ fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address)
 {
     return fathom_dyp_modbus_set_address(&sensor->base, address);
+}
+
+fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_set_address_to_0(&sensor->base);
 }
 
 fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)

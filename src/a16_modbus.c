@@ -29,7 +29,8 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
     base->answer.first = 1;
     base->probes = 1;
     return fathom_dyp_modbus_init(base, config->modbus, config->clock,
-                                  config->address != 0 ? config->address : 1, FATHOM_A16_MAX_MM);
+                                  fathom_dyp_modbus_place(config->address, config->address_zero),
+                                  FATHOM_A16_MAX_MM);
 }
 
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }

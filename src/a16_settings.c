@@ -33,6 +33,11 @@ fathom_status_t fathom_a16_set_address(fathom_a16_modbus_t *sensor, uint8_t addr
     return fathom_dyp_modbus_set_address(&sensor->base, address);
 }
 
+fathom_status_t fathom_a16_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_set_address_to_0(&sensor->base);
+}
+
 fathom_status_t fathom_a16_set_operating_mode(fathom_a16_modbus_t *sensor, fathom_a16_operating_mode_t mode)
 {
     if ((unsigned)mode > FATHOM_A16_AUTOMATIC) return FATHOM_ERR_ARGUMENT;

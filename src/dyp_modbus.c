@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/dyp_modbus.h"
 
+enum { ZERO_ADDRESS = 256 }; /* fathom_modbus_setting_t */
+
+uint8_t fathom_dyp_modbus_place(uint8_t address, bool address_zero)
+{
+    if (address_zero) return address == 0 ? 0 : FATHOM_MODBUS_ANY_UNIT;
+    return address != 0 ? address : 1;
+}
+
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *modbus,
                                        const fathom_clock_t *clock, uint8_t address, uint16_t default_max_mm)
 {
@@ -68,11 +76,13 @@ static fathom_status_t read(void *driver, uint32_t *value)
     return status;
 }
 
-static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value, uint8_t new_address,
-                           bool is_readable)
+static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value,
+                           uint16_t new_address, bool is_readable)
 {
     place_t place = {sensor, address};
-    if (address == FATHOM_DYP_REGISTER_ADDRESS && sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
+    const fathom_modbus_unit_t *const unit = &sensor->unit;
+    if (address == FATHOM_DYP_REGISTER_ADDRESS && unit->is_blind) return FATHOM_ERR_ARGUMENT;
+    if (unit->address == FATHOM_MODBUS_BROADCAST && unit->setting == 0) return FATHOM_ERR_ARGUMENT;
     fathom_modbus_question_t write;
     fathom_modbus_setting_t setting;
     describe(sensor, address, &value, &write);
@@ -107,6 +117,45 @@ fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8
 {
     if (address == FATHOM_MODBUS_BROADCAST || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
     return set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address, address, true);
+}
+
+fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor)
+{
+    return set(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0, ZERO_ADDRESS, true);
+}
+
+/* ---- who is there ---- */
+
+fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *modbus,
+                                       uint8_t *address)
+{
+    fathom_modbus_request_t *const request = &find->request;
+    if (!find->is_asked) {
+        request->exchange.timeout_us = FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US;
+        request->exchange.retries = 0;
+        request->exchange.settings = NULL;
+        fathom_modbus_read_holding_registers(&request->message, FATHOM_MODBUS_ANY_UNIT,
+                                             FATHOM_DYP_REGISTER_ADDRESS, 1, &find->value);
+        const fathom_status_t status = modbus->submit(modbus->ctx, request);
+        if (status != FATHOM_PENDING) return status;
+        find->is_asked = true;
+    }
+    (void)modbus->poll(modbus->ctx); /* a broken port ends the request */
+    const fathom_status_t status = (fathom_status_t)request->exchange.status;
+    if (status == FATHOM_PENDING) return status;
+    find->is_asked = false;
+    if (status != FATHOM_READY) return status;
+    const uint16_t found =
+        request->message.head[0] != FATHOM_MODBUS_ANY_UNIT ? request->message.head[0] : find->value;
+    if (found >= FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_MALFORMED;
+    *address = (uint8_t)found;
+    return status;
+}
+
+void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *modbus)
+{
+    if (find->is_asked) modbus->cancel(modbus->ctx, &find->request);
+    find->is_asked = false;
 }
 
 /* ---- measuring ---- */

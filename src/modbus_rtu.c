@@ -114,7 +114,6 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
 
 uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
 {
-    if (bytes[UNIT] == FATHOM_MODBUS_BROADCAST) return 0;
     if (have <= SIZE) return SIZE + 1;
     const uint8_t function = bytes[FUNCTION] & (uint8_t)~EXCEPTION;
     const bool is_write = function == WRITE || function == WRITE_MANY;

@@ -6,7 +6,7 @@ enum { INSIDE = FATHOM_MODBUS_UNIT_INSIDE };
 
 static void go_there(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
-    if (setting->address != 0) unit->address = setting->address;
+    if (setting->address != 0) unit->address = (uint8_t)setting->address;
     if (setting->settings != NULL) unit->settings = setting->settings;
 }
 

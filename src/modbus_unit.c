@@ -103,7 +103,7 @@ static fathom_status_t ask(fathom_modbus_unit_t *unit, const fathom_modbus_quest
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *modbus,
                                         const fathom_clock_t *clock, uint8_t address)
 {
-    if (modbus == NULL || clock == NULL || address == 0 || address == 255) return FATHOM_ERR_ARGUMENT;
+    if (modbus == NULL || clock == NULL || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
     unit->modbus = modbus;
     unit->clock = clock;
     unit->polled_us = now_us(unit);

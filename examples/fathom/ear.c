@@ -157,7 +157,8 @@ static uint16_t account(const ear_t *ear, uint16_t at, uint8_t address, evidence
         evidence->echoes++;
         return ear->request_length;
     }
-    uint8_t length = whole(bytes, have, fathom_modbus_rtu_response_length(bytes, have));
+    uint8_t length = fathom_modbus_rtu_response_length(bytes, have);
+    length = bytes[0] == 0 && address != 0 ? 0 : whole(bytes, have, length);
     if (length != 0) {
         note_answer(evidence, bytes[0], address);
         if (bytes[0] == address && is_fitting(ear, bytes, length)) evidence->fitting++;

@@ -44,8 +44,9 @@ typedef struct {
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
     uint8_t address;            /* 1..254; 0: 1, the factory's */
-    uint8_t retries;            /* after a failed attempt; 0: none */
-    uint8_t probes; /* bit probe - 1: wanted; 0: all four. One read covers the first to the last of
+    bool address_zero; /* it is at address 0 and answers there; `address` is 0. It can be read, not set */
+    uint8_t retries;   /* after a failed attempt; 0: none */
+    uint8_t probes;    /* bit probe - 1: wanted; 0: all four. One read covers the first to the last of
                                    them, and those between are measured too */
 } fathom_a05_modbus_config_t;
 
@@ -54,7 +55,8 @@ typedef struct {
     uint16_t values[FATHOM_DYP_PROBES];
 } fathom_a05_modbus_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, address 255, other registers, a probe over 4,
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, address 255 or one beside
+ * address_zero, other registers, a probe over 4,
  * min_mm over max_mm. */
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config);
 
@@ -83,6 +85,11 @@ void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
 fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
 bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor);
+
+/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be found
+ * again, since it need not answer there, and what is written to it would be written to all units. The driver reads it
+ * there from then on, and sets nothing of it any more. Else as set_address. */
+fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor);
 
 /* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);

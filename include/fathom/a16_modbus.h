@@ -47,8 +47,9 @@ typedef struct {
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
     uint8_t address;            /* 1..254; 0: 1, the factory's */
-    uint8_t retries;            /* after a failed attempt; 0: none */
-    uint8_t value;              /* fathom_a16_value_t */
+    bool address_zero; /* it is at address 0 and answers there; `address` is 0. It can be read, not set */
+    uint8_t retries;   /* after a failed attempt; 0: none */
+    uint8_t value;     /* fathom_a16_value_t */
 } fathom_a16_modbus_config_t;
 
 typedef struct {
@@ -56,7 +57,8 @@ typedef struct {
     uint16_t values[1];
 } fathom_a16_modbus_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, address 255, no such value, min_mm over max_mm. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, address 255 or one beside
+ * address_zero, no such value, min_mm over max_mm. */
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */

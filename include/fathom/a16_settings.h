@@ -62,7 +62,7 @@ fathom_status_t fathom_a16_measure(fathom_a16_modbus_t *sensor, fathom_a16_value
                                    fathom_sample_t *sample);
 
 /*
- * The address, 0x0200. set: 1..254 (0 is the standard's broadcast, which the datasheet allows; 255 its own), from the
+ * The address, 0x0200. set: 1..254, from the
  * acknowledgement on. The new address is asked first whether somebody is there, which costs a second:
  * FATHOM_ERR_IN_USE. After FATHOM_READY the driver asks at the new address; after FATHOM_ERR_UNCONFIRMED, as after any
  * other error, at the old one, and the device is at one of the two. Requests of others that wait for the old address
@@ -70,6 +70,11 @@ fathom_status_t fathom_a16_measure(fathom_a16_modbus_t *sensor, fathom_a16_value
  */
 fathom_status_t fathom_a16_address(fathom_a16_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a16_set_address(fathom_a16_modbus_t *sensor, uint8_t address);
+
+/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be found
+ * again, since it need not answer there, and what is written to it would be written to all units. The driver reads it
+ * there from then on, and sets nothing of it any more. Else as set_address. */
+fathom_status_t fathom_a16_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor);
 
 typedef enum {
     FATHOM_A16_CONTROLLED = 0,

@@ -45,7 +45,8 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 /*
  * Commands, to be called until they are not FATHOM_PENDING. get: FATHOM_READY with *value, or the errors of
  * fathom_modbus_unit_ask; address: also FATHOM_ERR_MALFORMED, where the register says more than 255. set: as
- * fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT.
+ * fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of
+ * that name of A16 and A05. At address 0 nothing is written: FATHOM_ERR_ARGUMENT, since all units would obey.
  * write: where nothing can be read back; FATHOM_READY is the acknowledgement. The address is read first, from which
  * the line learns whether it echoes, without which an acknowledgement says nothing (line.h).
  */
@@ -54,6 +55,35 @@ fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t addr
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
 fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address);
+fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor);
+
+/* Where a config's address and address_zero say that it is; 255 where they contradict each other. */
+uint8_t fathom_dyp_modbus_place(uint8_t address, bool address_zero);
+
+/* ---- the one device on a line ---- */
+
+/* In the caller's memory, all zero before the first call. */
+typedef struct {
+    fathom_modbus_request_t request;
+    uint16_t value;
+    bool is_asked;
+} fathom_dyp_modbus_find_t;
+
+/*
+ * Asks the A16 or A05 that is alone on a line for its address, whatever that is: reads register 0x0200 at 255, "the
+ * broadcast address" (A16 6(3), A05 3(3)), which changes nothing. Call it, with the loop going on in between, until it is
+ * not FATHOM_PENDING; it polls the carrier. The line's settings are as they are.
+ * FATHOM_READY: *address, 0..254, is where the answer came from, or what it says, if that is 255. Each outcome comes
+ * once; the next call asks anew. All units are asked nothing further for up to two seconds.
+ * FATHOM_ERR_NO_ANSWER: nothing in a second. The datasheets do not say whether a unit answers there.
+ * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several answered at once. FATHOM_ERR_MALFORMED: no address.
+ * Others: as fathom_exchange_t.
+ */
+fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *modbus,
+                                       uint8_t *address);
+
+/* Gives it up; the memory is the caller's again. */
+void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *modbus);
 
 /* For fathom_poll and fathom_due_us. A value that is not plausible is refused alone: the CRC vouches
  * for its place. */

@@ -26,7 +26,9 @@ enum {
 };
 
 enum {
-    FATHOM_MODBUS_BROADCAST = 0,  /* the unit that all obey and none answers */
+    FATHOM_MODBUS_BROADCAST =
+        0, /* the unit that all obey and none answers; but one that is asked there, by a read, is
+                                     a unit as any other, which A16 and A05 allow (A16 6(3), A05 3(3)) */
     FATHOM_MODBUS_ANY_UNIT = 255, /* not the standard's: A16 and A05 obey it whatever their address is, and
                                      where one answers, message.head[0] becomes its address */
     FATHOM_MODBUS_MAX_READ = 125,
@@ -75,7 +77,7 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
 
 /*
  * The length of the response that begins with these `have` (>= 1) bytes, as far as they tell:
- *   0          no response begins like this: drop the first byte and look again
+ *   0          no response begins like this: drop the first byte and look again. The unit is the caller's to look at
  *   > have     so many bytes are needed to say more (3 until the length is known)
  *   <= have    the response is here, with its CRC still to be checked
  */

@@ -36,7 +36,7 @@ typedef struct {
     uint32_t value;                        /* what read is to tell in the end */
     /* Where the device is once it has taken the value. The settings are kept by the caller as long as the unit. */
     const fathom_line_settings_t *settings; /* NULL: as before */
-    uint8_t address;                        /* 0: as before */
+    uint16_t address;                       /* 1..254; 0: as before; 256: address 0 */
 } fathom_modbus_setting_t;
 
 /*

@@ -55,7 +55,7 @@ typedef struct {
     const fathom_line_settings_t *settings;
     uint16_t answers; /* counters; each stops at 65535. The other outcomes: */
     uint16_t failures;
-    uint8_t address; /* 1..254 */
+    uint8_t address; /* 0..254; what is written to 0 goes to all units */
     uint8_t state;
     uint8_t attempts; /* of the present question that were seen to leave */
     uint8_t silences; /* outcomes in a row that were FATHOM_ERR_NO_ANSWER, as far as they matter */
@@ -77,7 +77,7 @@ typedef struct {
 enum { FATHOM_MODBUS_UNIT_INSIDE = 8 };
 
 /* modbus and clock outlive the unit. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer is NULL or the address
- * is 0 or 255, which ask everybody. */
+ * is 255, which asks everybody. */
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *modbus,
                                         const fathom_clock_t *clock, uint8_t address);
 

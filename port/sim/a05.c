@@ -138,6 +138,7 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
     device->start_us = config->start_us;
     device->random = config->seed;
     device->unit = config->unit != 0 ? config->unit : 1;
+    if (config->unit_zero) device->unit = 0;
     device->listens = true;
     device->dyp_silent_broadcast = config->dyp_silent_broadcast;
     device->protocols[0] = &fathom_sim_modbus;

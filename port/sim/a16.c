@@ -239,6 +239,7 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->start_us = config->start_us;
     device->random = config->seed;
     device->unit = config->unit != 0 ? config->unit : 1;
+    if (config->unit_zero) device->unit = 0;
     device->protocols[0] = &fathom_sim_modbus;
     device->listens =
         config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_MODBUS || is_switch;

@@ -183,3 +183,41 @@ TEST(after_power_on_an_a05_that_is_silent_warms_up)
         assert_int_equal(measure(), FATHOM_ERR_NO_ANSWER);
     }
 }
+
+/* ---- 00 and FF, over Modbus (A16 6(3), A05 3(3)) ---- */
+
+static fathom_status_t set_to_0(void)
+{
+    return s.model == A16 ? fathom_a16_set_address_to_0_perhaps_for_ever(&s.driver.a16)
+                          : fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&s.driver.a05);
+}
+
+/* Those at FF are found there if the device answers it, which the datasheets leave open. */
+static fathom_status_t find(uint8_t *address)
+{
+    fathom_dyp_modbus_find_t sought = {.is_asked = false};
+    fathom_status_t status;
+    while ((status = fathom_dyp_modbus_find(&sought, &s.modbus, address)) == FATHOM_PENDING)
+        fathom_sim_clock_advance(&s.clock, 1 * MS);
+    return status;
+}
+
+TEST(address_0_is_set_read_and_found)
+{
+    for (unsigned from_new = 0; from_new != 2; from_new++) FOR_ALL_MODELS
+        {
+            if ((s.model != A16 && s.model != A05) || bench.line.echo) continue;
+            uint8_t address = 0xA5;
+            bench.device->answers_from_new = from_new != 0;
+            assert_int_equal(carry_out(set_to_0), FATHOM_READY);
+            assert_int_equal(bench.device->unit, 0);
+            COUNTED(.writes = 1);
+            assert_measures(0, 1234);
+            assert_int_equal(set_address(NEW), FATHOM_ERR_ARGUMENT); /* which every unit would obey */
+            bench.device->answers_broadcast = n % 2 != 0;
+            rest(5 * SECOND);
+            assert_int_equal(find(&address), n % 2 != 0 ? FATHOM_READY : FATHOM_ERR_NO_ANSWER);
+            assert_int_equal(address, n % 2 != 0 ? 0 : 0xA5);
+            COUNTED(.writes = 1);
+        }
+}

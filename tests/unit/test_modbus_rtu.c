@@ -204,13 +204,6 @@ TEST(the_length_of_an_answer_for_every_function_and_third_byte)
     }
 }
 
-TEST(no_answer_begins_with_the_broadcast_unit)
-{
-    static const uint8_t bytes[] = {0x00, 0x03, 0x02, 0x00, 0x00, 0x00, 0x00};
-    for (uint8_t have = 1; have <= sizeof bytes; have++)
-        assert_int_equal(fathom_modbus_rtu_response_length(bytes, have), 0);
-}
-
 TEST(an_exception_of_any_code_is_kept_as_a_number)
 {
     static const uint8_t functions[] = {READ, WRITE, WRITE_MANY};

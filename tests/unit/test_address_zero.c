@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk.h"
+#include "fathom/a05_modbus.h"
+#include "fathom/a16_settings.h"
+#include "line_bench.h"
+
+/* Addresses 00 and FF of A16 and A05: "0x00~0xFE", and "0xFF is the broadcast address" (A16 6(3), A05 3(3)). */
+
+static const suite_t suite = {.set_up = set_up};
+
+/* ---- on the line ---- */
+
+/* 00 03 01 00 00 01, as A16 6(4) asks unit 1. */
+TEST(a_read_of_unit_0_is_answered_by_unit_0)
+{
+    static const uint8_t head[] = {0x00, 0x03, 0x01, 0x00, 0x00, 0x01};
+    for (unsigned i = 0; i != 3; i++) {
+        ask(&bench.request, 0, &bench.value, 0);
+        run(REQUEST_US);
+        expect_written(i + 1);
+        assert_memory_equal(bench.fake.writes[i].bytes, head, sizeof head);
+        run(20000);
+        receive_answer(0, (uint16_t)(100 + i));
+        run(100);
+        expect_mm((uint16_t)(100 + i));
+        run(T3_5_US); /* and nobody owes anything */
+    }
+}
+
+TEST(no_other_unit_answers_for_unit_0)
+{
+    static const uint8_t others[] = {1, 240, 16, 254};
+    for (unsigned i = 0; i != COUNT_OF(others); i++) {
+        set_up(state);
+        ask(&bench.request, 0, &bench.value, 0);
+        run(REQUEST_US);
+        deliver_answer(others[i], 111);
+        expect(FATHOM_PENDING);
+        expect_count(FATHOM_LINE_STRAYS, 1);
+        run(TIMEOUT_US + 1000);
+        expect_failed(FATHOM_ERR_NO_ANSWER);
+    }
+}
+
+TEST(nor_does_unit_0_answer_for_another)
+{
+    static const uint8_t others[] = {1, 240};
+    for (unsigned i = 0; i != COUNT_OF(others); i++) {
+        set_up(state);
+        ask(&bench.request, others[i], &bench.value, 0);
+        run(REQUEST_US);
+        deliver_answer(0, 111);
+        expect(FATHOM_PENDING);
+        deliver_answer(others[i], 222);
+        expect_mm(222);
+    }
+}
+
+TEST(what_is_written_to_unit_0_is_a_broadcast_as_ever)
+{
+    ask_to_write(&bench.request, 0);
+    run(REQUEST_US);
+    expect_written(1);
+    expect_after(TIMEOUT_US + 1000, FATHOM_READY); /* that is the time that the units need */
+}
+
+TEST(a_unit_0_that_does_not_answer_owes_and_is_asked_again)
+{
+    ask(&bench.request, 0, &bench.value, 1);
+    run(REQUEST_US + TIMEOUT_US);
+    expect_written(1);
+    run(TIMEOUT_US + REQUEST_US);
+    expect_written(2);
+    deliver_answer(0, 333);
+    expect_mm(333);
+}
+
+/* ---- the one device on a line ---- */
+
+static fathom_dyp_modbus_find_t sought;
+static uint8_t address;
+static fathom_modbus_t client;
+
+static int set_up_find(void **state)
+{
+    (void)set_up(state);
+    memset(&sought, 0, sizeof sought);
+    client = fathom_modbus_client(&bench.line);
+    address = 0xA5;
+    return 0;
+}
+
+static const suite_t finding = {.set_up = set_up_find};
+
+static fathom_status_t find(void) { return fathom_dyp_modbus_find(&sought, &client, &address); }
+
+/* Asks: FF 03 02 00 00 01 and its CRC, which is a read. */
+static void seek(unsigned before)
+{
+    static const uint8_t head[] = {0xFF, 0x03, 0x02, 0x00, 0x00, 0x01};
+    assert_int_equal(find(), FATHOM_PENDING);
+    run(REQUEST_US);
+    expect_written(before + 1);
+    assert_memory_equal(bench.fake.writes[before].bytes, head, sizeof head);
+    assert_int_equal(find(), FATHOM_PENDING);
+}
+
+TEST_IN(finding, the_one_device_on_a_line_is_found_at_any_address)
+{
+    for (unsigned from = 0; from != 255; from++) {
+        set_up_find(state);
+        seek(0);
+        receive_answer((uint8_t)from, (uint16_t)from);
+        bench.fake.now_us += 100;
+        assert_int_equal(find(), FATHOM_READY);
+        assert_int_equal(address, from);
+    }
+}
+
+TEST_IN(finding, one_that_answers_from_255_says_where_it_is)
+{
+    static const struct {
+        uint16_t says;
+        fathom_status_t status;
+    } rows[] = {{7, FATHOM_READY},
+                {0, FATHOM_READY},
+                {254, FATHOM_READY},
+                {255, FATHOM_ERR_MALFORMED},
+                {256, FATHOM_ERR_MALFORMED}};
+    for (unsigned i = 0; i != COUNT_OF(rows); i++) {
+        set_up_find(state);
+        seek(0);
+        receive_answer(255, rows[i].says);
+        bench.fake.now_us += 100;
+        assert_int_equal(find(), rows[i].status);
+        assert_int_equal(address, rows[i].status == FATHOM_READY ? rows[i].says : 0xA5);
+    }
+}
+
+TEST_IN(finding, each_outcome_of_finding_comes_once)
+{
+    seek(0);
+    run(1000000 + 1000);
+    assert_int_equal(find(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(find(), FATHOM_PENDING); /* asked anew, once nobody owes */
+    run(1000000);
+    expect_written(2);
+    fathom_dyp_modbus_find_cancel(&sought, &client);
+    assert_null(bench.line.head);
+    fathom_dyp_modbus_find_cancel(&sought, &client);
+    bench.fake.read_fails = true;
+    bench.fake.now_us += 100;
+    assert_int_equal(find(), FATHOM_ERR_PORT);
+    assert_int_equal(address, 0xA5);
+}
+
+TEST_IN(finding, what_the_carrier_refuses_is_said)
+{
+    bench.line.config = &(const fathom_line_config_t){
+        .uart = &bench.fake.uart, .clock = &bench.fake.clock, .frame = bench.frame, .frame_size = 7};
+    assert_int_equal(find(), FATHOM_ERR_CAPACITY);
+    assert_false(sought.is_asked);
+}
+
+/* ---- the drivers ---- */
+
+enum { OK = FATHOM_READY, NOBODY = FATHOM_ERR_NO_ANSWER };
+
+static fathom_a16_modbus_t a16;
+static fathom_a05_modbus_t a05;
+
+static int set_up_drivers(void **state)
+{
+    desk_begin(5000);
+    const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    const fathom_a05_modbus_config_t its = {.modbus = &fake.modbus, .clock = &fake.clock, .probes = 1};
+    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_READY);
+    desk.sensor = fathom_a16_modbus_sensor(&a16);
+    return 0;
+}
+
+static const suite_t driving = {.set_up = set_up_drivers};
+
+static uint8_t told;
+static fathom_status_t get_a16(void) { return fathom_a16_address(&a16, &told); }
+static fathom_status_t move_a16(void) { return fathom_a16_set_address_to_0_perhaps_for_ever(&a16); }
+static fathom_status_t move_a05(void) { return fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&a05); }
+
+TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
+{
+    told = 0xA5;
+    fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock, .address_zero = true};
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
+    assert_int_equal(desk.sample.unit, 0);
+    assert_int_equal(desk.sample.distance_mm, 754);
+    assert_int_equal(fathom_a16_set_address(&a16, 5), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_set_switch_threshold_mm(&a16, 500), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(move_a16(), FATHOM_ERR_ARGUMENT);
+    assert_null(fake.request);
+    PLAY(get_a16, OK, READ(0, 0x0200, OK, 0));
+    assert_int_equal(told, 0);
+
+    config.address = 1;
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_ERR_ARGUMENT);
+    const fathom_a05_modbus_config_t its = {
+        .modbus = &fake.modbus, .clock = &fake.clock, .probes = 1, .address_zero = true};
+    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_READY);
+    desk.sensor = fathom_a05_modbus_sensor(&a05);
+    PLAY(desk_poll, OK, READ(0, 0x0106, OK, 1000));
+}
+
+TEST_IN(driving, the_address_is_set_to_0_by_a_function_that_says_what_may_come_of_it)
+{
+    assert_int_equal(fathom_a16_set_address(&a16, 0), FATHOM_ERR_ARGUMENT);
+    PLAY(move_a16, OK, READ(1, 0x0200, OK, 1), READ(0, 0x0200, NOBODY, 0), WRITE(1, 0x0200, 0, OK),
+         READ(0, 0x0200, OK, 0));
+    PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
+    PLAY(move_a05, FATHOM_ERR_UNCONFIRMED, READ(1, 0x0200, OK, 1), READ(0, 0x0200, NOBODY, 0),
+         WRITE(1, 0x0200, 0, OK), READ(0, 0x0200, NOBODY, 0), READ(1, 0x0200, NOBODY, 0));
+    PLAY(move_a05, FATHOM_ERR_IN_USE, READ(1, 0x0200, OK, 1), READ(0, 0x0200, OK, 0));
+}
