@@ -146,12 +146,6 @@ static fathom_status_t prepare(fathom_hps167s_t *sensor, const fathom_modbus_set
     return FATHOM_READY;
 }
 
-/* Would this setting, which is not to be, begin blind? */
-static bool is_to_be_blind(const fathom_hps167s_t *sensor)
-{
-    return sensor->unit.is_blind && sensor->unit.setting == 0;
-}
-
 static fathom_status_t set(fathom_hps167s_t *sensor, const fathom_modbus_setting_t *setting, uint16_t first,
                            uint16_t second)
 {
@@ -198,7 +192,7 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
 fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
 {
     /* it may add to the offset that is there, so that none is ever written twice */
-    if (is_to_be_blind(sensor)) return FATHOM_ERR_ARGUMENT;
+    if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
     return set_register(sensor, OFFSET, (uint16_t)offset_mm, false);
 }
 
@@ -328,7 +322,7 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
     fathom_modbus_question_t write;
     fathom_modbus_setting_t setting;
     look_t wanted;
-    if (is_to_be_blind(sensor)) return FATHOM_ERR_ARGUMENT;
+    if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
     begin(sensor, FACTORY_RESET, &write, &wanted, &setting);
     write.function = 0;
     write.values = &sensor->reset_answer;

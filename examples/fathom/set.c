@@ -243,10 +243,7 @@ static int set(change_t *change)
         (void)fathom_modbus_next_is_blind(talk.station->reader.unit);
     } else if (change->setting->get != NULL) {
         const fathom_status_t status = talk_get(&talk, change->setting, was);
-        if (status != FATHOM_READY) {
-            was[0] = '\0';
-            return tell(change, status);
-        }
+        if (status != FATHOM_READY) return tell(change, status);
     }
     return tell(change, talk_set(&talk, change->setting, change->value));
 }
