@@ -34,7 +34,7 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
             listener->receive(listener, to, length, (line->known & AFTER_GAP) != 0,
                               fathom_line_heard_us(line));
         if (asked(line) != NULL) {
-            line->state |= NOISY;
+            if (length == 1) line->state |= NOISY; /* a whole frame, which is longer, hides no echo */
             if (line->left_us == 0 && phase(line) == LISTENING) fathom_line_fail(line);
         }
     }
@@ -90,12 +90,12 @@ static bool is_echo(const fathom_line_t *line)
     return (line->state & ECHOED) == 0 && fathom_line_echo(line) != FATHOM_LINE_ECHO_OFF;
 }
 
-/* A whole frame of the unit that was asked: is it taken? An answer that is not preceded by anything shows that
- * there is no echo. */
+/* A whole frame of the unit that was asked: is it taken? An answer that is not preceded by anything but whole frames
+ * shows that there is no echo. */
 static bool take(fathom_line_t *line, const fathom_match_t *match)
 {
     const bool is_request = match->request == match->length;
-    const bool is_first = !is_request && (line->state & (uint8_t)~PHASE) == 0;
+    const bool is_first = !is_request && (line->state & (uint8_t) ~(PHASE | ANSWERED_WRONG)) == 0;
     if (is_request && is_echo(line)) {
         line->state |= ECHOED;
         return true;

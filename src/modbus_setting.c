@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/modbus_setting.h"
 
-enum { LOOK = 0, LOOK_THERE = 1, WRITE = 2, CONFIRM_THERE = 3, CONFIRM_HERE = 4, STEP = 7 };
+enum { LOOK = 0, LOOK_THERE = 1, WRITE = 2, CONFIRM_THERE = 3, CONFIRM_HERE = 4, WRITE_AGAIN = 5, STEP = 7 };
 enum { INSIDE = FATHOM_MODBUS_UNIT_INSIDE };
 
 static void go_there(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
@@ -41,8 +41,9 @@ static bool is_told(const fathom_modbus_unit_t *unit, const fathom_modbus_settin
 static fathom_status_t looked(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                               fathom_status_t status, uint32_t value)
 {
-    if (status < 0 || (value == setting->value && is_told(unit, setting))) return end(unit, status);
-    unit->step = WRITE;
+    const bool is_so = value == setting->value;
+    if (status < 0 || (is_so && is_told(unit, setting))) return end(unit, status);
+    unit->step = is_so ? WRITE_AGAIN : WRITE;
     if (setting->address != 0) {
         unit->step = LOOK_THERE;
         go_there(unit, setting);
@@ -72,7 +73,9 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     unit->outcome = (int8_t)status;
     if (never_left(status)) unit->is_written = false;
     if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return end(unit, status);
-    if (unit->is_blind) return end(unit, FATHOM_ERR_UNCONFIRMED);
+    /* What it tells was so before, too: the acknowledgement alone says that it has taken the value. */
+    const bool is_lost = unit->step == WRITE_AGAIN && status < 0;
+    if (unit->is_blind || is_lost) return end(unit, FATHOM_ERR_UNCONFIRMED);
     if (setting->read == NULL) return end(unit, status < 0 ? FATHOM_ERR_UNCONFIRMED : status);
     unit->step = CONFIRM_HERE;
     if (moves(setting)) {
@@ -109,6 +112,7 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
     case LOOK_THERE:
         return looked_there(unit, status);
     case WRITE:
+    case WRITE_AGAIN:
         return written(unit, setting, status);
     default:
         return confirmed(unit, setting, status, value);
@@ -136,7 +140,7 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
         return FATHOM_ERR_BUSY;
     }
     do {
-        const bool is_write = setting->read == NULL || unit->step == WRITE;
+        const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == WRITE_AGAIN;
         uint32_t value = 0;
         unit->step |= INSIDE;
         status =

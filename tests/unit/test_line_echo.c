@@ -114,6 +114,26 @@ TEST(an_echo_that_begins_like_an_answer_is_an_echo)
         }
 }
 
+/* A frame with a right CRC that nobody asked for, of the unit or of another, came before the answer. */
+TEST(an_answer_behind_an_unasked_frame_shows_that_there_is_no_echo)
+{
+    static const uint8_t of_1[] = {0x01, 0x03, 0x04, 0x02, 0xF2, 0x02, 0xF2, 0xDA, 0x9D};
+    static const uint8_t of_2[] = {0x02, 0x03, 0x02, 0x02, 0xF2, 0x7C, 0xA1};
+    for (unsigned i = 0; i != 2; i++) {
+        set_up_with(FATHOM_LINE_ECHO_AUTO);
+        send_1(0, 100);
+        run(8 * BYTE_US);
+        if (i == 0)
+            come_all(0, of_1);
+        else
+            come_all(0, of_2);
+        come_all(20 * BYTE_US, answer_1_754);
+        run(60000);
+        expect_mm(754);
+        expect_echo(FATHOM_LINE_ECHO_OFF);
+    }
+}
+
 /* 125 registers, each 256 i + 255 - i; the CRC was worked out apart, bit by bit. */
 TEST(the_longest_answer_is_no_echo_and_shows_whether_there_is_one)
 {

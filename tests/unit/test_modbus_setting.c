@@ -144,7 +144,8 @@ static void want(uint16_t value) { setting.value = wanted = value; }
 TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
 {
     SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
-    want(OLD); /* what it tells now, and may not keep */
+    want(OLD); /* what it tells now, and may not keep; so without an acknowledgement that proves nothing */
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, NOBODY));
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     was_written(true);
     SETS(OK, HERE, IS(HERE, OLD));

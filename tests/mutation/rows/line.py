@@ -75,7 +75,7 @@ ROWS = (
     ('off-learned-after-noise', 'line.h: a read shows the echo or shows that there is none',
      'unit/test_line_echo',
      ('src/line_receive.c', 'take',
-      'const bool is_first = !is_request && (line->state & (uint8_t)~PHASE) == 0;',
+      'const bool is_first = !is_request && (line->state & (uint8_t)~(PHASE | ANSWERED_WRONG)) == 0;',
       'const bool is_first = !is_request && (line->state & ECHOED) == 0;')),
     ('unknown-echo-is-off', 'line.h: FATHOM_ERR_ECHO while it is not known', 'unit/test_line_echo_write',
      ('src/line_receive.c', 'is_echo',
