@@ -17,7 +17,7 @@ enum {
 static uint32_t get32(const uint8_t *at) { return (uint32_t)decode_get16(at) << 16 | decode_get16(at + 2); }
 
 /* Of a measurement (#5). */
-enum { MAX_EXPONENT = 16, MAX_MM = 30000, OVER_RANGE = 65530, ALL_ONES = 0xFFFF };
+enum { MAX_EXPONENT = 16, MIN_MM = 80, MAX_MM = 30000, OVER_RANGE = 65530, ALL_ONES = 0xFFFF };
 
 static int32_t signed16(uint16_t value) { return value < 0x8000 ? value : (int32_t)value - 0x10000; }
 
@@ -97,22 +97,29 @@ static void put_temperature(decode_meaning_t *meaning, const uint8_t *values)
     decode_decimal(meaning, "temperature", tenths, 1, "C");
 }
 
+/* #5: all ones in distance, ambient and precision, and magnitude 0. */
+static bool is_abnormal(const uint8_t *values)
+{
+    return decode_get16(values) == ALL_ONES && decode_get16(values + 2) == 0 && values[5] == 0xFF &&
+           decode_get16(values + 6) == ALL_ONES;
+}
+
 static void put_measurement(decode_meaning_t *meaning, const uint8_t *values)
 {
     const uint16_t distance = decode_get16(values);
     const uint16_t magnitude = decode_get16(values + 2);
     const uint16_t precision = decode_get16(values + 6);
-    const bool is_abnormal =
-        distance == ALL_ONES && magnitude == 0 && values[5] == 0xFF && precision == ALL_ONES;
     decode_field_t *const field = decode_number(meaning, "distance", distance, "mm");
-    if (is_abnormal)
+    if (is_abnormal(values))
         field->note = "the abnormal packet: the sensor has failed";
     else if (distance == ALL_ONES)
-        field->note = "no distance: a fault";
+        field->note = "no distance, and not the abnormal packet";
     else if (distance >= OVER_RANGE)
         field->note = "no target: out of range, or too weak";
     else if (distance == 0 || distance > MAX_MM)
         field->note = "no distance that it can mean";
+    else if (distance < MIN_MM)
+        field->note = "below its range of 80 mm and more";
     if (values[4] <= MAX_EXPONENT)
         decode_decimal(meaning, "magnitude", (int64_t)((uint64_t)magnitude << values[4]), 4, "");
     else
@@ -137,14 +144,15 @@ static void put_reset(decode_meaning_t *meaning, const uint8_t *values)
 static bool is_configuration(const uint8_t *values)
 {
     const bool is_switch = (values[0] == 0 || values[0] == 0xFF) && (values[1] == 0 || values[1] == 0xFF);
-    return is_switch && get32(values + 3) % 18 == 0 && baud_name(values[7]) != NULL;
+    return is_switch && !is_abnormal(values);
 }
 
 static bool is_measurement(const uint8_t *values)
 {
     const uint16_t distance = decode_get16(values);
-    return (distance >= OVER_RANGE || (distance != 0 && distance <= MAX_MM)) &&
-           (values[4] <= MAX_EXPONENT || distance == ALL_ONES);
+    const bool is_over = distance >= OVER_RANGE && distance != ALL_ONES;
+    return is_abnormal(values) ||
+           ((is_over || (distance != 0 && distance <= MAX_MM)) && values[4] <= MAX_EXPONENT);
 }
 
 /* Colder than -50 degrees C or hotter than 150 no sensor speaks. */

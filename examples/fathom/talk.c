@@ -147,17 +147,33 @@ static fathom_status_t call_set(reader_t *reader, void *ctx)
     return what->setting->set(reader, what->value);
 }
 
+/* Calls again what has written nothing, where a frame that the device sent unasked may have met question or answer. */
+static fathom_status_t call_again(talk_t *talk, talk_call_t call, what_t *what)
+{
+    enum { TIMES = 4 };
+    const fathom_modbus_unit_t *const unit = talk->station->reader.unit;
+    fathom_status_t status = FATHOM_PENDING;
+    for (unsigned times = 0; times != TIMES; times++) {
+        status = talk_call(talk, call, what);
+        const bool is_met =
+            status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+        const bool is_among_unasked = talk->hears.is_new || talk->hears.implausible != 0;
+        if (!is_met || unit->is_written || !is_among_unasked) break;
+    }
+    return status;
+}
+
 fathom_status_t talk_get(talk_t *talk, const setting_t *setting, char text[SETTING_TEXT])
 {
     what_t what = {.setting = setting, .text = text};
     text[0] = '\0';
-    return talk_call(talk, call_get, &what);
+    return call_again(talk, call_get, &what);
 }
 
 fathom_status_t talk_set(talk_t *talk, const setting_t *setting, int32_t value)
 {
     what_t what = {.setting = setting, .value = value};
-    return talk_call(talk, call_set, &what);
+    return call_again(talk, call_set, &what);
 }
 
 const char *talk_line_text(const talk_t *talk, char text[SETTINGS_TEXT])

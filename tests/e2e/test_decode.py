@@ -298,10 +298,11 @@ class Meaning(Case):
                ([HPS, *answered(8, *values)], {'notes': {'distance_mm': note} if note else {}}) for values,
                note in (
                    ((30000, 1, 1, 0), None), ((30001, 1, 1, 0), NO_DISTANCE), ((0, 1, 1, 0), NO_DISTANCE),
+                   ((79, 1, 1, 0), 'below its range of 80 mm and more'), ((80, 1, 1, 0), None),
                    ((65529, 1, 1, 0), NO_DISTANCE), ((65530, 1, 1, 0), NO_TARGET),
                    ((65534, 1, 1, 0), NO_TARGET),
                    ((65535, 0, 0x00FF, 65535), 'the abnormal packet: the sensor has failed'),
-                   ((65535, 1, 0x00FF, 65535), 'no distance: a fault'))],
+                   ((65535, 1, 0x00FF, 65535), 'no distance, and not the abnormal packet'))],
            '15_is_32_bits': [
                ([adu(1, 16, 0, 0x20, 0, 2, 4, *ms.to_bytes(4, 'big'))],
                 {'what': '#15 reconnect time', 'fields': {'reconnect_time_ms': ms}, 'notes': notes})
