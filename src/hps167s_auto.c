@@ -46,7 +46,7 @@ static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
     uint16_t registers[4];
     for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)(at[0] * 256u + at[1]);
     sensor->have = 0;
-    if (sensor->asking != NULL && !fathom_hps167s_heard(sensor->asking, registers)) {
+    if (sensor->asking != NULL && !fathom_hps167s_heard(sensor->asking, registers, time_us)) {
         count(&sensor->implausible);
         return;
     }

@@ -51,11 +51,10 @@ bool fathom_hps167s_may_be_configuration(const uint16_t registers[4])
            !fathom_hps167s_is_abnormal(registers);
 }
 
-bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4])
+bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4], uint32_t time_us)
 {
-    const fathom_clock_t *const clock = sensor->unit.clock;
     const bool is_told = same_4(registers, sensor->told);
-    sensor->unasked_us = clock->now_us(clock->ctx);
+    sensor->unasked_us = time_us;
     if (is_told) {
         /* Was it that which came as an answer? Not if an answer is still to come. */
         if (!sensor->is_owed) sensor->agreed = 0;

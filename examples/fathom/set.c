@@ -105,7 +105,7 @@ static void print_json(const change_t *change, outcome_t outcome)
     (void)printf(", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
                  is_written ? "true" : "false",
                  outcome == UNCHANGED || (outcome == DONE && is_read_back(change)) ? "true" : "false",
-                 outcomes[outcome], change->is_for_all ? 0 : station->reader.unit->address);
+                 outcomes[outcome], change->is_for_all ? 0u : (unsigned)station->reader.unit->address);
 }
 
 static void print_done(const change_t *change, outcome_t outcome)

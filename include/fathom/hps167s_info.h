@@ -83,9 +83,9 @@ fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps1
 bool fathom_hps167s_may_be_configuration(const uint16_t registers[4]);
 
 /* A frame of the shape of #5's answer was heard from the sensor's address that no question of the sensor's waited for,
- * with these registers. False: it may be an answer to #2 that comes late, so that it is no measurement.
- * hps167s_auto.h says so by itself; other listeners of the line may. */
-bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4]);
+ * with these registers, at this time of its clock. False: it may be an answer to #2 that comes late, so that it is no
+ * measurement. hps167s_auto.h says so by itself; other listeners of the line may. */
+bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4], uint32_t time_us);
 
 #ifdef __cplusplus
 }

@@ -175,3 +175,72 @@ TEST(all_units_are_told_once_and_only_with_yes)
     assert_int_equal(counters()->requests, 2);
     assert_int_equal(counters()->answered, 0);
 }
+
+static int (*inner_write)(void *ctx, const uint8_t *bytes, size_t length);
+static uint8_t sent_to_all[8][8];
+static unsigned sent_count;
+
+static int spy(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const int n = inner_write(ctx, bytes, length);
+    if (n > 0 && bytes[0] == 0 && length == 8) memcpy(sent_to_all[sent_count++ % 8], bytes, 8);
+    return n;
+}
+
+/* All that the tool ever sends to unit 0; unit/test_broadcast.c has the same of the drivers. */
+TEST(two_settings_are_all_that_the_tool_ever_sends_to_all_units)
+{
+    static const char *const commands[] = {"info hps167s",
+                                           "info a16",
+                                           "info a05",
+                                           "info a05:1:dyp",
+                                           "read hps167s --count 1",
+                                           "read a16:1:modbus --count 1",
+                                           "read a05:1:modbus --count 1",
+                                           "read a05:1:dyp --count 1",
+                                           "scan --address 1,2 --listen 1",
+                                           "watch hps167s --duration 1",
+                                           "set hps167s address 5",
+                                           "set hps167s baud 57600",
+                                           "set hps167s warm-up 1",
+                                           "set hps167s measure-after-power-on off",
+                                           "set hps167s termination off",
+                                           "set hps167s reconnect-time 36",
+                                           "set hps167s distance-offset 5",
+                                           "set hps167s filter-sensitivity 5",
+                                           "set hps167s load-settings user",
+                                           "set hps167s termination off --blind",
+                                           "set hps167s measure-after-power-on off --all-units --yes",
+                                           "set hps167s measure-after-power-on on --all-units --yes",
+                                           "set hps167s termination off --all-units --yes",
+                                           "set hps167s termination on --all-units --yes",
+                                           "set a16 address 5",
+                                           "set a16 switch-threshold 5",
+                                           "set a16 switch-polarity negative",
+                                           "set a16 automatic-value real-time",
+                                           "set a16 automatic-output on",
+                                           "set a16 operating-mode controlled",
+                                           "set a05 address 5",
+                                           "set a05 every-address 5",
+                                           "reset hps167s --yes-restore-factory-settings",
+                                           "reset hps167s --yes-load-factory-sensor-settings"};
+    /* #10 and #11, tables 27 and 29 */
+    static const uint8_t allowed[4][6] = {{0, 6, 0, 0x12, 0, 0x00},
+                                          {0, 6, 0, 0x12, 0, 0xFF},
+                                          {0, 6, 0, 0x13, 0, 0x00},
+                                          {0, 6, 0, 0x13, 0, 0xFF}};
+    sent_count = 0;
+    for (size_t i = 0; i != sizeof commands / sizeof commands[0]; i++) {
+        bench_begin();
+        if (strstr(commands[i], "hps167s") != NULL) bench_hps167s(any_hps167s);
+        if (strstr(commands[i], "a16") != NULL) bench_a16(any_a16);
+        if (strstr(commands[i], "a05") != NULL)
+            bench_a05((fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_DYP});
+        inner_write = bench.tool.uart.write;
+        bench.tool.uart.write = spy;
+        const tool_run_t *const run = tool_run(&bench.tool, "%s --port line", commands[i]);
+        if (run->status == 2) fail_msg("%s\n%s", commands[i], run->err);
+    }
+    assert_int_equal(sent_count, 4);
+    for (size_t i = 0; i != 4; i++) assert_memory_equal(sent_to_all[i], allowed[i], 6);
+}

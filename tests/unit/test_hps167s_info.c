@@ -94,7 +94,7 @@ TEST(after_a_frame_that_nobody_asked_for_three_answers_have_to_agree_for_2_s)
         hps_set_up(NULL);
         hps_config.same_answers = rows[i].same_answers;
         hps_start();
-        assert_true(fathom_hps167s_heard(&hps, frame));
+        assert_true(fathom_hps167s_heard(&hps, frame, fake.now_us));
         fake.now_us += rows[i].after_us;
         assert_int_equal(desk_play(configuration, four, rows[i].needed), OK);
     }
@@ -106,12 +106,12 @@ TEST(what_is_heard_unasked_between_two_answers_takes_away_their_agreement)
     static const uint16_t told[4] = {RATE_1};
     PART(configuration, HPS_2(1, OK, 0, RATE_1));
     PENDS(configuration());
-    assert_false(fathom_hps167s_heard(&hps, told));
+    assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
     /* but not the one answer that is still to come, where a measurement was taken for it */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
-    assert_false(fathom_hps167s_heard(&hps, told));
+    assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1));
 }
 

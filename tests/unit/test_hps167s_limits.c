@@ -111,7 +111,7 @@ TEST(after_a_measurement_in_the_place_of_an_answer_no_interval_is_a_multiple_of_
 
 TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_first_answer_on)
 {
-    assert_true(fathom_hps167s_heard(&hps, hps_measured));
+    assert_true(fathom_hps167s_heard(&hps, hps_measured, fake.now_us));
     asks(configuration);
     fake_modbus_answer(&fake, tells, 4);
     PENDS(configuration());
