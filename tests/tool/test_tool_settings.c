@@ -198,7 +198,7 @@ TEST(two_settings_are_all_that_the_tool_ever_sends_to_all_units)
                                            "read a16:1:modbus --count 1",
                                            "read a05:1:modbus --count 1",
                                            "read a05:1:dyp --count 1",
-                                           "scan --address 1,2 --listen 1",
+                                           "scan --address 1-2 --listen 1",
                                            "watch hps167s --duration 1",
                                            "set hps167s address 5",
                                            "set hps167s baud 57600",
