@@ -5,6 +5,7 @@ static void make_a16(device_t *device, const device_settings_t *settings, uint8_
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_a16_config_t config = {.unit = settings->address,
+                                            .unit_zero = settings->address == 0,
                                             .mode = mode,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
                                             .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
@@ -20,6 +21,7 @@ static void make_a05(device_t *device, const device_settings_t *settings, uint8_
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_a05_config_t config = {.unit = settings->address,
+                                            .unit_zero = settings->address == 0,
                                             .mode = mode,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
                                             .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,

@@ -49,10 +49,13 @@ fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t 
     return listen(wire, us, each, ctx);
 }
 
+/* At 0 an A16 or A05 may be, and an HPS-167S, to which it is a broadcast, has none of their registers. */
 static bool is_harmless(const scan_question_t *question)
 {
-    return question->first != RESET_REGISTER && question->count <= SCAN_REGISTERS &&
-           question->address != FATHOM_LINE_ALL_UNITS;
+    enum { FIRST_OF_DYP = 0x0100 };
+    const bool is_to_all =
+        question->address == FATHOM_LINE_ALL_UNITS && (question->is_dyp || question->first < FIRST_OF_DYP);
+    return question->first != RESET_REGISTER && question->count <= SCAN_REGISTERS && !is_to_all;
 }
 
 static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *request)

@@ -23,7 +23,8 @@ enum { DAMAGED_TRIES = 4, ROUNDS = 2 };
 
 void scan_first_question(const fathom_line_settings_t *line, uint8_t address, scan_question_t *question)
 {
-    const bool may_be_hps167s = scan_is_hps167s_rate(line->baud) && address <= FATHOM_HPS167S_MAX_ADDRESS;
+    const bool may_be_hps167s =
+        scan_is_hps167s_rate(line->baud) && address != 0 && address <= FATHOM_HPS167S_MAX_ADDRESS;
     memset(question, 0, sizeof *question);
     question->line = line;
     question->linger_us = LINGER_US;

@@ -164,7 +164,9 @@ static bool take_addresses(scan_plan_t *plan, const char *text)
 {
     uint32_t first = FIRST_ADDRESS;
     uint32_t last = LAST_ADDRESS;
-    if (text != NULL) {
+    if (text != NULL && strcmp(text, "0") == 0) {
+        first = last = 0; /* by itself only: most units take it for a broadcast */
+    } else if (text != NULL) {
         char first_text[ITEM_TEXT];
         const size_t length = strcspn(text, "-");
         const char *const last_text = text[length] == '-' ? text + length + 1 : text;
@@ -247,7 +249,8 @@ void scan_help(FILE *to)
         "nothing where\n"
         "something sends.\n\n"
         "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`\n"
-        "  --address A-B     the addresses to ask, 1..254; default 1-32\n"
+        "  --address A-B     the addresses to ask, 1..254; default 1-32. Or 0 alone, which an A16 or A05 may "
+        "have\n"
         "  --baud LIST       the rates, such as 9600,57600, or all; default 9600,19200\n"
         "  --parity LIST     some of none,even,odd, or all; default: as from the factory, none at 9600 and "
         "even above\n"

@@ -58,6 +58,12 @@ static void add_word(char *text, size_t capacity, const char *word)
     ADD(text, capacity, "'");
 }
 
+/* 0 is one where a sensor was asked there. */
+static bool has_address(const scan_finding_t *finding)
+{
+    return finding->address != 0 || (finding->kind == SCAN_SENSOR && finding->mode == SCAN_MODBUS);
+}
+
 /* "" where there is nothing to type. */
 static void next_command(const scan_finding_t *finding, const char *port, char text[NEXT_TEXT])
 {
@@ -154,7 +160,7 @@ void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
     char address[16] = "-";
     char told[TOLD_TEXT];
     char next[NEXT_TEXT];
-    if (finding->address != 0) (void)snprintf(address, sizeof address, "address %u", finding->address);
+    if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
     tell(finding, told);
     next_command(finding, port, next);
     (void)fprintf(to, "%-8s %-12s %-11s  %s", finding->kind == SCAN_SENSOR ? model_name(finding) : "?",
@@ -217,7 +223,7 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
     else
         (void)fputs("null", to);
     (void)fputs(",\"address\":", to);
-    if (finding->address != 0)
+    if (has_address(finding))
         (void)fprintf(to, "%u", finding->address);
     else
         (void)fputs("null", to);

@@ -79,6 +79,11 @@ const sensor_mode_t *sensor_mode_find(const char *command, const sensor_t *senso
     return NULL;
 }
 
+uint8_t sensor_least_address(const sensor_t *sensor, const sensor_mode_t *mode)
+{
+    return sensor->max_address > FATHOM_HPS167S_MAX_ADDRESS && strcmp(mode->name, "modbus") == 0 ? 0 : 1;
+}
+
 void sensors_print(FILE *to)
 {
     for (size_t i = 0; i != SENSORS; i++) {

@@ -39,6 +39,9 @@ enum { FACTORY_ADDRESS = 1 };
 const sensor_t *sensor_find(const char *command, const char *name);
 const sensor_mode_t *sensor_mode_find(const char *command, const sensor_t *sensor, const char *name);
 
+/* 0 where that is an address, as over Modbus of an A16 and an A05; else 1. */
+uint8_t sensor_least_address(const sensor_t *sensor, const sensor_mode_t *mode);
+
 /* The table, for help texts. */
 void sensors_print(FILE *to);
 

@@ -10,13 +10,14 @@
 static const char command[] = "set";
 static talk_t talk;
 
-enum { BLIND = TALK_OPTIONS, ALL_UNITS, YES, OPTIONS };
+enum { BLIND = TALK_OPTIONS, ALL_UNITS, YES, LOST, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
     TALK_OPTION_ROWS,
     [BLIND] = {"blind", no_argument, NULL, 256},
     [ALL_UNITS] = {"all-units", no_argument, NULL, 256},
     [YES] = {"yes", no_argument, NULL, 256},
+    [LOST] = {"may-not-be-found-again", no_argument, NULL, 256},
 };
 
 static void print_value(const setting_t *setting, const char *text)
@@ -264,6 +265,7 @@ static void help(FILE *to)
         "  --all-units       tell every hps167s on the line at once, whatever its address; for termination "
         "and\n"
         "                    measure-after-power-on, and with --yes only\n"
+        "  --may-not-be-found-again   for address 0 of an a16 or a05, at which it can be read and not set\n"
         "\nA new address is asked first whether a device is there. What the device does not tell is written "
         "without a look.\n"
         "What became of it is said: unchanged, it had that value; nothing was written; written, not "
@@ -321,6 +323,19 @@ static bool take_kind(change_t *change, const char *const *values)
     return false;
 }
 
+/* The value; address 0 only if the user says what that means. False after a usage error. */
+static bool take_value(change_t *change, const char *text, bool may_be_lost)
+{
+    const setting_t *const setting = change->setting;
+    const bool is_zero = setting->has_zero && strcmp(text, "0") == 0;
+    if (is_zero == may_be_lost) return is_zero || setting_parse(command, setting, text, &change->value);
+    (void)usage_error(
+        command, is_zero ? "a unit at address 0 may not be found again, and nothing of it can be set any "
+                           "more; if it is to be so: --may-not-be-found-again"
+                         : "--may-not-be-found-again is for address 0 of an a16 or a05");
+    return false;
+}
+
 static int run(const host_t *host, int argc, char **argv)
 {
     char *copy[MAX_WORDS];
@@ -348,9 +363,12 @@ static int run(const host_t *host, int argc, char **argv)
     if (setting->set == NULL)
         return usage_error(command, "%s is told by the device and cannot be set", setting->name);
     change.setting = setting;
-    if (!setting_parse(command, setting, words[1], &change.value) ||
+    if (!take_value(&change, words[1], values[LOST] != NULL) ||
         !talk_set_mode(&talk, command, values, setting->mode) || !take_kind(&change, values))
         return STATUS_USAGE;
+    if (talk.station->address == 0)
+        return usage_error(command,
+                           "what is written to address 0 goes to all units, so nothing can be set there");
     if (!talk_open(&talk, host)) return STATUS_FAILED;
     const int status = set(&change);
     talk_close(&talk);

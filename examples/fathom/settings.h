@@ -24,6 +24,7 @@ typedef struct {
     int32_t least;            /* ... from here */
     int32_t most;             /* to here, */
     int32_t step;             /* a multiple of this */
+    bool has_zero;            /* 0 is a value too, at which it may not be found again */
     bool moves;               /* from then on the device is elsewhere: its address, ... */
     bool is_baud;             /* ... or its line settings */
     bool is_never_blind;      /* it has to be read before it is written, or afterwards */

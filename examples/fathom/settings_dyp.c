@@ -48,7 +48,9 @@ static fathom_status_t a16_address(reader_t *reader, char text[SETTING_TEXT])
 
 static fathom_status_t a16_set_address(reader_t *reader, int32_t value)
 {
-    return fathom_a16_set_address(&reader->driver.a16_modbus, (uint8_t)value);
+    fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
+    return value == 0 ? fathom_a16_set_address_to_0_perhaps_for_ever(driver)
+                      : fathom_a16_set_address(driver, (uint8_t)value);
 }
 
 static fathom_status_t a16_set_mode(reader_t *reader, int32_t value)
@@ -137,6 +139,7 @@ const setting_t settings_a16[] = {
      .effect = KEPT_UNSAID,
      .least = 1,
      .most = 254,
+     .has_zero = true,
      .moves = true,
      .is_never_blind = true,
      .get = a16_address,
@@ -203,7 +206,9 @@ static fathom_status_t a05_address(reader_t *reader, char text[SETTING_TEXT])
 
 static fathom_status_t a05_set_address(reader_t *reader, int32_t value)
 {
-    return fathom_a05_modbus_set_address(&reader->driver.a05_modbus, (uint8_t)value);
+    fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
+    return value == 0 ? fathom_a05_modbus_set_address_to_0_perhaps_for_ever(driver)
+                      : fathom_a05_modbus_set_address(driver, (uint8_t)value);
 }
 
 static fathom_status_t a05_set_every_address(reader_t *reader, int32_t value)
@@ -236,6 +241,7 @@ const setting_t settings_a05[] = {
      .effect = KEPT_UNSAID,
      .least = 1,
      .most = 254,
+     .has_zero = true,
      .moves = true,
      .is_never_blind = true,
      .get = a05_address,

@@ -109,9 +109,11 @@ static bool take_device(sim_device_t *device, const char *text)
     device->mode = sensor_mode_find(command, device->sensor, mode_text != NULL ? mode_text + 1 : NULL);
     if (device->mode == NULL) return false;
     if (address_text != NULL && address_text[1] != '\0' &&
-        !number_parse(address_text + 1, 1, device->sensor->max_address, &address)) {
-        (void)usage_error(command, "the address of %s is a number from 1 to %u, not '%s'",
-                          device->sensor->name, device->sensor->max_address, address_text + 1);
+        !number_parse(address_text + 1, sensor_least_address(device->sensor, device->mode),
+                      device->sensor->max_address, &address)) {
+        (void)usage_error(command, "the address of %s is a number from %u to %u, not '%s'",
+                          device->sensor->name, sensor_least_address(device->sensor, device->mode),
+                          device->sensor->max_address, address_text + 1);
         return false;
     }
     device->address = (uint8_t)address;

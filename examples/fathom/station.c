@@ -19,11 +19,12 @@ static const sensor_mode_t *asked_mode(const sensor_t *sensor)
 static bool take_address(station_t *station, const char *command, const char *part, const char *option)
 {
     uint32_t number = FACTORY_ADDRESS;
+    const uint8_t least = sensor_least_address(station->sensor, station->mode);
     const uint8_t max = station->sensor->max_address;
-    if (!option_number(command, "address", option, 1, max, &number)) return false;
-    if (part != NULL && part[0] != '\0' && !number_parse(part, 1, max, &number)) {
-        (void)usage_error(command, "the address of %s is a number from 1 to %u, not '%s'",
-                          station->sensor->name, max, part);
+    if (!option_number(command, "address", option, least, max, &number)) return false;
+    if (part != NULL && part[0] != '\0' && !number_parse(part, least, max, &number)) {
+        (void)usage_error(command, "the address of %s is a number from %u to %u, not '%s'",
+                          station->sensor->name, least, max, part);
         return false;
     }
     station->address = (uint8_t)number;
@@ -46,13 +47,13 @@ bool station_parse(station_t *station, const char *command, const char *text, co
         (void)usage_error(command, "'%s' and an option say the same; leave one of them out", text);
         return false;
     }
-    if (!take_address(station, command, address_part != NULL ? address_part + 1 : NULL, address))
-        return false;
     if (mode_part != NULL) mode = mode_part + 1;
     station->mode = mode == NULL && (is_shared || address_part != NULL)
                         ? asked_mode(station->sensor)
                         : sensor_mode_find(command, station->sensor, mode);
-    if (station->mode == NULL) return false;
+    if (station->mode == NULL ||
+        !take_address(station, command, address_part != NULL ? address_part + 1 : NULL, address))
+        return false;
     (void)snprintf(station->name, sizeof station->name, station->mode->is_asked ? "%s:%u" : "%s",
                    station->sensor->name, station->address);
     return true;
