@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+/* Every choice is drawn at each of its ends at least 50 times in 1,000 seeds, and hangs on no other one. */
+#include "test_host.h"
+
+#define SEEDS 1000
+#define LEAST 50
+
+static int64_t drawn[CHOICE_COUNT][SEEDS];
+static host_t host;
+
+static int draw_all(void **state)
+{
+    (void)state;
+    for (int c = 0; c < CHOICE_COUNT; c++) {
+        for (uint64_t seed = 1; seed <= SEEDS; seed++)
+            drawn[c][seed - 1] = second_choice_draw((second_choice_t)c, seed);
+    }
+    return 0;
+}
+
+static int count_of(int c, int64_t value)
+{
+    int count = 0;
+    for (int i = 0; i < SEEDS; i++) count += drawn[c][i] == value ? 1 : 0;
+    return count;
+}
+
+static void at_least(int c, int64_t value)
+{
+    int count = count_of(c, value);
+    if (count < LEAST)
+        fail_msg("%s=%lld drawn %d times", second_choice_row((second_choice_t)c)->name, (long long)value,
+                 count);
+}
+
+static void test_every_end_is_drawn(void **state)
+{
+    (void)state;
+    for (int c = 0; c < CHOICE_COUNT; c++) {
+        const second_choice_row_t *row = second_choice_row((second_choice_t)c);
+        if (row->values == NULL) {
+            at_least(c, row->low);
+            at_least(c, row->high);
+            at_least(c, row->usual);
+            int inside = 0;
+            for (int i = 0; i < SEEDS; i++)
+                inside += drawn[c][i] > row->low && drawn[c][i] < row->high ? 1 : 0;
+            assert_true(row->low < row->high && inside >= LEAST);
+        }
+        for (size_t i = 0; i < row->value_count; i++) {
+            if (row->values[i].weight > 0)
+                at_least(c, row->values[i].value);
+            else
+                assert_int_equal(count_of(c, row->values[i].value), 0);
+        }
+    }
+}
+
+static void test_every_draw_is_allowed(void **state)
+{
+    (void)state;
+    for (int c = 0; c < CHOICE_COUNT; c++) {
+        for (int i = 0; i < SEEDS; i++) assert_true(second_choice_allows((second_choice_t)c, drawn[c][i]));
+    }
+}
+
+/* Whether a choice stands at its most frequent value: no two choices agree in (nearly) all seeds. */
+static void test_choices_are_independent(void **state)
+{
+    (void)state;
+    static bool usual[CHOICE_COUNT][SEEDS];
+    for (int c = 0; c < CHOICE_COUNT; c++) {
+        int64_t value = second_choice_draw((second_choice_t)c, 0);
+        for (int i = 0; i < SEEDS; i++) usual[c][i] = drawn[c][i] == value;
+    }
+    for (int a = 0; a < CHOICE_COUNT; a++) {
+        for (int b = 0; b < a; b++) {
+            int both = 0, only_a = 0, only_b = 0;
+            for (int i = 0; i < SEEDS; i++) {
+                both += usual[a][i] && usual[b][i] ? 1 : 0;
+                only_a += usual[a][i] && !usual[b][i] ? 1 : 0;
+                only_b += !usual[a][i] && usual[b][i] ? 1 : 0;
+            }
+            assert_true(only_a > 0 && only_b > 0 && both > 0);
+        }
+    }
+}
+
+static void test_rows_are_complete(void **state)
+{
+    (void)state;
+    static const char *const prefixes[] = {"any_", "mb_", "a16_", "a05_", "hps_"};
+    for (int c = 0; c < CHOICE_COUNT; c++) {
+        const second_choice_row_t *row = second_choice_row((second_choice_t)c);
+        bool known = false;
+        for (size_t i = 0; i < sizeof prefixes / sizeof prefixes[0]; i++)
+            known = known || strncmp(row->name, prefixes[i], strlen(prefixes[i])) == 0;
+        assert_true(known && row->section[0] != '\0' && row->says[0] != '\0');
+        assert_true(row->kinds != 0 && row->kinds < 1U << SECOND_KINDS);
+        for (int b = 0; b < c; b++)
+            assert_string_not_equal(row->name, second_choice_row((second_choice_t)b)->name);
+        for (size_t i = 0; i < row->value_count; i++) {
+            for (size_t k = 0; k < i; k++) assert_true(row->values[i].value != row->values[k].value);
+        }
+    }
+}
+
+/* A draw is the same in every kind of device, and seed 0 draws nothing. */
+static void test_draws_hang_on_the_seed_alone(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < SECOND_KINDS; kind++) {
+        second_config_t config = {.kind = (second_kind_t)kind, .seed = 77};
+        host_open(&host, &config);
+        for (int c = 0; c < CHOICE_COUNT; c++)
+            assert_true(second_choice(&host.device[0], (second_choice_t)c) == drawn[c][76]);
+        config.seed = 0;
+        host_open(&host, &config);
+        for (int c = 0; c < CHOICE_COUNT; c++) {
+            const second_choice_row_t *row = second_choice_row((second_choice_t)c);
+            int64_t usual = row->values != NULL ? row->values[0].value : row->usual;
+            assert_true(second_choice(&host.device[0], (second_choice_t)c) == usual);
+        }
+    }
+}
+
+static void test_a_choice_can_be_forced(void **state)
+{
+    (void)state;
+    second_override_t forced[] = {{"hps_over_range", 65533}, {"hps_baud_code", 3}};
+    second_config_t config = {.kind = SECOND_HPS167S, .seed = 5, .overrides = forced, .override_count = 2};
+    host_open(&host, &config);
+    assert_true(second_choice(&host.device[0], CHOICE_hps_over_range) == 65533);
+    assert_int_equal(second_state(&host.device[0]).line.baud, 115200);
+
+    forced[1] = (second_override_t){"hps_no_such_choice", 1};
+    assert_false(second_init(&host.device[0], &config));
+    forced[1] = (second_override_t){"hps_baud_code", 77};
+    assert_false(second_init(&host.device[0], &config));
+    forced[1] = (second_override_t){"hps_over_range", 65529};
+    assert_false(second_init(&host.device[0], &config));
+}
+
+static void test_misprints_can_be_left_out(void **state)
+{
+    (void)state;
+    int misprints = 0;
+    for (uint64_t seed = 1; seed <= 50; seed++) {
+        second_config_t config = {.kind = SECOND_A05_RS485, .seed = seed, .no_misprints = true};
+        host_open(&host, &config);
+        for (int c = 0; c < CHOICE_COUNT; c++) {
+            const second_choice_row_t *row = second_choice_row((second_choice_t)c);
+            int64_t value = second_choice(&host.device[0], (second_choice_t)c);
+            if (row->misprint) assert_true(value == row->values[0].value);
+            misprints += row->misprint && drawn[c][seed - 1] != value ? 1 : 0;
+        }
+    }
+    assert_true(misprints > 0);
+}
+
+/* The printed list names the choices of this kind and no others. */
+static void test_the_choices_are_printed(void **state)
+{
+    (void)state;
+    static char text[65536];
+    second_config_t config = {.kind = SECOND_A16_AUTO, .seed = 9};
+    host_open(&host, &config);
+    FILE *out = tmpfile();
+    assert_non_null(out);
+    second_print_choices(&host.device[0], out);
+    rewind(out);
+    text[fread(text, 1, sizeof text - 1, out)] = '\0';
+    fclose(out);
+    char line[64];
+    snprintf(line, sizeof line, "a16_period_us=%lld ", (long long)drawn[CHOICE_a16_period_us][8]);
+    assert_non_null(strstr(text, line));
+    assert_null(strstr(text, "hps_"));
+    assert_null(strstr(text, "mb_"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_end_is_drawn),           cmocka_unit_test(test_every_draw_is_allowed),
+        cmocka_unit_test(test_choices_are_independent),      cmocka_unit_test(test_rows_are_complete),
+        cmocka_unit_test(test_draws_hang_on_the_seed_alone), cmocka_unit_test(test_a_choice_can_be_forced),
+        cmocka_unit_test(test_misprints_can_be_left_out),    cmocka_unit_test(test_the_choices_are_printed),
+    };
+    return cmocka_run_group_tests(tests, draw_all, NULL);
+}
