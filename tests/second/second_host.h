@@ -5,11 +5,9 @@
 
 #include "second.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "suite.h"
 
 #define HOST_BYTES   262144
 #define HOST_DEVICES 3
@@ -149,6 +147,39 @@ static inline size_t count_events(const second_device_t *device, second_event_ki
         if (event != NULL && event->kind == kind) count++;
     }
     return count;
+}
+
+/* The host of a file of tests. */
+static host_t host;
+
+#define OVERRIDES(...)                                                                                       \
+    (const second_override_t[]){__VA_ARGS__},                                                                \
+        sizeof((const second_override_t[]){__VA_ARGS__}) / sizeof(second_override_t)
+
+static inline void open_device(second_kind_t kind, int32_t mm, const second_override_t *overrides,
+                               size_t count)
+{
+    second_config_t config = {
+        .kind = kind, .scene = {{mm, mm, mm, mm}}, .overrides = overrides, .override_count = count};
+    host_open(&host, &config);
+    host_power(&host, true);
+    host_run(&host, 12000000);
+}
+
+static inline const char *ask(const char *request)
+{
+    host_request(&host, request);
+    return host_answer(&host, 450000);
+}
+
+static inline second_state_t now(void) { return second_state(&host.device[0]); }
+
+static inline void cycle_power(void)
+{
+    host_power(&host, false);
+    host_run(&host, host.now_us + 100000);
+    host_power(&host, true);
+    host_run(&host, host.now_us + 12000000);
 }
 
 #endif

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Every frame that the datasheets print comes out of the devices, with the choices at the printed example. */
-#include "test_host.h"
+#include "second_host.h"
 
 #include "second_device.h" /* the check codes */
-
-static host_t host;
 
 typedef struct {
     const char *name;
@@ -81,9 +79,8 @@ static void check_unprinted(const char *answer, const char *start)
     assert_int_equal(second_wire_crc16(bytes, len), 0);
 }
 
-static void test_requests_get_the_printed_answers(void **state)
+TEST(requests_get_the_printed_answers)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof printed / sizeof printed[0]; i++) {
         const printed_t *row = &printed[i];
         /* No automatic frame beside the request. */
@@ -108,9 +105,8 @@ static void test_requests_get_the_printed_answers(void **state)
 }
 
 /* The automatic frames, and the controlled one. */
-static void test_frames_without_a_request(void **state)
+TEST(frames_without_a_request)
 {
-    (void)state;
     static const struct {
         second_kind_t kind;
         second_scene_t scene;
@@ -139,9 +135,8 @@ static void test_frames_without_a_request(void **state)
 }
 
 /* A05 2(3)3 with the sum as it is printed there. */
-static void test_the_misprinted_sum(void **state)
+TEST(the_misprinted_sum)
 {
-    (void)state;
     const second_override_t forced = {"a05_all_sum", 1};
     second_config_t config = {.kind = A05_BUS, .scene = FOUR, .overrides = &forced, .override_count = 1};
     host_open(&host, &config);
@@ -151,9 +146,8 @@ static void test_the_misprinted_sum(void **state)
     assert_string_equal(host_answer(&host, 300000), "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60");
 }
 
-static void test_printed_check_codes(void **state)
+TEST(printed_check_codes)
 {
-    (void)state;
     static const struct {
         const char *bytes;
         uint16_t crc;
@@ -169,15 +163,4 @@ static void test_printed_check_codes(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         assert_int_equal(second_wire_crc16(bytes, from_hex(rows[i].bytes, bytes)), rows[i].crc);
     assert_int_equal(second_wire_sum8(bytes, from_hex("FF 07 A1", bytes)), 0xA7);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_requests_get_the_printed_answers),
-        cmocka_unit_test(test_frames_without_a_request),
-        cmocka_unit_test(test_the_misprinted_sum),
-        cmocka_unit_test(test_printed_check_codes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+/* What holds for all seeds. */
+#include "second_host.h"
+
+#include "second_device.h" /* the check codes */
+
+static host_t again;
+
+static bool checked_frame(const second_event_t *event, bool odd_sum)
+{
+    if (event->raw[0] == 0xFF && event->raw_len != 0 && event->function == 0) { /* an automatic frame */
+        size_t skip = event->raw[1] == 0xFF && event->raw_len == 5 ? 1 : 0;
+        size_t sum = (size_t)event->raw_len - 1;
+        return second_wire_sum8(event->raw + skip, sum - skip) == event->raw[sum];
+    }
+    if (event->raw[0] == 0x55 && event->raw[1] == 0xAA)
+        return odd_sum || second_wire_sum8(event->raw, event->raw_len - 1U) == event->raw[event->raw_len - 1];
+    return second_wire_crc16(event->raw, event->raw_len) == 0;
+}
+
+static const char *request_of(second_kind_t kind)
+{
+    static const char *const requests[SECOND_KINDS] = {
+        [SECOND_A16_RS232] = "01 03 01 01 00 01", [SECOND_A16_RS485] = "01 03 01 00 00 01",
+        [SECOND_A05_UART] = "01 03 01 06 00 04",  [SECOND_A05_RS485] = "01 03 01 06 00 04",
+        [SECOND_HPS167S] = "01 03 00 08 00 04",
+    };
+    return requests[kind];
+}
+
+static void live(host_t *h, second_kind_t kind, uint64_t seed, uint64_t step_us)
+{
+    second_config_t config = {
+        .kind = kind, .seed = seed, .fitted = (uint8_t)(1 + seed % 15), .scene = {{1500, 2500, 3500, 4500}}};
+    host_open(h, &config);
+    h->step_us = step_us;
+    h->line = second_state(&h->device[0]).line;
+    host_power(h, true);
+    host_run(h, 9000000);
+    second_scene_t scene = {{SECOND_NOTHING, 700, 90000, 40}};
+    for (int i = 0; i < 4; i++) {
+        if (request_of(kind) != NULL) {
+            host_request(h, request_of(kind));
+        } else {
+            second_rx_level(&h->device[0], true, h->now_us + 10);
+            second_rx_level(&h->device[0], false, h->now_us + 2000);
+        }
+        host_run(h, h->now_us + 600000);
+        if (i == 2) second_scene(&h->device[0], &scene, h->now_us);
+    }
+    host_power(h, false);
+    host_run(h, h->now_us + 100000);
+}
+
+/* Bytes follow each other, frames carry the right check codes, the log tells what was on the wire. */
+TEST(all_seeds_keep_the_wire_in_order)
+{
+    for (int kind = 0; kind < SECOND_KINDS; kind++) {
+        size_t frames = 0;
+        for (uint64_t seed = 1; seed <= 300; seed++) {
+            live(&host, (second_kind_t)kind, seed, 0);
+            const second_device_t *d = &host.device[0];
+            for (size_t i = 1; i < host.got_len; i++) {
+                assert_true(host.got[i].start_us >= host.got[i - 1].end_us);
+                assert_true(host.got[i].end_us > host.got[i].start_us);
+            }
+            size_t at = 0;
+            bool odd_sum = second_choice(d, CHOICE_a05_all_sum) != 0;
+            for (uint64_t i = 0; i < second_log_count(d); i++) {
+                const second_event_t *event = second_log_at(d, i);
+                bool sent = event->kind == SECOND_EVENT_MEASUREMENT || event->kind == SECOND_EVENT_ANSWER;
+                if (!sent || event->end_us > second_log_at(d, second_log_count(d) - 1)->time_us) continue;
+                assert_true(checked_frame(event, odd_sum));
+                while (at < host.got_len && host.got[at].start_us < event->start_us) at++;
+                for (size_t k = 0; k < event->raw_len; k++)
+                    assert_int_equal(host.got[at + k].value, event->raw[k]);
+                frames++;
+            }
+            assert_int_equal(second_state(d).lost, 0);
+        }
+        assert_true(frames > 300);
+    }
+}
+
+/* A request for a measurement is answered, whatever the seed, when the text says so. */
+TEST(all_seeds_answer_a_plain_request)
+{
+    for (int kind = SECOND_A16_CONTROLLED; kind < SECOND_KINDS; kind++) {
+        for (uint64_t seed = 1; seed <= 300; seed++) {
+            live(&host, (second_kind_t)kind, seed, 0);
+            const second_device_t *d = &host.device[0];
+            size_t asked = 0, expected = 4;
+            for (uint64_t i = 0; i < second_log_count(d); i++) {
+                const second_event_t *event = second_log_at(d, i);
+                if (event->kind == SECOND_EVENT_MEASUREMENT && event->asked && !event->fault) asked++;
+            }
+            /* What may cost an answer: the first only switches; no frame without a target; a failure; and an
+               unasked frame that the request ran into. */
+            bool first_switches =
+                (kind == SECOND_A16_RS232 && second_choice(d, CHOICE_a16_first_command) != 0) ||
+                (kind == SECOND_A05_UART && second_choice(d, CHOICE_a05_first_command) != 0);
+            if (first_switches) expected -= second_choice(d, CHOICE_a05_back_us) == 1000000 ? 4 : 1;
+            if (kind == SECOND_A16_CONTROLLED && second_choice(d, CHOICE_a16_nothing) == -2) expected--;
+            bool unasked =
+                second_choice(d, CHOICE_hps_unasked) != 0 && second_choice(d, CHOICE_hps_auto_out) != 0;
+            if (kind == SECOND_HPS167S && unasked) continue;
+            if (kind == SECOND_HPS167S && second_choice(d, CHOICE_hps_fault_every) != 0) continue;
+            if (asked < expected) fail_msg("kind %d seed %u: %zu answers", kind, (unsigned)seed, asked);
+        }
+    }
+}
+
+/* The same seed gives the same bytes, in whatever steps the device is run. */
+TEST(all_seeds_are_repeatable)
+{
+    for (int kind = 0; kind < SECOND_KINDS; kind++) {
+        for (uint64_t seed = 1; seed <= 60; seed++) {
+            live(&host, (second_kind_t)kind, seed, 0);
+            live(&again, (second_kind_t)kind, seed, 333);
+            assert_int_equal(host.got_len, again.got_len);
+            for (size_t i = 0; i < host.got_len; i++) {
+                assert_int_equal(host.got[i].value, again.got[i].value);
+                assert_true(host.got[i].start_us == again.got[i].start_us);
+            }
+            assert_true(second_log_count(&host.device[0]) == second_log_count(&again.device[0]));
+        }
+    }
+}
+
+TEST(the_log_is_a_ring)
+{
+    open_device(SECOND_A16_AUTO, 1000, OVERRIDES({"a16_period_us", 50000}));
+    host.got_len = 0;
+    for (int i = 0; i < 5; i++) {
+        host_run(&host, host.now_us + 50000000);
+        host.got_len = 0;
+    }
+    uint64_t count = second_log_count(&host.device[0]);
+    assert_true(count > SECOND_LOG_EVENTS);
+    assert_null(second_log_at(&host.device[0], count));
+    assert_non_null(second_log_at(&host.device[0], count - SECOND_LOG_EVENTS));
+    assert_null(second_log_at(&host.device[0], count - SECOND_LOG_EVENTS - 1));
+}
+
+TEST(breaks_and_power_off)
+{
+    for (int64_t as = 0; as < 2; as++) {
+        open_device(SECOND_A16_RS485, 754, OVERRIDES({"any_break_as", as}));
+        second_rx_level(&host.device[0], true, host.now_us);
+        second_rx_level(&host.device[0], false, host.now_us + 5000);
+        host_run(&host, host.now_us + 10000);
+        const second_event_t *noise = last_event(&host.device[0], SECOND_EVENT_NOISE);
+        assert_true(noise != NULL && noise->new_value == as);
+        assert_string_equal(ask("01 03 01 00 00 01"), "01 03 02 02 F2 38 A1");
+    }
+    host_request(&host, "01 03 01 00 00 01");
+    host_run(&host, host.now_us + 12000); /* 10 ms and two of the seven bytes */
+    host_power(&host, false);
+    assert_int_equal(last_event(&host.device[0], SECOND_EVENT_POWER)->old_value, 6);
+    assert_true(second_next_us(&host.device[0]) == SECOND_NEVER);
+}
