@@ -1,0 +1,416 @@
+/* SPDX-License-Identifier: MIT */
+#include "second_judge.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "suite.h"
+
+judge_t judge;
+
+static const char *const wording[REASONS] = {
+    [BECAUSE_EXCEPTION] = "it answers with an exception",
+    [BECAUSE_SILENT] = "it does not answer such a request",
+    [BECAUSE_WARM_UP] = "it does not measure while it warms up",
+    [BECAUSE_STARTING] = "it has just got power",
+    [BECAUSE_SWITCHED] = "its first command only ends the automatic output",
+    [BECAUSE_LATER] = "the new value counts from the next power-on",
+    [BECAUSE_ECHOED] = "it acknowledges a value and does not take it",
+    [BECAUSE_OTHER_VALUE] = "it takes another value than the one that was sent",
+    [BECAUSE_OLD_TOLD] = "it tells the value in use and not the one that was set",
+    [BECAUSE_HIT] = "a frame that nobody asked for ran into request or answer",
+    [BECAUSE_NO_DISTANCE] = "its value means no distance",
+    [BECAUSE_RARE] = "its frames are farther apart than the deadline",
+    [BECAUSE_FAILED] = "it has failed",
+    [BECAUSE_STRENGTH] = "its strength of light has an exponent over 16",
+    [BECAUSE_FEWER] = "it answers with fewer values than were asked for",
+    [BECAUSE_MISPRINT] = "it does what is most likely a misprint",
+    [BECAUSE_NOTHING] = "UNEXPLAINED",
+};
+
+static int64_t chose(second_choice_t choice) { return second_choice(&judge.rig->device, choice); }
+static second_kind_t kind(void) { return judge.rig->device.config.kind; }
+static bool is_a05(void) { return kind() == SECOND_A05_UART || kind() == SECOND_A05_RS485; }
+static bool is_hps(void) { return kind() == SECOND_HPS167S; }
+
+static judge_row_t *row(void)
+{
+    for (size_t i = 0; i < judge.row_count; i++) {
+        if (strcmp(judge.rows[i].name, judge.name) == 0) return &judge.rows[i];
+    }
+    assert_true(judge.row_count < JUDGE_ROWS);
+    judge.rows[judge.row_count].name = judge.name;
+    return &judge.rows[judge.row_count++];
+}
+
+static void begin_again(void)
+{
+    judge.log_begin = second_log_count(&judge.rig->device);
+    judge.begin_us = judge.rig->now_us;
+    judge.writes_begin = judge.rig->writes;
+}
+
+void judge_begin(const char *name)
+{
+    judge.name = name;
+    begin_again();
+}
+
+static void finding(const char *what, int status)
+{
+    if (getenv("FATHOM_TABLE") != NULL)
+        print_message("kind %d seed %u at %u ms: %s: status %d: %s\n", kind(),
+                      (unsigned)judge.rig->device.config.seed, (unsigned)(judge.rig->now_us / 1000),
+                      judge.name, status, what);
+    judge.wrong++;
+}
+
+/* What the log says of the time since the command began. */
+typedef struct {
+    bool exception, silent, echoed, unasked, noise, fault, reset, effect;
+    unsigned settings, odd_values;
+    uint64_t unasked_us; /* the newest of them */
+    const second_event_t *setting;
+} facts_t;
+
+static bool is_odd(uint16_t value)
+{
+    if (is_hps()) return value > 30000 ? value < 65530 || value == 65535 : value == 0;
+    return value == 0xFFFF || (value < 0xFFFD && value > (is_a05() ? 6000 : 16350));
+}
+
+static facts_t facts(void)
+{
+    const second_device_t *d = &judge.rig->device;
+    facts_t f = {0};
+    uint64_t from = judge.log_begin;
+    for (; from > 0; from--) { /* frames that were on their way */
+        const second_event_t *e = second_log_at(d, from - 1);
+        if (e == NULL || e->time_us + 1000000 < judge.begin_us) break;
+    }
+    for (uint64_t i = from; i < second_log_count(d); i++) {
+        const second_event_t *e = second_log_at(d, i);
+        if (e == NULL) continue;
+        bool since = i >= judge.log_begin;
+        switch (e->kind) {
+        case SECOND_EVENT_MEASUREMENT:
+            f.unasked |= !e->asked;
+            if (!e->asked && e->end_us <= judge.rig->now_us) f.unasked_us = e->end_us;
+            f.fault |= e->fault;
+            for (size_t p = 0; p < SECOND_PROBES; p++)
+                f.odd_values += (e->probes >> p & 1U) != 0 && is_odd(e->sent[p]) ? 1U : 0U;
+            break;
+        case SECOND_EVENT_SETTING:
+            if (!since) break;
+            f.settings++;
+            f.setting = e;
+            break;
+        case SECOND_EVENT_REFUSED:
+            if (!since) break;
+            f.exception |= e->exception >= 1 && e->exception <= 4;
+            f.silent |= e->exception == 0;
+            f.echoed |= e->exception == 9;
+            break;
+        case SECOND_EVENT_NOISE:
+        case SECOND_EVENT_DISCARDED:
+            f.noise = true;
+            break;
+        case SECOND_EVENT_RESET:
+            f.reset |= since;
+            break;
+        case SECOND_EVENT_EFFECT:
+            f.effect |= since;
+            break;
+        case SECOND_EVENT_POWER:
+        case SECOND_EVENT_ANSWER:
+            break;
+        }
+    }
+    return f;
+}
+
+static bool is_misprint(void)
+{
+    if (kind() == SECOND_A05_UART) return chose(CHOICE_a05_uart_parity) != 'N';
+    if (kind() == SECOND_A05_RS485)
+        return chose(CHOICE_a05_all_sum) != 0 || chose(CHOICE_a05_dyp_address_answer) != 0;
+    return !is_hps() && chose(CHOICE_a16_start_bytes) != 1;
+}
+
+static bool first_only_switches(void)
+{
+    if (kind() == SECOND_A16_RS232) return chose(CHOICE_a16_first_command) != 0;
+    return kind() == SECOND_A05_UART && chose(CHOICE_a05_first_command) != 0;
+}
+
+static bool is_later(uint16_t reg)
+{
+    if (reg == 0xAA03) return chose(CHOICE_a05_dyp_address_effect) != 0;
+    if (is_hps()) return reg == 0x11 && chose(CHOICE_hps_baud_effect) == 2;
+    return reg == 0x0200 && chose(CHOICE_mb_address_effect) != 0;
+}
+
+static bool is_warming_up(void) { return is_hps() && second_hps_warming_up(&judge.rig->device); }
+
+/* Why it did not answer, or not so that it could be understood. */
+static reason_t why(fathom_status_t status)
+{
+    const facts_t f = facts();
+    const second_device_t *d = &judge.rig->device;
+    bool early = judge.rig->now_us < d->power_on_us + 3500000;
+    if (status == FATHOM_ERR_EXCEPTION && f.exception)
+        return is_warming_up() ? BECAUSE_WARM_UP : BECAUSE_EXCEPTION;
+    if (status == FATHOM_ERR_WARMING_UP) return BECAUSE_WARM_UP;
+    if (status == FATHOM_ERR_MALFORMED && f.odd_values > 0) return BECAUSE_NO_DISTANCE;
+    if (status == FATHOM_ERR_MALFORMED && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16)
+        return BECAUSE_STRENGTH;
+    if (status == FATHOM_ERR_MALFORMED && is_a05() && chose(CHOICE_a05_past_end) == 7 &&
+        judge.rig->last[2] == 0)
+        return BECAUSE_FEWER;
+    if (is_misprint() && status != FATHOM_ERR_EXCEPTION) return BECAUSE_MISPRINT;
+    if (status == FATHOM_ERR_STALE && judge.rig->now_us >= f.unasked_us + 1900000)
+        return early ? BECAUSE_STARTING : BECAUSE_RARE;
+    bool unheard = judge.rig->last[2] == 0xFF && !is_hps() && chose(CHOICE_a05_dyp_ff) == 0;
+    if (status == FATHOM_ERR_NO_ANSWER && (f.silent || unheard)) {
+        if (is_warming_up()) return BECAUSE_WARM_UP;
+        if (is_hps() && d->hps.failed) return BECAUSE_FAILED;
+        return first_only_switches() && f.effect ? BECAUSE_SWITCHED : BECAUSE_SILENT;
+    }
+    if (status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_STALE) return BECAUSE_NOTHING;
+    if (f.unasked && (f.noise || status == FATHOM_ERR_CHECKSUM)) return BECAUSE_HIT;
+    return early ? BECAUSE_STARTING : BECAUSE_NOTHING;
+}
+
+static void count(reason_t reason, fathom_status_t status)
+{
+    row()->runs++;
+    row()->because[reason]++;
+    if (reason == BECAUSE_NOTHING) finding("nothing explains it", status);
+}
+
+static void good(void)
+{
+    row()->runs++;
+    row()->good++;
+}
+
+void judge_read(fathom_status_t status, bool is_right)
+{
+    if (judge.rig->writes != judge.writes_begin) finding("a read wrote", status);
+    if (status == FATHOM_READY && !is_right) finding("it told something else than the device has", status);
+    if (status == FATHOM_READY)
+        good();
+    else
+        count(why(status), status);
+}
+
+int64_t judge_held(uint16_t reg)
+{
+    const second_device_t *d = &judge.rig->device;
+    const hps_settings_t *set = &d->hps.set;
+    switch (reg) {
+    case 0x0A:
+        return set->warm_s;
+    case 0x10:
+        return d->address;
+    case 0x11:
+        return set->baud_code >= 1 && set->baud_code <= 4 ? set->baud_code : 1;
+    case 0x12:
+        return set->auto_out;
+    case 0x13:
+        return set->termination;
+    case 0x14:
+        return set->offset;
+    case 0x16:
+        return set->filter;
+    case 0x20:
+        return set->reconnect_ms;
+    case 0x0200:
+    case 0xAA03:
+        return is_later(reg) ? d->us.stored_address : d->address;
+    case 0x0202:
+        return d->automatic;
+    case 0x0205:
+        return d->us.polarity;
+    case 0x0206:
+        return d->us.threshold;
+    case 0x0207:
+        return d->us.type;
+    default:
+        return -1;
+    }
+}
+
+/* Why the device says, or is, something else than what was written. */
+static reason_t why_different(const facts_t *f, wanted_t wanted)
+{
+    if (f->settings > 0 && is_later(wanted.reg)) return BECAUSE_LATER;
+    if (is_hps() && f->settings > 0 && chose(CHOICE_hps_reported) == 1) return BECAUSE_OLD_TOLD;
+    if (f->settings > 0 && f->setting->new_value != wanted.value) return BECAUSE_OTHER_VALUE;
+    if (f->echoed) return BECAUSE_ECHOED;
+    return BECAUSE_NOTHING;
+}
+
+void judge_set(fathom_status_t status, wanted_t wanted)
+{
+    const facts_t f = facts();
+    uint32_t writes = judge.rig->writes - judge.writes_begin;
+    if (status == FATHOM_ERR_MALFORMED && writes > 0) status = (fathom_status_t)FATHOM_ERR_DIFFERS; /* TODO */
+    bool holds = judge_held(wanted.reg) == wanted.value;
+    reason_t reason;
+    if (writes > 1) finding("written more than once", status);
+    switch ((int)status) {
+    case FATHOM_READY:
+        if (writes == 0 && !holds) finding("'unchanged', and it is not so", status);
+        if (writes > 0 && !holds && !wanted.acknowledged) finding("'made', and it is not so", status);
+        if (writes > 0 && f.settings == 0 && !f.echoed && !f.reset)
+            finding("'acknowledged', and it was not", status);
+        good();
+        return;
+    case FATHOM_ERR_DIFFERS:
+        if (writes == 0) finding("'it reads otherwise', and nothing was written", status);
+        reason = why_different(&f, wanted);
+        break;
+    case FATHOM_ERR_UNCONFIRMED:
+        if (writes == 0) finding("'not confirmed', and nothing was written", status);
+        reason = why_different(&f, wanted);
+        if (reason == BECAUSE_NOTHING) reason = why(FATHOM_ERR_NO_ANSWER);
+        break;
+    case FATHOM_ERR_EXCEPTION:
+        if (f.settings > 0) finding("'refused', and it was taken", status);
+        reason = why(status);
+        break;
+    default:
+        if (f.settings > 0 && holds && !wanted.acknowledged) finding("an error, and it holds", status);
+        reason = why(status);
+        break;
+    }
+    count(reason, status);
+}
+
+/* Is this the value of that probe in a frame which came at that time? */
+static const second_event_t *source(const fathom_sample_t *sample)
+{
+    const rig_t *rig = judge.rig;
+    uint32_t slack_us = rig->loop == RIG_WOKEN ? 2 : rig->loop == RIG_EVERY_1_MS ? 3000 : 45000;
+    for (uint64_t i = second_log_count(&rig->device); i-- > 0;) {
+        const second_event_t *e = second_log_at(&rig->device, i);
+        if (e == NULL || e->time_us + 20000000 < rig->now_us) return NULL;
+        if (e->kind != SECOND_EVENT_MEASUREMENT || (e->probes >> (sample->probe - 1) & 1U) == 0) continue;
+        uint32_t later_us = fathom_elapsed_us(sample->time_us + 2, rig_clock_us(rig, e->end_us));
+        if (later_us <= slack_us + 2 && e->sent[sample->probe - 1] == sample->raw) return e;
+    }
+    return NULL;
+}
+
+static const char *wrong_ultrasonic(const fathom_sample_t *s, const second_event_t *e)
+{
+    size_t p = s->probe - 1U;
+    int32_t mm = e->true_mm[p];
+    if ((e->fitted >> p & 1U) == 0) return "a probe that is not fitted";
+    switch ((int)s->kind) {
+    case FATHOM_TARGET:
+        if (s->distance_mm != s->raw) return "another distance than was sent";
+        if (mm == s->distance_mm) return NULL;
+        if (mm != SECOND_NOTHING && !e->not_ready) return "another distance than is true";
+        judge.from_device++; /* the value for nothing looks like a distance */
+        return NULL;
+    case FATHOM_NO_TARGET:
+        if (s->raw != 0xFFFD && s->raw != 0xFFFE) return "no target, and nobody says so";
+        return mm == SECOND_NOTHING || e->not_ready ? NULL : "no target, and there is one";
+    case FATHOM_UNKNOWN:
+        return s->raw == 0 ? NULL : "unknown, and it is not";
+    default:
+        return "no such kind";
+    }
+}
+
+static const char *wrong_hps(const fathom_sample_t *s, const second_event_t *e)
+{
+    int64_t off = chose(CHOICE_hps_deviation_mm) + judge.rig->device.hps.used.offset;
+    switch ((int)s->kind) {
+    case FATHOM_TARGET:
+        if (s->distance_mm != s->raw) return "another distance than was sent";
+        if (e->fault || e->no_target) return "a distance, and there is none";
+        if (e->true_mm[0] + off == s->distance_mm) return NULL;
+        return e->true_mm[0] < 80 && s->distance_mm == 80 ? NULL : "another distance than is true";
+    case FATHOM_NO_TARGET:
+        if (!e->no_target && e->true_mm[0] + off >= 0) return "no target, and there is one";
+        return e->fault ? "no target, and it has failed" : NULL;
+    case FATHOM_FAULT: /* the abnormal packet, or its very bytes */
+        for (size_t i = 3; i < 11; i++) {
+            uint8_t expected = i == 5 || i == 6 ? 0x00 : 0xFF;
+            if (i != 7 && e->raw[i] != expected) return "'failed', and nobody says so";
+        }
+        return NULL;
+    case FATHOM_UNKNOWN:
+        return s->raw >= 1 && s->raw < 80 ? NULL : "unknown, and it is not";
+    default:
+        return "no such kind";
+    }
+}
+
+void judge_sample(const fathom_sample_t *sample)
+{
+    const second_event_t *e = source(sample);
+    judge.readings++;
+    if (e == NULL) {
+        finding("a reading that was not sent", (int)sample->raw);
+        return;
+    }
+    const char *wrong = is_hps() ? wrong_hps(sample, e) : wrong_ultrasonic(sample, e);
+    if (wrong != NULL) finding(wrong, (int)sample->raw);
+}
+
+void judge_measured(fathom_status_t status, const fathom_sample_t *sample)
+{
+    if (status == FATHOM_READY) judge_sample(sample);
+    judge_read(status, true);
+}
+
+unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned outcomes, uint64_t for_us)
+{
+    unsigned readings = 0;
+    uint64_t end_us = judge.rig->now_us + for_us;
+    judge_begin(name);
+    while (outcomes > 0 && judge.rig->now_us < end_us) {
+        fathom_sample_t sample;
+        fathom_status_t status = fathom_poll(sensor, &sample);
+        if (status == FATHOM_PENDING) {
+            rig_pass(judge.rig, fathom_due_us(sensor, 1));
+            continue;
+        }
+        outcomes--;
+        if (status == FATHOM_READY) {
+            judge_sample(&sample);
+            readings++;
+        }
+        judge_read(status, true);
+        begin_again();
+    }
+    return readings;
+}
+
+void judge_print(void)
+{
+    for (int r = 0; r < REASONS; r++) print_message("%2d %s\n", r, wording[r]);
+    print_message("%-34s %8s %8s", "command", "runs", "good");
+    for (int r = 0; r < REASONS; r++) print_message(" %6d", r);
+    print_message("\n");
+    for (size_t i = 0; i < judge.row_count; i++) {
+        const judge_row_t *at = &judge.rows[i];
+        print_message("%-34s %8u %8u", at->name, at->runs, at->good);
+        for (int r = 0; r < REASONS; r++) print_message(" %6u", at->because[r]);
+        print_message("\n");
+    }
+    print_message("%u readings, %u with what the device itself calls a distance, %u findings\n",
+                  judge.readings, judge.from_device, judge.wrong);
+}
+
+unsigned judge_total(reason_t reason)
+{
+    unsigned total = 0;
+    for (size_t i = 0; i < judge.row_count; i++) total += judge.rows[i].because[reason];
+    return total;
+}

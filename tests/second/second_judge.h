@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Holds what a driver says against what the device logged: no wrong reading, no false statement, and a reason that a
+ * reader of the datasheet accepts for all that is not made. What each device is asked is in second_lives.h.
+ */
+#ifndef SECOND_JUDGE_H
+#define SECOND_JUDGE_H
+
+#include "second_rig.h"
+
+#include "second_device.h"
+
+#define FATHOM_ERR_DIFFERS (-16)
+#define FATHOM_UNKNOWN     6
+
+/* Why a command, or a measurement, did not come to what was wanted. */
+typedef enum {
+    BECAUSE_EXCEPTION,
+    BECAUSE_SILENT,
+    BECAUSE_WARM_UP,
+    BECAUSE_STARTING,
+    BECAUSE_SWITCHED,
+    BECAUSE_LATER,
+    BECAUSE_ECHOED,
+    BECAUSE_OTHER_VALUE,
+    BECAUSE_OLD_TOLD,
+    BECAUSE_HIT,
+    BECAUSE_NO_DISTANCE,
+    BECAUSE_RARE,
+    BECAUSE_FAILED,
+    BECAUSE_STRENGTH,
+    BECAUSE_FEWER,
+    BECAUSE_MISPRINT,
+    BECAUSE_NOTHING, /* none of these: the driver is wrong */
+    REASONS
+} reason_t;
+
+enum { JUDGE_ROWS = 80 };
+
+typedef struct {
+    const char *name;
+    unsigned runs, good, because[REASONS];
+} judge_row_t;
+
+typedef struct {
+    rig_t *rig;
+    const char *name;
+    uint64_t log_begin; /* of the command */
+    uint64_t begin_us;
+    uint32_t writes_begin;
+    judge_row_t rows[JUDGE_ROWS];
+    size_t row_count;
+    unsigned readings, from_device,
+        wrong; /* from_device: the device itself called something else a distance */
+} judge_t;
+
+extern judge_t judge;
+
+void judge_begin(const char *name);
+/* A command that changes nothing: is_right, where it says FATHOM_READY. */
+void judge_read(fathom_status_t status, bool is_right);
+
+/* A reading, and a command that gives one. */
+void judge_sample(const fathom_sample_t *sample);
+void judge_measured(fathom_status_t status, const fathom_sample_t *sample);
+
+/* What a setting is to come to. */
+typedef struct {
+    uint16_t reg;
+    int64_t value;
+    bool acknowledged; /* that is all that can be known */
+} wanted_t;
+void judge_set(fathom_status_t status, wanted_t wanted);
+
+/* The value that the device has for a register. */
+int64_t judge_held(uint16_t reg);
+
+/* Polls a sensor until it has said so many things, or so long; judges each. Returns how many readings there were. */
+unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned outcomes, uint64_t for_us);
+
+/* Calls it until it is not pending. */
+#define JUDGE_RUN(status, sensor, call)                                                                      \
+    do {                                                                                                     \
+        uint64_t end_us = judge.rig->now_us + 120000000;                                                     \
+        while (((status) = (call)) == FATHOM_PENDING && judge.rig->now_us < end_us)                          \
+            rig_pass(judge.rig, fathom_due_us(&(sensor), 1));                                                \
+    } while (0)
+
+void judge_print(void);
+unsigned judge_total(reason_t reason);
+
+#endif

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+#include "second_lives.h"
+
+#include "suite.h"
+
+enum { SECOND_US = 1000000, SETTLED_US = 8000000 };
+
+static const int32_t there_mm[] = {2083, 255, 17900, SECOND_NOTHING, 80, 40, 1200};
+enum { THERE = sizeof there_mm / sizeof there_mm[0] };
+
+typedef struct {
+    fathom_hps167s_t sensor;
+    fathom_line_settings_t settings;
+    fathom_sensor_t any;
+} hps_driver_t;
+
+static hps_driver_t h;
+
+static void begin(rig_t *rig)
+{
+    h.settings = (fathom_line_settings_t){rig->device.line.baud, FATHOM_PARITY_EVEN, 1};
+    fathom_hps167s_config_t config = {.modbus = &rig->modbus,
+                                      .clock = &rig->clock,
+                                      .settings = &h.settings,
+                                      .address = rig->device.address,
+                                      .retries = 2,
+                                      .warm_up_s = rig->device.hps.flash.warm_s};
+    config.low_word_first = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 2;
+    assert_int_equal(fathom_hps167s_init(&h.sensor, &config), FATHOM_READY);
+    h.any = fathom_hps167s_sensor(&h.sensor);
+}
+
+/* The driver goes where the device is, as its user would have to find out. */
+static void find(rig_t *rig)
+{
+    fathom_hps167s_deinit(&h.sensor);
+    begin(rig);
+}
+
+static void info(rig_t *rig)
+{
+    fathom_status_t status;
+    fathom_hps167s_version_t version = {0};
+    fathom_hps167s_configuration_t c = {0};
+    fathom_hps167s_details_t details = {0};
+    fathom_hps167s_temperature_t t = {0};
+    const hps_t *d = &rig->device.hps;
+    static const uint32_t rates[] = {19200, 19200, 57600, 115200, 230400};
+    judge_begin("hps167s_interface_version");
+    JUDGE_RUN(status, h.any, fathom_hps167s_interface_version(&h.sensor, &version));
+    judge_read(status, version.year == 2000 + d->version[0] && version.month == d->version[1] &&
+                           version.day == d->version[2] && version.major == d->version[3] &&
+                           version.minor == d->version[4] && version.revision == d->version[5]);
+    judge_begin("hps167s_configuration");
+    JUDGE_RUN(status, h.any, fathom_hps167s_configuration(&h.sensor, &c));
+    const hps_settings_t *told = second_choice(&rig->device, CHOICE_hps_reported) == 0 ? &d->set : &d->used;
+    uint32_t ms = told->reconnect_ms;
+    if (second_choice(&rig->device, CHOICE_hps_reconnect_order) == 1) ms = __builtin_bswap32(ms);
+    judge_read(status, c.baud == rates[told->baud_code < 5 ? told->baud_code : 0] &&
+                           c.warm_up_s == told->warm_s && c.termination == (told->termination != 0) &&
+                           c.reconnect_time_ms == ms && c.measures_after_power_on == (told->auto_out != 0));
+    judge_begin("hps167s_details");
+    JUDGE_RUN(status, h.any, fathom_hps167s_details(&h.sensor, &details));
+    judge_read(status, details.uuid[0] == d->details[1] && details.uuid[15] == d->details[16] &&
+                           details.year == 2000 + d->details[17]);
+    judge_begin("hps167s_temperature");
+    JUDGE_RUN(status, h.any, fathom_hps167s_temperature(&h.sensor, &t));
+    judge_read(status, t.fahrenheit == (int16_t)second_choice(&rig->device, CHOICE_hps_temperature));
+}
+
+#define SET(name, call, reg, value, acknowledged)                                                            \
+    do {                                                                                                     \
+        judge_begin(name);                                                                                   \
+        JUDGE_RUN(status, h.any, call);                                                                      \
+        judge_set(status, (wanted_t){reg, value, acknowledged});                                             \
+    } while (0)
+
+static void set_all(rig_t *rig)
+{
+    fathom_status_t status;
+    fathom_hps167s_t *s = &h.sensor;
+    uint32_t ms = 360;
+    bool is_swapped = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 1;
+    for (int on = 0; on < 2; on++) {
+        SET("hps167s_set_warm_up_s", fathom_hps167s_set_warm_up_s(s, (uint8_t)(3 + on)), 0x0A, 3 + on, false);
+        SET("hps167s_set_measures_after_power_on", fathom_hps167s_set_measures_after_power_on(s, on != 0),
+            0x12, on != 0 ? 0xFF : 0, false);
+        SET("hps167s_set_termination", fathom_hps167s_set_termination(s, on != 0), 0x13, on != 0 ? 0xFF : 0,
+            false);
+    }
+    SET("hps167s_set_reconnect_time_ms", fathom_hps167s_set_reconnect_time_ms(s, ms), 0x20,
+        is_swapped ? __builtin_bswap32(ms) : ms, false);
+    SET("hps167s_set_distance_offset_mm", fathom_hps167s_set_distance_offset_mm(s, -15), 0x14, -15, true);
+    SET("hps167s_set_filter_sensitivity", fathom_hps167s_set_filter_sensitivity(s, 20), 0x16, 20, true);
+    judge_poll("hps167s", &h.any, 6, SETTLED_US);
+    SET("hps167s_load_user_settings", fathom_hps167s_load_user_settings(s), 0x15, 0, true);
+    find(rig);
+    SET("hps167s_load_factory_settings", fathom_hps167s_load_factory_settings(s), 0x15, 0xFF, true);
+    rig_wait(rig, 20000);
+    find(rig);
+    SET("hps167s_set_address", fathom_hps167s_set_address(s, 12), 0x10, 12, false);
+    if (status != FATHOM_READY) find(rig);
+    judge_poll("hps167s", &h.any, 4, SETTLED_US);
+    SET("hps167s_set_baud", fathom_hps167s_set_baud(s, 115200), 0x11, 3, false);
+    if (status != FATHOM_READY) find(rig);
+    judge_poll("hps167s", &h.any, 4, SETTLED_US);
+}
+
+static void restart(rig_t *rig)
+{
+    rig_power(rig, false);
+    rig_wait(rig, SECOND_US);
+    rig_power(rig, true);
+    find(rig);
+    fathom_hps167s_power_on(&h.sensor);
+}
+
+void life_hps167s(rig_t *rig)
+{
+    fathom_status_t status;
+    begin(rig);
+    rig_power(rig, true);
+    fathom_hps167s_power_on(&h.sensor);
+    rig_wait(rig, rig->device.config.seed % 2 * 9 * SECOND_US);
+    for (size_t i = 0; i < THERE; i++) {
+        rig_scene(rig, there_mm[i], 0, 0, 0);
+        judge_poll("hps167s", &h.any, i == 0 ? 60 : 10, SETTLED_US);
+    }
+    info(rig);
+    set_all(rig);
+    restart(rig);
+    judge_poll("hps167s", &h.any, 60, 12000000);
+    info(rig);
+    second_fault(&rig->device, true, rig->now_us);
+    judge_poll("hps167s failed", &h.any, 10, SETTLED_US);
+    info(rig);
+    second_fault(&rig->device, false, rig->now_us);
+    judge_begin("hps167s_restore_factory_settings");
+    JUDGE_RUN(status, h.any, fathom_hps167s_restore_factory_settings(&h.sensor));
+    judge_set(status, (wanted_t){0x10, 1, false});
+    fathom_hps167s_deinit(&h.sensor);
+}
+
+/* Listens to what comes unasked, beside a driver that asks now and then. */
+void life_hps167s_auto(rig_t *rig)
+{
+    fathom_hps167s_auto_t listener;
+    begin(rig);
+    fathom_hps167s_auto_config_t config = {.line = &rig->line, .asking = &h.sensor};
+    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_READY);
+    fathom_sensor_t any = fathom_hps167s_auto_sensor(&listener);
+    rig_power(rig, true);
+    for (size_t i = 0; i < THERE; i++) {
+        rig_scene(rig, there_mm[i], 0, 0, 0);
+        judge_poll("hps167s_auto", &any, 20, SETTLED_US);
+        if (i == 3) info(rig);
+    }
+    fathom_hps167s_auto_deinit(&listener);
+    fathom_hps167s_deinit(&h.sensor);
+}

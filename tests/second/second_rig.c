@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT */
+#include "second_rig.h"
+
+#include <string.h>
+
+#include "suite.h"
+
+uint32_t rig_clock_us(const rig_t *rig, uint64_t us) { return rig->clock_begins_us + (uint32_t)us; }
+
+static uint32_t clock_now_us(void *ctx)
+{
+    const rig_t *rig = ctx;
+    return rig_clock_us(rig, rig->now_us);
+}
+
+static bool is_pair(const rig_t *rig)
+{
+    second_kind_t kind = rig->device.config.kind;
+    return kind == SECOND_A16_RS485 || kind == SECOND_A05_RS485 || kind == SECOND_HPS167S;
+}
+
+/* A byte of the device. A receiver of a pair is off while its own driver is on. */
+static void receive(void *context, const second_byte_t *byte)
+{
+    rig_t *rig = context;
+    if (is_pair(rig) && byte->start_us < rig->sent_us) return;
+    assert_true(rig->count < RIG_BYTES);
+    size_t at = (rig->first + rig->count++) % RIG_BYTES;
+    uint32_t off =
+        rig->set.baud > byte->line.baud ? rig->set.baud - byte->line.baud : byte->line.baud - rig->set.baud;
+    rig->bytes[at].value = byte->value;
+    rig->bytes[at].flags = 0;
+    rig->bytes[at].end_us = byte->end_us;
+    if (off * 40u > rig->set.baud) {
+        rig->bytes[at].value = (uint8_t)(byte->value * 5 + 3);
+        rig->bytes[at].flags = FATHOM_RX_FRAMING;
+    } else if (byte->line.parity != rig->set.parity) {
+        rig->bytes[at].flags = rig->set.parity == 'N' ? FATHOM_RX_FRAMING : FATHOM_RX_PARITY;
+    }
+}
+
+static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    rig_t *rig = ctx;
+    int count = 0;
+    uint64_t last_us = 0, character_us = 11000000 / rig->set.baud;
+    while (rig->count > 0 && (size_t)count < capacity) {
+        uint8_t flags = rig->bytes[rig->first].flags;
+        uint64_t end_us = rig->bytes[rig->first].end_us;
+        if (count > 0 && (flags != 0 || end_us > last_us + 2 * character_us)) break;
+        bytes[count++] = rig->bytes[rig->first].value;
+        last_us = end_us;
+        rig->first = (rig->first + 1) % RIG_BYTES;
+        rig->count--;
+        rx->flags |= flags;
+        if (flags != 0) break;
+    }
+    if (count > 0 && rig->loop == RIG_WOKEN) {
+        rx->flags |= FATHOM_RX_TIMED;
+        rx->last_us = rig_clock_us(rig, last_us);
+    }
+    return count;
+}
+
+static bool changes(const uint8_t *bytes, size_t length)
+{
+    if (bytes[0] == 0x55 && bytes[1] == 0xAA) return bytes[3] == 0x03;
+    return bytes[1] != 0x03 || (length == 8 && bytes[2] == 0 && bytes[3] == 0x09); /* HPS-167S #6 is a read */
+}
+
+static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    rig_t *rig = ctx;
+    uint64_t bits = 9U + (rig->set.parity != 'N' ? 1U : 0U) + rig->set.stop_bits;
+    assert_true(rig->now_us >= rig->sent_us && !rig->in_break && length <= RIG_FRAME);
+    for (size_t i = 0; i < length; i++)
+        second_host_byte(&rig->device, bytes[i], rig->now_us + i * bits * 1000000 / rig->set.baud,
+                         rig->now_us + (i + 1) * bits * 1000000 / rig->set.baud, rig->set);
+    rig->sent_us = rig->now_us + length * bits * 1000000 / rig->set.baud;
+    memcpy(rig->last, bytes, length);
+    rig->last_len = length;
+    if (changes(bytes, length)) {
+        bool is_dyp = bytes[0] == 0x55 && bytes[1] == 0xAA;
+        rig->writes++;
+        if (!is_dyp && (bytes[0] == 0 || bytes[0] == 255)) rig->to_all++;
+    }
+    return (int)length;
+}
+
+static bool uart_sent(void *ctx)
+{
+    const rig_t *rig = ctx;
+    return rig->now_us >= rig->sent_us;
+}
+
+static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    rig_t *rig = ctx;
+    if (rig->now_us < rig->sent_us) return 0;
+    rig->set.baud = settings->baud;
+    rig->set.parity = "NEO"[settings->parity];
+    rig->set.stop_bits = settings->stop_bits;
+    return 1;
+}
+
+static int uart_set_break(void *ctx, bool on)
+{
+    rig_t *rig = ctx;
+    if (rig->now_us < rig->sent_us) return 0;
+    if (on != rig->in_break) second_rx_level(&rig->device, on, rig->now_us);
+    rig->in_break = on;
+    return 1;
+}
+
+void rig_open(rig_t *rig, const second_config_t *config)
+{
+    static const uint32_t begins_us[] = {0, 4294000000u, 4200000000u, 2147483000u};
+    assert_true(second_init(&rig->device, config));
+    rig->now_us = rig->sent_us = 0;
+    rig->in_break = false;
+    rig->first = rig->count = rig->last_len = 0;
+    rig->writes = rig->to_all = 0;
+    rig->loop = config->seed % 3 == 2 ? RIG_EVERY_20_MS : config->seed % 24 == 1 ? RIG_EVERY_1_MS : RIG_WOKEN;
+    rig->clock_begins_us = begins_us[config->seed / 3 % 4];
+    rig->set = (second_line_t){9600, 'N', 1};
+    if (config->kind == SECOND_HPS167S) rig->set = (second_line_t){19200, 'E', 1};
+    rig->clock = (fathom_clock_t){clock_now_us, rig};
+    rig->uart = (fathom_uart_t){uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, rig};
+    rig->line_config = (fathom_line_config_t){.uart = &rig->uart,
+                                              .clock = &rig->clock,
+                                              .frame = rig->frame,
+                                              .frame_size = sizeof rig->frame,
+                                              .echo = config->seed / 12 % 2 == 0 ? FATHOM_LINE_ECHO_OFF : 0,
+                                              .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
+    assert_int_equal(fathom_line_init(&rig->line, &rig->line_config), FATHOM_READY);
+    rig->modbus = fathom_modbus_client(&rig->line);
+    rig->dyp = fathom_dyp_client(&rig->line);
+}
+
+static void run_to(rig_t *rig, uint64_t until_us)
+{
+    second_run(&rig->device, until_us, receive, rig);
+    rig->now_us = until_us;
+}
+
+void rig_pass(rig_t *rig, uint32_t due_us)
+{
+    if (rig->loop != RIG_WOKEN) {
+        run_to(rig, rig->now_us + (rig->loop == RIG_EVERY_1_MS ? 1000 : 20000));
+        return;
+    }
+    uint64_t until_us = rig->now_us + (due_us == 0 ? 1 : due_us < 1000000 ? due_us : 1000000);
+    size_t before = rig->count;
+    while (rig->now_us < until_us && rig->count == before) {
+        uint64_t next_us = second_next_us(&rig->device);
+        if (next_us > until_us) next_us = until_us;
+        if (next_us < rig->now_us) next_us = rig->now_us;
+        run_to(rig, next_us);
+    }
+}
+
+void rig_power(rig_t *rig, bool on)
+{
+    second_power(&rig->device, on, rig->now_us);
+    run_to(rig, rig->now_us + 1);
+}
+
+void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4)
+{
+    second_scene(&rig->device, &(second_scene_t){{mm1, mm2, mm3, mm4}}, rig->now_us);
+}
+
+void rig_wait(rig_t *rig, uint64_t us)
+{
+    for (uint64_t end_us = rig->now_us + us; rig->now_us < end_us;) {
+        fathom_line_poll(&rig->line);
+        uint64_t left_us = end_us - rig->now_us;
+        uint32_t due_us = fathom_line_due_us(&rig->line);
+        rig_pass(rig, due_us < left_us ? due_us : (uint32_t)left_us);
+    }
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/* The library at the other end of a second device's wire: a clock and a UART in simulated time. */
+#ifndef SECOND_RIG_H
+#define SECOND_RIG_H
+
+#include "fathom/fathom.h"
+#include "second.h"
+
+enum { RIG_BYTES = 4096, RIG_FRAME = 32 };
+
+/* How the program's loop comes round: when something is due or a byte has come; or at fixed times, without time
+ * stamps of the port. */
+typedef enum { RIG_WOKEN, RIG_EVERY_1_MS, RIG_EVERY_20_MS, RIG_LOOPS } rig_loop_t;
+
+typedef struct {
+    second_device_t device;
+    uint64_t now_us;
+    uint32_t clock_begins_us; /* near the wrap for some seeds */
+    rig_loop_t loop;
+
+    fathom_clock_t clock;
+    fathom_uart_t uart;
+    second_line_t set; /* the host's UART */
+    uint64_t sent_us;  /* when all that was written has left */
+    bool in_break;
+    struct {
+        uint8_t value, flags;
+        uint64_t end_us;
+    } bytes[RIG_BYTES];
+    size_t first, count;
+
+    uint32_t writes; /* requests on the wire that change something */
+    uint32_t to_all; /* of them: to unit 0 or 255 */
+    uint8_t last[RIG_FRAME];
+    size_t last_len;
+
+    fathom_line_config_t line_config;
+    uint8_t frame[RIG_FRAME];
+    fathom_line_t line;
+    fathom_modbus_t modbus, dyp;
+} rig_t;
+
+/* A device on a wire, without power. The loop, the echo's being told and the clock's begin hang on the seed. */
+void rig_open(rig_t *rig, const second_config_t *config);
+void rig_power(rig_t *rig, bool on);
+void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4);
+
+/* Time passes: once round the loop, of which something is due in due_us at the latest. */
+void rig_pass(rig_t *rig, uint32_t due_us);
+/* So long, with the line polled and nothing asked. */
+void rig_wait(rig_t *rig, uint64_t us);
+
+/* The library's clock at that time. */
+uint32_t rig_clock_us(const rig_t *rig, uint64_t us);
+
+#endif
