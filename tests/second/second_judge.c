@@ -205,10 +205,9 @@ void judge_read(fathom_status_t status, bool is_right)
         count(why(status), status);
 }
 
-int64_t judge_held(uint16_t reg)
+static int64_t held(uint16_t reg, const hps_settings_t *set)
 {
     const second_device_t *d = &judge.rig->device;
-    const hps_settings_t *set = &d->hps.set;
     switch (reg) {
     case 0x0A:
         return set->warm_s;
@@ -240,6 +239,14 @@ int64_t judge_held(uint16_t reg)
     default:
         return -1;
     }
+}
+
+int64_t judge_held(uint16_t reg) { return held(reg, &judge.rig->device.hps.set); }
+
+int64_t judge_told_value(uint16_t reg)
+{
+    const hps_t *hps = &judge.rig->device.hps;
+    return held(reg, chose(CHOICE_hps_reported) == 0 ? &hps->set : &hps->used);
 }
 
 /* Why the device says, or is, something else than what was written. */
@@ -287,6 +294,46 @@ void judge_set(fathom_status_t status, wanted_t wanted)
         break;
     }
     count(reason, status);
+}
+
+/* The status that explains what happened. */
+static fathom_status_t explained(void)
+{
+    static const fathom_status_t statuses[] = {FATHOM_ERR_EXCEPTION, FATHOM_ERR_NO_ANSWER,
+                                               FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED, FATHOM_ERR_STALE};
+    for (size_t i = 0; i < sizeof statuses / sizeof statuses[0]; i++) {
+        if (why(statuses[i]) != BECAUSE_NOTHING) return statuses[i];
+    }
+    return FATHOM_ERR_NO_ANSWER;
+}
+
+void judge_told(bool is_made, bool nothing_written, bool not_confirmed, bool reads_otherwise, wanted_t wanted)
+{
+    bool wrote = judge.rig->writes != judge.writes_begin;
+    fathom_status_t status = is_made           ? FATHOM_READY
+                             : not_confirmed   ? FATHOM_ERR_UNCONFIRMED
+                             : reads_otherwise ? (fathom_status_t)FATHOM_ERR_DIFFERS
+                                               : explained();
+    if (nothing_written && wrote) finding("'nothing was written', and it was", status);
+    if (!is_made && !nothing_written && !wrote) finding("it does not say that nothing was written", status);
+    judge_set(status, wanted);
+}
+
+void judge_done(bool is_good, bool is_right)
+{
+    judge_read(is_good ? FATHOM_READY : explained(), is_right);
+    if (!is_right && !is_good) finding("it told something else than the device has", 1);
+}
+
+bool judge_was_sent(uint16_t value)
+{
+    for (uint64_t i = judge.log_begin; i < second_log_count(&judge.rig->device); i++) {
+        const second_event_t *e = second_log_at(&judge.rig->device, i);
+        for (size_t p = 0; e != NULL && e->kind == SECOND_EVENT_MEASUREMENT && p < SECOND_PROBES; p++) {
+            if ((e->probes >> p & 1U) != 0 && e->sent[p] == value) return true;
+        }
+    }
+    return false;
 }
 
 /* Is this the value of that probe in a frame which came at that time? */

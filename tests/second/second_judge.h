@@ -72,8 +72,18 @@ typedef struct {
 } wanted_t;
 void judge_set(fathom_status_t status, wanted_t wanted);
 
+/* The same of a program that tells in words whether a setting holds, and what was written. */
+void judge_told(bool is_made, bool nothing_written, bool not_confirmed, bool reads_otherwise,
+                wanted_t wanted);
+/* ... and of one that tells whether all went well, and what it was told. */
+void judge_done(bool is_good, bool is_right);
+/* Was this sent as a measured value since the command began? */
+bool judge_was_sent(uint16_t value);
+
 /* The value that the device has for a register. */
 int64_t judge_held(uint16_t reg);
+/* ... and the one that it tells (HPS-167S #2). */
+int64_t judge_told_value(uint16_t reg);
 
 /* Polls a sensor until it has said so many things, or so long; judges each. Returns how many readings there were. */
 unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned outcomes, uint64_t for_us);

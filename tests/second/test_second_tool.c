@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT */
+/* Every command of the tool against devices of which each has made its own choices: its exit status and its statements
+ * against the device's own log. */
+#include "second_judge.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "tool_run.h"
+
+static rig_t rig;
+static const tool_run_t *run;
+
+static void idle(void *ctx, uint32_t max_us) { rig_pass(ctx, max_us); }
+
+/* Runs "fathom COMMAND SENSOR:ADDRESS[MODE] --port line MORE". */
+static void tool(const char *command, const char *sensor, const char *mode, const char *more)
+{
+    const tool_line_t line = {.uart = rig.uart, .clock = rig.clock, .idle = idle, .ctx = &rig};
+    uint32_t baud = rig.device.line.baud;
+    if (strcmp(command, "scan") == 0)
+        run = tool_run(&line, "scan --port line %s", more);
+    else
+        run = tool_run(&line, "%s %s:%u%s --port line --baud %u %s", command, sensor, rig.device.address,
+                       mode, baud, more);
+    if (getenv("FATHOM_SEED") != NULL)
+        print_message("$ %s %s%s %s -> %d\n%s%s", command, sensor, mode, more, run->status, run->out,
+                      run->err);
+}
+
+static bool says(const char *text)
+{
+    return strstr(run->out, text) != NULL || strstr(run->err, text) != NULL;
+}
+
+/* Values that were printed as raw were sent. */
+static void read_some(const char *name, const char *sensor, const char *mode, const char *more)
+{
+    bool is_right = true;
+    judge_begin(name);
+    tool("read", sensor, mode, more);
+    for (const char *at = strstr(run->out, "\"raw\":"); at != NULL; at = strstr(at + 1, "\"raw\":"))
+        is_right = judge_was_sent((uint16_t)strtoul(at + 6, NULL, 10)) && is_right;
+    judge_done(run->status == 0, is_right);
+}
+
+/* What is told of a setting, if it is told, is what the device has: a number, or one of two words. */
+static bool tells(const char *name, int64_t held, const char *if_0, const char *if_not)
+{
+    char key[64], value[64];
+    (void)snprintf(key, sizeof key, "\"%s\": ", name);
+    if (if_0 == NULL)
+        (void)snprintf(value, sizeof value, "%lld,", (long long)held);
+    else
+        (void)snprintf(value, sizeof value, "\"%s\"", held == 0 ? if_0 : if_not);
+    const char *at = strstr(run->out, key);
+    return at == NULL || strncmp(at + strlen(key), value, strlen(value) - 1) == 0;
+}
+
+static void ask(const char *name, const char *command, const char *sensor, const char *mode, const char *more)
+{
+    judge_begin(name);
+    tool(command, sensor, mode, more);
+    judge_done(run->status == 0, tells("address", rig.device.address, NULL, NULL) &&
+                                     tells("switch-polarity", judge_held(0x0205), "negative", "positive") &&
+                                     tells("switch-threshold", judge_held(0x0206), NULL, NULL) &&
+                                     tells("automatic-value", judge_held(0x0207), "processed", "real-time") &&
+                                     tells("warm-up", judge_told_value(0x0A), NULL, NULL) &&
+                                     tells("measure-after-power-on", judge_told_value(0x12), "off", "on") &&
+                                     tells("termination", judge_told_value(0x13), "off", "on"));
+}
+
+/* What is found is what is there. */
+static void scan(const char *sensor)
+{
+    judge_begin("scan");
+    tool("scan", sensor, "", "--address 1-3 --listen 4 --format json");
+    bool is_other = (says("\"a16\"") && strcmp(sensor, "a16") != 0) ||
+                    (says("\"a05\"") && strcmp(sensor, "a05") != 0) ||
+                    (says("\"hps167s\"") && strcmp(sensor, "hps167s") != 0);
+    judge_done(run->status == 0, !is_other);
+}
+
+typedef struct {
+    const char *words; /* the setting and its value */
+    wanted_t wanted;
+} tool_set_t;
+
+static void set(const char *sensor, const char *mode, const tool_set_t *rows, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        judge_begin(rows[i].words);
+        tool("set", sensor, mode, rows[i].words);
+        judge_told(run->status == 0, says("nothing was"), says("not confirmed"), says("reads otherwise"),
+                   rows[i].wanted);
+    }
+}
+
+static void a16(void)
+{
+    static const tool_set_t rows[] = {
+        {"switch-polarity negative", {0x0205, 0, false}},  {"switch-threshold 2000", {0x0206, 2000, false}},
+        {"automatic-value real-time", {0x0207, 1, false}}, {"operating-mode automatic", {0x0202, 1, true}},
+        {"automatic-output on", {0x0202, 1, true}},        {"address 3", {0x0200, 3, false}}};
+    scan("a16");
+    if (rig.device.config.kind == SECOND_A16_RS232)
+        read_some("read a16", "a16", "", "--mode auto --count 4 --format json");
+    read_some("read a16:1:modbus", "a16", ":modbus", "--count 4 --format json");
+    ask("info a16", "info", "a16", ":modbus", "--format json");
+    ask("get a16 switch-threshold", "get", "a16", "", "switch-threshold --format json");
+    ask("get a16 real-time-distance", "get", "a16", "", "real-time-distance");
+    set("a16", "", rows, sizeof rows / sizeof rows[0]);
+    ask("watch a16", "watch", "a16", ":modbus", "--duration 3");
+    ask("info a16", "info", "a16", ":modbus", "");
+}
+
+static void a16_auto(void)
+{
+    scan("a16");
+    read_some("read a16", "a16", "", "--mode auto --count 6 --format json");
+    ask("watch a16", "watch", "a16", "", "--mode auto --duration 4");
+}
+
+static void a16_controlled(void)
+{
+    read_some("read a16:1:controlled", "a16", ":controlled", "--count 6 --format json");
+}
+
+static void a05(void)
+{
+    static const tool_set_t rows[] = {{"address 3", {0x0200, 3, false}}};
+    scan("a05");
+    if (rig.device.config.kind == SECOND_A05_UART)
+        read_some("read a05", "a05", "", "--mode auto --count 3 --format json");
+    read_some("read a05:1:modbus", "a05", ":modbus", "--count 3 --format json");
+    ask("info a05", "info", "a05", "", "--format json");
+    ask("watch a05", "watch", "a05", ":modbus", "--duration 3");
+    set("a05", "", rows, 1);
+    if (rig.device.config.kind != SECOND_A05_RS485) return;
+    static const tool_set_t dyp[] = {{"every-address 2", {0xAA03, 2, false}}};
+    read_some("read a05:1:dyp", "a05", ":dyp", "--count 3 --format json");
+    set("a05", ":dyp", dyp, 1);
+}
+
+static void hps167s(void)
+{
+    static const tool_set_t rows[] = {{"warm-up 3", {0x0A, 3, false}},
+                                      {"measure-after-power-on off", {0x12, 0, false}},
+                                      {"termination off", {0x13, 0, false}},
+                                      {"distance-offset -15", {0x14, -15, true}},
+                                      {"filter-sensitivity 20", {0x16, 20, true}},
+                                      {"load-settings user", {0x15, 0, true}},
+                                      {"address 3", {0x10, 3, false}},
+                                      {"baud 57600", {0x11, 2, false}}};
+    scan("hps167s");
+    read_some("read hps167s", "hps167s", "", "--count 6 --format json");
+    ask("info hps167s", "info", "hps167s", "", "--format json --retries 2");
+    ask("get hps167s termination", "get", "hps167s", "", "termination --format json --retries 2");
+    set("hps167s", "", rows, sizeof rows / sizeof rows[0]);
+    ask("watch hps167s", "watch", "hps167s", "", "--duration 2");
+    judge_begin("reset hps167s");
+    tool("reset", "hps167s", "", "--yes-restore-factory-settings");
+    judge_told(run->status == 0, says("nothing was") || says("not reset"), says("not confirmed"), false,
+               (wanted_t){0x10, 1, true});
+}
+
+static void live(second_kind_t kind, void (*life)(void))
+{
+    const char *from = getenv("FATHOM_SEED");
+    uint64_t seed = from != NULL ? strtoull(from, NULL, 10) : 0;
+    uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 100;
+    judge = (judge_t){.rig = &rig};
+    for (; seed <= last; seed++) {
+        second_config_t config = {.kind = kind, .seed = seed, .scene = {{1234, 2000, 1953, 3562}}};
+        rig_open(&rig, &config);
+        rig_power(&rig, true);
+        rig_wait(&rig, 12000000);
+        life();
+        if (rig.to_all > 0) judge.wrong++;
+    }
+    if (getenv("FATHOM_TABLE") != NULL) judge_print();
+    assert_int_equal(judge.wrong, 0);
+}
+
+TEST(tool_a16_auto) { live(SECOND_A16_AUTO, a16_auto); }
+TEST(tool_a16_controlled) { live(SECOND_A16_CONTROLLED, a16_controlled); }
+TEST(tool_a16_rs232) { live(SECOND_A16_RS232, a16); }
+TEST(tool_a16_rs485) { live(SECOND_A16_RS485, a16); }
+TEST(tool_a05_uart) { live(SECOND_A05_UART, a05); }
+TEST(tool_a05_rs485) { live(SECOND_A05_RS485, a05); }
+TEST(tool_hps167s) { live(SECOND_HPS167S, hps167s); }
