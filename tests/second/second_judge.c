@@ -263,11 +263,10 @@ void judge_set(fathom_status_t status, wanted_t wanted)
 {
     const facts_t f = facts();
     uint32_t writes = judge.rig->writes - judge.writes_begin;
-    if (status == FATHOM_ERR_MALFORMED && writes > 0) status = (fathom_status_t)FATHOM_ERR_DIFFERS; /* TODO */
     bool holds = judge_held(wanted.reg) == wanted.value;
     reason_t reason;
     if (writes > 1) finding("written more than once", status);
-    switch ((int)status) {
+    switch (status) {
     case FATHOM_READY:
         if (writes == 0 && !holds) finding("'unchanged', and it is not so", status);
         if (writes > 0 && !holds && !wanted.acknowledged) finding("'made', and it is not so", status);
@@ -307,15 +306,19 @@ static fathom_status_t explained(void)
     return FATHOM_ERR_NO_ANSWER;
 }
 
-void judge_told(bool is_made, bool nothing_written, bool not_confirmed, bool reads_otherwise, wanted_t wanted)
+void judge_told(told_t told, wanted_t wanted)
 {
     bool wrote = judge.rig->writes != judge.writes_begin;
-    fathom_status_t status = is_made           ? FATHOM_READY
-                             : not_confirmed   ? FATHOM_ERR_UNCONFIRMED
-                             : reads_otherwise ? (fathom_status_t)FATHOM_ERR_DIFFERS
-                                               : explained();
-    if (nothing_written && wrote) finding("'nothing was written', and it was", status);
-    if (!is_made && !nothing_written && !wrote) finding("it does not say that nothing was written", status);
+    fathom_status_t status = told.made            ? FATHOM_READY
+                             : told.not_confirmed ? FATHOM_ERR_UNCONFIRMED
+                             : told.otherwise     ? FATHOM_ERR_DIFFERS
+                                                  : explained();
+    if (told.not_written && wrote) finding("'nothing was written', and it was", status);
+    if (told.not_changed && facts().settings > 0) finding("'nothing was changed', and it was", status);
+    if (!told.made && !wrote && !told.not_written && !told.not_changed)
+        finding("it does not say that nothing was written", status);
+    if (!told.made && wrote && !told.not_confirmed && !told.otherwise && !facts().exception)
+        finding("it does not say that it was written", status);
     judge_set(status, wanted);
 }
 

@@ -10,7 +10,6 @@
 
 #include "second_device.h"
 
-#define FATHOM_ERR_DIFFERS (-16)
 #define FATHOM_UNKNOWN     6
 
 /* Why a command, or a measurement, did not come to what was wanted. */
@@ -72,9 +71,11 @@ typedef struct {
 } wanted_t;
 void judge_set(fathom_status_t status, wanted_t wanted);
 
-/* The same of a program that tells in words whether a setting holds, and what was written. */
-void judge_told(bool is_made, bool nothing_written, bool not_confirmed, bool reads_otherwise,
-                wanted_t wanted);
+/* The same of a program that tells it in words. */
+typedef struct {
+    bool made, not_written, not_changed, not_confirmed, otherwise;
+} told_t;
+void judge_told(told_t told, wanted_t wanted);
 /* ... and of one that tells whether all went well, and what it was told. */
 void judge_done(bool is_good, bool is_right);
 /* Was this sent as a measured value since the command began? */
