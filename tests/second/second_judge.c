@@ -20,7 +20,7 @@ static const char *const wording[REASONS] = {
     [BECAUSE_OTHER_VALUE] = "it takes another value than the one that was sent",
     [BECAUSE_OLD_TOLD] = "it tells the value in use and not the one that was set",
     [BECAUSE_HIT] = "a frame that nobody asked for ran into request or answer",
-    [BECAUSE_NO_DISTANCE] = "its value means no distance",
+    [BECAUSE_NO_DISTANCE] = "its value is no distance, or no temperature",
     [BECAUSE_RARE] = "its frames are farther apart than the deadline",
     [BECAUSE_FAILED] = "it has failed",
     [BECAUSE_STRENGTH] = "its strength of light has an exponent over 16",
@@ -130,12 +130,15 @@ static facts_t facts(void)
     return f;
 }
 
-static bool is_misprint(void)
+static bool is_misprint(fathom_status_t status)
 {
-    if (kind() == SECOND_A05_UART) return chose(CHOICE_a05_uart_parity) != 'N';
-    if (kind() == SECOND_A05_RS485)
+    bool is_frame =
+        status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_NO_ANSWER;
+    if (kind() == SECOND_A05_UART)
+        return chose(CHOICE_a05_uart_parity) != 'N' && status != FATHOM_ERR_EXCEPTION;
+    if (kind() == SECOND_A05_RS485 && judge.rig->last[0] == 0x55)
         return chose(CHOICE_a05_all_sum) != 0 || chose(CHOICE_a05_dyp_address_answer) != 0;
-    return !is_hps() && chose(CHOICE_a16_start_bytes) != 1;
+    return kind() < SECOND_A16_RS485 && chose(CHOICE_a16_start_bytes) != 1 && is_frame;
 }
 
 static bool first_only_switches(void)
@@ -163,12 +166,16 @@ static reason_t why(fathom_status_t status)
         return is_warming_up() ? BECAUSE_WARM_UP : BECAUSE_EXCEPTION;
     if (status == FATHOM_ERR_WARMING_UP) return BECAUSE_WARM_UP;
     if (status == FATHOM_ERR_MALFORMED && f.odd_values > 0) return BECAUSE_NO_DISTANCE;
-    if (status == FATHOM_ERR_MALFORMED && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16)
-        return BECAUSE_STRENGTH;
+    bool is_measured = status == FATHOM_ERR_MALFORMED || (status == FATHOM_ERR_STALE && f.unasked);
+    if (is_measured && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16) return BECAUSE_STRENGTH;
+    bool is_temperature = is_hps() && judge.rig->last[3] == 0x04;
+    if (status == FATHOM_ERR_MALFORMED && is_temperature &&
+        (chose(CHOICE_hps_temperature) & 0x7FFF) % 0x7FFF == 0)
+        return BECAUSE_NO_DISTANCE;
     if (status == FATHOM_ERR_MALFORMED && is_a05() && chose(CHOICE_a05_past_end) == 7 &&
         judge.rig->last[2] == 0)
         return BECAUSE_FEWER;
-    if (is_misprint() && status != FATHOM_ERR_EXCEPTION) return BECAUSE_MISPRINT;
+    if (is_misprint(status)) return BECAUSE_MISPRINT;
     if (status == FATHOM_ERR_STALE && judge.rig->now_us >= f.unasked_us + 1900000)
         return early ? BECAUSE_STARTING : BECAUSE_RARE;
     bool unheard = judge.rig->last[2] == 0xFF && !is_hps() && chose(CHOICE_a05_dyp_ff) == 0;
@@ -253,19 +260,23 @@ int64_t judge_told_value(uint16_t reg)
 static reason_t why_different(const facts_t *f, wanted_t wanted)
 {
     if (f->settings > 0 && is_later(wanted.reg)) return BECAUSE_LATER;
+    if (f->reset && chose(CHOICE_hps_reset_order) == 2) return BECAUSE_LATER;
+    if (f->reset && chose(CHOICE_hps_reset_restart) != 0) return BECAUSE_STARTING;
     if (is_hps() && f->settings > 0 && chose(CHOICE_hps_reported) == 1) return BECAUSE_OLD_TOLD;
     if (f->settings > 0 && f->setting->new_value != wanted.value) return BECAUSE_OTHER_VALUE;
     if (f->echoed) return BECAUSE_ECHOED;
     return BECAUSE_NOTHING;
 }
 
-void judge_set(fathom_status_t status, wanted_t wanted)
+void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
 {
     const facts_t f = facts();
     uint32_t writes = judge.rig->writes - judge.writes_begin;
     bool holds = judge_held(wanted.reg) == wanted.value;
     reason_t reason;
     if (writes > 1) finding("written more than once", status);
+    if (status != FATHOM_ERR_BUSY && is_written != (writes > 0))
+        finding(is_written ? "'written', and it was not" : "'not written', and it was", status);
     switch (status) {
     case FATHOM_READY:
         if (writes == 0 && !holds) finding("'unchanged', and it is not so", status);
@@ -280,6 +291,10 @@ void judge_set(fathom_status_t status, wanted_t wanted)
         break;
     case FATHOM_ERR_UNCONFIRMED:
         if (writes == 0) finding("'not confirmed', and nothing was written", status);
+        if (wanted.blind && writes == 1) {
+            good();
+            return;
+        }
         reason = why_different(&f, wanted);
         if (reason == BECAUSE_NOTHING) reason = why(FATHOM_ERR_NO_ANSWER);
         break;
@@ -288,7 +303,8 @@ void judge_set(fathom_status_t status, wanted_t wanted)
         reason = why(status);
         break;
     default:
-        if (f.settings > 0 && holds && !wanted.acknowledged) finding("an error, and it holds", status);
+        if (f.settings > 0 && holds && !wanted.acknowledged && !is_later(wanted.reg))
+            finding("an error, and it holds", status);
         reason = why(status);
         break;
     }
@@ -319,7 +335,7 @@ void judge_told(told_t told, wanted_t wanted)
         finding("it does not say that nothing was written", status);
     if (!told.made && wrote && !told.not_confirmed && !told.otherwise && !facts().exception)
         finding("it does not say that it was written", status);
-    judge_set(status, wanted);
+    judge_set(status, wrote, wanted);
 }
 
 void judge_done(bool is_good, bool is_right)

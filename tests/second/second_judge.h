@@ -10,7 +10,7 @@
 
 #include "second_device.h"
 
-#define FATHOM_UNKNOWN     6
+#define FATHOM_UNKNOWN 6
 
 /* Why a command, or a measurement, did not come to what was wanted. */
 typedef enum {
@@ -63,13 +63,17 @@ void judge_read(fathom_status_t status, bool is_right);
 void judge_sample(const fathom_sample_t *sample);
 void judge_measured(fathom_status_t status, const fathom_sample_t *sample);
 
-/* What a setting is to come to. */
+/* What a setting is to come to: it holds; or it is acknowledged, which is all that can be known; or it is sent, which is
+ * FATHOM_ERR_UNCONFIRMED. */
 typedef struct {
     uint16_t reg;
     int64_t value;
-    bool acknowledged; /* that is all that can be known */
+    bool acknowledged, blind;
 } wanted_t;
-void judge_set(fathom_status_t status, wanted_t wanted);
+#define HOLDS(reg, value)        ((wanted_t){(reg), (value), false, false})
+#define ACKNOWLEDGED(reg, value) ((wanted_t){(reg), (value), true, false})
+#define SENT(reg, value)         ((wanted_t){(reg), (value), false, true})
+void judge_set(fathom_status_t status, bool is_written, wanted_t wanted);
 
 /* The same of a program that tells it in words. */
 typedef struct {

@@ -36,7 +36,7 @@ static void commands(rig_t *rig, fathom_a05_modbus_t *sensor)
     judge_read(status, address == rig->device.address);
     judge_begin("a05_modbus_set_address");
     JUDGE_RUN(status, any, fathom_a05_modbus_set_address(sensor, wanted));
-    judge_set(status, (wanted_t){0x0200, wanted, false});
+    judge_set(status, fathom_a05_modbus_is_written(sensor), HOLDS(0x0200, wanted));
 }
 
 /* Measures with all ways to choose probes: those that are fitted, one of them, by either registers. */
@@ -136,7 +136,7 @@ void life_a05_dyp(rig_t *rig)
     judge_read(status, found == rig->device.address || found == 255);
     judge_begin("a05_dyp_set_every_address");
     JUDGE_RUN(status, any, fathom_a05_dyp_set_every_address(&sensor, 9));
-    judge_set(status, (wanted_t){0xAA03, 9, false});
+    judge_set(status, fathom_a05_dyp_is_written(&sensor), HOLDS(0xAA03, 9));
     fathom_a05_dyp_deinit(&sensor);
     restart(rig);
     any = begin_dyp(rig, &sensor, fitted);

@@ -99,17 +99,17 @@ static void set_all(rig_t *rig, fathom_a16_modbus_t *sensor)
     for (uint16_t v = 0; v < 2; v++) {
         judge_begin("a16_set_switch_polarity");
         JUDGE_RUN(status, any, fathom_a16_set_switch_polarity(sensor, (fathom_a16_polarity_t)v));
-        judge_set(status, (wanted_t){0x0205, v, false});
+        judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0205, v));
         judge_begin("a16_set_switch_threshold_mm");
         JUDGE_RUN(status, any, fathom_a16_set_switch_threshold_mm(sensor, 2000));
-        judge_set(status, (wanted_t){0x0206, 2000, false});
+        judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0206, 2000));
         judge_begin("a16_set_automatic_value");
         JUDGE_RUN(status, any, fathom_a16_set_automatic_value(sensor, (fathom_a16_value_t)v));
-        judge_set(status, (wanted_t){0x0207, v, false});
+        judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0207, v));
     }
     judge_begin("a16_set_address");
     JUDGE_RUN(status, any, fathom_a16_set_address(sensor, address));
-    judge_set(status, (wanted_t){0x0200, address, false});
+    judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0200, address));
 }
 
 void life_a16_rs485(rig_t *rig)
@@ -128,7 +128,7 @@ void life_a16_rs485(rig_t *rig)
     judge_poll("a16_modbus", &any, 4, SETTLED_US);
     judge_begin("a16_set_operating_mode");
     JUDGE_RUN(status, any, fathom_a16_set_operating_mode(&sensor, FATHOM_A16_AUTOMATIC));
-    judge_set(status, (wanted_t){0x0202, 1, true});
+    judge_set(status, fathom_a16_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     fathom_a16_modbus_deinit(&sensor);
     rig_power(rig, false);
     rig_wait(rig, SECOND_US);
@@ -166,7 +166,7 @@ void life_a16_rs232(rig_t *rig)
     while ((status = fathom_a16_rs232_return_to_automatic(&rs232, &sample)) == FATHOM_PENDING)
         rig_pass(rig, fathom_a16_rs232_due_us(&rs232));
     if (status == FATHOM_READY) judge_sample(&sample);
-    judge_set(status, (wanted_t){0x0202, 1, true});
+    judge_set(status, fathom_a16_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     judge_poll("a16_auto RS232 returned", &by_itself, 6, SETTLED_US);
     fathom_a16_auto_deinit(&automatic);
     fathom_a16_modbus_deinit(&sensor);

@@ -25,6 +25,7 @@ static void begin(rig_t *rig)
                                       .address = rig->device.address,
                                       .retries = 2,
                                       .warm_up_s = rig->device.hps.flash.warm_s};
+    config.no_warm_up = config.warm_up_s == 0;
     config.low_word_first = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 2;
     assert_int_equal(fathom_hps167s_init(&h.sensor, &config), FATHOM_READY);
     h.any = fathom_hps167s_sensor(&h.sensor);
@@ -48,11 +49,13 @@ static void info(rig_t *rig)
     static const uint32_t rates[] = {19200, 19200, 57600, 115200, 230400};
     judge_begin("hps167s_interface_version");
     JUDGE_RUN(status, h.any, fathom_hps167s_interface_version(&h.sensor, &version));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     judge_read(status, version.year == 2000 + d->version[0] && version.month == d->version[1] &&
                            version.day == d->version[2] && version.major == d->version[3] &&
                            version.minor == d->version[4] && version.revision == d->version[5]);
     judge_begin("hps167s_configuration");
     JUDGE_RUN(status, h.any, fathom_hps167s_configuration(&h.sensor, &c));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     const hps_settings_t *told = second_choice(&rig->device, CHOICE_hps_reported) == 0 ? &d->set : &d->used;
     uint32_t ms = told->reconnect_ms;
     if (second_choice(&rig->device, CHOICE_hps_reconnect_order) == 1) ms = __builtin_bswap32(ms);
@@ -61,18 +64,21 @@ static void info(rig_t *rig)
                            c.reconnect_time_ms == ms && c.measures_after_power_on == (told->auto_out != 0));
     judge_begin("hps167s_details");
     JUDGE_RUN(status, h.any, fathom_hps167s_details(&h.sensor, &details));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     judge_read(status, details.uuid[0] == d->details[1] && details.uuid[15] == d->details[16] &&
                            details.year == 2000 + d->details[17]);
     judge_begin("hps167s_temperature");
     JUDGE_RUN(status, h.any, fathom_hps167s_temperature(&h.sensor, &t));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     judge_read(status, t.fahrenheit == (int16_t)second_choice(&rig->device, CHOICE_hps_temperature));
 }
 
-#define SET(name, call, reg, value, acknowledged)                                                            \
+#define SET(name, call, wanted)                                                                              \
     do {                                                                                                     \
         judge_begin(name);                                                                                   \
         JUDGE_RUN(status, h.any, call);                                                                      \
-        judge_set(status, (wanted_t){reg, value, acknowledged});                                             \
+        judge_set(status, fathom_hps167s_is_written(&h.sensor), wanted);                                     \
+        if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);                                      \
     } while (0)
 
 static void set_all(rig_t *rig)
@@ -82,26 +88,38 @@ static void set_all(rig_t *rig)
     uint32_t ms = 360;
     bool is_swapped = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 1;
     for (int on = 0; on < 2; on++) {
-        SET("hps167s_set_warm_up_s", fathom_hps167s_set_warm_up_s(s, (uint8_t)(3 + on)), 0x0A, 3 + on, false);
+        SET("hps167s_set_warm_up_s", fathom_hps167s_set_warm_up_s(s, (uint8_t)(3 + on)), HOLDS(0x0A, 3 + on));
         SET("hps167s_set_measures_after_power_on", fathom_hps167s_set_measures_after_power_on(s, on != 0),
-            0x12, on != 0 ? 0xFF : 0, false);
-        SET("hps167s_set_termination", fathom_hps167s_set_termination(s, on != 0), 0x13, on != 0 ? 0xFF : 0,
-            false);
+            HOLDS(0x12, on != 0 ? 0xFF : 0));
+        SET("hps167s_set_termination", fathom_hps167s_set_termination(s, on != 0),
+            HOLDS(0x13, on != 0 ? 0xFF : 0));
     }
-    SET("hps167s_set_reconnect_time_ms", fathom_hps167s_set_reconnect_time_ms(s, ms), 0x20,
-        is_swapped ? __builtin_bswap32(ms) : ms, false);
-    SET("hps167s_set_distance_offset_mm", fathom_hps167s_set_distance_offset_mm(s, -15), 0x14, -15, true);
-    SET("hps167s_set_filter_sensitivity", fathom_hps167s_set_filter_sensitivity(s, 20), 0x16, 20, true);
+    SET("hps167s_set_reconnect_time_ms", fathom_hps167s_set_reconnect_time_ms(s, ms),
+        HOLDS(0x20, is_swapped ? __builtin_bswap32(ms) : ms));
+    SET("hps167s_set_distance_offset_mm", fathom_hps167s_set_distance_offset_mm(s, -15),
+        ACKNOWLEDGED(0x14, -15));
+    SET("hps167s_set_filter_sensitivity", fathom_hps167s_set_filter_sensitivity(s, 20),
+        ACKNOWLEDGED(0x16, 20));
     judge_poll("hps167s", &h.any, 6, SETTLED_US);
-    SET("hps167s_load_user_settings", fathom_hps167s_load_user_settings(s), 0x15, 0, true);
+    SET("hps167s_load_user_settings", fathom_hps167s_load_user_settings(s), ACKNOWLEDGED(0x15, 0));
     find(rig);
-    SET("hps167s_load_factory_settings", fathom_hps167s_load_factory_settings(s), 0x15, 0xFF, true);
+    SET("hps167s_load_factory_settings", fathom_hps167s_load_factory_settings(s), ACKNOWLEDGED(0x15, 0xFF));
     rig_wait(rig, 20000);
     find(rig);
-    SET("hps167s_set_address", fathom_hps167s_set_address(s, 12), 0x10, 12, false);
+    assert_int_equal(fathom_hps167s_next_is_blind(s), FATHOM_READY);
+    judge_begin("hps167s_next_is_blind");
+    JUDGE_RUN(status, h.any, fathom_hps167s_set_termination(s, false));
+    judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0));
+    judge_begin("hps167s_set_termination_of_all_units");
+    JUDGE_RUN(status, h.any, fathom_hps167s_set_termination_of_all_units(s, true));
+    judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0xFF));
+    judge_begin("hps167s_set_measures_..._of_all_units");
+    JUDGE_RUN(status, h.any, fathom_hps167s_set_measures_after_power_on_of_all_units(s, true));
+    judge_set(status, fathom_hps167s_is_written(s), SENT(0x12, 0xFF));
+    SET("hps167s_set_address", fathom_hps167s_set_address(s, 12), HOLDS(0x10, 12));
     if (status != FATHOM_READY) find(rig);
     judge_poll("hps167s", &h.any, 4, SETTLED_US);
-    SET("hps167s_set_baud", fathom_hps167s_set_baud(s, 115200), 0x11, 3, false);
+    SET("hps167s_set_baud", fathom_hps167s_set_baud(s, 115200), HOLDS(0x11, 3));
     if (status != FATHOM_READY) find(rig);
     judge_poll("hps167s", &h.any, 4, SETTLED_US);
 }
@@ -137,7 +155,7 @@ void life_hps167s(rig_t *rig)
     second_fault(&rig->device, false, rig->now_us);
     judge_begin("hps167s_restore_factory_settings");
     JUDGE_RUN(status, h.any, fathom_hps167s_restore_factory_settings(&h.sensor));
-    judge_set(status, (wanted_t){0x10, 1, false});
+    judge_set(status, fathom_hps167s_is_written(&h.sensor), HOLDS(0x10, 1));
     fathom_hps167s_deinit(&h.sensor);
 }
 

@@ -82,7 +82,8 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     if (changes(bytes, length)) {
         bool is_dyp = bytes[0] == 0x55 && bytes[1] == 0xAA;
         rig->writes++;
-        if (!is_dyp && (bytes[0] == 0 || bytes[0] == 255)) rig->to_all++;
+        bool may = bytes[0] == 0 && bytes[1] == 6 && bytes[2] == 0 && (bytes[3] == 0x12 || bytes[3] == 0x13);
+        if (!is_dyp && (bytes[0] == 255 || (bytes[0] == 0 && !may))) rig->to_all++;
     }
     return (int)length;
 }

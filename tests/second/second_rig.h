@@ -30,7 +30,7 @@ typedef struct {
     size_t first, count;
 
     uint32_t writes; /* requests on the wire that change something */
-    uint32_t to_all; /* of them: to unit 0 or 255 */
+    uint32_t to_all; /* of them: to unit 0 or 255, but for HPS-167S #10 and #11 */
     uint8_t last[RIG_FRAME];
     size_t last_len;
 

@@ -107,10 +107,12 @@ static void set(const char *sensor, const char *mode, const tool_set_t *rows, si
 
 static void a16(void)
 {
-    static const tool_set_t rows[] = {
-        {"switch-polarity negative", {0x0205, 0, false}},  {"switch-threshold 2000", {0x0206, 2000, false}},
-        {"automatic-value real-time", {0x0207, 1, false}}, {"operating-mode automatic", {0x0202, 1, true}},
-        {"automatic-output on", {0x0202, 1, true}},        {"address 3", {0x0200, 3, false}}};
+    const tool_set_t rows[] = {{"switch-polarity negative", HOLDS(0x0205, 0)},
+                               {"switch-threshold 2000", HOLDS(0x0206, 2000)},
+                               {"automatic-value real-time", HOLDS(0x0207, 1)},
+                               {"operating-mode automatic", ACKNOWLEDGED(0x0202, 1)},
+                               {"automatic-output on", ACKNOWLEDGED(0x0202, 1)},
+                               {"address 3", HOLDS(0x0200, 3)}};
     scan("a16");
     if (rig.device.config.kind == SECOND_A16_RS232)
         read_some("read a16", "a16", "", "--mode auto --count 4 --format json");
@@ -137,7 +139,7 @@ static void a16_controlled(void)
 
 static void a05(void)
 {
-    static const tool_set_t rows[] = {{"address 3", {0x0200, 3, false}}};
+    const tool_set_t rows[] = {{"address 3", HOLDS(0x0200, 3)}};
     scan("a05");
     if (rig.device.config.kind == SECOND_A05_UART)
         read_some("read a05", "a05", "", "--mode auto --count 3 --format json");
@@ -146,21 +148,21 @@ static void a05(void)
     ask("watch a05", "watch", "a05", ":modbus", "--duration 3");
     set("a05", "", rows, 1);
     if (rig.device.config.kind != SECOND_A05_RS485) return;
-    static const tool_set_t dyp[] = {{"every-address 2", {0xAA03, 2, false}}};
+    const tool_set_t dyp[] = {{"every-address 2", HOLDS(0xAA03, 2)}};
     read_some("read a05:1:dyp", "a05", ":dyp", "--count 3 --format json");
     set("a05", ":dyp", dyp, 1);
 }
 
 static void hps167s(void)
 {
-    static const tool_set_t rows[] = {{"warm-up 3", {0x0A, 3, false}},
-                                      {"measure-after-power-on off", {0x12, 0, false}},
-                                      {"termination off", {0x13, 0, false}},
-                                      {"distance-offset -15", {0x14, -15, true}},
-                                      {"filter-sensitivity 20", {0x16, 20, true}},
-                                      {"load-settings user", {0x15, 0, true}},
-                                      {"address 3", {0x10, 3, false}},
-                                      {"baud 57600", {0x11, 2, false}}};
+    const tool_set_t rows[] = {{"warm-up 3", HOLDS(0x0A, 3)},
+                               {"measure-after-power-on off", HOLDS(0x12, 0)},
+                               {"termination off", HOLDS(0x13, 0)},
+                               {"distance-offset -15", ACKNOWLEDGED(0x14, -15)},
+                               {"filter-sensitivity 20", ACKNOWLEDGED(0x16, 20)},
+                               {"load-settings user", ACKNOWLEDGED(0x15, 0)},
+                               {"address 3", HOLDS(0x10, 3)},
+                               {"baud 57600", HOLDS(0x11, 2)}};
     scan("hps167s");
     read_some("read hps167s", "hps167s", "", "--count 6 --format json");
     ask("info hps167s", "info", "hps167s", "", "--format json --retries 2");
@@ -169,7 +171,7 @@ static void hps167s(void)
     ask("watch hps167s", "watch", "hps167s", "", "--duration 2");
     judge_begin("reset hps167s");
     tool("reset", "hps167s", "", "--yes-restore-factory-settings");
-    judge_told(told(), (wanted_t){0x10, 1, true});
+    judge_told(told(), ACKNOWLEDGED(0x10, 1));
 }
 
 static void live(second_kind_t kind, void (*life)(void))
