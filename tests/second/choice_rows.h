@@ -10,8 +10,8 @@
  */
 
 /* Every device: the wire. */
-RANGE(any_power_on_us, K_ALL, "A05 1(1), HPS #7", "time from power to life is not printed", 10000, 2000000,
-      500000)
+RANGE(any_power_on_us, K_ALL | K_PWM | K_SWITCH | K_RELAY, "A05 1(1), HPS #7",
+      "time from power to life is not printed", 10000, 2000000, 500000)
 LIST(any_power_on_glitch, K_ALL, "all", "what TX does at power-on is not printed", {-1, 6, "nothing"},
      {0x00, 1, "one byte 00"}, {0xFF, 1, "one byte FF"})
 RANGE(any_byte_gap_tenths, K_ALL, "HPS 2.2.3", "gaps in a frame up to 1.5 characters", 0, 15, 0)
@@ -76,16 +76,16 @@ LIST(a16_nothing, K_A16, "A16 1(2)", "no object: 94 ms with PWM; UART and Modbus
 RANGE(a16_level_stable_us, K_A16_AUTO, "A16 2(2)", "how long RX must stand is not printed", 0, 500000, 0)
 LIST(a16_level_switch, K_A16_AUTO, "A16 2(2)", "what follows a change of the level: not printed",
      {0, 1, "the other value at once"}, {1, 1, "the other value settles anew"})
-RANGE(a16_trigger_width_us, K_A16_CONTROLLED, "A16 3(2)", "falling edge pulse, no width printed", 0, 1000, 0)
-LIST(a16_trigger_edge, K_A16_CONTROLLED, "A16 3(2)", "falling edge pulse",
+RANGE(a16_trigger_width_us, K_TRIGGERED, "A16 1(2), 3(2)", "falling edge pulse, no width printed", 0, 1000, 0)
+LIST(a16_trigger_edge, K_TRIGGERED, "A16 1(2), 3(2)", "falling edge pulse",
      {0, 1, "time counts from the falling edge"}, {1, 1, "time counts from the pulse's end"})
 RANGE(a16_t2_us, K_A16_CONTROLLED, "A16 3(3)", "T2 = 90~110 ms", 90000, 110000, 100000)
 LIST(a16_t2_to, K_A16_CONTROLLED, "A16 3(3)", "where T2 ends is not in the text",
      {0, 1, "first byte's start"}, {1, 1, "last byte's end"})
 RANGE(a16_t1_us, K_A16_CONTROLLED, "A16 3(2)", "period must be greater than 120 ms", 110000, 120000, 120000)
-LIST(a16_early_trigger, K_A16_CONTROLLED, "A16 3(2)", "a trigger that comes too early: not printed",
+LIST(a16_early_trigger, K_TRIGGERED, "A16 1(2), 3(2)", "a trigger that comes too early: not printed",
      {0, 1, "ignored"}, {1, 1, "starts the measurement anew"}, {2, 1, "served when T1 is over"})
-LIST(a16_trigger_at_power_on, K_A16_CONTROLLED, "A16 3(2)", "what power-on does is not printed",
+LIST(a16_trigger_at_power_on, K_TRIGGERED, "A16 1(2), 3(2)", "what power-on does is not printed",
      {0, 2, "nothing"}, {1, 1, "RX low counts as a falling edge"}, {2, 1, "always one measurement"})
 LIST(a16_sample_at, K_A16_CONTROLLED, "A16 3(2)", "measures after the edge, sends when done",
      {0, 1, "value of the trigger's time"}, {1, 1, "value of the answer's time"})
@@ -122,7 +122,26 @@ LIST(a16_two_values, K_A16_MODBUS, "A16 6(2)", "quantity 2 from 0100: not printe
 LIST(a16_holes, K_A16_MODBUS, "A16 6(2)", "reading across registers that are not in the table",
      V_EXCEPTION(2), V_SILENCE, V_EXCEPTION(3), {8, 1, "they read as 0"})
 
+RANGE(a16_pwm_rise_us, K_PWM, "A16 1(2), 1(3)",
+      "from the falling edge to the pulse; T1 of about 110 ms is in a drawing", 0, 115000, 110000)
+RANGE(a16_pwm_cycle_us, K_PWM, "A16 1(2)", "cycle period must be greater than 220 ms", 210000, 220000, 220000)
+RANGE(a16_pwm_nothing_us, K_PWM, "A16 1(2)", "a fixed pulse of about 94 ms", 93000, 96000, 94000)
+LIST(a16_pwm_speed, K_PWM, "A16 1(4)", "348 m/s, or simplified T / 57.5", {575, 1, "57.5 us a cm"},
+     {574, 1, "348 m/s"})
+LIST(a16_switch_first, K_SWITCH, "A16 4(2)", "level before the first decision: not printed", {0, 1, "low"},
+     {1, 1, "high"})
+LIST(a16_switch_equal, K_SWITCH, "A16 4(2)", "less, or greater; equal is not printed",
+     {0, 1, "ends both rows"}, {1, 1, "as less"}, {2, 1, "as greater"})
+LIST(a16_switch_nothing, K_SWITCH, "A16 4(2)", "no object: not printed", {2, 1, "as greater"},
+     {0, 1, "ends both rows"}, {3, 1, "no measurement"})
+
 /* A05. */
+RANGE(a05_relay_period_us, K_RELAY, "A05 4(1)", "period of the measurements is not printed", 100000, 1000000,
+      300000)
+LIST(a05_relay_hold, K_RELAY, "A05 4(1)", "pull-in and cut-off time will be maintained for 1 second",
+     {0, 1, "each state lasts 1 s"}, {1, 1, "a change waits for 1 s"})
+LIST(a05_relay_equal, K_RELAY, "A05 4(1)", "less than the threshold; equal is open", {0, 1, "open"},
+     {1, 1, "closed"})
 MISPRINT(a05_uart_parity, K_A05_UART, "A05 1(1)", "the table's parity cell is empty; RS485 prints NO",
          {'N', 6, "none"}, {'E', 1, "even"}, {'O', 1, "odd"})
 RANGE(a05_period_us, K_A05_UART, "A05 1(1)", "period of the automatic frames is not printed", 50000, 3000000,

@@ -23,6 +23,10 @@
 #define K_ANSWERS        (K_HEARS | K_A16_CONTROLLED)
 #define K_PAIR           (K_A16_RS485 | K_A05_RS485 | K_HPS)
 #define K_ALL            (K_A16 | K_A05 | K_HPS)
+#define K_PWM            KIND(A16_PWM)
+#define K_TRIGGERED      (K_A16_CONTROLLED | K_PWM)
+#define K_SWITCH         KIND(A16_SWITCH)
+#define K_RELAY          KIND(A05_RELAY)
 
 /* clang-format off */
 #define V_SILENCE      {ANSWER_SILENCE, 1, "silence"}
@@ -145,6 +149,10 @@ static const hooks_t *hooks_of(second_kind_t kind)
         return &second_a05_hooks;
     case SECOND_HPS167S:
         return &second_hps_hooks;
+    case SECOND_A16_PWM:
+    case SECOND_A16_SWITCH:
+    case SECOND_A05_RELAY:
+        return &second_level_hooks;
     case SECOND_KINDS:
         break;
     }
@@ -172,7 +180,8 @@ bool second_init(second_device_t *d, const second_config_t *config)
     d->scene_count = 1;
     if (d->config.fitted == 0) d->config.fitted = 0x0F;
     if (d->config.address == 0) d->config.address = 0x01;
-    if (config->kind != SECOND_A05_UART && config->kind != SECOND_A05_RS485) d->config.fitted = 0x01;
+    bool is_a05 = config->kind == SECOND_A05_UART || config->kind == SECOND_A05_RS485;
+    if (!is_a05 && config->kind != SECOND_A05_RELAY) d->config.fitted = 0x01;
     d->hooks->init(d);
     return true;
 }

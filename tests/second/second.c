@@ -57,7 +57,7 @@ static void power(second_device_t *d, bool on)
     size_t cut = d->out_count;
     for (int i = 0; i < TIMER_COUNT; i++) d->timer_us[i] = SECOND_NEVER;
     d->powered = on;
-    d->alive = d->automatic = false;
+    d->alive = d->automatic = d->levels.high = false;
     d->out_count = d->job_count = 0;
     d->out_begin_us = d->out_free_us = 0;
     d->next_address = -1;
@@ -67,7 +67,7 @@ static void power(second_device_t *d, bool on)
         d->power_on_us = d->now_us;
         d->hooks->power_on(d);
         d->timer_us[TIMER_ALIVE] = d->now_us + chosen_us(d, CHOICE_any_power_on_us);
-        if (chosen(d, CHOICE_any_power_on_glitch) >= 0) {
+        if (chosen(d, CHOICE_any_power_on_glitch) >= 0 && d->config.kind < SECOND_TALKERS) {
             uint8_t glitch = (uint8_t)chosen(d, CHOICE_any_power_on_glitch);
             second_wire_send(d, &glitch, 1, d->now_us, d->line, NULL);
         }
@@ -92,7 +92,7 @@ static void take_input(second_device_t *d)
         d->scene_count++;
         break;
     case INPUT_FAULT:
-        d->hooks->fault(d, input.on);
+        if (d->hooks->fault != NULL) d->hooks->fault(d, input.on);
         break;
     case INPUT_START:
     case INPUT_BYTE:

@@ -34,6 +34,10 @@ typedef enum {
     SECOND_A05_UART,       /* automatic until a Modbus command comes */
     SECOND_A05_RS485,      /* 55 AA frames and Modbus */
     SECOND_HPS167S,
+    SECOND_TALKERS, /* the ones before it send bytes, those from here on a level */
+    SECOND_A16_PWM = SECOND_TALKERS,
+    SECOND_A16_SWITCH,
+    SECOND_A05_RELAY,
     SECOND_KINDS
 } second_kind_t;
 
@@ -78,11 +82,12 @@ typedef enum {
     SECOND_EVENT_MEASUREMENT, /* a measurement was sent: raw, sent, true_mm */
     SECOND_EVENT_ANSWER,      /* another answer was sent: raw */
     SECOND_EVENT_SETTING,     /* a setting was taken: reg, old_value, new_value, flash_writes */
-    SECOND_EVENT_EFFECT,      /* address, line, mode or data type changed: see the fields of every event */
-    SECOND_EVENT_REFUSED,     /* raw: the request; exception 0: silence, 9: echoed, not taken */
-    SECOND_EVENT_RESET,       /* factory reset */
-    SECOND_EVENT_NOISE,       /* a byte that was not understood: raw[0]; new_value: 1 taken in, 0 dropped */
-    SECOND_EVENT_DISCARDED    /* bytes that made no frame for anybody: raw, old_value their number */
+    SECOND_EVENT_EFFECT, /* address, line, mode or data type changed: see the fields of every event; of a level
+                                 new_value: 1 high or closed */
+    SECOND_EVENT_REFUSED,  /* raw: the request; exception 0: silence, 9: echoed, not taken */
+    SECOND_EVENT_RESET,    /* factory reset */
+    SECOND_EVENT_NOISE,    /* a byte that was not understood: raw[0]; new_value: 1 taken in, 0 dropped */
+    SECOND_EVENT_DISCARDED /* bytes that made no frame for anybody: raw, old_value their number */
 } second_event_kind_t;
 
 typedef struct {
@@ -164,6 +169,9 @@ void second_fault(second_device_t *device, bool failed, uint64_t at_us); /* HPS-
 uint64_t second_next_us(const second_device_t *device);
 /* Runs it up to and including until_us. */
 void second_run(second_device_t *device, uint64_t until_us, second_sink_t sink, void *context);
+
+/* TX of an A16 with PWM or switch output is high; the contact of the A05's relay is closed. */
+bool second_output(const second_device_t *device);
 
 /* The device's own truth. Events are counted from 0; NULL: not there yet, or no longer in the ring. */
 uint64_t second_log_count(const second_device_t *device);

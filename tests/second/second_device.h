@@ -70,6 +70,13 @@ typedef struct {
     uint8_t version[6], details[22]; /* what #1 and #3 read */
 } hps_t;
 
+/* What has a level in place of bytes. */
+typedef struct {
+    bool high, near;
+    uint64_t fall_us, free_us, changed_us;
+    uint8_t nearer, farther; /* in a row */
+} levels_t;
+
 struct second_device;
 typedef struct {
     void (*init)(struct second_device *device);
@@ -126,13 +133,14 @@ struct second_device {
 
     ultrasonic_t us;
     hps_t hps;
+    levels_t levels;
 
     second_event_t unsent; /* stands in for the event of an answer that is not sent */
     second_event_t log[SECOND_LOG_EVENTS];
     uint64_t log_count;
 };
 
-extern const hooks_t second_a16_hooks, second_a05_hooks, second_hps_hooks;
+extern const hooks_t second_a16_hooks, second_a05_hooks, second_hps_hooks, second_level_hooks;
 
 /* wire.c */
 uint16_t second_wire_crc16(const uint8_t *bytes, size_t len);

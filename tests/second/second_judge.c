@@ -165,9 +165,9 @@ static reason_t why(fathom_status_t status)
     if (status == FATHOM_ERR_EXCEPTION && f.exception)
         return is_warming_up() ? BECAUSE_WARM_UP : BECAUSE_EXCEPTION;
     if (status == FATHOM_ERR_WARMING_UP) return BECAUSE_WARM_UP;
-    if (status == FATHOM_ERR_MALFORMED && f.odd_values > 0) return BECAUSE_NO_DISTANCE;
     bool is_measured = status == FATHOM_ERR_MALFORMED || (status == FATHOM_ERR_STALE && f.unasked);
     if (is_measured && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16) return BECAUSE_STRENGTH;
+    if (is_measured && f.odd_values > 0) return BECAUSE_NO_DISTANCE;
     bool is_temperature = is_hps() && judge.rig->last[3] == 0x04;
     if (status == FATHOM_ERR_MALFORMED && is_temperature &&
         (chose(CHOICE_hps_temperature) & 0x7FFF) % 0x7FFF == 0)
@@ -417,10 +417,38 @@ static const char *wrong_hps(const fathom_sample_t *s, const second_event_t *e)
     }
 }
 
+/* A level says what the device's own level is; a pulse was as wide, and what it means is so within 0.1 %, by which the
+ * datasheet's two formulas differ. */
+static const char *wrong_level(const fathom_sample_t *s)
+{
+    const second_device_t *d = &judge.rig->device;
+    if (kind() != SECOND_A16_PWM)
+        return s->kind == (second_output(d) ? FATHOM_NEAR : FATHOM_FAR) ? NULL
+                                                                        : "another level than is there";
+    for (uint64_t i = second_log_count(d); i-- > 0;) {
+        const second_event_t *e = second_log_at(d, i);
+        if (e == NULL || e->time_us + 1000000 < judge.rig->now_us) break;
+        if (e->kind != SECOND_EVENT_MEASUREMENT || rig_clock_us(judge.rig, e->end_us) != s->time_us) continue;
+        int32_t off_mm = (int32_t)s->distance_mm - e->true_mm[0];
+        if (e->new_value != s->raw) return "another width than it was";
+        if (e->no_target) return s->kind == FATHOM_NO_TARGET ? NULL : "nothing is there";
+        if (s->kind != FATHOM_TARGET) return "a target is there";
+        return off_mm * 1000 <= e->true_mm[0] + 1000 && off_mm * 1000 >= -e->true_mm[0] - 1000
+                   ? NULL
+                   : "another distance";
+    }
+    return "a pulse that was not sent";
+}
+
 void judge_sample(const fathom_sample_t *sample)
 {
-    const second_event_t *e = source(sample);
     judge.readings++;
+    if (kind() >= SECOND_TALKERS) {
+        const char *wrong = wrong_level(sample);
+        if (wrong != NULL) finding(wrong, (int)sample->raw);
+        return;
+    }
+    const second_event_t *e = source(sample);
     if (e == NULL) {
         finding("a reading that was not sent", (int)sample->raw);
         return;

@@ -113,6 +113,12 @@ static int uart_set_break(void *ctx, bool on)
     return 1;
 }
 
+static bool pin_get(void *ctx)
+{
+    const rig_t *rig = ctx;
+    return second_output(&rig->device) != (rig->device.config.kind == SECOND_A05_RELAY);
+}
+
 void rig_open(rig_t *rig, const second_config_t *config)
 {
     static const uint32_t begins_us[] = {0, 4294000000u, 4200000000u, 2147483000u};
@@ -130,6 +136,8 @@ void rig_open(rig_t *rig, const second_config_t *config)
     if (config->kind == SECOND_HPS167S) rig->set = (second_line_t){19200, 'E', 1};
     rig->clock = (fathom_clock_t){clock_now_us, rig};
     rig->uart = (fathom_uart_t){uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, rig};
+    rig->pin = (fathom_pin_t){NULL, pin_get, rig};
+    fathom_edges_init(&rig->edges, &rig->pin);
     rig->line_config = (fathom_line_config_t){.uart = &rig->uart,
                                               .clock = &rig->clock,
                                               .frame = rig->frame,
@@ -143,6 +151,13 @@ void rig_open(rig_t *rig, const second_config_t *config)
 
 static void run_to(rig_t *rig, uint64_t until_us)
 {
+    bool has_level = rig->device.config.kind >= SECOND_TALKERS;
+    for (uint64_t next_us = 0; has_level && (next_us = second_next_us(&rig->device)) <= until_us;) {
+        bool was_high = second_output(&rig->device);
+        second_run(&rig->device, next_us, receive, rig);
+        bool is_high = second_output(&rig->device);
+        if (is_high != was_high) fathom_edges_feed(&rig->edges, is_high, rig_clock_us(rig, next_us));
+    }
     second_run(&rig->device, until_us, receive, rig);
     rig->now_us = until_us;
 }

@@ -20,8 +20,10 @@ typedef struct {
 
     fathom_clock_t clock;
     fathom_uart_t uart;
-    second_line_t set; /* the host's UART */
-    uint64_t sent_us;  /* when all that was written has left */
+    fathom_edges_t edges; /* of the device's output, as an interrupt gives them */
+    fathom_pin_t pin;     /* the same; low while the contact of a relay conducts */
+    second_line_t set;    /* the host's UART */
+    uint64_t sent_us;     /* when all that was written has left */
     bool in_break;
     struct {
         uint8_t value, flags;

@@ -32,6 +32,9 @@ static void live(second_kind_t kind, life_t life)
 
 TEST(a16_auto) { live(SECOND_A16_AUTO, life_a16_auto); }
 TEST(a16_controlled) { live(SECOND_A16_CONTROLLED, life_a16_controlled); }
+TEST(a16_pwm) { live(SECOND_A16_PWM, life_a16_pwm); }
+TEST(a16_switch) { live(SECOND_A16_SWITCH, life_a16_switch); }
+TEST(a05_relay) { live(SECOND_A05_RELAY, life_a05_relay); }
 TEST(a16_rs232) { live(SECOND_A16_RS232, life_a16_rs232); }
 TEST(a16_rs485) { live(SECOND_A16_RS485, life_a16_rs485); }
 TEST(a05_uart) { live(SECOND_A05_UART, life_a05_uart); }

@@ -255,7 +255,7 @@ static uint64_t live(second_kind_t kind, uint64_t seed, const second_override_t 
     wait_us(2500000);
     if (kind == SECOND_HPS167S)
         hps_life();
-    else if (kind == SECOND_A16_AUTO || kind == SECOND_A16_CONTROLLED)
+    else if (kind == SECOND_A16_AUTO || kind == SECOND_A16_CONTROLLED || kind >= SECOND_TALKERS)
         a16_life();
     else
         modbus_life(kind);

@@ -55,7 +55,7 @@ static void live(host_t *h, second_kind_t kind, uint64_t seed, uint64_t step_us)
 /* Bytes follow each other, frames carry the right check codes, the log tells what was on the wire. */
 TEST(all_seeds_keep_the_wire_in_order)
 {
-    for (int kind = 0; kind < SECOND_KINDS; kind++) {
+    for (int kind = 0; kind < SECOND_TALKERS; kind++) {
         size_t frames = 0;
         for (uint64_t seed = 1; seed <= 300; seed++) {
             live(&host, (second_kind_t)kind, seed, 0);
@@ -85,7 +85,7 @@ TEST(all_seeds_keep_the_wire_in_order)
 /* A request for a measurement is answered, whatever the seed, when the text says so. */
 TEST(all_seeds_answer_a_plain_request)
 {
-    for (int kind = SECOND_A16_CONTROLLED; kind < SECOND_KINDS; kind++) {
+    for (int kind = SECOND_A16_CONTROLLED; kind < SECOND_TALKERS; kind++) {
         for (uint64_t seed = 1; seed <= 300; seed++) {
             live(&host, (second_kind_t)kind, seed, 0);
             const second_device_t *d = &host.device[0];
@@ -113,7 +113,7 @@ TEST(all_seeds_answer_a_plain_request)
 /* The same seed gives the same bytes, in whatever steps the device is run. */
 TEST(all_seeds_are_repeatable)
 {
-    for (int kind = 0; kind < SECOND_KINDS; kind++) {
+    for (int kind = 0; kind < SECOND_TALKERS; kind++) {
         for (uint64_t seed = 1; seed <= 60; seed++) {
             live(&host, (second_kind_t)kind, seed, 0);
             live(&again, (second_kind_t)kind, seed, 333);

@@ -160,7 +160,8 @@ static void level(second_device_t *d, const input_t *input)
     d->level_since_us = input->time_us;
     if (!d->powered) return;
     d->hooks->level(d, input->on);
-    bool hears_bytes = d->config.kind != SECOND_A16_AUTO && d->config.kind != SECOND_A16_CONTROLLED;
+    bool hears_bytes = d->config.kind != SECOND_A16_AUTO && d->config.kind != SECOND_A16_CONTROLLED &&
+                       d->config.kind < SECOND_TALKERS;
     uint64_t character_us = second_wire_bits_ns(d->line, second_wire_character_bits(d->line)) / 1000;
     if (!hears_bytes || input->on || !d->alive || input->time_us < since_us + character_us) return;
     input_t as_byte = *input;
@@ -177,7 +178,7 @@ void second_wire_input(second_device_t *d, const input_t *input)
     case INPUT_BYTE:
         if (d->config.kind == SECOND_A16_AUTO || d->config.kind == SECOND_A16_CONTROLLED) {
             if (d->powered) d->hooks->pulse(d, input);
-        } else {
+        } else if (d->config.kind < SECOND_TALKERS) {
             receive(d, input);
         }
         break;
