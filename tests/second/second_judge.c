@@ -25,6 +25,8 @@ static const char *const wording[REASONS] = {
     [BECAUSE_FAILED] = "it has failed",
     [BECAUSE_STRENGTH] = "its strength of light has an exponent over 16",
     [BECAUSE_FEWER] = "it answers with fewer values than were asked for",
+    [BECAUSE_FULL] = "what it sends unasked leaves no room for a request",
+    [BECAUSE_QUEUED] = "it serves a trigger that came too early when its cycle is over",
     [BECAUSE_MISPRINT] = "it does what is most likely a misprint",
     [BECAUSE_NOTHING] = "UNEXPLAINED",
 };
@@ -132,8 +134,8 @@ static facts_t facts(void)
 
 static bool is_misprint(fathom_status_t status)
 {
-    bool is_frame =
-        status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_NO_ANSWER;
+    bool is_frame = status == FATHOM_ERR_STALE || status == FATHOM_ERR_MALFORMED ||
+                    status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_NO_ANSWER;
     if (kind() == SECOND_A05_UART)
         return chose(CHOICE_a05_uart_parity) != 'N' && status != FATHOM_ERR_EXCEPTION;
     if (kind() == SECOND_A05_RS485 && judge.rig->last[0] == 0x55)
@@ -154,6 +156,20 @@ static bool is_later(uint16_t reg)
     return reg == 0x0200 && chose(CHOICE_mb_address_effect) != 0;
 }
 
+/* 13 characters with their gaps, and 3.5 characters, the request and 3.5 characters again. */
+static bool leaves_no_room(void)
+{
+    int64_t character_us = 573, frame_us = 13 * character_us * (10 + chose(CHOICE_any_byte_gap_tenths)) / 10;
+    bool is_on = is_hps() && chose(CHOICE_hps_unasked) != 0;
+    return is_on && frame_us + 15 * character_us > chose(CHOICE_hps_unasked_us);
+}
+
+static bool is_queued(void)
+{
+    return kind() == SECOND_A16_PWM && chose(CHOICE_a16_early_trigger) == 2 &&
+           chose(CHOICE_a16_trigger_at_power_on) != 0;
+}
+
 static bool is_warming_up(void) { return is_hps() && second_hps_warming_up(&judge.rig->device); }
 
 /* Why it did not answer, or not so that it could be understood. */
@@ -165,6 +181,8 @@ static reason_t why(fathom_status_t status)
     if (status == FATHOM_ERR_EXCEPTION && f.exception)
         return is_warming_up() ? BECAUSE_WARM_UP : BECAUSE_EXCEPTION;
     if (status == FATHOM_ERR_WARMING_UP) return BECAUSE_WARM_UP;
+    if (status == FATHOM_PENDING) return leaves_no_room() ? BECAUSE_FULL : BECAUSE_NOTHING;
+    if (is_queued()) return BECAUSE_QUEUED;
     bool is_measured = status == FATHOM_ERR_MALFORMED || (status == FATHOM_ERR_STALE && f.unasked);
     if (is_measured && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16) return BECAUSE_STRENGTH;
     if (is_measured && f.odd_values > 0) return BECAUSE_NO_DISTANCE;
@@ -275,7 +293,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
     bool holds = judge_held(wanted.reg) == wanted.value;
     reason_t reason;
     if (writes > 1) finding("written more than once", status);
-    if (status != FATHOM_ERR_BUSY && is_written != (writes > 0))
+    if (status != FATHOM_ERR_BUSY && status != FATHOM_PENDING && is_written != (writes > 0))
         finding(is_written ? "'written', and it was not" : "'not written', and it was", status);
     switch (status) {
     case FATHOM_READY:
@@ -437,6 +455,8 @@ static const char *wrong_level(const fathom_sample_t *s)
                    ? NULL
                    : "another distance";
     }
+    if (s->kind == FATHOM_FAULT && s->raw == 0 && second_output(d) && is_queued())
+        return NULL; /* high too late */
     return "a pulse that was not sent";
 }
 

@@ -29,6 +29,8 @@ typedef enum {
     BECAUSE_FAILED,
     BECAUSE_STRENGTH,
     BECAUSE_FEWER,
+    BECAUSE_FULL,
+    BECAUSE_QUEUED,
     BECAUSE_MISPRINT,
     BECAUSE_NOTHING, /* none of these: the driver is wrong */
     REASONS

@@ -109,12 +109,15 @@ static void set_all(rig_t *rig)
     assert_int_equal(fathom_hps167s_next_is_blind(s), FATHOM_READY);
     judge_begin("hps167s_next_is_blind");
     JUDGE_RUN(status, h.any, fathom_hps167s_set_termination(s, false));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
     judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0));
     judge_begin("hps167s_set_termination_of_all_units");
     JUDGE_RUN(status, h.any, fathom_hps167s_set_termination_of_all_units(s, true));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
     judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0xFF));
     judge_begin("hps167s_set_measures_..._of_all_units");
     JUDGE_RUN(status, h.any, fathom_hps167s_set_measures_after_power_on_of_all_units(s, true));
+    if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
     judge_set(status, fathom_hps167s_is_written(s), SENT(0x12, 0xFF));
     SET("hps167s_set_address", fathom_hps167s_set_address(s, 12), HOLDS(0x10, 12));
     if (status != FATHOM_READY) find(rig);

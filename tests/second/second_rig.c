@@ -130,6 +130,8 @@ void rig_open(rig_t *rig, const second_config_t *config)
     rig->loop = config->seed % 3 == 2 ? RIG_EVERY_20_MS : config->seed % 24 == 1 ? RIG_EVERY_1_MS : RIG_WOKEN;
     /* A loop in step with what a device sends unasked may never see a silence to ask in (line.h). */
     bool is_shared = config->kind == SECOND_A16_RS232 || config->kind == SECOND_A05_UART;
+    if (config->kind == SECOND_HPS167S)
+        is_shared = second_choice(&rig->device, CHOICE_hps_unasked_us) < 60000;
     if (is_shared && rig->loop == RIG_EVERY_20_MS) rig->loop = RIG_EVERY_1_MS;
     rig->clock_begins_us = begins_us[config->seed / 3 % 4];
     rig->set = (second_line_t){9600, 'N', 1};
