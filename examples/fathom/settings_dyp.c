@@ -72,7 +72,9 @@ static fathom_status_t a16_send_again(reader_t *reader, int32_t value)
         fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
         is_begun = true;
     }
-    return fathom_a16_rs232_return_to_automatic(&rs232, &sample);
+    const fathom_status_t status = fathom_a16_rs232_return_to_automatic(&rs232, &sample);
+    is_begun = status == FATHOM_PENDING;
+    return status;
 }
 
 static fathom_status_t a16_polarity(reader_t *reader, char text[SETTING_TEXT])
