@@ -343,17 +343,14 @@ static fathom_status_t explained(void)
 void judge_told(told_t told, wanted_t wanted)
 {
     bool wrote = judge.rig->writes != judge.writes_begin;
+    bool says = told.not_written || told.not_confirmed || told.otherwise || told.refused;
     fathom_status_t status = told.made            ? FATHOM_READY
                              : told.not_confirmed ? FATHOM_ERR_UNCONFIRMED
                              : told.otherwise     ? FATHOM_ERR_DIFFERS
+                             : told.refused       ? FATHOM_ERR_EXCEPTION
                                                   : explained();
-    if (told.not_written && wrote) finding("'nothing was written', and it was", status);
-    if (told.not_changed && facts().settings > 0) finding("'nothing was changed', and it was", status);
-    if (!told.made && !wrote && !told.not_written && !told.not_changed)
-        finding("it does not say that nothing was written", status);
-    if (!told.made && wrote && !told.not_confirmed && !told.otherwise && !facts().exception)
-        finding("it does not say that it was written", status);
-    judge_set(status, wrote, wanted);
+    if (!told.made && !says) finding("it does not say what was written", status);
+    judge_set(status, told.not_written ? false : says ? true : wrote, wanted);
 }
 
 void judge_done(bool is_good, bool is_right)

@@ -79,7 +79,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted);
 
 /* The same of a program that tells it in words. */
 typedef struct {
-    bool made, not_written, not_changed, not_confirmed, otherwise;
+    bool made, not_written, not_confirmed, otherwise, refused;
 } told_t;
 void judge_told(told_t told, wanted_t wanted);
 /* ... and of one that tells whether all went well, and what it was told. */

@@ -90,10 +90,11 @@ typedef struct {
 static told_t told(void)
 {
     return (told_t){.made = run->status == 0,
-                    .not_written = says("nothing was written"),
-                    .not_changed = says("nothing was changed") || says("not reset"),
-                    .not_confirmed = says("not confirmed") || says("it was sent"),
-                    .otherwise = says("reads otherwise") || says("tells another value")};
+                    .not_written =
+                        says("nothing was written") || says("nothing was sent") || says("unchanged, it had"),
+                    .not_confirmed = says("not confirmed") || says("was sent"),
+                    .otherwise = says("reads otherwise"),
+                    .refused = says(": refused: ")};
 }
 
 static void set(const char *sensor, const char *mode, const tool_set_t *rows, size_t count)
