@@ -19,7 +19,7 @@ static const char *const wording[REASONS] = {
     [BECAUSE_ECHOED] = "it acknowledges a value and does not take it",
     [BECAUSE_OTHER_VALUE] = "it takes another value than the one that was sent",
     [BECAUSE_OLD_TOLD] = "it tells the value in use and not the one that was set",
-    [BECAUSE_HIT] = "a frame that nobody asked for ran into request or answer",
+    [BECAUSE_HIT] = "a frame that nobody asked for ran into the request, or came for the answer",
     [BECAUSE_NO_DISTANCE] = "its value is no distance, or no temperature",
     [BECAUSE_RARE] = "its frames are farther apart than the deadline",
     [BECAUSE_FAILED] = "it has failed",
@@ -203,7 +203,8 @@ static reason_t why(fathom_status_t status)
         return first_only_switches() && f.effect ? BECAUSE_SWITCHED : BECAUSE_SILENT;
     }
     if (status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_STALE) return BECAUSE_NOTHING;
-    if (f.unasked && (f.noise || status == FATHOM_ERR_CHECKSUM)) return BECAUSE_HIT;
+    bool is_in_place = is_hps() && status == FATHOM_ERR_MALFORMED;
+    if (f.unasked && (f.noise || is_in_place || status == FATHOM_ERR_CHECKSUM)) return BECAUSE_HIT;
     return early ? BECAUSE_STARTING : BECAUSE_NOTHING;
 }
 
@@ -306,6 +307,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
     case FATHOM_ERR_DIFFERS:
         if (writes == 0) finding("'it reads otherwise', and nothing was written", status);
         reason = why_different(&f, wanted);
+        if (reason == BECAUSE_NOTHING && f.settings == 0) reason = why(FATHOM_ERR_NO_ANSWER);
         break;
     case FATHOM_ERR_UNCONFIRMED:
         if (writes == 0) finding("'not confirmed', and nothing was written", status);
@@ -315,6 +317,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
         }
         reason = why_different(&f, wanted);
         if (reason == BECAUSE_NOTHING) reason = why(FATHOM_ERR_NO_ANSWER);
+        if (reason == BECAUSE_NOTHING && !wanted.acknowledged) reason = why(FATHOM_ERR_MALFORMED);
         break;
     case FATHOM_ERR_EXCEPTION:
         if (f.settings > 0) finding("'refused', and it was taken", status);
