@@ -170,6 +170,17 @@ static bool is_queued(void)
            chose(CHOICE_a16_trigger_at_power_on) != 0;
 }
 
+/* What was asked last went to an address at which it answers nothing. */
+static bool is_unanswered(void)
+{
+    const uint8_t *last = judge.rig->last;
+    if (is_hps()) return false;
+    if (last[0] == 0x55) return last[2] == 0xFF && chose(CHOICE_a05_dyp_ff) == 0;
+    if (last[0] == 0xFF) return chose(CHOICE_mb_ff_read) == 0;
+    int64_t zero = chose(is_a05() ? CHOICE_a05_address_zero : CHOICE_a16_address_zero);
+    return judge.rig->device.address == 0 && zero == 7;
+}
+
 static bool is_warming_up(void) { return is_hps() && second_hps_warming_up(&judge.rig->device); }
 
 /* Why it did not answer, or not so that it could be understood. */
@@ -196,8 +207,7 @@ static reason_t why(fathom_status_t status)
     if (is_misprint(status)) return BECAUSE_MISPRINT;
     if (status == FATHOM_ERR_STALE && judge.rig->now_us >= f.unasked_us + 1900000)
         return early ? BECAUSE_STARTING : BECAUSE_RARE;
-    bool unheard = judge.rig->last[2] == 0xFF && !is_hps() && chose(CHOICE_a05_dyp_ff) == 0;
-    if (status == FATHOM_ERR_NO_ANSWER && (f.silent || unheard)) {
+    if (status == FATHOM_ERR_NO_ANSWER && (f.silent || is_unanswered())) {
         if (is_warming_up()) return BECAUSE_WARM_UP;
         if (is_hps() && d->hps.failed) return BECAUSE_FAILED;
         return first_only_switches() && f.effect ? BECAUSE_SWITCHED : BECAUSE_SILENT;

@@ -7,6 +7,9 @@
 
 typedef void (*life_t)(rig_t *rig);
 
+/* The one device on a line is asked for its address at FF. */
+void find_by_modbus(rig_t *rig, const fathom_sensor_t *any);
+
 void life_a16_auto(rig_t *rig);
 void life_a16_controlled(rig_t *rig);
 void life_a16_rs232(rig_t *rig);

@@ -96,6 +96,7 @@ static void restart(rig_t *rig)
 void life_a05_rs485(rig_t *rig)
 {
     fathom_a05_modbus_t sensor;
+    fathom_status_t status;
     fathom_sensor_t any = begin_modbus(rig, &sensor, rig->device.config.fitted, 0);
     show(rig, 0);
     rig_power(rig, true);
@@ -107,6 +108,13 @@ void life_a05_rs485(rig_t *rig)
     measure(rig);
     restart(rig);
     measure(rig);
+    any = begin_modbus(rig, &sensor, rig->device.config.fitted, 0);
+    find_by_modbus(rig, &any);
+    judge_begin("a05_modbus_set_address_to_0");
+    JUDGE_RUN(status, any, fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&sensor));
+    judge_set(status, fathom_a05_modbus_is_written(&sensor), HOLDS(0x0200, 0));
+    judge_poll("a05_modbus", &any, 3, SETTLED_US);
+    fathom_a05_modbus_deinit(&sensor);
 }
 
 static fathom_sensor_t begin_dyp(rig_t *rig, fathom_a05_dyp_t *sensor, uint8_t probes)

@@ -112,6 +112,16 @@ static void set_all(rig_t *rig, fathom_a16_modbus_t *sensor)
     judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0200, address));
 }
 
+void find_by_modbus(rig_t *rig, const fathom_sensor_t *any)
+{
+    fathom_dyp_modbus_find_t find = {0};
+    fathom_status_t status;
+    uint8_t address = 0;
+    judge_begin("dyp_modbus_find");
+    JUDGE_RUN(status, *any, fathom_dyp_modbus_find(&find, &rig->modbus, &address));
+    judge_read(status, address == rig->device.address);
+}
+
 void life_a16_rs485(rig_t *rig)
 {
     fathom_a16_modbus_t sensor;
@@ -137,6 +147,11 @@ void life_a16_rs485(rig_t *rig)
     any = begin_modbus(rig, &sensor, 0); /* where it is now */
     judge_poll("a16_modbus", &any, 4, SETTLED_US);
     ask_all(rig, &sensor);
+    find_by_modbus(rig, &any);
+    judge_begin("a16_set_address_to_0");
+    JUDGE_RUN(status, any, fathom_a16_set_address_to_0_perhaps_for_ever(&sensor));
+    judge_set(status, fathom_a16_is_written(&sensor), HOLDS(0x0200, 0));
+    judge_poll("a16_modbus", &any, 3, SETTLED_US);
     fathom_a16_modbus_deinit(&sensor);
 }
 
