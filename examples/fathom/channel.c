@@ -50,6 +50,8 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
     channel->config.frame_size = sizeof channel->frame;
     (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
     channel->modbus = fathom_modbus_client(&channel->line);
+    channel->requests = 0;
+    channel->moved_us = host->now_us(host->ctx);
     return true;
 }
 
@@ -60,6 +62,21 @@ void channel_close(channel_t *channel)
     else
         tcp_close(channel->tcp);
     channel->tcp = NULL;
+}
+
+bool channel_is_stuck(channel_t *channel)
+{
+    enum { STUCK_US = 10000000 };
+    const fathom_exchange_t *const first = channel->line.head;
+    const uint64_t now = channel->host->now_us(channel->host->ctx);
+    const bool is_waiting = first != NULL && channel->line.owing == 0;
+    const uint64_t most_us = is_waiting ? STUCK_US + 2ull * first->timeout_us : 0;
+    const bool is_stuck =
+        is_waiting && channel->ear.requests == channel->requests && now - channel->moved_us > most_us;
+    if (!is_stuck && is_waiting && channel->ear.requests == channel->requests) return false;
+    channel->moved_us = now;
+    channel->requests = channel->ear.requests;
+    return is_stuck;
 }
 
 const char *settings_text(const fathom_line_settings_t *settings, char text[SETTINGS_TEXT])

@@ -15,6 +15,8 @@
  * that talks to sensors needs. */
 typedef struct {
     const host_t *host;
+    uint64_t moved_us; /* when a request has left last, or none waited, */
+    uint64_t requests; /* and how many had left then */
     fathom_posix_uart_t port;
     tcp_t *tcp; /* then `port` stands in for it (tcp.h); NULL: a serial port */
     fathom_uart_t uart;
@@ -40,6 +42,10 @@ enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
 bool channel_open(channel_t *channel, const host_t *host, const char *path,
                   const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
+
+/* Has a request waited for more than 10 s, and its time-out twice, without finding a silence to leave in? Said once in so
+ * long. To be asked whenever the line was polled. */
+bool channel_is_stuck(channel_t *channel);
 
 /* "9600 8N1", in a buffer of the caller's. */
 enum { SETTINGS_TEXT = 24 };

@@ -213,6 +213,8 @@ static bool poll_station(session_t *session, station_t *station)
         /* Between two requests a driver has nobody to tell it to, and waiting for the port would not wait. */
         session->is_lost = fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST;
         if (session->is_lost && status == FATHOM_PENDING) status = FATHOM_ERR_PORT;
+        if (status == FATHOM_PENDING && station->reader.unit != NULL && channel_is_stuck(&session->channel))
+            status = FATHOM_ERR_NO_ANSWER;
         if (status == FATHOM_PENDING) return false;
         take_outcome(session, station, status, &sample);
     } while (!session->is_lost && reader_has_more(&station->reader));

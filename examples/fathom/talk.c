@@ -122,6 +122,8 @@ fathom_status_t talk_call(talk_t *talk, talk_call_t call, void *ctx)
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
+        if (channel_is_stuck(&talk->channel))
+            return reader->unit->is_written ? FATHOM_ERR_UNCONFIRMED : FATHOM_ERR_NO_ANSWER;
         host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
     }
     return FATHOM_ERR_CANCELLED;
