@@ -73,12 +73,18 @@ static fathom_status_t get_number(reader_t *reader, char text[SETTING_TEXT],
 }
 
 static uint32_t pick_baud(const fathom_hps167s_configuration_t *is) { return is->baud; }
+static uint32_t pick_baud_code(const fathom_hps167s_configuration_t *is) { return is->baud_code; }
 static uint32_t pick_warm_up(const fathom_hps167s_configuration_t *is) { return is->warm_up_s; }
 static uint32_t pick_reconnect(const fathom_hps167s_configuration_t *is) { return is->reconnect_time_ms; }
 
 static fathom_status_t get_baud(reader_t *reader, char text[SETTING_TEXT])
 {
     return get_number(reader, text, pick_baud);
+}
+
+static fathom_status_t get_baud_code(reader_t *reader, char text[SETTING_TEXT])
+{
+    return get_number(reader, text, pick_baud_code);
 }
 
 static fathom_status_t get_warm_up(reader_t *reader, char text[SETTING_TEXT])
@@ -207,6 +213,10 @@ const setting_t settings_hps167s[] = {
      .get = get_baud,
      .set = set_baud,
      .is_later = is_baud_later},
+    {.name = "baud-code",
+     .what = "the rate as it tells it (#2): 1 to 4 by #9, all others mean 19200",
+     .mode = "modbus",
+     .get = get_baud_code},
     {.name = "warm-up",
      .what = "how long it is silent after power-on (#7)",
      .mode = "modbus",

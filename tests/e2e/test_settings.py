@@ -76,7 +76,8 @@ class What(Settings):
         everything_that_an_hps167s_tells=('hps167s:7', 'hps167s:7', {
             'sensor': 'hps167s', 'asked_at': 7, 'mode': 'modbus', 'line': '19200 8E1',
             'interface-version': '2.1.0 of 2020-09-27', 'sensor-version': '3.9 of 2019-09-23',
-            'uuid': '00390025423457142034383501060705', 'temperature': 25.0, 'baud': 19200, 'warm-up': 0,
+            'uuid': '00390025423457142034383501060705', 'temperature': 25.0, 'baud': 19200, 'baud-code': 1,
+            'warm-up': 0,
             'measure-after-power-on': 'on', 'termination': 'on', 'reconnect-time': 180}),
         everything_that_an_a16_tells=('a16:1:modbus --distance 754', 'a16', {
             'sensor': 'a16', 'asked_at': 1, 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,

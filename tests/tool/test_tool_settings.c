@@ -62,6 +62,7 @@ TEST(an_hps167s_with_another_reconnect_time_and_baud_code_can_be_set)
     }
     bench_begin();
     bench_hps167s((fathom_sim_hps167s_config_t){.reconnect_ms = 1000, .no_baud_code = true});
+    says(0, "\nbaud-code                  0\n", "info hps167s");
     says(0, "\nreconnect-time             1000 ms\n", "info hps167s");
 }
 
@@ -122,7 +123,7 @@ TEST(a_refusal_is_a_refusal)
 TEST(info_fails_when_it_could_not_read_all)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 4, 60); /* #1, #3 twice, and then nothing */
-    says(1, "fathom: 6 of 9 values could not be read\n", "info hps167s");
+    says(1, "fathom: 7 of 10 values could not be read\n", "info hps167s");
 }
 
 /* ---- blind ---- */
