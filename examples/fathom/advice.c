@@ -153,7 +153,7 @@ static void print_no_answer(FILE *to, const failure_t *failure)
     (void)fprintf(to, "no answer from address %u: ", failure->address);
     if (failure->tally->attempt.line[FATHOM_LINE_LATE_ANSWERS] != 0) {
         print_late(to, evidence->slowest_us);
-    } else if (print_others(to, failure)) {
+    } else if (print_others(to, failure) || print_unasked(to, failure)) {
         return;
     } else if (failure->channel->tcp != NULL) {
         print_tcp(to, failure);
@@ -162,8 +162,6 @@ static void print_no_answer(FILE *to, const failure_t *failure)
                     "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
                     "supply, and --address",
                     to);
-    } else if (print_unasked(to, failure)) {
-        return;
     } else if (evidence->own != 0) {
         (void)fputs("frames of this address were heard, but none that answers; check that no other master "
                     "asks, and that only one sensor has this address",

@@ -40,12 +40,12 @@ class What(Settings):
         for word in words:
             self.assertIn(word, out)
 
-    # 54 a second; a request fits between two, where the machine has the time to send it within 4 ms: each is tried
-    # three times. With 12 ms it does not: 7.4 of frame, 2 of silence, 4.6 of request.
+    # 54 a second; a request fits between two, where the machine has the time to send it within 4 ms: each is
+    # tried three times. With 12 ms it does not: 7.4 of frame, 2 of silence, 4.6 of request.
     def test_an_hps167s_that_sends_every_18_5_ms_is_told_and_set(self):
         sim = self.sim('hps167s --with unasked=18.5 --counters')
         for line, told in ((f'info hps167s --port {sim}', 'temperature                25.0 degC'),
-                           (f'set hps167s --port {sim} measure-after-power-on off', 'measure-after-power-on is off'),
+                           (f'set hps167s --port {sim} measure-after-power-on off', 'power-on is off'),
                            (f'get hps167s --port {sim} measure-after-power-on', 'off')):
             tries = 3
             while (done := self.fathom(line).finish()).code != 0 and tries > 1:
@@ -54,10 +54,12 @@ class What(Settings):
             self.assertIn(told, done.out)
         self.assertEqual(self.counters(sim, 'writes'), [(1,)])
 
-    @e2e.each(address_0_of_an_a16_is_set_read_and_found='a16', address_0_of_an_a05_is_set_read_and_found='a05')
+    @e2e.each(address_0_of_an_a16_is_set_read_and_found='a16',
+              address_0_of_an_a05_is_set_read_and_found='a05')
     def address_0(self, sensor):
         sim = self.sim(f'{sensor}::modbus --counters')
-        self.ends(f'set {sensor} --port {sim} address 0', 2, 'may not be found again', '--may-not-be-found-again')
+        self.ends(f'set {sensor} --port {sim} address 0', 2, 'may not be found again',
+                  '--may-not-be-found-again')
         self.assertIn('from now on: fathom read',
                       self.told(f'set {sensor} --port {sim} address 0 --may-not-be-found-again'))
         self.assertEqual(self.json(f'info {sensor}:0 --port {sim}')['address'], 0)
@@ -69,7 +71,8 @@ class What(Settings):
 
     def test_one_that_leaves_no_room_for_a_request_is_told_apart_from_a_bad_line(self):
         sim = self.sim('hps167s --with unasked=12')
-        self.ends(f'info hps167s --port {sim}', 1, 'it sends measurements by itself', f'setserial {sim} low_latency')
+        self.ends(f'info hps167s --port {sim}', 1, 'it sends measurements by itself',
+                  f'setserial {sim} low_latency')
 
     @e2e.each(
         # the examples of #3; a temperature of 77 degrees Fahrenheit is (77 - 32) * 5 / 9 = 25.0

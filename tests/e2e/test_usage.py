@@ -159,8 +159,8 @@ WRONG = [
           for value in ('warm-up', 'warm-up=', 'warm-up=0', 'warm-up=256', 'warm-up=1s')),
         ('--with count-03=1', "--with count-03 takes no value, so not 'count-03=1'"),
         *((f'--with {value}', f"--with takes unasked=MS, a number from 1 to 60000, not '{value}'")
-          for value in ('unasked', 'unasked=', 'unasked=0.9', 'unasked=60000.001', 'unasked=18.', 'unasked=.5',
-                        'unasked=18.5555', 'unasked=18.5s', 'unasked=100000')),
+          for value in ('unasked', 'unasked=', 'unasked=0.9', 'unasked=60000.001', 'unasked=18.',
+                        'unasked=.5', 'unasked=18.5555', 'unasked=18.5s', 'unasked=100000')),
     ]),
     ('wrong_usage_is_2_and_one_line', 'scan', [
         ('', '--port is missing'),
