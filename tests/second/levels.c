@@ -31,15 +31,13 @@ static void start(second_device_t *d, uint64_t at_us)
 {
     levels_t *l = &d->levels;
     int64_t early = chosen(d, CHOICE_a16_early_trigger);
-    if (at_us < l->free_us && early == 0) {
+    if (at_us < l->free_us && (early == 0 || (early == 1 && l->high))) { /* a pulse is never cut */
         second_truth_log(d, SECOND_EVENT_REFUSED);
         return;
     }
     if (at_us < l->free_us && early == 2) at_us = l->free_us;
-    if (l->high) put_out(d, false);
     l->free_us = at_us + chosen_us(d, CHOICE_a16_pwm_cycle_us);
     l->fall_us = at_us;
-    d->timer_us[TIMER_BACK] = SECOND_NEVER;
     d->timer_us[TIMER_TICK] = at_us + chosen_us(d, CHOICE_a16_pwm_rise_us);
 }
 
