@@ -48,7 +48,8 @@ static int finish(bool is_restore, fathom_status_t status)
                          station->name);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    (void)fprintf(stderr, "fathom: %s: ", station->name);
+    const bool is_sent = fathom_hps167s_is_written(&station->reader.driver.hps167s);
+    (void)fprintf(stderr, "fathom: %s: %s", station->name, is_sent ? "" : "nothing was written: ");
     if (status == FATHOM_ERR_UNCONFIRMED && !is_restore) {
         (void)fputs("it was sent, and no acknowledgement came: it may hold or not, and cannot be read back",
                     stderr);
