@@ -10,7 +10,9 @@
 static void suit_serial(channel_t *channel, const fathom_line_settings_t *settings)
 {
     const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
-    channel->config.silence_us = FATHOM_T3_5_US(settings->baud, bits);
+    /* An HPS-167S may move to 19200 baud, by its reset too: the slowest rate that is used counts (line.h). */
+    const uint32_t baud = settings->baud > 19200 ? 19200 : settings->baud;
+    channel->config.silence_us = FATHOM_T3_5_US(baud, bits);
     channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
     channel->config.echo = channel->echo;
 }
