@@ -19,13 +19,6 @@ static void go_home(fathom_modbus_unit_t *unit)
 /* Two settings whose registers are equal modulo 16 share one: then one is written without need, once. */
 static uint16_t doubt_of(const fathom_modbus_unit_t *unit) { return (uint16_t)(1u << (unit->setting & 15)); }
 
-static fathom_status_t end(fathom_modbus_unit_t *unit, fathom_status_t status)
-{
-    unit->setting = 0;
-    unit->is_blind = false;
-    return status;
-}
-
 static bool moves(const fathom_modbus_setting_t *setting)
 {
     return setting->address != 0 || setting->settings != NULL;
@@ -42,7 +35,7 @@ static fathom_status_t looked(fathom_modbus_unit_t *unit, const fathom_modbus_se
                               fathom_status_t status, uint32_t value)
 {
     const bool is_so = value == setting->value;
-    if (status < 0 || (is_so && is_told(unit, setting))) return end(unit, status);
+    if (status < 0 || (is_so && is_told(unit, setting))) return status;
     unit->step = is_so ? WRITE_AGAIN : WRITE;
     if (setting->address != 0) {
         unit->step = LOOK_THERE;
@@ -59,7 +52,7 @@ static fathom_status_t looked_there(fathom_modbus_unit_t *unit, fathom_status_t 
     if (status == FATHOM_ERR_NO_ANSWER) return FATHOM_PENDING;
     const bool is_heard = status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION ||
                           status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
-    return end(unit, is_heard ? FATHOM_ERR_IN_USE : status);
+    return is_heard ? FATHOM_ERR_IN_USE : status;
 }
 
 static bool never_left(fathom_status_t status)
@@ -72,11 +65,11 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
 {
     unit->outcome = (int8_t)status;
     if (never_left(status)) unit->is_written = false;
-    if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return end(unit, status);
+    if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
     /* What it tells was so before, too: the acknowledgement alone says that it has taken the value. */
     const bool is_lost = unit->step == WRITE_AGAIN && status < 0;
-    if (unit->is_blind || is_lost) return end(unit, FATHOM_ERR_UNCONFIRMED);
-    if (setting->read == NULL) return end(unit, status < 0 ? FATHOM_ERR_UNCONFIRMED : status);
+    if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
+    if (setting->read == NULL) return status < 0 ? FATHOM_ERR_UNCONFIRMED : status;
     unit->step = CONFIRM_HERE;
     if (moves(setting)) {
         unit->step = CONFIRM_THERE;
@@ -91,16 +84,16 @@ static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus
 {
     if (status == FATHOM_READY && value == setting->value) {
         unit->doubts &= (uint16_t)~doubt_of(unit);
-        return end(unit, FATHOM_READY);
+        return FATHOM_READY;
     }
     if (unit->step == CONFIRM_THERE) {
         unit->step = CONFIRM_HERE;
         go_home(unit);
         return FATHOM_PENDING;
     }
-    if (status < 0) return end(unit, FATHOM_ERR_UNCONFIRMED);
+    if (status < 0) return FATHOM_ERR_UNCONFIRMED;
     unit->doubts |= doubt_of(unit);
-    return end(unit, unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS);
+    return unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS;
 }
 
 static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
@@ -149,5 +142,7 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
         if (status == FATHOM_PENDING) return status;
         status = go_on(unit, setting, status, value);
     } while (status == FATHOM_PENDING);
+    unit->setting = 0;
+    unit->is_blind = false;
     return status;
 }
