@@ -84,7 +84,7 @@ fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_r
     const uint8_t room = fathom_modbus_rtu_room(message);
     fathom_exchange_t *const exchange = &request->exchange;
     const bool is_read = message->head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS;
-    if (room == 0 || (message->head[0] == FATHOM_MODBUS_ANY_UNIT && !is_read)) return FATHOM_ERR_ARGUMENT;
+    if (room == 0) return FATHOM_ERR_ARGUMENT;
     if (room > line->config->frame_size) return FATHOM_ERR_CAPACITY;
     exchange->protocol = protocol;
     exchange->unit = message->head[0] == FATHOM_MODBUS_BROADCAST && is_read ? ZERO : message->head[0];

@@ -27,7 +27,7 @@ typedef struct {
 
 /*
  * submit    FATHOM_PENDING: under way, exchange.status tells the rest. Else nothing happened:
- *           FATHOM_ERR_ARGUMENT   a count out of range, a write to unit 255, or a time-out over 2^31 - 1
+ *           FATHOM_ERR_ARGUMENT   a count out of range, or a time-out over 2^31 - 1
  *           FATHOM_ERR_CAPACITY   the carrier's frame buffer is too small for the request or its answer
  *           FATHOM_ERR_BUSY       this request is under way already
  * cancel    Ends a request with FATHOM_ERR_CANCELLED; its memory is the caller's again.

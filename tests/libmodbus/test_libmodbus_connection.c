@@ -139,11 +139,9 @@ TEST(units_that_modbus_set_slave_refuses_are_unsupported) { rig_expect_units_ref
 
 TEST(line_settings_are_unsupported_and_nothing_is_sent) { rig_expect_no_settings(FINE_US); }
 
-TEST(counts_out_of_range_and_reads_from_everybody_are_refused)
+TEST(counts_out_of_range_are_refused)
 {
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 126, rig.values);
-    assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_ARGUMENT);
-    fathom_modbus_read_holding_registers(&rig.request.message, 0, 0, 1, rig.values);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_ARGUMENT);
     rig_ask_three(&rig.request, 1, 0);
     assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_BUSY);

@@ -26,17 +26,6 @@ TEST(a_count_out_of_range_is_refused)
     assert_null(bench.line.head);
 }
 
-/* FF finds a unit, and is obeyed by all: no write ever goes there. */
-TEST(a_write_to_unit_255_is_refused)
-{
-    const uint16_t value = 5;
-    fathom_modbus_write_single_register(&bench.request.message, 255, 0x0200, 5);
-    assert_int_equal(submitted(), FATHOM_ERR_ARGUMENT);
-    fathom_modbus_write_multiple_registers(&bench.request.message, 255, 0x0200, 1, &value);
-    assert_int_equal(submitted(), FATHOM_ERR_ARGUMENT);
-    assert_null(bench.line.head);
-}
-
 /* 13 registers are 31 bytes of answer, 14 are 33; the frame has 32. 11 written are 31 bytes, 12 are 33. */
 TEST(what_does_not_fit_the_frame_is_refused)
 {
