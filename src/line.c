@@ -46,7 +46,7 @@ void fathom_line_owe(fathom_line_t *line)
     if (!is_answered(exchange)) return;
     uint32_t longest_us = phase(line) == SENDING ? exchange->timeout_us : line->left_us;
     if ((line->state & DAMAGED) == 0) longest_us += exchange->timeout_us;
-    if (line->owed_us < longest_us) line->owed_us = longest_us;
+    if (line->owing == 0 || line->owed_us < longest_us) line->owed_us = longest_us;
     line->owing |= fathom_line_owing_bits(exchange->unit);
 }
 

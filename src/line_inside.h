@@ -72,7 +72,7 @@ static inline uint32_t look(fathom_line_t *line)
     const uint32_t now_us = clock->now_us(clock->ctx);
     const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
     line->polled_us = now_us;
-    if (fathom_run_down(&line->owed_us, passed_us)) line->owing = 0;
+    if (line->owing != 0 && fathom_run_down(&line->owed_us, passed_us)) line->owing = 0;
     fathom_run_down(&line->left_us, passed_us);
     return passed_us;
 }

@@ -200,7 +200,7 @@ typedef struct {
     fathom_protocol_t protocol; /* last spoken */
     uint32_t polled_us;         /* the clock at the last poll */
     uint32_t left_us;           /* of the present time-out */
-    uint32_t owed_us;           /* until `owing` is forgotten */
+    uint32_t owed_us;           /* until `owing` is forgotten, where it is not 0 */
     uint16_t counters[FATHOM_LINE_COUNTERS];
 } fathom_line_t;
 
