@@ -12,6 +12,16 @@ static uint16_t stack_pointer(const avr_t *avr)
     return (uint16_t)(avr->data[R_SPL] | avr->data[R_SPH] << 8);
 }
 
+/* After the instruction at profile.address. */
+static uint16_t settled_stack_pointer(const avr_t *avr)
+{
+    const uint16_t code = (uint16_t)(avr->flash[profile.address] | avr->flash[profile.address + 1] << 8);
+    if ((code & 0xFE0F) == 0xBE0E) profile.half_written = true;  /* OUT 3E */
+    if ((code & 0xFE0F) == 0xBE0D) profile.half_written = false; /* OUT 3D */
+    if (!profile.half_written) profile.settled_pointer = stack_pointer(avr);
+    return profile.settled_pointer;
+}
+
 static void tally(profile_cost_t *cost, uint32_t cycles, uint16_t stack)
 {
     if (cost->calls == 0 || cycles < cost->shortest_cycles) cost->shortest_cycles = cycles;
@@ -26,6 +36,7 @@ static void before(void)
 {
     const avr_t *const avr = board.avr;
     profile.cycle = avr->cycle;
+    profile.address = avr->pc;
     profile.asleep = avr->state == cpu_Sleeping;
     profile.running = avr->interrupts.running_ptr;
     profile.entered = false;
@@ -66,7 +77,7 @@ static void after(void)
     const avr_t *const avr = board.avr;
     const uint32_t cycles =
         (uint32_t)(avr->cycle - profile.cycle) - (profile.entered ? (uint32_t)BOARD_ENTRY_CYCLES : 0);
-    const uint16_t now = stack_pointer(avr);
+    const uint16_t now = settled_stack_pointer(avr);
     const uint16_t pointer = (uint16_t)(now + (profile.entered ? RETURN_ADDRESS : 0)); /* before the entry */
     if (now < profile.deepest_pointer) profile.deepest_pointer = now;
     if (profile.asleep) {
@@ -94,7 +105,7 @@ void profile_begin(void)
 {
     static const board_observer_t observer = {before, after, interrupt};
     memset(&profile, 0, sizeof profile);
-    profile.deepest_pointer = stack_pointer(board.avr);
+    profile.deepest_pointer = profile.settled_pointer = stack_pointer(board.avr);
     board.observer = &observer;
 }
 

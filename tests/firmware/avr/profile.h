@@ -46,6 +46,9 @@ typedef struct {
     uint64_t asleep_cycles;
     uint32_t entries;         /* of interrupts; 4 cycles each */
     uint16_t deepest_pointer; /* the stack pointer, interrupts and all */
+    avr_flashaddr_t address;  /* of the instruction */
+    uint16_t settled_pointer; /* the stack pointer when its halves last belonged together */
+    bool half_written;        /* avr-gcc moves it by OUT to its high and then to its low half */
 
     /* inside */
     profile_frame_t nested[PROFILE_NESTED];
