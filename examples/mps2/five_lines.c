@@ -84,7 +84,9 @@ static bool begin(fathom_sensor_t sensors[LINES])
     const fathom_a05_modbus_config_t bumper_config = {.modbus = &lanes[BUMPER].modbus,
                                                       .clock = &fathom_mps2_clock};
     const fathom_hps167s_config_t gate_config = {.modbus = &lanes[GATE].modbus, .clock = &fathom_mps2_clock};
-    const fathom_a16_auto_config_t silo_config = {.line = &lanes[SILO].line, .gap_us = 25000};
+    /* No period is printed; this one is known to send ten times a second. */
+    const fathom_a16_auto_config_t silo_config = {
+        .line = &lanes[SILO].line, .stale_us = 2000000, .gap_us = 25000};
     const fathom_a05_dyp_config_t rear_config = {.line = &lanes[REAR].line, .probes = 1};
     if (fathom_a16_modbus_init(&tank, &tank_config) != FATHOM_READY ||
         fathom_a05_modbus_init(&bumper, &bumper_config) != FATHOM_READY ||

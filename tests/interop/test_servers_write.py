@@ -45,8 +45,7 @@ class Servers:
             *['exception 2'] * 4, '0001 0002'),
         what_breaks_is_exception_4_for_each_function=(
             0, ['1', '!4'], 'read:0:1 read:1:1 write:1:9 many:0:8,9 read:0:1', '0001', *['exception 4'] * 3,
-            '0001'),
-        nothing_is_read_from_all=(0, [1], 'unit:0 read:0:1 unit:1 read:0:1', 'not sent, status -1', '0001'))
+            '0001'))
     def steps(self, first, values, steps, *said):
         self.assertEqual(self.run_steps(values, *steps.split(), first=first), [*said])
 
@@ -56,6 +55,11 @@ class Servers:
         self.assertEqual(self.run_steps([1], 'read:0:1', *steps),
                          ['0001', *(said for value in (5, 5, 5, 6, 6, 5)
                                     for said in ('done', f'{value:04X}'))])
+
+    unit_0 = 'no answer'  # libmodbus' TCP server is any unit
+
+    def test_a_read_from_unit_0_is_answered_by_that_unit_or_not_at_all(self):
+        self.assertEqual(self.run_steps([1], 'unit:0', 'read:0:1', 'unit:1', 'read:0:1'), [self.unit_0, '0001'])
 
     others = ('read:0:1', 'write:0:2', 'many:0:2')
 
