@@ -59,9 +59,11 @@ void judge_begin(const char *name)
     begin_again();
 }
 
+static bool is_table(void) { return getenv("FATHOM_TABLE") != NULL; }
+
 static void finding(const char *what, int status)
 {
-    if (getenv("FATHOM_TABLE") != NULL)
+    if (is_table())
         print_message("kind %d seed %u at %u ms: %s: status %d: %s\n", kind(),
                       (unsigned)judge.rig->device.config.seed, (unsigned)(judge.rig->now_us / 1000),
                       judge.name, status, what);
@@ -98,7 +100,7 @@ static facts_t facts(void)
         switch (e->kind) {
         case SECOND_EVENT_MEASUREMENT:
             f.unasked |= !e->asked;
-            if (!e->asked && e->end_us <= judge.rig->now_us) f.unasked_us = e->end_us;
+            if (!e->asked && e->end_us + 100000 <= judge.rig->now_us) f.unasked_us = e->end_us;
             f.fault |= e->fault;
             for (size_t p = 0; p < SECOND_PROBES; p++)
                 f.odd_values += (e->probes >> p & 1U) != 0 && is_odd(e->sent[p]) ? 1U : 0U;
@@ -205,7 +207,10 @@ static reason_t why(fathom_status_t status)
         judge.rig->last[2] == 0)
         return BECAUSE_FEWER;
     if (is_misprint(status)) return BECAUSE_MISPRINT;
-    if (status == FATHOM_ERR_STALE && judge.rig->now_us >= f.unasked_us + 1900000)
+    bool has_switched = !d->automatic && (kind() == SECOND_A16_RS232 || kind() == SECOND_A05_UART);
+    if (status == FATHOM_ERR_STALE && has_switched) return BECAUSE_SWITCHED;
+    if (status == FATHOM_ERR_STALE && (d->automatic || is_hps()) &&
+        judge.rig->now_us >= f.unasked_us + 1900000)
         return early ? BECAUSE_STARTING : BECAUSE_RARE;
     if (status == FATHOM_ERR_NO_ANSWER && (f.silent || is_unanswered())) {
         if (is_warming_up()) return BECAUSE_WARM_UP;
@@ -336,7 +341,8 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
     default:
         if (f.settings > 0 && holds && !wanted.acknowledged && !is_later(wanted.reg))
             finding("an error, and it holds", status);
-        reason = why(status);
+        reason = writes > 0 ? why_different(&f, wanted) : BECAUSE_NOTHING;
+        if (reason == BECAUSE_NOTHING) reason = why(status);
         break;
     }
     count(reason, status);
@@ -346,7 +352,8 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
 static fathom_status_t explained(void)
 {
     static const fathom_status_t statuses[] = {FATHOM_ERR_EXCEPTION, FATHOM_ERR_NO_ANSWER,
-                                               FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED, FATHOM_ERR_STALE};
+                                               FATHOM_ERR_CHECKSUM,  FATHOM_ERR_MALFORMED,
+                                               FATHOM_ERR_STALE,     FATHOM_PENDING};
     for (size_t i = 0; i < sizeof statuses / sizeof statuses[0]; i++) {
         if (why(statuses[i]) != BECAUSE_NOTHING) return statuses[i];
     }
@@ -465,8 +472,8 @@ static const char *wrong_level(const fathom_sample_t *s)
                    ? NULL
                    : "another distance";
     }
-    if (s->kind == FATHOM_FAULT && s->raw == 0 && second_output(d) && is_queued())
-        return NULL; /* high too late */
+    bool is_early = judge.rig->now_us < d->power_on_us + 3500000; /* it measures once by itself */
+    if (s->kind == FATHOM_FAULT && s->raw == 0 && second_output(d) && (is_queued() || is_early)) return NULL;
     return "a pulse that was not sent";
 }
 
@@ -516,7 +523,7 @@ unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned ou
     return readings;
 }
 
-void judge_print(void)
+static void print(void)
 {
     for (int r = 0; r < REASONS; r++) print_message("%2d %s\n", r, wording[r]);
     print_message("%-34s %8s %8s", "command", "runs", "good");
@@ -532,9 +539,16 @@ void judge_print(void)
                   judge.readings, judge.from_device, judge.wrong);
 }
 
-unsigned judge_total(reason_t reason)
+void judge_end(unsigned good_of_100)
 {
-    unsigned total = 0;
-    for (size_t i = 0; i < judge.row_count; i++) total += judge.rows[i].because[reason];
-    return total;
+    unsigned runs = 0, goods = 0;
+    if (is_table()) print();
+    for (size_t i = 0; i < judge.row_count; i++) {
+        runs += judge.rows[i].runs;
+        goods += judge.rows[i].good;
+    }
+    print_message("%u commands and measurements, %u came to what was wanted, %u wrong\n", runs, goods,
+                  judge.wrong);
+    assert_int_equal(judge.wrong, 0);
+    assert_true(goods * 100 >= runs * good_of_100);
 }

@@ -103,7 +103,8 @@ unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned ou
             rig_pass(judge.rig, fathom_due_us(&(sensor), 1));                                                \
     } while (0)
 
-void judge_print(void);
-unsigned judge_total(reason_t reason);
+/* Asserts that nothing was wrong, and that so many in a hundred came to what was wanted. With FATHOM_TABLE in the
+ * environment all is printed. */
+void judge_end(unsigned good_of_100);
 
 #endif

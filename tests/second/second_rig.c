@@ -55,7 +55,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
         rx->flags |= flags;
         if (flags != 0) break;
     }
-    if (count > 0 && rig->loop == RIG_WOKEN) {
+    if (count > 0 && rig->has_stamps) {
         rx->flags |= FATHOM_RX_TIMED;
         rx->last_us = rig_clock_us(rig, last_us);
     }
@@ -133,6 +133,7 @@ void rig_open(rig_t *rig, const second_config_t *config)
     if (config->kind == SECOND_HPS167S)
         is_shared = second_choice(&rig->device, CHOICE_hps_unasked_us) < 60000;
     if (is_shared && rig->loop == RIG_EVERY_20_MS) rig->loop = RIG_EVERY_1_MS;
+    rig->has_stamps = rig->loop == RIG_WOKEN;
     rig->clock_begins_us = begins_us[config->seed / 3 % 4];
     rig->set = (second_line_t){9600, 'N', 1};
     if (config->kind == SECOND_HPS167S) rig->set = (second_line_t){19200, 'E', 1};

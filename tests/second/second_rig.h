@@ -17,6 +17,7 @@ typedef struct {
     uint64_t now_us;
     uint32_t clock_begins_us; /* near the wrap for some seeds */
     rig_loop_t loop;
+    bool has_stamps; /* the port knows when bytes came, by the rig's clock */
 
     fathom_clock_t clock;
     fathom_uart_t uart;

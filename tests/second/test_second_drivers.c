@@ -12,7 +12,7 @@ static void live(second_kind_t kind, life_t life)
 {
     const char *from = getenv("FATHOM_SEED");
     uint64_t seed = from != NULL ? strtoull(from, NULL, 10) : 0;
-    uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 200;
+    uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 100;
     judge = (judge_t){.rig = &rig};
     for (; seed <= last; seed++) {
         second_config_t config = {.kind = kind,
@@ -25,9 +25,7 @@ static void live(second_kind_t kind, life_t life)
         assert_int_equal(second_state(&rig.device).lost, 0);
         if (from != NULL) second_print_choices(&rig.device, stdout);
     }
-    if (getenv("FATHOM_TABLE") != NULL) judge_print();
-    assert_int_equal(judge.wrong, 0);
-    assert_true(judge.readings > last);
+    judge_end(50);
 }
 
 TEST(a16_auto) { live(SECOND_A16_AUTO, life_a16_auto); }

@@ -13,19 +13,29 @@ static const tool_run_t *run;
 
 static void idle(void *ctx, uint32_t max_us) { rig_pass(ctx, max_us); }
 
-/* Runs "fathom COMMAND SENSOR:ADDRESS[MODE] --port line MORE". */
+/* Runs "fathom COMMAND SENSOR:ADDRESS[MODE] --port line MORE", a second after the one before; mode NULL: without an
+ * address, so in the sensor's first mode. */
 static void tool(const char *command, const char *sensor, const char *mode, const char *more)
 {
     const tool_line_t line = {.uart = rig.uart, .clock = rig.clock, .idle = idle, .ctx = &rig};
-    uint32_t baud = rig.device.line.baud;
+    const second_state_t state = second_state(&rig.device);
+    char which[16] = "";
+    if (mode != NULL) (void)snprintf(which, sizeof which, ":%u%s", state.address, mode);
     if (strcmp(command, "scan") == 0)
         run = tool_run(&line, "scan --port line %s", more);
     else
-        run = tool_run(&line, "%s %s:%u%s --port line --baud %u %s", command, sensor, rig.device.address,
-                       mode, baud, more);
+        run = tool_run(&line, "%s %s%s --port line --baud %u %s", command, sensor, which, state.line.baud,
+                       more);
+    assert_in_range(run->status, 0, 1);
     if (getenv("FATHOM_SEED") != NULL)
-        print_message("$ %s %s%s %s -> %d\n%s%s", command, sensor, mode, more, run->status, run->out,
+        print_message("$ %s %s%s %s -> %d\n%s%s", command, sensor, which, more, run->status, run->out,
                       run->err);
+}
+
+static void begin(const char *name)
+{
+    rig_wait(&rig, 1000000);
+    judge_begin(name);
 }
 
 static bool says(const char *text)
@@ -37,8 +47,10 @@ static bool says(const char *text)
 static void read_some(const char *name, const char *sensor, const char *mode, const char *more)
 {
     bool is_right = true;
-    judge_begin(name);
-    tool("read", sensor, mode, more);
+    begin(name);
+    char line[64];
+    (void)snprintf(line, sizeof line, "%s --format json --duration 40", more);
+    tool("read", sensor, mode, line);
     for (const char *at = strstr(run->out, "\"raw\":"); at != NULL; at = strstr(at + 1, "\"raw\":"))
         is_right = judge_was_sent((uint16_t)strtoul(at + 6, NULL, 10)) && is_right;
     judge_done(run->status == 0, is_right);
@@ -60,7 +72,7 @@ static bool tells(const char *name, int64_t held, const char *if_0, const char *
 
 static void ask(const char *name, const char *command, const char *sensor, const char *mode, const char *more)
 {
-    judge_begin(name);
+    begin(name);
     tool(command, sensor, mode, more);
     judge_done(run->status == 0, tells("address", rig.device.address, NULL, NULL) &&
                                      tells("switch-polarity", judge_held(0x0205), "negative", "positive") &&
@@ -74,7 +86,7 @@ static void ask(const char *name, const char *command, const char *sensor, const
 /* What is found is what is there. */
 static void scan(const char *sensor)
 {
-    judge_begin("scan");
+    begin("scan");
     tool("scan", sensor, "", "--address 1-3 --listen 4 --format json");
     bool is_other = (says("\"a16\"") && strcmp(sensor, "a16") != 0) ||
                     (says("\"a05\"") && strcmp(sensor, "a05") != 0) ||
@@ -94,13 +106,13 @@ static told_t told(void)
                         says("nothing was written") || says("nothing was sent") || says("unchanged, it had"),
                     .not_confirmed = says("not confirmed") || says("was sent"),
                     .otherwise = says("reads otherwise"),
-                    .refused = says(": refused: ")};
+                    .refused = !says("nothing was written") && says("refused")};
 }
 
 static void set(const char *sensor, const char *mode, const tool_set_t *rows, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        judge_begin(rows[i].words);
+        begin(rows[i].words);
         tool("set", sensor, mode, rows[i].words);
         judge_told(told(), rows[i].wanted);
     }
@@ -115,9 +127,8 @@ static void a16(void)
                                {"automatic-output on", ACKNOWLEDGED(0x0202, 1)},
                                {"address 3", HOLDS(0x0200, 3)}};
     scan("a16");
-    if (rig.device.config.kind == SECOND_A16_RS232)
-        read_some("read a16", "a16", "", "--mode auto --count 4 --format json");
-    read_some("read a16:1:modbus", "a16", ":modbus", "--count 4 --format json");
+    if (rig.device.config.kind == SECOND_A16_RS232) read_some("read a16", "a16", NULL, "--count 4");
+    read_some("read a16:1:modbus", "a16", ":modbus", "--count 4");
     ask("info a16", "info", "a16", ":modbus", "--format json");
     ask("get a16 switch-threshold", "get", "a16", "", "switch-threshold --format json");
     ask("get a16 real-time-distance", "get", "a16", "", "real-time-distance");
@@ -129,28 +140,24 @@ static void a16(void)
 static void a16_auto(void)
 {
     scan("a16");
-    read_some("read a16", "a16", "", "--mode auto --count 6 --format json");
-    ask("watch a16", "watch", "a16", "", "--mode auto --duration 4");
+    read_some("read a16", "a16", NULL, "--count 6");
+    ask("watch a16", "watch", "a16", NULL, "--duration 4");
 }
 
-static void a16_controlled(void)
-{
-    read_some("read a16:1:controlled", "a16", ":controlled", "--count 6 --format json");
-}
+static void a16_controlled(void) { read_some("read a16:1:controlled", "a16", ":controlled", "--count 6"); }
 
 static void a05(void)
 {
     const tool_set_t rows[] = {{"address 3", HOLDS(0x0200, 3)}};
     scan("a05");
-    if (rig.device.config.kind == SECOND_A05_UART)
-        read_some("read a05", "a05", "", "--mode auto --count 3 --format json");
-    read_some("read a05:1:modbus", "a05", ":modbus", "--count 3 --format json");
+    if (rig.device.config.kind == SECOND_A05_UART) read_some("read a05", "a05", NULL, "--count 3");
+    read_some("read a05:1:modbus", "a05", ":modbus", "--count 3");
     ask("info a05", "info", "a05", "", "--format json");
     ask("watch a05", "watch", "a05", ":modbus", "--duration 3");
     set("a05", "", rows, 1);
     if (rig.device.config.kind != SECOND_A05_RS485) return;
     const tool_set_t dyp[] = {{"every-address 2", HOLDS(0xAA03, 2)}};
-    read_some("read a05:1:dyp", "a05", ":dyp", "--count 3 --format json");
+    read_some("read a05:1:dyp", "a05", ":dyp", "--count 3");
     set("a05", ":dyp", dyp, 1);
 }
 
@@ -165,12 +172,12 @@ static void hps167s(void)
                                {"address 3", HOLDS(0x10, 3)},
                                {"baud 57600", HOLDS(0x11, 2)}};
     scan("hps167s");
-    read_some("read hps167s", "hps167s", "", "--count 6 --format json");
+    read_some("read hps167s", "hps167s", "", "--count 6");
     ask("info hps167s", "info", "hps167s", "", "--format json --retries 2");
     ask("get hps167s termination", "get", "hps167s", "", "termination --format json --retries 2");
     set("hps167s", "", rows, sizeof rows / sizeof rows[0]);
     ask("watch hps167s", "watch", "hps167s", "", "--duration 2");
-    judge_begin("reset hps167s");
+    begin("reset hps167s");
     tool("reset", "hps167s", "", "--yes-restore-factory-settings");
     judge_told(told(), ACKNOWLEDGED(0x10, 1));
 }
@@ -179,18 +186,18 @@ static void live(second_kind_t kind, void (*life)(void))
 {
     const char *from = getenv("FATHOM_SEED");
     uint64_t seed = from != NULL ? strtoull(from, NULL, 10) : 0;
-    uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 100;
+    uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 30;
     judge = (judge_t){.rig = &rig};
     for (; seed <= last; seed++) {
         second_config_t config = {.kind = kind, .seed = seed, .scene = {{1234, 2000, 1953, 3562}}};
         rig_open(&rig, &config);
+        rig.has_stamps = false; /* the tool has a clock of its own */
         rig_power(&rig, true);
         rig_wait(&rig, 12000000);
         life();
         if (rig.to_all > 0) judge.wrong++;
     }
-    if (getenv("FATHOM_TABLE") != NULL) judge_print();
-    assert_int_equal(judge.wrong, 0);
+    judge_end(50);
 }
 
 TEST(tool_a16_auto) { live(SECOND_A16_AUTO, a16_auto); }
