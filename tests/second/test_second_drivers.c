@@ -8,7 +8,7 @@
 
 static rig_t rig;
 
-static void live(second_kind_t kind, life_t life)
+static void live(second_kind_t kind, life_t life, unsigned good_of_100)
 {
     const char *from = getenv("FATHOM_SEED");
     uint64_t seed = from != NULL ? strtoull(from, NULL, 10) : 0;
@@ -25,18 +25,37 @@ static void live(second_kind_t kind, life_t life)
         assert_int_equal(second_state(&rig.device).lost, 0);
         if (from != NULL) second_print_choices(&rig.device, stdout);
     }
-    judge_end(50);
+    judge_end(good_of_100);
 }
 
-TEST(a16_auto) { live(SECOND_A16_AUTO, life_a16_auto); }
-TEST(a16_controlled) { live(SECOND_A16_CONTROLLED, life_a16_controlled); }
-TEST(a16_pwm) { live(SECOND_A16_PWM, life_a16_pwm); }
-TEST(a16_switch) { live(SECOND_A16_SWITCH, life_a16_switch); }
-TEST(a05_relay) { live(SECOND_A05_RELAY, life_a05_relay); }
-TEST(a16_rs232) { live(SECOND_A16_RS232, life_a16_rs232); }
-TEST(a16_rs485) { live(SECOND_A16_RS485, life_a16_rs485); }
-TEST(a05_uart) { live(SECOND_A05_UART, life_a05_uart); }
-TEST(a05_rs485) { live(SECOND_A05_RS485, life_a05_rs485); }
-TEST(a05_dyp) { live(SECOND_A05_RS485, life_a05_dyp); }
-TEST(hps167s) { live(SECOND_HPS167S, life_hps167s); }
-TEST(hps167s_auto) { live(SECOND_HPS167S, life_hps167s_auto); }
+TEST(the_judge_sees_a_wrong_reading_and_false_statements)
+{
+    const second_config_t config = {.kind = SECOND_A16_RS485, .scene = {{1234, 0, 0, 0}}};
+    const fathom_sample_t never_sent = {.kind = FATHOM_TARGET, .distance_mm = 1234, .raw = 1234, .probe = 1};
+    judge = (judge_t){.rig = &rig};
+    rig_open(&rig, &config);
+    judge_begin("nothing was asked");
+    judge_sample(&never_sent);
+    assert_int_equal(judge.wrong, 1);
+    judge_set(FATHOM_READY, false, HOLDS(0x0206, 2000)); /* "unchanged" */
+    assert_int_equal(judge.wrong, 2);
+    judge_set(FATHOM_READY, true, ACKNOWLEDGED(0x0202, 1)); /* "written" */
+    assert_int_equal(judge.wrong, 3);
+    judge_set(FATHOM_ERR_UNCONFIRMED, false, HOLDS(0x0206, 2000));
+    assert_in_range(judge.wrong, 4, 5);
+    judge_read(FATHOM_ERR_EXCEPTION, true); /* nothing explains it: it has refused nothing */
+    assert_in_range(judge.wrong, 5, 6);
+}
+
+TEST(a16_auto) { live(SECOND_A16_AUTO, life_a16_auto, 85); }
+TEST(a16_controlled) { live(SECOND_A16_CONTROLLED, life_a16_controlled, 65); }
+TEST(a16_pwm) { live(SECOND_A16_PWM, life_a16_pwm, 90); }
+TEST(a16_switch) { live(SECOND_A16_SWITCH, life_a16_switch, 100); }
+TEST(a05_relay) { live(SECOND_A05_RELAY, life_a05_relay, 100); }
+TEST(a16_rs232) { live(SECOND_A16_RS232, life_a16_rs232, 80); }
+TEST(a16_rs485) { live(SECOND_A16_RS485, life_a16_rs485, 65); }
+TEST(a05_uart) { live(SECOND_A05_UART, life_a05_uart, 75); }
+TEST(a05_rs485) { live(SECOND_A05_RS485, life_a05_rs485, 70); }
+TEST(a05_dyp) { live(SECOND_A05_RS485, life_a05_dyp, 75); }
+TEST(hps167s) { live(SECOND_HPS167S, life_hps167s, 40); }
+TEST(hps167s_auto) { live(SECOND_HPS167S, life_hps167s_auto, 45); }
