@@ -66,6 +66,7 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     unit->outcome = (int8_t)status;
     if (never_left(status)) unit->is_written = false;
     if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
+    unit->doubts |= doubt_of(unit);
     /* What it tells was so before, too: the acknowledgement alone says that it has taken the value. */
     const bool is_lost = unit->step == WRITE_AGAIN && status < 0;
     if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
@@ -92,7 +93,6 @@ static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus
         return FATHOM_PENDING;
     }
     if (status < 0) return FATHOM_ERR_UNCONFIRMED;
-    unit->doubts |= doubt_of(unit);
     return unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS;
 }
 

@@ -155,6 +155,15 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     want(OLD);
     SETS(FATHOM_ERR_EXCEPTION, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, FATHOM_ERR_EXCEPTION));
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
+    want(NEW); /* or of which nothing could be read */
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, NOBODY));
+    want(OLD);
+    SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
+    want(NEW); /* or that was written blind */
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(OK));
+    want(OLD);
+    SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     want(NEW);
     SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
     fathom_modbus_unit_power_on(&unit, 0);
