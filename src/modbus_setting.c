@@ -24,10 +24,12 @@ static bool moves(const fathom_modbus_setting_t *setting)
     return setting->address != 0 || setting->settings != NULL;
 }
 
-/* Is what the device says of this setting all that there is to know of it? */
+/* Is what the device says of this setting all that there is to know of it? So it is where it said another value
+ * before, was given this one, and says so now. */
 static bool is_told(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
-    return moves(setting) || (unit->doubts & doubt_of(unit)) == 0;
+    return moves(setting) || (unit->doubts & doubt_of(unit)) == 0 ||
+           (unit->given == unit->setting && unit->given_value == (uint16_t)setting->value);
 }
 
 /* After the first look: is there anything to do? */
@@ -67,6 +69,8 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     if (never_left(status)) unit->is_written = false;
     if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
     unit->doubts |= doubt_of(unit);
+    unit->given = unit->step == WRITE ? unit->setting : 0;
+    unit->given_value = (uint16_t)setting->value;
     /* What it tells was so before, too: the acknowledgement alone says that it has taken the value. */
     const bool is_lost = unit->step == WRITE_AGAIN && status < 0;
     if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;

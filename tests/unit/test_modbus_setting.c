@@ -159,6 +159,12 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, NOBODY));
     want(OLD);
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
+    want(NEW);
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, NOBODY));
+    SETS(OK, HERE, IS(HERE, NEW)); /* but what it said otherwise before, was given and says now, it has */
+    was_written(false);
+    want(OLD);
+    SETS(OK, HERE, IS(HERE, NEW), PUTS(OLD), IS(HERE, OLD));
     want(NEW); /* or that was written blind */
     assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
     SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(OK));
