@@ -75,7 +75,7 @@ run_tests() { # PRESET RESULTS [OPTION...]
     results="$results $logs/$2.xml"
     shift 2
     # Half of them wait for a serial line most of the time.
-    ctest --test-dir "$folder" --parallel "$((2 * jobs))" --timeout 120 --output-on-failure --no-tests=error \
+    ctest --test-dir "$folder" --parallel "$((2 * jobs))" --timeout "${timeout:-120}" --output-on-failure --no-tests=error \
         --quiet --output-log "$output.log" --test-output-size-passed 1000000 --test-output-size-failed 1000000 \
         --output-junit "$output" "$@" || { grep -A 200 'tests failed out of\|\*\*\*Failed' "$output.log"; return 1; }
 }
@@ -92,7 +92,7 @@ show_costs() {
     cat build-gcc/bench.csv tests/firmware/figures.csv
 }
 
-slow='e2e|interop|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
+slow='e2e|interop|second|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
 run_short() {
     stage 70 'gcc: build, firmware too' build gcc
     stage 135 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
@@ -108,18 +108,22 @@ run_short() {
 
 run_long() {
     stage 300 'gcc and clang-sanitize: build' build_two
-    stage 420 'mutants: changed files, 400 more' mutants --changed --sample 400
-    stage 150 'end to end, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop'
+    stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
+    stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
     stage 200 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
     export FATHOM_LONG=1
     stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
+    timeout=900
+    stage 300 'second: 1000 seeds' run_tests gcc seeds --label-regex second
 }
 build_two() { build gcc && build clang-sanitize; }
-mutants() {
-    results="$results $logs/mutants.txt"
-    $python tests/mutation/run.py "$@" >"$logs/mutants.txt" 2>&1
+mutants() { # NAME OPTION...
+    output=$logs/mutants_$1.txt
+    results="$results $output"
+    shift
+    $python tests/mutation/run.py "$@" >"$output" 2>&1
     status=$?
-    tail -n 60 "$logs/mutants.txt"
+    tail -n 60 "$output"
     return "$status"
 }
 
@@ -128,8 +132,8 @@ run_full() {
     stage 120 'firmware, exhaustive forms: build' build gcc # s390x is built only for them
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
     unset FATHOM_LONG
-    stage 2400 'mutants: all' mutants --all --record
-    stage 1800 'mutants: a sample of the ports' mutants --ports
+    stage 2400 'mutants: all' mutants all --all --record
+    stage 1800 'mutants: a sample of the ports' mutants ports --ports
     stage 60 'soak: ten million exchanges' soak
 }
 soak() {
