@@ -49,7 +49,11 @@ static int finish(bool is_restore, fathom_status_t status)
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     const bool is_sent = fathom_hps167s_is_written(&station->reader.driver.hps167s);
-    (void)fprintf(stderr, "fathom: %s: %s", station->name, is_sent ? "" : "nothing was written: ");
+    const bool is_told = status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_EXCEPTION;
+    (void)fprintf(stderr, "fathom: %s: %s", station->name,
+                  !is_sent  ? "nothing was written: "
+                  : is_told ? ""
+                            : "it was sent, and is not confirmed: ");
     if (status == FATHOM_ERR_UNCONFIRMED && !is_restore) {
         (void)fputs("it was sent, and no acknowledgement came: it may hold or not, and cannot be read back",
                     stderr);
