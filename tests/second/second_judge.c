@@ -129,16 +129,6 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
     uint32_t writes = judge.rig->writes - judge.writes_begin;
     bool holds = judge_held(wanted.reg) == wanted.value;
     reason_t reason;
-    /* Nobody knows what it has taken, and now it tells the value in use. */
-    const uint32_t bit = UINT32_C(1) << (wanted.reg & 31);
-    bool is_old = status == FATHOM_READY && writes == 0 && !holds && (judge.unconfirmed & bit) != 0 &&
-                  is_hps() && chose(CHOICE_hps_reported) == 1;
-    if (writes > 0) judge.unconfirmed &= ~bit;
-    if (status == FATHOM_ERR_UNCONFIRMED) judge.unconfirmed |= bit;
-    if (is_old) {
-        count(BECAUSE_OLD_TOLD, status);
-        return;
-    }
     if (writes > 1) judge_finding("written more than once", status);
     if (status != FATHOM_ERR_BUSY && status != FATHOM_PENDING && is_written != (writes > 0))
         judge_finding(is_written ? "'written', and it was not" : "'not written', and it was", status);

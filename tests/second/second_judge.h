@@ -49,7 +49,6 @@ typedef struct {
     uint64_t log_begin; /* of the command */
     uint64_t begin_us;
     uint32_t writes_begin;
-    uint32_t unconfirmed; /* bit register % 32: what was set last could not be confirmed */
     judge_row_t rows[JUDGE_ROWS];
     size_t row_count;
     unsigned readings, from_device,
