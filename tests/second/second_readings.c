@@ -17,7 +17,7 @@ bool judge_was_sent(uint16_t value)
 static const second_event_t *source(const fathom_sample_t *sample)
 {
     const rig_t *rig = judge.rig;
-    uint32_t slack_us = rig->loop == RIG_WOKEN ? 2 : rig->loop == RIG_EVERY_1_MS ? 3000 : 45000;
+    uint32_t slack_us = rig->has_stamps ? 2 : rig->loop == RIG_EVERY_1_MS ? 3000 : 45000;
     for (uint64_t i = second_log_count(&rig->device); i-- > 0;) {
         const second_event_t *e = second_log_at(&rig->device, i);
         if (e == NULL || e->time_us + 20000000 < rig->now_us) return NULL;

@@ -129,10 +129,12 @@ void rig_open(rig_t *rig, const second_config_t *config)
     rig->writes = rig->to_all = 0;
     rig->loop = config->seed % 3 == 2 ? RIG_EVERY_20_MS : config->seed % 24 == 1 ? RIG_EVERY_1_MS : RIG_WOKEN;
     /* A loop in step with what a device sends unasked may never see a silence to ask in (line.h). */
-    bool is_shared = config->kind == SECOND_A16_RS232 || config->kind == SECOND_A05_UART;
-    if (config->kind == SECOND_HPS167S)
-        is_shared = second_choice(&rig->device, CHOICE_hps_unasked_us) < 60000;
-    if (is_shared && rig->loop == RIG_EVERY_20_MS) rig->loop = RIG_EVERY_1_MS;
+    bool is_slow = rig->loop == RIG_EVERY_20_MS;
+    bool is_fast =
+        config->kind == SECOND_HPS167S && second_choice(&rig->device, CHOICE_hps_unasked_us) < 60000;
+    if (is_slow && (config->kind == SECOND_A16_RS232 || config->kind == SECOND_A05_UART))
+        rig->loop = RIG_EVERY_7_MS;
+    if (is_slow && is_fast) rig->loop = RIG_EVERY_1_MS;
     rig->has_stamps = rig->loop == RIG_WOKEN;
     rig->clock_begins_us = begins_us[config->seed / 3 % 4];
     rig->set = (second_line_t){9600, 'N', 1};
@@ -168,7 +170,9 @@ static void run_to(rig_t *rig, uint64_t until_us)
 void rig_pass(rig_t *rig, uint32_t due_us)
 {
     if (rig->loop != RIG_WOKEN) {
-        run_to(rig, rig->now_us + (rig->loop == RIG_EVERY_1_MS ? 1000 : 20000));
+        static const uint32_t every_us[RIG_LOOPS] = {
+            [RIG_EVERY_1_MS] = 1000, [RIG_EVERY_7_MS] = 7000, [RIG_EVERY_20_MS] = 20000};
+        run_to(rig, rig->now_us + every_us[rig->loop]);
         return;
     }
     uint64_t until_us = rig->now_us + (due_us == 0 ? 1 : due_us < 1000000 ? due_us : 1000000);

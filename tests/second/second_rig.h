@@ -10,7 +10,7 @@ enum { RIG_BYTES = 4096, RIG_FRAME = 32 };
 
 /* How the program's loop comes round: when something is due or a byte has come; or at fixed times, without time
  * stamps of the port. */
-typedef enum { RIG_WOKEN, RIG_EVERY_1_MS, RIG_EVERY_20_MS, RIG_LOOPS } rig_loop_t;
+typedef enum { RIG_WOKEN, RIG_EVERY_1_MS, RIG_EVERY_7_MS, RIG_EVERY_20_MS, RIG_LOOPS } rig_loop_t;
 
 typedef struct {
     second_device_t device;
