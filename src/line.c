@@ -155,7 +155,7 @@ static int hand_over(fathom_line_t *line, fathom_exchange_t *exchange)
 static bool has_room(fathom_line_t *line)
 {
     if (line->have != 0 || line->silent_us < silence_us(line) || (line->known & IN_BREAK) != 0) return false;
-    if (line->silent_us == QUIET_US) line->known &= (uint8_t) ~(COMPANY | LATE);
+    if (line->silent_us == QUIET_US) line->known &= (uint8_t)~COMPANY;
     if (is_late(line)) return false;
     line->known |= LATE;
     return true;
@@ -212,7 +212,6 @@ fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t
     line->protocol = NULL;
     line->polled_us = config->clock->now_us(config->clock->ctx);
     line->left_us = 0;
-    line->owed_us = 0;
     /* volatile: or compilers make it a call of memset, which costs more than all of this. */
     for (volatile uint16_t *c = line->counters; c != line->counters + FATHOM_LINE_COUNTERS; c++) *c = 0;
     return FATHOM_READY;

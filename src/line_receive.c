@@ -24,8 +24,8 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
         line->known |= LATE;
     } else {
         if (asked(line) == NULL) { /* else they may be what is left of its answer */
-            const uint8_t unasked = (uint8_t)(line->unasked + length);
-            line->unasked = unasked < length ? UINT8_MAX : unasked;
+            if (line->unasked < LEAST_COMPANY)
+                line->unasked = length < LEAST_COMPANY ? (uint8_t)(line->unasked + length) : LEAST_COMPANY;
             if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
         }
         if (listener == NULL)

@@ -191,7 +191,7 @@ typedef struct {
     uint8_t have;       /* bytes in the frame */
     uint8_t need;       /* below so many there is nothing new to say */
     uint8_t known;      /* of gaps, echo and company, bit by bit */
-    uint8_t unasked;    /* bytes since the last answer that belonged to no exchange; stops at 255 */
+    uint8_t unasked;    /* bytes since the last answer that belonged to no exchange, as far as that matters */
     uint16_t owing;     /* bit unit % 16: may still answer */
     uint16_t silent_us; /* known silence since the last byte either way; stops at 65535 */
     const fathom_line_config_t *config;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutants that mean the same as the code without them, so that no test can see them. A row: why it means the same,
 and the identities of those of which this is true, as run.py prints them; space does not count."""
-COUNT = 179  # of the identities; whoever adds one says so here
+COUNT = 181  # of the identities; whoever adds one says so here
 
 ROWS = [
     ('`need` is compared with `have` alone, which is not 0 then',
@@ -14,8 +14,16 @@ ROWS = [
      'FATHOM_LINE_ANY_UNIT))',
      'src/dyp_client.c | answer | name: FATHOM_PENDING -> FATHOM_READY | return FATHOM_PENDING'),
     ('a frame that equals its request comes here only with ECHOED set, or where there is no echo already',
-     'src/line_receive.c | take | logical: !is_request && (line->state & (uint8_t) ~PHASE) == 0 -> (line->state & '
-     '(uint8_t) ~PHASE) == 0 | const bool is_first = !is_request && (line->state & (uint8_t) ~PHASE) == 0'),
+     'src/line_receive.c | take | logical: !is_request && (line->state & (uint8_t) ~(PHASE | ANSWERED_WRONG)) == 0 -> '
+     '(line->state & (uint8_t) ~(PHASE | ANSWERED_WRONG)) == 0 | const bool is_first = !is_request && (line->state & '
+     '(uint8_t) ~(PHASE | ANSWERED_WRONG)) == 0'),
+    ('no frame is of the unit that all are asked by: that of unit 0 has another name there',
+     'src/line_receive.c | asked | logical: line->state > REFUSED && is_answered(line->head) -> line->state > REFUSED | '
+     'return line->state > REFUSED && is_answered(line->head) ? line->head : NULL'),
+    ('it costs time alone',
+     'src/line_inside.h | look | logical: line->owing != 0 && fathom_run_down(& line->owed_us, passed_us) -> '
+     'fathom_run_down(& line->owed_us, passed_us) | if (line->owing != 0 && fathom_run_down(& line->owed_us, '
+     'passed_us))'),
     ("`request` is set only by the bytes of this exchange's own request, its unit included",
      'src/line_receive.c | judge | logical: is_asked && match->request != 0 -> match->request != 0 | if (is_asked && '
      'match->request != 0)'),
@@ -26,7 +34,7 @@ ROWS = [
      'src/line_receive.c | fathom_line_read | type: size_t -> uint8_t | int n = uart->read(uart->ctx, config->frame '
      '+ line->have, (size_t) (config->frame_size - line->have), & rx)'),
     ('assigns what is there already',
-     'src/line.c | fathom_line_owe | relational: < -> <= | if (line->owed_us < longest_us)',
+     'src/line.c | fathom_line_owe | relational: < -> <= | if (line->owing == 0 || line->owed_us < longest_us)',
      'src/pulse.c | release | relational: < -> <= | if (meter->left_us < low_us(meter->config))',
      'src/a16_controlled.c | release | relational: < -> <= | if (sensor->left_us < sensor->low_us)',
      'src/a05_dyp.c | fathom_a05_dyp_init | relational: > -> >= | if (config->period_us > question->pace_us)'),

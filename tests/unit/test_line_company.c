@@ -98,6 +98,16 @@ TEST(a_glitch_behind_each_answer_delays_nothing)
     expect_written_after(20000, 4);
 }
 
+/* Nor do three bytes before the first answer of all. */
+TEST(a_glitch_before_the_first_request_delays_nothing)
+{
+    deliver_hex("00 00 00");
+    run(T3_5_US + 1000);
+    ask_1(0);
+    run(200);
+    expect_written(1);
+}
+
 /* It owes nothing that comes later in the silence: the next request leaves as on any line. */
 TEST(what_is_left_of_a_damaged_answer_is_nobodys_company)
 {

@@ -114,6 +114,20 @@ TEST(an_echo_that_begins_like_an_answer_is_an_echo)
         }
 }
 
+/* line.h: "The echo of a request to all units belongs to nobody, and goes where such bytes go." */
+TEST(the_echo_of_a_request_to_all_units_shows_nothing)
+{
+    static const uint8_t write_0[8] = {0x00, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xA0};
+    set_up_with(FATHOM_LINE_ECHO_AUTO);
+    ask_to_write(&bench.request, 0);
+    run_until_written(1, 100);
+    expect_bytes(0, write_0, 8);
+    come_all(0, write_0);
+    run(20000);
+    expect_echo(FATHOM_LINE_ECHO_AUTO);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, 8);
+}
+
 /* A frame with a right CRC that nobody asked for, of the unit or of another, came before the answer. */
 TEST(an_answer_behind_an_unasked_frame_shows_that_there_is_no_echo)
 {

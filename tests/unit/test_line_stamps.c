@@ -117,6 +117,7 @@ TEST(no_request_leaves_while_the_port_may_hold_bytes_from_before_it)
         (void)fathom_line_poll(&bench.line);
         assert_int_equal(bench.fake.written, 0);
         assert_false(fake_drained(&bench.fake));
+        assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US); /* no silence is known */
     }
     run(T3_5_US); /* the third finds the end of it, and the last stamp is older than any silence */
     assert_true(fake_drained(&bench.fake));
