@@ -11,6 +11,13 @@ static fathom_exchange_t *asked(const fathom_line_t *line)
     return line->state > REFUSED && is_answered(line->head) ? line->head : NULL;
 }
 
+static void add_company(fathom_line_t *line, uint8_t length)
+{
+    if (line->unasked < LEAST_COMPANY)
+        line->unasked = length < LEAST_COMPANY ? (uint8_t)(line->unasked + length) : LEAST_COMPANY;
+    if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
+}
+
 /*
  * The first `length` bytes leave the frame; those that nobody took go to the listener. After its time-out an
  * answer that has begun may end, but what begins then is another's, or noise without end: the attempt is over.
@@ -23,11 +30,7 @@ static void drop(fathom_line_t *line, uint8_t length, bool taken)
         line->unasked = 0;
         line->known |= LATE;
     } else {
-        if (asked(line) == NULL) { /* else they may be what is left of its answer */
-            if (line->unasked < LEAST_COMPANY)
-                line->unasked = length < LEAST_COMPANY ? (uint8_t)(line->unasked + length) : LEAST_COMPANY;
-            if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
-        }
+        if (asked(line) == NULL) add_company(line, length); /* else it may be what is left of its answer */
         if (listener == NULL)
             fathom_line_count(line, FATHOM_LINE_DROPPED_BYTES, length);
         else
