@@ -30,12 +30,16 @@ static void answer_when_sent(size_t written, const uint8_t *bytes, size_t length
     assert_int_equal(after(0), FATHOM_PENDING);
 }
 
+static uint32_t begins_us; /* not 0: the clock then */
+
 /* The address has been read and the mode written; from now on it listens. The memory was full of 01, which is true. */
 static int set_up_listening(void **state)
 {
     const fathom_a16_modbus_config_t config = {.modbus = &seam, .clock = &bench.fake.clock};
     const fathom_a16_auto_config_t listening = {.line = &bench.line, .stale_us = 100000000};
     set_up(state);
+    if (begins_us != 0) bench.fake.now_us = bench.fake.busy_until_us = begins_us;
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
     seam = fathom_modbus_client(&bench.line);
     assert_int_equal(fathom_a16_modbus_init(&modbus, &config), FATHOM_READY);
     assert_int_equal(fathom_a16_auto_init(&automatic, &listening), FATHOM_READY);
@@ -50,7 +54,7 @@ static int set_up_listening(void **state)
 static const suite_t suite = {.set_up = set_up_listening};
 
 /* "FATHOM_READY: *sample is the first reading that the sensor has sent by itself". The frame is A16 2(4). */
-TEST(the_first_reading_is_handed_over)
+static void expect_first_reading(void)
 {
     static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};
     memset(&sample, 0xA5, sizeof sample);
@@ -61,6 +65,19 @@ TEST(the_first_reading_is_handed_over)
     assert_int_equal(sample.kind, FATHOM_TARGET);
     assert_int_equal(sample.distance_mm, 1953);
     assert_int_equal(sample.model, FATHOM_A16);
+}
+
+TEST(the_first_reading_is_handed_over) { expect_first_reading(); }
+
+TEST(the_first_reading_is_handed_over_where_the_clock_wraps_before_it)
+{
+    begins_us = 1; /* as long before the wrap as listening takes to begin, and 50 ms */
+    set_up_listening(state);
+    begins_us = (uint32_t)(0u - (rs232.since_us - begins_us) - 50000);
+    set_up_listening(state);
+    assert_true(rs232.since_us > UINT32_MAX - 60000);
+    expect_first_reading();
+    begins_us = 0;
 }
 
 /* First contact 8: a module that takes the 7.5 s of A16 5(2) for its first frame is waited for. */
