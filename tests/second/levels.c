@@ -97,7 +97,7 @@ static void relay_measures(second_device_t *d)
     bool near = false;
     for (size_t probe = 0; probe < SECOND_PROBES; probe++) {
         int32_t mm = second_truth_seen(d, probe, d->now_us, d->now_us, false);
-        if ((d->config.fitted >> probe & 1U) == 0 || mm == SECOND_NOTHING) continue;
+        if (((unsigned)d->config.fitted >> probe & 1U) == 0 || mm == SECOND_NOTHING) continue;
         near |= mm < THRESHOLD_MM || (mm == THRESHOLD_MM && chosen(d, CHOICE_a05_relay_equal) != 0);
     }
     d->timer_us[TIMER_TICK] = d->now_us + chosen_us(d, CHOICE_a05_relay_period_us);
