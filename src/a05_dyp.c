@@ -107,8 +107,6 @@ fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *
     fathom_modbus_request_t *const request = &find->request;
     if (!find->is_asked) {
         request->exchange.timeout_us = ONE_PROBE_TIMEOUT_US;
-        request->exchange.retries = 0;
-        request->exchange.settings = NULL;
         fathom_modbus_read_holding_registers(&request->message, FATHOM_LINE_ANY_UNIT,
                                              FATHOM_DYP_FIRST_REGISTER, 1, &find->value);
         const fathom_status_t status = fathom_dyp_client_submit(line, request);
@@ -124,6 +122,6 @@ fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *
 
 void fathom_a05_dyp_find_cancel(fathom_a05_dyp_find_t *find, fathom_line_t *line)
 {
-    if (find->is_asked) fathom_line_cancel(line, &find->request.exchange);
+    fathom_line_cancel(line, &find->request.exchange);
     find->is_asked = false;
 }

@@ -31,7 +31,6 @@ bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
     const uint8_t before = debounce->level;
     /* Half a turn of the clock and more: it is a time before the measurement. */
     if (!debounce->is_fed || passed_us <= debounce->config.unknown_us || passed_us > INT32_MAX) return false;
-    debounce->is_fed = false;
     debounce->level = FATHOM_UNKNOWN;
     debounce->row = 0;
     debounce->left_us = 0;

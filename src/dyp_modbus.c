@@ -132,8 +132,6 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
     fathom_modbus_request_t *const request = &find->request;
     if (!find->is_asked) {
         request->exchange.timeout_us = FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US;
-        request->exchange.retries = 0;
-        request->exchange.settings = NULL;
         fathom_modbus_read_holding_registers(&request->message, FATHOM_MODBUS_ANY_UNIT,
                                              FATHOM_DYP_REGISTER_ADDRESS, 1, &find->value);
         const fathom_status_t status = modbus->submit(modbus->ctx, request);

@@ -118,12 +118,8 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
     stream->run = 0;
     stream->since = UINT8_MAX;
     stream->gap = false;
-    stream->steps = 0;
-    stream->doubtful = false;
-    stream->first = false;
     stream->candidate = false;
     stream->fresh = false;
-    stream->sure = false;
     return FATHOM_READY;
 }
 
