@@ -258,6 +258,24 @@ TEST(behind_a_silence_a_row_begins_anew_and_does_not_wait_for_hold_us)
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
+TEST(a_sample_as_old_as_the_one_before_the_silence_does_not_wait_for_hold_us_either)
+{
+    start_with((fathom_debounce_config_t){.hold_us = 60000000, .near_count = 1, .far_count = 1});
+    expect_at(0, 999, true);
+    expect_time(5000001, true);
+    expect_at(0, 1001, true);
+    assert_int_equal(gate.level, FATHOM_FAR);
+}
+
+/* "A time a little before that of the last measurement does no harm": half a turn of the clock, 2^31 us, is before. */
+TEST(a_time_up_to_half_a_turn_of_the_clock_is_after_the_last_measurement)
+{
+    start_with((fathom_debounce_config_t){.near_count = 1});
+    expect_at(0, 999, true);
+    expect_time(2147483648, false);
+    expect_time(2147483647, true);
+}
+
 /* The same level again is no change. */
 TEST(one_measurement_that_ends_a_silence_with_the_level_before_changes_nothing)
 {
