@@ -336,6 +336,19 @@ TEST(a_late_answer_of_another_unit_is_known_as_such)
     assert_int_equal(values[0], 1953);
 }
 
+/* line.h: it "looks at the `have` received bytes": of what lies behind them the sum would be right. */
+TEST(where_no_frame_begins_no_value_is_written_whatever_lies_behind_the_bytes)
+{
+    uint8_t bytes[256] = {0x00, 0x00, 0x01, 0x10, 0x07, 0xA1};
+    fathom_match_t match;
+    bytes[255] = 0xB9; /* 01 + 10 + 07 + A1 */
+    fill(1, 0x0106, 1);
+    expect_submitted(FATHOM_PENDING);
+    bench.request.exchange.protocol(&bench.request.exchange, bytes, 7, &match);
+    assert_int_equal(match.length, 0);
+    expect_nothing(FATHOM_PENDING);
+}
+
 /* ---- the seam ---- */
 
 TEST(the_seam_does_what_the_functions_do)
