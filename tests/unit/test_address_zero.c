@@ -56,6 +56,34 @@ TEST(nor_does_unit_0_answer_for_another)
     }
 }
 
+TEST(a_frame_of_unit_0_is_noise_where_it_has_not_been_asked)
+{
+    ask_1_and_send(0);
+    deliver_answer(0, 111);
+    run(GAP_US);
+    expect_count(FATHOM_LINE_STRAYS, 0);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
+}
+
+/* 239 and 241 owe by another bit than 0 does, modulo 16. */
+TEST(a_late_answer_of_another_unit_is_taken_while_unit_0_is_asked)
+{
+    static const uint8_t others[] = {1, 239, 241};
+    for (unsigned i = 0; i != COUNT_OF(others); i++) {
+        set_up(state);
+        ask(&bench.request, others[i], &bench.value, 1);
+        run(REQUEST_US + TIMEOUT_US);
+        ask_other(0);
+        run(REQUEST_US);
+        expect_written(2);
+        expect_unit(1, 0);
+        deliver_answer(others[i], 111);
+        expect_mm(111);
+        expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+        answer_other(0, 222);
+    }
+}
+
 TEST(what_is_written_to_unit_0_is_a_broadcast_as_ever)
 {
     ask_to_write(&bench.request, 0);
@@ -94,6 +122,12 @@ static const suite_t finding = {.set_up = set_up_find};
 
 static fathom_status_t find(void) { return fathom_dyp_modbus_find(&sought, &client, &address); }
 
+static fathom_status_t find_after(uint32_t us)
+{
+    bench.fake.now_us += us;
+    return find();
+}
+
 /* Asks: FF 03 02 00 00 01 and its CRC, which is a read. */
 static void seek(unsigned before)
 {
@@ -110,9 +144,8 @@ TEST_IN(finding, the_one_device_on_a_line_is_found_at_any_address)
     for (unsigned from = 0; from != 255; from++) {
         set_up_find(state);
         seek(0);
-        receive_answer((uint8_t)from, (uint16_t)from);
-        bench.fake.now_us += 100;
-        assert_int_equal(find(), FATHOM_READY);
+        receive_answer((uint8_t)from, 0xFFFF); /* what it says is not looked at */
+        assert_int_equal(find_after(100), FATHOM_READY);
         assert_int_equal(address, from);
     }
 }
@@ -131,10 +164,20 @@ TEST_IN(finding, one_that_answers_from_255_says_where_it_is)
         set_up_find(state);
         seek(0);
         receive_answer(255, rows[i].says);
-        bench.fake.now_us += 100;
-        assert_int_equal(find(), rows[i].status);
+        assert_int_equal(find_after(100), rows[i].status);
         assert_int_equal(address, rows[i].status == FATHOM_READY ? rows[i].says : 0xA5);
     }
+}
+
+/* "FATHOM_ERR_NO_ANSWER: nothing in a second", once the last byte of the 8 has left. */
+TEST_IN(finding, an_answer_is_waited_for_a_second)
+{
+    for (unsigned i = 0; i != 100 && bench.fake.written == 0; i++)
+        assert_int_equal(find_after(100), FATHOM_PENDING);
+    expect_written(1);
+    assert_int_equal(find_after(8 * BYTE_US), FATHOM_PENDING);
+    assert_int_equal(find_after(999999), FATHOM_PENDING);
+    assert_int_equal(find_after(1), FATHOM_ERR_NO_ANSWER);
 }
 
 TEST_IN(finding, each_outcome_of_finding_comes_once)
@@ -147,10 +190,10 @@ TEST_IN(finding, each_outcome_of_finding_comes_once)
     expect_written(2);
     fathom_dyp_modbus_find_cancel(&sought, &client);
     assert_null(bench.line.head);
+    client.cancel = NULL; /* there is nothing to give up */
     fathom_dyp_modbus_find_cancel(&sought, &client);
     bench.fake.read_fails = true;
-    bench.fake.now_us += 100;
-    assert_int_equal(find(), FATHOM_ERR_PORT);
+    assert_int_equal(find_after(100), FATHOM_ERR_PORT);
     assert_int_equal(address, 0xA5);
 }
 
