@@ -244,10 +244,12 @@ static fathom_status_t set_all(fathom_hps167s_t *sensor, uint16_t command, bool 
     if (status != FATHOM_READY) return status;
     unit->address = FATHOM_MODBUS_BROADCAST;
     status = fathom_modbus_set(unit, &setting);
-    if (status == FATHOM_PENDING)
+    if (status == FATHOM_PENDING) {
         unit->home_address = home;
-    else
-        unit->address = home;
+        return status;
+    }
+    unit->address = home;
+    unit->given = 0; /* sent is not acknowledged */
     return status;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/modbus_setting.h"
 
-enum { LOOK = 0, LOOK_THERE = 1, WRITE = 2, CONFIRM_THERE = 3, CONFIRM_HERE = 4, WRITE_AGAIN = 5, STEP = 7 };
+enum { LOOK = 0, LOOK_THERE = 1, WRITE = 2, CONFIRM_THERE = 3, CONFIRM_HERE = 4, WRITE_UNSEEN = 5, STEP = 7 };
 enum { INSIDE = FATHOM_MODBUS_UNIT_INSIDE };
 
 static void go_there(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
@@ -25,7 +25,7 @@ static bool moves(const fathom_modbus_setting_t *setting)
 }
 
 /* Is what the device says of this setting all that there is to know of it? So it is where it said another value
- * before, was given this one, and says so now. */
+ * before or acknowledged this one, was given it, and says so now. */
 static bool is_told(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     return moves(setting) || (unit->doubts & doubt_of(unit)) == 0 ||
@@ -38,7 +38,7 @@ static fathom_status_t looked(fathom_modbus_unit_t *unit, const fathom_modbus_se
 {
     const bool is_so = value == setting->value;
     if (status < 0 || (is_so && is_told(unit, setting))) return status;
-    unit->step = is_so ? WRITE_AGAIN : WRITE;
+    unit->step = is_so ? WRITE_UNSEEN : WRITE;
     if (setting->address != 0) {
         unit->step = LOOK_THERE;
         go_there(unit, setting);
@@ -57,24 +57,19 @@ static fathom_status_t looked_there(fathom_modbus_unit_t *unit, fathom_status_t 
     return is_heard ? FATHOM_ERR_IN_USE : status;
 }
 
-static bool never_left(fathom_status_t status)
-{
-    return status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_CAPACITY || status == FATHOM_ERR_UNSUPPORTED;
-}
-
 static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                fathom_status_t status)
 {
     unit->outcome = (int8_t)status;
-    if (never_left(status)) unit->is_written = false;
+    if (status == FATHOM_ERR_UNSUPPORTED) unit->is_written = false; /* taken, and it could not leave */
     if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
     unit->doubts |= doubt_of(unit);
-    unit->given = unit->step == WRITE ? unit->setting : 0;
+    /* What it tells may have been so before: the acknowledgement alone says that it has taken the value. */
+    const bool is_lost = unit->step == WRITE_UNSEEN && status < 0;
+    unit->given = is_lost ? 0 : unit->setting;
     unit->given_value = (uint16_t)setting->value;
-    /* What it tells was so before, too: the acknowledgement alone says that it has taken the value. */
-    const bool is_lost = unit->step == WRITE_AGAIN && status < 0;
     if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
-    if (setting->read == NULL) return status < 0 ? FATHOM_ERR_UNCONFIRMED : status;
+    if (setting->read == NULL) return status;
     unit->step = CONFIRM_HERE;
     if (moves(setting)) {
         unit->step = CONFIRM_THERE;
@@ -109,7 +104,7 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
     case LOOK_THERE:
         return looked_there(unit, status);
     case WRITE:
-    case WRITE_AGAIN:
+    case WRITE_UNSEEN:
         return written(unit, setting, status);
     default:
         return confirmed(unit, setting, status, value);
@@ -130,14 +125,14 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
     if (unit->setting == 0) {
         unit->setting = name;
         unit->is_written = false;
-        unit->step = setting->read != NULL && !unit->is_blind ? LOOK : WRITE;
+        unit->step = setting->read != NULL && !unit->is_blind ? LOOK : WRITE_UNSEEN;
         unit->home_address = unit->address;
         unit->home_settings = unit->settings;
     } else if (unit->setting != name) {
         return FATHOM_ERR_BUSY;
     }
     do {
-        const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == WRITE_AGAIN;
+        const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == WRITE_UNSEEN;
         uint32_t value = 0;
         unit->step |= INSIDE;
         status =

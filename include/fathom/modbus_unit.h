@@ -70,7 +70,7 @@ typedef struct {
     uint8_t step;    /* FATHOM_MODBUS_UNIT_INSIDE: what is asked now belongs to the setting */
     int8_t outcome;  /* of the write */
     uint16_t doubts; /* bit register % 16: was written and has not read so since; until power-on */
-    uint16_t given;  /* the setting that was written last, and was not so before; 0: none */
+    uint16_t given;  /* the setting that was written last, and was acknowledged or not so before; 0: none */
     uint16_t given_value;
     bool is_written; /* the write of the last setting has been handed to the line */
     bool is_blind;   /* the next setting is, or the present one */

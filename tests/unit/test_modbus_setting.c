@@ -2,8 +2,8 @@
 #include "desk.h"
 #include "fathom/modbus_setting.h"
 
-/* A device with a setting in register 0x0206, as a driver sees it; the seam plays the device. */
-enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, REGISTER = 0x0206 };
+/* A device with a setting in register 0x020F, as a driver sees it; the seam plays the device. */
+enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, REGISTER = 0x020F };
 
 static fathom_modbus_unit_t unit;
 static uint16_t found;
@@ -172,8 +172,15 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     want(NEW);
     SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
+    want(OLD); /* nor does a blind write that was lost take anything back: it said OLD all the time */
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, WRITE(HERE, REGISTER, OLD, NOBODY));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, NOBODY));
     fathom_modbus_unit_power_on(&unit, 0);
-    SETS(OK, HERE, IS(HERE, NEW)); /* it holds now */
+    want(NEW);
+    SETS(OK, HERE, IS(HERE, NEW)); /* what it tells now, it keeps */
+    want(OLD);
+    SETS(OK, HERE, IS(HERE, OLD));
     was_written(false);
 }
 
