@@ -78,7 +78,6 @@ static bool is_believed(fathom_hps167s_t *sensor)
         copy_4(sensor->measured, values);
         sensor->unasked_us = unit->polled_us;
         sensor->is_owed = true;
-        needed = UINT8_MAX;
     } else {
         if (!same_4(values, sensor->told)) sensor->agreed = 0;
         copy_4(sensor->told, values);

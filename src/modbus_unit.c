@@ -125,7 +125,6 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->asked = 0;
     unit->setting = 0;
     unit->doubts = 0;
-    unit->given = 0;
     unit->is_written = false;
     unit->is_blind = false;
     unit->request.message.exception = 0;
