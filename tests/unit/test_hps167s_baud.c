@@ -66,6 +66,16 @@ TEST(a_code_that_is_not_ours_keeps_no_rate_from_being_set_or_found)
             RATE(1, 3, OK, 19200), TWO(1, NOBODY, 0, 115200), IS(1, 0, 19200));
 }
 
+/* #9: 01 is 19200, and "the others are all 19200bps"; it answers at 115200. */
+TEST(only_a_code_of_9_tells_a_rate_that_waits_for_power_on)
+{
+    static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
+    PLAY_AT(1, &fast, 19200, set_baud, OK, IS(1, 1, 115200));
+    assert_int_equal(hps.next_baud, 19200);
+    PLAY_AT(1, &fast, 115200, set_baud, OK, IS(1, 0, 115200));
+    assert_int_equal(hps.next_baud, 0);
+}
+
 TEST(a_rate_that_was_written_blind_is_sought_at_both)
 {
     hps_start_at(1, &hps_factory);

@@ -113,6 +113,11 @@ TEST(what_is_heard_unasked_between_two_answers_takes_away_their_agreement)
     PENDS(configuration());
     assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1));
+    /* and only one: what comes after it takes it away */
+    PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
+    PENDS(configuration());
+    for (unsigned i = 0; i != 2; i++) assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
+    PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
 }
 
 TEST(two_answers_that_differ_are_not_enough)
@@ -169,6 +174,7 @@ TEST(what_was_measured_last_is_no_configuration)
     assert_int_equal(desk.sample.distance_mm, 255);
     assert_true(fathom_hps167s_may_be_configuration(near));
     PLAY(configuration, FATHOM_ERR_MALFORMED, row, row, row, row, row, row, row, row);
+    PLAY(configuration, OK, HPS_2(1, OK, 0, MEASURES), row, row, row); /* it is not the last any more */
 }
 
 /* An unasked frame was taken for the answer, and the answer comes when a measurement is being waited for: termination

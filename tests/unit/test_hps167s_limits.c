@@ -47,6 +47,13 @@ TEST(a_new_driver_has_had_no_answer_to_a_reset)
     assert_int_equal(hps.reset_answer, 0xFFFF);
 }
 
+TEST(a_new_driver_has_written_nothing_whatever_stood_in_the_memory)
+{
+    hps.unit.is_written = true;
+    hps_start();
+    assert_false(fathom_hps167s_is_written(&hps));
+}
+
 /* "neither may be what the other was last": there was none, whatever stands in the memory. */
 TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
 {
@@ -132,6 +139,20 @@ TEST(a_configuration_that_is_not_answered_puts_nothing_off)
 }
 
 /* ---- how many answers to #2 ---- */
+
+/* "For 2 s after such a frame": of the last row there was none. */
+TEST(for_2_s_to_the_microsecond_one_answer_is_not_enough_and_a_new_driver_has_heard_nothing)
+{
+    static const uint32_t before_us[] = {1999999, 2000000, 0};
+    hps_config.same_answers = 1;
+    for (unsigned i = 0; i != 3; i++) {
+        hps_start();
+        if (i != 2) assert_true(fathom_hps167s_heard(&hps, hps_measured, fake.now_us - before_us[i]));
+        asks(configuration);
+        fake_modbus_answer(&fake, tells, 4);
+        assert_int_equal(configuration(), i == 0 ? FATHOM_PENDING : OK);
+    }
+}
 
 TEST(after_power_on_the_configuration_is_asked_as_often_as_ever)
 {

@@ -152,6 +152,15 @@ TEST(an_outcome_that_gave_way_to_a_command_is_not_handed_over)
     assert_int_equal(fake.submits, 2);
 }
 
+/* "how long until something can happen": to take it is something. */
+TEST(the_outcome_of_a_command_is_due_at_once_within_the_pace)
+{
+    ask_and_send(&version);
+    fake_modbus_answer(&fake, answer, 3);
+    pending_after(0, &measure); /* in which the command ends */
+    assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
+}
+
 /* ---- "FATHOM_ERR_PORT: ... and nothing was asked" ---- */
 
 static void break_port(void)
