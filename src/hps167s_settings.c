@@ -231,24 +231,20 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
 static fathom_status_t set_all(fathom_hps167s_t *sensor, uint16_t command, bool is_on)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
-    const bool begins = unit->setting == 0;
-    const uint8_t home = begins ? unit->address : unit->home_address;
+    const uint8_t home = unit->address;
     const uint16_t value = is_on ? ON : OFF;
     fathom_modbus_question_t write;
     fathom_modbus_setting_t setting;
     look_t wanted;
     begin(sensor, command, &write, &wanted, &setting);
     setting.value = value;
-    if (begins) unit->is_blind = true;
+    if (unit->setting == 0) unit->is_blind = true;
     fathom_status_t status = prepare(sensor, &setting, value, TO_ALL);
     if (status != FATHOM_READY) return status;
     unit->address = FATHOM_MODBUS_BROADCAST;
     status = fathom_modbus_set(unit, &setting);
-    if (status == FATHOM_PENDING) {
-        unit->home_address = home;
-        return status;
-    }
     unit->address = home;
+    unit->home_address = home;
     unit->given = 0; /* sent is not acknowledged */
     return status;
 }
