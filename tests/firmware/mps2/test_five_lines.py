@@ -74,7 +74,7 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
             self.assertIn(f'{other} probe 1 ', ''.join(image.lines()[before:]), 'it has not gone on')
 
     def test_four_go_on_beside_an_a05_that_does_not_answer(self):
-        self.nobody_answers('bumper', 3, 10)
+        self.nobody_answers('bumper', 3, 24)
 
     def test_four_go_on_beside_an_a16_that_does_not_send(self):
         self.nobody_answers('silo', 7, 24)
