@@ -94,9 +94,9 @@ show_costs() {
 
 slow='e2e|interop|second|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
 run_short() {
-    stage 70 'gcc: build, firmware too' build gcc
-    stage 135 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
-    stage 40 'planted faults' run_tests gcc faults --label-regex faults
+    stage 75 'gcc: build, firmware too' build gcc
+    stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
+    stage 35 'planted faults' run_tests gcc faults --label-regex faults
     for preset in clang gcc-sanitize clang-sanitize; do
         stage 42 "$preset: build" build "$preset"
         stage 18 "$preset: tests in C" run_tests "$preset" "$preset" --label-exclude "$slow"
@@ -110,7 +110,7 @@ run_long() {
     stage 300 'gcc and clang-sanitize: build' build_two
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
-    stage 200 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
+    stage 240 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
     export FATHOM_LONG=1
     stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
     timeout=900
@@ -134,7 +134,7 @@ run_full() {
     unset FATHOM_LONG
     stage 2400 'mutants: all' mutants all --all --record
     stage 1800 'mutants: a sample of the ports' mutants ports --ports
-    stage 60 'soak: ten million exchanges' soak
+    stage 120 'soak: ten million exchanges' soak
 }
 soak() {
     cmake --build build-gcc --target soak >"$logs/soak.txt" 2>&1
