@@ -13,9 +13,10 @@ static fathom_exchange_t *asked(const fathom_line_t *line)
 
 static void add_company(fathom_line_t *line, uint8_t length)
 {
-    if (line->unasked < LEAST_COMPANY)
-        line->unasked = length < LEAST_COMPANY ? (uint8_t)(line->unasked + length) : LEAST_COMPANY;
-    if (line->unasked >= LEAST_COMPANY) line->known |= COMPANY;
+    if (length >= LEAST_COMPANY - line->unasked)
+        line->known |= COMPANY;
+    else
+        line->unasked = (uint8_t)(line->unasked + length);
 }
 
 /*

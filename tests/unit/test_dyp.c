@@ -15,12 +15,14 @@ static int set_up(void **state)
 {
     memset(values, 0, sizeof values);
     memset(&answer, 0, sizeof answer);
+    answer.refused_raw = answer.refused_probe = GUARD;
     memset(&sample, GUARD, sizeof sample);
     answer.values = values;
     answer.model = FATHOM_A05;
     answer.unit = 7;
     answer.first = 1;
     assert_int_equal(fathom_dyp_answer_init(&answer, FATHOM_A05_MAX_MM), FATHOM_READY);
+    assert_int_equal(answer.refused_raw | answer.refused_probe, 0); /* none yet */
     return 0;
 }
 

@@ -101,7 +101,10 @@ TEST(a_glitch_behind_each_answer_delays_nothing)
 /* Nor do three bytes before the first answer of all. */
 TEST(a_glitch_before_the_first_request_delays_nothing)
 {
-    deliver_hex("00 00 00");
+    memset(&bench.line, 0x5A, sizeof bench.line);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    deliver_hex("00");
+    deliver_hex("00 00");
     run(T3_5_US + 1000);
     ask_1(0);
     run(200);
