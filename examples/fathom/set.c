@@ -66,8 +66,8 @@ static const char *const outcomes[] = {"unchanged, it had that value",
 typedef struct {
     const setting_t *setting;
     int32_t value;
-    const char *wanted;
-    const char *was; /* "": it was not read */
+    char wanted[SETTING_TEXT];
+    char was[SETTING_TEXT]; /* "": it was not read */
     bool is_blind;
     bool is_for_all;
 } change_t;
@@ -234,16 +234,13 @@ static fathom_status_t call_all(reader_t *reader, void *ctx)
 
 static int set(change_t *change)
 {
-    char was[SETTING_TEXT] = "";
-    char wanted[SETTING_TEXT];
-    setting_print_value(change->setting, change->value, wanted);
-    change->wanted = wanted;
-    change->was = was;
+    setting_print_value(change->setting, change->value, change->wanted);
+    change->was[0] = '\0';
     if (change->is_for_all) return tell(change, talk_call(&talk, call_all, change));
     if (change->is_blind) {
         (void)fathom_modbus_next_is_blind(talk.station->reader.unit);
     } else if (change->setting->get != NULL) {
-        const fathom_status_t status = talk_get(&talk, change->setting, was);
+        const fathom_status_t status = talk_get(&talk, change->setting, change->was);
         if (status != FATHOM_READY) return tell(change, status);
     }
     return tell(change, talk_set(&talk, change->setting, change->value));
