@@ -29,7 +29,7 @@ static inline bool same_4(const uint16_t *a, const uint16_t *b)
 /* #5: "the values of Distance, Ambient, and Precision are all 0xFF and the value of Magnitude is 0x00". */
 bool fathom_hps167s_is_abnormal(const uint16_t registers[4]);
 
-/* For so long after a frame that nobody asked for another one is to be expected. */
+/* For so long after an unasked frame another one is to be expected. */
 #define FATHOM_HPS167S_UNASKED_US 2000000ul
 
 /* A command that reads `count` registers into sensor->values. */

@@ -36,7 +36,7 @@ enum {
     LATE = 128     /* since they did, there has been time for a request: the next one may come any time */
 };
 
-/* So many bytes that nobody has asked for are no glitch: the shortest frame of all protocols here, FF .. SUM. And as much
+/* So many unasked bytes are no glitch: the shortest frame of all protocols here, FF .. SUM. And as much
  * as silent_us can tell. */
 enum { LEAST_COMPANY = 4, QUIET_US = UINT16_MAX };
 

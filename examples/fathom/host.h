@@ -24,7 +24,7 @@ typedef struct {
     /* A command begins to wait: from now on has_ended tells what the user wishes. False after saying why. */
     bool (*begin)(void *ctx);
     bool (*has_ended)(void *ctx);
-    bool (*is_output_gone)(void *ctx); /* nobody reads the standard output any more */
+    bool (*is_output_gone)(void *ctx); /* the reader of the standard output has gone */
     /* Sleeps until *port (NULL: none) has bytes or something to do, max_us microseconds (FATHOM_NO_DEADLINE: no limit)
      * have passed, or the command is to end. watch_output: also until the reader of the standard output goes away. */
     void (*wait)(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us, bool watch_output);

@@ -66,7 +66,7 @@ typedef struct {
     /* How to read what the datasheet leaves open, beside the limits. */
     uint8_t same_answers; /* the configuration (#2) is believed when so many answers in succession agree: its
                                    frame has the shape of a measurement's. 1..8; 0: 2. 3 at least for 2 s after
-                                   a frame that nobody asked for was heard */
+                                   an unasked frame was heard */
     uint8_t
         steps_per_degree; /* the temperature (#4) counts in steps of one degree Fahrenheit, by so much finer:
                                    10 for tenths. 0: 1 */
@@ -90,7 +90,7 @@ typedef struct {
     /* Answers to #2 and to #5 have one shape: neither may be what the other was last. */
     uint16_t told[4];
     uint16_t measured[4];
-    uint32_t unasked_us; /* the clock when a frame that nobody asked for was heard */
+    uint32_t unasked_us; /* the clock when an unasked frame was heard */
     bool is_owed;        /* an answer to #2 is still to come: something else was taken for it */
     uint8_t answers;     /* to #2, this time */
     uint8_t agreed;      /* of them, in succession */

@@ -29,7 +29,7 @@ extern "C" {
 /* Read by init only. line and asking outlive this. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* it becomes the line's listener; its frame holds 13 bytes or more */
-    /* The driver that asks the same device on this line; NULL: nobody does. It is told of each frame
+    /* The driver that asks the same device on this line; NULL: no driver does. It is told of each frame
      * (fathom_hps167s_heard). An answer to its #2 has the same shape and may come after something else was taken for it:
      * what equals the last one is no measurement, nor, from #2 until another question is asked, is anything that could
      * be one; both are counted as implausible. Of distances that is 255 mm alone. */

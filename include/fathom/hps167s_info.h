@@ -66,7 +66,7 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
  * #2. The answer has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
  * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such in
  * succession agree (config.same_answers). Whatever its baud code and reconnect time are.
- * What does not count was asked by nobody. For 2 s after such a frame three answers have to agree, and the questions
+ * What does not count came unasked. For 2 s after such a frame three answers have to agree, and the questions
  * come at intervals that are no multiple of 18519 us, or they would go in step with what the device sends by itself.
  * It is asked up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Of what can be measured only exactly 255 mm can
  * pass the first test.

@@ -19,7 +19,7 @@ extern "C" {
  *   while (request.exchange.status == FATHOM_PENDING) fathom_line_poll(&line);
  */
 
-/* As submit and cancel of fathom_modbus_t. A read of unit 0 is answered by the unit whose address is 0. A write to unit 0 is a broadcast: nobody answers, and it is READY
+/* As submit and cancel of fathom_modbus_t. A read of unit 0 is answered by the unit whose address is 0. A write to unit 0 is a broadcast: no unit answers, and it is READY
  * exchange.timeout_us (the time the devices need; the specification advises 100 to 200 ms) after it left. */
 fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_request_t *request);
 void fathom_modbus_client_cancel(fathom_line_t *line, fathom_modbus_request_t *request);
