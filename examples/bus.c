@@ -35,6 +35,7 @@ typedef struct {
     fathom_line_config_t config;
     uint8_t frame[32];
     fathom_line_t line;
+    fathom_fair_share_t share;
     fathom_modbus_t modbus;
     fathom_a16_modbus_t a16;
     fathom_a05_modbus_t a05;
@@ -51,36 +52,35 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         .clock = clock,
         .frame = bus->frame,
         .frame_size = sizeof bus->frame,
+        .find_echo = fathom_line_find_echo,
+        .marks = fathom_line_marks,
         /* The silence that the slowest of them needs to see that a frame has ended. */
         .silence_us = FATHOM_T3_5_US(9600, 10),
         /* A frame that broke off is given up after this; a USB adapter holds bytes back for up to 16 ms. */
         .gap_us = 25000,
     };
     if (fathom_line_init(&bus->line, &bus->config) != FATHOM_READY) return false;
+    /* In turns, the HPS-167S would be asked once for each request of the slow ones: twice a second. */
+    fathom_fair_share(&bus->share, &bus->line);
     bus->modbus = fathom_modbus_client(&bus->line);
 
     const fathom_a16_modbus_config_t a16 = {
-        .modbus = &bus->modbus,
-        .clock = clock,
-        .settings = &ultrasonic,
-        .address = 1,
-        .value = FATHOM_A16_REAL_TIME,
+        .modbus.transport = &bus->modbus,
+        .modbus.settings = &ultrasonic,
+        .modbus.address = 1,
+        .value = FATHOM_REAL_TIME,
     };
     const fathom_a05_modbus_config_t a05 = {
-        .modbus = &bus->modbus,
-        .clock = clock,
-        .settings = &ultrasonic,
-        .address = 2,
+        .modbus.transport = &bus->modbus,
+        .modbus.settings = &ultrasonic,
+        .modbus.address = 2,
         /* When it is silent, it is asked every two seconds; the default is 16 time-outs, 9.6 s. */
-        .backoff_us = 2000000,
+        .modbus.backoff_us = 2000000,
     };
     const fathom_hps167s_config_t hps = {
-        .modbus = &bus->modbus,
-        .clock = clock,
-        .settings = &infrared,
-        .address = 7,
-        /* As fast as it can, 54 times a second, it would fill the line. */
-        .period_us = 200000,
+        .modbus.transport = &bus->modbus,
+        .modbus.settings = &infrared,
+        .modbus.address = 7,
     };
     if (fathom_a16_modbus_init(&bus->a16, &a16) != FATHOM_READY ||
         fathom_a05_modbus_init(&bus->a05, &a05) != FATHOM_READY ||
@@ -90,9 +90,9 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
     bus->sensors[A16] = fathom_a16_modbus_sensor(&bus->a16);
     bus->sensors[A05] = fathom_a05_modbus_sensor(&bus->a05);
     bus->sensors[HPS] = fathom_hps167s_sensor(&bus->hps);
-    bus->units[A16] = &bus->a16.base.unit;
-    bus->units[A05] = &bus->a05.base.unit;
-    bus->units[HPS] = &bus->hps.unit;
+    bus->units[A16] = fathom_a16_modbus_unit(&bus->a16);
+    bus->units[A05] = fathom_a05_modbus_unit(&bus->a05);
+    bus->units[HPS] = fathom_hps167s_unit(&bus->hps);
     bus->start_us = clock->now_us(clock->ctx);
     return true;
 }
@@ -101,7 +101,7 @@ static void use(uint32_t time_us, int i, fathom_status_t status, const fathom_sa
 {
     (void)printf("%8.3f s  %-8s ", time_us / 1000000.0, names[i]);
     if (status < 0)
-        (void)printf("no reading: error %d\n", status);
+        (void)printf("no reading: %s\n", fathom_status_name(status));
     else if (sample->kind == FATHOM_TARGET)
         (void)printf("probe %u  %5u mm\n", sample->probe, sample->distance_mm);
     else
@@ -137,8 +137,8 @@ static void tell(const bus_t *bus)
 {
     for (int i = 0; i != SENSORS; i++)
         (void)printf("%-8s answers %u, failures %u, silences in a row %u, left alone for %.1f s\n", names[i],
-                     bus->units[i]->answers, bus->units[i]->failures, bus->units[i]->silences,
-                     bus->units[i]->alone_us / 1000000.0);
+                     fathom_modbus_unit_answers(bus->units[i]), fathom_modbus_unit_failures(bus->units[i]),
+                     bus->units[i]->silences, bus->units[i]->alone_us / 1000000.0);
 }
 
 /* ---- where it runs ---- */

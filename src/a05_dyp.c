@@ -12,36 +12,24 @@ static bool is_one(uint8_t probes) { return (probes & (probes - 1)) == 0; }
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    fathom_modbus_question_t *const question = &base->question;
     const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
-    if (config->line == NULL || probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+    if (config->modbus.address_zero || probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
 
+    const bool is_single = is_one(probes);
     uint8_t first = 0;
-    question->count = FATHOM_DYP_PROBES;
-    question->timeout_us = ALL_PROBES_TIMEOUT_US;
-    question->pace_us = FATHOM_A05_DYP_ALL_PROBES_US;
-    if (is_one(probes)) {
+    if (is_single)
         while ((probes >> first & 1) == 0) first++;
-        question->count = 1;
-        question->timeout_us = ONE_PROBE_TIMEOUT_US;
-        question->pace_us = FATHOM_A05_DYP_ONE_PROBE_US;
-    }
-    if (config->timeout_us != 0) question->timeout_us = config->timeout_us;
-    if (config->period_us > question->pace_us) question->pace_us = config->period_us;
-    question->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
-    question->retries = config->retries;
-    question->backoff_us = config->backoff_us;
-    question->settings = config->settings;
+    base->question.first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
+    base->question.last = is_single ? 1 : FATHOM_DYP_PROBES;
     base->answer.values = sensor->values;
-    base->command_timeout_us = config->command_timeout_us;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->answer.window, &config->window);
     base->answer.model = FATHOM_A05;
     base->answer.first = (uint8_t)(first + 1);
     base->probes = probes;
-    sensor->client = fathom_dyp_client(config->line);
-    return fathom_dyp_modbus_init(base, &sensor->client, config->line->config->clock,
-                                  config->address != 0 ? config->address : 1, FATHOM_A05_MAX_MM);
+    return fathom_dyp_modbus_init(base, &config->modbus,
+                                  is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,
+                                  is_single ? FATHOM_A05_DYP_ONE_PROBE_US : FATHOM_A05_DYP_ALL_PROBES_US);
 }
 
 void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
@@ -57,48 +45,41 @@ bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor) { return sensor->
 
 void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
-/* The driver's seam to the line while the address is being set, and at no other time: so nothing else can send the
+/* The unit's seam to the line while the address is being set, and at no other time: so nothing else can send the
  * command. */
 static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request)
 {
     const uint8_t *const head = request->message.head;
     if (head[1] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return fathom_dyp_client_submit(ctx, request);
+    request->exchange.timeout_us = ONE_PROBE_TIMEOUT_US;
     return fathom_dyp_client_set_every_address(ctx, request, head[5]);
 }
 
-/* Measures the first probe; whoever answers is at the address that was asked. */
-static fathom_status_t read_address(void *driver, uint32_t *address)
+/* Measures the first probe; the unit that answers is at the address that was asked. */
+static fathom_status_t read_address(const fathom_modbus_setting_t *setting, uint32_t *address)
 {
-    fathom_a05_dyp_t *const sensor = driver;
+    fathom_dyp_modbus_t *const base = setting->driver;
     uint16_t distance = 0;
-    const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, FATHOM_DYP_FIRST_REGISTER, &distance);
-    *address = sensor->base.unit.address;
+    const fathom_status_t status = fathom_dyp_modbus_look(base, FATHOM_DYP_FIRST_REGISTER, &distance);
+    *address = base->unit.address;
     return status;
 }
 
 fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address)
 {
-    uint16_t value = address;
-    fathom_modbus_question_t write = sensor->base.question;
+    fathom_modbus_unit_t *const unit = &sensor->base.unit;
+    const fathom_modbus_t *const transport = unit->modbus;
     fathom_modbus_setting_t setting;
-    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT || sensor->base.unit.is_blind)
+    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT || unit->is_blind)
         return FATHOM_ERR_ARGUMENT;
-    write.timeout_us = ONE_PROBE_TIMEOUT_US;
-    write.values = &value;
-    write.first = FATHOM_DYP_REGISTER_ADDRESS;
-    write.count = 1;
-    write.retries = 0;
-    write.is_command = true;
-    write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    fathom_modbus_unit_poll(unit);
+    const fathom_modbus_t either = fathom_modbus_over_line(transport->ctx, submit_either);
+    fathom_dyp_modbus_describe(&sensor->base, &setting, FATHOM_DYP_REGISTER_ADDRESS, address);
     setting.read = read_address;
-    setting.driver = sensor;
-    setting.write = &write;
-    setting.value = address;
-    setting.settings = NULL;
     setting.address = address;
-    sensor->client.submit = submit_either;
-    const fathom_status_t status = fathom_modbus_set(&sensor->base.unit, &setting);
-    sensor->client = fathom_dyp_client(sensor->client.ctx);
+    unit->modbus = &either;
+    const fathom_status_t status = fathom_modbus_set(unit, &setting);
+    unit->modbus = transport;
     return status;
 }
 

@@ -8,7 +8,6 @@ enum { ALL_PROBES = 0x0F };
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    fathom_modbus_question_t *const question = &base->question;
     const uint16_t registers = config->registers != 0 ? config->registers : FATHOM_A05_REGISTERS;
     const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
     if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
@@ -21,23 +20,15 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     uint32_t measuring_us = FATHOM_A05_PROBE_US;
     for (; probes >> (first + count) != 0; count++) measuring_us += FATHOM_A05_PROBE_US;
 
-    question->timeout_us = config->timeout_us != 0 ? config->timeout_us : ANSWER_TIMEOUT_US + measuring_us;
-    question->pace_us = config->period_us > measuring_us ? config->period_us : measuring_us;
-    question->first = (uint16_t)(registers + first);
-    question->count = count;
-    question->retries = config->retries;
-    question->backoff_us = config->backoff_us;
-    question->settings = config->settings;
+    base->question.first = (uint16_t)(registers + first);
+    base->question.last = count;
     base->answer.values = sensor->values;
-    base->command_timeout_us = config->command_timeout_us;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->answer.window, &config->window);
     base->answer.model = FATHOM_A05;
     base->answer.first = (uint8_t)(first + 1);
     base->probes = probes;
-    return fathom_dyp_modbus_init(base, config->modbus, config->clock,
-                                  fathom_dyp_modbus_place(config->address, config->address_zero),
-                                  FATHOM_A05_MAX_MM);
+    return fathom_dyp_modbus_init(base, &config->modbus, ANSWER_TIMEOUT_US + measuring_us, measuring_us);
 }
 
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }

@@ -6,7 +6,7 @@ fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a
     fathom_contact_t *const base = &sensor->base;
     base->pin = config->pin;
     base->clock = config->clock;
-    base->line = NULL;
+    base->guard = NULL;
     base->near_is_high = (config->wiring == FATHOM_A05_RELAY_NORMALLY_CLOSED) !=
                          (config->level == FATHOM_A05_RELAY_CONDUCTS_HIGH);
     base->model = FATHOM_A05;

@@ -8,29 +8,19 @@
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    fathom_modbus_question_t *const question = &base->question;
-    if (config->value > FATHOM_A16_REAL_TIME) return FATHOM_ERR_ARGUMENT;
-    const bool is_real_time = config->value == FATHOM_A16_REAL_TIME;
-    question->timeout_us = config->timeout_us;
-    if (question->timeout_us == 0)
-        question->timeout_us = is_real_time ? REAL_TIME_TIMEOUT_US : PROCESSED_TIMEOUT_US;
-    question->pace_us =
-        config->period_us > FATHOM_A16_MIN_PERIOD_US ? config->period_us : FATHOM_A16_MIN_PERIOD_US;
-    question->first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
-    question->count = 1;
-    question->retries = config->retries;
-    question->backoff_us = config->backoff_us;
-    question->settings = config->settings;
+    if (config->value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    const bool is_real_time = config->value == FATHOM_REAL_TIME;
+    base->question.first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
+    base->question.last = 1;
     base->answer.values = sensor->values;
-    base->command_timeout_us = config->command_timeout_us;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->answer.window, &config->window);
     base->answer.model = FATHOM_A16;
     base->answer.first = 1;
     base->probes = 1;
-    return fathom_dyp_modbus_init(base, config->modbus, config->clock,
-                                  fathom_dyp_modbus_place(config->address, config->address_zero),
-                                  FATHOM_A16_MAX_MM);
+    return fathom_dyp_modbus_init(base, &config->modbus,
+                                  is_real_time ? REAL_TIME_TIMEOUT_US : PROCESSED_TIMEOUT_US,
+                                  FATHOM_A16_MIN_PERIOD_US);
 }
 
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }

@@ -1,21 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/a16_pwm.h"
 
+#include "common.h"
 #include "fathom/pulse_width.h"
 
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
 {
-    fathom_pulse_config_t *const meter = &sensor->meter_config;
-    meter->clock = config->clock;
-    meter->capture = config->capture;
-    meter->trigger = config->trigger;
-    meter->uart = config->uart;
-    meter->cycle_us = config->cycle_us;
-    meter->low_us = config->low_us;
-    meter->noise_us = config->noise_us;
-    meter->no_target_us = config->no_target_us;
-    meter->stuck_us = config->stuck_us;
-    sensor->window.min_mm = config->window.min_mm != 0 ? config->window.min_mm : 1;
+    sensor->window.min_mm = (uint16_t)or_default(config->window.min_mm, 1);
     sensor->window.max_mm = config->window.max_mm;
     if (sensor->window.max_mm == 0)
         sensor->window.max_mm = config->in_air ? FATHOM_A16_PWM_MAX_MM_IN_AIR : FATHOM_A16_MAX_MM;
@@ -24,7 +15,7 @@ fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_p
     sensor->air_dc = config->air_dc;
     sensor->in_air = config->in_air;
     if (sensor->window.min_mm > sensor->window.max_mm) return FATHOM_ERR_ARGUMENT;
-    return fathom_pulse_init(&sensor->meter, meter);
+    return fathom_pulse_init(&sensor->meter, &config->pulse);
 }
 
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor)
@@ -43,7 +34,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         mm = sensor->in_air ? fathom_pulse_width_mm_in_air(reading.width_us, sensor->air_dc)
                             : fathom_pulse_width_mm(reading.width_us);
         if (mm < sensor->window.min_mm || mm > sensor->window.max_mm) {
-            if (sensor->implausible != UINT16_MAX) sensor->implausible++;
+            count_one(&sensor->implausible);
             return FATHOM_ERR_MALFORMED;
         }
     }
@@ -68,11 +59,4 @@ static uint32_t due_us(void *ctx)
     return fathom_pulse_due_us(&sensor->meter);
 }
 
-fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor)
-{
-    fathom_sensor_t handle;
-    handle.poll = poll;
-    handle.due_us = due_us;
-    handle.ctx = sensor;
-    return handle;
-}
+fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor) { return sensor_of(poll, due_us, sensor); }

@@ -6,7 +6,7 @@ fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom
     fathom_contact_t *const base = &sensor->base;
     base->pin = config->pin;
     base->clock = config->clock;
-    base->line = config->line;
+    base->guard = config->guard;
     base->near_is_high = !config->negative;
     base->model = FATHOM_A16;
     base->unit = config->address;
@@ -16,7 +16,7 @@ fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom
 fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
                                                fathom_a16_polarity_t polarity)
 {
-    const fathom_status_t status = fathom_a16_set_switch_polarity(modbus, polarity);
+    const fathom_status_t status = fathom_a16_modbus_set_switch_polarity(modbus, polarity);
     fathom_contact_hold(&sensor->base, status == FATHOM_PENDING);
     if (status == FATHOM_READY) fathom_a16_switch_polarity_is(sensor, polarity);
     return status;

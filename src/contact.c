@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/contact.h"
 
-static uint32_t now_us(const fathom_contact_t *contact)
-{
-    const fathom_clock_t *const clock = contact->clock;
-    return clock->now_us(clock->ctx);
-}
+#include "common.h"
 
 static bool is_high_now(const fathom_contact_t *contact)
 {
@@ -19,20 +15,18 @@ static void settle(fathom_contact_t *contact)
     contact->settle_us = contact->timing.settle_us;
 }
 
-static uint32_t or_else(uint32_t us, uint32_t default_us) { return us != 0 ? us : default_us; }
-
 fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing)
 {
     fathom_contact_timing_t *const own = &contact->timing;
     if (contact->pin == NULL || contact->pin->get == NULL || contact->clock == NULL)
         return FATHOM_ERR_ARGUMENT;
-    own->settle_us = or_else(timing->settle_us, FATHOM_CONTACT_DEFAULT_SETTLE_US);
+    own->settle_us = or_default(timing->settle_us, FATHOM_CONTACT_DEFAULT_SETTLE_US);
     own->period_us = timing->period_us;
-    own->look_us = or_else(timing->look_us, FATHOM_CONTACT_DEFAULT_LOOK_US);
-    own->stale_us = or_else(timing->stale_us, FATHOM_CONTACT_DEFAULT_STALE_US);
-    contact->looked_us = now_us(contact);
+    own->look_us = or_default(timing->look_us, FATHOM_CONTACT_DEFAULT_LOOK_US);
+    own->stale_us = or_default(timing->stale_us, FATHOM_CONTACT_DEFAULT_STALE_US);
+    contact->looked_us = clock_us(contact->clock);
     contact->is_high = is_high_now(contact);
-    contact->is_clear = contact->line == NULL;
+    contact->is_clear = contact->guard == NULL;
     contact->is_held = false;
     contact->period_us = own->period_us;
     contact->stale_us = own->stale_us;
@@ -50,14 +44,11 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
 
 void fathom_contact_hold(fathom_contact_t *contact, bool hold) { contact->is_held = hold; }
 
-/* Does the level mean what it should, as far as the line on the same pin is concerned, if there is one? */
+/* May the level be looked at? */
 static bool is_clear(const fathom_contact_t *contact)
 {
-    const fathom_line_t *const line = contact->line;
-    if (contact->is_held) return false;
-    return line == NULL ||
-           (fathom_line_is_idle(line) &&
-            fathom_elapsed_us(contact->looked_us, fathom_line_heard_us(line)) >= FATHOM_CONTACT_QUIET_US);
+    const fathom_contact_guard_t *const guard = contact->guard;
+    return !contact->is_held && (guard == NULL || guard->is_clear(guard->ctx, contact->looked_us));
 }
 
 /* Does the level count? */
@@ -95,13 +86,14 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_contact_t *const contact = ctx;
     const fathom_contact_timing_t *const timing = &contact->timing;
-    const fathom_status_t port = contact->line != NULL ? fathom_line_poll(contact->line) : FATHOM_PENDING;
-    const uint32_t now = now_us(contact);
-    const uint32_t passed_us = fathom_elapsed_us(now, contact->looked_us);
+    const fathom_contact_guard_t *const guard = contact->guard;
+    const fathom_status_t beside = guard != NULL ? guard->poll(guard->ctx) : FATHOM_PENDING;
+    const uint32_t now_us = clock_us(contact->clock);
+    const uint32_t passed_us = fathom_elapsed_us(now_us, contact->looked_us);
     /* Until the look before this one all was well, and how long ago it ceased to be nobody knows. */
     const bool counted = contact->settle_us == 0;
     const bool repeats = fathom_run_down(&contact->period_us, passed_us) && timing->period_us != 0;
-    contact->looked_us = now;
+    contact->looked_us = now_us;
     if (counted) contact->stale_us = timing->stale_us;
     if (look(contact, passed_us)) {
         const uint8_t kind = contact->is_high == contact->near_is_high ? FATHOM_NEAR : FATHOM_FAR;
@@ -113,34 +105,24 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         contact->stale_us = timing->stale_us;
         return FATHOM_ERR_STALE;
     }
-    return port;
+    return beside;
 }
-
-static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 static uint32_t due_us(void *ctx)
 {
     const fathom_contact_t *const contact = ctx;
     const fathom_contact_timing_t *const timing = &contact->timing;
+    const fathom_contact_guard_t *const guard = contact->guard;
     uint32_t us = timing->look_us;
     if (!contact->is_clear)
-        us = least(us, FATHOM_CONTACT_QUIET_US);
+        us = least_us(us, FATHOM_CONTACT_QUIET_US);
     else if (contact->settle_us != 0)
-        us = least(us, contact->settle_us);
+        us = least_us(us, contact->settle_us);
     else if (timing->period_us != 0)
-        us = least(us, contact->period_us);
-    if (us != FATHOM_NO_DEADLINE) {
-        const uint32_t passed_us = fathom_elapsed_us(now_us(contact), contact->looked_us);
-        us = us > passed_us ? us - passed_us : 0;
-    }
-    return contact->line != NULL ? least(us, fathom_line_due_us(contact->line)) : us;
+        us = least_us(us, contact->period_us);
+    if (us != FATHOM_NO_DEADLINE)
+        us = rest_us(us, fathom_elapsed_us(clock_us(contact->clock), contact->looked_us));
+    return guard != NULL ? least_us(us, guard->due_us(guard->ctx)) : us;
 }
 
-fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact)
-{
-    fathom_sensor_t handle;
-    handle.poll = poll;
-    handle.due_us = due_us;
-    handle.ctx = contact;
-    return handle;
-}
+fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact) { return sensor_of(poll, due_us, contact); }

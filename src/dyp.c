@@ -1,67 +1,77 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/dyp.h"
 
+#include <stddef.h>
+
+#include "common.h"
+
+/* Of FFFD, FFFE, FFFF and 0, four bits each, the first one last. */
+enum {
+    MEANINGS = FATHOM_MEANS_NO_TARGET | FATHOM_MEANS_INTERFERENCE << 4 | FATHOM_MEANS_REFUSED << 8 |
+               FATHOM_MEANS_UNKNOWN << 12
+};
+
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value)
 {
-    if (value == 0) return window->value_0;
-    if (value == 0xFFFD) return window->value_fffd;
-    if (value == 0xFFFE) return window->value_fffe;
-    if (value == 0xFFFF) return window->value_ffff;
-    return value >= window->min_mm && value <= window->max_mm ? (uint8_t)FATHOM_TARGET
-                                                              : (uint8_t)FATHOM_MEANS_REFUSED;
+    const uint16_t special = (uint16_t)(value + 3);
+    if (special > 3)
+        return value >= window->min_mm && value <= window->max_mm ? (uint8_t)FATHOM_TARGET
+                                                                  : (uint8_t)FATHOM_MEANS_REFUSED;
+    const uint8_t meaning = ((const uint8_t *)window)[offsetof(fathom_dyp_window_t, value_fffd) + special];
+    if (meaning != FATHOM_MEANS_DEFAULT) return meaning;
+    return (uint8_t)(MEANINGS >> 4 * special & 15);
 }
 
 fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sample)
 {
-    if (answer->left == 0) return FATHOM_PENDING;
+    uint8_t left = answer->left;
     uint8_t probe = 1;
-    uint8_t bit = 1;
-    for (; (answer->left & bit) == 0; bit = (uint8_t)(bit << 1)) probe++;
-    answer->left &= (uint8_t)~bit;
+    if (left == 0) return FATHOM_PENDING;
+    answer->left = left & (uint8_t)(left - 1);
+    for (; (left & 1) == 0; left >>= 1) probe++;
     const uint16_t value = answer->values[probe - answer->first];
-    const uint8_t meaning = fathom_dyp_meaning(&answer->window, value);
-    if (meaning == FATHOM_MEANS_REFUSED) {
-        if (answer->implausible != UINT16_MAX) answer->implausible++;
+    uint8_t kind = fathom_dyp_meaning(&answer->window, value);
+    if (kind == FATHOM_MEANS_REFUSED) {
+        count_one(&answer->implausible);
         answer->refused_raw = value;
         answer->refused_probe = probe;
         return FATHOM_ERR_MALFORMED;
     }
+    sample->interference = false;
+    if (kind == FATHOM_MEANS_INTERFERENCE) {
+        kind = FATHOM_NO_TARGET;
+        sample->interference = true;
+    }
+    sample->kind = kind;
+    sample->distance_mm = 0;
+    if (kind == FATHOM_TARGET) sample->distance_mm = value;
+    sample->raw = value;
     sample->time_us = answer->time_us;
     sample->magnitude = 0;
     sample->sequence = answer->sequence;
-    sample->raw = value;
-    sample->distance_mm = meaning == FATHOM_TARGET ? value : 0;
     sample->precision = 0;
-    sample->kind = meaning == FATHOM_MEANS_INTERFERENCE ? (uint8_t)FATHOM_NO_TARGET : meaning;
     sample->model = answer->model;
     sample->unit = answer->unit;
     sample->probe = probe;
     sample->ambient = 0;
-    sample->interference = meaning == FATHOM_MEANS_INTERFERENCE;
     return FATHOM_READY;
 }
 
-void fathom_dyp_answer(fathom_dyp_answer_t *answer, uint8_t probes, uint32_t time_us)
+void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
 {
-    answer->sequence++;
-    answer->time_us = time_us;
-    answer->left = probes;
+    const uint8_t *next = (const uint8_t *)from;
+    /* volatile: or they make one of this loop too */
+    for (volatile uint8_t *byte = (uint8_t *)to; byte != (uint8_t *)(to + 1); byte++) *byte = *next++;
 }
 
 fathom_status_t fathom_dyp_answer_init(fathom_dyp_answer_t *answer, uint16_t default_max_mm)
 {
     fathom_dyp_window_t *const window = &answer->window;
-    if (window->min_mm == 0) window->min_mm = 1;
     if (window->max_mm == 0) window->max_mm = default_max_mm;
-    if (window->value_0 == 0) window->value_0 = FATHOM_MEANS_UNKNOWN;
-    if (window->value_fffd == 0) window->value_fffd = FATHOM_MEANS_NO_TARGET;
-    if (window->value_fffe == 0) window->value_fffe = FATHOM_MEANS_INTERFERENCE;
-    if (window->value_ffff == 0) window->value_ffff = FATHOM_MEANS_REFUSED;
-    answer->time_us = 0;
+    answer->left = 0;
     answer->sequence = 0;
     answer->implausible = 0;
     answer->refused_raw = 0;
     answer->refused_probe = 0;
-    answer->left = 0;
     return window->min_mm > window->max_mm ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
 }

@@ -24,61 +24,52 @@ static uint8_t command_of(const uint8_t *head)
     return head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS ? command_of_read(head) : FATHOM_DYP_SET_ADDRESS;
 }
 
+static const fathom_modbus_message_t *message_of(const fathom_exchange_t *exchange)
+{
+    return &((const fathom_modbus_request_t *)exchange)->message;
+}
+
+static uint8_t encode(const fathom_exchange_t *exchange, uint8_t *frame)
+{
+    const uint8_t *const head = message_of(exchange)->head;
+    return fathom_dyp_protocol_encode_request(frame, head[0], command_of(head));
+}
+
 /*
  * With a probe in the right place an answer begins with the same five bytes as its request (1H is the request's
  * sum). If 55 AA follows these, they are the echo and the answer comes: as distances it would be 43520 mm or more
  * for the second probe, which no A05 measures.
  */
-static bool is_two_frames(const uint8_t *frame)
+static uint16_t check(const uint8_t *frame, uint8_t length)
 {
-    return frame[NEXT] == frame[0] && frame[NEXT + 1] == frame[1];
+    if (length == FATHOM_DYP_MAX_ANSWER && frame[NEXT] == frame[0] && frame[NEXT + 1] == frame[1] &&
+        fathom_dyp_protocol_valid(frame, NEXT))
+        return 1;
+    return !fathom_dyp_protocol_valid(frame, length);
 }
 
-/* A frame with a right sum: does it answer? */
-static int8_t answer(fathom_modbus_request_t *request, const uint8_t *frame, uint8_t unit)
+static bool is_request(const fathom_exchange_t *exchange, const uint8_t *frame, uint8_t have)
 {
-    fathom_modbus_message_t *const message = &request->message;
-    if (unit != request->exchange.unit) return FATHOM_PENDING;
+    const uint8_t *const head = message_of(exchange)->head;
+    return have < NEXT || (frame[ADDRESS] == head[0] && frame[COMMAND] == command_of(head));
+}
+
+static fathom_status_t answer(fathom_exchange_t *exchange, const uint8_t *frame)
+{
+    fathom_modbus_message_t *const message = &((fathom_modbus_request_t *)exchange)->message;
     if (frame[COMMAND] != command_of(message->head)) return FATHOM_ERR_MALFORMED;
     fathom_dyp_protocol_decode(frame, message->values);
     message->head[0] = frame[ADDRESS];
     return FATHOM_READY;
 }
 
-static void judge(fathom_exchange_t *exchange, const uint8_t *frame, uint8_t have, fathom_match_t *match)
-{
-    fathom_modbus_request_t *const request = (fathom_modbus_request_t *)exchange;
-    const uint8_t length = fathom_dyp_protocol_length(frame, have);
-    match->length = length;
-    match->unit = frame[ADDRESS < have ? ADDRESS : 0];
-    match->status = FATHOM_ERR_CHECKSUM;
-    match->request = 0;
-    if (exchange != NULL) {
-        const uint8_t *const head = request->message.head;
-        if (exchange->unit == FATHOM_LINE_ANY_UNIT) match->unit = FATHOM_LINE_ANY_UNIT;
-        if (have >= FATHOM_DYP_REQUEST_LENGTH && frame[ADDRESS] == head[0] &&
-            frame[COMMAND] == command_of(head) && fathom_dyp_protocol_valid(frame, FATHOM_DYP_REQUEST_LENGTH))
-            match->request = FATHOM_DYP_REQUEST_LENGTH;
-    }
-    if (length == 0 || length > have || !fathom_dyp_protocol_valid(frame, length)) return;
-    if (match->request != 0 && length == FATHOM_DYP_MAX_ANSWER && is_two_frames(frame)) return;
-    match->status = exchange != NULL ? answer(request, frame, match->unit) : (int8_t)FATHOM_PENDING;
-}
-
-static void protocol(fathom_exchange_t *exchange, uint8_t *frame, uint8_t have, fathom_match_t *match)
-{
-    if (have != 0) {
-        judge(exchange, frame, have, match);
-        return;
-    }
-    const uint8_t *const head = ((const fathom_modbus_request_t *)exchange)->message.head;
-    match->length = fathom_dyp_protocol_encode_request(frame, head[0], command_of(head));
-}
+static const fathom_protocol_t protocol = {
+    encode, fathom_dyp_protocol_length, check, is_request, answer, ADDRESS, false};
 
 static fathom_status_t start(fathom_line_t *line, fathom_modbus_request_t *request)
 {
     if (line->config->frame_size < FATHOM_DYP_MAX_ANSWER) return FATHOM_ERR_CAPACITY;
-    request->exchange.protocol = protocol;
+    request->exchange.protocol = &protocol;
     request->exchange.unit = request->message.head[0];
     return fathom_line_submit(line, &request->exchange);
 }

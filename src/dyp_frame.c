@@ -10,8 +10,10 @@ uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length)
 
 bool fathom_dyp_frame_valid(const uint8_t *frame, uint8_t length)
 {
-    const uint8_t last = (uint8_t)(length - 1);
-    return frame[0] == FATHOM_DYP_START && fathom_dyp_sum(frame, last) == frame[last];
+    const uint8_t start = *frame;
+    uint8_t sum = 0;
+    while (--length != 0) sum = (uint8_t)(sum + *frame++);
+    return start == FATHOM_DYP_START && sum == *frame;
 }
 
 void fathom_dyp_frame_decode(const uint8_t *frame, uint16_t *values, uint8_t probes)

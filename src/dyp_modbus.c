@@ -1,24 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/dyp_modbus.h"
 
-enum { ZERO_ADDRESS = 256 }; /* fathom_modbus_setting_t */
+#include "common.h"
 
-uint8_t fathom_dyp_modbus_place(uint8_t address, bool address_zero)
-{
-    if (address_zero) return address == 0 ? 0 : FATHOM_MODBUS_ANY_UNIT;
-    return address != 0 ? address : 1;
-}
+enum { ZERO_ADDRESS = 256 };       /* fathom_modbus_setting_t */
+enum { MEASURE = 1, WRITES = 64 }; /* ids of questions */
 
-fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *modbus,
-                                       const fathom_clock_t *clock, uint8_t address, uint16_t default_max_mm)
+fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
+                                       uint32_t timeout_us, uint32_t pace_us)
 {
-    const fathom_status_t status = fathom_dyp_answer_init(&sensor->answer, default_max_mm);
+    const uint16_t max_mm = sensor->answer.model == FATHOM_A16 ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
+    const fathom_status_t status = fathom_dyp_answer_init(&sensor->answer, max_mm);
     sensor->question.values = sensor->answer.values;
-    if (sensor->command_timeout_us == 0) sensor->command_timeout_us = FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US;
-    if (sensor->start_us == 0) sensor->start_us = FATHOM_DYP_DEFAULT_START_US;
-    sensor->question.is_command = false;
-    sensor->question.function = 0;
-    return status < 0 ? status : fathom_modbus_unit_init(&sensor->unit, modbus, clock, address);
+    sensor->question.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    sensor->question.id = MEASURE;
+    sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
+    return status < 0 ? status : fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us);
 }
 
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
@@ -31,24 +28,29 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor)
 
 /* ---- commands ---- */
 
-static void describe(const fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value,
-                     fathom_modbus_question_t *question)
+/* By what registers differ: they are 0010.., 0100.. and 0200... */
+static uint8_t id_of(uint16_t address)
 {
-    *question = sensor->question; /* pace, back-off and line settings are the same */
-    question->timeout_us = sensor->command_timeout_us;
-    question->values = value;
-    question->first = address;
-    question->count = 1;
-    question->is_command = true;
+    return (uint8_t)(FATHOM_MODBUS_COMMAND | (address >> 4 & 0x30) | (address & 0x0F));
+}
+
+fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
+{
+    fathom_modbus_question_t question;
+    question.values = &sensor->found;
+    question.first = address;
+    question.last = 1;
+    question.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    question.id = id_of(address);
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &question);
+    if (status == FATHOM_READY) *value = sensor->found;
+    return status;
 }
 
 fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
 {
-    fathom_modbus_question_t question;
-    describe(sensor, address, &sensor->setting, &question);
-    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &question);
-    if (status == FATHOM_READY) *value = sensor->setting;
-    return status;
+    fathom_modbus_unit_poll(&sensor->unit);
+    return fathom_dyp_modbus_look(sensor, address, value);
 }
 
 fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address)
@@ -61,67 +63,70 @@ fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *
     return status;
 }
 
-/* What a setting reads: which register of which sensor. */
-typedef struct {
-    fathom_dyp_modbus_t *sensor;
-    uint16_t address;
-} place_t;
-
-static fathom_status_t read(void *driver, uint32_t *value)
+static fathom_status_t read(const fathom_modbus_setting_t *setting, uint32_t *value)
 {
-    const place_t *const place = driver;
     uint16_t found = 0;
-    const fathom_status_t status = fathom_dyp_modbus_get(place->sensor, place->address, &found);
+    const fathom_status_t status = fathom_dyp_modbus_look(setting->driver, setting->write.first, &found);
     *value = found;
     return status;
 }
 
-static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value,
-                           uint16_t new_address, bool is_readable)
+void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setting_t *setting,
+                                uint16_t address, uint16_t value)
 {
-    place_t place = {sensor, address};
+    setting->driver = sensor;
+    setting->write.values = NULL;
+    setting->write.first = address;
+    setting->write.last = value;
+    setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    setting->write.id = id_of(address) | WRITES;
+    setting->value = value;
+    setting->settings = NULL;
+    setting->address = 0;
+}
+
+typedef fathom_status_t (*read_t)(const fathom_modbus_setting_t *setting, uint32_t *value);
+
+static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value, read_t its_read)
+{
     const fathom_modbus_unit_t *const unit = &sensor->unit;
-    if (address == FATHOM_DYP_REGISTER_ADDRESS && unit->is_blind) return FATHOM_ERR_ARGUMENT;
-    if (unit->address == FATHOM_MODBUS_BROADCAST && unit->setting == 0) return FATHOM_ERR_ARGUMENT;
-    fathom_modbus_question_t write;
+    const bool is_address = address == FATHOM_DYP_REGISTER_ADDRESS;
     fathom_modbus_setting_t setting;
-    describe(sensor, address, &value, &write);
-    write.retries = 0;
-    write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
-    setting.read = is_readable ? read : NULL;
-    setting.driver = &place;
-    setting.write = &write;
-    setting.value = value;
-    setting.settings = NULL;
-    setting.address = new_address;
+    if (is_address && unit->is_blind) return FATHOM_ERR_ARGUMENT;
+    if (unit->address == FATHOM_MODBUS_BROADCAST && unit->setting == 0) return FATHOM_ERR_ARGUMENT;
+    fathom_dyp_modbus_describe(sensor, &setting, address, value);
+    setting.read = its_read;
+    if (is_address) setting.address = value != 0 ? value : ZERO_ADDRESS;
     return fathom_modbus_set(&sensor->unit, &setting);
 }
 
 fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
-    return set(sensor, address, value, 0, true);
+    fathom_modbus_unit_poll(&sensor->unit);
+    return set(sensor, address, value, read);
 }
 
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
+    fathom_modbus_unit_poll(&sensor->unit);
     if (sensor->unit.setting == 0 && !sensor->unit.is_blind) {
         sensor->unit.is_written = false; /* nor will it be before that is answered */
-        uint8_t own;
-        const fathom_status_t status = fathom_dyp_modbus_address(sensor, &own);
+        const fathom_status_t status =
+            fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);
         if (status != FATHOM_READY) return status;
     }
-    return set(sensor, address, value, 0, false);
+    return set(sensor, address, value, NULL);
 }
 
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address)
 {
     if (address == FATHOM_MODBUS_BROADCAST || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
-    return set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address, address, true);
+    return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address);
 }
 
 fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor)
 {
-    return set(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0, ZERO_ADDRESS, true);
+    return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0);
 }
 
 /* ---- who is there ---- */
@@ -131,7 +136,7 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
 {
     fathom_modbus_request_t *const request = &find->request;
     if (!find->is_asked) {
-        request->exchange.timeout_us = FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US;
+        request->exchange.timeout_us = FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US;
         fathom_modbus_read_holding_registers(&request->message, FATHOM_MODBUS_ANY_UNIT,
                                              FATHOM_DYP_REGISTER_ADDRESS, 1, &find->value);
         const fathom_status_t status = modbus->submit(modbus->ctx, request);
@@ -163,10 +168,11 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_dyp_modbus_t *const sensor = ctx;
     const fathom_status_t next = fathom_dyp_next(&sensor->answer, sample);
     if (next != FATHOM_PENDING) return next;
+    fathom_modbus_unit_poll(&sensor->unit);
     const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->question);
     if (status != FATHOM_READY) return status;
     sensor->answer.unit = sensor->unit.address; /* it may have moved, and a move may have been given up */
-    fathom_dyp_answer(&sensor->answer, sensor->probes, sensor->unit.heard_us);
+    fathom_dyp_answer(&sensor->answer, sensor->probes, fathom_modbus_unit_heard_us(&sensor->unit));
     return fathom_dyp_next(&sensor->answer, sample);
 }
 
@@ -178,9 +184,5 @@ static uint32_t due_us(void *ctx)
 
 fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)
 {
-    fathom_sensor_t handle;
-    handle.poll = poll;
-    handle.due_us = due_us;
-    handle.ctx = sensor;
-    return handle;
+    return sensor_of(poll, due_us, sensor);
 }

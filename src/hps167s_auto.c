@@ -10,23 +10,11 @@ enum { DATA_SIZE = 8 };
 
 #define STALE_US 2000000ul
 
-static uint32_t now_us(const fathom_hps167s_auto_t *sensor)
-{
-    const fathom_clock_t *const clock = sensor->line->config->clock;
-    return clock->now_us(clock->ctx);
-}
-
-static void count(uint16_t *counter)
-{
-    if (*counter != UINT16_MAX) ++*counter;
-}
-
 /* Can what has come be a frame, or the beginning of one? */
 static bool fits(const fathom_hps167s_auto_t *sensor)
 {
     const uint8_t *const bytes = sensor->bytes;
-    const uint8_t address = sensor->address != 0 ? sensor->address : sensor->asking->unit.address;
-    if (bytes[ADDRESS] != address) return false;
+    if (bytes[ADDRESS] != *sensor->from) return false;
     if (sensor->have > FUNCTION && bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS) return false;
     if (sensor->have > SIZE && bytes[SIZE] != DATA_SIZE) return false;
     return sensor->have != LENGTH || fathom_crc16(bytes, LENGTH) == 0;
@@ -46,11 +34,11 @@ static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
     uint16_t registers[4];
     for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)(at[0] * 256u + at[1]);
     sensor->have = 0;
-    if (sensor->asking != NULL && !fathom_hps167s_heard(sensor->asking, registers, time_us)) {
-        count(&sensor->implausible);
+    if (sensor->asking != NULL && !sensor->heard(sensor->asking, registers, time_us)) {
+        count_one(&sensor->implausible);
         return;
     }
-    if (sensor->is_new) count(&sensor->missed);
+    if (sensor->is_new) count_one(&sensor->missed);
     copy_4(sensor->registers, registers);
     sensor->is_new = true;
     sensor->unit = sensor->bytes[ADDRESS];
@@ -73,25 +61,31 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
 fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
                                          const fathom_hps167s_auto_config_t *config)
 {
-    if (config->line == NULL || config->address > FATHOM_HPS167S_MAX_ADDRESS ||
-        fathom_hps167s_set_limits(&sensor->limits, &config->limits) < 0)
-        return FATHOM_ERR_ARGUMENT;
+    if (config->line == NULL || config->address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
+    clear(sensor, sizeof *sensor);
     sensor->listener.receive = receive;
-    sensor->listener.gap_us = 0;
     sensor->line = config->line;
-    sensor->asking = config->asking;
-    sensor->stale_us = config->stale_us != 0 ? config->stale_us : STALE_US;
+    sensor->stale_us = or_default(config->stale_us, STALE_US);
     sensor->left_us = sensor->stale_us;
-    sensor->polled_us = now_us(sensor);
-    sensor->sequence = 0;
-    sensor->implausible = 0;
-    sensor->missed = 0;
-    sensor->address = config->address;
-    if (config->address == 0 && config->asking == NULL) sensor->address = 1;
-    sensor->have = 0;
-    sensor->is_new = false;
+    sensor->polled_us = clock_us(sensor->line->config->clock);
+    sensor->address = config->address != 0 ? config->address : 1;
+    sensor->from = &sensor->address;
     fathom_line_listen(sensor->line, &sensor->listener);
     return FATHOM_READY;
+}
+
+void fathom_hps167s_auto_beside(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *asking)
+{
+    sensor->asking = asking;
+    sensor->heard = fathom_hps167s_heard;
+    sensor->from = &asking->unit.address;
+}
+
+fathom_status_t fathom_hps167s_auto_use_limits(fathom_hps167s_auto_t *sensor, fathom_hps167s_limits_t *limits)
+{
+    const fathom_status_t status = fathom_hps167s_complete_limits(limits);
+    if (status == FATHOM_READY) sensor->limits = limits;
+    return status;
 }
 
 void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor)
@@ -103,15 +97,15 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_auto_t *const sensor = ctx;
     const fathom_status_t port = fathom_line_poll(sensor->line);
-    const uint32_t now = now_us(sensor);
+    const uint32_t now = clock_us(sensor->line->config->clock);
     const bool is_stale = fathom_run_down(&sensor->left_us, fathom_elapsed_us(now, sensor->polled_us));
     sensor->polled_us = now;
     if (sensor->is_new) {
         sensor->is_new = false;
         const fathom_status_t status =
-            fathom_hps167s_decode_within(&sensor->limits, sensor->registers, sample);
+            fathom_hps167s_decode_within(sensor->limits, sensor->registers, sample);
         if (status != FATHOM_READY) {
-            count(&sensor->implausible);
+            count_one(&sensor->implausible);
             return status;
         }
         sensor->left_us = sensor->stale_us;
@@ -132,18 +126,11 @@ static uint32_t due_us(void *ctx)
 {
     const fathom_hps167s_auto_t *const sensor = ctx;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
-    const uint32_t passed_us = fathom_elapsed_us(now_us(sensor), sensor->polled_us);
-    uint32_t stale_us = sensor->left_us;
-    if (sensor->is_new) return 0;
-    fathom_run_down(&stale_us, passed_us);
-    return line_us < stale_us ? line_us : stale_us;
+    const uint32_t passed_us = fathom_elapsed_us(clock_us(sensor->line->config->clock), sensor->polled_us);
+    return sensor->is_new ? 0 : least_us(line_us, rest_us(sensor->left_us, passed_us));
 }
 
 fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)
 {
-    fathom_sensor_t handle;
-    handle.poll = poll;
-    handle.due_us = due_us;
-    handle.ctx = sensor;
-    return handle;
+    return sensor_of(poll, due_us, sensor);
 }

@@ -1,36 +1,56 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/hps167s_settings.h"
 
-#include "fathom/hps167s_info.h"
 #include "hps167s_inside.h"
 
-/* Where the commands are (table 8). */
-enum {
-    FACTORY_RESET = 0x0009, /* a read */
-    WARM_UP = 0x000A,
-    ADDRESS = 0x0010,
-    BAUD = 0x0011,
-    MEASURES = 0x0012,
-    TERMINATION = 0x0013,
-    OFFSET = 0x0014,
-    LOAD = 0x0015,
-    FILTER = 0x0016,
-    RECONNECT = 0x0020 /* two registers */
-};
+/* What #2 tells, what no answer tells, and what goes to all units: in the id of that; no command's address has the bit. */
+enum { TOLD = 0, UNTOLD = 1, TO_ALL = 0x40 };
 
-enum { OFF = 0x0000, ON = 0x00FF, USER = 0x0000, FACTORY = 0x00FF };
-enum { RESET_DONE = 1, RECONNECT_STEP_MS = 18 };
-enum { TO_ALL = 1 }; /* in wanted[1], where settings of one register have 0 */
+/* ---- where it is ---- */
 
-#define FACTORY_BAUD 19200ul
+/* The line settings with another rate, in that half of `moved` which is not in use. */
+static const fathom_line_settings_t *with_baud(fathom_hps167s_t *sensor, uint32_t baud)
+{
+    const fathom_line_settings_t *const old = sensor->unit.settings;
+    fathom_line_settings_t *const there = &sensor->moved[old == &sensor->moved[0] ? 1 : 0];
+    there->baud = baud;
+    there->parity = old->parity;
+    there->stop_bits = old->stop_bits;
+    return there;
+}
+
+/* Changes over to the other place where the device may be. */
+static void change_over(fathom_hps167s_t *sensor)
+{
+    const fathom_line_settings_t *const old = sensor->unit.settings;
+    sensor->unit.settings = sensor->other;
+    sensor->other = old;
+}
+
+static void seek(fathom_hps167s_t *sensor, const fathom_line_settings_t *other)
+{
+    sensor->other = other;
+    sensor->is_seeking = true;
+}
+
+/* The power has come, or a question has ended: does it tell where the device is? No setting begins before that is
+ * known. */
+static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
+{
+    if (status == FATHOM_PENDING && sensor->next_baud != 0) {
+        seek(sensor, with_baud(sensor, sensor->next_baud));
+        sensor->next_baud = 0;
+        change_over(sensor);
+    }
+    if (!sensor->is_seeking) return;
+    if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.exchange.status;
+    if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED)
+        sensor->is_seeking = false;
+    else if (status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM)
+        change_over(sensor);
+}
 
 /* ---- what is read back ---- */
-
-/* What a setting asks about, and of whom. */
-typedef struct {
-    fathom_hps167s_t *sensor;
-    uint16_t command;
-} look_t;
 
 static bool is_at_home(const fathom_modbus_unit_t *unit)
 {
@@ -43,126 +63,108 @@ static bool is_at_home(const fathom_modbus_unit_t *unit)
  */
 static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
 {
-    const bool is_done = sensor->reset_answer == RESET_DONE || !is_at_home(&sensor->unit);
+    const bool is_done = sensor->reset_answer == FATHOM_HPS167S_RESET_DONE || !is_at_home(&sensor->unit);
     const bool is_first = !sensor->is_looked_at;
     sensor->is_looked_at = true;
     if (!is_done && !is_first && sensor->unit.address == 1) return FATHOM_ERR_UNCONFIRMED;
-    *value = is_done ? RESET_DONE : 0;
+    *value = is_done ? FATHOM_HPS167S_RESET_DONE : 0;
     return FATHOM_READY;
 }
 
 static bool is_reset_refused(const fathom_hps167s_t *sensor)
 {
-    return sensor->reset_answer != FATHOM_HPS167S_NO_RESET_ANSWER && sensor->reset_answer != RESET_DONE;
+    return sensor->reset_answer != FATHOM_HPS167S_NO_RESET_ANSWER &&
+           sensor->reset_answer != FATHOM_HPS167S_RESET_DONE;
 }
 
-static bool is_baud_code(uint8_t code) { return code >= 1 && code <= 4; }
-
-/* At which rate is it asked now? For settings of the baud rate, which have line settings. */
-static uint32_t present_baud(const fathom_hps167s_t *sensor)
+/* The code of the rate; one without a rate of its own tells less than where the answer came from. */
+static uint8_t baud_code(const fathom_hps167s_t *sensor)
 {
-    const fathom_line_settings_t *const settings = sensor->unit.settings;
-    return settings != NULL ? settings->baud : sensor->question.settings->baud;
+    const uint8_t code = fathom_hps167s_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE);
+    const bool has_rate = fathom_hps167s_baud_code(fathom_hps167s_baud(code)) == code;
+    return has_rate ? code : fathom_hps167s_baud_code(sensor->unit.settings->baud);
 }
 
-static fathom_status_t look_at(const look_t *look, const fathom_hps167s_configuration_t *is, uint32_t *value)
+/* What the device says of a setting, as it is written. */
+static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *value)
 {
-    switch (look->command) {
-    case WARM_UP:
-        *value = is->warm_up_s;
+    fathom_hps167s_t *const sensor = setting->driver;
+    const uint16_t *const values = sensor->values;
+    const uint8_t command = (uint8_t)setting->write.first;
+    fathom_status_t status;
+    if (command == FATHOM_HPS167S_ADDRESS) {
+        *value = sensor->unit.address;
+        return fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
+    }
+    /* It has said that it was not reset, so it is where it was: nothing is to be asked. */
+    if (command == FATHOM_HPS167S_RESET && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
+    status = fathom_hps167s_read_configuration(sensor);
+    if (status != FATHOM_READY) return status;
+    switch (command) {
+    case FATHOM_HPS167S_WARM_UP:
+        sensor->warm_up_s = fathom_hps167s_byte(values, FATHOM_HPS167S_WARM_UP_BYTE);
+        *value = sensor->warm_up_s;
         break;
-    case BAUD: /* a code without a rate of its own tells less than where the answer came from */
-        *value = is_baud_code(is->baud_code) ? is->baud : present_baud(look->sensor);
+    case FATHOM_HPS167S_BAUD:
+        *value = baud_code(sensor);
         break;
-    case MEASURES:
-        *value = is->measures_after_power_on ? ON : OFF;
+    case FATHOM_HPS167S_MEASURES:
+        *value = fathom_hps167s_byte(values, FATHOM_HPS167S_MEASURES_BYTE);
         break;
-    case TERMINATION:
-        *value = is->termination ? ON : OFF;
+    case FATHOM_HPS167S_TERMINATION:
+        *value = fathom_hps167s_byte(values, FATHOM_HPS167S_TERMINATION_BYTE);
         break;
-    case RECONNECT:
-        *value = is->reconnect_time_ms;
+    case FATHOM_HPS167S_RECONNECT:
+        *value = fathom_hps167s_told_reconnect_time_ms(values, sensor->low_word_first);
         break;
     default:
-        return look_for_reset(look->sensor, value);
+        status = look_for_reset(sensor, value);
     }
-    return FATHOM_READY;
-}
-
-static fathom_status_t look(void *driver, uint32_t *value)
-{
-    const look_t *const wanted = driver;
-    fathom_hps167s_t *const sensor = wanted->sensor;
-    fathom_hps167s_configuration_t configuration;
-    fathom_hps167s_version_t version;
-    /* It has said that it was not reset, so it is where it was: nothing is to be asked. */
-    if (wanted->command == FACTORY_RESET && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
-    *value = sensor->unit.address;
-    if (wanted->command == ADDRESS) return fathom_hps167s_interface_version(sensor, &version);
-    const fathom_status_t status = fathom_hps167s_configuration(sensor, &configuration);
-    return status == FATHOM_READY ? look_at(wanted, &configuration, value) : status;
+    return status;
 }
 
 /* ---- what is set ---- */
 
-static void begin(fathom_hps167s_t *sensor, uint16_t command, fathom_modbus_question_t *write, look_t *wanted,
-                  fathom_modbus_setting_t *setting)
-{
-    fathom_hps167s_describe(sensor, command, write);
-    write->values = sensor->wanted;
-    write->count = 1;
-    write->retries = 0;
-    write->function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
-    wanted->sensor = sensor;
-    wanted->command = command;
-    setting->read = look;
-    setting->driver = wanted;
-    setting->write = write;
-    setting->settings = NULL;
-    setting->address = 0;
-}
-
 /*
- * May the setting go on, or begin? Then, where it is not known at which rate the device is, or where nothing else would
- * be read, with one question that changes nothing.
+ * FATHOM_READY: sensor->setting is this setting and may go on, or begin; the caller adds what is its own. Where it is
+ * not known at which rate the device is, or where nothing else would be read, that takes a question that changes
+ * nothing.
  */
-static fathom_status_t prepare(fathom_hps167s_t *sensor, const fathom_modbus_setting_t *setting,
-                               uint16_t first, uint16_t second)
+static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t value, uint8_t kind)
 {
-    const uint16_t under_way = sensor->unit.setting;
-    uint16_t *const wanted = sensor->wanted;
-    if (under_way != 0) { /* to load the user's settings is not to load the factory's */
-        const bool is_this = under_way == fathom_modbus_unit_name(setting->write);
-        return is_this && wanted[0] == first && wanted[1] == second ? FATHOM_READY : FATHOM_ERR_BUSY;
-    }
-    sensor->unit.is_written = false; /* nor will it be before that is answered */
-    if (!sensor->unit.is_blind && (sensor->is_seeking || setting->read == NULL)) {
-        fathom_hps167s_version_t version;
-        const fathom_status_t status = fathom_hps167s_interface_version(sensor, &version);
+    fathom_modbus_unit_t *const unit = &sensor->unit;
+    fathom_modbus_setting_t *const setting = &sensor->setting;
+    const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
+    fathom_modbus_unit_poll(unit);
+    if (unit->setting != 0) /* to load the user's settings is not to load the factory's */
+        return unit->setting == id && setting->value == value ? FATHOM_READY : FATHOM_ERR_BUSY;
+    unit->is_written = false; /* nor will it be before that is answered */
+    if (!unit->is_blind && (sensor->is_seeking || kind == UNTOLD)) {
+        const fathom_status_t status =
+            fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
         if (status != FATHOM_READY) return status;
     }
-    wanted[0] = first;
-    wanted[1] = second;
+    setting->read = kind == UNTOLD ? NULL : look;
+    setting->driver = sensor;
+    setting->value = value;
+    setting->settings = NULL;
+    setting->address = 0;
+    setting->write.first = command;
+    setting->write.last = (uint16_t)value;
+    setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    setting->write.id = id;
     return FATHOM_READY;
 }
 
-static fathom_status_t set(fathom_hps167s_t *sensor, const fathom_modbus_setting_t *setting, uint16_t first,
-                           uint16_t second)
+static fathom_status_t go_on(fathom_hps167s_t *sensor)
 {
-    const fathom_status_t status = prepare(sensor, setting, first, second);
-    return status == FATHOM_READY ? fathom_modbus_set(&sensor->unit, setting) : status;
+    return fathom_modbus_set(&sensor->unit, &sensor->setting);
 }
 
-/* A register with a value that #2 tells, or that nobody tells. */
-static fathom_status_t set_register(fathom_hps167s_t *sensor, uint16_t command, uint16_t value, bool is_told)
+static fathom_status_t set(fathom_hps167s_t *sensor, uint8_t command, uint16_t value, uint8_t kind)
 {
-    fathom_modbus_question_t write;
-    fathom_modbus_setting_t setting;
-    look_t wanted;
-    begin(sensor, command, &write, &wanted, &setting);
-    if (!is_told) setting.read = NULL;
-    setting.value = value;
-    return set(sensor, &setting, value, 0);
+    const fathom_status_t status = begin(sensor, command, value, kind);
+    return status == FATHOM_READY ? go_on(sensor) : status;
 }
 
 fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor)
@@ -174,75 +176,67 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor) { return sensor->
 
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s)
 {
-    const fathom_status_t status = set_register(sensor, WARM_UP, warm_up_s, true);
-    if (status == FATHOM_READY) fathom_hps167s_expect_warm_up(sensor, warm_up_s);
-    return status;
+    return set(sensor, FATHOM_HPS167S_WARM_UP, warm_up_s, TOLD);
 }
+
+static uint16_t switch_of(bool is_on) { return is_on ? FATHOM_HPS167S_ON : FATHOM_HPS167S_OFF; }
 
 fathom_status_t fathom_hps167s_set_measures_after_power_on(fathom_hps167s_t *sensor, bool measures)
 {
-    return set_register(sensor, MEASURES, measures ? ON : OFF, true);
+    return set(sensor, FATHOM_HPS167S_MEASURES, switch_of(measures), TOLD);
 }
 
 fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool termination)
 {
-    return set_register(sensor, TERMINATION, termination ? ON : OFF, true);
+    return set(sensor, FATHOM_HPS167S_TERMINATION, switch_of(termination), TOLD);
 }
 
 fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
 {
     /* it may add to the offset that is there, so that none is ever written twice */
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
-    return set_register(sensor, OFFSET, (uint16_t)offset_mm, false);
+    return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, UNTOLD);
 }
 
 fathom_status_t fathom_hps167s_load_user_settings(fathom_hps167s_t *sensor)
 {
-    return set_register(sensor, LOAD, USER, false);
+    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_USER, UNTOLD);
 }
 
 fathom_status_t fathom_hps167s_load_factory_settings(fathom_hps167s_t *sensor)
 {
-    return set_register(sensor, LOAD, FACTORY, false);
+    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_FACTORY, UNTOLD);
 }
 
 fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, int16_t sensitivity)
 {
-    return set_register(sensor, FILTER, (uint16_t)sensitivity, false);
+    return set(sensor, FATHOM_HPS167S_FILTER, (uint16_t)sensitivity, UNTOLD);
 }
 
 fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, uint32_t reconnect_time_ms)
 {
-    const uint16_t above = (uint16_t)(reconnect_time_ms >> 16);
-    const uint16_t below = (uint16_t)reconnect_time_ms;
-    fathom_modbus_question_t write;
-    fathom_modbus_setting_t setting;
-    look_t wanted;
-    if (reconnect_time_ms % RECONNECT_STEP_MS != 0) return FATHOM_ERR_ARGUMENT;
-    begin(sensor, RECONNECT, &write, &wanted, &setting);
-    write.function = FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS;
-    write.count = 2;
-    setting.value = reconnect_time_ms;
-    return sensor->low_word_first ? set(sensor, &setting, below, above) : set(sensor, &setting, above, below);
+    fathom_modbus_question_t *const write = &sensor->setting.write;
+    if (reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS != 0) return FATHOM_ERR_ARGUMENT;
+    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, TOLD);
+    if (status != FATHOM_READY) return status;
+    fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
+    write->values = sensor->words;
+    write->last = FATHOM_HPS167S_RECONNECT_COUNT;
+    write->function = FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS;
+    return go_on(sensor);
 }
 
 /* ---- to all units ---- */
 
-static fathom_status_t set_all(fathom_hps167s_t *sensor, uint16_t command, bool is_on)
+static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool is_on)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
     const uint8_t home = unit->address;
-    const uint16_t value = is_on ? ON : OFF;
-    fathom_modbus_question_t write;
-    fathom_modbus_setting_t setting;
-    look_t wanted;
-    begin(sensor, command, &write, &wanted, &setting);
-    setting.value = value;
     if (unit->setting == 0) unit->is_blind = true;
-    fathom_status_t status = prepare(sensor, &setting, value, TO_ALL);
+    fathom_status_t status = begin(sensor, command, switch_of(is_on), TO_ALL);
     if (status != FATHOM_READY) return status;
     unit->address = FATHOM_MODBUS_BROADCAST;
-    status = fathom_modbus_set(unit, &setting);
+    status = go_on(sensor);
     unit->address = home;
     unit->home_address = home;
     unit->given = 0; /* sent is not acknowledged */
@@ -252,94 +246,77 @@ static fathom_status_t set_all(fathom_hps167s_t *sensor, uint16_t command, bool 
 fathom_status_t fathom_hps167s_set_measures_after_power_on_of_all_units(fathom_hps167s_t *sensor,
                                                                         bool measures)
 {
-    return set_all(sensor, MEASURES, measures);
+    return set_all(sensor, FATHOM_HPS167S_MEASURES, measures);
 }
 
 fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *sensor, bool termination)
 {
-    return set_all(sensor, TERMINATION, termination);
+    return set_all(sensor, FATHOM_HPS167S_TERMINATION, termination);
 }
 
 /* ---- what moves the device ---- */
 
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
 {
-    fathom_modbus_question_t write;
-    fathom_modbus_setting_t setting;
-    look_t wanted;
     if (address == 0 || address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
-    begin(sensor, ADDRESS, &write, &wanted, &setting);
-    setting.value = address;
-    setting.address = address;
-    return set(sensor, &setting, address, 0);
+    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, TOLD);
+    if (status != FATHOM_READY) return status;
+    sensor->setting.address = address;
+    return go_on(sensor);
 }
 
-/* The code of #9; 0: there is none for this rate. */
-static uint16_t code_of(uint32_t baud)
+/* The setting also moves the device to this rate, where it has another one; the address is for looking there first.
+ * Said again while that is under way, it comes to the same. */
+static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t address)
 {
-    if (baud == 19200ul) return 1;
-    if (baud == 57600ul) return 2;
-    if (baud == 115200ul) return 3;
-    return baud == 230400ul ? 4 : 0;
+    const fathom_line_settings_t *const is = sensor->unit.settings;
+    if (is == NULL || is->baud == baud) return;
+    sensor->setting.settings = with_baud(sensor, baud);
+    sensor->setting.address = address;
 }
 
 /* The device has been told to be at this rate: is it, or will it be? */
 static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
-    const fathom_line_settings_t *const here = fathom_hps167s_here(sensor);
-    sensor->next_baud = here != NULL && here->baud != baud ? baud : 0;
+    const fathom_line_settings_t *const is = sensor->unit.settings;
+    sensor->next_baud = is != NULL && is->baud != baud ? baud : 0;
+    sensor->follow = follow;
 }
 
 fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
-    const uint16_t code = code_of(baud);
-    fathom_modbus_question_t write;
-    fathom_modbus_setting_t setting;
-    look_t wanted;
-    if (code == 0 || sensor->question.settings == NULL) return FATHOM_ERR_ARGUMENT;
-    begin(sensor, BAUD, &write, &wanted, &setting);
-    setting.value = baud;
-    fathom_status_t status = prepare(sensor, &setting, code, 0);
+    const uint8_t code = fathom_hps167s_baud_code(baud);
+    if (code == 0 || sensor->unit.settings == NULL) return FATHOM_ERR_ARGUMENT;
+    fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, TOLD);
     if (status != FATHOM_READY) return status;
-    if (fathom_hps167s_here(sensor)->baud != baud) {
-        setting.settings = fathom_hps167s_with_baud(sensor, baud);
-        setting.address = sensor->unit.address; /* so that it is looked there first */
-    }
-    status = fathom_modbus_set(&sensor->unit, &setting);
+    move_to_baud(sensor, baud, sensor->unit.address);
+    status = go_on(sensor);
     if (status == FATHOM_READY) expect_baud(sensor, baud);
-    if (status == FATHOM_ERR_UNCONFIRMED && setting.settings != NULL) {
-        sensor->other = setting.settings;
-        sensor->is_seeking = true;
+    if (status == FATHOM_ERR_UNCONFIRMED && sensor->setting.settings != NULL) {
+        seek(sensor, sensor->setting.settings);
+        sensor->follow = follow;
     }
     return status;
 }
 
 fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor)
 {
-    const fathom_modbus_unit_t *const unit = &sensor->unit;
-    fathom_modbus_question_t write;
-    fathom_modbus_setting_t setting;
-    look_t wanted;
+    fathom_modbus_setting_t *const setting = &sensor->setting;
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
-    begin(sensor, FACTORY_RESET, &write, &wanted, &setting);
-    write.function = 0;
-    write.values = &sensor->reset_answer;
-    setting.value = RESET_DONE;
-    fathom_status_t status = prepare(sensor, &setting, 0, 0);
+    fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, TOLD);
     if (status != FATHOM_READY) return status;
-    const bool begins = unit->setting == 0;
-    const fathom_line_settings_t *const here = fathom_hps167s_here(sensor);
-    if (here != NULL && here->baud != FACTORY_BAUD)
-        setting.settings = fathom_hps167s_with_baud(sensor, FACTORY_BAUD);
-    if ((begins ? unit->address : unit->home_address) != 1 || setting.settings != NULL) setting.address = 1;
-    if (begins) {
+    if (sensor->unit.setting == 0) {
+        move_to_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD, 1);
+        if (sensor->unit.address != 1) setting->address = 1;
+        setting->write.values = &sensor->reset_answer;
+        setting->write.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
         sensor->reset_answer = FATHOM_HPS167S_NO_RESET_ANSWER;
         sensor->is_looked_at = false;
     }
-    status = fathom_modbus_set(&sensor->unit, &setting);
+    status = go_on(sensor);
     if (status == FATHOM_READY) {
-        expect_baud(sensor, FACTORY_BAUD);
-        fathom_hps167s_expect_warm_up(sensor, FATHOM_HPS167S_FACTORY_WARM_UP_S);
+        expect_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD);
+        sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
     }
     return status == FATHOM_ERR_UNCONFIRMED && is_reset_refused(sensor) ? FATHOM_ERR_EXCEPTION : status;
 }

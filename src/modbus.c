@@ -22,6 +22,7 @@ fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
     modbus.cancel_unit = cancel_unit;
     modbus.poll = poll;
     modbus.due_us = due_us;
+    modbus.clock = line->config->clock;
     modbus.ctx = line;
     return modbus;
 }

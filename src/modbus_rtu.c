@@ -112,48 +112,52 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
     return seal(frame, at);
 }
 
+static bool is_alike(const uint8_t *a, const uint8_t *b, uint8_t count)
+{
+    for (; count != 0; count--)
+        if (*a++ != *b++) return false;
+    return true;
+}
+
 uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
 {
     if (have <= SIZE) return SIZE + 1;
     const uint8_t function = bytes[FUNCTION] & (uint8_t)~EXCEPTION;
-    const bool is_write = function == WRITE || function == WRITE_MANY;
-    if (function != READ && !is_write) return 0;
-    if (function != bytes[FUNCTION]) return EXCEPTION_LENGTH;
-    if (is_write) return FIXED_LENGTH;
     const uint8_t size = bytes[SIZE];
-    const bool is_even = (size & 1) == 0;
-    return is_even && size != 0 && size <= 2 * FATHOM_MODBUS_MAX_READ ? (uint8_t)(size + READ_OVERHEAD) : 0;
+    uint8_t length = FIXED_LENGTH;
+    if (function == READ) {
+        const bool is_size = (size & 1) == 0 && (uint8_t)(size - 1) < 2 * FATHOM_MODBUS_MAX_READ;
+        length = is_size ? (uint8_t)(size + READ_OVERHEAD) : 0;
+    } else if (function != WRITE && function != WRITE_MANY) {
+        return 0;
+    }
+    return function == bytes[FUNCTION] ? length : EXCEPTION_LENGTH;
 }
 
-uint8_t fathom_modbus_rtu_begun_request(const fathom_modbus_message_t *message, const uint8_t *bytes,
-                                        uint8_t have)
+bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const uint8_t *bytes, uint8_t have)
 {
-    const uint8_t *const head = message->head;
-    const bool has_values = head[FUNCTION] == WRITE_MANY;
-    const uint8_t size = (uint8_t)(2 * head[COUNT]);
-    for (uint8_t i = 0; i != have && i != HEAD; i++)
-        if (bytes[i] != head[i]) return 0;
-    if (!has_values) return FIXED_LENGTH;
-    return have <= HEAD || bytes[HEAD] == size ? (uint8_t)(size + WRITE_MANY_OVERHEAD) : 0;
+    return is_alike(bytes, message->head, have < HEAD ? have : HEAD);
 }
 
 fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *message, const uint8_t *frame)
 {
-    const uint8_t *const head = message->head;
-    const bool is_read = head[FUNCTION] == READ;
+    uint8_t *const head = message->head;
+    const uint8_t function = head[FUNCTION];
     if (frame[UNIT] != head[UNIT] && head[UNIT] != FATHOM_MODBUS_ANY_UNIT) return FATHOM_PENDING;
-    if (frame[FUNCTION] == (head[FUNCTION] | EXCEPTION)) {
+    if (frame[FUNCTION] == (function | EXCEPTION)) {
         message->exception = frame[SIZE];
         return FATHOM_ERR_EXCEPTION;
     }
-    /* A write is acknowledged with its own head; a read's answer shares the function alone. */
-    for (uint8_t i = is_read ? FUNCTION : HEAD - 1; i != UNIT; i--)
-        if (frame[i] != head[i]) return FATHOM_ERR_MALFORMED;
-    if (is_read) {
-        if (frame[SIZE] != 2 * head[COUNT]) return FATHOM_ERR_MALFORMED;
-        get_values(message->values, frame + SIZE + 1, head[COUNT]);
+    if (frame[FUNCTION] != function) return FATHOM_ERR_MALFORMED;
+    if (function != READ) {
+        /* A write is acknowledged with its own head. */
+        if (!is_alike(frame + FIRST, head + FIRST, HEAD - FIRST)) return FATHOM_ERR_MALFORMED;
+    } else {
+        const uint8_t count = head[COUNT];
+        if (frame[SIZE] != 2 * count) return FATHOM_ERR_MALFORMED;
+        get_values(message->values, frame + SIZE + 1, count);
     }
-    message->head[UNIT] = frame[UNIT];
+    head[UNIT] = frame[UNIT];
     return FATHOM_READY;
 }
 

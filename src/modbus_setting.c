@@ -2,7 +2,7 @@
 #include "fathom/modbus_setting.h"
 
 enum { LOOK = 0, LOOK_THERE = 1, WRITE = 2, CONFIRM_THERE = 3, CONFIRM_HERE = 4, WRITE_UNSEEN = 5, STEP = 7 };
-enum { INSIDE = FATHOM_MODBUS_UNIT_INSIDE };
+enum { INSIDE = FATHOM_MODBUS_UNIT_INSIDE, ONCE = FATHOM_MODBUS_UNIT_ONCE };
 
 static void go_there(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
@@ -16,7 +16,7 @@ static void go_home(fathom_modbus_unit_t *unit)
     unit->settings = unit->home_settings;
 }
 
-/* Two settings whose registers are equal modulo 16 share one: then one is written without need, once. */
+/* Two settings whose ids are equal modulo 16 share one: then one is written without need, once. */
 static uint16_t doubt_of(const fathom_modbus_unit_t *unit) { return (uint16_t)(1u << (unit->setting & 15)); }
 
 static bool moves(const fathom_modbus_setting_t *setting)
@@ -120,23 +120,21 @@ fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
 
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
-    const uint16_t name = fathom_modbus_unit_name(setting->write);
     fathom_status_t status;
     if (unit->setting == 0) {
-        unit->setting = name;
+        unit->setting = setting->write.id;
         unit->is_written = false;
         unit->step = setting->read != NULL && !unit->is_blind ? LOOK : WRITE_UNSEEN;
         unit->home_address = unit->address;
         unit->home_settings = unit->settings;
-    } else if (unit->setting != name) {
+    } else if (unit->setting != setting->write.id) {
         return FATHOM_ERR_BUSY;
     }
     do {
         const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == WRITE_UNSEEN;
         uint32_t value = 0;
-        unit->step |= INSIDE;
-        status =
-            is_write ? fathom_modbus_unit_ask(unit, setting->write) : setting->read(setting->driver, &value);
+        unit->step = (uint8_t)(unit->step | (is_write ? INSIDE | ONCE : INSIDE));
+        status = is_write ? fathom_modbus_unit_ask(unit, &setting->write) : setting->read(setting, &value);
         unit->step &= STEP;
         if (status == FATHOM_PENDING) return status;
         status = go_on(unit, setting, status, value);

@@ -63,7 +63,8 @@ static bool begin_ear(ear_t *ear)
     ear->config.clock = &fathom_avr_clock;
     ear->config.frame = ear->frame;
     ear->config.frame_size = sizeof ear->frame;
-    return fathom_line_init(&ear->line, &ear->config) == FATHOM_READY;
+    ear->config.marks = fathom_line_marks;
+    return fathom_line_init_listening(&ear->line, &ear->config) == FATHOM_READY;
 }
 
 static void turn_to(uint8_t next)

@@ -43,9 +43,10 @@ static bool begin(void)
     const bool is_ready = fathom_avr_usart0_begin(&usart);
     sei();
     return is_ready &&
-           fathom_a16_pwm_init(&tank, &(fathom_a16_pwm_config_t){.clock = &fathom_avr_clock,
-                                                                 .capture = &capture,
-                                                                 .trigger = &trigger}) == FATHOM_READY;
+           fathom_a16_pwm_init(&tank, &(fathom_a16_pwm_config_t){
+                                          .pulse = {.clock = &fathom_avr_clock,
+                                                    .capture = &capture,
+                                                    .trigger = fathom_output_pin(&trigger)}}) == FATHOM_READY;
 }
 
 /* Nobody talks to it; but a byte of noise that nobody takes would keep it awake. */

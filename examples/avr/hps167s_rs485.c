@@ -43,6 +43,7 @@ static const fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
                                                  .frame = frame,
                                                  .frame_size = sizeof frame,
                                                  .echo = FATHOM_LINE_ECHO_OFF,
+                                                 .marks = fathom_line_marks,
                                                  .silence_us = FATHOM_T3_5_US(BAUD, CHARACTER_BITS)};
 static const fathom_debounce_config_t rule = {.threshold_mm = 1500, .near_count = 3, .far_count = 5};
 
@@ -65,7 +66,7 @@ static bool begin(void)
     if (fathom_line_init(&line, &line_config) != FATHOM_READY) return false;
     modbus = fathom_modbus_client(&line);
     /* One retry: a single hit on the wire is no error yet. */
-    const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &fathom_avr_clock, .retries = 1};
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus, .modbus.retries = 1};
     if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) return false;
     fathom_hps167s_power_on(&gate); /* it gets its supply together with this board */
     return fathom_debounce_init(&level, &rule) == FATHOM_READY;

@@ -246,8 +246,8 @@ static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
     if (is_code)
         (void)fprintf(to, "%u (%X) is refused", raw, raw);
     else
-        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw, answer->window.min_mm,
-                      answer->window.max_mm);
+        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw,
+                      answer->window.min_mm != 0 ? answer->window.min_mm : 1u, answer->window.max_mm);
     if (failure->is_whole)
         (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
     if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
@@ -310,7 +310,7 @@ void advice_print(FILE *to, const failure_t *failure)
             print_values(to, failure);
         break;
     case FATHOM_ERR_EXCEPTION: {
-        const uint8_t number = failure->reader->unit->request.message.exception;
+        const uint8_t number = fathom_modbus_unit_exception(failure->reader->unit);
         const exception_t text = exception_text(number);
         (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, number, text.name,
                       text.meaning);

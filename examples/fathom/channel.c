@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "fathom/hps167s_registers.h"
 #include "tcp_address.h"
 
 /* What the line has to know of a serial port, ... */
@@ -11,7 +12,8 @@ static void suit_serial(channel_t *channel, const fathom_line_settings_t *settin
 {
     const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
     /* An HPS-167S may move to 19200 baud, by its reset too: the slowest rate that is used counts (line.h). */
-    const uint32_t baud = settings->baud > 19200 ? 19200 : settings->baud;
+    const uint32_t baud =
+        settings->baud > FATHOM_HPS167S_FACTORY_BAUD ? FATHOM_HPS167S_FACTORY_BAUD : settings->baud;
     channel->config.silence_us = FATHOM_T3_5_US(baud, bits);
     channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
     channel->config.echo = channel->echo;
@@ -50,8 +52,13 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
     channel->config.clock = &channel->clock;
     channel->config.frame = channel->frame;
     channel->config.frame_size = sizeof channel->frame;
+    channel->config.find_echo = fathom_line_find_echo;
+    channel->config.marks = fathom_line_marks;
+    channel->config.count = fathom_line_count;
+    channel->config.counters = channel->counters;
     (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
-    channel->modbus = fathom_modbus_client(&channel->line);
+    channel->modbus = fathom_modbus_client_with_zero(&channel->line);
+    channel->dyp = fathom_dyp_client(&channel->line);
     channel->requests = 0;
     channel->moved_us = host->now_us(host->ctx);
     return true;

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "ear.h"
+#include "fathom/dyp_client.h"
 #include "fathom/line.h"
 #include "fathom/modbus_client.h"
 #include "host.h"
@@ -23,8 +24,10 @@ typedef struct {
     fathom_clock_t clock;
     ear_t ear; /* between uart and port */
     fathom_line_config_t config;
+    uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_t line;
     fathom_modbus_t modbus;
+    fathom_modbus_t dyp;
     uint8_t echo; /* fathom_line_config_t.echo; to be set before it is opened */
     uint8_t frame[255];
 } channel_t;

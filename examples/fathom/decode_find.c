@@ -7,6 +7,7 @@
 #include "fathom/crc16.h"
 #include "fathom/dyp_frame.h"
 #include "fathom/dyp_protocol.h"
+#include "fathom/hps167s_registers.h"
 #include "fathom/modbus_rtu.h"
 
 /*
@@ -85,8 +86,8 @@ static bool is_ours(uint8_t function)
 
 /* With a wrong CRC only what these sensors could send passes for a frame; else noise would be full of them. */
 enum {
-    MOST_REGISTERS = 11, /* HPS-167S #3 */
-    LAST_PAGE = 0x02     /* no register is beyond 0x0207 */
+    MOST_REGISTERS = FATHOM_HPS167S_MAX_REGISTERS,
+    LAST_PAGE = 0x02 /* no register is beyond 0x0207 */
 };
 
 static bool is_likely_answer(const uint8_t *bytes)

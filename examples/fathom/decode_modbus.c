@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "fathom/crc16.h"
+#include "fathom/hps167s_registers.h"
 #include "fathom/modbus_rtu.h"
 
 enum { UNIT = 0, FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 4, HEAD = 6, EVERYBODY = 0xFF };
@@ -102,7 +103,7 @@ static void decode_checksum(decode_frame_t *frame)
 
 static void decode_meanings(decode_frame_t *frame, const decode_context_t *context, const uint8_t *request)
 {
-    const bool is_wide = frame->unit > 32; /* the highest address of an HPS-167S (2.2.1) */
+    const bool is_wide = frame->unit > FATHOM_HPS167S_MAX_ADDRESS;
     if ((context->sensors & DECODE_A16) != 0) decode_a16(frame, request);
     if ((context->sensors & DECODE_A05) != 0) decode_a05(frame, request);
     if ((context->sensors & DECODE_HPS167S) != 0 && (!is_wide || context->sensors == DECODE_HPS167S))

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "devices.h"
 
+#include "fathom/hps167s_registers.h"
+
 static void make_a16(device_t *device, const device_settings_t *settings, uint8_t mode)
 {
     const uint32_t *const traits = settings->traits;
@@ -63,15 +65,6 @@ void device_a05_dyp(device_t *device, const device_settings_t *settings)
     make_a05(device, settings, FATHOM_SIM_A05_DYP);
 }
 
-/* As command #9 counts them; 0: the default. */
-static uint8_t baud_code(uint32_t baud)
-{
-    static const uint32_t rates[] = {19200, 57600, 115200, 230400};
-    for (uint8_t i = 0; i != sizeof rates / sizeof rates[0]; i++)
-        if (rates[i] == baud) return (uint8_t)(i + 1);
-    return 0;
-}
-
 static uint8_t warm_up_says(const uint32_t *traits)
 {
     if (traits[DEVICE_WARM_UP_ABNORMAL] != 0) return FATHOM_SIM_HPS167S_ABNORMAL;
@@ -83,7 +76,7 @@ void device_hps167s(device_t *device, const device_settings_t *settings)
     const uint32_t *const traits = settings->traits;
     const fathom_sim_hps167s_config_t config = {
         .unit = settings->address,
-        .baud_code = baud_code(settings->baud),
+        .baud_code = fathom_hps167s_baud_code(settings->baud),
         .warm_up_s = (uint8_t)traits[DEVICE_WARM_UP],
         .warm_up_says = warm_up_says(traits),
         .wrong_length = traits[DEVICE_COUNT_EXCEPTION] != 0 ? FATHOM_MODBUS_ILLEGAL_DATA_VALUE : 0,

@@ -59,6 +59,12 @@ static int ear_set_break(void *ctx, bool on)
     return ear->inner.set_break(ear->inner.ctx, on);
 }
 
+static uint32_t ear_leaves_in_us(void *ctx)
+{
+    ear_t *const ear = ctx;
+    return ear->inner.leaves_in_us(ear->inner.ctx);
+}
+
 void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
 {
     ear->inner = *uart;
@@ -71,6 +77,7 @@ void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
     uart->sent = ear_sent;
     if (uart->set_line != NULL) uart->set_line = ear_set_line;
     if (uart->set_break != NULL) uart->set_break = ear_set_break;
+    if (uart->leaves_in_us != NULL) uart->leaves_in_us = ear_leaves_in_us;
     uart->ctx = ear;
 }
 

@@ -22,7 +22,7 @@ static bool begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_
     reader->sensor = sensor;
     reader->stream = &base->stream;
     reader->values = base->answer.values;
-    reader->value_count = (uint8_t)(base->stream_config.length / 2 - 1);
+    reader->value_count = (uint8_t)(base->stream.length / 2 - 1);
     reader->answer = &base->answer;
     reader->sequence = &base->answer.sequence;
     return true;
@@ -36,7 +36,7 @@ static bool begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sens
     reader->is_paced = true;
     reader->unit = &base->unit;
     reader->values = base->answer.values;
-    reader->value_count = base->question.count;
+    reader->value_count = (uint8_t)base->question.last;
     reader->answer = &base->answer;
     reader->sequence = &base->answer.sequence;
     return true;
@@ -77,6 +77,7 @@ bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_se
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
     const fathom_a16_controlled_config_t config = {
         .line = &channel->line,
+        .trigger = fathom_output_line_break(&channel->line),
         .period_us = settings->period_us,
         .gap_us = CHANNEL_STREAM_GAP_US,
         .window = settings->window,
@@ -93,20 +94,28 @@ bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_se
     return true;
 }
 
+/* What all that are asked have in common. Address 0 is the driver's to refuse, where the device cannot be there. */
+static fathom_modbus_config_t asked(const channel_t *channel, const reader_settings_t *settings,
+                                    const fathom_modbus_t *transport)
+{
+    return (fathom_modbus_config_t){
+        .transport = transport,
+        .settings = line_of(channel, settings),
+        .period_us = settings->period_us,
+        .timeout_us = settings->timeout_us,
+        .backoff_us = settings->backoff_us,
+        .address = settings->address,
+        .address_zero = settings->address == 0,
+        .retries = settings->retries,
+    };
+}
+
 bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
     const fathom_a16_modbus_config_t config = {
-        .modbus = &channel->modbus,
-        .clock = &channel->clock,
-        .period_us = settings->period_us,
-        .timeout_us = settings->timeout_us,
-        .address = settings->address,
-        .address_zero = settings->address == 0,
-        .retries = settings->retries,
-        .backoff_us = settings->backoff_us,
+        .modbus = asked(channel, settings, &channel->modbus),
         .window = settings->window,
-        .settings = line_of(channel, settings),
     };
     begin(reader, channel);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
@@ -117,17 +126,9 @@ bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settin
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
     const fathom_a05_modbus_config_t config = {
-        .modbus = &channel->modbus,
-        .clock = &channel->clock,
-        .period_us = settings->period_us,
-        .timeout_us = settings->timeout_us,
-        .address = settings->address,
-        .address_zero = settings->address == 0,
-        .retries = settings->retries,
-        .backoff_us = settings->backoff_us,
+        .modbus = asked(channel, settings, &channel->modbus),
         .window = settings->window,
         .probes = settings->probes,
-        .settings = line_of(channel, settings),
     };
     begin(reader, channel);
     return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
@@ -138,15 +139,9 @@ bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_
 {
     fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
     const fathom_a05_dyp_config_t config = {
-        .line = &channel->line,
-        .period_us = settings->period_us,
-        .timeout_us = settings->timeout_us,
-        .address = settings->address,
-        .retries = settings->retries,
-        .backoff_us = settings->backoff_us,
+        .modbus = asked(channel, settings, &channel->dyp),
         .window = settings->window,
         .probes = settings->probes,
-        .settings = line_of(channel, settings),
     };
     begin(reader, channel);
     return fathom_a05_dyp_init(driver, &config) == FATHOM_READY &&
@@ -157,14 +152,7 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
 {
     fathom_hps167s_t *const driver = &reader->driver.hps167s;
     const fathom_hps167s_config_t config = {
-        .modbus = &channel->modbus,
-        .clock = &channel->clock,
-        .period_us = settings->period_us,
-        .timeout_us = settings->timeout_us,
-        .address = settings->address,
-        .retries = settings->retries,
-        .backoff_us = settings->backoff_us,
-        .settings = line_of(channel, settings),
+        .modbus = asked(channel, settings, &channel->modbus),
     };
     begin(reader, channel);
     if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
@@ -173,8 +161,8 @@ bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_
     reader->is_paced = true;
     reader->unit = &driver->unit;
     reader->sequence = &driver->sequence;
-    reader->values = driver->values;
-    reader->value_count = driver->question.count;
+    reader->values = driver->answer;
+    reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
     return true;
 }
 

@@ -13,6 +13,7 @@
 #include "fathom/a16_controlled.h"
 #include "fathom/a16_modbus.h"
 #include "fathom/hps167s.h"
+#include "fathom/line_pins.h"
 
 /* What the user may set; 0: the driver's default. */
 typedef struct {

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "fathom/dyp_client.h"
+#include "fathom/hps167s_registers.h"
 #include "fathom/modbus_client.h"
 
-enum { RESET_REGISTER = 0x0009 };
 enum { SET_LINE_POLL_US = 1000 };
 
 bool scan_is_answered(fathom_status_t status)
@@ -55,7 +55,7 @@ static bool is_harmless(const scan_question_t *question)
     enum { FIRST_OF_DYP = 0x0100 };
     const bool is_to_all =
         question->address == FATHOM_LINE_ALL_UNITS && (question->is_dyp || question->first < FIRST_OF_DYP);
-    return question->first != RESET_REGISTER && question->count <= SCAN_REGISTERS && !is_to_all;
+    return question->first != FATHOM_HPS167S_RESET && question->count <= SCAN_REGISTERS && !is_to_all;
 }
 
 static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *request)
@@ -81,8 +81,9 @@ void scan_ask(const scan_wire_t *wire, const scan_question_t *question, scan_ans
     fathom_modbus_read_holding_registers(&request.message, question->address, question->first,
                                          question->count, answer->values);
     ear_forget(wire->ear);
+    const fathom_modbus_t modbus = fathom_modbus_client_with_zero(wire->line);
     answer->status = question->is_dyp ? fathom_dyp_client_submit(wire->line, &request)
-                                      : fathom_modbus_client_submit(wire->line, &request);
+                                      : modbus.submit(modbus.ctx, &request);
     if (answer->status == FATHOM_PENDING) answer->status = wait_for_answer(wire, &request);
     answer->address = request.message.head[0];
     if (scan_is_answered(answer->status) && question->linger_us != 0) {

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
-#include "fathom/sample.h"
+#include "fathom/hps167s_registers.h"
 
 /* What a scan finds. */
 typedef enum {
@@ -38,8 +38,8 @@ typedef struct {
     bool has_config;
     bool has_details;
     bool has_termination; /* with has_config: the resistor is on */
-    uint8_t interface[6]; /* year, month, day, major, minor, revision */
-    uint8_t details[22];  /* ACK, UUID (16), year, month, day, major, minor */
+    fathom_hps167s_version_t interface;
+    fathom_hps167s_details_t details;
 } scan_finding_t;
 
 #endif

@@ -3,12 +3,13 @@
 
 #include <string.h>
 
-#include "fathom/hps167s.h"
+#include "fathom/hps167s_registers.h"
 #include "scan_plan.h"
 
-/* HPS-167S #1 to #3, and #5 */
-enum { VERSION = 0x0001, CONFIGURATION = 0x0002, DETAILS = 0x0003, MEASUREMENT = 0x0008 };
-enum { VERSION_COUNT = 3, DETAILS_COUNT = 11, ACK = 0xB0, FOUR_REGISTERS = 8 };
+/* Registers of #2 and of #5, whose answers have one shape. */
+enum { FOUR = FATHOM_HPS167S_CONFIGURATION_COUNT };
+
+enum { NEXT_CENTURY = 2100 };
 
 /* A16 6(3), A05 3(3) */
 enum { PROCESSED = 0x0100, REALTIME = 0x0101, FIRST_PROBE = 0x0106, ADDRESS = 0x0200 };
@@ -28,8 +29,8 @@ void scan_first_question(const fathom_line_settings_t *line, uint8_t address, sc
     memset(question, 0, sizeof *question);
     question->line = line;
     question->linger_us = LINGER_US;
-    question->first = may_be_hps167s ? VERSION : ADDRESS;
-    question->count = may_be_hps167s ? VERSION_COUNT : 1;
+    question->first = may_be_hps167s ? FATHOM_HPS167S_VERSION : ADDRESS;
+    question->count = may_be_hps167s ? FATHOM_HPS167S_VERSION_COUNT : 1;
     question->address = address;
 }
 
@@ -62,26 +63,11 @@ static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t time
 
 /* ---- HPS-167S ---- */
 
-/* Registers are pairs of bytes here. */
-static void get_bytes(const uint16_t *registers, uint8_t count, uint8_t *bytes)
+/* True: the values are in four, too. */
+static bool ask_four(inquiry_t *inquiry, uint16_t first, uint16_t four[FOUR])
 {
-    for (uint8_t i = 0; i != count; i++) {
-        bytes[2 * i] = (uint8_t)(registers[i] >> 8);
-        bytes[2 * i + 1] = (uint8_t)registers[i];
-    }
-}
-
-static bool is_date(const uint8_t *date)
-{
-    return date[0] < 100 && date[1] >= 1 && date[1] <= 12 && date[2] >= 1 && date[2] <= 31;
-}
-
-static bool is_switch(uint8_t byte) { return byte == 0x00 || byte == 0xFF; }
-
-static bool ask_four(inquiry_t *inquiry, uint16_t first, uint8_t bytes[FOUR_REGISTERS])
-{
-    if (!ask(inquiry, first, FOUR_REGISTERS / 2, MEASURE_US, 2)) return false;
-    get_bytes(inquiry->answer.values, FOUR_REGISTERS / 2, bytes);
+    if (!ask(inquiry, first, FOUR, MEASURE_US, 2)) return false;
+    memcpy(four, inquiry->answer.values, FOUR * sizeof *four);
     return true;
 }
 
@@ -89,30 +75,37 @@ static bool ask_four(inquiry_t *inquiry, uint16_t first, uint8_t bytes[FOUR_REGI
  * a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {
-    enum { TERMINATION = 0, OUTPUT = 1 };
-    uint8_t config[FOUR_REGISTERS];
-    uint8_t again[FOUR_REGISTERS];
-    uint8_t measured[FOUR_REGISTERS];
-    if (!ask_four(inquiry, CONFIGURATION, config) || !ask_four(inquiry, MEASUREMENT, measured) ||
-        !ask_four(inquiry, CONFIGURATION, again) || memcmp(config, again, sizeof config) != 0 ||
-        memcmp(config, measured, sizeof config) == 0 || !is_switch(config[TERMINATION]) ||
-        !is_switch(config[OUTPUT]))
+    uint16_t told[FOUR];
+    uint16_t again[FOUR];
+    uint16_t measured[FOUR];
+    if (!ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, told) ||
+        !ask_four(inquiry, FATHOM_HPS167S_MEASUREMENT, measured) ||
+        !ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, again) || memcmp(told, again, sizeof told) != 0 ||
+        memcmp(told, measured, sizeof told) == 0 || !fathom_hps167s_may_be_configuration(told))
         return false;
-    inquiry->finding->has_termination = config[TERMINATION] != 0x00;
+    fathom_hps167s_configuration_t is;
+    fathom_hps167s_decode_configuration(told, false, &is);
+    inquiry->finding->has_termination = is.termination;
     return true;
+}
+
+static bool ask_version(inquiry_t *inquiry)
+{
+    return ask(inquiry, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT, MEASURE_US, 2);
 }
 
 static bool is_hps167s(inquiry_t *inquiry, const scan_answer_t *first)
 {
     scan_finding_t *const finding = inquiry->finding;
-    if (first->status == FATHOM_ERR_MALFORMED && ask(inquiry, VERSION, VERSION_COUNT, MEASURE_US, 2))
-        first = &inquiry->answer;
+    fathom_hps167s_version_t *const version = &finding->interface;
+    if (first->status == FATHOM_ERR_MALFORMED && ask_version(inquiry)) first = &inquiry->answer;
     if (first->status != FATHOM_READY) return false;
-    get_bytes(first->values, VERSION_COUNT, finding->interface);
-    finding->has_interface = is_date(finding->interface);
-    if (ask(inquiry, DETAILS, DETAILS_COUNT, MEASURE_US, 2)) {
-        get_bytes(inquiry->answer.values, DETAILS_COUNT, finding->details);
-        finding->has_details = finding->details[0] == ACK;
+    fathom_hps167s_decode_version(first->values, version);
+    finding->has_interface =
+        version->year < NEXT_CENTURY && fathom_hps167s_is_date(version->month, version->day);
+    if (ask(inquiry, FATHOM_HPS167S_DETAILS, FATHOM_HPS167S_DETAILS_COUNT, MEASURE_US, 2)) {
+        fathom_hps167s_decode_details(inquiry->answer.values, &finding->details);
+        finding->has_details = fathom_hps167s_may_be_details(inquiry->answer.values);
     }
     finding->has_config = ask_configuration(inquiry);
     return finding->has_interface && (finding->has_details || finding->has_config);
@@ -145,7 +138,7 @@ static uint8_t ask_dyp(inquiry_t *inquiry)
 
 static uint8_t find_model(inquiry_t *inquiry, const scan_answer_t *first)
 {
-    const bool has_version = inquiry->question->first == VERSION;
+    const bool has_version = inquiry->question->first == FATHOM_HPS167S_VERSION;
     if (has_version && is_hps167s(inquiry, first)) return FATHOM_HPS167S;
     if (inquiry->failed != FATHOM_READY) return 0;
     if (has_version && !ask(inquiry, ADDRESS, 1, MEASURE_US, 1)) return 0;

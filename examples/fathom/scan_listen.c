@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "channel.h"
+#include "fathom/hps167s_registers.h"
 #include "fathom/stream.h"
 #include "scan_plan.h"
 
@@ -34,9 +35,8 @@ static void poll_streams(void *ctx)
     streams_t *const streams = ctx;
     const fathom_clock_t *const clock = streams->wire->clock;
     const uint32_t now_us = clock->now_us(clock->ctx);
-    const uint8_t *frame = NULL;
-    (void)fathom_stream_poll(&streams->a16, now_us, &frame);
-    (void)fathom_stream_poll(&streams->a05, now_us, &frame);
+    (void)fathom_stream_poll(&streams->a16, now_us);
+    (void)fathom_stream_poll(&streams->a05, now_us);
 }
 
 static void begin_stream(fathom_stream_t *stream, fathom_stream_config_t *config, uint8_t *storage,
@@ -100,15 +100,15 @@ static bool understand(const scan_wire_t *wire, const fathom_line_settings_t *li
 
 fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_talk_t *talk)
 {
-    static const uint32_t rates[] = {19200, 57600, 115200, 230400};
     streams_t streams;
     memset(talk, 0, sizeof *talk);
     fathom_status_t status = hear(wire, &scan_dyp_line, listen_us, &streams);
     talk->is_heard = wire->ear->bytes >= LEAST_BYTES;
     if (status != FATHOM_READY || !talk->is_heard) return status;
     if (understand(wire, &scan_dyp_line, &streams, &talk->finding)) return FATHOM_READY;
-    for (uint8_t i = 0; i != sizeof rates / sizeof rates[0]; i++) {
-        const fathom_line_settings_t line = {rates[i], scan_factory_parity(rates[i]), 1};
+    for (uint8_t code = 1; code <= FATHOM_HPS167S_BAUD_CODES; code++) {
+        const uint32_t baud = fathom_hps167s_baud(code);
+        const fathom_line_settings_t line = {baud, scan_factory_parity(baud), 1};
         status = hear(wire, &line, OTHER_RATE_US, &streams);
         if (status == FATHOM_ERR_UNSUPPORTED) continue; /* a port that cannot do this rate */
         if (status != FATHOM_READY) return status;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan_plan.h"
 
+#include "fathom/hps167s_registers.h"
 #include "fathom/line.h"
 
 const fathom_line_settings_t scan_dyp_line = {9600, FATHOM_PARITY_NONE, 1};
-const fathom_line_settings_t scan_hps167s_line = {19200, FATHOM_PARITY_EVEN, 1};
+const fathom_line_settings_t scan_hps167s_line = {FATHOM_HPS167S_FACTORY_BAUD, FATHOM_PARITY_EVEN, 1};
 
 enum { REQUEST_BYTES = 8 };
 
@@ -21,10 +22,7 @@ uint8_t scan_factory_parity(uint32_t baud)
     return baud == scan_dyp_line.baud ? scan_dyp_line.parity : scan_hps167s_line.parity;
 }
 
-bool scan_is_hps167s_rate(uint32_t baud)
-{
-    return baud == 19200 || baud == 57600 || baud == 115200 || baud == 230400;
-}
+bool scan_is_hps167s_rate(uint32_t baud) { return fathom_hps167s_baud_code(baud) != 0; }
 
 bool scan_is_dyp_line(const fathom_line_settings_t *line)
 {

@@ -10,9 +10,6 @@
 
 enum { TOLD_TEXT = 160, NEXT_TEXT = 1024 };
 
-/* Offsets in what #1 and #3 said. */
-enum { YEAR = 0, MAJOR = 3, UUID = 1, UUID_LENGTH = 16, DETAILS_YEAR = 17, DETAILS_MAJOR = 20 };
-
 const char *duration_text(uint64_t us, char text[DURATION_TEXT])
 {
     const uint64_t s = (us + 999999u) / 1000000u;
@@ -81,12 +78,32 @@ static void next_command(const scan_finding_t *finding, const char *port, char t
 
 /* ---- text ---- */
 
-static void add_version(char text[TOLD_TEXT], const char *what, const uint8_t *date, const uint8_t *version,
-                        uint8_t parts)
+/* What #1 and #3 tell of a part of the device. */
+typedef struct {
+    uint16_t year;
+    uint8_t month;
+    uint8_t day;
+    char version[16];
+} part_t;
+
+static part_t part_of_interface(const fathom_hps167s_version_t *is)
 {
-    ADD(text, TOLD_TEXT, "%s%s %u.%u", text[0] != '\0' ? ", " : "", what, version[0], version[1]);
-    if (parts > 2) ADD(text, TOLD_TEXT, ".%u", version[2]);
-    ADD(text, TOLD_TEXT, " of 20%02u-%02u-%02u", date[0], date[1], date[2]);
+    part_t part = {.year = is->year, .month = is->month, .day = is->day};
+    (void)snprintf(part.version, sizeof part.version, "%u.%u.%u", is->major, is->minor, is->revision);
+    return part;
+}
+
+static part_t part_of_sensor(const fathom_hps167s_details_t *is)
+{
+    part_t part = {.year = is->year, .month = is->month, .day = is->day};
+    (void)snprintf(part.version, sizeof part.version, "%u.%u", is->major, is->minor);
+    return part;
+}
+
+static void add_part(char text[TOLD_TEXT], const char *what, part_t part)
+{
+    ADD(text, TOLD_TEXT, "%s%s %s of %u-%02u-%02u", text[0] != '\0' ? ", " : "", what, part.version,
+        part.year, part.month, part.day);
 }
 
 /* FFFD and FFFE are not in the datasheets; sister models say these. */
@@ -107,16 +124,13 @@ static void add_value(char text[TOLD_TEXT], const scan_finding_t *finding)
 
 static void tell_sensor(const scan_finding_t *finding, char text[TOLD_TEXT])
 {
-    const uint8_t *const interface = finding->interface;
-    const uint8_t *const details = finding->details;
     if (finding->mode == SCAN_AUTO) {
         ADD(text, TOLD_TEXT, "sends by itself");
     } else if (finding->model != FATHOM_HPS167S) {
         add_value(text, finding);
     } else {
-        if (finding->has_interface) add_version(text, "interface", interface + YEAR, interface + MAJOR, 3);
-        if (finding->has_details)
-            add_version(text, "sensor", details + DETAILS_YEAR, details + DETAILS_MAJOR, 2);
+        if (finding->has_interface) add_part(text, "interface", part_of_interface(&finding->interface));
+        if (finding->has_details) add_part(text, "sensor", part_of_sensor(&finding->details));
         if (finding->has_config)
             ADD(text, TOLD_TEXT, ", termination %s", finding->has_termination ? "on" : "off");
         if (text[0] == '\0') ADD(text, TOLD_TEXT, "sends answers unasked");
@@ -185,12 +199,10 @@ static void print_string(FILE *to, const char *text)
     (void)fputs("\"", to);
 }
 
-static void print_version(FILE *to, const char *name, const uint8_t *date, const uint8_t *version,
-                          uint8_t parts)
+static void print_part(FILE *to, const char *name, part_t part)
 {
-    (void)fprintf(to, ",\"%s_version\":\"%u.%u", name, version[0], version[1]);
-    if (parts > 2) (void)fprintf(to, ".%u", version[2]);
-    (void)fprintf(to, "\",\"%s_date\":\"20%02u-%02u-%02u\"", name, date[0], date[1], date[2]);
+    (void)fprintf(to, ",\"%s_version\":\"%s\",\"%s_date\":\"%u-%02u-%02u\"", name, part.version, name,
+                  part.year, part.month, part.day);
 }
 
 static void print_sensor(FILE *to, const scan_finding_t *finding)
@@ -198,12 +210,12 @@ static void print_sensor(FILE *to, const scan_finding_t *finding)
     (void)fprintf(to, ",\"mode\":\"%s\"", mode_name(finding));
     if (finding->has_value && finding->model != FATHOM_HPS167S)
         (void)fprintf(to, ",\"raw\":%u", finding->value);
-    if (finding->has_interface)
-        print_version(to, "interface", finding->interface, finding->interface + MAJOR, 3);
+    if (finding->has_interface) print_part(to, "interface", part_of_interface(&finding->interface));
     if (finding->has_details) {
-        print_version(to, "sensor", finding->details + DETAILS_YEAR, finding->details + DETAILS_MAJOR, 2);
+        print_part(to, "sensor", part_of_sensor(&finding->details));
         (void)fputs(",\"uuid\":\"", to);
-        for (uint8_t i = 0; i != UUID_LENGTH; i++) (void)fprintf(to, "%02x", finding->details[UUID + i]);
+        for (size_t i = 0; i != sizeof finding->details.uuid; i++)
+            (void)fprintf(to, "%02x", finding->details.uuid[i]);
         (void)fputs("\"", to);
     }
     if (finding->has_config)

@@ -5,6 +5,7 @@
 
 #include "channel.h"
 #include "command.h"
+#include "fathom/hps167s_registers.h"
 
 static const sensor_t sensors[] = {
     {
@@ -36,7 +37,7 @@ static const sensor_t sensors[] = {
     {
         "hps167s",
         "infrared time of flight",
-        {19200, FATHOM_PARITY_EVEN, 1},
+        {FATHOM_HPS167S_FACTORY_BAUD, FATHOM_PARITY_EVEN, 1},
         {{"modbus", true, reader_hps167s, device_hps167s}},
         .settings = settings_hps167s,
         .other_settings = "--baud 57600, 115200 or 230400, to which it can be set",

@@ -65,7 +65,7 @@ static station_t *station_at(session_t *session, uint8_t address)
 static void take_late(session_t *session)
 {
     const channel_t *const channel = &session->channel;
-    if (!is_shared(session) || channel->line.counters[FATHOM_LINE_LATE_ANSWERS] == 0) return;
+    if (!is_shared(session) || channel->counters[FATHOM_LINE_LATE_ANSWERS] == 0) return;
     for (station_t *station = session->options.stations; station != end_of(session); station++) {
         evidence_t evidence;
         if (channel->ear.now != station->ear) continue;

@@ -41,7 +41,7 @@ static void print_distance(char text[SETTING_TEXT], fathom_status_t status, cons
 static fathom_status_t a16_address(reader_t *reader, char text[SETTING_TEXT])
 {
     uint8_t address = 0;
-    const fathom_status_t status = fathom_a16_address(&reader->driver.a16_modbus, &address);
+    const fathom_status_t status = fathom_a16_modbus_address(&reader->driver.a16_modbus, &address);
     print_number(text, status, address);
     return status;
 }
@@ -49,13 +49,14 @@ static fathom_status_t a16_address(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t a16_set_address(reader_t *reader, int32_t value)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
-    return value == 0 ? fathom_a16_set_address_to_0_perhaps_for_ever(driver)
-                      : fathom_a16_set_address(driver, (uint8_t)value);
+    return value == 0 ? fathom_a16_modbus_set_address_to_0_perhaps_for_ever(driver)
+                      : fathom_a16_modbus_set_address(driver, (uint8_t)value);
 }
 
 static fathom_status_t a16_set_mode(reader_t *reader, int32_t value)
 {
-    return fathom_a16_set_operating_mode(&reader->driver.a16_modbus, (fathom_a16_operating_mode_t)value);
+    return fathom_a16_modbus_set_operating_mode(&reader->driver.a16_modbus,
+                                                (fathom_a16_operating_mode_t)value);
 }
 
 /* Back to frames that come by themselves; with the first one it is done. */
@@ -80,58 +81,59 @@ static fathom_status_t a16_send_again(reader_t *reader, int32_t value)
 static fathom_status_t a16_polarity(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
-    const fathom_status_t status = fathom_a16_switch_polarity(&reader->driver.a16_modbus, &polarity);
+    const fathom_status_t status = fathom_a16_modbus_switch_polarity(&reader->driver.a16_modbus, &polarity);
     print_word(text, status, polarities, (unsigned)polarity);
     return status;
 }
 
 static fathom_status_t a16_set_polarity(reader_t *reader, int32_t value)
 {
-    return fathom_a16_set_switch_polarity(&reader->driver.a16_modbus, (fathom_a16_polarity_t)value);
+    return fathom_a16_modbus_set_switch_polarity(&reader->driver.a16_modbus, (fathom_a16_polarity_t)value);
 }
 
 static fathom_status_t a16_threshold(reader_t *reader, char text[SETTING_TEXT])
 {
     uint16_t threshold_mm = 0;
-    const fathom_status_t status = fathom_a16_switch_threshold_mm(&reader->driver.a16_modbus, &threshold_mm);
+    const fathom_status_t status =
+        fathom_a16_modbus_switch_threshold_mm(&reader->driver.a16_modbus, &threshold_mm);
     print_number(text, status, threshold_mm);
     return status;
 }
 
 static fathom_status_t a16_set_threshold(reader_t *reader, int32_t value)
 {
-    return fathom_a16_set_switch_threshold_mm(&reader->driver.a16_modbus, (uint16_t)value);
+    return fathom_a16_modbus_set_switch_threshold_mm(&reader->driver.a16_modbus, (uint16_t)value);
 }
 
 static fathom_status_t a16_value(reader_t *reader, char text[SETTING_TEXT])
 {
-    fathom_a16_value_t value = FATHOM_A16_PROCESSED;
-    const fathom_status_t status = fathom_a16_automatic_value(&reader->driver.a16_modbus, &value);
+    fathom_dyp_value_t value = FATHOM_PROCESSED;
+    const fathom_status_t status = fathom_a16_modbus_automatic_value(&reader->driver.a16_modbus, &value);
     print_word(text, status, values, (unsigned)value);
     return status;
 }
 
 static fathom_status_t a16_set_value(reader_t *reader, int32_t value)
 {
-    return fathom_a16_set_automatic_value(&reader->driver.a16_modbus, (fathom_a16_value_t)value);
+    return fathom_a16_modbus_set_automatic_value(&reader->driver.a16_modbus, (fathom_dyp_value_t)value);
 }
 
-static fathom_status_t a16_distance(reader_t *reader, char text[SETTING_TEXT], fathom_a16_value_t value)
+static fathom_status_t a16_distance(reader_t *reader, char text[SETTING_TEXT], fathom_dyp_value_t value)
 {
     fathom_sample_t sample;
-    const fathom_status_t status = fathom_a16_measure(&reader->driver.a16_modbus, value, &sample);
+    const fathom_status_t status = fathom_a16_modbus_measure(&reader->driver.a16_modbus, value, &sample);
     print_distance(text, status, &sample);
     return status;
 }
 
 static fathom_status_t a16_processed(reader_t *reader, char text[SETTING_TEXT])
 {
-    return a16_distance(reader, text, FATHOM_A16_PROCESSED);
+    return a16_distance(reader, text, FATHOM_PROCESSED);
 }
 
 static fathom_status_t a16_real_time(reader_t *reader, char text[SETTING_TEXT])
 {
-    return a16_distance(reader, text, FATHOM_A16_REAL_TIME);
+    return a16_distance(reader, text, FATHOM_REAL_TIME);
 }
 
 const setting_t settings_a16[] = {

@@ -12,8 +12,8 @@
 #define NEXT_POWER "from the next power-on; " KEPT
 
 static const char *const off_on[] = {"off", "on", NULL};
+/* In the order of their codes. */
 static const char *const rates[] = {"19200", "57600", "115200", "230400", NULL};
-static const uint32_t bauds[] = {19200, 57600, 115200, 230400};
 static const char *const user[] = {"user", NULL};
 
 static fathom_hps167s_t *driver(reader_t *reader) { return &reader->driver.hps167s; }
@@ -132,7 +132,7 @@ static fathom_status_t set_address(reader_t *reader, int32_t value)
 
 static fathom_status_t set_baud(reader_t *reader, int32_t value)
 {
-    return fathom_hps167s_set_baud(driver(reader), bauds[value]);
+    return fathom_hps167s_set_baud(driver(reader), fathom_hps167s_baud((uint16_t)(value + 1)));
 }
 
 static bool is_baud_later(const reader_t *reader) { return reader->driver.hps167s.next_baud != 0; }
@@ -250,7 +250,7 @@ const setting_t settings_hps167s[] = {
      .unit = "ms",
      .effect = KEPT,
      .most = 2147483646, /* 18 * 119304647 */
-     .step = 18,
+     .step = FATHOM_HPS167S_RECONNECT_STEP_MS,
      .get = get_reconnect,
      .set = set_reconnect},
     {.name = "distance-offset",

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "command.h"
+#include "fathom/hps167s_registers.h"
 #include "options.h"
 #include "sim/pty.h"
 #include "sim_traits.h"
@@ -151,18 +152,15 @@ static bool has_rates(const sim_device_t *device) { return device->sensor->other
 
 static bool take_baud(sim_device_t *device, const char *text)
 {
-    static const uint32_t rates[] = {19200, 57600, 115200, 230400};
     uint32_t baud = 0;
     if (!has_rates(device)) {
         (void)usage_error(command, "%s has one baud rate only", device->sensor->name);
         return false;
     }
-    if (number_parse(text, 1, UINT32_MAX, &baud))
-        for (size_t i = 0; i != sizeof rates / sizeof rates[0]; i++)
-            if (rates[i] == baud) {
-                device->line.baud = baud;
-                return true;
-            }
+    if (number_parse(text, 1, UINT32_MAX, &baud) && fathom_hps167s_baud_code(baud) != 0) {
+        device->line.baud = baud;
+        return true;
+    }
     (void)usage_error(command, "--baud of %s takes 19200, 57600, 115200 or 230400, not '%s'",
                       device->sensor->name, text);
     return false;

@@ -97,9 +97,9 @@ bool talk_open(talk_t *talk, const host_t *host)
     tally_begin_port(&talk->port_counts, &talk->channel);
     if (station->mode->read(&station->reader, &talk->channel, &settings)) {
         if (talk->channel.tcp == NULL && station->reader.unit == &station->reader.driver.hps167s.unit) {
-            const fathom_hps167s_auto_config_t hears = {.line = &talk->channel.line,
-                                                        .asking = &station->reader.driver.hps167s};
+            const fathom_hps167s_auto_config_t hears = {.line = &talk->channel.line};
             (void)fathom_hps167s_auto_init(&talk->hears, &hears);
+            fathom_hps167s_auto_beside(&talk->hears, &station->reader.driver.hps167s);
         }
         if (talk->channel.tcp == NULL) listen(talk);
         return true;

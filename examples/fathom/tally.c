@@ -53,7 +53,7 @@ static void take_port(tally_t *tally, port_counts_t *port, channel_t *channel)
 
 void tally_take(tally_t *tally, port_counts_t *port, channel_t *channel, const reader_t *reader)
 {
-    take(channel->line.counters, tally->attempt.line, tally->total.line, FATHOM_LINE_COUNTERS);
+    take(channel->counters, tally->attempt.line, tally->total.line, FATHOM_LINE_COUNTERS);
     if (reader->stream != NULL)
         take(reader->stream->counters, tally->attempt.stream, tally->total.stream, FATHOM_STREAM_COUNTERS);
     if (reader->unit != NULL) {
@@ -67,7 +67,7 @@ void tally_take(tally_t *tally, port_counts_t *port, channel_t *channel, const r
 void tally_take_late(tally_t *tally, channel_t *channel)
 {
     enum { LATE = FATHOM_LINE_LATE_ANSWERS };
-    take(&channel->line.counters[LATE], &tally->attempt.line[LATE], &tally->total.line[LATE], 1);
+    take(&channel->counters[LATE], &tally->attempt.line[LATE], &tally->total.line[LATE], 1);
 }
 
 void tally_begin_attempt(tally_t *tally) { memset(&tally->attempt, 0, sizeof tally->attempt); }

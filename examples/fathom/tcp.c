@@ -118,12 +118,7 @@ tcp_t *tcp_open(const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart
     tcp->port = port;
     port->fd = fd;
     port->is_open = true;
-    uart->read = tcp_read;
-    uart->write = tcp_write;
-    uart->sent = tcp_sent;
-    uart->set_line = NULL;
-    uart->set_break = NULL;
-    uart->ctx = tcp;
+    *uart = (fathom_uart_t){.read = tcp_read, .write = tcp_write, .sent = tcp_sent, .ctx = tcp};
     return tcp;
 }
 

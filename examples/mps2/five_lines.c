@@ -66,6 +66,8 @@ static bool begin_line(uint8_t number, uint32_t baud)
         .clock = &fathom_mps2_clock,
         .frame = lane->frame,
         .frame_size = sizeof lane->frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = baud == 9600 ? FATHOM_T3_5_US(9600, 10) : FATHOM_T3_5_US(19200, 10),
         /* QEMU's far end is a program of an operating system, which pauses as it likes; on a wire: 0, the default. */
         .gap_us = 25000,
@@ -79,15 +81,15 @@ static bool begin(fathom_sensor_t sensors[LINES])
 {
     for (uint8_t i = 0; i != LINES; i++)
         if (!begin_line(i, i == GATE ? 19200 : 9600)) return false;
-    const fathom_a16_modbus_config_t tank_config = {
-        .modbus = &lanes[TANK].modbus, .clock = &fathom_mps2_clock, .value = FATHOM_A16_REAL_TIME};
-    const fathom_a05_modbus_config_t bumper_config = {.modbus = &lanes[BUMPER].modbus,
-                                                      .clock = &fathom_mps2_clock};
-    const fathom_hps167s_config_t gate_config = {.modbus = &lanes[GATE].modbus, .clock = &fathom_mps2_clock};
+    const fathom_a16_modbus_config_t tank_config = {.modbus.transport = &lanes[TANK].modbus,
+                                                    .value = FATHOM_REAL_TIME};
+    const fathom_a05_modbus_config_t bumper_config = {.modbus.transport = &lanes[BUMPER].modbus};
+    const fathom_hps167s_config_t gate_config = {.modbus.transport = &lanes[GATE].modbus};
     /* No period is printed; this one is known to send ten times a second. */
     const fathom_a16_auto_config_t silo_config = {
         .line = &lanes[SILO].line, .stale_us = 2000000, .gap_us = 25000};
-    const fathom_a05_dyp_config_t rear_config = {.line = &lanes[REAR].line, .probes = 1};
+    lanes[REAR].modbus = fathom_dyp_client(&lanes[REAR].line); /* the same seam, with the frames 55 AA */
+    const fathom_a05_dyp_config_t rear_config = {.modbus.transport = &lanes[REAR].modbus, .probes = 1};
     if (fathom_a16_modbus_init(&tank, &tank_config) != FATHOM_READY ||
         fathom_a05_modbus_init(&bumper, &bumper_config) != FATHOM_READY ||
         fathom_hps167s_init(&gate, &gate_config) != FATHOM_READY ||

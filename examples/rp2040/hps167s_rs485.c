@@ -60,13 +60,15 @@ int main(void)
         .clock = &fathom_rp2040_clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 3;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_t hps;
-    const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &fathom_rp2040_clock};
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     if (fathom_hps167s_init(&hps, &config) != FATHOM_READY) return 4;
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {

@@ -72,13 +72,14 @@ static void read_tank(void)
         .clock = &fathom_rp2040_clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(9600, 10),
     };
     (void)fathom_line_init(&line, &line_config);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_a16_modbus_t a16;
-    const fathom_a16_modbus_config_t config = {
-        .modbus = &modbus, .clock = &fathom_rp2040_clock, .value = FATHOM_A16_REAL_TIME};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
     (void)fathom_a16_modbus_init(&a16, &config);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     for (;;) {
@@ -98,12 +99,14 @@ static void read_gate(void)
         .clock = &fathom_rp2040_clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     (void)fathom_line_init(&line, &line_config);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
-    const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &fathom_rp2040_clock};
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     (void)fathom_hps167s_init(&hps, &config);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {

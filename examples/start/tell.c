@@ -47,7 +47,7 @@ void tell_error(const char *name, fathom_status_t status)
     line_t line = {"", 0};
     add(&line, name);
     add(&line, " error ");
-    add_number(&line, (unsigned)-(int)status);
+    add(&line, fathom_status_name(status));
     add(&line, "\n");
     semihosting_write(line.text);
 }

@@ -37,13 +37,15 @@ int main(void)
         .clock = &fathom_stm32f4_clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     fathom_line_t line;
     if (fathom_line_init(&line, &config) != FATHOM_READY) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
-    const fathom_hps167s_config_t gate_config = {.modbus = &modbus, .clock = &fathom_stm32f4_clock};
+    const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};
     if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_READY) return 2;
 
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);

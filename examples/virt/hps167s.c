@@ -34,6 +34,8 @@ int main(void)
         .clock = &fathom_virt_clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(19200, 11),
         /* QEMU's far end is a program of an operating system, which pauses as it likes; on a wire: 0, the default. */
         .gap_us = 25000,
@@ -42,7 +44,7 @@ int main(void)
     if (fathom_line_init(&line, &config) != FATHOM_READY) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
-    const fathom_hps167s_config_t gate_config = {.modbus = &modbus, .clock = &fathom_virt_clock};
+    const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};
     if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_READY) return 2;
 
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);

@@ -31,34 +31,33 @@ extern "C" {
 #define FATHOM_A05_DYP_ALL_PROBES_US 250000ul
 #define FATHOM_A05_DYP_ONE_PROBE_US  100000ul
 
-/* Read by init only; line and clock outlive the sensor. Members that are 0 mean their defaults. */
+/* Read by init only. Members that are 0 mean their defaults: the two periods above, and a time-out of 500 ms for all
+ * probes, 200 ms for one, which is twice the datasheet's and more. */
 typedef struct {
-    fathom_line_t *line;                    /* its frame buffer has 13 bytes or more */
-    const fathom_line_settings_t *settings; /* where those on one line differ (line.h); NULL: as they are */
-    uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
-    uint32_t period_us;  /* from one command to the next; 0 and anything less: the two above */
-    uint32_t timeout_us; /* 0: 500 ms for all probes, 200 ms for one: twice the datasheet's and more */
-    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s */
+    /* its transport is made by fathom_dyp_client; no address_zero: the protocol has 1..254 (A05 2(3)2) */
+    fathom_modbus_config_t modbus;
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    uint8_t address;            /* 1..254; 0: 1, the factory's */
-    uint8_t retries;            /* after a failed attempt; 0: none */
     uint8_t probes; /* bit probe - 1: wanted; 0: all four. One bit alone: that probe is measured alone,
                                    which is faster; else all are */
 } fathom_a05_dyp_config_t;
 
 typedef struct {
     fathom_dyp_modbus_t base;
-    fathom_modbus_t client;
     uint16_t values[FATHOM_DYP_PROBES];
 } fathom_a05_dyp_t;
 
-/* The sensor may not be moved from then on. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, address 255, a probe over
- * 4, min_mm over max_mm. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255, address_zero, a probe over 4, min_mm over max_mm. */
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor);
+
+/* For fathom_modbus_unit_answers and fathom_modbus_unit_failures: how many questions were answered, and how many not. */
+static inline const fathom_modbus_unit_t *fathom_a05_dyp_unit(const fathom_a05_dyp_t *sensor)
+{
+    return &sensor->base.unit;
+}
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor);

@@ -19,7 +19,7 @@ extern "C" {
  *   FATHOM_ERR_NO_ANSWER  nothing from the unit in timeout_us, retries included. The datasheet documents no
  *                         exceptions: a wrong register may be silence too
  *   FATHOM_ERR_CHECKSUM   its answer was damaged
- *   FATHOM_ERR_EXCEPTION  it refused; base.unit.request.message.exception has the number
+ *   FATHOM_ERR_EXCEPTION  it refused; fathom_a05_modbus_exception has the number
  *   FATHOM_ERR_MALFORMED  it answered something else, or this probe's value is refused: outside the window, or FFFF;
  *                         base.answer.refused_probe and refused_raw tell which, and it is counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
@@ -31,22 +31,14 @@ extern "C" {
 /* The first probe's register; the same four distances stand in two places (A05 3(3), remark 2). */
 enum { FATHOM_A05_REGISTERS = 0x0106, FATHOM_A05_REGISTERS_ALIAS = 0x0010 };
 
-/* Read by init only; modbus and clock outlive the sensor. Members that are 0 mean their defaults. */
+/* Read by init only. Members that are 0 mean their defaults: a period of 100 ms a probe, and a time-out of 200 ms more
+ * than that. */
 typedef struct {
-    const fathom_modbus_t *modbus;
-    const fathom_clock_t *clock;
-    const fathom_line_settings_t *settings; /* where those on one line differ (line.h); NULL: as they are */
-    uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
-    uint32_t period_us;  /* from one request to the next; 0 and anything less: 100 ms a probe */
-    uint32_t timeout_us; /* 0: 200 ms, and 100 ms a probe */
-    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s */
+    fathom_modbus_config_t modbus;
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
-    uint8_t address;            /* 1..254; 0: 1, the factory's */
-    bool address_zero; /* it is at address 0 and answers there; `address` is 0. It can be read, not set */
-    uint8_t retries;   /* after a failed attempt; 0: none */
-    uint8_t probes;    /* bit probe - 1: wanted; 0: all four. One read covers the first to the last of
+    uint8_t probes; /* bit probe - 1: wanted; 0: all four. One read covers the first to the last of
                                    them, and those between are measured too */
 } fathom_a05_modbus_config_t;
 
@@ -55,9 +47,8 @@ typedef struct {
     uint16_t values[FATHOM_DYP_PROBES];
 } fathom_a05_modbus_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, address 255 or one beside
- * address_zero, other registers, a probe over 4,
- * min_mm over max_mm. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
+ * other registers, a probe over 4, min_mm over max_mm. */
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */
@@ -93,6 +84,18 @@ fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_m
 
 /* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);
+
+/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the sensor is asked again; 0: it was none. */
+static inline uint8_t fathom_a05_modbus_exception(const fathom_a05_modbus_t *sensor)
+{
+    return fathom_modbus_unit_exception(&sensor->base.unit);
+}
+
+/* For fathom_modbus_unit_answers and fathom_modbus_unit_failures: how many questions were answered, and how many not. */
+static inline const fathom_modbus_unit_t *fathom_a05_modbus_unit(const fathom_a05_modbus_t *sensor)
+{
+    return &sensor->base.unit;
+}
 
 /* For fathom_poll. */
 fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor);

@@ -3,6 +3,8 @@
 #define FATHOM_A16_AUTO_H
 
 #include "fathom/dyp_auto.h"
+#include "fathom/output.h"
+#include "fathom/sensor.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,39 +29,39 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    /* The module's RX pin, which outlives the sensor; NULL: it is open, or the TX of the line's port, whose break
-     * then selects. */
-    const fathom_pin_t *select;
-    uint32_t
-        stale_us; /* 0: 10 s: the datasheet prints no period, and 7.5 s for the processed value to settle */
+    /* What drives the module's RX pin: a pin, or a break of the line whose TX it is (fathom_output_line_break). None: it
+     * is open, or nothing is selected. */
+    fathom_output_t select;
+    /* 0: 10 s: the datasheet prints no period, and 7.5 s for the processed value to settle. Up to 35 minutes (stream.h). */
+    uint32_t stale_us;
     uint16_t gap_us; /* a silence of so much starts and ends a frame (stream.h); behind an operating
                             system 25000; 0: 5000 */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
-    /* What fathom_a16_auto_select selects at init; false: the processed value, as where nobody selects. */
-    bool real_time;
+    uint8_t value;              /* fathom_dyp_value_t: what fathom_a16_auto_select selects at init */
 } fathom_a16_auto_config_t;
 
 typedef struct {
     fathom_dyp_auto_t base;
-    const fathom_pin_t *select;
-    bool real_time;
+    fathom_output_t select;
+    uint8_t value; /* fathom_dyp_value_t, as it was selected last */
     uint16_t values[1];
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_auto_t;
 
-/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm; with real_time also the
- * errors of fathom_a16_auto_select, FATHOM_ERR_BUSY where that says FATHOM_PENDING. */
+/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, min_mm over max_mm, or no such value;
+ * FATHOM_ERR_UNSUPPORTED: FATHOM_REAL_TIME without `select`, or a port that has no break; with it also the other errors
+ * of fathom_a16_auto_select, FATHOM_ERR_BUSY where that says FATHOM_PENDING. */
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
 
 /*
  * UART automatic (A16 2(2)) alone: which value the module sends from now on. Its RX pin goes high for the processed
- * one, low for the real-time one, by the `select` pin or else by a break of the line, during which nothing can be
- * sent there. Values in the first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; no
- * frame says of which kind it is.
- * FATHOM_READY, always where there is a pin; else what fathom_line_break returns, after which the selection is what it
- * was: ask again.
+ * one, low for the real-time one, by `select`; during a break of a line nothing can be sent there. Values in the
+ * first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; no frame says of which kind it
+ * is.
+ * FATHOM_READY, always where there is a pin; of a break what fathom_line_break returns, after which the selection is what
+ * it was: ask again. FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no `select`.
  */
-fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, bool real_time);
+fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value);
 
 /*
  * Stops listening and ends a break that selected; the memory is the caller's again. To be called again, and not poll,

@@ -9,6 +9,7 @@
 #include "fathom/line.h"
 #include "fathom/sensor.h"
 #include "fathom/stream.h"
+#include "fathom/trigger.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -37,22 +38,20 @@ extern "C" {
 
 /* Zero-valued members of fathom_a16_controlled_config_t mean these. */
 #define FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US   121000ul
-#define FATHOM_A16_CONTROLLED_DEFAULT_LOW_US      2000u
 #define FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US 80000ul
 #define FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US   130000ul
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* its own; the sensor becomes the line's listener */
-    /* The module's RX pin, which outlives the sensor; NULL: a break of the line triggers. */
-    const fathom_pin_t *trigger;
+    /* What drives the module's RX pin: a pin, or a break of the line (fathom_output_line_break). */
+    fathom_output_t trigger;
     /* From trigger to trigger, at least. It "must be greater than 120ms" (A16 3(2)), also by a clock that counts in
      * ms; 0 and anything less: 121 ms. */
     uint32_t period_us;
     uint32_t earliest_us; /* 0: 80 ms */
     uint32_t latest_us;   /* 0: 130 ms */
-    /* How long the trigger is low, at least, and how long high before it falls. The datasheet wants an edge and says
-     * no time; 0: 2 ms, which no input misses. */
+    /* How long the trigger is low, at least, and how long high before it falls; 0: 2 ms (trigger.h). */
     uint16_t low_us;
     /* A silence of so much ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
     uint16_t gap_us;
@@ -60,33 +59,24 @@ typedef struct {
 } fathom_a16_controlled_config_t;
 
 typedef struct {
-    fathom_listener_t listener; /* first, so that one pointer is both */
+    fathom_stream_t stream; /* first: its listener is the sensor's */
     fathom_line_t *line;
-    const fathom_pin_t *trigger;
-    fathom_stream_t stream;
-    fathom_stream_config_t stream_config;
+    fathom_trigger_t trigger;
     fathom_dyp_answer_t answer;
-    uint32_t period_us;
     uint32_t earliest_us;
     uint32_t latest_us;
     uint32_t edge_us; /* the trigger */
-    uint32_t polled_us;
-    uint32_t came_us;        /* the earliest time at which the newest bytes can have come */
-    uint32_t left_us;        /* until the next trigger */
-    uint32_t low_left_us;    /* until it may go high */
-    uint32_t answer_left_us; /* for the answer; where none is waited for, for a port that refuses to begin */
-    uint16_t low_us;
-    uint16_t late; /* frames that came at another time; stops at 65535, and the user may set it to 0 */
-    bool low;
-    bool waiting;
-    bool heard; /* bytes came when the answer may */
+    uint32_t came_us; /* the earliest time at which the newest bytes can have come */
+    uint16_t late;    /* frames that came at another time; stops at 65535, and the user may set it to 0 */
+    bool waiting;     /* for the answer */
+    bool heard;       /* bytes came when the answer may */
     uint16_t values[1];
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_controlled_t;
 
 /* Makes the pin high and begins to listen; the first trigger comes low_us later. FATHOM_READY, or FATHOM_ERR_ARGUMENT:
- * no line, min_mm over max_mm, earliest_us over latest_us; FATHOM_ERR_UNSUPPORTED: no pin, and the line's port has no
- * set_break. */
+ * no line, no trigger, min_mm over max_mm, earliest_us over latest_us; FATHOM_ERR_UNSUPPORTED: the line's port, whose
+ * break is to trigger, has no set_break. */
 fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
                                            const fathom_a16_controlled_config_t *config);
 

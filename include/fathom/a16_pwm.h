@@ -31,18 +31,12 @@ extern "C" {
 /* The longest pulse in the hottest air, 94 ms at 85 degC, in mm and rounded up. */
 enum { FATHOM_A16_PWM_MAX_MM_IN_AIR = 18000 };
 
-/* Read by init only; clock, capture, trigger and uart outlive the sensor. Members that are 0 mean their defaults. */
+/* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
-    const fathom_clock_t *clock;
-    const fathom_capture_t *capture; /* of the module's TX pin: a timer's, or of edges.h */
-    const fathom_pin_t *trigger;     /* the module's RX pin; NULL: `uart` triggers */
-    const fathom_uart_t *uart;       /* by a break on its TX; nobody else uses that UART meanwhile */
-    uint32_t cycle_us;               /* from trigger to trigger; 0 and anything less: 221 ms */
-    uint16_t low_us;                 /* the low time of the trigger; 0: 2 ms */
-    uint16_t noise_us;               /* shorter pulses are noise; 0: 2.7 ms */
-    uint32_t no_target_us;           /* from here on: nothing in range; 0: 92 ms */
-    uint32_t stuck_us;               /* longer than this: a fault; 0: 105 ms */
-    fathom_dyp_window_t window;      /* min_mm and max_mm alone; 0: 1 and 16350 mm, 18000 with in_air */
+    /* The clock, the capture of the module's TX pin (a timer's, or of edges.h) and the trigger, its RX pin; and the
+     * widths, which have defaults. */
+    fathom_pulse_config_t pulse;
+    fathom_dyp_window_t window; /* min_mm and max_mm alone; 0: 1 and 16350 mm, 18000 with in_air */
     /* false: the datasheet's formula. true: with air_dc, which is not in the datasheet; off by default, since the
      * module may compensate by itself. */
     bool in_air;
@@ -51,7 +45,6 @@ typedef struct {
 
 typedef struct {
     fathom_pulse_meter_t meter;
-    fathom_pulse_config_t meter_config;
     fathom_dyp_window_t window;
     uint16_t sequence;
     uint16_t implausible; /* distances that were refused; stops at 65535 */
@@ -59,8 +52,7 @@ typedef struct {
     bool in_air;
 } fathom_a16_pwm_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock or capture, neither trigger nor uart, widths that are not in order,
- * min_mm over max_mm; FATHOM_ERR_UNSUPPORTED: the uart has no set_break. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm over max_mm; else what fathom_pulse_init returns. */
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
 
 /* Lets the trigger go high; the memory is the caller's again. What it returns, and when it is to be called again:

@@ -46,7 +46,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  *   FATHOM_ERR_EXCEPTION    refused: it is no RS232 variant?
  *   FATHOM_ERR_BUSY         another command is not finished
  *   FATHOM_ERR_PORT         the port is broken
- *   others                  of fathom_a16_set_operating_mode: nothing was written
+ *   others                  of fathom_a16_modbus_set_operating_mode: nothing was written
  * An acknowledgement that is lost or damaged is no error: the frames decide.
  */
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample);

@@ -25,10 +25,10 @@ extern "C" {
  *
  * Threshold and polarity are set by Modbus on the same pins, 9600 8N1 (A16 4(1), 6(3)), with a16_settings.h on a
  * fathom_a16_modbus_t beside this driver, which need not be polled otherwise. RX is the module's ear, and TX carries
- * its answers: with `line` in the config, the level is not looked at while a request is under way there, nor until
- * 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may stand before an
- * answer and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They hide from it that it has no
- * echo, so tell it (FATHOM_LINE_ECHO_OFF): there is a wire each way. A UART that reports a break again
+ * its answers: with a `guard` in the config (line_pins.h), the level is not looked at while a request is under way
+ * there, nor until 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may
+ * stand before an answer and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They hide from it
+ * that it has no echo, so tell it (FATHOM_LINE_ECHO_OFF): there is a wire each way. A UART that reports a break again
  * and again while it lasts makes the line look busy for ever; switch its receiver off while nothing is asked.
  */
 
@@ -36,8 +36,9 @@ extern "C" {
 typedef struct {
     const fathom_pin_t *pin; /* reads TX */
     const fathom_clock_t *clock;
-    /* On the same pins; this driver polls it too. NULL: none, and nobody asks the module anything. */
-    fathom_line_t *line;
+    /* Of the line on the same pins (fathom_contact_line_guard), which this driver polls too. NULL: there is none, and the
+     * module is asked nothing. */
+    const fathom_contact_guard_t *guard;
     fathom_contact_timing_t timing; /* contact.h: how long a level stands, how often it is said, and so on */
     /* Low is FATHOM_NEAR: register 0x0205 is 0. false: high is, as from the factory, where "less than 1 meter" is a
      * high level (A16 4(2)). */
@@ -53,16 +54,17 @@ typedef struct {
 fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config);
 
 /*
- * Sets the polarity by Modbus: as fathom_a16_set_switch_polarity of `modbus`, the driver of the same module on the same
- * line, with the same return values; call it until it is not FATHOM_PENDING. Meanwhile the level is not looked at,
- * since it turns somewhere on the way; after FATHOM_READY it is read by the new polarity, after anything else by the
- * one before. FATHOM_ERR_UNCONFIRMED leaves open which it is: ask with fathom_a16_switch_polarity, and tell.
+ * Sets the polarity by Modbus: as fathom_a16_modbus_set_switch_polarity of `modbus`, the driver of the same module on
+ * the same line, with the same return values; call it until it is not FATHOM_PENDING. Meanwhile the level is not
+ * looked at, since it turns somewhere on the way; after FATHOM_READY it is read by the new polarity, after anything
+ * else by the one before. FATHOM_ERR_UNCONFIRMED leaves open which it is: ask with fathom_a16_modbus_switch_polarity,
+ * and tell.
  */
 fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
                                                fathom_a16_polarity_t polarity);
 
 /* The level is read by this polarity from now on: somebody else has set it, or said what it is; or setting it was
- * given up (fathom_a16_cancel). */
+ * given up (fathom_a16_modbus_cancel). */
 void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
 /* For fathom_poll. There is nothing to undo: forget the sensor when it is no longer polled. */

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/line.h"
+#include "fathom/hal.h"
 #include "fathom/sensor.h"
 
 #ifdef __cplusplus
@@ -25,7 +25,8 @@ extern "C" {
 #define FATHOM_CONTACT_DEFAULT_LOOK_US   10000u
 #define FATHOM_CONTACT_DEFAULT_STALE_US  2000000u
 
-/* After the last byte on a line on the same pin. More than a character at 9600 baud, which a look could hit. */
+/* After the last byte of a line on the same pin. More than a character at 9600 baud, which a look could hit. Where the
+ * level may not be looked at, a look is due in as long. */
 #define FATHOM_CONTACT_QUIET_US 5000u
 
 /* Members that are 0 mean their defaults. */
@@ -42,16 +43,23 @@ typedef struct {
     uint32_t stale_us;
 } fathom_contact_timing_t;
 
+/* What else stands on the pin, and when its level means nothing; line_pins.h makes one of a line. Outlives the contact. */
+typedef struct {
+    fathom_status_t (*poll)(void *ctx); /* before each look; FATHOM_PENDING, or the error that a poll says
+                                                     where it has nothing else to say */
+    bool (*is_clear)(void *ctx, uint32_t now_us); /* may the level be looked at? */
+    uint32_t (*due_us)(void *ctx);                /* when poll has something to do, as fathom_due_us */
+    void *ctx;
+} fathom_contact_guard_t;
+
 typedef struct {
     /* Set by the caller before init, which keeps the pointers. */
     const fathom_pin_t *pin; /* an input */
     const fathom_clock_t *clock;
-    /* Of a UART on the same pin: the level is not looked at while an exchange is on it, nor until 5 ms after the last
-     * byte. NULL: there is none. */
-    fathom_line_t *line;
-    bool near_is_high; /* what a high level means: FATHOM_NEAR, or FATHOM_FAR */
-    uint8_t model;     /* of the samples; fathom_model_t */
-    uint8_t unit;      /* of the samples */
+    const fathom_contact_guard_t *guard; /* NULL: nothing else stands on the pin */
+    bool near_is_high;                   /* what a high level means: FATHOM_NEAR, or FATHOM_FAR */
+    uint8_t model;                       /* of the samples; fathom_model_t */
+    uint8_t unit;                        /* of the samples */
 
     /* The engine's. */
     fathom_contact_timing_t timing;
@@ -63,7 +71,7 @@ typedef struct {
     uint16_t sequence;
     uint8_t said;  /* kind of the last sample; 0: none yet */
     bool is_high;  /* the level at the last look */
-    bool is_clear; /* nothing was on the line then */
+    bool is_clear; /* it could be looked at then */
     bool is_held;
 } fathom_contact_t;
 
@@ -79,14 +87,15 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
 void fathom_contact_hold(fathom_contact_t *contact, bool hold);
 
 /*
- * For fathom_poll. Each poll is one look, and one poll of the line.
+ * For fathom_poll. Each poll is one look, and one poll of the guard.
  * FATHOM_READY       a sample: the first level that counts, one that says something new, or the period is over.
  *                    raw is the level, 1 for high; time_us is the look at which it was first seen to stand, or the
  *                    present one when it repeats
- * FATHOM_PENDING     nothing new; the level may be settling, or the line at work
- * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, the line is never silent, or it is held;
+ * FATHOM_PENDING     nothing new; the level may be settling, or the guard at work
+ * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, the guard is never clear, or it is
+ *                    held;
  *                    said once every stale_us
- * FATHOM_ERR_PORT    the line's port is broken; said by every poll that has nothing else to say
+ * FATHOM_ERR_PORT    the port of a guard's line is broken; said by every poll that has nothing else to say
  * A cut wire is no error: it reads as the level that the board pulls it to. fathom_due_us says when the next look
  * makes sense: in look_us at the latest, sooner while a level settles.
  */

@@ -74,9 +74,9 @@ typedef struct {
     fathom_debounce_config_t config;
     uint32_t fed_us;  /* the last measurement that counted */
     uint32_t left_us; /* of hold_us */
-    uint8_t
-        level; /* FATHOM_NEAR, FATHOM_FAR or FATHOM_UNKNOWN; 0: no row has been long enough yet, which is to be
-                         treated as unknown too. May be read */
+    /* FATHOM_NEAR, FATHOM_FAR or FATHOM_UNKNOWN; 0: no row has been long enough yet, which is to be treated as
+     * unknown too. May be read */
+    uint8_t level;
     uint8_t verdict; /* of the row */
     uint8_t row;     /* its length; stops at 255 */
     bool is_fed;     /* there has been a measurement */

@@ -22,6 +22,12 @@ extern "C" {
  * sensor can mean.
  */
 
+/* Which of its distances a sensor is to give, wherever one can choose. */
+typedef enum {
+    FATHOM_PROCESSED = 0, /* steady, and slow to follow */
+    FATHOM_REAL_TIME = 1  /* the last measurement */
+} fathom_dyp_value_t;
+
 /* What a value is that is no distance: the kind of its sample. */
 typedef enum {
     FATHOM_MEANS_DEFAULT = 0,
@@ -38,22 +44,11 @@ typedef enum {
 typedef struct {
     uint16_t min_mm;
     uint16_t max_mm;
-    uint8_t value_0;    /* fathom_meaning_t; 0: FATHOM_MEANS_UNKNOWN */
-    uint8_t value_fffd; /* 0: FATHOM_MEANS_NO_TARGET */
+    uint8_t value_fffd; /* fathom_meaning_t; 0: FATHOM_MEANS_NO_TARGET */
     uint8_t value_fffe; /* 0: FATHOM_MEANS_INTERFERENCE */
     uint8_t value_ffff; /* 0: FATHOM_MEANS_REFUSED */
+    uint8_t value_0;    /* 0: FATHOM_MEANS_UNKNOWN. The last of the four: in the order of value + 3 */
 } fathom_dyp_window_t;
-
-/* Member by member: of a whole struct of this size compilers make a call of memcpy. */
-static inline void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
-{
-    to->min_mm = from->min_mm;
-    to->max_mm = from->max_mm;
-    to->value_0 = from->value_0;
-    to->value_fffd = from->value_fffd;
-    to->value_fffe = from->value_fffe;
-    to->value_ffff = from->value_ffff;
-}
 
 /* The default windows. 16350 mm is the longest pulse of A16 1(3), 94 ms; 6000 mm leaves the A05 a third beyond
  * its range of 4.5 m. The near end is 1 mm. */
@@ -61,18 +56,18 @@ enum { FATHOM_A16_MAX_MM = 16350, FATHOM_A05_MAX_MM = 6000 };
 
 /* One answer: a value for each of some probes, handed over as one sample a probe. */
 typedef struct {
-    uint16_t *values; /* of probe `first` and those after it */
-    fathom_dyp_window_t window;
-    uint32_t time_us;
-    uint16_t sequence;
-    uint16_t implausible; /* values that were refused; stops at 65535 */
-    uint16_t refused_raw; /* the last value that was refused, and its probe; 0: none yet. They belong to the
-                             FATHOM_ERR_MALFORMED that was said last, if that made `implausible` grow */
-    uint8_t refused_probe;
     uint8_t model; /* fathom_model_t */
     uint8_t unit;  /* 0 from a sensor that sends by itself */
     uint8_t first; /* 1..4 */
     uint8_t left;  /* bit probe - 1: has not been handed over */
+    uint8_t refused_probe;
+    uint16_t refused_raw; /* the last value that was refused, and its probe; 0: none yet. They belong to the
+                             FATHOM_ERR_MALFORMED that was said last, if that made `implausible` grow */
+    uint16_t sequence;
+    uint16_t implausible; /* values that were refused; stops at 65535 */
+    fathom_dyp_window_t window;
+    uint16_t *values; /* of probe `first` and those after it */
+    uint32_t time_us;
 } fathom_dyp_answer_t;
 
 /*
@@ -83,13 +78,21 @@ typedef struct {
 fathom_status_t fathom_dyp_next(fathom_dyp_answer_t *answer, fathom_sample_t *sample);
 
 /* A new answer has come: its values are set, and these probes (bit probe - 1) wait to be handed over. */
-void fathom_dyp_answer(fathom_dyp_answer_t *answer, uint8_t probes, uint32_t time_us);
+static inline void fathom_dyp_answer(fathom_dyp_answer_t *answer, uint8_t probes, uint32_t time_us)
+{
+    answer->sequence++;
+    answer->time_us = time_us;
+    answer->left = probes;
+}
 
-/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: the window is upside down. Where the window's
- * members are 0 they become 1, default_max_mm and the default meanings. */
+/* Byte by byte: of a struct of this size compilers make a call of memcpy. */
+void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from);
+
+/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: the window is upside down. A max_mm of 0 becomes
+ * default_max_mm. */
 fathom_status_t fathom_dyp_answer_init(fathom_dyp_answer_t *answer, uint16_t default_max_mm);
 
-/* What a value is, by a window whose members are not 0: FATHOM_TARGET, a distance; or a fathom_meaning_t. */
+/* What a value is: FATHOM_TARGET, a distance of at most the window's max_mm; or a fathom_meaning_t. */
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value);
 
 #ifdef __cplusplus

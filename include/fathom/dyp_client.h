@@ -36,7 +36,7 @@ fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_requ
 fathom_status_t fathom_dyp_client_set_every_address(fathom_line_t *line, fathom_modbus_request_t *request,
                                                     uint8_t address);
 
-/* The seam for drivers, by value: keep it as long as the drivers that point to it. */
+/* The seam for drivers over a line that is ready, by value: keep it as long as the drivers that point to it. */
 fathom_modbus_t fathom_dyp_client(fathom_line_t *line);
 
 #ifdef __cplusplus

@@ -13,28 +13,26 @@ extern "C" {
 /* What a16_modbus.h and a05_modbus.h are built on: an ultrasonic sensor that is asked for the registers of
  * its probes. Their users need not know it. */
 typedef struct {
-    fathom_modbus_unit_t unit;
-    fathom_modbus_question_t question;
+    uint8_t probes; /* bit probe - 1: wanted of those that are read */
+    uint16_t found; /* the register that a command reads */
     fathom_dyp_answer_t answer;
-    uint8_t probes;   /* bit probe - 1: wanted of those that are read */
-    uint16_t setting; /* a register that a command reads */
-    uint32_t command_timeout_us;
+    fathom_modbus_question_t question;
     uint32_t start_us;
+    fathom_modbus_unit_t unit;
 } fathom_dyp_modbus_t;
 
 /* Both sensors have their address here (A05 3(3), A16 6(3)). */
 enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
 
-/* Zero-valued members of the drivers' configs mean these: the time-out of a command, and how long after power-on silence
- * is no error. Data comes after some 900 ms, as is known of sister models; neither is in the datasheets. */
-#define FATHOM_DYP_DEFAULT_COMMAND_TIMEOUT_US 1000000ul
-#define FATHOM_DYP_DEFAULT_START_US           1500000ul
+/* How long after power-on silence is no error, where a driver's config says 0. Data comes after some 900 ms, as is
+ * known of sister models; it is not in the datasheets. */
+#define FATHOM_DYP_DEFAULT_START_US 1500000ul
 
-/* The caller has set the question, the probes, command_timeout_us and start_us (0: their defaults), and values, window,
- * model and first of the answer.
+/* The caller has set first and last of the question, the probes, start_us (0: its default), and values, window, model
+ * and first of the answer; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.
  * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or a window that is upside down. */
-fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *modbus,
-                                       const fathom_clock_t *clock, uint8_t address, uint16_t default_max_mm);
+fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
+                                       uint32_t timeout_us, uint32_t pace_us);
 
 /* Cancels what is under way. */
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor);
@@ -43,7 +41,8 @@ void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor);
 void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 
 /*
- * Commands, to be called until they are not FATHOM_PENDING. get: FATHOM_READY with *value, or the errors of
+ * Commands, to be called until they are not FATHOM_PENDING; of registers that differ in their bits 0 to 3, 8 or 9, as all
+ * of A16 and A05 do. get: FATHOM_READY with *value, or the errors of
  * fathom_modbus_unit_ask; address: also FATHOM_ERR_MALFORMED, where the register says more than 255. set: as
  * fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of
  * that name of A16 and A05. At address 0 nothing is written: FATHOM_ERR_ARGUMENT, since all units would obey.
@@ -57,8 +56,11 @@ fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address);
 fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor);
 
-/* Where a config's address and address_zero say that it is; 255 where they contradict each other. */
-uint8_t fathom_dyp_modbus_place(uint8_t address, bool address_zero);
+/* What get and set are made of, without fathom_modbus_unit_poll: look goes on with the read of a register; describe fills
+ * in the setting of one to this value, all but its read. */
+fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
+void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setting_t *setting,
+                                uint16_t address, uint16_t value);
 
 /* ---- the one device on a line ---- */
 

@@ -58,6 +58,13 @@ typedef struct {
  *        pointer. On RS-485 the port drives the transceiver.
  * sent   True when the last stop bit of all that was written has left the pin. May turn true late (a USB
  *        adapter cannot know better): bytes that were read before it counts still count as an answer.
+ * leaves_in_us  In how many microseconds from now, at most, the last stop bit of all that was written will have left
+ *        the pin: by the bytes that are left, their settings and the clock; less than 2^31. fathom_line_due_us is that
+ *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is asked then.
+ *        0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond.
+ *        NULL where the port does not know: the same. Too short costs looks; too long puts off what follows the
+ *        request, the end of a broadcast and the beginning of a time-out; neither loses a byte. It may be asked any
+ *        time and changes nothing.
  * set_line  Changes the line settings; what was received is kept. 1: they hold now (at once, if they did
  *        before; it is called before each request that names settings). 0: bytes are still leaving, ask again.
  *        < 0: this port cannot reach them within 2.5 %; the settings before still hold. NULL where they are
@@ -72,6 +79,7 @@ typedef struct {
     bool (*sent)(void *ctx);
     int (*set_line)(void *ctx, const fathom_line_settings_t *settings);
     int (*set_break)(void *ctx, bool on);
+    uint32_t (*leaves_in_us)(void *ctx);
     void *ctx;
 } fathom_uart_t;
 

@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "fathom/hps167s_registers.h"
 #include "fathom/modbus_setting.h"
 #include "fathom/sensor.h"
 
@@ -12,9 +13,9 @@ extern "C" {
 #endif
 
 /*
- * HPS-167S, infrared time of flight on RS-485, asked by Modbus RTU. From the factory: address 1, 19200 8E1.
- * Here it measures; hps167s_info.h has what it tells, hps167s_settings.h what can be set, hps167s_auto.h listens to
- * frames that nobody asked for.
+ * HPS-167S, infrared time of flight on RS-485, asked by Modbus RTU. From the factory: address 1, 19200 8E1. Here it
+ * measures; hps167s_registers.h has what its commands and figures mean, hps167s_info.h what it tells,
+ * hps167s_settings.h what can be set, hps167s_auto.h listens to unasked frames.
  *
  * Its "registers" are commands, each with one right length; it is no register file, and reading in the wrong
  * place can reset it. What is declared here sends command #5 of the datasheet and nothing else.
@@ -29,7 +30,7 @@ extern "C" {
  *   FATHOM_ERR_NO_ANSWER  nothing from the unit in timeout_us, retries included. It is silent for some
  *                         seconds after power-on
  *   FATHOM_ERR_CHECKSUM   its answer was damaged
- *   FATHOM_ERR_EXCEPTION  it refused; unit.request.message.exception has the number (1..4: table 39)
+ *   FATHOM_ERR_EXCEPTION  it refused; fathom_hps167s_exception has the number (1..4: table 39)
  *   FATHOM_ERR_MALFORMED  it answered something else, or figures that it cannot mean: those are counted (implausible).
  *                         A distance of all ones in any other packet is one of them
  *   FATHOM_ERR_WARMING_UP one of the first three, or the abnormal packet, so soon after fathom_hps167s_power_on
@@ -39,80 +40,71 @@ extern "C" {
 /* From one measurement to the next, at least: 54 a second (table 1). */
 #define FATHOM_HPS167S_MIN_PERIOD_US 18519ul
 
-/* What a distance is taken for. The datasheet says "65.53 meters" for over range (#5), two decimals of a figure in mm,
- * and gives a range of 18 m and a note about 20 m; what lies between is no figure of this device. */
+/* Read by init only. Members that are 0 mean their defaults: a period of 18519 us, and a time-out of 500 ms, since the
+ * slowest rate is 6 a second. The datasheet gives no times of commands. */
 typedef struct {
-    uint16_t max_mm;        /* min_mm..max_mm is a target; 0: 30000 */
-    uint16_t over_range_mm; /* from here to 65534 is no target; over max_mm; 0: 65530 */
-    uint16_t min_mm;        /* 1..min_mm - 1 is FATHOM_UNKNOWN; up to max_mm; 0: 80 */
-} fathom_hps167s_limits_t;
+    /* the address: 1..32, no address_zero. `settings` also where the baud rate is to be set */
+    fathom_modbus_config_t modbus;
+    uint8_t warm_up_s; /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
+    bool no_warm_up;   /* it was set to 0 s */
 
-/* Read by init only; modbus and clock outlive the sensor. Members that are 0 mean their defaults. */
-typedef struct {
-    const fathom_modbus_t *modbus;
-    const fathom_clock_t *clock;
-    /* Where those on one line differ (line.h), and where the baud rate is to be set; NULL: as the line is. */
-    const fathom_line_settings_t *settings;
-    uint32_t backoff_us; /* how long a unit that does not answer is left alone at last; 0: 16 time-outs */
-    uint32_t period_us;  /* from one request to the next; 0 and anything less: 18519 us */
-    uint32_t timeout_us; /* of a measurement; the slowest rate is 6 a second. 0: 500 ms */
-    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s. The datasheet gives no times */
-    uint8_t address;             /* 1..32; 0: 1, the factory's */
-    uint8_t retries;             /* after a failed attempt, of commands that only read too; 0: none */
-    uint8_t warm_up_s;           /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
-    bool no_warm_up;             /* it was set to 0 s */
-    fathom_hps167s_limits_t limits;
-
-    /* How to read what the datasheet leaves open, beside the limits. */
+    /* How to read what the datasheet leaves open; fathom_hps167s_use_limits has more. */
     uint8_t same_answers; /* the configuration (#2) is believed when so many answers in succession agree: its
                                    frame has the shape of a measurement's. 1..8; 0: 2. 3 at least for 2 s after
                                    an unasked frame was heard */
-    uint8_t
-        steps_per_degree; /* the temperature (#4) counts in steps of one degree Fahrenheit, by so much finer:
-                                   10 for tenths. 0: 1 */
-    bool low_word_first;  /* the reconnect time (#15, #2) has its low word first. False: the high word, as all
+    /* the temperature (#4) counts in steps of one degree Fahrenheit, by so much finer: 10 for tenths. 0: 1 */
+    uint8_t steps_per_degree;
+    bool low_word_first; /* the reconnect time (#15, #2) has its low word first. False: the high word, as all
                                    other integers of the device */
 } fathom_hps167s_config_t;
 
-enum { FATHOM_HPS167S_MAX_ADDRESS = 32, FATHOM_HPS167S_MAX_REGISTERS = 11 };
 #define FATHOM_HPS167S_NO_RESET_ANSWER 0xFFFFu
 
-typedef struct {
-    fathom_modbus_unit_t unit;
-    uint32_t command_timeout_us;
-    fathom_modbus_question_t question; /* the repeated one */
-    fathom_hps167s_limits_t limits;
-    uint32_t warm_us;
-    uint16_t values[FATHOM_HPS167S_MAX_REGISTERS];
-    uint16_t sequence;
-    uint16_t implausible; /* answers that were refused for their figures; stops at 65535 */
+typedef struct fathom_hps167s fathom_hps167s_t;
 
-    /* Answers to #2 and to #5 have one shape: neither may be what the other was last. */
-    uint16_t told[4];
-    uint16_t measured[4];
-    uint32_t unasked_us; /* the clock when an unasked frame was heard */
-    bool is_owed;        /* an answer to #2 is still to come: something else was taken for it */
-    uint8_t answers;     /* to #2, this time */
-    uint8_t agreed;      /* of them, in succession */
+struct fathom_hps167s {
+    uint8_t warm_up_s;
     uint8_t same_answers;
     uint8_t steps_per_degree;
     bool low_word_first;
-
-    /* hps167s_settings.h: */
-    bool is_seeking;   /* it may be at `other` as well */
-    bool is_looked_at; /* before the factory reset */
-    uint16_t
-        reset_answer; /* of the last #6: 1 is success, FATHOM_HPS167S_NO_RESET_ANSWER none, else the device's
-                              error code */
-    uint16_t wanted[2]; /* the value of the setting under way */
+    bool is_owed; /* hps167s_info.h: an answer to #2 is still to come, something else was taken for it */
+    bool is_among_unasked; /* an unasked frame was heard lately */
+    uint8_t answers;       /* to #2, this time */
+    uint8_t agreed;        /* of them, in succession */
+    bool is_seeking;       /* hps167s_settings.h: it may be at `other` as well */
+    bool is_looked_at;     /* before the factory reset */
+    uint16_t sequence;
+    uint16_t implausible;  /* answers that were refused for their figures; stops at 65535 */
+    uint16_t reset_answer; /* of the last #6: 1 is success, FATHOM_HPS167S_NO_RESET_ANSWER none, else the
+                              device's error code */
+    fathom_modbus_question_t question;
+    /* Answers to #2 and to #5 have one shape: neither may be what the other was last. */
+    uint16_t answer[FATHOM_HPS167S_MEASUREMENT_COUNT]; /* to #5 */
+    uint16_t told[FATHOM_HPS167S_CONFIGURATION_COUNT];
+    uint16_t measured[FATHOM_HPS167S_MEASUREMENT_COUNT];
+    uint16_t values[FATHOM_HPS167S_MAX_REGISTERS]; /* of all other answers */
+    const fathom_hps167s_limits_t *limits;         /* NULL: the defaults */
+    /* Is the answer a measurement? NULL: #2 has not been asked yet. */
+    bool (*is_new)(fathom_hps167s_t *sensor);
+    /* A question has ended; FATHOM_PENDING: the power has come. NULL: the baud rate has never been set. */
+    void (*follow)(fathom_hps167s_t *sensor, fathom_status_t status);
+    uint32_t unasked_us; /* the clock when an unasked frame was heard */
+    fathom_modbus_unit_t unit;
     uint32_t next_baud; /* from the next power-on; 0: as now */
     const fathom_line_settings_t *other;
-    fathom_line_settings_t moved[2]; /* the one that holds, and the one that is being set */
-} fathom_hps167s_t;
+    fathom_line_settings_t moved[2];                /* the one that holds, and the one that is being set */
+    fathom_modbus_setting_t setting;                /* the last one, or the one under way */
+    uint16_t words[FATHOM_HPS167S_RECONNECT_COUNT]; /* what #15 writes */
+};
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no modbus or clock, an address over 32, over_range_mm that is 65535 or not over
- * max_mm, min_mm over max_mm, more than 8 same_answers. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, an address over 32, address_zero, more than 8
+ * same_answers. */
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
+
+/* Other limits of distances than the defaults, from now on. Fills in the defaults where *limits is 0; it is the driver's
+ * as long as the sensor. FATHOM_READY, or FATHOM_ERR_ARGUMENT, and the limits are as before: over_range_mm that is 65535
+ * or not over max_mm, min_mm over max_mm. */
+fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
 
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
@@ -129,18 +121,20 @@ void fathom_hps167s_power_on(fathom_hps167s_t *sensor);
 /* For fathom_poll, which measures (#5) again and again. */
 fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor);
 
+/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the sensor is asked again; 0: it was none. */
+static inline uint8_t fathom_hps167s_exception(const fathom_hps167s_t *sensor)
+{
+    return fathom_modbus_unit_exception(&sensor->unit);
+}
+
+/* For fathom_modbus_unit_answers and fathom_modbus_unit_failures: how many questions were answered, and how many not. */
+static inline const fathom_modbus_unit_t *fathom_hps167s_unit(const fathom_hps167s_t *sensor)
+{
+    return &sensor->unit;
+}
+
 /* Gives up what is under way. A setting may then hold or not; the driver asks where it did before. */
 void fathom_hps167s_cancel(fathom_hps167s_t *sensor);
-
-/*
- * Reads the four registers of a measurement's answer (#5, table 18), also one that nobody asked for. Sets the
- * members of *sample that come from the device: kind, raw, distance_mm, magnitude, ambient, precision, and
- * interference (false). FATHOM_READY, or FATHOM_ERR_MALFORMED, with nothing written: a distance that it cannot
- * mean, or an exponent over 16. decode_within: with other limits, of which none is 0.
- */
-fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample);
-fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,
-                                             const uint16_t registers[4], fathom_sample_t *sample);
 
 #ifdef __cplusplus
 }

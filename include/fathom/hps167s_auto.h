@@ -26,17 +26,11 @@ extern "C" {
  *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
  */
 
-/* Read by init only. line and asking outlive this. Members that are 0 mean their defaults. */
+/* Read by init only; the line outlives this. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* it becomes the line's listener; its frame holds 13 bytes or more */
-    /* The driver that asks the same device on this line; NULL: no driver does. It is told of each frame
-     * (fathom_hps167s_heard). An answer to its #2 has the same shape and may come after something else was taken for it:
-     * what equals the last one is no measurement, nor, from #2 until another question is asked, is anything that could
-     * be one; both are counted as implausible. Of distances that is 255 mm alone. */
-    fathom_hps167s_t *asking;
-    uint32_t stale_us;              /* 0: 2 s; the slowest rate is 6 a second */
-    uint8_t address;                /* 1..32; 0: that of asking, wherever it moves, or 1 */
-    fathom_hps167s_limits_t limits; /* as in fathom_hps167s_config_t */
+    uint32_t stale_us;   /* 0: 2 s; the slowest rate is 6 a second */
+    uint8_t address;     /* 1..32; 0: 1 */
 } fathom_hps167s_auto_config_t;
 
 enum { FATHOM_HPS167S_FRAME_LENGTH = 13 };
@@ -44,8 +38,9 @@ enum { FATHOM_HPS167S_FRAME_LENGTH = 13 };
 typedef struct {
     fathom_listener_t listener; /* first, so that one pointer is both */
     fathom_line_t *line;
-    fathom_hps167s_t *asking;
-    fathom_hps167s_limits_t limits;
+    fathom_hps167s_t *asking; /* NULL: no driver does */
+    bool (*heard)(fathom_hps167s_t *asking, const uint16_t registers[4], uint32_t time_us);
+    const fathom_hps167s_limits_t *limits;
     uint32_t stale_us;
     uint32_t left_us; /* until it is stale */
     uint32_t polled_us;
@@ -54,17 +49,30 @@ typedef struct {
     uint16_t sequence;
     uint16_t implausible; /* frames that were refused for their figures; this and the next stop at 65535 */
     uint16_t missed;      /* frames that a newer one replaced before they were polled */
-    uint8_t address;      /* 0: that of asking */
-    uint8_t unit;         /* of the frame */
+    const uint8_t *from;  /* whose frames */
+    uint8_t address;
+    uint8_t unit; /* of the frame */
     uint8_t have;
     bool is_new;
     uint8_t bytes[FATHOM_HPS167S_FRAME_LENGTH];
 } fathom_hps167s_auto_t;
 
-/* Begins to listen, instead of whoever did before. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, an address over 32,
- * or limits as in fathom_hps167s_init. */
+/* Begins to listen, instead of the listener before. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or an address over
+ * 32. */
 fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
                                          const fathom_hps167s_auto_config_t *config);
+
+/*
+ * Another driver asks the same device on this line, and outlives this. From now on frames are looked for from its
+ * address, wherever that moves, and it is told of each (fathom_hps167s_heard). An answer to its #2 has the same shape and
+ * may come after something else was taken for it: what equals the last one is no measurement, nor, from #2 until another
+ * question is asked, is anything that could be one; both are counted as implausible. Of distances that is 255 mm alone.
+ */
+void fathom_hps167s_auto_beside(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *asking);
+
+/* As fathom_hps167s_use_limits. */
+fathom_status_t fathom_hps167s_auto_use_limits(fathom_hps167s_auto_t *sensor,
+                                               fathom_hps167s_limits_t *limits);
 
 /* Stops listening; the memory is the caller's again. */
 void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor);

@@ -20,38 +20,6 @@ extern "C" {
  * An answer takes command_timeout_us (1 s) at most.
  */
 
-enum { FATHOM_HPS167S_UUID_LENGTH = 16 };
-
-/* Command #1, table 10. */
-typedef struct {
-    uint16_t year; /* 2000..2255 */
-    uint8_t month; /* 1..12, if the device was set right */
-    uint8_t day;   /* 1..31 */
-    uint8_t major;
-    uint8_t minor;
-    uint8_t revision;
-} fathom_hps167s_version_t;
-
-/* Command #2, table 12. What takes effect at the next power-on (hps167s_settings.h) is told as it was set. */
-typedef struct {
-    uint32_t baud;              /* what baud_code means by #9, whose "others are all 19200" */
-    uint32_t reconnect_time_ms; /* what #15 sets is a multiple of 18; what is told may be anything */
-    uint8_t warm_up_s;
-    uint8_t baud_code; /* as it is told; table 12 has no encoding of its own */
-    bool termination; /* the resistor; on in every unit from the factory, and eight of them overload a line */
-    bool measures_after_power_on;
-} fathom_hps167s_configuration_t;
-
-/* Command #3, table 14. */
-typedef struct {
-    uint8_t uuid[FATHOM_HPS167S_UUID_LENGTH]; /* in the order of the wire */
-    uint16_t year;                            /* 2000..2255 */
-    uint8_t month;
-    uint8_t day;
-    uint8_t major;
-    uint8_t minor;
-} fathom_hps167s_details_t;
-
 /* Command #4, table 16: of the analog front end, not of the air. The datasheet says degrees Fahrenheit, and neither
  * sign nor scale: read as int16_t, in whole degrees (config.steps_per_degree). */
 typedef struct {
@@ -78,9 +46,6 @@ fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_
 
 /* #4. FATHOM_ERR_MALFORMED also: tenths of a degree Celsius would not fit an int16_t. */
 fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
-
-/* Can these four registers be an answer to #2? Of their figures alone. */
-bool fathom_hps167s_may_be_configuration(const uint16_t registers[4]);
 
 /* A frame of the shape of #5's answer was heard from the sensor's address that no question of the sensor's waited for,
  * with these registers, at this time of its clock. False: it may be an answer to #2 that comes late, so that it is no

@@ -13,8 +13,8 @@ extern "C" {
  *
  * Each function returns at once: call it with the same argument, with the loop going on in between, until it is not
  * FATHOM_PENDING. One at a time; fathom_poll is FATHOM_PENDING meanwhile, and fathom_hps167s_cancel gives it up.
- * An argument is checked before anything is sent: FATHOM_ERR_ARGUMENT. What is written is written once; config.retries
- * is for reading alone.
+ * An argument is checked before anything is sent: FATHOM_ERR_ARGUMENT. What is written is written once;
+ * config.modbus.retries is for reading alone.
  *
  * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one, since
  * flash wears, and it is read again. 17 answers at most, some ms each. fathom_hps167s_is_written tells whether it was
@@ -22,7 +22,7 @@ extern "C" {
  *   FATHOM_READY            the device says that it is so; not written: it was so before
  *   FATHOM_ERR_DIFFERS      it acknowledged the value and says that it has another one
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may hold or not
- *   FATHOM_ERR_EXCEPTION    it refused; unit.request.message.exception has the number
+ *   FATHOM_ERR_EXCEPTION    it refused; fathom_hps167s_exception has the number
  *   FATHOM_ERR_BUSY         another command or setting is not finished, or this one with another value
  *   others                  of fathom_poll. Not written: nothing was changed; FATHOM_ERR_MALFORMED: #2 could not be made
  *                           out. Written: the write failed so, and the device says that it has another value
@@ -63,7 +63,7 @@ fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t w
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address);
 
 /*
- * #9: 19200, 57600, 115200 or 230400; parity and stop bits stay. For config.settings that is not NULL, else
+ * #9: 19200, 57600, 115200 or 230400; parity and stop bits stay. For config.modbus.settings that is not NULL, else
  * FATHOM_ERR_ARGUMENT. When it holds the datasheet does not say. So the new rate is asked before, which costs a
  * time-out (FATHOM_ERR_UNSUPPORTED: the port cannot do it; FATHOM_ERR_IN_USE: somebody answers there), and after the
  * writing first the new rate is asked, then the old one.
@@ -113,13 +113,13 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
  * in this library sends the command, which is a read of register 0x0009, and it is sent once.
  *
  * #2 is read first; then, if the device is elsewhere, address 1 at 19200 is asked whether somebody is there, which
- * costs a time-out. Where config.settings is NULL the driver follows to the address alone.
+ * costs a time-out. Where config.modbus.settings is NULL the driver follows to the address alone.
  *   FATHOM_READY            it says that it is done, or is where it was not before; and was read there. The driver asks
  *                           there from now on
  *   FATHOM_ERR_IN_USE       somebody answers at address 1; nothing was sent
  *   FATHOM_ERR_EXCEPTION    it refused: sensor->reset_answer has the device's own error code; where that is
  *                           FATHOM_HPS167S_NO_RESET_ANSWER it was a Modbus exception, whose number is in
- *                           unit.request.message.exception
+ *                           fathom_hps167s_exception
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers nowhere, or it says nothing of success where it was
  *   FATHOM_ERR_BUSY         another command or setting is not finished
  *   others                  of fathom_poll: it was not reset

@@ -13,10 +13,12 @@ extern "C" {
 #endif
 
 /*
- * The one owner of a UART. Whoever wants to ask something on the wire hands it an exchange; whoever only
- * listens registers a listener; nobody else reads the port. Silence before a request, time-outs, damaged,
- * late and foreign answers, echo, line settings, retries, broadcasts and counters are kept here, once, for every
- * protocol.
+ * The one owner of a UART: what is to be asked on the wire is handed to it as an exchange, what only listens is
+ * registered as its listener, and nothing else reads the port. Silence before a request, time-outs, damaged, late and
+ * foreign answers, echo, line settings, retries, broadcasts and counters are kept here, once, for every protocol.
+ *
+ * An image holds what a program names. fathom_line_init_listening makes a line without queue, exchange and quarantine;
+ * of a line that asks the config names the search for an echo, the marks and time stamps of the port, and the counters.
  *
  * It never waits, never allocates and keeps no state but in the structs below, which the caller owns. One
  * context only: no function of a line may be called from an interrupt, or from two tasks at once.
@@ -30,11 +32,11 @@ extern "C" {
  *    an answer that was damaged the unit owes as well, for what is left of the time-out, or for twice the
  *    time-out if it broke off. One deadline, the latest, serves all units that owe.
  *  - An exchange that has failed with retries left goes on waiting in the queue; other units come first.
- *  - Local echo: many RS-485 adapters hand back what they send. The line finds that out: the first exchange
- *    whose answer cannot equal its request, a read, shows the echo or shows that there is none. Until then a
- *    write whose answer equals its request (Modbus function 06, 55 AA 03) is not taken as acknowledged by a
- *    single copy: FATHOM_ERR_ECHO. So read something first, or tell the line in its config. Where there is
- *    echo, a write needs two copies.
+ *  - Local echo: many RS-485 adapters hand back what they send. A line that asks is told of it in its config, or finds
+ *    out with find_echo: the first exchange whose answer cannot equal its request, a read, shows the echo or shows that
+ *    there is none. Until then a write whose answer equals its request (Modbus function 06, 55 AA 03) is not taken as
+ *    acknowledged by a single copy: FATHOM_ERR_ECHO. Where there is echo, a write needs two copies. Of a line that is
+ *    told wrongly reads are answered all the same.
  *  - A device that sends by itself leaves room for requests: where its frame ends the silence begins, and a request
  *    that is waiting then leaves behind it. Once four bytes or more have come that belong to no exchange (those of a
  *    late answer are such), requests leave only so: neither behind an answer, for which the device may have put a frame
@@ -43,7 +45,7 @@ extern "C" {
  *    7.4 ms of frame, 2 ms, 4.6 ms of request. What it has sent before the first request is known where the line was
  *    polled before that, for 65 ms say.
  *
- * The echo of a request to all units belongs to nobody, and goes where such bytes go.
+ * The echo of a request to all units belongs to no exchange, and goes where such bytes go.
  *
  * What cannot be told apart on a wire, and so is taken for the answer: one that comes later than twice the
  * time-out; an unasked frame of the very shape that is being waited for. Choose time-outs accordingly.
@@ -65,32 +67,32 @@ extern "C" {
     ((uint16_t)((baud) > 19200 ? 1750 : ((bits)*3500000ul + (baud)-1ul) / (baud)))
 
 typedef struct fathom_exchange fathom_exchange_t;
+typedef struct fathom_line fathom_line_t;
 
-/* What a protocol says of the bytes at the front of the line. */
-typedef struct {
-    uint8_t length;  /* 0: none of its frames begins here. More than there are: so many are needed to tell.
-                        Else the length of the whole frame that stands here. */
-    uint8_t unit;    /* with length > 0: whose frame it is, or would be. Of a question to any unit: 255 */
-    int8_t status;   /* of a whole frame. FATHOM_READY or FATHOM_ERR_EXCEPTION: it answers the exchange.
-                        FATHOM_ERR_MALFORMED: right checksum, from the unit that was asked, but no answer.
-                        FATHOM_PENDING: right checksum, not for this exchange.
-                        FATHOM_ERR_CHECKSUM: wrong checksum. */
-    uint8_t request; /* not 0: the first so many bytes are the request itself. If they are no whole frame, or
-                        one with another length or a wrong checksum, they can only be an echo; a frame of
-                        that length may be an echo or an answer that equals the request. */
-} fathom_match_t;
+/* Whether a line asks or only listens (line_turns.h). */
+typedef struct fathom_line_kind fathom_line_kind_t;
 
 /*
- * What the line has to know of a protocol: a plain function that needs nothing but its arguments.
- *
- * have == 0: writes the request of `exchange` to `frame` (the line's, frame_size bytes) and its length, 1..255,
- *   to match->length.
- * have >= 1: looks at the `have` received bytes in `frame`, changes none, and says in *match what they are. On
- *   an answer it writes the results of `exchange`, and only then. It is also called with `exchange` NULL, by
- *   which the line asks for the frame alone.
+ * What the line has to know of a protocol: plain functions that need nothing but their arguments. `exchange` is one
+ * that names this protocol, `frame` the line's memory (frame_size bytes), `have` >= 1 how many received bytes stand at
+ * its front. None changes a received byte. The table is const and outlives every line that has spoken it.
  */
-typedef void (*fathom_protocol_t)(fathom_exchange_t *exchange, uint8_t *frame, uint8_t have,
-                                  fathom_match_t *match);
+typedef struct {
+    /* Writes the request to `frame`; returns its length, 1..255. */
+    uint8_t (*encode)(const fathom_exchange_t *exchange, uint8_t *frame);
+    /* The length of the frame that begins here, 0: none does. More than `have`: so many bytes are needed to tell. */
+    uint8_t (*length)(const uint8_t *frame, uint8_t have);
+    /* 0: the checksum of the `length` bytes, a whole frame or as many as the request has, is right. */
+    uint16_t (*check)(const uint8_t *frame, uint8_t length);
+    /* Do these bytes begin like the request, as a line with local echo brings it back? Where as many have come as the
+     * request has, the checksum decides. */
+    bool (*is_request)(const fathom_exchange_t *exchange, const uint8_t *frame, uint8_t have);
+    /* Of a whole frame with a right checksum, from a unit that was asked: FATHOM_READY or FATHOM_ERR_EXCEPTION, it
+     * answers the exchange, whose results are written; else it does not, and nothing is. */
+    fathom_status_t (*answer)(fathom_exchange_t *exchange, const uint8_t *frame);
+    uint8_t unit_at;   /* where the unit stands in a frame */
+    bool zero_answers; /* unit 0 is a unit like the others, and not all of them */
+} fathom_protocol_t;
 
 /* Units with a meaning of their own. */
 enum {
@@ -104,7 +106,7 @@ enum {
  * leave it alone until its status is no longer FATHOM_PENDING. It may be submitted again at once.
  */
 struct fathom_exchange {
-    fathom_protocol_t protocol;
+    const fathom_protocol_t *protocol;
     /* Set before the request leaves; NULL: as they are. On a line where one exchange names them, all have to. */
     const fathom_line_settings_t *settings;
     uint32_t timeout_us; /* from the end of the request to the first byte of the answer; to all units: the
@@ -158,61 +160,83 @@ enum {
     FATHOM_LINE_EXCEPTIONS = 5,
     FATHOM_LINE_MALFORMED = 6,
     FATHOM_LINE_LATE_ANSWERS = 7, /* from a unit that owed one */
-    FATHOM_LINE_STRAYS = 8,       /* whole frames that nobody had asked for: another master's traffic */
+    FATHOM_LINE_STRAYS = 8,       /* whole frames that no exchange had asked for: another master's traffic */
     FATHOM_LINE_BAD_BYTES = 9,    /* dropped because the port had marked them: parity, framing. An overrun,
-                                     whose bytes nobody could count, is one */
+                                     whose bytes cannot be counted, is one */
     FATHOM_LINE_COUNTERS = 10
 };
 
 /* Whether the line hands back what is sent on it. */
 enum {
-    FATHOM_LINE_ECHO_AUTO = 0, /* not told: the line finds out */
+    FATHOM_LINE_ECHO_AUTO = 0, /* not told */
     FATHOM_LINE_ECHO_OFF = 1,
     FATHOM_LINE_ECHO_ON = 2
 };
 
-/* Const and the caller's; read at every call, so it outlives the line. */
+/*
+ * Const and the caller's; read at every call, so it outlives the line. The members from find_echo on name what a line
+ * can do besides, NULL: it does not, and the image does not hold it.
+ */
 typedef struct {
     const fathom_uart_t *uart;
     const fathom_clock_t *clock;
     uint8_t *frame;      /* where requests are built and answers gathered; the line's alone */
     uint8_t frame_size;  /* 8..255 bytes: the longest frame on this line. 13 for A16, A05 and HPS-167S
                             distances; 27 for HPS-167S details; more lets longer foreign frames pass whole */
-    uint8_t echo;        /* FATHOM_LINE_ECHO_... */
+    uint8_t echo;        /* FATHOM_LINE_ECHO_OFF or _ON: told; read by init. Else find_echo finds it out */
     uint16_t silence_us; /* kept before a request: FATHOM_T3_5_US(baud, bits), of the slowest settings that
                             are used on the line; 0: 4011 */
     uint16_t gap_us;     /* a frame is over when nothing came for so long. At least 1.5 characters; more
                             than a slow sender or a slow port pauses: 25000 behind an operating system, whose
                             USB adapters hold bytes back for 16 ms. 0: 5000 */
+
+    /* fathom_line_find_echo: the line finds out whether it echoes. */
+    void (*find_echo)(fathom_line_t *line, uint8_t echo);
+    /* fathom_line_marks: what the port says of the bytes that it gives (fathom_rx_t) counts: when they came, a silence
+     * before them, wrong parity, a missing stop bit, an overrun. */
+    uint8_t (*marks)(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
+    /* fathom_line_count: the line counts what happens in `counters`, FATHOM_LINE_COUNTERS of them, the caller's. */
+    void (*count)(fathom_line_t *line, uint8_t which, uint8_t by);
+    uint16_t *counters;
 } fathom_line_config_t;
 
-typedef struct {
+struct fathom_line {
     uint8_t state;
     uint8_t have;       /* bytes in the frame */
     uint8_t need;       /* below so many there is nothing new to say */
     uint8_t known;      /* of gaps, echo and company, bit by bit */
-    uint8_t unasked;    /* bytes since the last answer that belonged to no exchange, as far as that matters */
+    uint8_t sent;       /* bytes of the request that is answered on the wire; 0: there is none */
     uint16_t owing;     /* bit unit % 16: may still answer */
     uint16_t silent_us; /* known silence since the last byte either way; stops at 65535 */
     const fathom_line_config_t *config;
     fathom_exchange_t *head; /* the queue; the one on the wire is first */
     fathom_listener_t *listener;
-    fathom_protocol_t protocol; /* last spoken */
-    uint32_t polled_us;         /* the clock at the last poll */
-    uint32_t left_us;           /* of the present time-out */
-    uint32_t owed_us;           /* until `owing` is forgotten, where it is not 0 */
-    uint16_t counters[FATHOM_LINE_COUNTERS];
-} fathom_line_t;
+    const fathom_protocol_t *protocol; /* last spoken */
+    const fathom_line_kind_t *kind;
+    uint32_t polled_us; /* the clock at the last poll */
+    uint32_t left_us;   /* of the present time-out */
+    uint32_t owed_us;   /* until `owing` is forgotten, where it is not 0 */
+};
+
+/* What a config may name. They are the line's to call. */
+void fathom_line_find_echo(fathom_line_t *line, uint8_t echo);
+uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
+void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
 
 /*
- * Makes a line ready. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer of the config is NULL or the frame is
- * under 8 bytes. The first request waits for one silence.
+ * Makes a line ready. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer that a line cannot do without is NULL, or the
+ * frame is under 8 bytes. The first request waits for one silence.
+ *
+ * init: a line that asks. The config says whether it echoes, or names what finds that out, else FATHOM_ERR_ARGUMENT.
+ * init_listening: a line that only listens: nothing needs to be said of echo, and nothing of what asks is linked.
  */
 fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config);
+fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_config_t *config);
 
 /*
  * Puts an exchange at the end of the queue. FATHOM_PENDING: it is queued, and exchange->status tells the
- * rest. FATHOM_ERR_BUSY: it is queued already; FATHOM_ERR_ARGUMENT: its time-out is too long; nothing changed.
+ * rest. Nothing changed: FATHOM_ERR_BUSY, it is queued already; FATHOM_ERR_ARGUMENT, its time-out is too long;
+ * FATHOM_ERR_UNSUPPORTED, this line only listens.
  */
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_exchange_t *exchange);
 
@@ -264,12 +288,13 @@ fathom_status_t fathom_line_poll(fathom_line_t *line);
 
 /*
  * How long from now until poll has something to do if no byte comes, in microseconds; FATHOM_NO_DEADLINE
- * when only a byte or a submit can bring that. While the port is sending it is 1000: not every port can
- * report the end of sending by an event.
+ * when only a byte or a submit can bring that. While the port is sending, or takes no request, it is the port's
+ * leaves_in_us (hal.h); where that is not known, 1000 after the last poll: not every port can report the end of sending
+ * by an event.
  */
 uint32_t fathom_line_due_us(const fathom_line_t *line);
 
-/* What is known of local echo: what the config says or, with FATHOM_LINE_ECHO_AUTO, what was found out last;
+/* What is known of local echo of a line that asks: what the config says or what was found out last;
  * FATHOM_LINE_ECHO_AUTO as long as nothing was. */
 uint8_t fathom_line_echo(const fathom_line_t *line);
 

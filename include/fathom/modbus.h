@@ -34,6 +34,7 @@ typedef struct {
  * cancel_unit  The same for every request to this unit that has not ended: it is no longer where it was.
  * poll      Does all that can be done without waiting. FATHOM_PENDING, or FATHOM_ERR_PORT: the carrier's port is
  *           broken, and what was under way has ended with that.
+ * clock     What the carrier tells time by; the drivers over it do too. It outlives them.
  * due_us    How long until poll has something to do if no byte comes; FATHOM_NO_DEADLINE.
  */
 typedef struct {
@@ -42,11 +43,12 @@ typedef struct {
     void (*cancel_unit)(void *ctx, uint8_t unit);
     fathom_status_t (*poll)(void *ctx);
     uint32_t (*due_us)(void *ctx);
+    const fathom_clock_t *clock;
     void *ctx;
 } fathom_modbus_t;
 
-/* The seam over a line, for a carrier whose requests are exchanges of that line: all but submit is the line's. By
- * value: keep it as long as the drivers that point to it. */
+/* The seam over a line, for a carrier whose requests are exchanges of that line: all but submit is the line's, the
+ * clock too: the line is ready (fathom_line_init). By value: keep it as long as the drivers that point to it. */
 fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
                                         fathom_status_t (*submit)(void *line,
                                                                   fathom_modbus_request_t *request));

@@ -19,13 +19,19 @@ extern "C" {
  *   while (request.exchange.status == FATHOM_PENDING) fathom_line_poll(&line);
  */
 
-/* As submit and cancel of fathom_modbus_t. A read of unit 0 is answered by the unit whose address is 0. A write to unit 0 is a broadcast: no unit answers, and it is READY
- * exchange.timeout_us (the time the devices need; the specification advises 100 to 200 ms) after it left. */
+/* As submit and cancel of fathom_modbus_t. A write to unit 0 is a broadcast: no unit answers, and it is READY
+ * exchange.timeout_us (the time the devices need; the specification advises 100 to 200 ms) after it left. A read of
+ * unit 0: FATHOM_ERR_UNSUPPORTED; fathom_modbus_client_with_zero() has that. */
 fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_request_t *request);
 void fathom_modbus_client_cancel(fathom_line_t *line, fathom_modbus_request_t *request);
 
-/* The seam for drivers, by value: keep it as long as the drivers that point to it. */
+/* The seam for drivers over a line that is ready, by value: keep it as long as the drivers that point to it. */
 fathom_modbus_t fathom_modbus_client(fathom_line_t *line);
+
+/* Both where a unit may have the address 0: it answers a read of unit 0, and one of all units (255). Only while
+ * such a read is under way are its frames looked for: zeros are what noise is made of. */
+fathom_status_t fathom_modbus_client_submit_with_zero(fathom_line_t *line, fathom_modbus_request_t *request);
+fathom_modbus_t fathom_modbus_client_with_zero(fathom_line_t *line);
 
 #ifdef __cplusplus
 }

@@ -2,6 +2,7 @@
 #ifndef FATHOM_MODBUS_RTU_H
 #define FATHOM_MODBUS_RTU_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "fathom/status.h"
@@ -83,10 +84,9 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
  */
 uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have);
 
-/* Do these `have` (>= 1) bytes begin like the request itself, as a line with local echo brings it back? Then the
- * length of the request (8..255), else 0. With that many bytes there and a right CRC it is the request. */
-uint8_t fathom_modbus_rtu_begun_request(const fathom_modbus_message_t *message, const uint8_t *bytes,
-                                        uint8_t have);
+/* Do these `have` (>= 1) bytes begin like the request itself, as a line with local echo brings it back? The first six
+ * are compared; where all of it has come, the CRC says of the rest. */
+bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const uint8_t *bytes, uint8_t have);
 
 /*
  * Reads a whole response whose CRC the caller has found right (fathom_crc16() == 0).

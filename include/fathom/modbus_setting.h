@@ -27,21 +27,22 @@ extern "C" {
  *
  * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING.
  */
-typedef struct {
-    /* A command of the driver that tells the present value: called until it is not FATHOM_PENDING. NULL: it cannot be
-     * read, and the acknowledgement is all there is. */
-    fathom_status_t (*read)(void *driver, uint32_t *value);
-    void *driver;
-    const fathom_modbus_question_t *write; /* a command */
-    uint32_t value;                        /* what read is to tell in the end */
+typedef struct fathom_modbus_setting fathom_modbus_setting_t;
+struct fathom_modbus_setting {
+    /* Asks the device for its present value: called until it is not FATHOM_PENDING, and then with *value where it is
+     * FATHOM_READY. NULL: it cannot be read, and the acknowledgement is all there is. */
+    fathom_status_t (*read)(const fathom_modbus_setting_t *setting, uint32_t *value);
+    void *driver;                   /* for read */
+    fathom_modbus_question_t write; /* a command; its id tells the settings of a driver apart */
+    uint32_t value;                 /* what read is to tell in the end */
     /* Where the device is once it has taken the value. The settings are kept by the caller as long as the unit. */
     const fathom_line_settings_t *settings; /* NULL: as before */
     uint16_t address;                       /* 1..254; 0: as before; 256: address 0 */
-} fathom_modbus_setting_t;
+};
 
 /*
- * To be called with the same setting until it is not FATHOM_PENDING. unit->is_written tells whether anything was sent
- * that changes the device:
+ * To be called after fathom_modbus_unit_poll, both with a setting of the same id until it is not FATHOM_PENDING.
+ * unit->is_written tells whether anything was sent that changes the device:
  *   FATHOM_READY            not written: it was so already. Written: it was read back; where there is nothing to read
  *                           back, it was acknowledged
  *   FATHOM_ERR_IN_USE       somebody answers at the new place already, be it damaged (so noise in that time is taken

@@ -11,6 +11,24 @@
 extern "C" {
 #endif
 
+/* How a driver asks its sensor: what the configs of all that are asked have in common. Read by init only; the
+ * transport, its clock and the line settings outlive the sensor. Members that are 0 mean their defaults. */
+typedef struct {
+    const fathom_modbus_t *transport;       /* modbus_client.h, dyp_client.h, or a port's */
+    const fathom_line_settings_t *settings; /* where those on one line differ (line.h); NULL: as they are */
+    uint32_t period_us;  /* from one measurement to the next; 0 and anything less: the driver's least */
+    uint32_t timeout_us; /* of a measurement; 0: the driver's */
+    uint32_t command_timeout_us; /* of whatever else is asked; 0: 1 s */
+    /* the longest that a unit which does not answer is left alone; 0: 16 time-outs; up to 2^31 */
+    uint32_t backoff_us;
+    uint8_t address;   /* 1..254; 0: 1, the factory's */
+    bool address_zero; /* it is at address 0 and answers there; `address` is 0. It can be read, not set. For
+                                    A16 and A05 by Modbus */
+    uint8_t retries;   /* after a failed attempt, of what only reads; 0: none */
+} fathom_modbus_config_t;
+
+#define FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US 1000000ul
+
 /*
  * One Modbus unit as a driver deals with it: one request at a time, no faster than the device can, and each
  * outcome handed over once. The Modbus drivers are built on it; their users need not know it.
@@ -19,83 +37,89 @@ extern "C" {
  * after the third time in a row it is left alone for one time-out, then for two, four, eight, sixteen. The first
  * thing that it says ends that. A command is asked at once all the same.
  *
- * There are two kinds of question. The repeated one (a measurement) comes again and again, and nobody minds
- * if an outcome is replaced by a newer one. A command is asked once, and its outcome waits for whoever asked. Both
- * may be reads or writes; modbus_setting.h has the settings of a device, which take several of them.
+ * There are two kinds of question, told apart by their id. The repeated one (a measurement) comes again and again, and
+ * its outcome may be replaced by a newer one. A command is asked once, and its outcome waits for the caller that asked.
+ * Both may be reads or writes; modbus_setting.h has the settings of a device, which take several of them. From one
+ * request to the next to the unit goes the period at least; retries come when the line sends them, and the next request
+ * that much after the last of them.
  */
 typedef struct {
-    uint32_t timeout_us; /* first byte of the answer */
-    uint32_t pace_us;    /* from this request to the next one to the unit, at least; retries come when the
-                            line sends them, and the next one that much after the last of them */
-    uint32_t backoff_us; /* the longest that a dead unit is left alone; 0: 16 time-outs; up to 2^31 */
-    const fathom_line_settings_t *settings; /* fathom_exchange_t.settings */
-    /* count registers, the driver's: those of a read are written on FATHOM_READY only, those of a write of many read
-     * when it leaves. That of a write of one is read at once and need not live any longer. */
+    /* The driver's: registers of a read are written on FATHOM_READY only, those of a write of many read when it leaves.
+     * NULL: there are none, as of a write of one. */
     uint16_t *values;
-    uint16_t first; /* address of the first register, 1..0x3FFF; with is_command and the function it tells
-                         the questions of a driver apart */
-    uint8_t count;  /* 1..125; 1..123 to write many */
-    uint8_t retries;
-    bool is_command;
-    uint8_t function; /* 0: FATHOM_MODBUS_READ_HOLDING_REGISTERS; or one of the two that write */
+    uint16_t first; /* address of the first register */
+    /* the end of the request: how many registers, 1..125, to write many 1..123; or the value to write one */
+    uint16_t last;
+    uint8_t function; /* FATHOM_MODBUS_READ_HOLDING_REGISTERS or one of the two that write */
+    uint8_t id; /* tells a driver's questions apart: 1..127 repeated, from FATHOM_MODBUS_COMMAND a command */
 } fathom_modbus_question_t;
 
+enum { FATHOM_MODBUS_COMMAND = 0x80 };
+
+/* The bytes first, where small machines reach them best. */
 typedef struct {
-    fathom_modbus_request_t request;
-    const fathom_modbus_t *modbus;
-    const fathom_clock_t *clock;
-    uint32_t polled_us;
-    uint32_t pace_us; /* of the present question */
-    uint32_t backoff_us;
-    uint32_t pause_us; /* until the unit may be asked again */
-    uint32_t alone_us; /* until a unit that does not answer is asked the repeated question again */
-    uint32_t warm_us;  /* after power-on: until silence is an error */
-    uint32_t heard_us; /* the clock when the last answer came */
-    /* Not NULL: instead of a question's, since the device has changed its. */
-    const fathom_line_settings_t *settings;
-    uint16_t answers; /* counters; each stops at 65535. The other outcomes: */
-    uint16_t failures;
-    uint8_t address; /* 0..254; what is written to 0 goes to all units */
     uint8_t state;
+    uint8_t asked;    /* which question is the present one; 0: none yet */
+    uint8_t waiting;  /* the command that waits for its turn; 0: none */
+    int8_t carrier;   /* what its poll has said last */
     uint8_t attempts; /* of the present question that were seen to leave */
     uint8_t silences; /* outcomes in a row that were FATHOM_ERR_NO_ANSWER, as far as they matter */
-    bool is_command;  /* the present question */
-    uint16_t asked;   /* which question is the present one; 0: none yet */
-    uint16_t waiting; /* the command that waits for its turn; 0: none */
+    uint8_t retries;  /* as in fathom_modbus_config_t */
+    uint8_t address;  /* 0..254; what is written to 0 goes to all units */
 
     /* modbus_setting.h: */
-    const fathom_line_settings_t *home_settings; /* where the device was, while a setting moves it */
-    uint16_t setting;                            /* the question that is carried out; 0: none */
-    uint8_t home_address;
-    uint8_t step;    /* FATHOM_MODBUS_UNIT_INSIDE: what is asked now belongs to the setting */
+    uint8_t setting; /* the id of the write that is carried out; 0: none */
+    uint8_t step;    /* with FATHOM_MODBUS_UNIT_INSIDE, FATHOM_MODBUS_UNIT_ONCE */
     int8_t outcome;  /* of the write */
-    uint16_t doubts; /* bit register % 16: was written and has not read so since; until power-on */
-    uint16_t given;  /* the setting that was written last, and was acknowledged or not so before; 0: none */
-    uint16_t given_value;
+    uint8_t home_address;
+    uint8_t given;   /* the setting that was written last, and was acknowledged or not so before; 0: none */
     bool is_written; /* the write of the last setting has been handed to the line */
     bool is_blind;   /* the next setting is, or the present one */
+    uint16_t given_value; /* of it */
+    uint16_t doubts;      /* bit id % 16: was written and has not read so since; until power-on */
+
+    uint16_t answers; /* counters; each stops at 65535. The other outcomes: */
+    uint16_t failures;
+    const fathom_modbus_t *modbus;
+    const fathom_line_settings_t *settings;      /* where the device is now; NULL: as the line is */
+    const fathom_line_settings_t *home_settings; /* where it was, while a setting moves it */
+    uint32_t polled_us;
+    uint32_t pause_us;   /* until the unit may be asked again */
+    uint32_t alone_us;   /* until a unit that does not answer is asked the repeated question again */
+    uint32_t warm_us;    /* after power-on: until silence is an error */
+    uint32_t timeout_us; /* this and the next three as in fathom_modbus_config_t, without zeros */
+    uint32_t command_timeout_us;
+    uint32_t pace_us;
+    uint32_t backoff_us;
+    fathom_modbus_request_t request;
 } fathom_modbus_unit_t;
 
-enum { FATHOM_MODBUS_UNIT_INSIDE = 8 };
+/* What is asked now belongs to the setting that is carried out; it is its write, sent once. */
+enum { FATHOM_MODBUS_UNIT_INSIDE = 8, FATHOM_MODBUS_UNIT_ONCE = 16 };
 
-/* modbus and clock outlive the unit. FATHOM_READY, or FATHOM_ERR_ARGUMENT: a pointer is NULL or the address
- * is 255, which asks everybody. */
-fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *modbus,
-                                        const fathom_clock_t *clock, uint8_t address);
+/* timeout_us and pace_us: the driver's time-out where the config says 0, and its least period. FATHOM_READY, or
+ * FATHOM_ERR_ARGUMENT: no transport, or it has no clock; the address is 255, which asks everybody, or stands beside
+ * address_zero. */
+fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
+                                        uint32_t timeout_us, uint32_t pace_us);
 
 /*
- * Asks the question, or goes on with it: call it with the same question until it is not FATHOM_PENDING.
+ * Lets time pass and the carrier work. Each function of a driver that asks calls it first, once and not from within
+ * others: below it the stack is deepest.
+ */
+void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit);
+
+/*
+ * Asks the question, or goes on with it, after fathom_modbus_unit_poll: call both, with a question of the same id, until
+ * it is not FATHOM_PENDING.
  * FATHOM_READY or the error with which the request ended (fathom_exchange_t), each outcome once: where two callers ask
  * the same question, also as the first one of a setting, the one that calls next has it, and the other asks anew.
- * FATHOM_ERR_BUSY: another command or setting is not finished, or nobody has taken its outcome.
+ * FATHOM_ERR_BUSY: another command or setting is not finished, or its outcome was not taken.
  * FATHOM_ERR_WARMING_UP: so soon after power-on the unit was silent, was not understood or refused.
- * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: as fathom_modbus_t.poll,
- * and nothing was asked.
+ * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: the last poll said
+ * so, and nothing was asked.
  */
 fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question);
-
-/* What tells the questions of one driver apart; not 0. */
-uint16_t fathom_modbus_unit_name(const fathom_modbus_question_t *question);
 
 /* Forgets what was asked and any outcome; a request under way is cancelled. A setting that was under way may hold or
  * not; the unit is asked where it was before. */
@@ -106,7 +130,31 @@ void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);
 void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us);
 
 /* Is it so soon after power-on? As of the last call. */
-bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit);
+static inline bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit)
+{
+    return unit->warm_us != 0;
+}
+
+/* The exception code of the answer that came last, FATHOM_MODBUS_ILLEGAL_FUNCTION or another; 0: it was none. It tells
+ * what a FATHOM_ERR_EXCEPTION was, until the unit is asked again. */
+static inline uint8_t fathom_modbus_unit_exception(const fathom_modbus_unit_t *unit)
+{
+    return unit->request.message.exception;
+}
+
+/* How many questions were answered (FATHOM_READY), and how many ended otherwise, retries included; each stops at
+ * 65535. */
+static inline uint16_t fathom_modbus_unit_answers(const fathom_modbus_unit_t *unit) { return unit->answers; }
+static inline uint16_t fathom_modbus_unit_failures(const fathom_modbus_unit_t *unit)
+{
+    return unit->failures;
+}
+
+/* The clock when the last byte of the answer came; until the unit is asked again. */
+static inline uint32_t fathom_modbus_unit_heard_us(const fathom_modbus_unit_t *unit)
+{
+    return unit->request.exchange.link.heard_us;
+}
 
 /* How long until something can happen without a new byte, given that the unit is asked again and again. */
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit);

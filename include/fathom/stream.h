@@ -61,33 +61,37 @@ enum {
     FATHOM_STREAM_COUNTERS = 6
 };
 
+/* Read by init only. */
 typedef struct {
-    uint8_t *storage;  /* FATHOM_STREAM_STORAGE(length) bytes, the stream's alone */
-    uint32_t stale_us; /* without a good frame for so long, the stream is stale; 0: 10 s */
-    uint16_t gap_us;   /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at
+    uint8_t *storage; /* FATHOM_STREAM_STORAGE(length) bytes, the stream's alone */
+    /* Without a good frame for so long, the stream is stale; up to 2^31 - 1, 35 minutes. 0: 10 s. */
+    uint32_t stale_us;
+    uint16_t gap_us; /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at
                           9600 baud) and less than the pause between frames; behind an operating system
                           25000. 0: 5000 */
-    uint8_t length;    /* 4 or 10 */
+    uint8_t length;  /* 4 or 10 */
 } fathom_stream_config_t;
 
 typedef struct {
     fathom_listener_t listener; /* first, so that one pointer is both */
-    const fathom_stream_config_t *config;
-    uint32_t polled_us;
-    uint32_t left_us;      /* until it is stale */
+    /* bytes before words: a Cortex-M0+ reaches no others at once */
+    uint8_t to_step; /* bytes until the window is right upon the last valid one, plus one; stops at 0 */
+    bool gap;        /* the bytes since the last gap began with one that was seen, and none was lost */
+    /* Not 0: the window is a frame, if the next byte begins another one or none comes for gap_us. 1: by the window before
+     * it. 2: the first thing after a gap. 3: its place is sure. */
+    uint8_t candidate;
+    bool fresh; /* the newest good frame has not been polled */
+    uint8_t length;
+    /* Bytes until the window holds nothing from before the last gap, plus one; stops at 0. */
+    uint8_t to_whole;
+    uint8_t last; /* of the last valid window: it overlapped one before it (1), or was right upon one (2) */
+    bool sure;    /* the newest good frame's place is sure; to be read after a poll that gave it */
+    uint16_t counters[FATHOM_STREAM_COUNTERS];
+    uint8_t *storage; /* the window, which is the last `length` bytes; behind it the newest good frame */
+    uint32_t stale_us;
+    uint32_t since_us;     /* the last poll that gave a frame or said that it is stale */
     uint32_t time_us;      /* of the newest good frame */
     uint32_t candidate_us; /* when its last byte came */
-    uint16_t counters[FATHOM_STREAM_COUNTERS];
-    uint8_t oldest; /* where in the ring */
-    uint8_t run;    /* bytes since a gap; stops at 255 */
-    uint8_t since;  /* bytes since the end of the last valid window; stops at 255 */
-    bool gap;       /* the run began with a gap that was seen */
-    uint8_t steps;  /* valid windows right upon one another without a doubt, less one; stops at 255 */
-    bool doubtful;  /* the last valid window overlapped a valid one before it */
-    bool first;     /* that window was the first thing after a gap */
-    bool candidate; /* the ring holds a frame, if the next byte begins another one or none comes for gap_us */
-    bool fresh;     /* the newest good frame has not been polled */
-    bool sure;      /* its place is sure; to be read after a poll that gave it */
 } fathom_stream_t;
 
 /* Makes a stream ready; it is stale config->stale_us from now_us. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no
@@ -95,21 +99,37 @@ typedef struct {
 fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_config_t *config,
                                    uint32_t now_us);
 
+/* The same where storage, length, stale_us and listener.gap_us of the stream are set, to what may stand in a config;
+ * also to begin anew: all that came is forgotten. */
+void fathom_stream_begin(fathom_stream_t *stream, uint32_t now_us);
+
 /*
  * Takes `count` bytes; 0: bytes were lost here. after_gap: the line was seen to be silent for gap_us before the
  * first. time_us: when the last one came. A stream that listens to a line is fed by it.
+ * fathom_stream_receive: `listener` is that of a stream.
  */
-void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t count, bool after_gap,
-                        uint32_t time_us);
+void fathom_stream_receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
+                           uint32_t time_us);
+
+static inline void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *bytes, uint8_t count,
+                                      bool after_gap, uint32_t time_us)
+{
+    fathom_stream_receive(&stream->listener, bytes, count, after_gap, time_us);
+}
 
 /*
  * To be called when all that came before now_us has been fed: a silence since the last byte ends a frame.
- * FATHOM_READY: *frame is the newest good frame, config->length bytes in the stream's storage, to be read
- *   before more is fed; stream->time_us is when it came. Each frame is given once.
+ * FATHOM_READY: fathom_stream_frame is the newest good frame, `length` bytes, to be read before more is fed;
+ *   stream->time_us is when it came. Each frame is given once.
  * FATHOM_ERR_STALE: no good frame for stale_us; said once, then the deadline begins again.
  * FATHOM_PENDING: neither.
  */
-fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us, const uint8_t **frame);
+fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us);
+
+static inline const uint8_t *fathom_stream_frame(const fathom_stream_t *stream)
+{
+    return stream->storage + stream->length;
+}
 
 /* How long until poll will say FATHOM_READY or FATHOM_ERR_STALE if nothing comes; 0 when a frame waits to be
  * polled. */

@@ -41,9 +41,10 @@ uint32_t span_us_of(size_t length, uint8_t bits, uint32_t baud)
     return (frame_bits + (frame_bits + 39) / 40 + 2) * 1000000ul / baud + 9;
 }
 
-bool is_over(uint32_t since_us, uint32_t span_us)
+uint32_t left_us(uint32_t since_us, uint32_t span_us)
 {
-    return fathom_elapsed_us(static_cast<uint32_t>(micros()), since_us) >= span_us;
+    const uint32_t passed_us = fathom_elapsed_us(static_cast<uint32_t>(micros()), since_us);
+    return passed_us < span_us ? span_us - passed_us : 0;
 }
 
 bool can_reach(uint32_t baud)
@@ -118,7 +119,7 @@ bool serial_uart::begin(uint32_t baud, fathom_parity_t parity, uint8_t stop_bits
 
 fathom_uart_t serial_uart::hal()
 {
-    const fathom_uart_t made = {read, write, sent, set_line, NULL, this};
+    const fathom_uart_t made = {read, write, sent, set_line, NULL, leaves_in_us, this};
     return made;
 }
 
@@ -155,7 +156,7 @@ bool serial_uart::set(const fathom_line_settings_t &line)
 bool serial_uart::release()
 {
     if (!leaving_) return true;
-    if (!is_over(since_us_, span_us_) || serial_.availableForWrite() < room_) return false;
+    if (left_us(since_us_, span_us_) != 0 || serial_.availableForWrite() < room_) return false;
     if (driver_enable_ != no_pin) digitalWrite(driver_enable_, LOW);
     leaving_ = false;
     return true;
@@ -183,6 +184,12 @@ int serial_uart::write(void *ctx, const uint8_t *bytes, size_t length)
 
 bool serial_uart::sent(void *ctx) { return static_cast<serial_uart *>(ctx)->release(); }
 
+uint32_t serial_uart::leaves_in_us(void *ctx)
+{
+    const serial_uart &self = *static_cast<serial_uart *>(ctx);
+    return self.leaving_ ? left_us(self.since_us_, self.span_us_) : 0;
+}
+
 int serial_uart::set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     serial_uart &self = *static_cast<serial_uart *>(ctx);
@@ -200,7 +207,7 @@ stream_uart::stream_uart(Stream &stream, uint32_t baud, uint8_t bits)
 
 fathom_uart_t stream_uart::hal()
 {
-    const fathom_uart_t made = {read, write, sent, NULL, NULL, this};
+    const fathom_uart_t made = {read, write, sent, NULL, NULL, leaves_in_us, this};
     return made;
 }
 
@@ -222,8 +229,14 @@ int stream_uart::write(void *ctx, const uint8_t *bytes, size_t length)
 bool stream_uart::sent(void *ctx)
 {
     stream_uart &self = *static_cast<stream_uart *>(ctx);
-    if (self.leaving_ && is_over(self.since_us_, self.span_us_)) self.leaving_ = false;
+    if (self.leaving_ && left_us(self.since_us_, self.span_us_) == 0) self.leaving_ = false;
     return !self.leaving_;
+}
+
+uint32_t stream_uart::leaves_in_us(void *ctx)
+{
+    const stream_uart &self = *static_cast<stream_uart *>(ctx);
+    return self.leaving_ ? left_us(self.since_us_, self.span_us_) : 0;
 }
 
 } // namespace arduino

@@ -95,6 +95,7 @@ enum : uint8_t { no_pin = 255 };
  *            the frame takes, with 2.5 % more (the clock of the UART) and 2 bits. So it turns true late by that: by
  *            0.33 ms for 8 characters at 19200 8E1. It can be early if interrupts were off for longer while
  *            the frame left; in a frame of ours nothing but SoftwareSerial does that.
+ * leaves_in_us  the rest of that time.
  * set_line   begin() of the core, without end(), which blocks and throws away what was received. < 0 on an AVR where
  *            no divider comes within 2.5 %: 230400 at 16 MHz, 115200 at 8 MHz. Other cores are believed.
  * set_break  NULL: cores have nothing for that. Triggers and selects take a pin, output().
@@ -142,6 +143,7 @@ class serial_uart
     static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
     static int write(void *ctx, const uint8_t *bytes, size_t length);
     static bool sent(void *ctx);
+    static uint32_t leaves_in_us(void *ctx);
     static int set_line(void *ctx, const fathom_line_settings_t *settings);
 };
 
@@ -152,7 +154,7 @@ class serial_uart
  * write      gives the Stream all at once, and takes as long as that does. SoftwareSerial sends bit by bit: a
  *            request of 8 bytes at 9600 baud blocks for 8.3 ms, in which nothing is received. < 0 if the Stream took
  *            less than all.
- * sent       when the time of the frame at `baud` has passed since write began, as above.
+ * sent       when the time of the frame at `baud` has passed since write began, as above; leaves_in_us too.
  *
  * SoftwareSerial on an AVR keeps 63 bytes, has no parity (so no HPS-167S), hears one instance at a time, and keeps
  * interrupts off while a byte comes in: up to 57600 baud, and no pulse_input beside it. A sensor that sends by itself
@@ -178,6 +180,7 @@ class stream_uart
     static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
     static int write(void *ctx, const uint8_t *bytes, size_t length);
     static bool sent(void *ctx);
+    static uint32_t leaves_in_us(void *ctx);
 };
 
 } // namespace arduino

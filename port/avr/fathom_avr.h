@@ -71,8 +71,8 @@ typedef struct {
 typedef struct {
     uint16_t parity;  /* bytes with wrong parity */
     uint16_t framing; /* bytes without a stop bit: breaks, noise, another rate */
-    uint16_t
-        overruns; /* bytes before which others were lost: the interrupt came too late, or the ring was full */
+    /* bytes before which others were lost: the interrupt came too late, or the ring was full */
+    uint16_t overruns;
 } fathom_avr_usart_counters_t;
 
 /*
@@ -81,6 +81,7 @@ typedef struct {
  * write       takes 1 to request_size bytes; of none or more it says < 0. It begins with the first byte at once, and drives
  *             `driver` from before that until the last stop bit has left (transmit complete), in the interrupt.
  * sent        is exact.
+ * leaves_in_us  counts bytes, and is two characters too long at most.
  * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; at 8 MHz no 115200 either; < 0 beyond.
  * set_break   the transmitter lets go of TXD (PD1), which is driven low; `driver` is high as long.
  * Cost: a receive interrupt of at most 60 cycles, see the README.

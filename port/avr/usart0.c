@@ -19,6 +19,7 @@ static volatile uint8_t left;        /* of its bytes, those that UDR0 has not go
 static volatile bool sending;        /* up to its last stop bit */
 static bool in_break;
 static fathom_line_settings_t line; /* that holds */
+static uint16_t character_us;       /* of it, rounded up */
 
 fathom_avr_usart_counters_t fathom_avr_usart0_counters;
 
@@ -157,6 +158,14 @@ static bool usart_sent(void *ctx)
     return !sending;
 }
 
+/* UDR0 and the shift register hold two more, which they have got as soon as `write` has ended. */
+static uint32_t usart_leaves_in_us(void *ctx)
+{
+    (void)ctx;
+    if (!sending) return 0;
+    return (uint32_t)(left + 2u) * character_us;
+}
+
 /* What UBRR0 + 1 is with U2X0 set; 0 where the rate cannot be within 2.5 %, or the hardware has no such settings. */
 static uint16_t divisor_of(const fathom_line_settings_t *settings)
 {
@@ -183,6 +192,8 @@ static void set(const fathom_line_settings_t *settings, uint16_t divisor)
                         : settings->parity == FATHOM_PARITY_EVEN ? _BV(UPM01)
                                                                  : _BV(UPM01) | _BV(UPM00)));
     line = *settings;
+    const uint8_t bits = (uint8_t)(9 + (line.parity != FATHOM_PARITY_NONE) + line.stop_bits);
+    character_us = (uint16_t)((bits * 1000000u + line.baud - 1) / line.baud);
 }
 
 static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
@@ -224,6 +235,7 @@ const fathom_uart_t fathom_avr_usart0 = {
     .sent = usart_sent,
     .set_line = usart_set_line,
     .set_break = usart_set_break,
+    .leaves_in_us = usart_leaves_in_us,
 };
 
 bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *new_config)

@@ -96,7 +96,8 @@ typedef enum {
 
 /* All but the counters is the port's own. */
 typedef struct {
-    fathom_line_t line; /* first, so that one pointer is both; line.counters is for the user */
+    fathom_line_t line;                      /* first, so that one pointer is both */
+    uint16_t counters[FATHOM_LINE_COUNTERS]; /* for the user */
     fathom_line_config_t config;
     fathom_uart_t uart;
     modbus_t *modbus;
@@ -137,7 +138,7 @@ fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port);
  * read   < 0 when the connection is broken. Never part of a TCP answer.
  * write  A whole RTU frame with its CRC, which libmodbus (RTU) or nobody (TCP) computes again.
  * sent   RTU: the kernel's queue is empty; the UART may have some characters left. TCP: true.
- * set_line, set_break  NULL.
+ * set_line, set_break, leaves_in_us  NULL; for the last, `sent` is true too soon for a sleep to be worth it.
  */
 fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port);
 

@@ -67,6 +67,9 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
         port->config.silence_us = config->silence_us;
         port->config.gap_us = config->gap_us != 0 ? config->gap_us : RTU_GAP_US;
     }
+    port->config.find_echo = fathom_line_find_echo;
+    port->config.count = fathom_line_count;
+    port->config.counters = port->counters;
     return fathom_line_init(&port->line, &port->config);
 }
 
@@ -83,7 +86,7 @@ static fathom_status_t submit(void *line, fathom_modbus_request_t *request)
 {
     fathom_libmodbus_t *const port = line;
     if (!takes_unit(port->modbus, request->message.head[0])) return FATHOM_ERR_UNSUPPORTED;
-    return fathom_modbus_client_submit(&port->line, request);
+    return fathom_modbus_client_submit_with_zero(&port->line, request);
 }
 
 fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port)

@@ -9,7 +9,7 @@ enum { STATE_TXFULL = 1, STATE_RXFULL = 2, STATE_RXOVERRUN = 8 };
 enum { CTRL_TX = 1, CTRL_RX = 2, CTRL_TX_INTERRUPT = 4, CTRL_RX_INTERRUPT = 8 };
 enum { INTSTATUS_TX = 1, INTSTATUS_RX = 2 };
 enum { MIN_BAUDDIV = 16, MAX_BAUDDIV = 0xFFFFF };
-enum { CHARACTER_BITS = 10 };
+enum { CHARACTER_BITS = 10, HELD = 2 /* bytes: one in the buffer, one on the wire */ };
 
 #define NVIC_ISER ((volatile uint32_t *)0xE000E100u)
 
@@ -67,6 +67,13 @@ static bool uart_sent(void *ctx)
     return !uart->is_sending;
 }
 
+static uint32_t uart_leaves_in_us(void *ctx)
+{
+    const fathom_mps2_uart_t *const uart = ctx;
+    const fathom_line_settings_t line = {uart->baud, FATHOM_PARITY_NONE, 1};
+    return uart_sent(ctx) ? 0 : fathom_serial_leaves_in_us(&uart->serial, &line, HELD);
+}
+
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_mps2_uart_t *const uart = ctx;
@@ -114,6 +121,11 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
 
 fathom_uart_t fathom_mps2_uart(fathom_mps2_uart_t *uart)
 {
-    const fathom_uart_t hal = {uart_read, uart_write, uart_sent, uart_set_line, NULL, uart};
+    const fathom_uart_t hal = {.read = uart_read,
+                               .write = uart_write,
+                               .sent = uart_sent,
+                               .set_line = uart_set_line,
+                               .leaves_in_us = uart_leaves_in_us,
+                               .ctx = uart};
     return hal;
 }

@@ -136,6 +136,8 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
  *        (they are 1 ms apart at full speed), and by that much sent may be early; an FTDI chip tells in its
  *        status packets, up to 16 ms late. True on a port that is lost or closed, so that nobody waits;
  *        read and write tell.
+ * leaves_in_us  The last of these three, to the microsecond; 0 where the kernel has not taken all yet, so that it is
+ *        offered the rest, and where an adapter takes longer.
  * set_break  TIOCSBRK and TIOCCBRK, when all that was written has left. Not every adapter can; most drivers do not
  *        tell. On a pseudo terminal a byte 0 stands for a break, which is what one that arrives is read as.
  * set_line  fathom_posix_set_line, and nothing at all when the settings hold already; fathom_posix_error has

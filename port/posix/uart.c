@@ -103,6 +103,15 @@ bool fathom_posix_sent(fathom_posix_uart_t *port)
 
 static bool uart_sent(void *ctx) { return fathom_posix_sent(ctx); }
 
+static uint32_t uart_leaves_in_us(void *ctx)
+{
+    const fathom_posix_uart_t *const port = ctx;
+    /* What the kernel has not taken yet is to be offered to it soon. */
+    if (!port->is_open || port->is_lost || port->pending_at != port->pending_end) return 0;
+    const uint64_t now_us = fathom_posix_now_us();
+    return now_us < port->leaving_until_us ? (uint32_t)(port->leaving_until_us - now_us) : 0;
+}
+
 static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     fathom_posix_uart_t *const port = ctx;
@@ -130,7 +139,13 @@ static int uart_set_break(void *ctx, bool on)
 
 fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port)
 {
-    const fathom_uart_t uart = {uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, port};
+    const fathom_uart_t uart = {.read = uart_read,
+                                .write = uart_write,
+                                .sent = uart_sent,
+                                .set_line = uart_set_line,
+                                .set_break = uart_set_break,
+                                .leaves_in_us = uart_leaves_in_us,
+                                .ctx = port};
     return uart;
 }
 

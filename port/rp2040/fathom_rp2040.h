@@ -119,6 +119,7 @@ typedef struct {
     uint8_t silent_at;  /* with is_silent: after so many bytes the receive time-out came */
     uint32_t silent_us; /* and this is when the last of them had ended */
     bool is_silent;
+    uint32_t end_us;         /* of the last request: its length, and a bit */
     volatile uint8_t length; /* of the request */
     volatile uint8_t given;  /* of it, to the hardware */
     volatile bool is_break;
@@ -144,6 +145,7 @@ bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_ua
  *             if it is not over, it looks again a bit later. So the driver stays one bit longer at most, and what
  *             other interrupts take: no device here answers sooner than that.
  * sent        is exact: BUSY.
+ * leaves_in_us  is by the clock, and a bit too long at most.
  * set_line    within 2.5 %, from clk_peri / 1048560 to clk_peri / 16 baud. A byte that is coming in just then is
  *             garbage; the hardware is stopped meanwhile.
  * set_break   LCR_H.BRK; the driver is high as long. The PL011 asks for two characters of it at least.

@@ -135,6 +135,13 @@ static bool uart_sent(void *ctx)
     return uart->given == uart->length && (hardware_of(uart)->fr & RP2040_UART_FR_BUSY) == 0;
 }
 
+static uint32_t uart_leaves_in_us(void *ctx)
+{
+    const fathom_rp2040_uart_t *const uart = ctx;
+    const uint32_t left_us = uart->end_us - RP2040_TIMER_RAWL;
+    return uart_sent(ctx) || left_us > INT32_MAX ? 0 : left_us;
+}
+
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_rp2040_uart_t *const uart = ctx;
@@ -147,10 +154,9 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     uart->length = (uint8_t)length;
     drive(uart, true);
     feed(uart);
-    if (uart->config->wiring.has_driver) {
-        const uint32_t bits = (uint32_t)length * fathom_rp2040_uart_bits(&uart->line);
-        fathom_rp2040_alarm_set(uart->config->wiring.alarm, time_us(uart, bits));
-    }
+    const uint32_t us = time_us(uart, (uint32_t)length * fathom_rp2040_uart_bits(&uart->line));
+    if (uart->config->wiring.has_driver) fathom_rp2040_alarm_set(uart->config->wiring.alarm, us);
+    uart->end_us = RP2040_TIMER_RAWL + us + time_us(uart, 1); /* which begins with a tick of its divider */
     return (int)length;
 }
 
@@ -236,6 +242,7 @@ fathom_uart_t fathom_rp2040_uart(fathom_rp2040_uart_t *uart)
     hal.sent = uart_sent;
     hal.set_line = uart_set_line;
     hal.set_break = uart_set_break;
+    hal.leaves_in_us = uart_leaves_in_us;
     hal.ctx = uart;
     return hal;
 }

@@ -137,6 +137,17 @@ static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *byt
     return (int)length;
 }
 
+/* As `leaves_in_us` of fathom_uart_t while bytes leave: the UART itself holds up to `held` of those that it was given,
+ * the one that it sends among them. */
+static inline uint32_t fathom_serial_leaves_in_us(const fathom_serial_t *serial,
+                                                  const fathom_line_settings_t *line, uint32_t held)
+{
+    const uint32_t character_bits = 9u + (line->parity != FATHOM_PARITY_NONE) + line->stop_bits;
+    uint32_t left = serial->length - (uint32_t)serial->at + held;
+    if (left > serial->length) left = serial->length;
+    return (left * character_bits * 1000000u + line->baud - 1) / line->baud; /* 255 of 12 bits fit */
+}
+
 /* ---- for set_line ---- */
 
 static inline bool fathom_serial_is_same(const fathom_line_settings_t *a, const fathom_line_settings_t *b)

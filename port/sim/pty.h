@@ -34,10 +34,10 @@ extern "C" {
  * One that takes the port for itself alone (TIOCEXCL) must give it back (TIOCNXCL): it does not end at close.
  */
 typedef struct {
-    const char
-        *link; /* a symbolic link to make, for a name that stays; NULL: none. Kept until close. What is there
-                           already is EEXIST, but for a link that a pty left behind which was not closed: one to a
-                           terminal that is gone, which is replaced in one step */
+    /* a symbolic link to make, for a name that stays; NULL: none. Kept until close. What is there already is EEXIST,
+     * but for a link that a pty left behind which was not closed: one to a terminal that is gone, which is replaced
+     * in one step */
+    const char *link;
     bool ignore_baud; /* devices hear the client at any rate */
 } fathom_sim_pty_config_t;
 

@@ -267,6 +267,14 @@ bool fathom_sim_sent(fathom_sim_line_t *line, uint32_t now_us)
     return fathom_sim_sender_idle(&line->host);
 }
 
+uint32_t fathom_sim_leaves_in_us(fathom_sim_line_t *line, uint32_t now_us)
+{
+    const fathom_sim_sender_t *const host = &line->host;
+    if (fathom_sim_sent(line, now_us)) return 0;
+    return fathom_sim_until_us(host->begin_us + fathom_sim_span_us(&host->settings, host->length),
+                               line->now_us);
+}
+
 size_t fathom_sim_transmit_timed(fathom_sim_line_t *line, uint32_t now_us, uint8_t *bytes, size_t capacity,
                                  uint8_t knows, fathom_rx_t *rx)
 {

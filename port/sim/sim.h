@@ -100,6 +100,9 @@ void fathom_sim_break(fathom_sim_line_t *line, bool on, uint32_t now_us);
 /* Has the last stop bit left that the host sent? */
 bool fathom_sim_sent(fathom_sim_line_t *line, uint32_t now_us);
 
+/* How long until that, in microseconds; 0: it has. */
+uint32_t fathom_sim_leaves_in_us(fathom_sim_line_t *line, uint32_t now_us);
+
 /* Devices to host: up to `capacity` bytes whose last bit has arrived by now. */
 size_t fathom_sim_transmit(fathom_sim_line_t *line, uint32_t now_us, uint8_t *bytes, size_t capacity);
 

@@ -122,6 +122,12 @@ static bool sent(void *ctx)
     return fathom_sim_sent(uart->line, uart->clock->now_us);
 }
 
+static uint32_t leaves_in_us(void *ctx)
+{
+    const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    return fathom_sim_leaves_in_us(uart->line, uart->clock->now_us);
+}
+
 static int set_break(void *ctx, bool on)
 {
     const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
@@ -149,6 +155,12 @@ void fathom_sim_uart_init(fathom_sim_uart_t *uart, fathom_sim_line_t *line, fath
 
 fathom_uart_t fathom_sim_uart(fathom_sim_uart_t *uart)
 {
-    const fathom_uart_t hal = {read, write, sent, set_line, set_break, uart};
+    const fathom_uart_t hal = {.read = read,
+                               .write = write,
+                               .sent = sent,
+                               .set_line = set_line,
+                               .set_break = set_break,
+                               .leaves_in_us = leaves_in_us,
+                               .ctx = uart};
     return hal;
 }

@@ -78,9 +78,9 @@ typedef struct {
     fathom_line_settings_t line;
     fathom_stm32f4_pin_t tx;
     fathom_stm32f4_pin_t driver;
-    volatile uint16_t
-        noise; /* bytes of which the three samples of a bit differed (NE); taken for good. Stops at
-                                65535, and the caller may set it to 0 */
+    /* bytes of which the three samples of a bit differed (NE); taken for good. Stops at 65535, and the caller may
+     * set it to 0 */
+    volatile uint16_t noise;
     bool is_break;
 } fathom_stm32f4_usart_t;
 
@@ -100,6 +100,7 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart);
  * write       takes 1 to request_size bytes; of none or more it says < 0. It drives `driver` from before the first start bit
  *             until the last stop bit has left (TC), and lets it go in the interrupt.
  * sent        is exact.
+ * leaves_in_us  counts bytes, and is two characters too long at most.
  * set_line    within 2.5 %: bus_hz / 65535 to bus_hz / 16 baud. 8E1 and 8O1 are words of 9 bits here (M and PCE).
  * set_break   TX becomes an output that is low, since SBK sends one character of break and no more; `driver` is high
  *             as long. Meanwhile write says 0.

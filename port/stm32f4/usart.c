@@ -19,6 +19,7 @@ enum {
     CR2_STOP_2 = 2 << 12
 };
 enum { MIN_BRR = 16, MAX_BRR = 0xFFFF };
+enum { HELD = 2 }; /* bytes: one in DR, one that leaves */
 
 /* RM0090 2.3, 7.3 and table 62; the datasheet's table of alternate functions. */
 typedef struct {
@@ -108,6 +109,12 @@ static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
 
 static bool usart_sent(void *ctx) { return !((const fathom_stm32f4_usart_t *)ctx)->serial.leaving; }
 
+static uint32_t usart_leaves_in_us(void *ctx)
+{
+    const fathom_stm32f4_usart_t *const usart = ctx;
+    return usart_sent(ctx) ? 0 : fathom_serial_leaves_in_us(&usart->serial, &usart->line, HELD);
+}
+
 static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     fathom_stm32f4_usart_t *const usart = ctx;
@@ -162,6 +169,12 @@ bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm3
 
 fathom_uart_t fathom_stm32f4_usart(fathom_stm32f4_usart_t *usart)
 {
-    const fathom_uart_t hal = {usart_read, usart_write, usart_sent, usart_set_line, usart_set_break, usart};
+    const fathom_uart_t hal = {.read = usart_read,
+                               .write = usart_write,
+                               .sent = usart_sent,
+                               .set_line = usart_set_line,
+                               .set_break = usart_set_break,
+                               .leaves_in_us = usart_leaves_in_us,
+                               .ctx = usart};
     return hal;
 }

@@ -105,6 +105,12 @@ static bool uart_sent(void *ctx)
     return is_sent;
 }
 
+static uint32_t uart_leaves_in_us(void *ctx)
+{
+    const fathom_virt_uart_t *const uart = ctx;
+    return uart_sent(ctx) ? 0 : fathom_serial_leaves_in_us(&uart->serial, &uart->line, FIFO + 1);
+}
+
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_virt_uart_t *const uart = ctx;
@@ -155,6 +161,12 @@ bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_con
 
 fathom_uart_t fathom_virt_uart(fathom_virt_uart_t *uart)
 {
-    const fathom_uart_t hal = {uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, uart};
+    const fathom_uart_t hal = {.read = uart_read,
+                               .write = uart_write,
+                               .sent = uart_sent,
+                               .set_line = uart_set_line,
+                               .set_break = uart_set_break,
+                               .leaves_in_us = uart_leaves_in_us,
+                               .ctx = uart};
     return hal;
 }

@@ -9,6 +9,7 @@
     run.py --csv FILE also writes the tables as CSV
     run.py --functions
                       also prints which function of the job costs what
+    run.py --chains   also prints the calls that take each row's worst stack, and what each of them takes
 
 The first table is the job's (job.py), against the bounds; the second has flash, RAM and stack of each part of the
 library on each microcontroller (sizes.py).
@@ -25,18 +26,18 @@ from tools import Failed, versions
 
 
 def measure(work):
-    """Figures, functions, sizes and variables; what could not be measured is missing."""
-    figures, functions, sizes, variables = {}, {}, {}, {}
+    """Figures, functions, sizes, variables and chains; what could not be measured is missing."""
+    figures, functions, of_sizes = {}, {}, ({}, {}, {})
     for part in (measure_arm, measure_avr, measure_x86):
         try:
             part(work, figures, functions)
         except Failed as why:
             print(f'{part.__name__}: {why}', file=sys.stderr)
     try:
-        sizes, variables = measure_sizes(work)
+        of_sizes = measure_sizes(work)
     except Failed as why:
         print(f'measure_sizes: {why}', file=sys.stderr)
-    return figures, functions, sizes, variables
+    return figures, functions, *of_sizes
 
 
 def main():
@@ -44,6 +45,7 @@ def main():
     parser.add_argument('--check', action='store_true', help='fail when a figure is worse than the kept one')
     parser.add_argument('--update', action='store_true', help='keep the figures')
     parser.add_argument('--functions', action='store_true', help='print which function costs what')
+    parser.add_argument('--chains', action='store_true', help='print which calls take the worst stack')
     parser.add_argument('--self-test', action='store_true', help='show that the comparison works')
     parser.add_argument('--csv', metavar='FILE', help='write the tables there as CSV')
     options = parser.parse_args()
@@ -51,12 +53,14 @@ def main():
     if options.self_test:
         return self_test.run()
     with tempfile.TemporaryDirectory() as work:
-        figures, functions, sizes, variables = measure(work)
-    report.show(figures)
+        figures, functions, sizes, variables, chains = measure(work)
+    report.show(figures, sizes)
     if options.functions:
         report.show_functions(functions)
     if sizes:
         report.show_sizes(sizes, variables)
+    if options.chains:
+        report.show_chains(chains)
     if options.csv:
         report.write_csv(options.csv, figures, sizes)
     if len(figures) != len(ROWS) or not sizes:

@@ -4,44 +4,56 @@ import os
 import tempfile
 
 from job import ROWS
-from report import SIZE_TABLE, TABLE, readme_sizes, readme_table, verdict, worse, worse_sizes
-from sizes import HEAD, programs, rows
+from report import (PLACES, all_figures, beside_bound, bounds, pattern, tables, verdict, worse,
+                    worse_sizes)
+from sizes import HEAD, rows
 from stack import Image, arm, avr, riscv
 from tools import MACHINES, ROOT, Failed
 
 
 def figures():
-    same = {row[0]: 100 for row in ROWS}
+    same = dict.fromkeys(ROWS, 100)
     assert worse(same, same, 'gcc 1', 'gcc 1') == []
     assert len(worse(same, same, 'gcc 1', 'gcc 2')) == 1
     for name in same:
         assert len(worse(dict(same, **{name: 101}), same, 'gcc 1', 'gcc 1')) == 1
         assert len(worse(same, {k: v for k, v in same.items() if k != name}, 'gcc 1', 'gcc 1')) == 1
-    marked = '<!-- figures: kept by tests/bench/run.py --update -->\n%s<!-- end -->'
-    assert TABLE.findall(marked % readme_table(same)) == [readme_table(same)]
-    assert TABLE.findall(marked % readme_table(dict(same, m0_ram=101))) != [readme_table(same)]
-    assert verdict(101, 100, 90) == 'OVER by 1'
-    assert verdict(100, 100, 90) == 'ok'
-    assert verdict(90, 100, 90) == 'ok, stretch too'
+    assert verdict(101, 100) == 'MISSED by 1' and verdict(100, 100) == 'met' and verdict(100, None) == ''
+    assert beside_bound(101, 'B', 100) == '101 B, over 100' and beside_bound(100, 'B', 100) == '100 B, 100'
 
 
 def sizes():
     same = {(row, machine.name): dict.fromkeys(HEAD, 100) for row in rows() for machine in MACHINES}
+    costs = dict.fromkeys(ROWS, 100)
     assert worse_sizes(same, same) == []
-    marked = '<!-- sizes: kept by tests/bench/run.py --update -->\n%s<!-- end -->'
-    assert SIZE_TABLE.findall(marked % readme_sizes(same)) == [readme_sizes(same)]
+
+    def found(*measured):
+        """What is found in pages that keep what was measured"""
+        return [pattern(name).findall(f'<!-- {name}: kept by tests/bench/run.py --update -->\n{table}<!-- end -->')
+                for (_, name), table in zip(PLACES, tables(*measured))]
+
+    kept = [[table] for table in tables(costs, same)]
+    assert found(costs, same) == kept
+    for name in ROWS:
+        assert found(dict(costs, **{name: 101}), same)[0] != kept[0], name
+    for at in (2, 3):
+        assert found(dict(costs, **{'job.m0_flash_256': 101}), same)[at] != kept[at]
     for place, size in same.items():
         for what in HEAD:
             other = {**same, place: dict(size, **{what: 101})}
             assert len(worse_sizes(other, same)) == 1
-            assert SIZE_TABLE.findall(marked % readme_sizes(other)) != [readme_sizes(same)]
+            assert found(costs, other) != kept
         less = {key: value for key, value in same.items() if key != place}
         assert len(worse_sizes(same, less)) == len(HEAD)
         assert len(worse_sizes(less, same)) == 1
+    # The worst of all drivers is of one of them, and each bound is of something that is measured.
+    assert all_figures(costs, {**same, ('a16_auto', 'm0'): dict.fromkeys(HEAD, 102)})['any driver.m0.stack'] == 102
+    assert all_figures(costs, {**same, ('everything', 'm0'): dict.fromkeys(HEAD, 102)})['any driver.m0.stack'] == 100
+    assert set(bounds()) <= set(all_figures(costs, same))
     # Each sensor's header has a row of its own name.
     for name in os.listdir(os.path.join(ROOT, 'include', 'fathom')):
         if name.startswith(('a16_', 'a05_', 'hps167s')):
-            assert name[:-2] in programs(), name
+            assert name[:-2] in rows(), name
 
 
 class Disassembly(Image):
@@ -55,13 +67,14 @@ class Disassembly(Image):
         return self.text
 
 
-def depth(prefix, text, source=''):
-    """Below the function at 0; or why that is not known."""
+def depth(prefix, text, source='', chain=False):
+    """Below the function at 0, or the calls that lead so deep; or why that is not known."""
     with tempfile.NamedTemporaryFile('w', suffix='.c') as file:
         file.write(source)
         file.flush()
         try:
-            return Disassembly(prefix, text.replace('SOURCE', file.name)).deepest(0)
+            image = Disassembly(prefix, text.replace('SOURCE', file.name))
+            return image.chain([0]) if chain else image.deepest(0)
         except Failed as why:
             return str(why)
 
@@ -84,6 +97,7 @@ def stack():
     leaf = (0x40, 'leaf', ['push {r4, r5, r6, lr}', 'sub sp, #8', 'add sp, #8', 'pop {r4, r5, r6, pc}'])
     caller = ['push {r4, lr}', 'bl 40 <leaf>', 'pop {r4, pc}']
     assert depth('arm-', listing((0, 'f', caller), leaf)) == 8 + 24
+    assert depth('arm-', listing((0, 'f', caller), leaf), chain=True) == [('f', 8), ('leaf', 24)]
     # A tail call has given back its frame; a branch that skips the push does not count it.
     assert depth('arm-', listing((0, 'f', ['push {r4, lr}', 'pop {r4, lr}', 'b.n 40 <leaf>']), leaf)) == 24
     assert depth('arm-', listing((0, 'f', ['beq.n 4 <f+0x4>', 'push {r4, lr}', 'bl 40 <leaf>']), (6, 'g', ['bx lr']),
@@ -106,6 +120,9 @@ def stack():
     assert 'leads to none of' in depth('arm-', listing((0, 'f', there)), 'modbus->poll(modbus->ctx);')
     assert depth('arm-', listing((0, 'f', there)), 'uart->sent(uart->ctx);') == 8
     assert 'where does this' in depth('arm-', listing((0, 'f', there)), 'x->whatever(x);')
+    assert depth('arm-', listing((0, 'f', there)), 'const uint32_t now = clock_us(line->clock);') == 8
+    inside = ['push {r4, lr}', 'SOURCE:4', 'blx r3', 'pop {r4, pc}']
+    assert depth('arm-', listing((0, 'f', inside), target), 'int f(void)\n{\nint x;\n{\nmodbus->poll(0);\n}\n') == 8 + 24
     for decode, text in ((arm, ('sub', 'sp, r1')), (riscv, ('mv', 'sp,a0'))):
         try:
             decode(*text)

@@ -11,9 +11,10 @@ import re
 from concurrent.futures import ThreadPoolExecutor
 
 from stack import Image
+from job import JOBS
 from tools import HERE, MACHINES, ROOT, Failed, here, run, source
 
-CODECS = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_frame', 'dyp_protocol', 'pulse_width']
+CODECS = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_frame', 'dyp_protocol', 'pulse_width', 'hps167s_registers']
 FOLDER = os.path.join(HERE, 'sizes')
 HEAD = 'flash', 'ram', 'const', 'stack'
 
@@ -25,11 +26,11 @@ def programs():
 
 
 def rows():
-    return [*CODECS, 'job', *programs(), 'everything']
+    return [*CODECS, *JOBS, *programs(), 'everything']
 
 
-# Everything at once is more than an ATmega328P has; the linker is told that it had more, to see how much.
-ROOMY = ['-Wl,--defsym=__TEXT_REGION_LENGTH__=64K']
+# Everything at once is more flash and RAM than an ATmega328P has; the linker is told that it had more, to see how much.
+ROOMY = ['-Wl,--defsym=__TEXT_REGION_LENGTH__=64K', '-Wl,--defsym=__DATA_REGION_LENGTH__=4K']
 
 
 class Builder:
@@ -69,8 +70,8 @@ class Builder:
             symbols = self.machine.symbols(self.object(path))
             roots = [name for name, (_, _, kind) in symbols.items() if kind == 'T']
             arguments += [*here('empty.c'), *(f'-Wl,-u,{name}' for name in roots)]
-        elif row == 'job':
-            arguments += here('job.c', 'job_main.c', 'mcu.c')
+        elif row in JOBS:
+            arguments += [*JOBS[row], *here('job.c', 'job_main.c', 'mcu.c')]
         else:
             arguments += [f'-DBEGIN={row}_begin', f'-DUSE={row}_use', os.path.join(FOLDER, 'main.c'),
                           *(self.object(path) for path in self.programs)]
@@ -80,22 +81,24 @@ class Builder:
         return elf, roots
 
     def measure(self, row):
-        """{'flash': ...} and {symbol in RAM: bytes}"""
+        """{'flash': ...}, {symbol in RAM: bytes}, and the calls that take most stack, outermost first"""
         elf, roots = self.link(row)
         machine = self.machine
         variables = {name: size for name, (_, size, kind) in machine.symbols(elf).items() if kind in 'bB'}
-        variables.pop('values', None)  # what the job reads, which is not the library's
+        for name in ('values', 'listener', 'unasked'):  # the user's own in the job
+            variables.pop(name, None)
         constants = {name: size for name, (_, size, kind) in machine.symbols(elf).items() if kind in 'dD'}
         if constants and not machine.is_avr:
             raise Failed(f'{row}: initialised variables: {constants}')
         image = Image(machine.prefix, elf)
         if row in CODECS:
-            stack = max(image.deepest(image.address_of(root)) for root in roots)
+            calls = [image.address_of(root) for root in roots]
         else:
-            stack = image.below_users(is_user)
+            calls = image.users_calls(is_user)
+        chain = image.chain(calls)
         figures = (machine.flash(elf) - machine.flash(self.empty), sum(variables.values()),
-                   sum(constants.values()), stack)
-        return dict(zip(HEAD, figures)), variables
+                   sum(constants.values()), sum(frame for _, frame in chain))
+        return dict(zip(HEAD, figures)), variables, chain
 
 
 def is_user(name):
@@ -104,14 +107,15 @@ def is_user(name):
 
 
 def measure_sizes(work):
-    """{(row, machine): {'flash': ...}}, {(row, machine): {symbol in RAM: bytes}}"""
-    figures, variables = {}, {}
+    """{(row, machine): ...} of each of the three that Builder.measure() has"""
+    figures, variables, chains = {}, {}, {}
     builders = [Builder(machine, work) for machine in MACHINES]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(lambda job: job[0].compile(job[1]),
                       [(b, path) for b in builders for path in [*b.sources, *b.programs]]))
         list(pool.map(Builder.archive, builders))
         jobs = [(b, row) for row in rows() for b in builders]
-        for (b, row), (found, symbols) in zip(jobs, pool.map(lambda job: job[0].measure(job[1]), jobs)):
-            figures[row, b.machine.name], variables[row, b.machine.name] = found, symbols
-    return figures, variables
+        for (b, row), found in zip(jobs, pool.map(lambda job: job[0].measure(job[1]), jobs)):
+            place = row, b.machine.name
+            figures[place], variables[place], chains[place] = found
+    return figures, variables, chains

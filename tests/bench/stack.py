@@ -13,30 +13,50 @@ import re
 from tools import ROOT, Failed, run
 
 # Where the indirect calls of src/ lead, by the text of the call: file:function of the library.
-SENSORS = ('a05_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_auto', 'dyp_modbus', 'hps167s', 'hps167s_auto')
+SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_modbus', 'hps167s', 'hps167s_auto')
 INDIRECT = {
     'modbus->submit': ('modbus_client.c:seam_submit', 'dyp_client.c:seam_submit'),
     'modbus->cancel': ('modbus.c:cancel',),
     'modbus->cancel_unit': ('modbus.c:cancel_unit',),
     'modbus->poll': ('modbus.c:poll',),
     'modbus->due_us': ('modbus.c:due_us',),
-    'setting->read': ('a05_dyp.c:read_address', 'dyp_modbus.c:read', 'hps167s_settings.c:look'),
-    'base.poll': ('dyp_auto.c:poll',),
-    'base.due_us': ('dyp_auto.c:due_us',),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
 PERHAPS = {
-    **dict.fromkeys(('x->protocol', 'line->protocol', 'exchange->protocol'),
-                    ('modbus_client.c:protocol', 'dyp_client.c:protocol')),
+    'setting->read': ('a05_dyp.c:read_address', 'dyp_modbus.c:read', 'hps167s_settings.c:look'),
+    'kind->give_up': ('line_request.c:give_up',),
+    'kind->next': ('line_request.c:next', 'line_turns.c:next'),
+    'kind->due_us': ('line_request.c:due_us', 'line_turns.c:due_us'),
+    'plain->go_on': ('line_request.c:go_on',),
+    'plain->due_us': ('line_request.c:due_us',),
+    'protocol->encode': ('modbus_client.c:fathom_modbus_client_encode', 'dyp_client.c:encode'),
+    'protocol->length': ('modbus_client.c:length', 'modbus_rtu.c:fathom_modbus_rtu_response_length',
+                         'dyp_protocol.c:fathom_dyp_protocol_length'),
+    'protocol->check': ('crc16.c:fathom_crc16', 'crc16_small.c:fathom_crc16', 'dyp_client.c:check'),
+    'protocol->is_request': ('modbus_client.c:fathom_modbus_client_is_request', 'dyp_client.c:is_request'),
+    'protocol->answer': ('modbus_client.c:fathom_modbus_client_answer', 'dyp_client.c:answer'),
+    'kind->scan': ('line_response.c:fathom_line_scan_asking', 'line_listening.c:scan'),
+    'kind->go_on': ('line_request.c:go_on', 'line_turns.c:go_on', 'line_listening.c:go_on'),
+    'config->find_echo': ('line_find_echo.c:fathom_line_find_echo',),
+    'config->marks': ('line_marks.c:fathom_line_marks',),
+    'config->count': ('line_count.c:fathom_line_count',),
     'sensor->poll': tuple(f'{name}.c:poll' for name in SENSORS),
     'sensors->due_us': tuple(f'{name}.c:due_us' for name in SENSORS),
-    'listener->receive': ('stream.c:listen', 'a16_controlled.c:receive', 'hps167s_auto.c:receive'),
+    'listener->receive': ('stream.c:fathom_stream_receive', 'a16_controlled.c:receive', 'hps167s_auto.c:receive'),
+    'sensor->is_new': ('hps167s_info.c:is_new',),
+    'sensor->follow': ('hps167s_settings.c:follow',),
+    **{f'guard->{name}': (f'line_pins.c:{name}',) for name in ('poll', 'is_clear', 'due_us')},
+    'output->set': ('output.c:fathom_output_set_pin', 'output.c:fathom_output_set_break',
+                    'line_pins.c:fathom_output_set_line_break'),
+    'sensor->heard': ('hps167s_info.c:fathom_hps167s_heard',),
     'capture->arm': ('edges.c:arm',),
     'capture->take': ('edges.c:take',),
     **dict.fromkeys(('uart->read', 'uart->write', 'uart->sent', 'uart->set_line', 'uart->set_break',
-                     'clock->now_us', 'pin->get', 'select->set', 'trigger->set'), ()),
+                     'uart->leaves_in_us', 'turns->asked', 'turns->ended', 'turns->next', 'clock->now_us', 'pin->get',
+                     'pin->set'), ()),
 }
 CALL = re.compile(r'\w+(?:->|\.)\w+(?=\()')
+COMMON = os.path.join(ROOT, 'src', 'common.h')
 MOST = 4096  # deeper is a loop that pushes
 
 
@@ -149,6 +169,19 @@ def statement(path, number):
     return ' '.join(lines[:1 + ends[0]]) if ends else ''
 
 
+def only_line(path, number):
+    with open(path, encoding='utf-8') as file:
+        return dict(enumerate(file.read().splitlines(), 1)).get(number, '')
+
+
+def body(path, number):
+    """The function around that line of a source."""
+    with open(path, encoding='utf-8') as file:
+        lines = file.read().splitlines()
+    begins = [i for i, line in enumerate(lines[:number]) if line == '{']
+    return ' '.join(lines[begins[-1]:lines.index('}', number)]) if begins else ''
+
+
 def defines(path, function):
     with open(path, encoding='utf-8') as file:
         return re.search(rf'^\w[^;{{}}()]*\b{function}\([^;{{}}]*\)\n{{', file.read(), re.M)
@@ -164,6 +197,7 @@ class Image:
         self.owner = {}  # address of an instruction: that of its function
         self.names = {}  # address of a function: file:function, or the function's name alone
         self.depths = {}
+        self.deep = {}   # address of a function: its own stack where it goes deepest, and whom it calls there
         self.prefix = prefix
         self.read(self.list(elf))
         self.by_name = {name: address for address, name in self.names.items()}
@@ -216,6 +250,8 @@ class Image:
                 if defines(other, name) and CALL.search(statement(other, number)):
                     line = statement(other, number)
             known = [call for call in CALL.findall(line) if call in INDIRECT or call in PERHAPS]
+        if not known and line.strip() == '{':  # what was inlined may count as its function's first line
+            known = list({call for call in CALL.findall(body(path, number)) if call in INDIRECT or call in PERHAPS})
         if len(known) == 1:
             targets = INDIRECT.get(known[0]) or PERHAPS[known[0]]
             found = [self.by_name[name] for name in targets if name in self.by_name]
@@ -224,6 +260,9 @@ class Image:
             return found
         if 'switch' in line and not known:
             return [a for a in self.owner if a > address and self.owner[a] == self.owner[address]]
+        # clock_us() of common.h, inlined: by the line that calls it, or by its own line in the file around it
+        if not known and ('clock_us(' in line or 'now_us(' in only_line(COMMON, number)):
+            return []
         raise Failed(f'{path}:{number}: where does this indirect call lead? {line.strip()}')
 
     def deepest(self, function, path=()):
@@ -236,7 +275,7 @@ class Image:
         return self.depths[function]
 
     def walk(self, function, path):
-        deepest, seen = self.returns, set()
+        deepest, seen = (self.returns, None), set()
         todo = [(function, self.returns, None)]  # address, depth, and on AVR the depth that Y stands for
         while todo:
             state = todo.pop()
@@ -248,7 +287,7 @@ class Image:
             if it.frame is not None:
                 depth, y = self.move(it.frame, depth, y)
             depth += it.grow
-            deepest = max(deepest, depth)
+            deepest = max(deepest, (depth, None), key=lambda found: found[0])
             if depth > MOST:
                 raise Failed(f'{self.names[function]}: the stack grows for ever')
             goals = [] if it.target is None else [it.target]
@@ -256,7 +295,8 @@ class Image:
                 goals = self.lead_to(address)
             onward = []
             if it.calls:
-                deepest = max([deepest, *(depth + self.deepest(goal, path) for goal in goals)])
+                below = [(depth + self.deepest(goal, path), (depth, goal)) for goal in goals]
+                deepest = max([deepest, *below], key=lambda found: found[0])
             else:  # a jump: within the function, or a tail call, which comes back to our caller
                 onward = goals
             if it.goes_on:
@@ -264,7 +304,8 @@ class Image:
                 if it.skips:
                     onward.append(self.next[self.next[address]])
             todo += [(a, depth, y) for a in onward]
-        return deepest
+        self.deep[function] = deepest[1] or (deepest[0], None)
+        return deepest[0]
 
     @staticmethod
     def move(frame, depth, y):
@@ -280,9 +321,17 @@ class Image:
             return depth, y + (value if op == 'sbiw' else -value)
         return depth, (y + (value if op == 'subi' else value << 8)) % 0x10000
 
-    def below_users(self, is_user):
-        """The deepest of all calls that lead from the user's functions into the library."""
-        depths = [0]
+    def chain(self, functions):
+        """The deepest of these, and whom it calls where: [(function, bytes of its own, with its return address), ...]"""
+        function, found = max(functions, key=self.deepest, default=None), []
+        while function is not None:
+            frame, goes_to = self.deep[function]
+            found.append((self.names[function], frame))
+            function = goes_to
+        return found
+
+    def users_calls(self, is_user):
+        """The functions of the library that the user's call."""
         for address, function in self.owner.items():
             if not is_user(self.names[function]):
                 continue
@@ -290,8 +339,7 @@ class Image:
             if it.target is None or self.owner.get(it.target) == function:
                 continue
             if not is_user(self.names[self.owner[it.target]]):
-                depths.append(self.deepest(it.target))
-        return max(depths)
+                yield it.target
 
     def address_of(self, function):
         """Of a function by its name alone."""

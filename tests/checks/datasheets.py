@@ -91,7 +91,7 @@ FAULTS = [
     (LIST, None, 'HPS 3 #16,another command\n', 'no row for HPS 3 #16'),
     (LIST, 'A16 1(1),', 'A16 1(0),', 'is no section of'),
     ('README.md', '| A16 1(1) |', '| A16 1(2) |', 'stands there twice'),
-    ('README.md', '`fathom_a16_set_address`', '`fathom_a16_set_adress`', 'is not in include/fathom'),
+    ('README.md', '`fathom_a16_modbus_set_address`', '`fathom_a16_modbus_set_adress`', 'is not in include/fathom'),
     ('README.md', '`a16_pwm.h`', '`a16_pmw.h`', 'is not in include/fathom'),
     ('README.md', '`set hps167s', '`put hps167s', 'the tool has no command put'),
     ('README.md', '`golden/test_mistakes_dyp.c:', '`golden/test_mistake_dyp.c:', 'there is no test'),

@@ -11,10 +11,11 @@ from common import files, main, read
 # its own layer what stands before it. A new header is placed here.
 LAYERS = [
     ('words', 'status hal version sample'),
-    ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol pulse_width'),
-    ('engines', 'line stream pulse edges debounce modbus modbus_client modbus_unit modbus_setting '
+    ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol pulse_width hps167s_registers'),
+    ('engines', 'line line_turns output trigger stream pulse edges debounce modbus modbus_client modbus_unit '
+                'modbus_setting fair_share '
                 'dyp_client'),
-    ('sensors', 'sensor wait contact dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm '
+    ('sensors', 'sensor wait contact line_pins dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm '
                 'a16_settings a16_rs232 a16_switch a05_auto a05_modbus a05_dyp a05_relay a05_relay_rule '
                 'hps167s hps167s_info hps167s_settings hps167s_auto'),
     ('all', 'fathom'),
@@ -23,9 +24,15 @@ ORDER = [(name, layer) for layer, names in LAYERS for name in names.split()]
 RANK = {name: rank for rank, (name, _) in enumerate(ORDER)}
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
 HEADER_ONLY = {'status', 'hal', 'version', 'sample', 'fathom'}
-SOURCE_ONLY = {'crc16_small': 'crc16', 'line_receive': 'line'}  # the other source for a header
-INSIDE = {'src/line_inside.h': {'line', 'line_receive'},  # what the sources of one header, or of one sensor, share
-          'src/hps167s_inside.h': {'hps167s', 'hps167s_info', 'hps167s_settings', 'hps167s_auto'}}
+SOURCE_ONLY = {'crc16_small': 'crc16', 'status_name': 'status',
+               'line_request': 'line', 'line_listening': 'line', 'line_response': 'line', 'line_send': 'line', 'line_marks': 'line', 'line_find_echo': 'line',
+               'line_count': 'line', 'modbus_client_zero': 'modbus_client'}  # the other source for a header
+INSIDE = {'src/line_inside.h': {'line', 'line_listening', 'line_request', 'line_response', 'line_send', 'line_marks', 'line_find_echo', 'line_count',
+                            'line_turns'},  # what the sources of one header, or of one sensor, share
+          'src/modbus_client_inside.h': {'modbus_client', 'modbus_client_zero'},
+          'src/hps167s_inside.h': {'hps167s', 'hps167s_info', 'hps167s_settings', 'hps167s_auto'},
+          'src/common.h': {'line_inside'} | {name for layer, names in LAYERS if layer not in ('words', 'codecs')
+                                     for name in names.split()}}
 
 MAX_LINES = 400
 LONGER = {}  # path: lines, with the reason beside it

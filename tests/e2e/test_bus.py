@@ -233,6 +233,8 @@ class Example(e2e.Case):
                 expected |= {('A05', '1', '1000 mm'), ('A05', '2', '2000 mm'), ('A05', '3', 'no target'),
                              ('A05', '4', '3562 mm')}
             self.assertEqual(got, expected)
+        # A third of 3 s, 18.5 ms from one request to the next.
+        self.assertGreaterEqual(before.count('HPS-167S probe'), 45)
         # 600 ms of time-out, once more until its late answer can no longer come; left alone after the third,
         # for 0.6 s
         failures = re.search(r'A05 +answers \d+, failures (\d+), silences in a row (\d+), left alone for '

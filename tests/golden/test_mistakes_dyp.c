@@ -72,10 +72,10 @@ static fathom_status_t poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
 /* The one wanted probe of an A05 whose registers begin there: what is asked, and as which probe it comes. */
 static uint8_t probe_of(uint8_t wanted, uint16_t registers)
 {
-    const fathom_modbus_t modbus = {submit, cancel, cancel_unit, poll, zero, NULL};
     const fathom_clock_t clock = {zero, NULL};
+    const fathom_modbus_t modbus = {submit, cancel, cancel_unit, poll, zero, &clock, NULL};
     const fathom_a05_modbus_config_t config = {
-        .modbus = &modbus, .clock = &clock, .probes = wanted, .registers = registers};
+        .modbus.transport = &modbus, .probes = wanted, .registers = registers};
     fathom_a05_modbus_t sensor;
     fathom_sample_t sample;
     assert_int_equal(fathom_a05_modbus_init(&sensor, &config), FATHOM_READY);

@@ -53,13 +53,13 @@ static void end_with(const uint8_t *frame)
     pending->exchange.status = (int8_t)fathom_modbus_rtu_parse_response(&pending->message, frame);
 }
 
-static const fathom_modbus_t modbus = {.submit = submit, .poll = poll};
 static const fathom_clock_t clock = {.now_us = now_us};
+static const fathom_modbus_t modbus = {.submit = submit, .poll = poll, .clock = &clock};
 
 TEST(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9)
 {
     const uint8_t *const example = frame_of("HPS command #3")->bytes;
-    const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &clock};
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     fathom_hps167s_details_t details;
     fathom_hps167s_t hps;
     assert_int_equal(bitwise(example, 27), 0); /* so the bytes are what the device said */

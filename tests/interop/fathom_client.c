@@ -35,12 +35,14 @@ int main(int argc, char **argv)
         .clock = &clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .find_echo = fathom_line_find_echo,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(settings.baud, has_parity ? BITS_OF_8E1 : BITS_OF_8N1),
         .gap_us = BEHIND_AN_OS_US,
     };
     fathom_line_t line;
     bool is_usage = fathom_line_init(&line, &config) == FATHOM_READY;
-    const fathom_modbus_t modbus = fathom_modbus_client(&line);
+    const fathom_modbus_t modbus = fathom_modbus_client_with_zero(&line);
     const seam_t seam = {&modbus, fathom_posix_wait, &port, (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
     is_usage = is_usage && seam_run(&seam, argv + 5);
     fathom_posix_close(&port);

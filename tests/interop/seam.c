@@ -27,7 +27,7 @@ static void print_outcome(const fathom_modbus_request_t *request, const step_t *
         (void)puts("unfit");
         break;
     default:
-        (void)printf("status %d\n", request->exchange.status);
+        (void)printf("%s\n", fathom_status_name((fathom_status_t)request->exchange.status));
         break;
     }
 }
@@ -53,7 +53,7 @@ static bool run(const seam_t *seam, step_t *step, uint8_t unit)
     }
     const fathom_status_t status = modbus->submit(modbus->ctx, &request);
     if (status != FATHOM_PENDING) {
-        (void)printf("not sent, status %d\n", (int)status);
+        (void)printf("not sent, %s\n", fathom_status_name(status));
         return true;
     }
     for (;;) {

@@ -39,7 +39,7 @@ class Servers:
         one_register_is_written_as_many=(0, [1, 2], 'read:0:2 many:1:0xABCD read:0:2', '0001 0002', 'done',
                                          '0001 ABCD'),
         more_than_a_frame_holds_is_not_sent=(0, [7] * 125, f'read:0:126 many:0:{text(MANY[:124])} read:0:2',
-                                             'not sent, status -1', 'not sent, status -1', '0007 0007'),
+                                             'not sent, ARGUMENT', 'not sent, ARGUMENT', '0007 0007'),
         what_is_not_there_is_exception_2_for_each_function=(
             0, [1, 2], 'read:0:2 read:2:1 read:1:2 write:2:9 many:1:8,9 read:0:2', '0001 0002',
             *['exception 2'] * 4, '0001 0002'),

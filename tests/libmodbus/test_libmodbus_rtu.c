@@ -106,7 +106,7 @@ TEST(another_units_answer_is_not_taken)
     ask(0);
     rig_say(other, sizeof other);
     rig_run_fine(1000);
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_STRAYS], 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_STRAYS], 1);
     answered();
 }
 
@@ -117,7 +117,7 @@ TEST(a_late_answer_serves_the_retry_that_waits)
     rig_expect_sent(NULL, 0); /* it owes an answer */
     answered();
     assert_int_equal(rig.request.exchange.attempts, 1);
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_LATE_ANSWERS], 1);
 }
 
 TEST(a_unit_that_owes_is_asked_after_twice_the_time_out)

@@ -22,7 +22,7 @@ TEST(a_request_has_a_header_and_no_crc_and_its_answer_is_read)
     rig_expect_three();
     assert_int_equal(rig.request.exchange.attempts, 1);
     assert_int_equal(rig.request.exchange.link.heard_us, rig.fake.now_us);
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_ANSWERS], 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_ANSWERS], 1);
 }
 
 TEST(every_request_has_a_transaction_of_its_own)
@@ -108,7 +108,7 @@ TEST(answers_glued_together_are_told_apart)
     assert_int_equal(rig.port.late_answers, 2);
     rig_run_fine(2000);
     /* A second answer to the same: unit, PDU (8 bytes) and the CRC that it was given. */
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_DROPPED_BYTES], 11);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_DROPPED_BYTES], 11);
     rig_expect_three();
 }
 
@@ -130,7 +130,7 @@ TEST(a_late_answer_serves_the_retry_that_waits)
     rig_expect_sent(NULL, 0); /* its unit owes an answer */
     rig_answered(1);
     assert_int_equal(rig.request.exchange.attempts, 1);
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_LATE_ANSWERS], 1);
 }
 
 TEST(retries_are_sent_and_then_it_has_failed)
@@ -163,7 +163,7 @@ TEST(another_units_answer_is_not_taken)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 9, 2, 0x03, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
     expect_outcome(wrong, sizeof wrong, RIG_TIMEOUT_US + 1000, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_STRAYS], 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_STRAYS], 1);
 }
 
 TEST(another_function_is_malformed)
@@ -183,7 +183,7 @@ TEST(a_byte_count_that_is_not_the_headers_is_no_answer_and_nothing_gets_out_of_s
     rig_expect_none();
     rig_expect_request(2);
     rig_answered(2);
-    assert_int_equal(rig.port.line.counters[FATHOM_LINE_CHECKSUM_ERRORS], 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_CHECKSUM_ERRORS], 1);
 }
 
 TEST(a_damaged_answer_is_given_up_at_once)

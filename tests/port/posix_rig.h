@@ -79,6 +79,7 @@ static inline int port_rig_write(const void *bytes, size_t length)
 }
 
 static inline bool port_rig_sent(void) { return rig.uart.sent(rig.uart.ctx); }
+static inline uint32_t port_rig_leaves_in_us(void) { return rig.uart.leaves_in_us(rig.uart.ctx); }
 
 /* Once more, with a byte that is thrown away: what is looked at is the status. */
 static inline int port_rig_read_one(void)

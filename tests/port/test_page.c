@@ -298,14 +298,14 @@ static void read_sensor(uint32_t us, uint32_t round_us)
                                               .clock = &port_clock,
                                               .frame = frame,
                                               .frame_size = sizeof frame,
+                                              .echo = FATHOM_LINE_ECHO_OFF,
                                               .silence_us = FATHOM_T3_5_US(9600, 10)};
     fathom_a16_modbus_t a16;
     (void)start(NULL);
     begin_at(us);
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_a16_modbus_config_t config = {
-        .modbus = &modbus, .clock = &port_clock, .value = FATHOM_A16_REAL_TIME};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     fathom_sample_t sample;

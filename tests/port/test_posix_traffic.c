@@ -39,6 +39,7 @@ TEST(a_request_taken_in_parts_leaves_whole_through_any_call)
     port_rig_open();
     driver.write_most = 5;
     assert_int_equal(port_rig_write(request, 20), 20); /* 5 */
+    assert_int_equal(port_rig_leaves_in_us(), 0);      /* it is not known yet when the rest follows */
     assert_false(port_rig_sent());                     /* 10 */
     assert_int_equal(port_rig_read(got, 1), 0);        /* 15 */
     assert_int_equal(driver.writes, 3);
@@ -113,6 +114,7 @@ TEST(sent_waits_for_the_kernels_queue_and_for_the_transmitter)
     port_rig_open();
     let_it_leave();
     assert_false(port_rig_sent());
+    assert_int_equal(port_rig_leaves_in_us(), 0); /* should have */
     driver.queued = 0;
     driver.lsr = 0;
     assert_false(port_rig_sent());

@@ -166,10 +166,15 @@ TEST(sent_takes_as_long_as_the_bytes_take_on_a_wire)
     assert_int_equal(port_rig_write(bytes, 40), 40); /* follows the first */
     assert_false(port_rig_sent());
     while (!port_rig_sent()) {
-        assert_true(fathom_posix_now_us() - start_us < (uint64_t)POSIX_LIMIT_MS * 1000u);
+        const uint64_t before_us = fathom_posix_now_us();
+        const uint32_t left_us = port_rig_leaves_in_us();
+        assert_true(before_us - start_us < (uint64_t)POSIX_LIMIT_MS * 1000u);
+        assert_true(fathom_posix_now_us() + left_us >= start_us + needed_us);
+        assert_true(left_us <= needed_us);
         fathom_posix_wait(&rig.port, 1000);
     }
     assert_true(fathom_posix_now_us() - start_us >= needed_us);
+    assert_int_equal(port_rig_leaves_in_us(), 0);
 }
 
 TEST(the_line_is_not_changed_under_bytes_that_leave)
@@ -225,6 +230,7 @@ TEST(a_closed_port_fails_and_can_be_closed_again)
     assert_true(port_rig_read_one() < 0);
     assert_true(port_rig_write_one() < 0);
     assert_true(port_rig_sent());
+    assert_int_equal(port_rig_leaves_in_us(), 0);
     assert_int_equal(fathom_posix_set_line(&rig.port, &port_rig_fast), FATHOM_POSIX_ERR_CLOSED);
     assert_int_equal(fathom_posix_line_errors(&rig.port, &errors), FATHOM_POSIX_ERR_CLOSED);
     assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_CLOSED);

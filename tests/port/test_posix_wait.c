@@ -7,6 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "fathom/modbus_client.h"
 #include "posix_rig.h"
 
 /*
@@ -221,4 +222,52 @@ TEST_IN(plain, the_short_clock_is_the_low_half_of_the_long_one)
     const uint32_t between_us = clock.now_us(clock.ctx);
     const uint64_t after_us = fathom_posix_now_us();
     assert_true(fathom_elapsed_us(between_us, (uint32_t)before_us) <= after_us - before_us);
+}
+
+/* ---- a program that sleeps as long as fathom_line_due_us says ---- */
+
+/* A16 6(4) example 1. */
+static const uint8_t answer[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
+
+static void *answer_once(void *arg)
+{
+    uint8_t question[8];
+    struct pollfd entry = {rig.pty.master, POLLIN, 0};
+    if (poll(&entry, 1, POSIX_LIMIT_MS) != 1) return arg;
+    if (read(rig.pty.master, question, sizeof question) != sizeof question) return arg;
+    pass_a_while();
+    return write(rig.pty.master, answer, sizeof answer) == sizeof answer ? NULL : arg;
+}
+
+/* Once for the silence before the request, once for its last stop bit, once for the answer, which may come in two
+ * parts. At 9600 baud the request leaves for 8.3 ms; hal.h: leaves_in_us. */
+TEST(a_transaction_wakes_the_program_four_times_at_most)
+{
+    static uint8_t frame[16];
+    const fathom_clock_t clock = fathom_posix_clock();
+    const fathom_line_config_t config = {.uart = &rig.uart,
+                                         .clock = &clock,
+                                         .frame = frame,
+                                         .frame_size = sizeof frame,
+                                         .echo = FATHOM_LINE_ECHO_OFF};
+    fathom_line_t line;
+    fathom_modbus_request_t request = {.exchange = {.timeout_us = LONG_US}};
+    uint16_t mm = 0;
+    unsigned wakes = 0;
+    pthread_t thread;
+    assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_line_init(&line, &config), FATHOM_READY);
+    fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &mm);
+    assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
+    assert_int_equal(pthread_create(&thread, NULL, answer_once, &line), 0);
+    while (request.exchange.status == FATHOM_PENDING) {
+        (void)fathom_line_poll(&line);
+        if (request.exchange.status != FATHOM_PENDING) break;
+        fathom_posix_wait(&rig.port, fathom_line_due_us(&line));
+        wakes++;
+    }
+    assert_int_equal(pthread_join(thread, NULL), 0);
+    assert_int_equal(request.exchange.status, FATHOM_READY);
+    assert_int_equal(mm, 754);
+    assert_in_range(wakes, 1, 4);
 }

@@ -134,6 +134,31 @@ TEST(a_request_is_kept_and_handed_out_byte_by_byte)
     }
 }
 
+/* A character of 8E1 has 11 bits, 572.92 us at 19200 baud. Of a UART that holds two, the first two bytes that it is given
+ * have not left when it takes the third. */
+TEST(a_request_has_left_after_the_bytes_that_wait_and_those_that_the_uart_holds)
+{
+    static const uint8_t bytes[SIZE] = {0};
+    static const fathom_line_settings_t line = {19200, FATHOM_PARITY_EVEN, 1};
+    static const uint32_t left_us[SIZE + 1] = {4584, 4584, 4584, 4011, 3438, 2865, 2292, 1719, 1146};
+    uint8_t byte = 0;
+    assert_int_equal(fathom_serial_load(&serial, bytes, SIZE), SIZE);
+    for (uint8_t i = 0; i <= SIZE; i++) {
+        assert_int_equal(fathom_serial_leaves_in_us(&serial, &line, 2), left_us[i]);
+        assert_int_equal(fathom_serial_leaves_in_us(&serial, &line, 17), 4584);
+        (void)fathom_serial_next(&serial, &byte);
+    }
+}
+
+/* As long as it can take: 255 characters of 12 bits at 1200 baud. */
+TEST(the_longest_request_at_the_slowest_rate_has_left_after_2_55_s)
+{
+    static const fathom_line_settings_t line = {1200, FATHOM_PARITY_ODD, 2};
+    serial.length = 255;
+    serial.at = 0;
+    assert_int_equal(fathom_serial_leaves_in_us(&serial, &line, 2), 2550000);
+}
+
 TEST(a_request_waits_for_the_one_before_and_has_to_fit)
 {
     static const uint8_t bytes[SIZE + 1] = {1, 2, 3};

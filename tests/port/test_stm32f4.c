@@ -243,6 +243,8 @@ TEST_IN(usart_suite, its_pins_are_its_own_and_the_driver_is_off)
 TEST_IN(usart_suite, the_driver_is_on_from_before_the_first_byte_until_the_last_stop_bit_has_left)
 {
     static const uint8_t bytes[] = {0x11, 0x22, 0x33};
+    static const uint32_t left_us[] = {1719, 1719, 1146}; /* 3 or 2 characters of 11 bits at 19200 baud */
+    assert_int_equal(uart.leaves_in_us(uart.ctx), 0);
     assert_int_equal(uart.write(uart.ctx, bytes, 3), 3);
     assert_int_equal(GPIOA_AT(BSRR), 1 << 1);
     assert_int_equal(USART2_AT(DR), 0);
@@ -250,6 +252,7 @@ TEST_IN(usart_suite, the_driver_is_on_from_before_the_first_byte_until_the_last_
     for (int i = 0; i != 3; i++) {
         interrupt(TXE | TC);
         assert_int_equal(USART2_AT(DR), bytes[i]);
+        assert_int_equal(uart.leaves_in_us(uart.ctx), left_us[i]);
     }
     interrupt(TXE); /* the last one has gone to the wire */
     assert_int_equal(USART2_AT(CR1) & 0xC0, TC);
@@ -258,6 +261,7 @@ TEST_IN(usart_suite, the_driver_is_on_from_before_the_first_byte_until_the_last_
     assert_int_equal(GPIOA_AT(BSRR), 0);
     interrupt(TXE | TC);
     assert_true(uart.sent(uart.ctx));
+    assert_int_equal(uart.leaves_in_us(uart.ctx), 0);
     assert_int_equal(GPIOA_AT(BSRR), 1 << 17);
     assert_int_equal(USART2_AT(CR1) & 0xC0, 0);
     assert_int_equal(USART2_AT(DR), 0x33);

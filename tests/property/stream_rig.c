@@ -68,8 +68,8 @@ static struct {
  */
 static void judge(unsigned end, uint32_t now_us)
 {
-    const uint8_t *frame;
-    if (fathom_stream_poll(&rig.stream, now_us, &frame) != FATHOM_READY) return;
+    const uint8_t *const frame = fathom_stream_frame(&rig.stream);
+    if (fathom_stream_poll(&rig.stream, now_us) != FATHOM_READY) return;
     const unsigned whole = (rig.gaps ? end : end - 1) / rig.length;
     const unsigned oldest = rig.gaps && whole > rig.next ? whole - 1 : rig.next;
     for (unsigned at = whole; at-- > oldest;) {

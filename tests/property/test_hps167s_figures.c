@@ -33,14 +33,14 @@ static uint32_t now_us(void *ctx)
     return clock_us;
 }
 
-static const fathom_modbus_t modbus = {.submit = submit, .poll = poll};
 static const fathom_clock_t clock = {.now_us = now_us};
+static const fathom_modbus_t modbus = {.submit = submit, .poll = poll, .clock = &clock};
 static fathom_hps167s_t hps;
 
 static void start(uint8_t steps_per_degree)
 {
-    const fathom_hps167s_config_t config = {
-        .modbus = &modbus, .clock = &clock, .steps_per_degree = steps_per_degree};
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus,
+                                            .steps_per_degree = steps_per_degree};
     assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_READY);
 }
 

@@ -148,11 +148,12 @@ typedef struct {
 
 static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t retries, uint32_t seed)
 {
-    static const fathom_uart_t uart = {world_read, world_write, world_sent, NULL, NULL, NULL};
+    static const fathom_uart_t uart = {.read = world_read, .write = world_write, .sent = world_sent};
     static const fathom_clock_t clock = {world_now_us, NULL};
     static uint8_t frame[32];
-    const fathom_line_config_t config = {&uart, &clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF,
-                                         2006,  5000};
+    const fathom_line_config_t config = {&uart, &clock, frame, sizeof frame,      FATHOM_LINE_ECHO_OFF,
+                                         2006,  5000,   NULL,  fathom_line_marks, NULL,
+                                         NULL};
     fathom_modbus_request_t requests[UNITS + 1] = {0};
     uint16_t values[UNITS + 1];
     bool asked[UNITS + 1] = {false};

@@ -90,8 +90,8 @@ static bool is_frame(const run_t *run, const uint8_t *frame, unsigned which)
  * bytes had all come before it. Right ones come in order, each once. */
 static void poll(const run_t *run, unsigned i, uint32_t now_us)
 {
-    const uint8_t *frame;
-    if (fathom_stream_poll(&receiver.stream, now_us, &frame) != FATHOM_READY) return;
+    const uint8_t *const frame = fathom_stream_frame(&receiver.stream);
+    if (fathom_stream_poll(&receiver.stream, now_us) != FATHOM_READY) return;
     unsigned at = run->gaps ? wire.frame_of[i] : RUN - 1;
     while (!run->gaps && at > receiver.next && (wire.end[at] > i || !is_frame(run, frame, at))) at--;
     if (at >= receiver.next && (run->gaps || wire.end[at] <= i) && is_frame(run, frame, at)) {

@@ -94,11 +94,11 @@ static unsigned frames(uint32_t loop_us) { return suite_is_long ? 20000 : loop_u
 
 static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigned flip, uint32_t seed)
 {
-    static const fathom_uart_t uart = {world_read, world_write, world_sent, NULL, NULL, NULL};
+    static const fathom_uart_t uart = {.read = world_read, .write = world_write, .sent = world_sent};
     static const fathom_clock_t clock = {world_now_us, NULL};
     uint8_t frame[16];
-    const fathom_line_config_t line_config = {&uart, &clock, frame, sizeof frame, FATHOM_LINE_ECHO_AUTO,
-                                              0,     0};
+    const fathom_line_config_t line_config = {
+        &uart, &clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF, 0, 0, NULL, fathom_line_marks, NULL, NULL};
     fathom_line_t line;
     fathom_a05_auto_t sensor;
     outcome_t outcome = {0, 0};

@@ -16,12 +16,11 @@ static void show(rig_t *rig, size_t i) { second_scene(&rig->device, &there[i % T
 static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a05_modbus_t *sensor, uint8_t probes,
                                     uint16_t registers)
 {
-    fathom_a05_modbus_config_t config = {.modbus = &rig->modbus,
-                                         .clock = &rig->clock,
-                                         .address = rig->device.address,
+    fathom_a05_modbus_config_t config = {.modbus.transport = &rig->modbus,
+                                         .modbus.address = rig->device.address,
                                          .probes = probes,
                                          .registers = registers};
-    config.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
+    config.modbus.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
     assert_int_equal(fathom_a05_modbus_init(sensor, &config), FATHOM_READY);
     return fathom_a05_modbus_sensor(sensor);
 }
@@ -62,13 +61,14 @@ void life_a05_uart(rig_t *rig)
     fathom_a05_modbus_t sensor;
     fathom_status_t status;
     fathom_a05_auto_config_t config = {.line = &rig->line, .gap_us = rig->line_config.gap_us};
+    config.select = fathom_output_line_break(&rig->line);
     config.probes = rig->device.config.fitted;
     config.stale_us = rig->device.config.seed % 2 == 0 ? 0 : 4 * SECOND_US;
     assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_READY);
     fathom_sensor_t by_itself = fathom_a05_auto_sensor(&automatic);
     judge_begin("a05_auto_power_on");
     JUDGE_RUN(status, by_itself,
-              fathom_a05_auto_power_on(&automatic, (fathom_a05_value_t)(rig->device.config.seed / 2 % 2)));
+              fathom_a05_auto_select(&automatic, (fathom_dyp_value_t)(rig->device.config.seed / 2 % 2)));
     judge_read(status, true);
     rig_power(rig, true);
     for (size_t i = 0; i < THERE; i++) {
@@ -119,7 +119,8 @@ void life_a05_rs485(rig_t *rig)
 
 static fathom_sensor_t begin_dyp(rig_t *rig, fathom_a05_dyp_t *sensor, uint8_t probes)
 {
-    fathom_a05_dyp_config_t config = {.line = &rig->line, .address = rig->device.address, .probes = probes};
+    fathom_a05_dyp_config_t config = {
+        .modbus.transport = &rig->dyp, .modbus.address = rig->device.address, .probes = probes};
     assert_int_equal(fathom_a05_dyp_init(sensor, &config), FATHOM_READY);
     return fathom_a05_dyp_sensor(sensor);
 }

@@ -23,7 +23,8 @@ void life_a16_auto(rig_t *rig)
     fathom_a16_auto_t sensor;
     fathom_a16_auto_config_t config = {
         .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_config.gap_us};
-    config.real_time = rig->device.config.seed % 4 >= 2;
+    config.select = fathom_output_line_break(&rig->line);
+    config.value = rig->device.config.seed % 4 >= 2 ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
     rig_power(rig, true);
     assert_int_equal(fathom_a16_auto_init(&sensor, &config), FATHOM_READY);
     fathom_sensor_t any = fathom_a16_auto_sensor(&sensor);
@@ -33,8 +34,10 @@ void life_a16_auto(rig_t *rig)
         if (i != 2) continue;
         judge_begin("a16_auto select");
         fathom_status_t status;
-        JUDGE_RUN(status, any, fathom_a16_auto_select(&sensor, !config.real_time));
-        judge_read(status, rig->in_break == !config.real_time);
+        const fathom_dyp_value_t other =
+            config.value == FATHOM_PROCESSED ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
+        JUDGE_RUN(status, any, fathom_a16_auto_select(&sensor, other));
+        judge_read(status, rig->in_break == (other == FATHOM_REAL_TIME));
     }
     fathom_a16_auto_deinit(&sensor);
 }
@@ -42,7 +45,9 @@ void life_a16_auto(rig_t *rig)
 void life_a16_controlled(rig_t *rig)
 {
     fathom_a16_controlled_t sensor;
-    fathom_a16_controlled_config_t config = {.line = &rig->line, .gap_us = rig->line_config.gap_us};
+    fathom_a16_controlled_config_t config = {.line = &rig->line,
+                                             .trigger = fathom_output_line_break(&rig->line),
+                                             .gap_us = rig->line_config.gap_us};
     rig_power(rig, true);
     assert_int_equal(fathom_a16_controlled_init(&sensor, &config), FATHOM_READY);
     fathom_sensor_t any = fathom_a16_controlled_sensor(&sensor);
@@ -56,8 +61,8 @@ void life_a16_controlled(rig_t *rig)
 static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a16_modbus_t *sensor, uint8_t value)
 {
     fathom_a16_modbus_config_t config = {
-        .modbus = &rig->modbus, .clock = &rig->clock, .address = rig->device.address, .value = value};
-    config.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
+        .modbus.transport = &rig->modbus, .modbus.address = rig->device.address, .value = value};
+    config.modbus.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
     assert_int_equal(fathom_a16_modbus_init(sensor, &config), FATHOM_READY);
     return fathom_a16_modbus_sensor(sensor);
 }
@@ -70,24 +75,24 @@ static void ask_all(rig_t *rig, fathom_a16_modbus_t *sensor)
     uint8_t address = 0;
     fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
     uint16_t threshold_mm = 0;
-    fathom_a16_value_t value = FATHOM_A16_PROCESSED;
+    fathom_dyp_value_t value = FATHOM_PROCESSED;
     (void)rig;
-    for (int v = FATHOM_A16_PROCESSED; v <= FATHOM_A16_REAL_TIME; v++) {
+    for (int v = FATHOM_PROCESSED; v <= FATHOM_REAL_TIME; v++) {
         judge_begin(v != 0 ? "a16_measure real time" : "a16_measure processed");
-        JUDGE_RUN(status, any, fathom_a16_measure(sensor, (fathom_a16_value_t)v, &sample));
+        JUDGE_RUN(status, any, fathom_a16_modbus_measure(sensor, (fathom_dyp_value_t)v, &sample));
         judge_measured(status, &sample);
     }
     judge_begin("a16_address");
-    JUDGE_RUN(status, any, fathom_a16_address(sensor, &address));
+    JUDGE_RUN(status, any, fathom_a16_modbus_address(sensor, &address));
     judge_read(status, address == rig->device.address);
     judge_begin("a16_switch_polarity");
-    JUDGE_RUN(status, any, fathom_a16_switch_polarity(sensor, &polarity));
+    JUDGE_RUN(status, any, fathom_a16_modbus_switch_polarity(sensor, &polarity));
     judge_read(status, polarity == judge_held(0x0205));
     judge_begin("a16_switch_threshold_mm");
-    JUDGE_RUN(status, any, fathom_a16_switch_threshold_mm(sensor, &threshold_mm));
+    JUDGE_RUN(status, any, fathom_a16_modbus_switch_threshold_mm(sensor, &threshold_mm));
     judge_read(status, threshold_mm == judge_held(0x0206));
     judge_begin("a16_automatic_value");
-    JUDGE_RUN(status, any, fathom_a16_automatic_value(sensor, &value));
+    JUDGE_RUN(status, any, fathom_a16_modbus_automatic_value(sensor, &value));
     judge_read(status, value == judge_held(0x0207));
 }
 
@@ -98,18 +103,18 @@ static void set_all(rig_t *rig, fathom_a16_modbus_t *sensor)
     uint8_t address = rig->device.address == 5 ? 1 : 5;
     for (uint16_t v = 0; v < 2; v++) {
         judge_begin("a16_set_switch_polarity");
-        JUDGE_RUN(status, any, fathom_a16_set_switch_polarity(sensor, (fathom_a16_polarity_t)v));
-        judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0205, v));
+        JUDGE_RUN(status, any, fathom_a16_modbus_set_switch_polarity(sensor, (fathom_a16_polarity_t)v));
+        judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0205, v));
         judge_begin("a16_set_switch_threshold_mm");
-        JUDGE_RUN(status, any, fathom_a16_set_switch_threshold_mm(sensor, 2000));
-        judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0206, 2000));
+        JUDGE_RUN(status, any, fathom_a16_modbus_set_switch_threshold_mm(sensor, 2000));
+        judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0206, 2000));
         judge_begin("a16_set_automatic_value");
-        JUDGE_RUN(status, any, fathom_a16_set_automatic_value(sensor, (fathom_a16_value_t)v));
-        judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0207, v));
+        JUDGE_RUN(status, any, fathom_a16_modbus_set_automatic_value(sensor, (fathom_dyp_value_t)v));
+        judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0207, v));
     }
     judge_begin("a16_set_address");
-    JUDGE_RUN(status, any, fathom_a16_set_address(sensor, address));
-    judge_set(status, fathom_a16_is_written(sensor), HOLDS(0x0200, address));
+    JUDGE_RUN(status, any, fathom_a16_modbus_set_address(sensor, address));
+    judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0200, address));
 }
 
 void find_by_modbus(rig_t *rig, const fathom_sensor_t *any)
@@ -137,8 +142,8 @@ void life_a16_rs485(rig_t *rig)
     set_all(rig, &sensor);
     judge_poll("a16_modbus", &any, 4, SETTLED_US);
     judge_begin("a16_set_operating_mode");
-    JUDGE_RUN(status, any, fathom_a16_set_operating_mode(&sensor, FATHOM_A16_AUTOMATIC));
-    judge_set(status, fathom_a16_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
+    JUDGE_RUN(status, any, fathom_a16_modbus_set_operating_mode(&sensor, FATHOM_A16_AUTOMATIC));
+    judge_set(status, fathom_a16_modbus_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     fathom_a16_modbus_deinit(&sensor);
     rig_power(rig, false);
     rig_wait(rig, SECOND_US);
@@ -149,8 +154,8 @@ void life_a16_rs485(rig_t *rig)
     ask_all(rig, &sensor);
     find_by_modbus(rig, &any);
     judge_begin("a16_set_address_to_0");
-    JUDGE_RUN(status, any, fathom_a16_set_address_to_0_perhaps_for_ever(&sensor));
-    judge_set(status, fathom_a16_is_written(&sensor), HOLDS(0x0200, 0));
+    JUDGE_RUN(status, any, fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&sensor));
+    judge_set(status, fathom_a16_modbus_is_written(&sensor), HOLDS(0x0200, 0));
     judge_poll("a16_modbus", &any, 3, SETTLED_US);
     fathom_a16_modbus_deinit(&sensor);
 }
@@ -181,7 +186,7 @@ void life_a16_rs232(rig_t *rig)
     while ((status = fathom_a16_rs232_return_to_automatic(&rs232, &sample)) == FATHOM_PENDING)
         rig_pass(rig, fathom_a16_rs232_due_us(&rs232));
     if (status == FATHOM_READY) judge_sample(&sample);
-    judge_set(status, fathom_a16_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
+    judge_set(status, fathom_a16_modbus_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     judge_poll("a16_auto RS232 returned", &by_itself, 6, SETTLED_US);
     fathom_a16_auto_deinit(&automatic);
     fathom_a16_modbus_deinit(&sensor);

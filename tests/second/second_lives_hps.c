@@ -19,11 +19,10 @@ static hps_driver_t h;
 static void begin(rig_t *rig)
 {
     h.settings = (fathom_line_settings_t){rig->device.line.baud, FATHOM_PARITY_EVEN, 1};
-    fathom_hps167s_config_t config = {.modbus = &rig->modbus,
-                                      .clock = &rig->clock,
-                                      .settings = &h.settings,
-                                      .address = rig->device.address,
-                                      .retries = 2,
+    fathom_hps167s_config_t config = {.modbus.transport = &rig->modbus,
+                                      .modbus.settings = &h.settings,
+                                      .modbus.address = rig->device.address,
+                                      .modbus.retries = 2,
                                       .warm_up_s = rig->device.hps.flash.warm_s};
     config.no_warm_up = config.warm_up_s == 0;
     config.low_word_first = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 2;
@@ -167,8 +166,9 @@ void life_hps167s_auto(rig_t *rig)
 {
     fathom_hps167s_auto_t listener;
     begin(rig);
-    fathom_hps167s_auto_config_t config = {.line = &rig->line, .asking = &h.sensor};
+    fathom_hps167s_auto_config_t config = {.line = &rig->line};
     assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_READY);
+    fathom_hps167s_auto_beside(&listener, &h.sensor);
     fathom_sensor_t any = fathom_hps167s_auto_sensor(&listener);
     rig_power(rig, true);
     for (size_t i = 0; i < THERE; i++) {

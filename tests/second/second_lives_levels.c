@@ -23,7 +23,8 @@ void life_a16_pwm(rig_t *rig)
 {
     fathom_a16_pwm_t sensor;
     fathom_capture_t capture = fathom_edges_capture(&rig->edges);
-    fathom_a16_pwm_config_t config = {.clock = &rig->clock, .capture = &capture, .uart = &rig->uart};
+    fathom_a16_pwm_config_t config = {
+        .pulse = {.clock = &rig->clock, .capture = &capture, .trigger = fathom_output_break(&rig->uart)}};
     rig_power(rig, true);
     assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_READY);
     fathom_sensor_t any = fathom_a16_pwm_sensor(&sensor);

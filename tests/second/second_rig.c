@@ -94,6 +94,12 @@ static bool uart_sent(void *ctx)
     return rig->now_us >= rig->sent_us;
 }
 
+static uint32_t uart_leaves_in_us(void *ctx)
+{
+    const rig_t *rig = ctx;
+    return rig->now_us < rig->sent_us ? (uint32_t)(rig->sent_us - rig->now_us) : 0;
+}
+
 static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     rig_t *rig = ctx;
@@ -140,17 +146,25 @@ void rig_open(rig_t *rig, const second_config_t *config)
     rig->set = (second_line_t){9600, 'N', 1};
     if (config->kind == SECOND_HPS167S) rig->set = (second_line_t){19200, 'E', 1};
     rig->clock = (fathom_clock_t){clock_now_us, rig};
-    rig->uart = (fathom_uart_t){uart_read, uart_write, uart_sent, uart_set_line, uart_set_break, rig};
+    rig->uart = (fathom_uart_t){.read = uart_read,
+                                .write = uart_write,
+                                .sent = uart_sent,
+                                .set_line = uart_set_line,
+                                .set_break = uart_set_break,
+                                .leaves_in_us = uart_leaves_in_us,
+                                .ctx = rig};
     rig->pin = (fathom_pin_t){NULL, pin_get, rig};
     fathom_edges_init(&rig->edges, &rig->pin);
     rig->line_config = (fathom_line_config_t){.uart = &rig->uart,
                                               .clock = &rig->clock,
                                               .frame = rig->frame,
                                               .frame_size = sizeof rig->frame,
+                                              .find_echo = fathom_line_find_echo,
+                                              .marks = fathom_line_marks,
                                               .echo = config->seed / 12 % 2 == 0 ? FATHOM_LINE_ECHO_OFF : 0,
                                               .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
     assert_int_equal(fathom_line_init(&rig->line, &rig->line_config), FATHOM_READY);
-    rig->modbus = fathom_modbus_client(&rig->line);
+    rig->modbus = fathom_modbus_client_with_zero(&rig->line);
     rig->dyp = fathom_dyp_client(&rig->line);
 }
 

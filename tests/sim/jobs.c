@@ -25,23 +25,30 @@ static fathom_hps167s_t *const hps = &s.driver.hps;
 
 /* ---- A16 (6(3)) ---- */
 
-static fathom_status_t a16_set_0200(void) { return fathom_a16_set_address(a16, 5); }
-static fathom_status_t a16_set_0202(void) { return fathom_a16_set_operating_mode(a16, FATHOM_A16_AUTOMATIC); }
-static fathom_status_t a16_set_0205(void) { return fathom_a16_set_switch_polarity(a16, FATHOM_A16_NEGATIVE); }
-static fathom_status_t a16_set_0206(void) { return fathom_a16_set_switch_threshold_mm(a16, 16350); }
+static fathom_status_t a16_set_0200(void) { return fathom_a16_modbus_set_address(a16, 5); }
+static fathom_status_t a16_set_0202(void)
+{
+    return fathom_a16_modbus_set_operating_mode(a16, FATHOM_A16_AUTOMATIC);
+}
+static fathom_status_t a16_set_0205(void)
+{
+    return fathom_a16_modbus_set_switch_polarity(a16, FATHOM_A16_NEGATIVE);
+}
+static fathom_status_t a16_set_0206(void) { return fathom_a16_modbus_set_switch_threshold_mm(a16, 16350); }
 static fathom_status_t a16_set_0207(void)
 {
-    return fathom_a16_set_automatic_value(a16, FATHOM_A16_REAL_TIME);
+    return fathom_a16_modbus_set_automatic_value(a16, FATHOM_REAL_TIME);
 }
 
-ASKS(a16_0200, uint8_t, 99, fathom_a16_address(a16, &out), out == 1, out == 99)
-ASKS(a16_0205, fathom_a16_polarity_t, FATHOM_A16_NEGATIVE, fathom_a16_switch_polarity(a16, &out),
+ASKS(a16_0200, uint8_t, 99, fathom_a16_modbus_address(a16, &out), out == 1, out == 99)
+ASKS(a16_0205, fathom_a16_polarity_t, FATHOM_A16_NEGATIVE, fathom_a16_modbus_switch_polarity(a16, &out),
      out == FATHOM_A16_POSITIVE, out == FATHOM_A16_NEGATIVE)
-ASKS(a16_0206, uint16_t, 9, fathom_a16_switch_threshold_mm(a16, &out), out == 1000, out == 9)
-ASKS(a16_0207, fathom_a16_value_t, FATHOM_A16_REAL_TIME, fathom_a16_automatic_value(a16, &out),
-     out == FATHOM_A16_PROCESSED, out == FATHOM_A16_REAL_TIME)
-ASKS(a16_0101, fathom_sample_t, WITH(.distance_mm = 9), fathom_a16_measure(a16, FATHOM_A16_REAL_TIME, &out),
-     out.distance_mm == 1234 && out.unit == 1, out.distance_mm == 9 && out.unit == 0)
+ASKS(a16_0206, uint16_t, 9, fathom_a16_modbus_switch_threshold_mm(a16, &out), out == 1000, out == 9)
+ASKS(a16_0207, fathom_dyp_value_t, FATHOM_REAL_TIME, fathom_a16_modbus_automatic_value(a16, &out),
+     out == FATHOM_PROCESSED, out == FATHOM_REAL_TIME)
+ASKS(a16_0101, fathom_sample_t, WITH(.distance_mm = 9),
+     fathom_a16_modbus_measure(a16, FATHOM_REAL_TIME, &out), out.distance_mm == 1234 && out.unit == 1,
+     out.distance_mm == 9 && out.unit == 0)
 
 static uint32_t a16_unit(void) { return bench.a16.device.unit; }
 static uint32_t a16_polarity(void) { return bench.a16.polarity; }

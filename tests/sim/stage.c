@@ -16,6 +16,7 @@ static int port_write(void *ctx, const uint8_t *bytes, size_t length)
 }
 
 static bool port_sent(void *ctx) { return s.inner.sent(s.inner.ctx); }
+static uint32_t port_leaves_in_us(void *ctx) { return s.inner.leaves_in_us(s.inner.ctx); }
 static int port_set_line(void *ctx, const fathom_line_settings_t *to)
 {
     return s.inner.set_line(s.inner.ctx, to);
@@ -33,23 +34,36 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
     fathom_sim_clock_init(&s.clock, bench_start_us, 0);
     fathom_sim_uart_init(&s.port, &bench.line, &s.clock);
     s.inner = fathom_sim_uart(&s.port);
-    s.uart = (fathom_uart_t){port_read, port_write, port_sent, port_set_line, port_set_break, NULL};
+    s.uart = (fathom_uart_t){.read = port_read,
+                             .write = port_write,
+                             .sent = port_sent,
+                             .set_line = port_set_line,
+                             .set_break = port_set_break,
+                             .leaves_in_us = port_leaves_in_us};
     s.hal_clock = fathom_sim_clock(&s.clock);
-    s.config = (fathom_line_config_t){
-        .uart = &s.uart, .clock = &s.hal_clock, .frame = s.frame, .frame_size = sizeof s.frame};
+    s.config = (fathom_line_config_t){.uart = &s.uart,
+                                      .clock = &s.hal_clock,
+                                      .frame = s.frame,
+                                      .frame_size = sizeof s.frame,
+                                      .find_echo = fathom_line_find_echo,
+                                      .marks = fathom_line_marks,
+                                      .count = fathom_line_count,
+                                      .counters = s.counters};
     assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_READY);
-    s.modbus = fathom_modbus_client(&s.line);
+    s.modbus = fathom_modbus_client_with_zero(&s.line);
+    s.dyp = fathom_dyp_client(&s.line);
 }
 
 void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_line_settings_t *settings)
 {
     const fathom_a16_modbus_config_t a16 = {
-        .modbus = &s.modbus, .clock = &s.hal_clock, .address = unit, .settings = settings};
+        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.settings = settings};
     const fathom_a05_modbus_config_t a05 = {
-        .modbus = &s.modbus, .clock = &s.hal_clock, .address = unit, .settings = settings};
-    const fathom_a05_dyp_config_t dyp = {.line = &s.line, .address = unit, .settings = settings};
+        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.settings = settings};
+    const fathom_a05_dyp_config_t dyp = {
+        .modbus.transport = &s.dyp, .modbus.address = unit, .modbus.settings = settings};
     const fathom_hps167s_config_t hps = {
-        .modbus = &s.modbus, .clock = &s.hal_clock, .address = unit, .settings = settings};
+        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.settings = settings};
     fathom_status_t status = FATHOM_PENDING;
     if (model == HPS) status = fathom_hps167s_init(&driver->hps, &hps);
     if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &a16);
@@ -65,11 +79,19 @@ fathom_sensor_t sensor_of(driver_t *driver, model_t model)
     return model == A05 ? fathom_a05_modbus_sensor(&driver->a05) : fathom_a05_dyp_sensor(&driver->dyp);
 }
 
+void set_echo(uint8_t echo)
+{
+    fathom_listener_t *const listener = s.line.listener;
+    s.config.echo = echo;
+    assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_READY);
+    fathom_line_listen(&s.line, listener);
+}
+
 void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
 {
     stage_begin(model == HPS ? &bench_19200 : &bench_9600, false, loop_us);
     bench.fixed = FIXED(1234, 2000, 1953, 3562);
-    s.config.echo = echo;
+    set_echo(echo);
     bench.line.echo = echo == FATHOM_LINE_ECHO_ON;
     s.model = model;
     init_driver(&s.driver, model, unit, &s.settings);
@@ -107,7 +129,7 @@ fathom_modbus_unit_t *unit_of(void)
 void cancel(void)
 {
     if (s.model == HPS) fathom_hps167s_cancel(&s.driver.hps);
-    if (s.model == A16) fathom_a16_cancel(&s.driver.a16);
+    if (s.model == A16) fathom_a16_modbus_cancel(&s.driver.a16);
     if (s.model == A05) fathom_a05_modbus_cancel(&s.driver.a05);
     if (s.model == A05_DYP) fathom_a05_dyp_cancel(&s.driver.dyp);
 }

@@ -37,11 +37,12 @@ typedef struct {
     fathom_uart_t uart; /* the same, and it can break */
     int broken;         /* what read and write return; 0: it works */
     fathom_clock_t hal_clock;
+    uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_config_t config;
     fathom_line_settings_t settings;
     uint8_t frame[64];
     fathom_line_t line;
-    fathom_modbus_t modbus;
+    fathom_modbus_t modbus, dyp;
     model_t model;
     driver_t driver;
     fathom_sensor_t sensor; /* of that driver, or the test's */
@@ -60,6 +61,9 @@ fathom_sensor_t sensor_of(driver_t *driver, model_t model);
 
 /* 1234 mm, 2000, 1953 and 3562, one device with faults (none yet) and its driver. echo: FATHOM_LINE_ECHO_... */
 void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo);
+
+/* The line of the stage anew, told this of its echo; FATHOM_LINE_ECHO_AUTO: it finds out. Its listener stays. */
+void set_echo(uint8_t echo);
 
 /* A second device of that model. */
 fathom_sim_device_t *add_other(uint8_t unit);

@@ -9,6 +9,7 @@
 enum { LOG = 64 };
 
 static fathom_pin_t pin;
+static fathom_contact_guard_t guard;
 static fathom_a16_switch_t a16;
 static fathom_a05_relay_t a05;
 static fathom_a16_modbus_t *const settings = &s.driver.a16;
@@ -20,7 +21,7 @@ static inline void begin(int32_t mm)
 {
     stage_begin(&bench_9600, true, 0);
     bench.fixed = FIXED(mm, mm, mm, mm);
-    s.config.echo = FATHOM_LINE_ECHO_OFF;
+    set_echo(FATHOM_LINE_ECHO_OFF);
     samples = errors = 0;
 }
 
@@ -35,8 +36,9 @@ static inline void set_switch(int32_t mm)
     begin(mm);
     add_a16(FATHOM_SIM_A16_SWITCH, (a16_config_t){0});
     take_pin();
+    guard = fathom_contact_line_guard(&s.line);
     const fathom_a16_switch_config_t own = {
-        .pin = &pin, .clock = &s.hal_clock, .line = &s.line, .address = 1};
+        .pin = &pin, .clock = &s.hal_clock, .guard = &guard, .address = 1};
     assert_int_equal(fathom_a16_switch_init(&a16, &own), FATHOM_READY);
     s.sensor = fathom_a16_switch_sensor(&a16);
     init_driver(&s.driver, A16, 1, NULL);

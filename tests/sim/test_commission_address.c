@@ -9,7 +9,7 @@ enum { OLD = 1, NEW = 5 };
 static fathom_status_t set_address(uint8_t address)
 {
     if (s.model == HPS) return fathom_hps167s_set_address(&s.driver.hps, address);
-    if (s.model == A16) return fathom_a16_set_address(&s.driver.a16, address);
+    if (s.model == A16) return fathom_a16_modbus_set_address(&s.driver.a16, address);
     if (s.model == A05) return fathom_a05_modbus_set_address(&s.driver.a05, address);
     return fathom_a05_dyp_set_every_address(&s.driver.dyp, address);
 }
@@ -54,8 +54,8 @@ TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
             assert_int_equal(carry_out(set_new), FATHOM_READY);
             assert_int_equal(bench.device->unit, NEW);
             COUNTED(.writes = 1);
-            assert_int_equal(s.line.counters[FATHOM_LINE_LATE_ANSWERS], from_new);
-            assert_int_equal(s.line.counters[FATHOM_LINE_STRAYS], 0);
+            assert_int_equal(s.counters[FATHOM_LINE_LATE_ANSWERS], from_new);
+            assert_int_equal(s.counters[FATHOM_LINE_STRAYS], 0);
             assert_measures(NEW, 1234);
         }
 }
@@ -188,7 +188,7 @@ TEST(after_power_on_an_a05_that_is_silent_warms_up)
 
 static fathom_status_t set_to_0(void)
 {
-    return s.model == A16 ? fathom_a16_set_address_to_0_perhaps_for_ever(&s.driver.a16)
+    return s.model == A16 ? fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&s.driver.a16)
                           : fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&s.driver.a05);
 }
 

@@ -41,7 +41,8 @@ static void beside_another_driver(const job_t *job, uint32_t loop_us, uint8_t ec
     init_driver(&other, job->model, job->unit, &s.settings);
     const fathom_sensor_t beside = sensor_of(&other, job->model);
     const unsigned readings = in_company(job->call, beside, s.sensor, job->kind == MOVES, &status);
-    if (status != FATHOM_READY) fail_msg("%s, loop %u: %d", job->name, (unsigned)loop_us, (int)status);
+    if (status != FATHOM_READY)
+        fail_msg("%s, loop %u: %s", job->name, (unsigned)loop_us, fathom_status_name(status));
     assert_int_equal(job->has(), job->wanted);
     assert_int_equal(told(), job->kind == READS ? 0 : 1);
     assert_true(readings != 0 || loop_us == 300 * MS);
@@ -85,7 +86,8 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
                 assert_int_equal(fathom_modbus_client_submit(&s.line, &others[i]), FATHOM_PENDING);
             }
         }
-        if (status != FATHOM_READY) fail_msg("%s, loop %u: %d", job->name, (unsigned)s.loop_us, (int)status);
+        if (status != FATHOM_READY)
+            fail_msg("%s, loop %u: %s", job->name, (unsigned)s.loop_us, fathom_status_name(status));
         assert_int_equal(job->has(), job->wanted);
         assert_int_equal(told(), job->kind == READS ? 0 : 1);
     }
@@ -101,8 +103,8 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         const bool dyp_sets = n % 2 != 0;
         fathom_status_t status;
         set_up(A05_DYP, 1, loops_us[n / 2], FATHOM_LINE_ECHO_AUTO);
-        const fathom_a05_modbus_config_t config = {
-            .modbus = &s.modbus, .clock = &s.hal_clock, .settings = &s.settings};
+        const fathom_a05_modbus_config_t config = {.modbus.transport = &s.modbus,
+                                                   .modbus.settings = &s.settings};
         assert_int_equal(fathom_a05_modbus_init(&second, &config), FATHOM_READY);
         const fathom_sensor_t modbus = fathom_a05_modbus_sensor(&second);
         const unsigned readings =
@@ -122,8 +124,9 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     set_up_for(job, loop_us, FATHOM_LINE_ECHO_AUTO);
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     add_hps((hps_config_t){.unit = job->unit, .unasked_us = unasked_us});
-    const fathom_hps167s_auto_config_t config = {.line = &s.line, .asking = &s.driver.hps};
+    const fathom_hps167s_auto_config_t config = {.line = &s.line};
     assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_READY);
+    fathom_hps167s_auto_beside(&listener, &s.driver.hps);
     const fathom_sensor_t heard = fathom_hps167s_auto_sensor(&listener);
     fathom_status_t status;
     while ((status = round_of(job->call)) == FATHOM_PENDING)

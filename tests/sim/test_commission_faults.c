@@ -59,10 +59,10 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
     case FATHOM_ERR_PORT:
     case FATHOM_ERR_CANCELLED:
         if (has != job->before && (kinds & BIT(EXCEPTION)) == 0)
-            problem("%d, but it was changed", (int)status);
+            problem("%s, but it was changed", fathom_status_name(status));
         break;
     default:
-        problem("says %d", (int)status);
+        problem("says %s", fathom_status_name(status));
     }
 }
 

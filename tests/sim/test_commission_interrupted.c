@@ -22,8 +22,9 @@ static void judge(const job_t *job, fathom_status_t status, const char *what)
     if (status == FATHOM_READY && has != job->wanted) problem("READY, but it is not so");
     if (status == FATHOM_READY || status == FATHOM_ERR_UNCONFIRMED) return;
     if (status == FATHOM_ERR_BUSY || status == FATHOM_ERR_IN_USE || status == FATHOM_ERR_ARGUMENT)
-        problem("says %d", (int)status);
-    if (has != job->before && job->kind != WRITE_ONLY) problem("%d, but it was changed", (int)status);
+        problem("says %s", fathom_status_name(status));
+    if (has != job->before && job->kind != WRITE_ONLY)
+        problem("%s, but it was changed", fathom_status_name(status));
 }
 
 /* The job until its end, with a port that may be broken for the first `broken` rounds. */

@@ -47,7 +47,7 @@ static fathom_status_t set_threshold(uint16_t threshold_mm)
 {
     const uint32_t start_us = s.clock.now_us;
     for (;;) {
-        const fathom_status_t status = fathom_a16_set_switch_threshold_mm(&s.driver.a16, threshold_mm);
+        const fathom_status_t status = fathom_a16_modbus_set_switch_threshold_mm(&s.driver.a16, threshold_mm);
         if (status != FATHOM_PENDING) return status;
         hear_some();
         assert_ends(start_us);

@@ -16,7 +16,8 @@ static void set_up_start(uint32_t loop_us, bool by_pin)
     add_a05(FATHOM_SIM_A05_AUTO, (a05_config_t){.processed = PROCESSED});
     fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
     rx = fathom_sim_rx_pin(&s.pins);
-    const fathom_a05_auto_config_t config = {.line = &s.line, .select = by_pin ? &rx : NULL};
+    const fathom_a05_auto_config_t config = {
+        .line = &s.line, .select = by_pin ? fathom_output_pin(&rx) : fathom_output_line_break(&s.line)};
     assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_READY);
     s.sensor = fathom_a05_auto_sensor(&automatic);
     init_driver(&s.driver, A05, 1, NULL);
@@ -46,10 +47,10 @@ static unsigned heard_mm(void)
     return mm;
 }
 
-static void power(fathom_a05_value_t value, uint32_t off_us)
+static void power(fathom_dyp_value_t value, uint32_t off_us)
 {
     fathom_status_t status;
-    for (; (status = fathom_a05_auto_power_on(&automatic, value)) == FATHOM_ERR_BUSY; pass_us(1 * MS))
+    for (; (status = fathom_a05_auto_select(&automatic, value)) == FATHOM_ERR_BUSY; pass_us(1 * MS))
         (void)fathom_line_poll(&s.line);
     assert_int_equal(status, FATHOM_READY);
     fathom_sim_power_cycle(&bench.line, bench.device, off_us, s.clock.now_us);
@@ -62,11 +63,11 @@ TEST(what_is_chosen_at_power_on_is_sent_until_the_next)
     for (unsigned i = 0; i != 4; i++) {
         set_up_start(loops_us[1 + i / 2], i % 2 != 0);
         assert_int_equal(heard_mm(), 1001);
-        power(FATHOM_A05_REAL_TIME, 50 * MS);
+        power(FATHOM_REAL_TIME, 50 * MS);
         assert_int_equal(heard_mm(), 1000);
         assert_int_equal(bench.device->rx_held, 0); /* RX is free again, and the values stay */
         assert_int_equal(heard_mm(), 1000);
-        power(FATHOM_A05_PROCESSED, 50 * MS);
+        power(FATHOM_PROCESSED, 50 * MS);
         assert_int_equal(heard_mm(), 1001);
     }
 }
@@ -83,11 +84,11 @@ TEST(the_values_are_those_that_were_chosen)
 {
     for (unsigned l = 0; l != LOOPS; l++) {
         set_up_start(loops_us[l], false);
-        power(FATHOM_A05_REAL_TIME, 0);
+        power(FATHOM_REAL_TIME, 0);
         assert_int_equal(first_probe_mm(), 1000);
-        power(FATHOM_A05_PROCESSED, 0); /* in the middle of the low level for the other */
+        power(FATHOM_PROCESSED, 0); /* in the middle of the low level for the other */
         assert_int_equal(first_probe_mm(), 1001);
-        power(FATHOM_A05_REAL_TIME, 0);
+        power(FATHOM_REAL_TIME, 0);
         for (unsigned i = 0; i != 10; i++) assert_int_equal(first_probe_mm(), 1000);
     }
 }
@@ -96,7 +97,7 @@ TEST(the_line_is_held_low_for_a_second_and_a_half_and_no_longer)
 {
     for (unsigned l = 1; l != LOOPS; l++) {
         set_up_start(loops_us[l], false);
-        power(FATHOM_A05_REAL_TIME, 0);
+        power(FATHOM_REAL_TIME, 0);
         const uint32_t start_us = s.clock.now_us;
         while (bench.line.in_break) {
             assert_true(since_us(start_us) <= 1500 * MS + loops_us[l]);
@@ -112,7 +113,7 @@ TEST(what_was_asked_meanwhile_is_sent_afterwards)
 {
     for (unsigned l = 0; l != LOOPS; l++) {
         set_up_start(loops_us[l], false);
-        power(FATHOM_A05_REAL_TIME, 0);
+        power(FATHOM_REAL_TIME, 0);
         uint8_t address = 0;
         const fathom_sensor_t both[] = {s.sensor, fathom_a05_modbus_sensor(asking)};
         fathom_status_t status;
@@ -136,10 +137,10 @@ TEST(while_a_request_is_on_its_way_it_is_busy_and_nothing_changes)
     set_up_start(1 * MS, false);
     for (pass_us(20 * MS); s.line.head == NULL || s.line.head->attempts == 0; pass_us(1 * MS))
         assert_int_equal(fathom_a05_modbus_address(asking, &address), FATHOM_PENDING);
-    assert_int_equal(fathom_a05_auto_power_on(&automatic, FATHOM_A05_REAL_TIME), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_a05_auto_select(&automatic, FATHOM_REAL_TIME), FATHOM_ERR_BUSY);
     assert_false(bench.line.in_break);
     fathom_a05_modbus_cancel(asking);
-    power(FATHOM_A05_REAL_TIME, 0);
+    power(FATHOM_REAL_TIME, 0);
     assert_true(bench.line.in_break);
     assert_int_equal(first_probe_mm(), 1000);
 }

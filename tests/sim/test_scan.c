@@ -32,8 +32,8 @@ static void expect_eight(void)
         const scan_finding_t *const hps = rig_find(address);
         assert_true(hps->has_interface && hps->has_config && hps->has_details);
         assert_int_equal(hps->has_termination, address != 6);
-        assert_int_equal(hps->details[20], 3); /* HPS-167S #3: the example is version 3.9 */
-        assert_int_equal(hps->details[21], 9);
+        assert_int_equal(hps->details.major, 3); /* HPS-167S #3: the example is version 3.9 */
+        assert_int_equal(hps->details.minor, 9);
     }
     for (uint16_t i = 0; i != rig.found; i++) assert_false(rig.findings[i].is_double);
     rig_expect_unharmed();

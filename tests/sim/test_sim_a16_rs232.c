@@ -10,7 +10,7 @@ static void set(uint8_t mode, uint32_t loop_us)
 {
     stage_begin(&bench_9600, true, loop_us);
     bench.fixed = FIXED(1953);
-    s.config.echo = FATHOM_LINE_ECHO_OFF;
+    set_echo(FATHOM_LINE_ECHO_OFF);
     const fathom_a16_auto_config_t config = {.line = &s.line};
     assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
     init_driver(&s.driver, A16, 1, NULL);
@@ -93,7 +93,7 @@ TEST(a_frame_from_before_the_command_confirms_nothing)
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
     assert_int_equal(go_back(), FATHOM_ERR_NO_ANSWER); /* and of one that is not there nothing is claimed */
-    assert_false(fathom_a16_is_written(rs232.modbus));
+    assert_false(fathom_a16_modbus_is_written(rs232.modbus));
     assert_true(automatic.base.stream.counters[FATHOM_STREAM_FRAMES] != 0);
 }
 
@@ -139,7 +139,7 @@ TEST(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames)
 /* A first answer with noise before it does not show whether the line echoes (line.h). */
 TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 {
-    s.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_echo(FATHOM_LINE_ECHO_AUTO);
     FAULT(BREAK, ALWAYS, 1);
     expect_unconfirmed(11000, 12000); /* the time-out of the write before */
 }
@@ -147,7 +147,7 @@ TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 static uint16_t threshold_mm;
 static fathom_status_t ask_threshold(void)
 {
-    return fathom_a16_switch_threshold_mm(&s.driver.a16, &threshold_mm);
+    return fathom_a16_modbus_switch_threshold_mm(&s.driver.a16, &threshold_mm);
 }
 
 TEST(another_commands_outcome_comes_first)

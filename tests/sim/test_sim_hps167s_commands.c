@@ -42,11 +42,10 @@ static void set(uint32_t loop_us, hps_config_t config, const fathom_line_setting
     stage_begin(&bench_19200, false, loop_us);
     bench.fixed = FIXED(TARGET_MM);
     s.model = HPS;
-    const fathom_hps167s_config_t driver = {.modbus = &s.modbus,
-                                            .clock = &s.hal_clock,
-                                            .settings = at,
-                                            .address = config.unit != 0 ? config.unit : 1,
-                                            .timeout_us = 100 * MS};
+    const fathom_hps167s_config_t driver = {.modbus.transport = &s.modbus,
+                                            .modbus.settings = at,
+                                            .modbus.address = config.unit != 0 ? config.unit : 1,
+                                            .modbus.timeout_us = 100 * MS};
     assert_int_equal(fathom_hps167s_init(hps, &driver), FATHOM_READY);
     s.sensor = sensor_of(&s.driver, HPS);
     add_hps(config);

@@ -36,8 +36,9 @@ static void begin(uint32_t loop_us, uint32_t unasked_us, bool is_asked)
     init_driver(&s.driver, HPS, 1, NULL);
     asking = sensor_of(&s.driver, HPS);
     add_hps((hps_config_t){.unasked_us = unasked_us});
-    const fathom_hps167s_auto_config_t config = {.line = &s.line, .asking = is_asked ? hps : NULL};
+    const fathom_hps167s_auto_config_t config = {.line = &s.line};
     assert_int_equal(fathom_hps167s_auto_init(&hears, &config), FATHOM_READY);
+    if (is_asked) fathom_hps167s_auto_beside(&hears, hps);
     s.sensor = fathom_hps167s_auto_sensor(&hears);
     heard = 0;
     wrong = 0;
@@ -122,7 +123,8 @@ TEST(every_command_works_while_frames_arrive)
             fathom_status_t status = FATHOM_ERR_NO_ANSWER;
             /* in the slow loop a request may meet a frame and be lost: asked again */
             for (unsigned times = 0; times != 5 && status < 0; times++) status = ask_for(commands[i]);
-            if (status != FATHOM_READY) fail_msg("command %u in run %u: %d", i, n, (int)status);
+            if (status != FATHOM_READY)
+                fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
         }
         assert_true(heard > 5);
         assert_carried_out();
@@ -141,7 +143,8 @@ TEST(every_command_works_at_once_between_frames_every_18_5_ms)
         pass_us(n / 8 * 3 * MS);
         for (unsigned i = 0; i != sizeof commands / sizeof *commands; i++) {
             const fathom_status_t status = ask_for(commands[i]);
-            if (status != FATHOM_READY) fail_msg("command %u in run %u: %d", i, n, (int)status);
+            if (status != FATHOM_READY)
+                fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
         }
         assert_int_equal(bench.line.counters.collisions, 0);
         assert_carried_out();

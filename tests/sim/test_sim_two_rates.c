@@ -24,9 +24,11 @@ static void begin(const fathom_line_settings_t *slow, const fathom_line_settings
     add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.unit = 2, .scene = fathom_sim_fixed(&scenes[1])});
     add_hps((hps_config_t){.unit = 3, .scene = fathom_sim_fixed(&scenes[2])});
     const fathom_a16_modbus_config_t a16 = {
-        .modbus = &s.modbus, .clock = &s.hal_clock, .settings = slow, .value = FATHOM_A16_REAL_TIME};
-    const fathom_hps167s_config_t hps = {
-        .modbus = &s.modbus, .clock = &s.hal_clock, .settings = fast, .period_us = 100 * MS, .address = 3};
+        .modbus.transport = &s.modbus, .modbus.settings = slow, .value = FATHOM_REAL_TIME};
+    const fathom_hps167s_config_t hps = {.modbus.transport = &s.modbus,
+                                         .modbus.settings = fast,
+                                         .modbus.period_us = 100 * MS,
+                                         .modbus.address = 3};
     assert_int_equal(fathom_a16_modbus_init(&drivers[0].a16, &a16), FATHOM_READY);
     init_driver(&drivers[1], A05_DYP, 2, slow);
     assert_int_equal(fathom_hps167s_init(&drivers[2].hps, &hps), FATHOM_READY);

@@ -44,6 +44,7 @@ static int read_from(unsigned port, size_t capacity)
 }
 static int write_to_hps(size_t count) { return uarts[2].write(uarts[2].ctx, request, count); }
 static bool hps_sent(void) { return uarts[2].sent(uarts[2].ctx); }
+static uint32_t hps_leaves_in_us(void) { return uarts[2].leaves_in_us(uarts[2].ctx); }
 
 /* Two starts: the long runs pass every wrap anyhow. */
 EACH_BEGINS(set(0))
@@ -52,14 +53,18 @@ static const suite_t suite = {BENCH_TWO_ROUNDS, .set_up = begins};
 TEST(write_takes_all_or_nothing_and_sent_tells_when)
 {
     assert_true(hps_sent());
+    assert_int_equal(hps_leaves_in_us(), 0);
     assert_int_equal(write_to_hps(8), 8);
     assert_false(hps_sent());
+    assert_int_equal(hps_leaves_in_us(), 4584);
     assert_int_equal(write_to_hps(8), 0);        /* busy */
     fathom_sim_clock_advance(&desk_clock, 4583); /* 8 characters of 11 bits at 19200: 4583.3 us */
     assert_false(hps_sent());
+    assert_int_equal(hps_leaves_in_us(), 1);
     assert_int_equal(write_to_hps(1), 0);
     fathom_sim_clock_advance(&desk_clock, 1);
     assert_true(hps_sent());
+    assert_int_equal(hps_leaves_in_us(), 0);
     assert_int_equal(lines[2].counters.from_host, 8);
 }
 

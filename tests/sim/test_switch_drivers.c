@@ -55,9 +55,9 @@ static void set_threshold(uint16_t mm, uint32_t step_us)
 {
     fathom_status_t status;
     uint16_t read_mm = 0;
-    UNTIL_ENDED(status, fathom_a16_set_switch_threshold_mm(settings, mm), step_us);
+    UNTIL_ENDED(status, fathom_a16_modbus_set_switch_threshold_mm(settings, mm), step_us);
     assert_int_equal(status, FATHOM_READY);
-    UNTIL_ENDED(status, fathom_a16_switch_threshold_mm(settings, &read_mm), step_us);
+    UNTIL_ENDED(status, fathom_a16_modbus_switch_threshold_mm(settings, &read_mm), step_us);
     assert_int_equal(status, FATHOM_READY);
     assert_int_equal(read_mm, mm);
 }
@@ -82,9 +82,9 @@ TEST(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change)
             expect_kinds(rows[n].kinds);
         }
         assert_int_equal(bench.a16.device.counters.writes, 6);
-        assert_true(s.line.counters[FATHOM_LINE_BAD_BYTES] >= 10); /* breaks around answers */
-        assert_int_equal(s.line.counters[FATHOM_LINE_NO_ANSWERS], 0);
-        assert_int_equal(s.line.counters[FATHOM_LINE_CHECKSUM_ERRORS], 0);
+        assert_true(s.counters[FATHOM_LINE_BAD_BYTES] >= 10); /* breaks around answers */
+        assert_int_equal(s.counters[FATHOM_LINE_NO_ANSWERS], 0);
+        assert_int_equal(s.counters[FATHOM_LINE_CHECKSUM_ERRORS], 0);
     }
 }
 
@@ -93,7 +93,7 @@ TEST(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change)
 TEST(a_port_that_knows_nothing_will_do)
 {
     set_switch(1500);
-    s.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_echo(FATHOM_LINE_ECHO_AUTO);
     s.port.knows = 0;
     run(3000 * MS, 20000);
     set_threshold(1501, 20000);
@@ -101,8 +101,8 @@ TEST(a_port_that_knows_nothing_will_do)
     set_threshold(1400, 20000);
     run(4000 * MS, 20000);
     expect_kinds("FNF");
-    assert_true(s.line.counters[FATHOM_LINE_DROPPED_BYTES] >= 4);
-    assert_int_equal(s.line.counters[FATHOM_LINE_NO_ANSWERS], 1);
+    assert_true(s.counters[FATHOM_LINE_DROPPED_BYTES] >= 4);
+    assert_int_equal(s.counters[FATHOM_LINE_NO_ANSWERS], 1);
 }
 
 static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint32_t step_us)
@@ -154,7 +154,7 @@ TEST(while_the_polarity_is_being_set_the_level_is_not_looked_at)
     set_switch(999);
     run(2100 * MS, 20000);
     assert_int_equal(fathom_a16_switch_set_polarity(&a16, settings, FATHOM_A16_NEGATIVE), FATHOM_PENDING);
-    fathom_a16_cancel(settings);
+    fathom_a16_modbus_cancel(settings);
     fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_LOW);
     run(1500 * MS, 20000);
     expect_kinds("FN");

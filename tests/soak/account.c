@@ -86,7 +86,7 @@ static void account_asked(rig_unit_t *unit)
 static void account_stream(rig_unit_t *unit)
 {
     const fathom_stream_t *const stream = soak_stream_of(&unit->driver, unit->setting);
-    const uint16_t *const of_line = unit->rig->line.counters;
+    const uint16_t *const of_line = unit->rig->counters;
     const uint16_t *const counters = stream->counters;
     const uint64_t read = unit->totals.readings / soak_facts[unit->setting].probes + unit->refused;
     uint32_t seen = counters[FATHOM_STREAM_MISSED];
@@ -103,7 +103,7 @@ static void account_stream(rig_unit_t *unit)
 /* What the line has counted for all units together. */
 static void account_line(rig_t *rig)
 {
-    const uint16_t *const counters = rig->line.counters;
+    const uint16_t *const counters = rig->counters;
     uint64_t requests = 0, answers = 0, open = 0;
     uint64_t failures = counters[FATHOM_LINE_NO_ANSWERS];
     failures += (uint64_t)counters[FATHOM_LINE_CHECKSUM_ERRORS] + counters[FATHOM_LINE_EXCEPTIONS];

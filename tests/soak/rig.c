@@ -124,6 +124,12 @@ static bool port_sent(void *ctx)
     return rig->inner.sent(rig->inner.ctx);
 }
 
+static uint32_t port_leaves_in_us(void *ctx)
+{
+    const rig_t *const rig = ctx;
+    return rig->inner.leaves_in_us(rig->inner.ctx);
+}
+
 static int port_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     const rig_t *const rig = ctx;
@@ -146,18 +152,28 @@ void rig_init(rig_t *rig, uint8_t setting, uint32_t loop_us, uint8_t knows, cons
     fathom_sim_uart_init(&rig->port, &rig->wire, &rig->clock);
     rig->port.knows = knows;
     rig->inner = fathom_sim_uart(&rig->port);
-    rig->uart = (fathom_uart_t){port_read, port_write, port_sent, port_set_line, NULL, rig};
+    rig->uart = (fathom_uart_t){.read = port_read,
+                                .write = port_write,
+                                .sent = port_sent,
+                                .set_line = port_set_line,
+                                .leaves_in_us = port_leaves_in_us,
+                                .ctx = rig};
     rig->hal_clock = fathom_sim_clock(&rig->clock);
     rig->config = (fathom_line_config_t){
         .uart = &rig->uart,
         .clock = &rig->hal_clock,
         .frame = rig->frame,
         .frame_size = RIG_FRAME,
+        .find_echo = fathom_line_find_echo,
+        .marks = fathom_line_marks,
+        .count = fathom_line_count,
+        .counters = rig->counters,
         .echo = options->echo,
         .silence_us = is_fast ? FATHOM_T3_5_US(19200, 11) : FATHOM_T3_5_US(9600, 10),
     };
     (void)fathom_line_init(&rig->line, &rig->config);
     rig->modbus = fathom_modbus_client(&rig->line);
+    rig->dyp = fathom_dyp_client(&rig->line);
 }
 
 rig_unit_t *rig_add(rig_t *rig, uint8_t setting, uint8_t address, uint32_t seed)
@@ -178,8 +194,8 @@ rig_unit_t *rig_add(rig_t *rig, uint8_t setting, uint8_t address, uint32_t seed)
     unit->hooks = (fathom_sim_faults_t){.outgoing = outgoing, .measured = measured, .ctx = unit};
     unit->device->faults = &unit->hooks;
     fathom_sim_attach(&rig->wire, unit->device, rig->clock.now_us);
-    unit->sensor = soak_driver_init(&unit->driver, setting, address, &rig->line, &rig->modbus,
-                                    &rig->hal_clock, &rig->options);
+    unit->sensor =
+        soak_driver_init(&unit->driver, setting, address, &rig->line, &rig->modbus, &rig->dyp, &rig->options);
     unit->wrong_sequence = -1;
     unit->outcome_us = unit->right_us = unit->trouble_end_us = unit->under_way_us = rig->clock.now_us;
     rig->sensors[rig->count++] = unit->sensor;

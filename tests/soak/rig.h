@@ -72,9 +72,10 @@ typedef struct rig {
     fathom_uart_t inner; /* of the port */
     fathom_uart_t uart;  /* the same, with the requests noted */
     fathom_clock_t hal_clock;
+    uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_config_t config;
     fathom_line_t line;
-    fathom_modbus_t modbus;
+    fathom_modbus_t modbus, dyp;
     uint8_t frame[RIG_FRAME];
     rig_unit_t units[RIG_UNITS];
     fathom_sensor_t sensors[RIG_UNITS];

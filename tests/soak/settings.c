@@ -53,8 +53,11 @@ fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, ui
 
 #define WINDOW .window = {.max_mm = options->max_mm}
 #define STREAM .line = line, .stale_us = stale_us, .gap_us = options->gap_us, WINDOW
-#define ASKED  .address = address, .backoff_us = options->backoff_us, .retries = options->retries
-#define MODBUS .modbus = modbus, .clock = clock, ASKED
+#define ASKED(over)                                                                                          \
+    .modbus = {.transport = over,                                                                            \
+               .address = address,                                                                           \
+               .backoff_us = options->backoff_us,                                                            \
+               .retries = options->retries}
 
 /* The driver of that kind and member, with its configuration. */
 #define DRIVER(kind, ...)                                                                                    \
@@ -65,21 +68,21 @@ fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, ui
     }
 
 fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t address, fathom_line_t *line,
-                                 const fathom_modbus_t *modbus, const fathom_clock_t *clock,
+                                 const fathom_modbus_t *modbus, const fathom_modbus_t *dyp,
                                  const soak_options_t *options)
 {
     const bool is_a16 = soak_facts[setting].model == FATHOM_A16;
     const uint8_t probes = setting == SOAK_A05_DYP_ONE ? 1 << 2 : 0;
-    const uint8_t value = setting == SOAK_A16_REAL_TIME ? FATHOM_A16_REAL_TIME : FATHOM_A16_PROCESSED;
+    const uint8_t value = setting == SOAK_A16_REAL_TIME ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
     /* the bounds of recovery are of streams that are stale after the time that the setting tells */
     const uint32_t stale_us = options->stale_us != 0 ? options->stale_us : soak_facts[setting].timeout_us;
     memset(driver, 0, sizeof *driver);
     if (!soak_is_asked(setting) && is_a16) DRIVER(a16_auto, STREAM)
     if (!soak_is_asked(setting)) DRIVER(a05_auto, STREAM)
-    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, .line = line, ASKED, WINDOW, .probes = probes)
-    if (setting == SOAK_HPS167S) DRIVER(hps167s, MODBUS)
-    if (setting == SOAK_A05_MODBUS) DRIVER(a05_modbus, MODBUS, WINDOW)
-    DRIVER(a16_modbus, MODBUS, WINDOW, .value = value)
+    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, ASKED(dyp), WINDOW, .probes = probes)
+    if (setting == SOAK_HPS167S) DRIVER(hps167s, ASKED(modbus))
+    if (setting == SOAK_A05_MODBUS) DRIVER(a05_modbus, ASKED(modbus), WINDOW)
+    DRIVER(a16_modbus, ASKED(modbus), WINDOW, .value = value)
 }
 
 static const fathom_dyp_modbus_t *ultrasonic(const soak_driver_t *driver, uint8_t setting)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Cuts the C out of a page of Markdown, for a test that compiles and runs what the page prints.
 
-    cut.py PAGE FILE [--first]    all blocks of C in their order, or the first
+    cut.py PAGE FILE
 
 A page without one, and a link to a file that is not there, are errors."""
 import os
@@ -11,7 +11,7 @@ import sys
 
 
 def main():
-    page, target, *option = sys.argv[1:]
+    page, target = sys.argv[1:]
     with open(page, encoding='utf-8') as file:
         text = file.read()
     blocks = re.findall(r'^```c\n(.*?)^```$', text, re.M | re.S)
@@ -22,7 +22,7 @@ def main():
         if not os.path.exists(os.path.join(os.path.dirname(page), link)):
             sys.exit(f'{page} links to {link}, which is not there')
     with open(target, 'w', encoding='utf-8') as file:
-        file.write(blocks[0] if option == ['--first'] else '\n'.join(blocks))
+        file.write('\n'.join(blocks))
     return 0
 
 

@@ -72,6 +72,8 @@ static int fake_set_break(void *ctx, bool on)
     return 1;
 }
 
+uint32_t fake_leaves_in_us(void *ctx) { return ((const fake_t *)ctx)->leaves_in_us; }
+
 static uint32_t fake_now_us(void *ctx)
 {
     fake_t *const fake = ctx;
@@ -84,7 +86,12 @@ void fake_init(fake_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 1000;
     fake->busy_until_us = fake->now_us;
-    fake->uart = (fathom_uart_t){fake_read, fake_write, fake_sent, fake_set_line, fake_set_break, fake};
+    fake->uart = (fathom_uart_t){.read = fake_read,
+                                 .write = fake_write,
+                                 .sent = fake_sent,
+                                 .set_line = fake_set_line,
+                                 .set_break = fake_set_break,
+                                 .ctx = fake};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 

@@ -48,6 +48,7 @@ typedef struct {
     uint8_t write_bytes[FAKE_WRITE_BYTES];
     unsigned reads;
     unsigned set_lines;
+    uint32_t leaves_in_us;
     unsigned breaks; /* begun so far */
     bool in_break;
     fathom_line_settings_t settings;
@@ -68,6 +69,9 @@ typedef struct {
 } fake_t;
 
 void fake_init(fake_t *fake);
+
+/* Says what fake->leaves_in_us is. For fake->uart.leaves_in_us, which is NULL otherwise. */
+uint32_t fake_leaves_in_us(void *ctx);
 
 /* The bytes may be read `in_us` from now. */
 void fake_receive(fake_t *fake, uint32_t in_us, const uint8_t *bytes, size_t length);

@@ -11,8 +11,17 @@ void rig_start(uint32_t now_us)
     fake_init(&rig.fake);
     rig.fake.now_us = now_us;
     rig.fake.busy_until_us = now_us;
-    rig.line_config = (fathom_line_config_t){
-        &rig.fake.uart, &rig.fake.clock, rig.frame, sizeof rig.frame, FATHOM_LINE_ECHO_AUTO, T3_5_US, GAP_US};
+    rig.line_config = (fathom_line_config_t){&rig.fake.uart,
+                                             &rig.fake.clock,
+                                             rig.frame,
+                                             sizeof rig.frame,
+                                             FATHOM_LINE_ECHO_AUTO,
+                                             T3_5_US,
+                                             GAP_US,
+                                             fathom_line_find_echo,
+                                             fathom_line_marks,
+                                             NULL,
+                                             NULL};
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
 }
 

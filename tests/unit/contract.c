@@ -35,6 +35,11 @@ uint32_t contract_slack_us;
 #define CAN_BY(name, verb, function)                                                                         \
     static void name##_##verb(void) { function(&name); }
 
+/* What those that are asked tell of the asking. */
+#define TELLS(name)                                                                                          \
+    static uint8_t name##_exception(void) { return fathom_##name##_exception(&name); }                       \
+    static const fathom_modbus_unit_t *name##_unit(void) { return fathom_##name##_unit(&name); }
+
 #define ITSELF(d, its_kind)                                                                                  \
     .name = #d, .kind = &(its_kind), .prepare = d##_prepare, .init = d##_init, .sensor = d##_sensor
 
@@ -77,9 +82,10 @@ static const contract_kind_t on_seam = {desk_begin,   desk_poll,    desk_has_sai
 
 #define ON_SEAM(d)                                                                                           \
     ITSELF(d, on_seam), .deinit = d##_deinit, .command = d##_command, .cancel = d##_cancel,                  \
-                        .address = &d##_config.address, .retries = &d##_config.retries,                      \
-                        .period_us = &d##_config.period_us, .timeout_us = &d##_config.timeout_us,            \
-                        .command_timeout_us = &d##_config.command_timeout_us
+                        .exception = d##_exception, .unit = d##_unit, .address = &d##_config.modbus.address, \
+                        .retries = &d##_config.modbus.retries, .period_us = &d##_config.modbus.period_us,    \
+                        .timeout_us = &d##_config.modbus.timeout_us,                                         \
+                        .command_timeout_us = &d##_config.modbus.command_timeout_us
 
 #define COUNTS(of) .sequence = &(of).sequence, .implausible = &(of).implausible
 #define DYP(d, its_answer, most, its_model, its_unit)                                                        \
@@ -88,14 +94,15 @@ static const contract_kind_t on_seam = {desk_begin,   desk_poll,    desk_has_sai
     .sample = {                                                                                              \
         .raw = 1953, .distance_mm = 1953, .kind = FATHOM_TARGET, .model = its_model, .unit = its_unit}
 
-DRIVER(a16_modbus, .modbus = &fake.modbus, .clock = &fake.clock)
+DRIVER(a16_modbus, .modbus.transport = &fake.modbus)
 CAN(a16_modbus, deinit)
 CAN(a16_modbus, power_on)
-CAN_BY(a16_modbus, cancel, fathom_a16_cancel)
+CAN(a16_modbus, cancel)
+TELLS(a16_modbus)
 static fathom_status_t a16_modbus_command(void)
 {
     uint8_t address;
-    return fathom_a16_address(&a16_modbus, &address);
+    return fathom_a16_modbus_address(&a16_modbus, &address);
 }
 
 const contract_driver_t contract_a16_modbus = {
@@ -108,13 +115,14 @@ const contract_driver_t contract_a16_modbus = {
     .default_timeout_us = 1000000,
     .start_us = &a16_modbus_config.start_us,
     .power_on = a16_modbus_power_on,
-    .wrong = {NONE(a16_modbus, modbus), NONE(a16_modbus, clock), IS(a16_modbus, address, 255),
+    .wrong = {NONE(a16_modbus, modbus.transport), IS(a16_modbus, modbus.address, 255),
               RANGE(a16_modbus, value, 2, 255), WINDOW(a16_modbus, 16350)}};
 
-DRIVER(a05_modbus, .modbus = &fake.modbus, .clock = &fake.clock, .probes = 1)
+DRIVER(a05_modbus, .modbus.transport = &fake.modbus, .probes = 1)
 CAN(a05_modbus, deinit)
 CAN(a05_modbus, power_on)
 CAN(a05_modbus, cancel)
+TELLS(a05_modbus)
 static fathom_status_t a05_modbus_command(void)
 {
     uint8_t address;
@@ -131,14 +139,15 @@ const contract_driver_t contract_a05_modbus = {
     .default_timeout_us = 300000,
     .start_us = &a05_modbus_config.start_us,
     .power_on = a05_modbus_power_on,
-    .wrong = {NONE(a05_modbus, modbus), NONE(a05_modbus, clock), IS(a05_modbus, address, 255),
+    .wrong = {NONE(a05_modbus, modbus.transport), IS(a05_modbus, modbus.address, 255),
               RANGE(a05_modbus, probes, 16, 255), WINDOW(a05_modbus, 6000),
               RANGE(a05_modbus, registers, 1, 0x000F), RANGE(a05_modbus, registers, 0x0011, 0x0105),
               RANGE(a05_modbus, registers, 0x0107, 0x0200)}};
 
-DRIVER(hps167s, .modbus = &fake.modbus, .clock = &fake.clock)
+DRIVER(hps167s, .modbus.transport = &fake.modbus)
 CAN(hps167s, deinit)
 CAN(hps167s, cancel)
+TELLS(hps167s)
 static fathom_status_t hps167s_command(void)
 {
     fathom_hps167s_version_t version;
@@ -162,12 +171,8 @@ const contract_driver_t contract_hps167s = {
     .most_address = 32,
     .least_period_us = 18519,
     .default_timeout_us = 500000,
-    .wrong = {NONE(hps167s, modbus), NONE(hps167s, clock), RANGE(hps167s, address, 33, 255),
-              RANGE(hps167s, same_answers, 9, 255), IS(hps167s, limits.over_range_mm, 65535),
-              IS(hps167s, limits.over_range_mm, 30000), IS(hps167s, limits.max_mm, 65530),
-              BOTH(hps167s, limits.max_mm, 100, limits.over_range_mm, 100),
-              BOTH(hps167s, limits.max_mm, 65534, limits.over_range_mm, 65534),
-              IS(hps167s, limits.min_mm, 30001), BOTH(hps167s, limits.max_mm, 79, limits.min_mm, 0)}};
+    .wrong = {NONE(hps167s, modbus.transport), RANGE(hps167s, modbus.address, 33, 255),
+              IS(hps167s, modbus.address_zero, 1), RANGE(hps167s, same_answers, 9, 255)}};
 
 /* ---- on a line ---- */
 
@@ -244,15 +249,10 @@ DRIVER(hps167s_auto, .line = &rig.line)
 CAN(hps167s_auto, deinit)
 
 const contract_driver_t contract_hps167s_auto = {
-    LISTENS(hps167s_auto),
-    .frame = hps_frame,
-    .good = 2083,
-    .other = 511,
-    .refused = 31000,
-    .sample = {HPS_FIGURES},
-    COUNTS(hps167s_auto),
-    .wrong = {NONE(hps167s_auto, line), RANGE(hps167s_auto, address, 33, 255),
-              IS(hps167s_auto, limits.over_range_mm, 65535), IS(hps167s_auto, limits.over_range_mm, 30000)}};
+    LISTENS(hps167s_auto), .frame = hps_frame,
+    .good = 2083,          .other = 511,
+    .refused = 31000,      .sample = {HPS_FIGURES},
+    COUNTS(hps167s_auto),  .wrong = {NONE(hps167s_auto, line), RANGE(hps167s_auto, address, 33, 255)}};
 
 /* It is asked with 55 AA; the answer is there at once. */
 static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
@@ -282,19 +282,26 @@ static size_t a05_dyp_frame(uint8_t *frame, uint16_t value)
 
 static const contract_kind_t asked_on_line = LINE_KIND(is_asked, line_is_at_work);
 
-DRIVER(a05_dyp, .line = &rig.line, .probes = 1)
+static fathom_modbus_t dyp;
+static const fathom_modbus_t *dyp_of_line(void)
+{
+    dyp = fathom_dyp_client(&rig.line);
+    return &dyp;
+}
+
+DRIVER(a05_dyp, .modbus.transport = dyp_of_line(), .probes = 1)
 CAN(a05_dyp, deinit)
 CAN(a05_dyp, power_on)
 
-const contract_driver_t contract_a05_dyp = {ITSELF(a05_dyp, asked_on_line),
-                                            DYP(a05_dyp, a05_dyp.base.answer, 6000, FATHOM_A05, 1),
-                                            .deinit = a05_dyp_deinit,
-                                            .power_on = a05_dyp_power_on,
-                                            .start_us = &a05_dyp_config.start_us,
-                                            .frame = a05_dyp_frame,
-                                            .wrong = {NONE(a05_dyp, line), IS(a05_dyp, address, 255),
-                                                      RANGE(a05_dyp, probes, 16, 255),
-                                                      WINDOW(a05_dyp, 6000)}};
+const contract_driver_t contract_a05_dyp = {
+    ITSELF(a05_dyp, asked_on_line),
+    DYP(a05_dyp, a05_dyp.base.answer, 6000, FATHOM_A05, 1),
+    .deinit = a05_dyp_deinit,
+    .power_on = a05_dyp_power_on,
+    .start_us = &a05_dyp_config.start_us,
+    .frame = a05_dyp_frame,
+    .wrong = {NONE(a05_dyp, modbus.transport), IS(a05_dyp, modbus.address, 255),
+              IS(a05_dyp, modbus.address_zero, 1), RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
 
 /* ---- triggered ---- */
 
@@ -311,14 +318,14 @@ static fathom_status_t is_triggered(const contract_driver_t *driver, uint16_t va
 
 static const contract_kind_t triggered = LINE_KIND(is_triggered, line_is_at_work);
 
-DRIVER(a16_controlled, .line = &rig.line)
+DRIVER(a16_controlled, .line = &rig.line, .trigger = {fathom_output_set_line_break, &rig.line})
 CAN(a16_controlled, deinit)
 
 const contract_driver_t contract_a16_controlled = {
     ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.answer, 16350, FATHOM_A16, 0),
     .deinit = a16_controlled_deinit, .frame = a16_frame,
-    .wrong = {NONE(a16_controlled, line), IS(a16_controlled, earliest_us, 131 * MS),
-              WINDOW(a16_controlled, 16350)}};
+    .wrong = {NONE(a16_controlled, line), NONE(a16_controlled, trigger.set),
+              IS(a16_controlled, earliest_us, 131 * MS), WINDOW(a16_controlled, 16350)}};
 
 /* A pulse so wide, 110 ms after the trigger. */
 static fathom_status_t has_pulsed(const contract_driver_t *driver, uint16_t value)
@@ -340,8 +347,9 @@ static bool is_low(void) { return !controlled.pin.level; }
 
 static const contract_kind_t pulsing = LINE_KIND(has_pulsed, is_low);
 
-DRIVER(a16_pwm, .clock = &rig.fake.clock, .capture = &controlled.pin.capture,
-       .trigger = &controlled.pin.trigger)
+DRIVER(a16_pwm, .pulse = {.clock = &rig.fake.clock,
+                          .capture = &controlled.pin.capture,
+                          .trigger = {fathom_output_set_pin, &controlled.pin.trigger}})
 CAN(a16_pwm, deinit)
 
 const contract_driver_t contract_a16_pwm = {
@@ -351,7 +359,8 @@ const contract_driver_t contract_a16_pwm = {
     /* A16 1(4): 173.9 cm */ .other = 20000,
     .sample = {.raw = 10000, .distance_mm = 1739, .kind = FATHOM_TARGET, .model = FATHOM_A16},
     COUNTS(a16_pwm),
-    .wrong = {NONE(a16_pwm, clock), NONE(a16_pwm, capture), WINDOW(a16_pwm, 16350)}};
+    .wrong = {NONE(a16_pwm, pulse.clock), NONE(a16_pwm, pulse.capture), NONE(a16_pwm, pulse.trigger.set),
+              WINDOW(a16_pwm, 16350)}};
 
 /* ---- contacts ---- */
 

@@ -5,6 +5,7 @@
 #include "drivers.h"
 #include "fathom/contact.h"
 #include "fathom/dyp.h"
+#include "fathom/modbus_unit.h"
 
 /* What test_driver_contract.c has to know of a driver, and of the way in which its device speaks. */
 
@@ -67,6 +68,8 @@ struct contract_driver {
     uint16_t max_mm;
     fathom_status_t (*command)(void);
     void (*cancel)(void);
+    uint8_t (*exception)(void);
+    const fathom_modbus_unit_t *(*unit)(void);
     void (*power_on)(void);
 };
 

@@ -21,6 +21,7 @@ void controlled_start(void) { controlled_start_at(RIG_START_US); }
 int controlled_set_up(void **state)
 {
     memset(&controlled.config, 0, sizeof controlled.config);
+    controlled.config.trigger = fathom_output_line_break(&rig.line);
     controlled_start();
     return 0;
 }

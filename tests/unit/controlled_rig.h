@@ -5,6 +5,7 @@
 #include "auto_rig.h"
 #include "fake_pin.h"
 #include "fathom/a16_controlled.h"
+#include "fathom/line_pins.h"
 
 /* auto_rig.h with an A16 that is triggered, by the fake UART's break unless the config names the pin. */
 enum { FRAME_US = 4 * RIG_BYTE_US };

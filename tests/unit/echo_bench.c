@@ -18,7 +18,7 @@ void set_up_with(uint8_t echo)
 {
     void *state;
     set_up(&state);
-    bench.config.echo = echo;
+    set_up_echo(echo);
 }
 
 void run_until_written(size_t written, uint32_t step_us)

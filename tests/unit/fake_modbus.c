@@ -84,8 +84,8 @@ void fake_modbus_init(fake_modbus_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 5000;
     fake->due_us = FATHOM_NO_DEADLINE;
-    fake->modbus =
-        (fathom_modbus_t){fake_submit, fake_cancel, fake_cancel_unit, fake_poll, fake_due_us, fake};
+    fake->modbus = (fathom_modbus_t){fake_submit,  fake_cancel, fake_cancel_unit, fake_poll, fake_due_us,
+                                     &fake->clock, fake};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 

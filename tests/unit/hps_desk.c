@@ -15,7 +15,7 @@ int hps_set_up(void **state)
 {
     desk_begin(start_us);
     desk.step_us = loop_us;
-    hps_config = (fathom_hps167s_config_t){.modbus = &fake.modbus, .clock = &fake.clock};
+    hps_config = (fathom_hps167s_config_t){.modbus.transport = &fake.modbus};
     memset(&hps, 0x5A, sizeof hps);
     hps_start();
     return 0;
@@ -30,8 +30,8 @@ void hps_start(void)
 void hps_start_at(uint8_t address, const fathom_line_settings_t *settings)
 {
     hps_set_up(NULL);
-    hps_config.address = address;
-    hps_config.settings = settings;
+    hps_config.modbus.address = address;
+    hps_config.modbus.settings = settings;
     hps_start();
 }
 

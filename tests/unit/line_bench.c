@@ -24,8 +24,9 @@ int set_up(void **state)
     fake_init(&bench.fake);
     bench.fake.byte_us = BYTE_US;
     bench.config =
-        (fathom_line_config_t){&bench.fake.uart,     &bench.fake.clock, bench.frame, sizeof bench.frame,
-                               FATHOM_LINE_ECHO_OFF, T3_5_US,           GAP_US};
+        (fathom_line_config_t){&bench.fake.uart,     &bench.fake.clock, bench.frame,   sizeof bench.frame,
+                               FATHOM_LINE_ECHO_OFF, T3_5_US,           GAP_US,        fathom_line_find_echo,
+                               fathom_line_marks,    fathom_line_count, bench.counters};
     assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
     *state = &bench;
     return 0;
@@ -39,6 +40,12 @@ void run_in_steps(uint32_t for_us, uint32_t step_us)
     }
 }
 
+void set_up_echo(uint8_t echo)
+{
+    bench.config.echo = echo;
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+}
+
 void run(uint32_t for_us) { run_in_steps(for_us, 100); }
 
 fathom_status_t poll_line(void) { return fathom_line_poll(&bench.line); }
@@ -48,7 +55,7 @@ uint32_t due(void) { return fathom_line_due_us(&bench.line); }
 void submit(fathom_modbus_request_t *request)
 {
     request->exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, request), FATHOM_PENDING);
+    assert_int_equal(fathom_modbus_client_submit_with_zero(&bench.line, request), FATHOM_PENDING);
 }
 
 void submit_dyp(fathom_modbus_request_t *request)
@@ -192,7 +199,7 @@ fathom_status_t status_of(const fathom_modbus_request_t *request)
     return (fathom_status_t)request->exchange.status;
 }
 
-unsigned counter(unsigned which) { return bench.line.counters[which]; }
+unsigned counter(unsigned which) { return bench.counters[which]; }
 
 void expect_mm(uint16_t value)
 {

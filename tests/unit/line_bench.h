@@ -22,6 +22,7 @@ enum { REQUEST_US = T3_5_US + 8 * BYTE_US + 400 };
 typedef struct {
     fake_t fake;
     uint8_t frame[32];
+    uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_config_t config;
     fathom_line_t line;
     fathom_modbus_request_t request;
@@ -53,6 +54,9 @@ extern const uint8_t auto_frame[4];
 
 /* Moves time on in steps and polls after each; run takes steps of 100 us. */
 void run_in_steps(uint32_t for_us, uint32_t step_us);
+/* The line anew, told this of its echo; FATHOM_LINE_ECHO_AUTO: it finds out. */
+void set_up_echo(uint8_t echo);
+
 void run(uint32_t for_us);
 fathom_status_t poll_line(void);
 uint32_t due(void);

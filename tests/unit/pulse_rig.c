@@ -32,7 +32,7 @@ void answer_with(uint32_t after_us, uint32_t width_us)
 int set_up_meter(void **state)
 {
     memset(&stand.config, 0, sizeof stand.config);
-    stand.config.trigger = &stand.pin.trigger;
+    stand.config.trigger = fathom_output_pin(&stand.pin.trigger);
     start_meter();
     return 0;
 }

@@ -2,6 +2,7 @@
 #include "auto_rig.h"
 #include "fake_pin.h"
 #include "fathom/a05_auto.h"
+#include "fathom/line_pins.h"
 
 /* Its four probes, and power-on; test_driver_contract.c has what every listener promises. */
 
@@ -14,19 +15,19 @@ static uint8_t memory; /* of the driver, before init */
 static const uint8_t example[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
 static const uint16_t distances[] = {1000, 2000, 1953, 3562};
 
-static void start_at(uint32_t now_us, const fathom_pin_t *select)
+static void start_at(uint32_t now_us, bool by_pin)
 {
     rig_start(now_us);
     fake_pin_init(&pin, &rig.fake);
     pin.level = true;
     config.line = &rig.line;
-    config.select = select;
+    config.select = by_pin ? fathom_output_pin(&pin.trigger) : fathom_output_line_break(&rig.line);
     memset(&a05, memory, sizeof a05);
     assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
-static void start(void) { start_at(RIG_START_US, NULL); }
+static void start(void) { start_at(RIG_START_US, false); }
 
 static int set_up(void **state)
 {
@@ -277,20 +278,20 @@ TEST(a_broken_port_is_said_when_the_samples_that_came_before_are_taken)
 
 enum { LOW_US = 1500000 };
 
-static void power_on(fathom_a05_value_t value, fathom_status_t status)
+static void power_on(fathom_dyp_value_t value, fathom_status_t status)
 {
-    assert_int_equal(fathom_a05_auto_power_on(&a05, value), status);
+    assert_int_equal(fathom_a05_auto_select(&a05, value), status);
 }
 
-static bool is_low(void) { return config.select != NULL ? !pin.level : rig.fake.in_break; }
+static bool is_low(void) { return config.select.ctx == &pin.trigger ? !pin.level : rig.fake.in_break; }
 
 TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
 {
     static const uint32_t starts_us[] = {1000, 0xFFFFFFFFu - 700000};
     for (unsigned i = 0; i != 4; i++) {
-        start_at(starts_us[i / 2], i % 2 == 0 ? &pin.trigger : NULL);
+        start_at(starts_us[i / 2], i % 2 == 0);
         rig_run(10000, 1000); /* the silence that begins a frame has been seen */
-        power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+        power_on(FATHOM_REAL_TIME, FATHOM_READY);
         assert_true(is_low());
         assert_int_equal(fathom_due_us(&rig.sensor, 1), LOW_US);
         rig_run(LOW_US - 1000, 1000);
@@ -304,29 +305,29 @@ TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
 
 TEST(rx_is_high_for_processed_values)
 {
-    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_READY);
     assert_int_equal(rig.fake.breaks, 0);
-    start_at(RIG_START_US, &pin.trigger);
+    start_at(RIG_START_US, true);
     pin.level = false;
-    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_READY);
     assert_true(pin.level);
 }
 
 TEST(a_second_power_on_begins_anew)
 {
     for (unsigned i = 0; i != 2; i++) {
-        power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+        power_on(FATHOM_REAL_TIME, FATHOM_READY);
         rig_run(1000000, 1000);
     }
     assert_true(rig.fake.in_break);
-    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_READY);
     assert_false(rig.fake.in_break);
 }
 
 TEST(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten)
 {
     rig_run(9900000, 1000);
-    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_READY);
     rig_run(9999000, 1000);
     assert_int_equal(rig.stales, 0);
     rig_run(1000, 1000);
@@ -338,27 +339,31 @@ TEST(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotte
 TEST(a_port_that_cannot_is_said_and_a_pin_helps)
 {
     rig.fake.uart.set_break = NULL;
-    power_on(FATHOM_A05_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
-    power_on(FATHOM_A05_PROCESSED, FATHOM_READY);
-    start_at(RIG_START_US, &pin.trigger);
+    power_on(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
+    power_on(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
+    config.select.set = NULL;
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
+    power_on(FATHOM_PROCESSED, FATHOM_READY);
+    start_at(RIG_START_US, true);
     rig.fake.uart.set_break = NULL;
-    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_READY);
     assert_int_equal(pin.sets, 1);
 }
 
 TEST(a_line_that_sends_is_busy_and_another_value_is_none)
 {
     rig.fake.busy_until_us = rig.fake.now_us + 1000;
-    power_on(FATHOM_A05_REAL_TIME, FATHOM_ERR_BUSY);
+    power_on(FATHOM_REAL_TIME, FATHOM_ERR_BUSY);
     assert_false(rig.fake.in_break);
     rig.fake.now_us += 1000;
-    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
-    power_on((fathom_a05_value_t)2, FATHOM_ERR_ARGUMENT);
+    power_on(FATHOM_REAL_TIME, FATHOM_READY);
+    power_on((fathom_dyp_value_t)2, FATHOM_ERR_ARGUMENT);
 }
 
 TEST(who_stops_listening_lets_rx_go)
 {
-    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_READY);
     for (unsigned i = 0; i != 2; i++) {
         fathom_a05_auto_deinit(&a05);
         assert_false(rig.fake.in_break);
@@ -369,7 +374,7 @@ TEST(who_stops_listening_lets_rx_go)
 
 TEST(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less)
 {
-    power_on(FATHOM_A05_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_READY);
     rig_run(1480000, 20000);
     assert_true(rig.fake.in_break);
     rig.fake.now_us += 100000; /* one turn that takes longer */

@@ -14,6 +14,7 @@ static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
 static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
 static fathom_a05_dyp_config_t config;
+static fathom_modbus_t dyp;
 static fathom_a05_dyp_t a05;
 
 static void set_up_at(uint32_t now_us)
@@ -22,7 +23,8 @@ static void set_up_at(uint32_t now_us)
     rig.line_config.echo = FATHOM_LINE_ECHO_OFF;
     rig.fake.byte_us = RIG_BYTE_US;
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
-    config = (fathom_a05_dyp_config_t){.line = &rig.line};
+    dyp = fathom_dyp_client(&rig.line);
+    config = (fathom_a05_dyp_config_t){.modbus.transport = &dyp};
     memset(&a05, 0x5A, sizeof a05);
 }
 
@@ -37,8 +39,8 @@ static void start_with(uint8_t probes, uint32_t period_us, uint32_t timeout_us)
 {
     set_up_at(RIG_START_US);
     config.probes = probes;
-    config.period_us = period_us;
-    config.timeout_us = timeout_us;
+    config.modbus.period_us = period_us;
+    config.modbus.timeout_us = timeout_us;
     start();
 }
 
@@ -229,7 +231,7 @@ TEST(silence_is_said_after_the_time_out)
 TEST(retries_are_the_configs)
 {
     config.probes = 1;
-    config.retries = 2;
+    config.modbus.retries = 2;
     start();
     assert_int_equal(next_within(2000000, rig_poll), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(rig.fake.written, 3);
@@ -238,7 +240,7 @@ TEST(retries_are_the_configs)
 TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
 {
     config.probes = 1;
-    config.backoff_us = 300000;
+    config.modbus.backoff_us = 300000;
     start();
     for (unsigned n = 0; n != 8; n++) {
         const uint32_t at_us = until_written(n);
@@ -289,8 +291,8 @@ TEST(address_and_settings_are_the_configs)
 {
     static const uint8_t ask_254[] = {0x55, 0xAA, 0xFE, 0x01, 0xFE}; /* FF + FE + 01 = 1FE */
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    config.address = 254;
-    config.settings = &settings;
+    config.modbus.address = 254;
+    config.modbus.settings = &settings;
     start();
     until_written(0);
     assert_memory_equal(rig.fake.writes[0].bytes, ask_254, sizeof ask_254);
@@ -398,6 +400,7 @@ TEST_IN(finding, of_two_answers_the_first_is_taken)
 TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
 {
     rig.line_config.echo = FATHOM_LINE_ECHO_AUTO;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
     while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
     fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_anyone, sizeof ask_anyone);
     fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
@@ -440,7 +443,7 @@ TEST_IN(finding, a_line_without_room_says_so)
 static void assert_refused(void)
 {
     static fathom_modbus_request_t other;
-    const fathom_modbus_t *const seam = &a05.client;
+    const fathom_modbus_t *const seam = a05.base.unit.modbus;
     const size_t written = rig.fake.written;
     fathom_modbus_write_single_register(&other.message, 9, 0x0200, 9);
     assert_int_equal(seam->submit(seam->ctx, &other), FATHOM_ERR_UNSUPPORTED);

@@ -6,6 +6,7 @@
  * 8N1 and keeps 3646 us of silence before a request. */
 
 static fathom_a05_dyp_config_t config;
+static fathom_modbus_t dyp;
 static fathom_a05_dyp_t a05;
 static fathom_sensor_t sensor;
 static fathom_sample_t sample;
@@ -14,7 +15,8 @@ static int set_up_a05(void **state)
 {
     set_up(state);
     memset(&config, 0, sizeof config);
-    config.line = &bench.line;
+    dyp = fathom_dyp_client(&bench.line);
+    config.modbus.transport = &dyp;
     return 0;
 }
 
@@ -74,7 +76,7 @@ TEST(all_probes_have_500_ms_and_one_has_200)
     is_sent(measure);
     is_silent_for(200000, measure);
     set_up_a05(state);
-    config.timeout_us = 123456;
+    config.modbus.timeout_us = 123456;
     start();
     is_sent(measure);
     is_silent_for(123456, measure);
@@ -117,7 +119,7 @@ TEST(a_command_has_1_s_or_what_the_config_says)
     is_sent(set_address);
     is_silent_for(1000000, set_address);
     set_up_a05(state);
-    config.command_timeout_us = 345678;
+    config.modbus.command_timeout_us = 345678;
     start();
     is_sent(set_address);
     is_silent_for(345678, set_address);
@@ -129,7 +131,7 @@ TEST(setting_the_address_is_waited_for_as_one_probe_is)
 {
     static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
     static const uint8_t set_7[] = {0x55, 0xAA, 0x07, 0x03, 0x09};
-    config.command_timeout_us = 300000;
+    config.modbus.command_timeout_us = 300000;
     start();
     is_sent(set_address);
     receive(first_1953, sizeof first_1953);

@@ -12,7 +12,7 @@ static fathom_a05_modbus_t a05;
 static int set_up(void **state)
 {
     desk_begin(5000);
-    config = (fathom_a05_modbus_config_t){.modbus = &fake.modbus, .clock = &fake.clock};
+    config = (fathom_a05_modbus_config_t){.modbus.transport = &fake.modbus};
     memset(&a05, 0x5A, sizeof a05);
     return 0;
 }
@@ -99,7 +99,7 @@ TEST(every_choice_of_probes_in_the_other_block_of_registers) { ask_spans(0x0010)
 
 TEST(a_period_that_the_probes_cannot_keep_is_stretched)
 {
-    config.period_us = 399999;
+    config.modbus.period_us = 399999;
     start();
     IS_TOLD(1001, 2001, 3001, 4001);
     take_samples(0xF, 1);
@@ -181,8 +181,7 @@ TEST(the_example_of_the_datasheet_goes_over_a_line)
     static const uint16_t distances[] = {250, 659, 2426};
     rig_start(RIG_START_US);
     const fathom_modbus_t modbus = fathom_modbus_client(&rig.line);
-    config.modbus = &modbus;
-    config.clock = &rig.fake.clock;
+    config.modbus.transport = &modbus;
     config.probes = 0xE;
     start();
     rig.sensor = desk.sensor;

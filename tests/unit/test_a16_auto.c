@@ -2,6 +2,7 @@
 #include "auto_rig.h"
 #include "fake_pin.h"
 #include "fathom/a16_auto.h"
+#include "fathom/line_pins.h"
 
 /* What test_driver_contract.c does not ask of every listener. */
 
@@ -101,6 +102,18 @@ TEST(it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale)
     assert_int_equal(rig_poll(), FATHOM_ERR_STALE);
 }
 
+/* line.h: "Several users of one line may each call" its poll; FF begins the next frame and so ends this one. */
+TEST(a_frame_that_a_poll_of_the_line_has_brought_is_due_at_once)
+{
+    static const uint8_t and_more[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF};
+    rig_run(20000, 500);
+    fake_receive(&rig.fake, 0, and_more, 5);
+    PENDS(fathom_line_poll(&rig.line));
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_true(fathom_due_us(&rig.sensor, 1) > 0);
+}
+
 TEST(without_silence_a_value_with_one_alignment_is_shown)
 {
     fake_receive(&rig.fake, 0, mm_1953 + 2, 2); /* it was heard from within a frame on */
@@ -136,9 +149,9 @@ TEST(where_gap_us_is_longer_than_the_pauses_no_frame_is_shown)
 
 static void inits(fathom_status_t status) { assert_int_equal(fathom_a16_auto_init(&a16, &config), status); }
 
-static void selects(bool real_time, fathom_status_t status)
+static void selects(fathom_dyp_value_t value, fathom_status_t status)
 {
-    assert_int_equal(fathom_a16_auto_select(&a16, real_time), status);
+    assert_int_equal(fathom_a16_auto_select(&a16, value), status);
 }
 
 TEST(by_default_nothing_is_driven)
@@ -152,29 +165,30 @@ TEST(by_default_nothing_is_driven)
 
 TEST(a_pin_is_driven_at_init_and_when_told)
 {
-    config.select = &pin.trigger;
+    config.select = fathom_output_pin(&pin.trigger);
     inits(FATHOM_READY);
     assert_true(pin.level);
-    config.real_time = true;
+    config.value = FATHOM_REAL_TIME;
     inits(FATHOM_READY);
     assert_false(pin.level);
-    selects(false, FATHOM_READY);
+    selects(FATHOM_PROCESSED, FATHOM_READY);
     assert_true(pin.level);
-    selects(true, FATHOM_READY);
+    selects(FATHOM_REAL_TIME, FATHOM_READY);
     assert_false(pin.level);
     fathom_a16_auto_deinit(&a16);
     assert_int_equal(rig.fake.breaks, 0);
     assert_null(rig.line.listener);
 }
 
-TEST(without_a_pin_a_break_selects_until_deinit)
+TEST(a_break_selects_until_deinit)
 {
-    config.real_time = true;
+    config.select = fathom_output_line_break(&rig.line);
+    config.value = FATHOM_REAL_TIME;
     inits(FATHOM_READY);
     assert_true(rig.fake.in_break);
-    selects(false, FATHOM_READY);
+    selects(FATHOM_PROCESSED, FATHOM_READY);
     assert_false(rig.fake.in_break);
-    selects(true, FATHOM_READY);
+    selects(FATHOM_REAL_TIME, FATHOM_READY);
     fathom_a16_auto_deinit(&a16);
     assert_false(rig.fake.in_break);
     assert_null(rig.line.listener);
@@ -182,7 +196,8 @@ TEST(without_a_pin_a_break_selects_until_deinit)
 
 TEST(frames_are_read_in_a_break)
 {
-    config.real_time = true;
+    config.select = fathom_output_line_break(&rig.line);
+    config.value = FATHOM_REAL_TIME;
     inits(FATHOM_READY);
     rig.sensor = fathom_a16_auto_sensor(&a16);
     rig_send(mm_1953, 4, 500);
@@ -192,25 +207,52 @@ TEST(frames_are_read_in_a_break)
 
 TEST(a_port_that_cannot_is_said_by_init_and_nothing_listens)
 {
-    config.real_time = true;
+    config.select = fathom_output_line_break(&rig.line);
+    config.value = FATHOM_REAL_TIME;
+    fathom_a16_auto_deinit(&a16);
     rig.fake.never_sent = true;
     inits(FATHOM_ERR_BUSY);
     assert_null(rig.line.listener);
     rig.fake.uart.set_break = NULL;
     inits(FATHOM_ERR_UNSUPPORTED);
     assert_null(rig.line.listener);
-    config.real_time = false;
+    config.value = FATHOM_PROCESSED;
+    inits(FATHOM_ERR_UNSUPPORTED);
+    assert_null(rig.line.listener);
+}
+
+TEST(no_other_value_is_selected)
+{
+    config.select = fathom_output_pin(&pin.trigger);
+    fathom_a16_auto_deinit(&a16);
+    config.value = 2;
+    inits(FATHOM_ERR_ARGUMENT);
+    assert_null(rig.line.listener);
+    config.value = FATHOM_REAL_TIME;
     inits(FATHOM_READY);
-    selects(true, FATHOM_ERR_UNSUPPORTED);
+    const unsigned sets = pin.sets;
+    selects((fathom_dyp_value_t)2, FATHOM_ERR_ARGUMENT);
+    selects((fathom_dyp_value_t)256, FATHOM_ERR_ARGUMENT);
+    assert_int_equal(pin.sets, sets);
+}
+
+TEST(without_anything_that_drives_rx_nothing_is_selected)
+{
+    inits(FATHOM_READY);
+    selects(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
+    selects(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
+    config.value = FATHOM_REAL_TIME;
+    inits(FATHOM_ERR_UNSUPPORTED);
 }
 
 TEST(a_selection_that_failed_has_changed_nothing)
 {
+    config.select = fathom_output_line_break(&rig.line);
     inits(FATHOM_READY);
     rig.fake.never_sent = true;
-    selects(true, FATHOM_PENDING);
-    assert_false(a16.real_time);
+    selects(FATHOM_REAL_TIME, FATHOM_PENDING);
+    assert_int_equal(a16.value, FATHOM_PROCESSED);
     rig.fake.never_sent = false;
-    selects(true, FATHOM_READY);
-    assert_true(a16.real_time);
+    selects(FATHOM_REAL_TIME, FATHOM_READY);
+    assert_int_equal(a16.value, FATHOM_REAL_TIME);
 }

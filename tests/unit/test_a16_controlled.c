@@ -32,7 +32,7 @@ TEST(a_break_of_2_ms_triggers_every_121_ms)
 
 TEST(a_pin_triggers_instead_of_the_break)
 {
-    controlled.config.trigger = &controlled.pin.trigger;
+    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     assert_true(controlled.pin.level);
     rig_run(2 * MS, 100);
@@ -50,7 +50,7 @@ TEST(a_pin_triggers_instead_of_the_break)
 
 TEST(period_and_low_time_are_options_and_a_shorter_period_is_not_kept)
 {
-    controlled.config.trigger = &controlled.pin.trigger;
+    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled.config.period_us = 300 * MS;
     controlled.config.low_us = 10 * MS;
     controlled_start();
@@ -66,7 +66,7 @@ TEST(period_and_low_time_are_options_and_a_shorter_period_is_not_kept)
 
 TEST(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge)
 {
-    controlled.config.trigger = &controlled.pin.trigger;
+    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     for (unsigned i = 0; i != 100; i++) {
         rig.fake.now_us += i % 2 != 0 ? 300 * MS : 500;
@@ -259,6 +259,8 @@ TEST(hours_without_an_answer_are_one_no_answer_a_trigger)
     }
     assert_true(no_answers > 15000);
     assert_int_equal(rig.stales, 0);
+    assert_int_equal(controlled.a16.stream.counters[FATHOM_STREAM_STALES],
+                     0); /* who is not asked is silent */
     assert_int_equal(controlled.a16.late, 0);
 }
 
@@ -319,7 +321,9 @@ TEST(without_a_pin_or_a_break_nothing_listens_and_deinit_ends_a_break)
     rig.fake.uart.set_break = NULL;
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_UNSUPPORTED);
     assert_null(rig.line.listener);
-    controlled.config.trigger = &controlled.pin.trigger;
+    controlled.config.trigger.set = NULL;
+    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
+    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_READY);
-    assert_ptr_equal(rig.line.listener, &other.listener);
+    assert_ptr_equal(rig.line.listener, &other.stream.listener);
 }

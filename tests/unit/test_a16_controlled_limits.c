@@ -69,6 +69,18 @@ TEST(the_next_trigger_comes_121_ms_after_the_last)
     assert_int_equal(rig.fake.breaks, 2);
 }
 
+TEST(a_period_of_1_us_more_than_the_default_is_kept)
+{
+    controlled.config.period_us = 121 * MS + 1;
+    controlled_start();
+    trigger();
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    poll_after(121 * MS - 105 * MS);
+    assert_int_equal(rig.fake.breaks, 1);
+    poll_after(1);
+    assert_int_equal(rig.fake.breaks, 2);
+}
+
 /* "window ... 0: 1 and 16350 mm". 3FDE: FF + 3F + DE = 21C; 3FDF: 21D. */
 TEST(distances_up_to_16350_mm_are_believed)
 {
@@ -167,6 +179,19 @@ TEST(between_two_triggers_it_is_due_at_the_next_one)
     }
 }
 
+/* line.h: "Several users of one line may each call" its poll; FF begins another frame and so ends this one. */
+TEST(a_frame_that_a_poll_of_the_line_has_brought_is_due_at_once)
+{
+    static const uint8_t and_more[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF};
+    trigger();
+    release();
+    fake_receive(&rig.fake, 90 * MS, and_more, 5);
+    rig.fake.now_us += 90 * MS;
+    assert_int_equal(fathom_line_poll(&rig.line), FATHOM_PENDING);
+    assert_int_equal(due_us(), 0);
+    assert_int_equal(poll_after(0), FATHOM_READY);
+}
+
 /* ---- what it leaves alone ---- */
 
 static unsigned set_breaks;
@@ -198,7 +223,7 @@ TEST(a_break_is_ended_only_where_one_has_begun)
 
 TEST(a_pin_that_is_high_is_not_set_when_the_sensor_is_given_up)
 {
-    controlled.config.trigger = &controlled.pin.trigger;
+    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     assert_int_equal(controlled.pin.sets, 1); /* high */
     fathom_a16_controlled_deinit(&controlled.a16);

@@ -13,7 +13,7 @@ static fathom_modbus_t modbus;
 static int set_up(void **state)
 {
     desk_begin(5000);
-    config = (fathom_a16_modbus_config_t){.modbus = &fake.modbus, .clock = &fake.clock};
+    config = (fathom_a16_modbus_config_t){.modbus.transport = &fake.modbus};
     return 0;
 }
 
@@ -29,13 +29,13 @@ static fathom_sensor_t start(fathom_a16_modbus_t *sensor)
 /* A16 6(3): 0101; 0100 is the processed value. */
 TEST(the_real_time_value_is_asked_with_300_ms)
 {
-    config.value = FATHOM_A16_REAL_TIME;
+    config.value = FATHOM_REAL_TIME;
     desk.sensor = start(&a16);
     for (unsigned i = 1; i <= 2; i++) {
         desk_waits(2000000);
         fake_modbus_assert_asked(&fake, i, 1, 0x0101, 1);
         assert_int_equal(fake.request->exchange.timeout_us, 300000);
-        config.value = FATHOM_A16_PROCESSED; /* read by init only */
+        config.value = FATHOM_PROCESSED; /* read by init only */
         desk_says(751);
         assert_int_equal(desk_poll(), FATHOM_READY);
     }
@@ -47,8 +47,7 @@ static void start_line(void)
 {
     rig_start(RIG_START_US);
     modbus = fathom_modbus_client(&rig.line);
-    config.modbus = &modbus;
-    config.clock = &rig.fake.clock;
+    config.modbus.transport = &modbus;
 }
 
 /* A16 6(4) examples 1 and 2, byte for byte. */
@@ -62,7 +61,7 @@ TEST(the_examples_of_the_datasheet_go_over_a_line)
     for (uint8_t i = 0; i != 2; i++) {
         start_line();
         config.value = i;
-        config.timeout_us = 1000000;
+        config.modbus.timeout_us = 1000000;
         rig.sensor = start(&a16);
         assert_int_equal(rig_exchange(rig_poll, requests[i], 8, answers[i], 7), FATHOM_READY);
         assert_int_equal(rig.sample.distance_mm, i == 0 ? 754 : 751);
@@ -78,7 +77,7 @@ TEST(the_time_is_the_answers_own_when_anothers_poll_brought_it)
     start_line();
     rig.fake.byte_us = RIG_BYTE_US;
     const fathom_sensor_t first = start(&a16);
-    config.address = 2;
+    config.modbus.address = 2;
     const fathom_sensor_t second = start(&other);
     uint32_t came_us = 0;
     for (unsigned i = 0; i != 10; i++) {

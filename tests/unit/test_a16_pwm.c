@@ -24,8 +24,8 @@ static void start(void)
 
 static int set_up(void **state)
 {
-    config =
-        (fathom_a16_pwm_config_t){.clock = &fake.clock, .capture = &pin.capture, .trigger = &pin.trigger};
+    config = (fathom_a16_pwm_config_t){
+        .pulse = {.clock = &fake.clock, .capture = &pin.capture, .trigger = fathom_output_pin(&pin.trigger)}};
     start();
     return 0;
 }
@@ -113,7 +113,7 @@ TEST(a_window_of_the_users_own_is_kept_and_refusals_are_counted)
 
 TEST(the_whole_range_is_in_the_default_windows)
 {
-    config.no_target_us = 94000;
+    config.pulse.no_target_us = 94000;
     reads(2700, FATHOM_TARGET, 470);    /* 469.6 */
     reads(93999, FATHOM_TARGET, 16348); /* 16347.7 */
     config.in_air = true;
@@ -135,17 +135,17 @@ TEST(the_temperature_of_the_air_is_an_option_that_may_change)
 /* Each of the engine's options reaches it. */
 TEST(the_options_of_the_pulse_are_the_drivers)
 {
-    config.noise_us = 11000;
+    config.pulse.noise_us = 11000;
     measures(10000, FATHOM_ERR_NO_ANSWER);
     assert_int_equal(a16.meter.noises, 1);
-    config.noise_us = 0;
-    config.no_target_us = 9000;
+    config.pulse.noise_us = 0;
+    config.pulse.no_target_us = 9000;
     reads(10000, FATHOM_NO_TARGET, 0);
-    config.stuck_us = 9500;
+    config.pulse.stuck_us = 9500;
     reads(10000, FATHOM_FAULT, 0);
-    config.no_target_us = config.stuck_us = 0;
-    config.cycle_us = 400 * MS;
-    config.low_us = 50 * MS;
+    config.pulse.no_target_us = config.pulse.stuck_us = 0;
+    config.pulse.cycle_us = 400 * MS;
+    config.pulse.low_us = 50 * MS;
     start();
     for (unsigned i = 0; i != 2000; i++) {
         fake.now_us += 1 * MS;
@@ -169,8 +169,7 @@ TEST(it_is_due_as_its_engine_is)
 
 TEST(a_break_triggers_where_there_is_no_pin)
 {
-    config.trigger = NULL;
-    config.uart = &fake.uart;
+    config.pulse.trigger = fathom_output_break(&fake.uart);
     start();
     fake.now_us += 2 * MS;
     assert_int_equal(fathom_poll(&sensor, &last), FATHOM_PENDING);

@@ -23,10 +23,10 @@ static int set_up(void **state)
     fake_pin_init(&pin, &fake);
     pin.answer_after_us = 100000;
     memset(&config, 0, sizeof config);
-    config.clock = &fake.clock;
-    config.capture = &pin.capture;
-    config.trigger = &pin.trigger;
-    config.noise_us = 1; /* or short pulses would be none */
+    config.pulse.clock = &fake.clock;
+    config.pulse.capture = &pin.capture;
+    config.pulse.trigger = fathom_output_pin(&pin.trigger);
+    config.pulse.noise_us = 1; /* or short pulses would be none */
     memset(&a16, 0x5A, sizeof a16);
     return 0;
 }

@@ -35,7 +35,7 @@ static uint32_t begins_us; /* not 0: the clock then */
 /* The address has been read and the mode written; from now on it listens. The memory was full of 01, which is true. */
 static int set_up_listening(void **state)
 {
-    const fathom_a16_modbus_config_t config = {.modbus = &seam, .clock = &bench.fake.clock};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &seam};
     const fathom_a16_auto_config_t listening = {.line = &bench.line, .stale_us = 100000000};
     set_up(state);
     if (begins_us != 0) bench.fake.now_us = bench.fake.busy_until_us = begins_us;
@@ -109,4 +109,17 @@ TEST(the_end_of_listening_is_due_after_return_us)
     assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
     bench.fake.now_us += 1000;
     assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
+}
+
+/* A frame whose value is refused ends nothing, and hides no broken port. 3FDF, 16351 mm: FF + 3F + DF = 21D. */
+TEST(a_port_that_breaks_after_a_refused_frame_is_said)
+{
+    static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
+    assert_int_equal(after(100000), FATHOM_PENDING);
+    receive(mm_16351, sizeof mm_16351);
+    assert_int_equal(after(100), FATHOM_PENDING);
+    assert_int_equal(after(GAP_US), FATHOM_PENDING);
+    assert_int_equal(automatic.base.answer.implausible, 1);
+    bench.fake.read_fails = true;
+    assert_int_equal(after(100), FATHOM_ERR_PORT);
 }

@@ -9,7 +9,7 @@ static fathom_a16_modbus_t a16;
 static int set_up(void **state)
 {
     desk_begin(5000);
-    const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus};
     memset(&a16, 0, sizeof a16); /* 0 is something that each output could be given by mistake */
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     desk.sensor = fathom_a16_modbus_sensor(&a16);
@@ -27,30 +27,36 @@ static struct {
     uint8_t address;
     fathom_a16_polarity_t polarity;
     uint16_t threshold_mm;
-    fathom_a16_value_t value;
+    fathom_dyp_value_t value;
 } is;
 
-static fathom_status_t get_address(void) { return fathom_a16_address(&a16, &is.address); }
-static fathom_status_t get_polarity(void) { return fathom_a16_switch_polarity(&a16, &is.polarity); }
-static fathom_status_t get_threshold(void) { return fathom_a16_switch_threshold_mm(&a16, &is.threshold_mm); }
-static fathom_status_t get_automatic(void) { return fathom_a16_automatic_value(&a16, &is.value); }
+static fathom_status_t get_address(void) { return fathom_a16_modbus_address(&a16, &is.address); }
+static fathom_status_t get_polarity(void) { return fathom_a16_modbus_switch_polarity(&a16, &is.polarity); }
+static fathom_status_t get_threshold(void)
+{
+    return fathom_a16_modbus_switch_threshold_mm(&a16, &is.threshold_mm);
+}
+static fathom_status_t get_automatic(void) { return fathom_a16_modbus_automatic_value(&a16, &is.value); }
 
-static fathom_status_t set_address(void) { return fathom_a16_set_address(&a16, (uint8_t)desk.argument); }
+static fathom_status_t set_address(void)
+{
+    return fathom_a16_modbus_set_address(&a16, (uint8_t)desk.argument);
+}
 static fathom_status_t set_polarity(void)
 {
-    return fathom_a16_set_switch_polarity(&a16, (fathom_a16_polarity_t)desk.argument);
+    return fathom_a16_modbus_set_switch_polarity(&a16, (fathom_a16_polarity_t)desk.argument);
 }
 static fathom_status_t set_threshold(void)
 {
-    return fathom_a16_set_switch_threshold_mm(&a16, (uint16_t)desk.argument);
+    return fathom_a16_modbus_set_switch_threshold_mm(&a16, (uint16_t)desk.argument);
 }
 static fathom_status_t set_automatic(void)
 {
-    return fathom_a16_set_automatic_value(&a16, (fathom_a16_value_t)desk.argument);
+    return fathom_a16_modbus_set_automatic_value(&a16, (fathom_dyp_value_t)desk.argument);
 }
 static fathom_status_t set_mode(void)
 {
-    return fathom_a16_set_operating_mode(&a16, (fathom_a16_operating_mode_t)desk.argument);
+    return fathom_a16_modbus_set_operating_mode(&a16, (fathom_a16_operating_mode_t)desk.argument);
 }
 
 /* The register; a value that it has and one that the device cannot mean (0: there is none); to be set: the datasheet's
@@ -73,7 +79,7 @@ static void forget(void)
     is.address = 0xA5;
     is.polarity = FATHOM_A16_POSITIVE;
     is.threshold_mm = 0xA5A5;
-    is.value = FATHOM_A16_REAL_TIME;
+    is.value = FATHOM_REAL_TIME;
 }
 
 /* All but the one of this row. */
@@ -82,7 +88,7 @@ static void assert_untouched_but(unsigned row)
     if (row != 0) assert_int_equal(is.address, 0xA5);
     if (row != 1) assert_int_equal(is.polarity, FATHOM_A16_POSITIVE);
     if (row != 2) assert_int_equal(is.threshold_mm, 0xA5A5);
-    if (row != 3) assert_int_equal(is.value, FATHOM_A16_REAL_TIME);
+    if (row != 3) assert_int_equal(is.value, FATHOM_REAL_TIME);
 }
 
 static unsigned value_of(unsigned row)
@@ -140,7 +146,7 @@ TEST(a_command_that_is_busy_leaves_it_alone)
         for (unsigned other = 0; other != GETS; other++)
             if (other != i) assert_int_equal(rows[other].get(), FATHOM_ERR_BUSY);
         assert_untouched_but(GETS);
-        fathom_a16_cancel(&a16);
+        fathom_a16_modbus_cancel(&a16);
     }
 }
 
@@ -165,7 +171,7 @@ TEST(what_is_out_of_range_is_not_sent)
         assert_int_equal(fake.submits, 0);
         desk.argument = rows[i].most;
         PENDS(rows[i].set());
-        fathom_a16_cancel(&a16);
+        fathom_a16_modbus_cancel(&a16);
         fake.now_us += FATHOM_A16_MIN_PERIOD_US;
         desk.argument = rows[i].least;
         PENDS(rows[i].set());
@@ -190,14 +196,14 @@ TEST(the_address_is_read_and_followed_when_it_is_set)
 TEST(each_setting_can_be_written_blind_but_the_address)
 {
     desk.argument = 1;
-    assert_int_equal(fathom_a16_next_is_blind(&a16), OK);
+    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
     PLAY(set_polarity, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0205, 1, OK));
-    assert_true(fathom_a16_is_written(&a16));
+    assert_true(fathom_a16_modbus_is_written(&a16));
     PLAY(set_polarity, OK, READ(1, 0x0205, OK, 1)); /* that was the last one */
-    assert_false(fathom_a16_is_written(&a16));
-    assert_int_equal(fathom_a16_next_is_blind(&a16), OK);
+    assert_false(fathom_a16_modbus_is_written(&a16));
+    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
     PLAY(set_mode, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0202, 1, NOBODY));
-    assert_int_equal(fathom_a16_next_is_blind(&a16), OK);
+    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
     assert_int_equal(set_address(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
 }
@@ -217,7 +223,7 @@ TEST(the_operating_mode_of_one_that_does_not_answer_is_not_written)
 
 static fathom_status_t measure(void)
 {
-    return fathom_a16_measure(&a16, (fathom_a16_value_t)desk.argument, &desk.sample);
+    return fathom_a16_modbus_measure(&a16, (fathom_dyp_value_t)desk.argument, &desk.sample);
 }
 
 TEST(either_distance_can_be_asked_once)

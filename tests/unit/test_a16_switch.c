@@ -2,6 +2,7 @@
 #include "contact_rig.h"
 #include "drivers.h"
 #include "fathom/a16_switch.h"
+#include "fathom/line_pins.h"
 #include "fathom/modbus_client.h"
 
 /* What its levels mean, and Modbus on the same pins; test_driver_contract.c has the rest. */
@@ -17,7 +18,9 @@ static fathom_a16_switch_config_t config;
 static fathom_a16_switch_t a16;
 static uint8_t frame[13];
 static fathom_line_config_t line_config;
+static uint16_t counters[FATHOM_LINE_COUNTERS];
 static fathom_line_t line;
+static fathom_contact_guard_t guard;
 static fathom_modbus_request_t request;
 
 static void start_at(uint32_t now_us, bool level)
@@ -25,8 +28,10 @@ static void start_at(uint32_t now_us, bool level)
     pins_start(now_us);
     pins.level = level;
     pins.fake.byte_us = BYTE_US;
+    memset(counters, 0, sizeof counters);
     line_config = (fathom_line_config_t){
-        &pins.fake.uart, &pins.fake.clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF, 3646, 5000};
+        &pins.fake.uart,   &pins.fake.clock,  frame,   sizeof frame, FATHOM_LINE_ECHO_OFF, 3646, 5000, NULL,
+        fathom_line_marks, fathom_line_count, counters};
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     config.pin = &pins.pin;
     config.clock = &pins.fake.clock;
@@ -39,7 +44,8 @@ static void start(bool level) { start_at(START_US, level); }
 
 static int set_up(void **state)
 {
-    config = (fathom_a16_switch_config_t){.line = &line};
+    guard = fathom_contact_line_guard(&line);
+    config = (fathom_a16_switch_config_t){.guard = &guard};
     start(false);
     return 0;
 }
@@ -111,7 +117,7 @@ TEST(high_is_near_from_the_factory_and_polarity_is_an_option)
 
 TEST(without_a_line_the_level_alone_counts)
 {
-    config.line = NULL;
+    config.guard = NULL;
     start(true);
     pins_run(20 * MS, 20000);
     pins_expect(1, FATHOM_NEAR);
@@ -186,9 +192,9 @@ TEST(garbage_with_framing_errors_around_an_answer_or_unmarked_before_it_is_dropp
         if (marked != 0) fake_receive_rx(&pins.fake, spoilt_us[3], &nothing, 1, rx);
         pins_run(100 * MS, 1000);
         assert_int_equal(status(), FATHOM_READY);
-        assert_int_equal(line.counters[FATHOM_LINE_BAD_BYTES], 4 * marked);
-        assert_int_equal(line.counters[FATHOM_LINE_DROPPED_BYTES], !marked);
-        assert_int_equal(line.counters[FATHOM_LINE_ANSWERS], 1);
+        assert_int_equal(counters[FATHOM_LINE_BAD_BYTES], 4 * marked);
+        assert_int_equal(counters[FATHOM_LINE_DROPPED_BYTES], !marked);
+        assert_int_equal(counters[FATHOM_LINE_ANSWERS], 1);
         pins_expect(1, FATHOM_FAR);
     }
 }
@@ -201,7 +207,7 @@ TEST(an_answer_after_its_time_out_is_no_change_either)
     pins_run(60 * MS, 1000);
     answer(3 * MS, false, threshold_2000);
     pins_run(200 * MS, 1000);
-    assert_int_equal(line.counters[FATHOM_LINE_LATE_ANSWERS], 1);
+    assert_int_equal(counters[FATHOM_LINE_LATE_ANSWERS], 1);
     pins_expect(1, FATHOM_FAR);
     assert_int_equal(pins.stales, 0);
 }

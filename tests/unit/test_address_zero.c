@@ -113,7 +113,7 @@ static int set_up_find(void **state)
 {
     (void)set_up(state);
     memset(&sought, 0, sizeof sought);
-    client = fathom_modbus_client(&bench.line);
+    client = fathom_modbus_client_with_zero(&bench.line);
     address = 0xA5;
     return 0;
 }
@@ -215,9 +215,9 @@ static fathom_a05_modbus_t a05;
 static int set_up_drivers(void **state)
 {
     desk_begin(5000);
-    const fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus};
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
-    const fathom_a05_modbus_config_t its = {.modbus = &fake.modbus, .clock = &fake.clock, .probes = 1};
+    const fathom_a05_modbus_config_t its = {.modbus.transport = &fake.modbus, .probes = 1};
     assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_READY);
     desk.sensor = fathom_a16_modbus_sensor(&a16);
     return 0;
@@ -226,29 +226,29 @@ static int set_up_drivers(void **state)
 static const suite_t driving = {.set_up = set_up_drivers};
 
 static uint8_t told;
-static fathom_status_t get_a16(void) { return fathom_a16_address(&a16, &told); }
-static fathom_status_t move_a16(void) { return fathom_a16_set_address_to_0_perhaps_for_ever(&a16); }
+static fathom_status_t get_a16(void) { return fathom_a16_modbus_address(&a16, &told); }
+static fathom_status_t move_a16(void) { return fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&a16); }
 static fathom_status_t move_a05(void) { return fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&a05); }
 
 TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
 {
     told = 0xA5;
-    fathom_a16_modbus_config_t config = {.modbus = &fake.modbus, .clock = &fake.clock, .address_zero = true};
+    fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus, .modbus.address_zero = true};
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
     assert_int_equal(desk.sample.unit, 0);
     assert_int_equal(desk.sample.distance_mm, 754);
-    assert_int_equal(fathom_a16_set_address(&a16, 5), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_set_switch_threshold_mm(&a16, 500), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_set_address(&a16, 5), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_ERR_ARGUMENT);
     assert_int_equal(move_a16(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
     PLAY(get_a16, OK, READ(0, 0x0200, OK, 0));
     assert_int_equal(told, 0);
 
-    config.address = 1;
+    config.modbus.address = 1;
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_ERR_ARGUMENT);
     const fathom_a05_modbus_config_t its = {
-        .modbus = &fake.modbus, .clock = &fake.clock, .probes = 1, .address_zero = true};
+        .modbus.transport = &fake.modbus, .probes = 1, .modbus.address_zero = true};
     assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_READY);
     desk.sensor = fathom_a05_modbus_sensor(&a05);
     PLAY(desk_poll, OK, READ(0, 0x0106, OK, 1000));
@@ -256,7 +256,7 @@ TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
 
 TEST_IN(driving, the_address_is_set_to_0_by_a_function_that_says_what_may_come_of_it)
 {
-    assert_int_equal(fathom_a16_set_address(&a16, 0), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_set_address(&a16, 0), FATHOM_ERR_ARGUMENT);
     PLAY(move_a16, OK, READ(1, 0x0200, OK, 1), READ(0, 0x0200, NOBODY, 0), WRITE(1, 0x0200, 0, OK),
          READ(0, 0x0200, OK, 0));
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));

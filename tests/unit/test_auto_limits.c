@@ -8,6 +8,7 @@
 #include "fake_pin.h"
 #include "fathom/a05_auto.h"
 #include "fathom/a16_auto.h"
+#include "fathom/line_pins.h"
 #include "fathom/modbus_client.h"
 
 /* a05_auto.h and a16_auto.h: what selects a value is driven when it has to be, and let go where it was taken. */
@@ -37,17 +38,24 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static void start_a05(const fathom_pin_t *select)
+/* What drives RX: the pin, or a break. */
+static fathom_output_t select_by(bool pin_does)
 {
-    const fathom_a05_auto_config_t config = {.line = &rig.line, .select = select};
+    return pin_does ? fathom_output_pin(&pin.trigger) : fathom_output_line_break(&rig.line);
+}
+
+static void start_a05(bool by_pin)
+{
+    const fathom_a05_auto_config_t config = {.line = &rig.line, .select = select_by(by_pin)};
     memset(&a05, 0xFF, sizeof a05);
     assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
-static void start_a16(uint8_t fill, const fathom_pin_t *select, uint32_t stale_us)
+static void start_a16(uint8_t fill, bool by_pin, uint32_t stale_us)
 {
-    const fathom_a16_auto_config_t config = {.line = &rig.line, .select = select, .stale_us = stale_us};
+    const fathom_a16_auto_config_t config = {
+        .line = &rig.line, .select = select_by(by_pin), .stale_us = stale_us};
     memset(&a16, fill, sizeof a16);
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
     rig.sensor = fathom_a16_auto_sensor(&a16);
@@ -66,22 +74,22 @@ static uint32_t due_us(void) { return rig.sensor.due_us(rig.sensor.ctx); }
 /* "FATHOM_ERR_ARGUMENT: no such value": not 256 either, where an enumeration can hold it at all. */
 TEST(a_value_of_256_is_refused)
 {
-    start_a05(NULL);
-    if (sizeof(fathom_a05_value_t) == 1) return;
-    assert_int_equal(fathom_a05_auto_power_on(&a05, (fathom_a05_value_t)256), FATHOM_ERR_ARGUMENT);
+    start_a05(false);
+    if (sizeof(fathom_dyp_value_t) == 1) return;
+    assert_int_equal(fathom_a05_auto_select(&a05, (fathom_dyp_value_t)256), FATHOM_ERR_ARGUMENT);
 }
 
 /* "To be called right before the sensor gets power": what the one before has said is over. The frame is A05 1(3). */
 TEST(after_power_on_no_sample_of_before_is_handed_over)
 {
     static const uint8_t four[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
-    start_a05(NULL);
+    start_a05(false);
     poll_after(10000);
     fake_receive(&rig.fake, 0, four, sizeof four);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
     assert_int_equal(poll_after(RIG_GAP_US), FATHOM_READY);
     assert_int_equal(rig.sample.probe, 1);
-    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_READY);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
     assert_int_equal(due_us(), 10000000 - 100);
 }
@@ -89,8 +97,8 @@ TEST(after_power_on_no_sample_of_before_is_handed_over)
 /* FATHOM_A05_SELECT_US, some time after the last poll too. */
 TEST(the_end_of_selecting_is_due_after_1500_ms)
 {
-    start_a05(NULL);
-    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
+    start_a05(false);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_READY);
     assert_int_equal(due_us(), RIG_GAP_US); /* before that the line is to see a silence */
     assert_int_equal(poll_after(10000), FATHOM_PENDING);
     assert_int_equal(due_us(), 1490000);
@@ -107,8 +115,8 @@ TEST(after_selecting_nothing_is_driven_when_the_sensor_is_given_up)
 {
     for (unsigned has_pin = 0; has_pin != 2; has_pin++) {
         set_up(state);
-        start_a05(has_pin != 0 ? &pin.trigger : NULL);
-        assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
+        start_a05(has_pin != 0);
+        assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_READY);
         poll_after(FATHOM_A05_SELECT_US);
         const unsigned driven = set_breaks + pin.sets;
         assert_int_equal(driven, 2); /* low, and high again */
@@ -125,7 +133,7 @@ TEST(without_a_selection_an_a16_leaves_tx_alone)
     static const uint8_t fills[] = {0x00, 0x5A, 0xFF};
     for (unsigned i = 0; i != sizeof fills; i++) {
         set_up(state);
-        start_a16(fills[i], NULL, 0);
+        start_a16(fills[i], false, 0);
         fathom_a16_auto_deinit(&a16);
         assert_int_equal(set_breaks, 0);
     }
@@ -133,8 +141,8 @@ TEST(without_a_selection_an_a16_leaves_tx_alone)
 
 TEST(a_break_that_selected_is_ended_once)
 {
-    start_a16(0, NULL, 0);
-    assert_int_equal(fathom_a16_auto_select(&a16, true), FATHOM_READY);
+    start_a16(0, false, 0);
+    assert_int_equal(fathom_a16_auto_select(&a16, FATHOM_REAL_TIME), FATHOM_READY);
     assert_true(rig.fake.in_break);
     fathom_a16_auto_deinit(&a16);
     assert_false(rig.fake.in_break);
@@ -144,14 +152,14 @@ TEST(a_break_that_selected_is_ended_once)
 /* A pin stays as it is: the module goes on with the value that was selected. */
 TEST(a_pin_that_selected_is_left_as_it_is)
 {
-    for (unsigned real_time = 0; real_time != 2; real_time++) {
+    for (unsigned value = FATHOM_PROCESSED; value != 2; value++) {
         set_up(state);
-        start_a16(0, &pin.trigger, 0);
-        assert_int_equal(fathom_a16_auto_select(&a16, real_time != 0), FATHOM_READY);
+        start_a16(0, true, 0);
+        assert_int_equal(fathom_a16_auto_select(&a16, (fathom_dyp_value_t)value), FATHOM_READY);
         const unsigned sets = pin.sets;
         fathom_a16_auto_deinit(&a16);
         assert_int_equal(pin.sets, sets);
-        assert_int_equal(pin.level, real_time == 0);
+        assert_int_equal(pin.level, value == FATHOM_PROCESSED);
         assert_int_equal(set_breaks, 0);
     }
 }
@@ -159,8 +167,8 @@ TEST(a_pin_that_selected_is_left_as_it_is)
 /* "FATHOM_ERR_ARGUMENT: no line": whatever else the config wants. */
 TEST(an_a16_without_a_line_is_refused_before_anything_is_selected)
 {
-    const fathom_a16_auto_config_t config = {.select = &pin.trigger, .real_time = true};
-    const fathom_a16_auto_config_t by_break = {.real_time = true};
+    const fathom_a16_auto_config_t config = {.select = select_by(true), .value = FATHOM_REAL_TIME};
+    const fathom_a16_auto_config_t by_break = {.select = select_by(false), .value = FATHOM_REAL_TIME};
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_a16_auto_init(&a16, &by_break), FATHOM_ERR_ARGUMENT);
     assert_int_equal(pin.sets, 0);
@@ -176,7 +184,7 @@ TEST(it_is_stale_while_the_line_holds_a_part_of_an_answer)
     uint16_t value;
     fathom_modbus_request_t request = {.exchange = {.timeout_us = 1000000}};
     fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &value);
-    start_a16(0, NULL, 50000);
+    start_a16(0, false, 50000);
     assert_int_equal(fathom_modbus_client_submit(&rig.line, &request), FATHOM_PENDING);
     poll_after(10000);
     poll_after(10000);

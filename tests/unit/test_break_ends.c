@@ -16,23 +16,25 @@ static fathom_a16_auto_t a16;
 
 static void select_a05(void)
 {
-    const fathom_a05_auto_config_t config = {.line = &rig.line, .stale_us = 60000000};
+    const fathom_a05_auto_config_t config = {
+        .line = &rig.line, .stale_us = 60000000, .select = fathom_output_line_break(&rig.line)};
     rig_start(RIG_START_US);
     assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
     rig.sensor = fathom_a05_auto_sensor(&a05);
-    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_REAL_TIME), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_READY);
 }
 
 static void select_a16(void)
 {
-    const fathom_a16_auto_config_t config = {.line = &rig.line, .real_time = true};
+    const fathom_a16_auto_config_t config = {
+        .line = &rig.line, .value = FATHOM_REAL_TIME, .select = fathom_output_line_break(&rig.line)};
     rig_start(RIG_START_US);
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
 }
 
 static void start_controlled(void)
 {
-    controlled.config.trigger = NULL;
+    controlled.config.trigger = fathom_output_line_break(&rig.line);
     controlled_start();
 }
 
@@ -44,8 +46,7 @@ static void trigger_controlled(void)
 
 static void start_pulse(void)
 {
-    stand.config.trigger = NULL;
-    stand.config.uart = &stand.fake.uart;
+    stand.config.trigger = fathom_output_break(&stand.fake.uart);
     start_meter();
 }
 
@@ -171,13 +172,13 @@ TEST(a_selection_that_has_not_ended_is_not_forgotten)
     refuse(&rig.fake, 2, 0);
     rig_run(SELECT_US, 1000);
     assert_true(rig.fake.in_break);
-    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_a05_auto_power_on(&a05, FATHOM_A05_PROCESSED), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_READY);
     assert_false(rig.fake.in_break);
 
     select_a16();
     refuse(&rig.fake, 1, 0);
-    assert_int_equal(fathom_a16_auto_select(&a16, false), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_auto_select(&a16, FATHOM_PROCESSED), FATHOM_PENDING);
     assert_int_equal(fathom_a16_auto_deinit(&a16), FATHOM_READY);
     assert_false(rig.fake.in_break);
 }

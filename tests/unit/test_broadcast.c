@@ -19,7 +19,7 @@ static union {
     uint16_t word;
     uint8_t byte;
     fathom_a16_polarity_t polarity;
-    fathom_a16_value_t value;
+    fathom_dyp_value_t value;
 } out;
 
 #define COMMAND(name, call)                                                                                  \
@@ -45,17 +45,17 @@ COMMAND(hps_measures_all, fathom_hps167s_set_measures_after_power_on_of_all_unit
 COMMAND(hps_measures_all_on, fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, true))
 COMMAND(hps_termination_all, fathom_hps167s_set_termination_of_all_units(&hps, false))
 COMMAND(hps_termination_all_on, fathom_hps167s_set_termination_of_all_units(&hps, true))
-COMMAND(a16_measure, fathom_a16_measure(&a16, FATHOM_A16_REAL_TIME, &out.sample))
-COMMAND(a16_address, fathom_a16_address(&a16, &out.byte))
-COMMAND(a16_set_address, fathom_a16_set_address(&a16, 5))
-COMMAND(a16_no_address, fathom_a16_set_address(&a16, 0))
-COMMAND(a16_mode, fathom_a16_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC))
-COMMAND(a16_polarity, fathom_a16_switch_polarity(&a16, &out.polarity))
-COMMAND(a16_set_polarity, fathom_a16_set_switch_polarity(&a16, FATHOM_A16_NEGATIVE))
-COMMAND(a16_threshold, fathom_a16_switch_threshold_mm(&a16, &out.word))
-COMMAND(a16_set_threshold, fathom_a16_set_switch_threshold_mm(&a16, 2000))
-COMMAND(a16_value, fathom_a16_automatic_value(&a16, &out.value))
-COMMAND(a16_set_value, fathom_a16_set_automatic_value(&a16, FATHOM_A16_PROCESSED))
+COMMAND(a16_measure, fathom_a16_modbus_measure(&a16, FATHOM_REAL_TIME, &out.sample))
+COMMAND(a16_address, fathom_a16_modbus_address(&a16, &out.byte))
+COMMAND(a16_set_address, fathom_a16_modbus_set_address(&a16, 5))
+COMMAND(a16_no_address, fathom_a16_modbus_set_address(&a16, 0))
+COMMAND(a16_mode, fathom_a16_modbus_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC))
+COMMAND(a16_polarity, fathom_a16_modbus_switch_polarity(&a16, &out.polarity))
+COMMAND(a16_set_polarity, fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_NEGATIVE))
+COMMAND(a16_threshold, fathom_a16_modbus_switch_threshold_mm(&a16, &out.word))
+COMMAND(a16_set_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16, 2000))
+COMMAND(a16_value, fathom_a16_modbus_automatic_value(&a16, &out.value))
+COMMAND(a16_set_value, fathom_a16_modbus_set_automatic_value(&a16, FATHOM_PROCESSED))
 COMMAND(a05_address, fathom_a05_modbus_address(&a05, &out.byte))
 COMMAND(a05_set_address, fathom_a05_modbus_set_address(&a05, 5))
 COMMAND(a05_no_address, fathom_a05_modbus_set_address(&a05, 0))
@@ -103,11 +103,11 @@ static const uint8_t allowed[4][6] = {
 static int set_up(void **state)
 {
     hps_set_up(state);
-    const fathom_a16_modbus_config_t a16_config = {.modbus = &fake.modbus, .clock = &fake.clock};
-    const fathom_a05_modbus_config_t a05_config = {.modbus = &fake.modbus, .clock = &fake.clock};
+    const fathom_a16_modbus_config_t a16_config = {.modbus.transport = &fake.modbus};
+    const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus};
     assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_READY);
     assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
-    hps_config.settings = &hps_factory;
+    hps_config.modbus.settings = &hps_factory;
     hps_start();
     return 0;
 }
@@ -154,7 +154,7 @@ TEST(two_settings_of_the_hps167s_are_all_that_is_ever_sent_to_all_units)
                 set_up(state);
                 if (is_blind != 0) {
                     assert_int_equal(fathom_hps167s_next_is_blind(&hps), FATHOM_READY);
-                    assert_int_equal(fathom_a16_next_is_blind(&a16), FATHOM_READY);
+                    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), FATHOM_READY);
                 }
                 run(commands[i], is_there != 0, &listed);
             }

@@ -26,7 +26,7 @@ static void start_at(uint32_t now_us, bool level)
     memset(&contact, 0x5A, sizeof contact);
     contact.pin = &pins.pin;
     contact.clock = &pins.fake.clock;
-    contact.line = NULL;
+    contact.guard = NULL;
     contact.near_is_high = near_is_high;
     contact.model = FATHOM_A05;
     contact.unit = 7;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
-#include "fathom/contact.h"
+#include "fathom/line_pins.h"
 
 /* contact.h to the microsecond: when it is stale, when it is due, and for how long a line is not looked at. */
 enum { START_US = 1000 };
@@ -8,12 +8,12 @@ enum { START_US = 1000 };
 static fathom_contact_timing_t timing;
 static fathom_contact_t contact;
 
-static void start_on(uint8_t fill, fathom_line_t *line)
+static void start_on(uint8_t fill, const fathom_contact_guard_t *guard)
 {
     memset(&contact, fill, sizeof contact);
     contact.pin = &pins.pin;
     contact.clock = &pins.fake.clock;
-    contact.line = line;
+    contact.guard = guard;
     contact.near_is_high = true;
     contact.model = FATHOM_A16;
     contact.unit = 0;
@@ -50,7 +50,7 @@ TEST(without_a_level_that_counts_it_is_stale_after_2_s)
 /* "FATHOM_READY: a sample: the first level that counts", whatever the memory held: of a sample that was FATHOM_NEAR, too. */
 TEST(the_first_level_is_told_whatever_stood_in_the_memory)
 {
-    static const uint8_t fills[] = {FATHOM_NEAR, FATHOM_FAR, 0xFF};
+    static const uint8_t fills[] = {FATHOM_NEAR, FATHOM_FAR, 0xFF, true}; /* held, too */
     for (unsigned level = 0; level != 2; level++)
         for (unsigned i = 0; i != sizeof fills; i++) {
             pins_start(START_US);
@@ -158,11 +158,21 @@ TEST(a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
     static uint8_t frame[8];
     static fathom_line_config_t config;
     static fathom_line_t line;
-    config = (fathom_line_config_t){
-        &pins.fake.uart, &pins.fake.clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF, 0, 0};
+    const fathom_contact_guard_t guard = fathom_contact_line_guard(&line);
+    config = (fathom_line_config_t){&pins.fake.uart,
+                                    &pins.fake.clock,
+                                    frame,
+                                    sizeof frame,
+                                    FATHOM_LINE_ECHO_OFF,
+                                    0,
+                                    0,
+                                    NULL,
+                                    fathom_line_marks,
+                                    NULL,
+                                    NULL};
     assert_int_equal(fathom_line_init(&line, &config), FATHOM_READY);
     timing.settle_us = 1;
-    start_on(0, &line);
+    start_on(0, &guard);
     fake_receive(&pins.fake, 100, byte, 1);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
     assert_int_equal(poll_after(4999), FATHOM_PENDING);

@@ -22,15 +22,15 @@ TEST(a_setting_over_modbus_keeps_no_pointer_to_its_parameter)
 {
     static const uint16_t is_10000[] = {10000};
     fathom_a16_modbus_t a16;
-    const fathom_a16_modbus_config_t config = {.modbus = &modbus.modbus, .clock = &modbus.clock};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus.modbus};
     fake_modbus_init(&modbus);
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
-    assert_int_equal(fathom_a16_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
     fake_modbus_answer(&modbus, is_10000, 1);
     for (unsigned i = 0; modbus.submits != 2; i++) {
         assert_true(i != 1000);
         modbus.now_us += 1000;
-        assert_int_equal(fathom_a16_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
+        assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
     }
     assert_int_equal(modbus.log[1][1], FATHOM_MODBUS_WRITE_SINGLE_REGISTER);
     assert_int_equal(modbus.log[1][4] * 256 + modbus.log[1][5], 500);
@@ -42,7 +42,8 @@ TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
     static const uint8_t one_754[] = {0x55, 0xAA, 0x01, 0x10, 0x02, 0xF2, 0x04}; /* the sum is 204 */
     fathom_a05_dyp_t a05;
     (void)set_up(state);
-    const fathom_a05_dyp_config_t config = {.line = &bench.line, .probes = 1};
+    const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
+    const fathom_a05_dyp_config_t config = {.modbus.transport = &transport, .probes = 1};
     assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
     bool is_answered = false;
     for (unsigned i = 0; bench.fake.written != 3; i++) {

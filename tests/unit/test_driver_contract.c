@@ -296,9 +296,9 @@ CONTRACT(every_error_passes_through_and_leaves_the_sample_alone, SEAM)
         PENDS(poll_after(500000));
         fake.exception = (uint8_t)(2 + i);
         fake_modbus_fail(&fake, errors[i]);
-        const fathom_modbus_request_t *const request = fake.request;
         assert_int_equal(poll_after(1000), errors[i]);
-        if (errors[i] == FATHOM_ERR_EXCEPTION) assert_int_equal(request->message.exception, 3);
+        assert_int_equal(driver->exception(), errors[i] == FATHOM_ERR_EXCEPTION ? 3 : 0);
+        assert_int_equal(fathom_modbus_unit_failures(driver->unit()), i + 1);
         PENDS(kind->poll());
     }
     fake.refuses = FATHOM_ERR_CAPACITY;
@@ -306,6 +306,7 @@ CONTRACT(every_error_passes_through_and_leaves_the_sample_alone, SEAM)
     fake.refuses = FATHOM_PENDING;
     reads(driver->good);
     assert_reading(1);
+    assert_int_equal(fathom_modbus_unit_answers(driver->unit()), 1);
 }
 
 CONTRACT(a_command_has_its_own_time_out_and_can_be_cancelled, SEAM)

@@ -162,7 +162,6 @@ TEST(the_default_windows_are_16350_and_6000_mm)
 {
     assert_int_equal(FATHOM_A16_MAX_MM, 16350);
     assert_int_equal(FATHOM_A05_MAX_MM, 6000);
-    assert_int_equal(answer.window.min_mm, 1);
     assert_int_equal(answer.window.max_mm, 6000);
 }
 

@@ -336,16 +336,18 @@ TEST(a_late_answer_of_another_unit_is_known_as_such)
     assert_int_equal(values[0], 1953);
 }
 
-/* line.h: it "looks at the `have` received bytes": of what lies behind them the sum would be right. */
-TEST(where_no_frame_begins_no_value_is_written_whatever_lies_behind_the_bytes)
+/* Nor does it serve that one's retry: 55 AA names no register, so that the unit alone tells them apart. */
+TEST(a_late_answer_of_another_unit_serves_no_retry)
 {
-    uint8_t bytes[256] = {0x00, 0x00, 0x01, 0x10, 0x07, 0xA1};
-    fathom_match_t match;
-    bytes[255] = 0xB9; /* 01 + 10 + 07 + A1 */
-    fill(1, 0x0106, 1);
+    ask_dyp(&bench.other, 1, 1, &bench.other_value);
+    run(REQUEST_US);
+    cancel(&bench.other); /* unit 1 owes its answer for 200 ms */
+    fill(2, 0x0106, 1);
+    bench.request.exchange.retries = 1;
     expect_submitted(FATHOM_PENDING);
-    bench.request.exchange.protocol(&bench.request.exchange, bytes, 7, &match);
-    assert_int_equal(match.length, 0);
+    run(REQUEST_US + TIMEOUT_US);
+    deliver_all(dyp_first_1953);
+    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
     expect_nothing(FATHOM_PENDING);
 }
 

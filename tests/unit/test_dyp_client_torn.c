@@ -10,7 +10,7 @@ static uint16_t values[4];
 static int set_up_auto(void **state)
 {
     set_up(state);
-    bench.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
     return 0;
 }
 

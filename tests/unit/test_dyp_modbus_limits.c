@@ -17,8 +17,8 @@ static fathom_sample_t sample;
 
 static void start_a05(uint32_t backoff_us)
 {
-    const fathom_a05_modbus_config_t config = {
-        .modbus = &fake.modbus, .clock = &fake.clock, .backoff_us = backoff_us};
+    const fathom_a05_modbus_config_t config = {.modbus.transport = &fake.modbus,
+                                               .modbus.backoff_us = backoff_us};
     fake_modbus_init(&fake);
     memset(&a05, 0x5A, sizeof a05);
     assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_READY);
@@ -27,8 +27,8 @@ static void start_a05(uint32_t backoff_us)
 
 static void start_a16(uint32_t backoff_us)
 {
-    const fathom_a16_modbus_config_t config = {
-        .modbus = &fake.modbus, .clock = &fake.clock, .backoff_us = backoff_us};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus,
+                                               .modbus.backoff_us = backoff_us};
     fake_modbus_init(&fake);
     memset(&a16, 0x5A, sizeof a16);
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
@@ -124,9 +124,9 @@ TEST(a_register_that_is_0_or_1_is_not_0100)
     static const uint16_t is_0100[] = {0x0100};
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
-    assert_int_equal(fathom_a16_switch_polarity(&a16, &polarity), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
     fake_modbus_answer(&fake, is_0100, 1);
-    assert_int_equal(fathom_a16_switch_polarity(&a16, &polarity), FATHOM_ERR_MALFORMED);
+    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_MALFORMED);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
 
@@ -135,10 +135,10 @@ TEST(a_register_that_cannot_be_read_writes_nothing)
 {
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
-    assert_int_equal(fathom_a16_switch_polarity(&a16, &polarity), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
     fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(fathom_a16_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_ANSWER);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
 
@@ -146,11 +146,40 @@ TEST(a_register_that_cannot_be_read_writes_nothing)
 TEST(a_choice_of_256_is_refused)
 {
     start_a16(0);
-    if (sizeof(fathom_a16_value_t) == 1) return;
-    assert_int_equal(fathom_a16_measure(&a16, (fathom_a16_value_t)256, &sample), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_set_operating_mode(&a16, (fathom_a16_operating_mode_t)256),
+    if (sizeof(fathom_dyp_value_t) == 1) return;
+    assert_int_equal(fathom_a16_modbus_measure(&a16, (fathom_dyp_value_t)256, &sample), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_set_operating_mode(&a16, (fathom_a16_operating_mode_t)256),
                      FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_set_switch_polarity(&a16, (fathom_a16_polarity_t)256), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_set_automatic_value(&a16, (fathom_a16_value_t)256), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_set_switch_polarity(&a16, (fathom_a16_polarity_t)256),
+                     FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_set_automatic_value(&a16, (fathom_dyp_value_t)256),
+                     FATHOM_ERR_ARGUMENT);
     assert_int_equal(fake.submits, 0);
+}
+
+/* dyp_modbus.h: "of registers that differ in their bits 0 to 3, 8 or 9"; one is under way, and the other has to wait. */
+TEST(commands_of_two_registers_are_told_apart)
+{
+    static const uint16_t registers[] = {0x0010, 0x0011, 0x0110, 0x0210};
+    uint16_t value = 0;
+    for (unsigned i = 0; i != 4; i++)
+        for (unsigned j = 0; j != 4; j++) {
+            start_a16(0);
+            assert_int_equal(fathom_dyp_modbus_get(&a16.base, registers[i], &value), FATHOM_PENDING);
+            assert_int_equal(fathom_dyp_modbus_get(&a16.base, registers[j], &value),
+                             i == j ? FATHOM_PENDING : FATHOM_ERR_BUSY);
+        }
+}
+
+/* The answer to a read says nothing of a write. */
+TEST(a_blind_write_has_to_wait_for_a_read_of_its_register)
+{
+    static const uint16_t is_0[] = {0};
+    fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
+    start_a16(0);
+    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
+    fake_modbus_answer(&fake, is_0, 1);
+    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_POSITIVE), FATHOM_ERR_BUSY);
+    assert_int_equal(fake.submits, 1);
 }

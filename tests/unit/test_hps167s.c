@@ -111,7 +111,7 @@ TEST(every_error_passes_through_and_leaves_all_outputs_alone)
     for (unsigned i = 0; i != COUNT(errors); i++) {
         PLAY(ask_version, errors[i], HPS_1(1, errors[i], 0));
         PLAY(ask_details, errors[i], {{1, 3, 0, 3, 0, 11}, errors[i], {0x14, 0, 0, 0}, 0});
-        if (errors[i] == FATHOM_ERR_EXCEPTION) assert_int_equal(hps.unit.request.message.exception, 0x14);
+        if (errors[i] == FATHOM_ERR_EXCEPTION) assert_int_equal(fathom_hps167s_exception(&hps), 0x14);
     }
 }
 
@@ -232,8 +232,7 @@ static void start_line(void)
     static fathom_modbus_t modbus;
     rig_start(RIG_START_US);
     modbus = fathom_modbus_client(&rig.line);
-    hps_config.modbus = &modbus;
-    hps_config.clock = &rig.fake.clock;
+    hps_config.modbus.transport = &modbus;
     hps_start();
     rig.sensor = desk.sensor;
 }

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/hps167s.h"
+#include "fathom/hps167s_registers.h"
 
 enum { GUARD = 0xA5 };
 

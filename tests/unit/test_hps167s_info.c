@@ -49,6 +49,9 @@ TEST(every_member_of_the_configuration_is_its_own_bytes)
     } rows[] = {
         {{RATE_1}, true, false, 5, 180, 19200},
         {{0x0000, 0x0000, 0x0000, 0x0001}, false, false, 0, 0, 19200},
+        {{0x0000, 0x0000, 0x0000, 0x0000}, false, false, 0, 0, 19200},
+        /* 01000000 hexadecimal = 16777216 = 18 * 932067 + 10 */
+        {{0x0000, 0x0101, 0x0000, 0x0000}, false, false, 1, 0x01000000, 19200},
         {{0x00FF, 0xFF00, 0x0000, 0x1202}, false, true, 255, 18, 57600},
         {{0xFF00, 0x0500, 0x0000, 0xB403}, true, false, 5, 180, 115200},
         /* 01020307 hexadecimal = 16909063 = 18 * 939392 + 7, so 01020300 */
@@ -163,29 +166,38 @@ TEST(an_error_ends_it_and_the_next_time_begins_anew)
     for (unsigned i = 0; i != 3; i++)
         PLAY(configuration, errors[i], HPS_2(1, OK, 0, RATE_1), HPS_2(1, errors[i], 0, 2));
     PLAY(configuration, OK, TELLS(RATE_1));
+    const row_t none = HPS_2(1, OK, 0, MEASURES);
+    const row_t eighth = HPS_2(1, NOBODY, 0, 2);
+    PLAY(configuration, NOBODY, none, none, none, none, none, none, none, eighth);
 }
 
 /* A target at exactly 255 mm with just these figures, sent unasked: it was measured just before. */
 TEST(what_was_measured_last_is_no_configuration)
 {
-    static const uint16_t near[4] = {0x00FF, 0x0100, 0x0000, 0xB401};
-    const row_t row = HPS_2(1, OK, 0, 0x00FF, 0x0100, 0x0000, 0xB401);
-    PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0100, 0x0000, 0xB401));
+    static const uint16_t near[4] = {0x00FF, 0x0000, 0x0000, 0xB401};
+    const row_t row = HPS_2(1, OK, 0, 0x00FF, 0x0000, 0x0000, 0xB401);
+    const row_t next = HPS_2(1, OK, 0, 0x00FF, 0x0000, 0x0000, 0xB402);
+    PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0000, 0x0000, 0xB401));
     assert_int_equal(desk.sample.distance_mm, 255);
     assert_true(fathom_hps167s_may_be_configuration(near));
     PLAY(configuration, FATHOM_ERR_MALFORMED, row, row, row, row, row, row, row, row);
     PLAY(configuration, OK, HPS_2(1, OK, 0, MEASURES), row, row, row); /* it is not the last any more */
+    PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0000, 0x0000, 0xB402));
+    PLAY(configuration, FATHOM_ERR_MALFORMED, next, next, next, next, next, next, next, next);
 }
 
 /* An unasked frame was taken for the answer, and the answer comes when a measurement is being waited for: termination
  * off; or 255 mm. */
 TEST(what_was_told_last_is_no_measurement)
 {
+    /* what lies behind the four registers, as 255 mm do behind what was told, is none of them */
+    static const uint16_t told[5] = {0x00FF, 0x0500, 0x0000, 0xB401, 0x00FF};
     PLAY(configuration, OK, TELLS(0x00FF, 0x0500, 0x0000, 0xB401));
     PLAY(desk_poll, FATHOM_ERR_MALFORMED, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB401));
     assert_int_equal(hps.implausible, 1);
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB402));
     assert_int_equal(desk.sample.distance_mm, 255);
+    assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
 }
 
 TEST(the_configuration_given_up_begins_anew)

@@ -90,7 +90,7 @@ TEST(decoding_sets_interference)
 /* modbus_unit.h: after the third silence in a row one time-out, then two; the config says how much at most. */
 TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
 {
-    hps_config.backoff_us = 700000;
+    hps_config.modbus.backoff_us = 700000;
     hps_start();
     for (unsigned n = 1; n != 7; n++) {
         asks(desk_poll);
@@ -178,8 +178,8 @@ TEST(who_is_told_busy_costs_a_setting_no_answer)
 /* hps167s_settings.h: "the driver asks at both in turns until it is answered": a turn is a question, not a call. */
 TEST(calls_before_the_next_question_do_not_change_the_rate)
 {
-    hps_config.settings = &hps_factory;
-    hps_config.backoff_us = 1; /* else it is left alone for longer than hps_asks() waits */
+    hps_config.modbus.settings = &hps_factory;
+    hps_config.modbus.backoff_us = 1; /* else it is left alone for longer than hps_asks() waits */
     hps_start();
     PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200},
          {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200}, {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 115200},

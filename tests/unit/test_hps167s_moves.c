@@ -115,7 +115,7 @@ TEST(a_modbus_exception_is_told_from_that)
 {
     PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(1, 1, 0), HPS_6(1, EXCEPTION, 4, 0));
     assert_int_equal(hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
-    assert_int_equal(hps.unit.request.message.exception, 4);
+    assert_int_equal(fathom_hps167s_exception(&hps), 4);
 }
 
 TEST(a_reset_without_an_answer_shows_in_where_the_device_is)
@@ -145,7 +145,7 @@ TEST(a_device_that_is_not_there_is_not_reset) { PLAY_AT(1, NULL, 0, reset, NOBOD
 
 TEST(a_reset_is_never_retried_and_can_be_done_again)
 {
-    hps_config.retries = desk.retries = 2;
+    hps_config.modbus.retries = desk.retries = 2;
     hps_start();
     for (unsigned times = 0; times != 2; times++)
         PLAY(reset, OK, IS(1, 1, 0), HPS_6(1, OK, 1, 0), IS(1, 1, 0));

@@ -60,7 +60,7 @@ TEST(the_warm_up_is_an_option_and_its_last_question_counts)
         for (unsigned late = 0; late != 2; late++) {
             hps_set_up(NULL);
             hps_config.warm_up_s = (uint8_t)rows[i][0];
-            hps_config.timeout_us = rows[i][1];
+            hps_config.modbus.timeout_us = rows[i][1];
             hps_start();
             fathom_hps167s_power_on(&hps);
             assert_int_equal(ends_after(rows[i][2] - 1 + late, NOBODY),
@@ -131,8 +131,8 @@ static void kinds_as_in(void **state)
 {
     const limits_t *const row = *state;
     hps_set_up(NULL);
-    hps_config.limits = row->limits;
-    hps_start();
+    fathom_hps167s_limits_t limits = row->limits;
+    assert_int_equal(fathom_hps167s_use_limits(&hps, &limits), OK);
     for (unsigned i = 0; i != 4; i++) {
         const uint16_t registers[4] = {row->is[i].raw, 0xDCB2, 0x0701, 0x0000};
         const uint16_t refused = hps.implausible;
@@ -166,6 +166,15 @@ static const limits_t only_500 = {
     {{1, FATHOM_UNKNOWN}, {499, FATHOM_UNKNOWN}, {500, FATHOM_TARGET}, {501, 0}}};
 TEST_ROW(whatever_is_near_is_a_target_if_that_is_chosen, kinds_as_in, &from_1)
 TEST_ROW(the_least_distance_may_be_the_largest, kinds_as_in, &only_500)
+
+TEST(limits_that_are_out_of_order_are_refused_and_change_nothing)
+{
+    fathom_hps167s_limits_t wrong = {.over_range_mm = 30000};
+    static const uint16_t largest[4] = {30000, 0xDCB2, 0x0701, 0x0003};
+    assert_int_equal(fathom_hps167s_use_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(says(largest), OK);
+    assert_int_equal(desk.sample.kind, FATHOM_TARGET);
+}
 
 TEST(a_value_below_its_range_is_in_raw_and_is_no_distance)
 {

@@ -103,7 +103,7 @@ TEST(the_reconnect_time_goes_with_its_low_word_first_as_an_option)
 
 TEST(a_write_is_not_retried_and_the_readings_are)
 {
-    hps_config.retries = desk.retries = 3;
+    hps_config.modbus.retries = desk.retries = 3;
     hps_start();
     desk.timeout_us = 1000000;
     desk.argument = 9;
@@ -116,7 +116,7 @@ TEST(what_goes_wrong_is_told_as_it_is)
     PLAY(warm_up, NOBODY, FAILS(NOBODY));
     assert_false(fathom_hps167s_is_written(&hps));
     PLAY(warm_up, FATHOM_ERR_EXCEPTION, FACTORY, PUTS(0x0A, 9, FATHOM_ERR_EXCEPTION));
-    assert_int_equal(hps.unit.request.message.exception, 2);
+    assert_int_equal(fathom_hps167s_exception(&hps), 2);
     PLAY(warm_up, FATHOM_ERR_DIFFERS, FACTORY, PUTS(0x0A, 9, OK), FACTORY);
     assert_true(fathom_hps167s_is_written(&hps));
     PLAY(warm_up, FATHOM_ERR_UNCONFIRMED, FACTORY, PUTS(0x0A, 9, OK), FAILS(FATHOM_ERR_CHECKSUM));
@@ -238,6 +238,18 @@ TEST(what_was_sent_to_all_takes_nothing_back)
     PLAY(termination, OK, FACTORY, PUTS(0x13, 0xFF, OK), FACTORY);
 }
 
+TEST(what_goes_to_all_and_is_given_up_may_have_been_taken)
+{
+    desk.argument = 0;
+    PLAY(termination, FATHOM_ERR_DIFFERS, FACTORY, PUTS(0x13, 0, OK), FACTORY);
+    desk.argument = 1;
+    PENDS(termination_all());
+    fathom_hps167s_cancel(&hps);
+    desk.argument = 0; /* which it tells now, and that may be as old as what it told before */
+    PLAY(termination, OK, TELLS(0x00FF, 0x0500, 0x0000, 0xB401), PUTS(0x13, 0, OK),
+         TELLS(0x00FF, 0x0500, 0x0000, 0xB401));
+}
+
 TEST(while_another_command_is_asked_nothing_goes_to_all)
 {
     fathom_hps167s_version_t version;
@@ -318,7 +330,7 @@ TEST(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again)
                                              FATHOM_ERR_ECHO, FATHOM_ERR_MALFORMED};
     for (unsigned i = 0; i != 5; i++) {
         hps_set_up(NULL);
-        hps_config.retries = desk.retries = 3;
+        hps_config.modbus.retries = desk.retries = 3;
         hps_start();
         PLAY(load_factory, i == 0 ? errors[i] : FATHOM_ERR_UNCONFIRMED, ASK_1, LOAD(0xFF, errors[i]));
         hps_asks(1, 0);

@@ -353,8 +353,8 @@ TEST(sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause)
 
 TEST(counters_stop_at_their_end)
 {
-    bench.line.counters[FATHOM_LINE_ANSWERS] = 65534;
-    bench.line.counters[FATHOM_LINE_DROPPED_BYTES] = 65530;
+    bench.counters[FATHOM_LINE_ANSWERS] = 65534;
+    bench.counters[FATHOM_LINE_DROPPED_BYTES] = 65530;
     for (int i = 0; i != 3; i++) {
         ask_1(0);
         run(80000); /* what 9 has sent unasked is forgotten */

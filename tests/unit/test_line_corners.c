@@ -79,13 +79,13 @@ TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
     static const uint8_t good[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
     static const fathom_stream_config_t config = {storage, 0, 0, 10};
     fathom_stream_t stream;
-    const uint8_t *frame = NULL;
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
     fathom_line_listen(&bench.line, &stream.listener);
     run(10000);
     receive_rx(good + 6, 4, FATHOM_RX_OVERRUN); /* six were lost */
     deliver(good, 10);
-    if (fathom_stream_poll(&stream, 0, &frame) == FATHOM_READY) assert_memory_equal(frame, good, 10);
+    if (fathom_stream_poll(&stream, 0) == FATHOM_READY)
+        assert_memory_equal(fathom_stream_frame(&stream), good, 10);
 }
 
 /* line.h: "An answer is complete by its length, at once". */
@@ -132,24 +132,33 @@ TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt)
     expect_written_after(T3_5_US + 200, 2);
 }
 
+static fathom_status_t asks(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
+{
+    fathom_modbus_unit_poll(unit);
+    return fathom_modbus_unit_ask(unit, question);
+}
+
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
 TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
 {
     static fake_modbus_t fake;
     static fathom_modbus_unit_t unit;
-    const fathom_modbus_question_t measure = {300000, 100000, 0, NULL, values, 0x0100, 1, 0, false, 0};
-    const fathom_modbus_question_t version = {1000000, 100000, 0, NULL, values, 0x0001, 3, 0, true, 0};
+    const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
+    const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x81};
     fake_modbus_init(&fake);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, 9), FATHOM_READY);
+    assert_int_equal(
+        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = 9},
+                                300000, 100000),
+        FATHOM_READY);
     for (unsigned n = 0; n != 3; n++) {
-        assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_PENDING);
+        assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);
         fake_modbus_send(&fake);
-        assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_PENDING);
+        assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);
         fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
         fake.now_us += 300000;
-        assert_int_equal(fathom_modbus_unit_ask(&unit, &measure), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(asks(&unit, &measure), FATHOM_ERR_NO_ANSWER);
     }
-    assert_int_equal(fathom_modbus_unit_ask(&unit, &version), FATHOM_PENDING);
+    assert_int_equal(asks(&unit, &version), FATHOM_PENDING);
     assert_int_equal(fake.submits, 4);
 }
 

@@ -95,3 +95,100 @@ TEST(without_a_time_out_it_is_due_at_once)
     run_in_steps(1, 1);
     expect(FATHOM_ERR_NO_ANSWER);
 }
+
+/* ---- while the request leaves; hal.h: leaves_in_us ---- */
+
+/* It has been taken at most 100 us ago, and the port says how long it takes. */
+static void begin_to_send(void)
+{
+    bench.fake.uart.leaves_in_us = fake_leaves_in_us;
+    bench.fake.leaves_in_us = 8 * BYTE_US;
+    ask_1(0);
+    expect_written_after(T3_5_US + 200, 1);
+}
+
+static int set_up_leaving(void **state)
+{
+    set_up(state);
+    begin_to_send();
+    return 0;
+}
+
+static const suite_t leaving = {.set_up = set_up_leaving};
+
+/* "from now": also where much time has passed since the last poll. */
+TEST_IN(leaving, a_port_that_says_when_the_request_has_left_is_asked_again_right_then)
+{
+    expect_due(8 * BYTE_US);
+    bench.fake.now_us += 3 * BYTE_US;
+    bench.fake.leaves_in_us = 5 * BYTE_US;
+    expect_due(5 * BYTE_US);
+    run_in_steps(5 * BYTE_US, 5 * BYTE_US);
+    expect_due(TIMEOUT_US); /* it has seen that the request has left */
+}
+
+/* 255 bytes of 11 bits at 9600 baud are 292 ms. */
+TEST_IN(leaving, a_long_request_may_take_longer_than_65_ms)
+{
+    bench.fake.leaves_in_us = 292188;
+    expect_due(292188);
+}
+
+TEST_IN(leaving, one_that_does_not_know_is_asked_each_millisecond)
+{
+    bench.fake.uart.leaves_in_us = NULL;
+    poll_line();
+    expect_due(1000);
+    bench.fake.now_us += 400;
+    expect_due(600);
+}
+
+/* "0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond": a
+ * microsecond that was rounded away is no busy loop. */
+TEST_IN(leaving, one_that_says_0_while_it_sends_all_the_same_is_asked_each_millisecond)
+{
+    bench.fake.leaves_in_us = 0;
+    bench.fake.never_sent = true;
+    for (int i = 0; i != 3; i++) {
+        run_in_steps(1000, 1000);
+        expect_due(1000);
+    }
+    bench.fake.never_sent = false;
+    run_in_steps(8 * BYTE_US, 8 * BYTE_US);
+    expect_due(TIMEOUT_US);
+}
+
+/* The clock turns to 0 while the request leaves: it stands 256 us before that when it has begun. */
+TEST(when_the_request_has_left_is_right_across_the_wrap_of_the_clock)
+{
+    bench.fake.now_us = (uint32_t)0 - (T3_5_US + 200) - 256;
+    begin_to_send();
+    expect_due(8 * BYTE_US);
+    bench.fake.now_us += 2 * BYTE_US;
+    assert_in_range(bench.fake.now_us, 0, 2 * BYTE_US);
+    expect_due(8 * BYTE_US);
+    run_in_steps(8 * BYTE_US, 8 * BYTE_US);
+    expect_due(TIMEOUT_US);
+}
+
+/* What keeps it from taking this request may be bytes of its own that leave. */
+TEST(a_port_that_takes_no_request_is_asked_again_when_it_has_sent)
+{
+    bench.fake.uart.leaves_in_us = fake_leaves_in_us;
+    bench.fake.leaves_in_us = 3 * BYTE_US;
+    bench.fake.write_busy = true;
+    ask_1(0);
+    run(T3_5_US + 200);
+    expect_due(3 * BYTE_US);
+    bench.fake.write_busy = false;
+    run_in_steps(3 * BYTE_US, 3 * BYTE_US);
+    expect_written(1);
+}
+
+/* Bytes that came wait for the gap behind them, and that is sooner. */
+TEST_IN(leaving, the_gap_behind_what_has_come_is_due_before_the_request_has_left)
+{
+    deliver(answer_1_754, 4);
+    assert_int_equal(bench.line.have, 4);
+    expect_due(GAP_US);
+}

@@ -71,7 +71,9 @@ TEST(an_echo_without_an_answer_is_no_answer_and_shows_the_echo)
         set_up_with(modes[m]);
         send_1(0, 100);
         come_all(0, ask_1_processed);
-        expect_after(TIMEOUT_US, FATHOM_PENDING); /* the echo is no answer */
+        run(8 * BYTE_US + 100);
+        expect_learned(modes[m], FATHOM_LINE_ECHO_ON);
+        expect_after(TIMEOUT_US - 8 * BYTE_US, FATHOM_PENDING); /* the echo is no answer */
         run(9 * BYTE_US);
         expect_failed(FATHOM_ERR_NO_ANSWER);
         expect_count(FATHOM_LINE_NO_ANSWERS, 1);

@@ -142,6 +142,20 @@ TEST(an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure)
         }
 }
 
+/* What stands behind the part that has come is no part of it. */
+TEST(an_echo_that_comes_in_parts_behind_noise_is_an_echo)
+{
+    static const uint8_t noise_and_part[] = {0xFF, 0x01, 0x03, 0x01, 0x00, 0x00};
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
+    ask_1_and_send(0);
+    deliver_all(noise_and_part);
+    deliver(ask_1_processed + 5, 3);
+    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_ON);
+    deliver_all(answer_1_754);
+    expect_mm(754);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, 1);
+}
+
 TEST(without_echo_the_same_bytes_are_the_answer)
 {
     for (size_t i = 0; i != COUNT_OF(prefixes); i++) {

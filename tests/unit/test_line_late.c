@@ -81,7 +81,7 @@ TEST(a_frame_of_a_unit_that_owes_nothing_is_a_stray_and_leaves_the_debt_of_anoth
 /* cancel: "the unit then owes an answer". The first copy of the request is its echo, the second the answer. */
 TEST(after_the_echo_of_a_cancelled_write_its_answer_is_late_and_lifts_the_debt)
 {
-    bench.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
     start_write();
     run(T3_5_US + 200);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
@@ -101,7 +101,7 @@ TEST(after_the_echo_of_a_cancelled_write_its_answer_is_late_and_lifts_the_debt)
 /* The echo of a request can only come before the next one has left. */
 TEST(after_the_next_request_no_echo_of_a_cancelled_one_is_expected)
 {
-    bench.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
     start_write();
     run(T3_5_US + 200);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
@@ -177,7 +177,7 @@ TEST(what_comes_while_the_port_refuses_the_request_is_no_answer_to_it)
 /* cancel: the wire is free for the others, whether the line echoes or not. */
 TEST(the_next_request_goes_out_after_one_was_cancelled_on_a_line_of_unknown_echo)
 {
-    bench.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
     ask_1_and_send(0);
     fathom_line_cancel(&bench.line, &bench.request.exchange);
     ask(&bench.other, 2, &bench.other_value, 0);

@@ -250,3 +250,21 @@ TEST(a_port_gets_rx_zeroed)
     after(100);
     assert_int_equal(rx_reads, 1);
 }
+
+/* hal.h, read: "at most capacity bytes": of the 32 of the frame 5 are taken. */
+static int read_the_rest(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    (void)ctx, (void)bytes, (void)rx;
+    assert_ptr_equal(bytes, bench.frame + 5);
+    assert_int_equal(capacity, sizeof bench.frame - 5);
+    return 0;
+}
+
+TEST(a_port_is_asked_for_no_more_than_there_is_room_for)
+{
+    ask_1_and_send(0);
+    deliver(answer_1_754, 5);
+    set_up_uart();
+    uart.read = read_the_rest;
+    after(100);
+}

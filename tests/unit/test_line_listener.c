@@ -35,6 +35,17 @@ TEST_IN(asked, an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
     expect_mm(754);
 }
 
+TEST_IN(asked, a_silence_behind_bytes_that_are_held_back_is_none_before_them)
+{
+    listen_for(5000);
+    deliver(answer_1_754, 4);
+    receive_rx(answer_1_754, sizeof answer_1_754, FATHOM_RX_SILENCE);
+    run(100);
+    expect_mm(754);
+    expect_heard(answer_1_754, 4, NULL, 0);
+    assert_int_equal(ear.gaps, 0);
+}
+
 TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
 {
     ask_other(2);

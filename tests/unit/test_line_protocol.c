@@ -1,42 +1,53 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* What line.h promises a protocol that is not from here: fathom_protocol_t and fathom_match_t. This one asks with one
- * byte, '?'. An answer is its unit (1..15), a count and so many bytes. What a match need not say it says wrongly. */
+/* What line.h promises a protocol that is not from here: fathom_protocol_t. This one asks with one byte, '?'. An answer is
+ * its unit (1..15), a count and so many bytes; there is no checksum but that FF as the last byte is wrong. */
 
 static const suite_t suite = {.set_up = set_up};
 
 static fathom_exchange_t exchange;
-static unsigned looks; /* at received bytes */
 
-static void protocol(fathom_exchange_t *asked, uint8_t *frame, uint8_t have, fathom_match_t *match)
+static uint8_t encode(const fathom_exchange_t *asked, uint8_t *frame)
 {
-    if (have == 0) {
-        frame[0] = '?';
-        match->length = 1;
-        return;
-    }
-    looks++;
-    match->status = FATHOM_READY; /* counts of a whole frame only */
-    match->unit = 1;              /* counts where length is not 0 */
-    match->request = 0;
-    match->length = 0;
-    if (frame[0] == 0 || frame[0] > 15) return;
-    match->unit = frame[0];
-    match->length = have < 2 ? 2 : (uint8_t)(frame[1] + 2);
-    if (match->length <= have && (asked == NULL || asked->unit != frame[0])) match->status = FATHOM_PENDING;
+    (void)asked;
+    frame[0] = '?';
+    return 1;
 }
+
+static uint8_t length_of(const uint8_t *frame, uint8_t have)
+{
+    if (frame[0] == 0 || frame[0] > 15) return 0;
+    return have < 2 ? 2 : (uint8_t)(frame[1] + 2);
+}
+
+static uint16_t check(const uint8_t *frame, uint8_t length) { return frame[length - 1] == 0xFF; }
+
+static bool is_request(const fathom_exchange_t *asked, const uint8_t *frame, uint8_t have)
+{
+    (void)asked;
+    (void)have;
+    return frame[0] == '?';
+}
+
+/* "from a unit that was asked": of another nothing is to be judged. */
+static fathom_status_t answer_of(fathom_exchange_t *asked, const uint8_t *frame)
+{
+    assert_int_equal(frame[0], asked->unit);
+    return frame[1] == 9 ? FATHOM_ERR_MALFORMED : FATHOM_READY;
+}
+
+static const fathom_protocol_t protocol = {encode, length_of, check, is_request, answer_of, 0, false};
 
 static void start(void)
 {
     memset(&exchange, 0, sizeof exchange);
-    exchange.protocol = protocol;
+    exchange.protocol = &protocol;
     exchange.unit = 1;
     exchange.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_line_submit(&bench.line, &exchange), FATHOM_PENDING);
     run(T3_5_US + 200);
     run(BYTE_US + 100);
-    looks = 0;
 }
 
 /* "its length, 1..255". */
@@ -52,8 +63,7 @@ TEST(a_request_may_be_one_byte)
     assert_int_equal(exchange.status, FATHOM_READY);
 }
 
-/* "status: of a whole frame". */
-TEST(a_part_of_a_frame_is_no_answer_whatever_its_status_says)
+TEST(a_part_of_a_frame_is_no_answer)
 {
     static const uint8_t part[] = {1, 3, 0xF1, 0xF2};
     start();
@@ -67,7 +77,7 @@ TEST(a_part_of_a_frame_is_no_answer_whatever_its_status_says)
 }
 
 /* "length 0: none of its frames begins here": the first byte goes, and the next one is looked at. */
-TEST(bytes_that_begin_no_frame_are_noise_whatever_their_status_says)
+TEST(bytes_that_begin_no_frame_are_noise)
 {
     static const uint8_t noise[] = {0xF1, 0xF2, 0xF3};
     static const uint8_t answer[] = {1, 1, 0xF1};
@@ -83,16 +93,64 @@ TEST(bytes_that_begin_no_frame_are_noise_whatever_their_status_says)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 3);
 }
 
-/* "More than there are: so many are needed to tell": with fewer it is not asked again. A frame of 6 bytes is looked at
- * when 1, 2 and 6 of them are there. */
-TEST(a_protocol_looks_again_when_as_many_bytes_are_there_as_it_needs)
+/* "check: ... wrong": it was the answer, and it is damaged. */
+TEST(a_wrong_checksum_ends_the_attempt_at_the_gap)
+{
+    static const uint8_t answer[] = {1, 2, 0xF1, 0xFF};
+    start();
+    receive(answer, sizeof answer);
+    run(GAP_US - 200);
+    assert_int_equal(exchange.status, FATHOM_PENDING);
+    run(400);
+    assert_int_equal(exchange.status, FATHOM_ERR_CHECKSUM);
+}
+
+TEST(another_units_frame_is_not_shown_to_the_exchange)
+{
+    static const uint8_t answer[] = {2, 1, 0xF1};
+    start();
+    receive(answer, sizeof answer);
+    run(100);
+    assert_int_equal(exchange.status, FATHOM_PENDING);
+    assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
+}
+
+/* "more than have: so many bytes are needed to tell": it is looked at again with each byte, and is over with the last. */
+TEST(an_answer_that_comes_byte_by_byte_is_over_with_the_last)
 {
     static const uint8_t answer[] = {1, 4, 0xF1, 0xF2, 0xF3, 0xF4};
     start();
     for (unsigned i = 0; i != sizeof answer; i++) {
+        assert_int_equal(exchange.status, FATHOM_PENDING);
         receive(answer + i, 1);
         run(1000);
     }
     assert_int_equal(exchange.status, FATHOM_READY);
-    assert_int_equal(looks, 3);
+}
+
+/* A line that only listens has no room for it. */
+TEST(nothing_is_submitted_to_a_line_that_only_listens)
+{
+    assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_READY);
+    memset(&exchange, 0, sizeof exchange);
+    exchange.protocol = &protocol;
+    exchange.unit = 1;
+    assert_int_equal(fathom_line_submit(&bench.line, &exchange), FATHOM_ERR_UNSUPPORTED);
+    assert_false(fathom_line_has(&bench.line, &exchange));
+    run(100000);
+    expect_written(0);
+}
+
+/* fathom_line_init: "The config says whether it echoes, or names what finds that out". */
+TEST(a_line_that_asks_is_told_of_its_echo_or_finds_it_out)
+{
+    for (unsigned echo = 0; echo != 3; echo++)
+        for (unsigned finds = 0; finds != 2; finds++) {
+            bench.config.echo = (uint8_t)echo;
+            bench.config.find_echo = finds != 0 ? fathom_line_find_echo : NULL;
+            const bool is_right = echo != FATHOM_LINE_ECHO_AUTO || finds != 0;
+            assert_int_equal(fathom_line_init(&bench.line, &bench.config),
+                             is_right ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+            if (is_right) assert_int_equal(fathom_line_echo(&bench.line), echo);
+        }
 }

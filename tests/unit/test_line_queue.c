@@ -50,6 +50,21 @@ TEST(a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more)
     answer_1(111);
 }
 
+/* The long debt of unit 2 was paid; what is left of its time is not unit 1's. */
+TEST(a_debt_lasts_no_longer_because_of_one_that_was_paid)
+{
+    ask_other(2);
+    bench.other.exchange.timeout_us = 10 * TIMEOUT_US;
+    run(REQUEST_US);
+    cancel(&bench.other);
+    deliver_answer(2, 222);
+    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    ask_1(1);
+    run(REQUEST_US + TIMEOUT_US);
+    expect_written(2);
+    expect_written_after(TIMEOUT_US + 400, 3);
+}
+
 TEST(a_late_exception_ends_the_retry)
 {
     ask_1_and_send(1);

@@ -9,7 +9,7 @@ static int set_up_auto(void **state)
     void *unused;
     (void)state; /* has a row */
     set_up(&unused);
-    bench.config.echo = FATHOM_LINE_ECHO_AUTO;
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
     return 0;
 }
 

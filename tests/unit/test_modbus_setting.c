@@ -2,34 +2,31 @@
 #include "desk.h"
 #include "fathom/modbus_setting.h"
 
-/* A device with a setting in register 0x020F, as a driver sees it; the seam plays the device. */
+/* A device with a setting in register 0x020F, as a driver sees it; the seam plays the device. The id of the write has
+ * the last of the 16 doubts. */
 enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, REGISTER = 0x020F };
 
 static fathom_modbus_unit_t unit;
 static uint16_t found;
-static uint16_t wanted;
 static fathom_modbus_setting_t setting;
 
 static const fathom_line_settings_t fast = {57600, FATHOM_PARITY_EVEN, 1};
 
 /* Questions of one register. */
-#define QUESTION(value, first, is_command, function)                                                         \
-    {                                                                                                        \
-        1000, 0, 0, NULL, &(value), first, 1, 0, is_command, function                                        \
-    }
-static const fathom_modbus_question_t look = QUESTION(found, REGISTER, true, 0);
-static const fathom_modbus_question_t put = QUESTION(wanted, REGISTER, true, 6);
-static const fathom_modbus_question_t measure = QUESTION(found, 0x0100, false, 0);
-static const fathom_modbus_question_t command = QUESTION(found, 0x0101, true, 0);
+static const fathom_modbus_question_t look = {&found, REGISTER, 1, 3, 0x81};
+static const fathom_modbus_question_t put = {NULL, REGISTER, NEW, 6, 0xCF};
+static const fathom_modbus_question_t measure = {&found, 0x0100, 1, 3, 1};
+static const fathom_modbus_question_t command = {&found, 0x0101, 1, 3, 0x82};
 
 static fathom_status_t asks(const fathom_modbus_question_t *question)
 {
+    fathom_modbus_unit_poll(&unit);
     return fathom_modbus_unit_ask(&unit, question);
 }
 
-static fathom_status_t read_it(void *driver, uint32_t *value)
+static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
 {
-    const fathom_status_t status = fathom_modbus_unit_ask(driver, &look);
+    const fathom_status_t status = fathom_modbus_unit_ask(of->driver, &look);
     if (status == FATHOM_READY) *value = found;
     return status;
 }
@@ -38,16 +35,24 @@ static int set_up(void **state)
 {
     desk_begin(0xFFFFF000u); /* the clock wraps soon */
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, HERE), FATHOM_READY);
-    setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = &put, .value = NEW};
-    wanted = NEW;
+    assert_int_equal(
+        fathom_modbus_unit_init(
+            &unit,
+            &(fathom_modbus_config_t){.transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
+            1000, 0),
+        FATHOM_READY);
+    setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-static fathom_status_t set(void) { return fathom_modbus_set(&unit, &setting); }
+static fathom_status_t set(void)
+{
+    fathom_modbus_unit_poll(&unit);
+    return fathom_modbus_set(&unit, &setting);
+}
 
 #define OK            FATHOM_READY
 #define NOBODY        FATHOM_ERR_NO_ANSWER
@@ -136,7 +141,7 @@ TEST(a_device_that_acknowledges_and_does_not_obey_is_found_out)
     was_written(true);
 }
 
-static void want(uint16_t value) { setting.value = wanted = value; }
+static void want(uint16_t value) { setting.value = setting.write.last = value; }
 
 #define PUTS(value) WRITE(HERE, REGISTER, value, OK)
 
@@ -181,6 +186,25 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     SETS(OK, HERE, IS(HERE, NEW)); /* what it tells now, it keeps */
     want(OLD);
     SETS(OK, HERE, IS(HERE, OLD));
+    was_written(false);
+}
+
+TEST(after_power_on_nothing_is_doubted)
+{
+    fathom_modbus_unit_power_on(&unit, 0);
+    for (setting.write.id = 0xC0; setting.write.id != 0xD0; setting.write.id++) {
+        SETS(OK, HERE, IS(HERE, NEW));
+        was_written(false);
+    }
+}
+
+TEST(a_value_that_has_shown_is_not_doubted_after_another_setting)
+{
+    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
+    setting.write.id = 0xC2;
+    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
+    setting.write.id = put.id;
+    SETS(OK, HERE, IS(HERE, NEW));
     was_written(false);
 }
 
@@ -310,8 +334,8 @@ TEST(settings_that_take_effect_later_are_read_at_the_old_ones)
 
 TEST(measurements_rest_and_other_commands_are_refused_meanwhile)
 {
-    static const fathom_modbus_question_t other = QUESTION(wanted, 0x0205, true, 6);
-    const fathom_modbus_setting_t another = {.read = read_it, .driver = &unit, .write = &other, .value = 1};
+    const fathom_modbus_setting_t another = {
+        .read = read_it, .driver = &unit, .write = {NULL, 0x0205, 1, 6, 0xC2}, .value = 1};
     PART(set, IS(HERE, OLD));
     PENDS(asks(&measure)); /* ends the look ... */
     assert_int_equal(asks(&command), FATHOM_ERR_BUSY);
@@ -346,7 +370,7 @@ TEST(a_setting_waits_for_no_command_of_somebody_else)
 
 TEST(the_same_register_measured_is_another_question)
 {
-    static const fathom_modbus_question_t same = QUESTION(wanted, REGISTER, false, 0);
+    static const fathom_modbus_question_t same = {&found, REGISTER, 1, 3, 2};
     PENDS(asks(&same));
     PENDS(set());
     desk_says(NEW);

@@ -12,21 +12,19 @@ enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, PACE_US = 100000 };
 static fake_modbus_t fake;
 static fathom_modbus_unit_t unit;
 static uint16_t found;
-static uint16_t wanted;
 static fathom_modbus_setting_t setting;
 static const uint16_t old_value[] = {OLD};
 static const uint16_t new_value[] = {NEW};
 
 static const fathom_line_settings_t fast = {57600, FATHOM_PARITY_EVEN, 1};
 
-static const fathom_modbus_question_t look = {1000, PACE_US, 0, NULL, &found, 0x0206, 1, 0, true, 0};
-static const fathom_modbus_question_t put = {1000,   PACE_US, 0, NULL, &wanted,
-                                             0x0206, 1,       0, true, FATHOM_MODBUS_WRITE_SINGLE_REGISTER};
-static const fathom_modbus_question_t measure = {1000, PACE_US, 0, NULL, &found, 0x0100, 1, 0, false, 0};
+static const fathom_modbus_question_t look = {&found, 0x0206, 1, 3, 0x81};
+static const fathom_modbus_question_t put = {NULL, 0x0206, NEW, 6, 0xC1};
+static const fathom_modbus_question_t measure = {&found, 0x0100, 1, 3, 1};
 
-static fathom_status_t read_it(void *driver, uint32_t *value)
+static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
 {
-    const fathom_status_t status = fathom_modbus_unit_ask(driver, &look);
+    const fathom_status_t status = fathom_modbus_unit_ask(of->driver, &look);
     if (status == FATHOM_READY) *value = found;
     return status;
 }
@@ -35,9 +33,13 @@ static int set_up(void **state)
 {
     fake_modbus_init(&fake);
     memset(&unit, 0, sizeof unit);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, HERE), FATHOM_READY);
-    setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = &put, .value = NEW};
-    wanted = NEW;
+    assert_int_equal(
+        fathom_modbus_unit_init(
+            &unit,
+            &(fathom_modbus_config_t){.transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
+            1000, PACE_US),
+        FATHOM_READY);
+    setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;
     return 0;
 }
@@ -47,11 +49,13 @@ static const suite_t suite = {.set_up = set_up};
 static fathom_status_t set_after(uint32_t us)
 {
     fake.now_us += us;
+    fathom_modbus_unit_poll(&unit);
     return fathom_modbus_set(&unit, &setting);
 }
 
 static fathom_status_t ask(const fathom_modbus_question_t *question)
 {
+    fathom_modbus_unit_poll(&unit);
     return fathom_modbus_unit_ask(&unit, question);
 }
 

@@ -8,21 +8,21 @@ static fathom_modbus_unit_t unit;
 static uint16_t values[11];
 static uint16_t wanted[2] = {0x07D0, 0x1234};
 
-#define QUESTION(timeout_us, values, first, count, retries, is_command, function)                            \
-    {                                                                                                        \
-        timeout_us, PACE_US, 0, NULL, values, first, count, retries, is_command, function                    \
-    }
 /* As drivers use them: one repeated question, and two commands. */
-static const fathom_modbus_question_t measure = QUESTION(TIMEOUT_US, values, 0x0100, 1, 2, false, 0);
-static const fathom_modbus_question_t version = QUESTION(1000000, values, 0x0001, 3, 0, true, 0);
-static const fathom_modbus_question_t details = QUESTION(1000000, values, 0x0003, 11, 0, true, 0);
+static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
+static const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x80};
+static const fathom_modbus_question_t details = {values, 0x0003, 11, 3, 0xFF};
 
 static void set_up_at(uint32_t now_us)
 {
     desk_begin(now_us);
     memset(values, GUARD, sizeof values);
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, UNIT), FATHOM_READY);
+    assert_int_equal(fathom_modbus_unit_init(
+                         &unit,
+                         &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT, .retries = 2},
+                         TIMEOUT_US, PACE_US),
+                     FATHOM_READY);
 }
 
 static int set_up(void **state)
@@ -68,15 +68,15 @@ static void go(const step_t *steps, unsigned count)
             fake.now_us += step->after_us;
             const unsigned before = fake.submits;
             const fathom_modbus_question_t *const asked = step->question;
+            fathom_modbus_unit_poll(&unit);
             assert_int_equal(fathom_modbus_unit_ask(&unit, asked), step->is);
             assert_int_equal(fake.submits, step->submits);
             if (fake.submits == before) continue;
             const uint8_t *const head = fake.log[before];
-            const bool one_write = asked->function == 6;
             assert_int_equal(head[0], UNIT);
-            assert_int_equal(head[1], asked->function != 0 ? asked->function : 3);
-            assert_int_equal(head[2] << 8 | head[3], asked->first);
-            assert_int_equal(head[4] << 8 | head[5], one_write ? asked->values[0] : asked->count);
+            assert_int_equal(head[1], asked->function);
+            assert_int_equal(head[2] * 256u + head[3], asked->first);
+            assert_int_equal(head[4] * 256u + head[5], asked->last);
         } else if (step->is == FATHOM_PENDING) {
             fake_modbus_send(&fake);
         } else if (step->is == FATHOM_READY && fake.request->message.head[1] == 3) {
@@ -99,11 +99,24 @@ static uint32_t due(void) { return fathom_modbus_unit_due_us(&unit); }
 TEST(a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device)
 {
     fathom_modbus_unit_t other;
-    assert_int_equal(fathom_modbus_unit_init(&other, NULL, &fake.clock, 1), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_modbus_unit_init(&other, &fake.modbus, NULL, 1), FATHOM_ERR_ARGUMENT);
-    for (unsigned address = 0; address != 256; address++)
-        assert_int_equal(fathom_modbus_unit_init(&other, &fake.modbus, &fake.clock, (uint8_t)address),
-                         address == 255 ? FATHOM_ERR_ARGUMENT : FATHOM_READY);
+    fathom_modbus_config_t config = {.address = 1};
+    assert_int_equal(fathom_modbus_unit_init(&other, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
+    config.transport = &fake.modbus;
+    fake.modbus.clock = NULL;
+    assert_int_equal(fathom_modbus_unit_init(&other, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
+    fake.modbus.clock = &fake.clock;
+    for (unsigned address = 0; address != 256; address++) {
+        const bool is_good = address != 255;
+        config.address = (uint8_t)address;
+        config.address_zero = false;
+        assert_int_equal(fathom_modbus_unit_init(&other, &config, 1000, 0),
+                         is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+        if (is_good) assert_int_equal(other.address, address != 0 ? address : 1);
+        config.address_zero = true;
+        assert_int_equal(fathom_modbus_unit_init(&other, &config, 1000, 0),
+                         address == 0 ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+        if (address == 0) assert_int_equal(other.address, 0);
+    }
     assert_int_equal(fake.polls + fake.submits, 0);
 }
 
@@ -118,6 +131,12 @@ TEST(the_first_question_goes_out_at_once_just_as_it_was_asked)
     assert_ptr_equal(fake.request->message.values, values);
 }
 
+TEST(a_command_has_the_time_out_of_commands)
+{
+    GO(P(0, version, 1));
+    assert_int_equal(fake.request->exchange.timeout_us, FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US);
+}
+
 /* ---- outcomes ---- */
 
 TEST(an_answer_is_handed_over_once)
@@ -125,9 +144,9 @@ TEST(an_answer_is_handed_over_once)
     fake.heard_us = 4711;
     GO(TAKEN(10, measure, 1), P(10, measure, 1), P(10, measure, 1));
     assert_int_equal(values[0], 754);
-    assert_int_equal(unit.heard_us, 4711);
-    assert_int_equal(unit.answers, 1);
-    assert_int_equal(unit.failures, 0);
+    assert_int_equal(fathom_modbus_unit_heard_us(&unit), 4711);
+    assert_int_equal(fathom_modbus_unit_answers(&unit), 1);
+    assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
 }
 
 TEST(every_error_is_handed_over_once_and_the_next_attempt_follows)
@@ -138,10 +157,10 @@ TEST(every_error_is_handed_over_once_and_the_next_attempt_follows)
     for (uint8_t i = 1; i <= COUNT(errors); i++) {
         GO(ON_WIRE(measure, i), ENDS(errors[i - 1]), IS(errors[i - 1], 10, measure, i),
            P(PACE_US - 11, measure, i));
-        assert_int_equal(unit.failures, i);
-        assert_int_equal(unit.answers, 0);
+        assert_int_equal(fathom_modbus_unit_failures(&unit), i);
+        assert_int_equal(fathom_modbus_unit_answers(&unit), 0);
         assert_int_equal(values[0], GUARD16);
-        assert_int_equal(unit.request.message.exception, i == 3 ? 171 : 0);
+        assert_int_equal(fathom_modbus_unit_exception(&unit), i == 3 ? 171 : 0);
         fake.now_us += 1;
     }
 }
@@ -156,7 +175,7 @@ TEST(a_request_that_the_carrier_does_not_take_is_tried_again_each_time)
     }
     fake.refuses = 0;
     GO(P(0, measure, 1));
-    assert_int_equal(unit.failures, 0);
+    assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
 }
 
 TEST(the_counters_stop_at_65535)
@@ -165,8 +184,8 @@ TEST(the_counters_stop_at_65535)
     for (uint8_t i = 1; i <= 5; i += 2) {
         GO(TAKEN(PACE_US, measure, i), ON_WIRE(measure, i + 1), ENDS(FATHOM_ERR_NO_ANSWER),
            IS(FATHOM_ERR_NO_ANSWER, PACE_US, measure, i + 1));
-        assert_int_equal(unit.answers, 65535);
-        assert_int_equal(unit.failures, 65535);
+        assert_int_equal(fathom_modbus_unit_answers(&unit), 65535);
+        assert_int_equal(fathom_modbus_unit_failures(&unit), 65535);
     }
 }
 
@@ -182,6 +201,11 @@ TEST(the_pace_counts_from_the_request_on_the_wire)
 /* A slow loop: sent and answered since the last poll. */
 STEPS(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it, P(0, measure, 1), ANSWERED,
       IS(FATHOM_READY, 3 * PACE_US, measure, 1), ASKED_IN(PACE_US, measure, 2))
+
+/* It was sent since the last poll, and so was the one before. */
+STEPS(the_pace_of_the_second_request_counts_from_the_poll_that_found_it_sent, TAKEN(PACE_US, measure, 1),
+      P(0, measure, 2), SENT, P(40000, measure, 2), ANSWERED, IS(FATHOM_READY, 0, measure, 2),
+      ASKED_IN(PACE_US, measure, 3))
 
 /* modbus_unit.h: "from this request to the next one to the unit, at least"; a retry is a request too. */
 STEPS(the_pace_counts_from_the_last_attempt, ON_WIRE(measure, 1), P(6 * PACE_US, measure, 1), SENT,
@@ -213,7 +237,7 @@ TEST(a_command_waits_for_a_measurement_and_takes_its_place)
 {
     GO(ON_WIRE(measure, 1), P(10, version, 1), ANSWERED, P(10, version, 1),
        ASKED_IN(PACE_US - 20, version, 2));
-    assert_int_equal(unit.answers, 1);
+    assert_int_equal(fathom_modbus_unit_answers(&unit), 1);
     GO(ANSWERED, IS(FATHOM_READY, 10, version, 2));
     assert_memory_equal(values, three_values, sizeof three_values);
 }
@@ -227,7 +251,7 @@ TEST(a_measurement_waits_until_the_outcome_of_a_command_was_taken)
     }
     assert_memory_equal(values, three_values, sizeof three_values);
     GO(IS(FATHOM_READY, 10, version, 1), P(0, measure, 2));
-    assert_int_equal(unit.answers, 1);
+    assert_int_equal(fathom_modbus_unit_answers(&unit), 1);
 }
 
 STEPS(an_error_of_a_command_waits_for_who_asked_too, ON_WIRE(version, 1), ENDS(FATHOM_ERR_EXCEPTION),
@@ -237,15 +261,14 @@ STEPS(a_second_command_is_told_busy_until_the_first_was_taken, ON_WIRE(version, 
       IS(FATHOM_ERR_BUSY, 10, details, 1), ANSWERED, IS(FATHOM_ERR_BUSY, 10, details, 1),
       IS(FATHOM_ERR_BUSY, PACE_US, details, 1), IS(FATHOM_READY, 10, version, 1), P(10, details, 2))
 
-static const fathom_modbus_question_t at_0101 = QUESTION(TIMEOUT_US, values, 0x0101, 1, 0, false, 0);
-static const fathom_modbus_question_t at_0000 = QUESTION(TIMEOUT_US, values, 0x0000, 1, 0, false, 0);
+static const fathom_modbus_question_t at_0000 = {values, 0x0000, 1, 3, 0x7F};
+static const fathom_modbus_question_t at_ffff = {values, 0xFFFF, 1, 3, 0x81};
 
 STEPS(another_repeated_question_replaces_the_first_when_that_has_ended, ON_WIRE(measure, 1),
-      P(10, at_0101, 1), ANSWERED, P(PACE_US, at_0101, 2))
+      P(PACE_US, at_0000, 1), ANSWERED, P(PACE_US, at_0000, 2))
 
-/* version is of 0001, measure of 0100 */
-STEPS(registers_with_one_equal_byte_are_two_questions, ON_WIRE(version, 1), ANSWERED, P(PACE_US, at_0000, 1),
-      P(PACE_US, measure, 1), P(PACE_US, at_0101, 1), IS(FATHOM_READY, 0, version, 1))
+STEPS(any_register_can_be_asked_for, ON_WIRE(at_ffff, 1), ANSWERED, P(PACE_US, at_0000, 1),
+      IS(FATHOM_READY, 0, at_ffff, 1), P(0, at_0000, 2))
 
 STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_question, TAKEN(1000, measure, 1),
       P(1000, version, 1), P(PACE_US, measure, 1), /* the pause is over, but a command waits */
@@ -310,6 +333,15 @@ TEST(a_broken_carrier_is_said_by_every_read_and_nothing_is_asked)
     GO(P(0, measure, 1));
 }
 
+TEST(a_command_that_waits_when_the_carrier_breaks_has_ended)
+{
+    GO(ON_WIRE(measure, 1), P(0, version, 1));
+    fake.carrier = FATHOM_ERR_PORT;
+    GO(IS(FATHOM_ERR_PORT, 0, version, 1));
+    fake.carrier = FATHOM_PENDING;
+    GO(P(0, details, 1));
+}
+
 TEST(what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first)
 {
     GO(ON_WIRE(measure, 1));
@@ -320,10 +352,10 @@ TEST(what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first)
 /* ---- questions about one register that are not the same question: a read, a write, a measurement ---- */
 
 enum { REGISTER = 0x0206 };
-static const fathom_modbus_question_t measurement = QUESTION(TIMEOUT_US, values, REGISTER, 1, 0, false, 0);
-static const fathom_modbus_question_t reading = QUESTION(TIMEOUT_US, values, REGISTER, 1, 0, true, 0);
-static const fathom_modbus_question_t one_write = QUESTION(TIMEOUT_US, wanted, REGISTER, 1, 0, true, 6);
-static const fathom_modbus_question_t two_written = QUESTION(TIMEOUT_US, wanted, REGISTER, 2, 0, true, 16);
+static const fathom_modbus_question_t measurement = {values, REGISTER, 1, 3, 2};
+static const fathom_modbus_question_t reading = {values, REGISTER, 1, 3, 0x82};
+static const fathom_modbus_question_t one_write = {NULL, REGISTER, 0x07D0, 6, 0xC2};
+static const fathom_modbus_question_t two_written = {wanted, REGISTER, 2, 16, 0xC3};
 
 /* The read does not take the outcome of the write. */
 STEPS(while_a_register_is_written_a_read_is_told_busy_and_a_measurement_waits, P(0, one_write, 1),

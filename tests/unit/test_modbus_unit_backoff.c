@@ -8,15 +8,17 @@ enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000 };
 static fathom_modbus_unit_t unit;
 static uint16_t values[3];
 
-static fathom_modbus_question_t measure;
-static const fathom_modbus_question_t version = {1000000, PACE_US, 0, NULL, values, 0x0001, 3, 0, true, 0};
+static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
+static const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x81};
 
 static void set_up_at(uint32_t now_us)
 {
     desk_begin(now_us);
-    measure = (fathom_modbus_question_t){TIMEOUT_US, PACE_US, 0, NULL, values, 0x0100, 1, 0, false, 0};
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, UNIT), FATHOM_READY);
+    assert_int_equal(
+        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
+                                TIMEOUT_US, PACE_US),
+        FATHOM_READY);
 }
 
 static int set_up(void **state)
@@ -30,6 +32,7 @@ static const suite_t suite = {.set_up = set_up};
 static fathom_status_t read_after(uint32_t us, const fathom_modbus_question_t *question)
 {
     fake.now_us += us;
+    fathom_modbus_unit_poll(&unit);
     return fathom_modbus_unit_ask(&unit, question);
 }
 
@@ -56,10 +59,10 @@ static void end_with(const fathom_modbus_question_t *question, fathom_status_t s
     fake_modbus_send(&fake);
     PENDS(read_after(0, question));
     if (status == FATHOM_READY)
-        fake_modbus_answer(&fake, says, question->count);
+        fake_modbus_answer(&fake, says, (uint8_t)question->last);
     else
         fake_modbus_fail(&fake, status);
-    assert_int_equal(read_after(question->timeout_us, question), status);
+    assert_int_equal(read_after(question == &measure ? unit.timeout_us : 1000000, question), status);
 }
 
 static void silence(void) { end_with(&measure, FATHOM_ERR_NO_ANSWER); }
@@ -100,9 +103,9 @@ typedef struct {
 static void pauses_as_in(void **state)
 {
     const cap_t *const cap = *state;
-    measure.timeout_us = cap->timeout_us;
-    measure.backoff_us = cap->backoff_us;
-    measure.pace_us = cap->pace_us;
+    unit.timeout_us = cap->timeout_us;
+    unit.backoff_us = cap->backoff_us;
+    unit.pace_us = cap->pace_us;
     silences(8, cap->pauses_us, 6);
 }
 
@@ -176,7 +179,7 @@ TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
 {
     enum { SLOW_US = 4 * TIMEOUT_US };
     silent_for(6);
-    measure.pace_us = SLOW_US;
+    unit.pace_us = SLOW_US;
     assert_paused_for(8 * TIMEOUT_US);
     silence();
     const unsigned before = fake.submits;

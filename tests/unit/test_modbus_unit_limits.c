@@ -13,14 +13,16 @@ static fake_modbus_t fake;
 static fathom_modbus_unit_t unit;
 static uint16_t values[1];
 static const uint16_t answer[1] = {754};
-static fathom_modbus_question_t measure;
+static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
 
 static void set_up_on(uint8_t fill)
 {
     fake_modbus_init(&fake);
-    measure = (fathom_modbus_question_t){.timeout_us = 100000, .values = values, .first = 0x0100, .count = 1};
     memset(&unit, fill, sizeof unit);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &fake.modbus, &fake.clock, UNIT), FATHOM_READY);
+    assert_int_equal(
+        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
+                                100000, 0),
+        FATHOM_READY);
 }
 
 static int set_up(void **state)
@@ -34,13 +36,14 @@ static const suite_t suite = {.set_up = set_up};
 static fathom_status_t ask_after(uint32_t us)
 {
     fake.now_us += us;
+    fathom_modbus_unit_poll(&unit);
     return fathom_modbus_unit_ask(&unit, &measure);
 }
 
 static void silence(void)
 {
     fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(ask_after(measure.timeout_us), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(ask_after(unit.timeout_us), FATHOM_ERR_NO_ANSWER);
 }
 
 TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
@@ -48,11 +51,10 @@ TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
     static const uint8_t fills[] = {0xA5, 0xFF};
     for (unsigned i = 0; i != sizeof fills; i++) {
         set_up_on(fills[i]);
-        assert_int_equal(unit.heard_us, fake.now_us);
-        assert_int_equal(unit.answers, 0);
-        assert_int_equal(unit.failures, 0);
+        assert_int_equal(fathom_modbus_unit_answers(&unit), 0);
+        assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
         assert_int_equal(unit.address, UNIT);
-        assert_int_equal(unit.request.message.exception, 0);
+        assert_int_equal(fathom_modbus_unit_exception(&unit), 0);
         assert_null(unit.settings);
         assert_false(fathom_modbus_unit_is_warming_up(&unit));
         assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
@@ -71,7 +73,7 @@ TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
 TEST(without_a_cap_the_longest_back_off_is_2_to_the_31)
 {
     static const uint32_t alone_us[] = {0, 0, 0x10000000, 0x20000000, 0x40000000, 0x80000000, 0x80000000};
-    measure.timeout_us = 0x10000000;
+    unit.timeout_us = 0x10000000;
     for (unsigned n = 0; n != sizeof alone_us / sizeof *alone_us; n++) {
         assert_int_equal(ask_after(0), FATHOM_PENDING);
         assert_int_equal(fake.submits, n + 1);

@@ -5,7 +5,6 @@
 /* pulse.h where a UART triggers that is busy or broken, and the cycle to the microsecond. */
 
 static fathom_uart_t uart;
-static fathom_capture_t capture;
 static unsigned set_breaks;
 
 static int counted_set_break(void *ctx, bool on)
@@ -32,8 +31,7 @@ static int set_up_uart(void **state)
     set_up_meter(state);
     uart = stand.fake.uart;
     uart.set_break = counted_set_break;
-    stand.config.trigger = NULL;
-    stand.config.uart = &uart;
+    stand.config.trigger = fathom_output_break(&uart);
     set_breaks = 0;
     start_meter();
     return 0;
@@ -119,9 +117,7 @@ TEST(every_negative_result_of_set_break_is_a_broken_port)
 
 TEST_IN(with_pin, every_negative_result_of_take_is_a_broken_port)
 {
-    capture = stand.pin.capture;
-    capture.take = failing_take;
-    stand.config.capture = &capture;
+    stand.pin.capture.take = failing_take;
     run_to_trigger();
     assert_int_equal(poll_after(100), FATHOM_ERR_PORT);
 }

@@ -172,8 +172,7 @@ TEST(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept)
 
 static void trigger_by_break(void)
 {
-    stand.config.trigger = NULL;
-    stand.config.uart = &stand.fake.uart;
+    stand.config.trigger = fathom_output_break(&stand.fake.uart);
     start_meter();
 }
 
@@ -294,9 +293,9 @@ TEST(a_config_without_what_it_needs_is_refused)
     stand.config.capture = NULL;
     expect_init(FATHOM_ERR_ARGUMENT);
     stand.config = good;
-    stand.config.trigger = NULL;
+    stand.config.trigger.set = NULL;
     expect_init(FATHOM_ERR_ARGUMENT);
-    stand.config.uart = &uart;
+    stand.config.trigger = fathom_output_break(&uart);
     expect_init(FATHOM_READY);
     uart.set_break = NULL;
     expect_init(FATHOM_ERR_UNSUPPORTED);

@@ -11,11 +11,13 @@
 #include "sim/sim.h"
 #include "sim/uart.h"
 
-/* The two functions that the README's program calls, and itself. */
+/* What the README's programs call, and what a port provides. */
+static fathom_uart_t my_uart;
+static fathom_clock_t my_clock;
+static fathom_status_t begin(fathom_line_t *line);
 static int other_work(void);
 static void use(const fathom_sample_t *sample);
-void read_three_sensors(fathom_line_t *a16, fathom_line_t *a05, fathom_line_t *hps,
-                        const fathom_clock_t *clock);
+void read_three_sensors(fathom_line_t *a16, fathom_line_t *a05, fathom_line_t *hps);
 
 #include "readme_example.c" /* cut out of README.md by support/cut.py */
 
@@ -72,6 +74,8 @@ static fathom_line_t *desk(desk_t *desk, uint32_t baud, uint8_t parity, fathom_s
                                           .clock = clock,
                                           .frame = desk->frame,
                                           .frame_size = sizeof desk->frame,
+                                          .find_echo = fathom_line_find_echo,
+                                          .marks = fathom_line_marks,
                                           .silence_us = FATHOM_T3_5_US(19200, 11)};
     assert_int_equal(fathom_line_init(&desk->line, &desk->config), FATHOM_READY);
     return &desk->line;
@@ -95,9 +99,39 @@ TEST(the_program_of_the_readme_reads_three_sensors)
 
     read_three_sensors(desk(&desks[0], 9600, FATHOM_PARITY_NONE, &a16.device, &clock),
                        desk(&desks[1], 9600, FATHOM_PARITY_NONE, &a05.device, &clock),
-                       desk(&desks[2], 19200, FATHOM_PARITY_EVEN, &hps.device, &clock), &clock);
+                       desk(&desks[2], 19200, FATHOM_PARITY_EVEN, &hps.device, &clock));
 
     assert_true(heard[FATHOM_A16][0] >= 1);
     for (int probe = 0; probe != 4; probe++) assert_true(heard[FATHOM_A05][probe] >= 1);
     assert_true(heard[FATHOM_HPS167S][0] >= 10);
+}
+
+/* The line as it is printed, which says what it has to of echo. */
+TEST(the_line_of_the_readme_sets_a_register)
+{
+    static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
+    fathom_sim_fixed_t scene = {{HPS167S_MM}};
+    fathom_sim_line_t wire;
+    fathom_sim_uart_t end;
+    fathom_sim_hps167s_t device;
+    fathom_line_t line;
+    fathom_hps167s_t gate;
+    fathom_status_t status;
+    fathom_sim_clock_init(&sim_clock, 0, 0);
+    fathom_sim_line_init(&wire, &settings, sim_clock.now_us);
+    fathom_sim_uart_init(&end, &wire, &sim_clock);
+    fathom_sim_hps167s_init(&device, &(fathom_sim_hps167s_config_t){.scene = fathom_sim_fixed(&scene)});
+    fathom_sim_attach(&wire, &device.device, sim_clock.now_us);
+    my_uart = fathom_sim_uart(&end);
+    my_clock = fathom_sim_clock(&sim_clock);
+
+    assert_int_equal(begin(&line), FATHOM_READY);
+    const fathom_modbus_t modbus = fathom_modbus_client(&line);
+    const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};
+    assert_int_equal(fathom_hps167s_init(&gate, &gate_config), FATHOM_READY);
+    while ((status = fathom_hps167s_set_warm_up_s(&gate, 9)) == FATHOM_PENDING)
+        fathom_sim_clock_advance(&sim_clock, 1000);
+    assert_int_equal(status, FATHOM_READY);
+    assert_true(fathom_hps167s_is_written(&gate));
+    assert_int_equal(device.device.counters.writes, 1);
 }

@@ -6,7 +6,7 @@
 #include "fathom/a05_modbus.h"
 #include "fathom/a16_settings.h"
 
-/* config.retries is for reading alone: what is written goes out once, whatever becomes of it. Flash wears, and every
+/* config.modbus.retries is for reading alone: what is written goes out once, whatever becomes of it. Flash wears, and every
  * A05 on the line obeys 55 AA 03. */
 
 enum { RETRIES = 2, SECOND_US = 1000000 };
@@ -15,10 +15,13 @@ static fake_modbus_t fake;
 static fathom_a16_modbus_t a16;
 static fathom_a05_modbus_t a05;
 
-static fathom_status_t set_a16_threshold(void) { return fathom_a16_set_switch_threshold_mm(&a16, 2000); }
+static fathom_status_t set_a16_threshold(void)
+{
+    return fathom_a16_modbus_set_switch_threshold_mm(&a16, 2000);
+}
 static fathom_status_t set_a16_mode(void)
 {
-    return fathom_a16_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC);
+    return fathom_a16_modbus_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC);
 }
 static fathom_status_t set_a05_address(void) { return fathom_a05_modbus_set_address(&a05, 5); }
 
@@ -45,10 +48,10 @@ TEST(over_modbus_reads_are_repeated_and_writes_are_not)
         uint8_t retries[7];
         memset(retries, 0xFF, sizeof retries);
         fake_modbus_init(&fake);
-        const fathom_a16_modbus_config_t a16_config = {
-            .modbus = &fake.modbus, .clock = &fake.clock, .retries = RETRIES};
-        const fathom_a05_modbus_config_t a05_config = {
-            .modbus = &fake.modbus, .clock = &fake.clock, .retries = RETRIES};
+        const fathom_a16_modbus_config_t a16_config = {.modbus.transport = &fake.modbus,
+                                                       .modbus.retries = RETRIES};
+        const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus,
+                                                       .modbus.retries = RETRIES};
         assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_READY);
         assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
         for (unsigned asks = 0; asks != 3 && asked(settings[i], retries) == 3; asks++) {
@@ -79,7 +82,8 @@ static unsigned sent(uint8_t address, uint8_t command)
 TEST(over_55_aa_questions_are_repeated_and_the_command_to_all_is_not)
 {
     static fathom_a05_dyp_t dyp;
-    const fathom_a05_dyp_config_t config = {.line = &bench.line, .retries = RETRIES};
+    const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
+    const fathom_a05_dyp_config_t config = {.modbus.transport = &transport, .modbus.retries = RETRIES};
     fathom_status_t status = FATHOM_PENDING;
     bool is_answered = false;
     assert_int_equal(fathom_a05_dyp_init(&dyp, &config), FATHOM_READY);

@@ -33,7 +33,7 @@ void setup()
     line_config.clock = &fathom::arduino::clock;
     line_config.frame = frame;
     line_config.frame_size = sizeof frame;
-    fathom_line_init(&line, &line_config);
+    fathom_line_init_listening(&line, &line_config);
 
     fathom_a05_auto_config_t config = {};
     config.line = &line;

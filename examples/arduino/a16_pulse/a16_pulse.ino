@@ -24,9 +24,9 @@ void setup()
     capture = echo.capture();
 
     fathom_a16_pwm_config_t config = {};
-    config.clock = &fathom::arduino::clock;
-    config.capture = &capture;
-    config.trigger = &trigger;
+    config.pulse.clock = &fathom::arduino::clock;
+    config.pulse.capture = &capture;
+    config.pulse.trigger = fathom_output_pin(&trigger);
     if (fathom_a16_pwm_init(&tank, &config) != FATHOM_READY) Serial.println(F("wrong config"));
     sensor = fathom_a16_pwm_sensor(&tank);
 }

@@ -43,12 +43,12 @@ void setup()
     line_config.frame = frame;
     line_config.frame_size = sizeof frame;
     line_config.silence_us = FATHOM_T3_5_US(19200, 11); // 8E1: 11 bits a character
+    line_config.echo = FATHOM_LINE_ECHO_OFF; // FATHOM_LINE_ECHO_ON where the transceiver hears itself
     fathom_line_init(&line, &line_config);
     modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_config_t config = {};
-    config.modbus = &modbus;
-    config.clock = &fathom::arduino::clock;
+    config.modbus.transport = &modbus;
     fathom_hps167s_init(&gate, &config);
     sensor = fathom_hps167s_sensor(&gate);
 }

@@ -3,16 +3,17 @@
 
 static fathom_a05_dyp_find_t a05_dyp_find;
 static fathom_a05_relay_rule_t a05_relay_rule;
+static fathom_modbus_t dyp;
 
-DRIVER(a05_auto, line_begin(), .line = &line, .select = &pin)
+DRIVER(a05_auto, listening_begin(), .line = &line, .select = {fathom_output_set_pin, &pin})
 
 void a05_auto_use(const fathom_sample_t *sample)
 {
     outcome = sample->distance_mm;
-    outcome = (uint16_t)fathom_a05_auto_power_on(&a05_auto, (fathom_a05_value_t)argument);
+    outcome = (uint16_t)fathom_a05_auto_select(&a05_auto, (fathom_dyp_value_t)argument);
 }
 
-DRIVER(a05_modbus, modbus_begin(), .modbus = &modbus, .clock = &clock)
+DRIVER(a05_modbus, modbus_begin(), .modbus.transport = &modbus)
 
 void a05_modbus_use(const fathom_sample_t *sample)
 {
@@ -23,7 +24,13 @@ void a05_modbus_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_modbus_set_address(&a05_modbus, (uint8_t)argument);
 }
 
-DRIVER(a05_dyp, line_begin(), .line = &line)
+static void dyp_begin(void)
+{
+    line_begin();
+    dyp = fathom_dyp_client(&line);
+}
+
+DRIVER(a05_dyp, dyp_begin(), .modbus.transport = &dyp)
 
 void a05_dyp_use(const fathom_sample_t *sample)
 {

@@ -5,18 +5,18 @@ static fathom_a16_rs232_t a16_rs232;
 static fathom_edges_t edges;
 static fathom_capture_t edges_capture;
 
-DRIVER(a16_auto, line_begin(), .line = &line, .select = &pin)
+DRIVER(a16_auto, listening_begin(), .line = &line, .select = {fathom_output_set_pin, &pin})
 
 void a16_auto_use(const fathom_sample_t *sample)
 {
     outcome = sample->distance_mm;
-    outcome = (uint16_t)fathom_a16_auto_select(&a16_auto, argument != 0);
+    outcome = (uint16_t)fathom_a16_auto_select(&a16_auto, (fathom_dyp_value_t)argument);
 }
 
-DRIVER(a16_controlled, line_begin(), .line = &line, .trigger = &pin)
+DRIVER(a16_controlled, listening_begin(), .line = &line, .trigger = {fathom_output_set_pin, &pin})
 ONLY(a16_controlled, distance_mm)
 
-DRIVER(a16_modbus, modbus_begin(), .modbus = &modbus, .clock = &clock)
+DRIVER(a16_modbus, modbus_begin(), .modbus.transport = &modbus)
 
 void a16_modbus_use(const fathom_sample_t *sample)
 {
@@ -31,29 +31,30 @@ void a16_settings_use(const fathom_sample_t *sample)
     uint8_t address;
     uint16_t threshold_mm;
     fathom_a16_polarity_t polarity;
-    fathom_a16_value_t value;
+    fathom_dyp_value_t value;
     fathom_sample_t once;
     a16_modbus_use(sample);
-    outcome = (uint16_t)fathom_a16_measure(&a16_modbus, (fathom_a16_value_t)argument, &once);
+    outcome = (uint16_t)fathom_a16_modbus_measure(&a16_modbus, (fathom_dyp_value_t)argument, &once);
     outcome = once.distance_mm;
-    outcome = (uint16_t)fathom_a16_address(&a16_modbus, &address);
-    outcome = (uint16_t)fathom_a16_set_address(&a16_modbus, (uint8_t)argument);
-    outcome = (uint16_t)fathom_a16_set_operating_mode(&a16_modbus, (fathom_a16_operating_mode_t)argument);
-    outcome = (uint16_t)fathom_a16_switch_polarity(&a16_modbus, &polarity);
-    outcome = (uint16_t)fathom_a16_set_switch_polarity(&a16_modbus, (fathom_a16_polarity_t)argument);
-    outcome = (uint16_t)fathom_a16_switch_threshold_mm(&a16_modbus, &threshold_mm);
-    outcome = (uint16_t)fathom_a16_set_switch_threshold_mm(&a16_modbus, argument);
-    outcome = (uint16_t)fathom_a16_automatic_value(&a16_modbus, &value);
-    outcome = (uint16_t)fathom_a16_set_automatic_value(&a16_modbus, (fathom_a16_value_t)argument);
+    outcome = (uint16_t)fathom_a16_modbus_address(&a16_modbus, &address);
+    outcome = (uint16_t)fathom_a16_modbus_set_address(&a16_modbus, (uint8_t)argument);
+    outcome =
+        (uint16_t)fathom_a16_modbus_set_operating_mode(&a16_modbus, (fathom_a16_operating_mode_t)argument);
+    outcome = (uint16_t)fathom_a16_modbus_switch_polarity(&a16_modbus, &polarity);
+    outcome = (uint16_t)fathom_a16_modbus_set_switch_polarity(&a16_modbus, (fathom_a16_polarity_t)argument);
+    outcome = (uint16_t)fathom_a16_modbus_switch_threshold_mm(&a16_modbus, &threshold_mm);
+    outcome = (uint16_t)fathom_a16_modbus_set_switch_threshold_mm(&a16_modbus, argument);
+    outcome = (uint16_t)fathom_a16_modbus_automatic_value(&a16_modbus, &value);
+    outcome = (uint16_t)fathom_a16_modbus_set_automatic_value(&a16_modbus, (fathom_dyp_value_t)argument);
 }
 
-DRIVER(a16_pwm, (void)0, .clock = &clock, .capture = &capture, .trigger = &pin)
+DRIVER(a16_pwm, (void)0, .pulse = {&clock, &capture, {fathom_output_set_pin, &pin}, 0, 0, 0, 0, 0})
 ONLY(a16_pwm, distance_mm)
 
 fathom_sensor_t a16_pwm_edges_begin(void)
 {
     static const fathom_a16_pwm_config_t config = {
-        .clock = &clock, .capture = &edges_capture, .trigger = &pin};
+        .pulse = {.clock = &clock, .capture = &edges_capture, .trigger = {fathom_output_set_pin, &pin}}};
     fathom_edges_init(&edges, &pin);
     edges_capture = fathom_edges_capture(&edges);
     fathom_a16_pwm_init(&a16_pwm, &config);
@@ -89,8 +90,10 @@ ONLY(a16_switch, kind)
 
 fathom_sensor_t a16_switch_set_begin(void)
 {
-    static const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock, .line = &line};
+    static fathom_contact_guard_t guard;
+    static const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock, .guard = &guard};
     a16_modbus_begin();
+    guard = fathom_contact_line_guard(&line);
     fathom_a16_switch_init(&a16_switch, &config);
     return fathom_a16_switch_sensor(&a16_switch);
 }
@@ -100,5 +103,5 @@ void a16_switch_set_use(const fathom_sample_t *sample)
     outcome = sample->kind;
     outcome =
         (uint16_t)fathom_a16_switch_set_polarity(&a16_switch, &a16_modbus, (fathom_a16_polarity_t)argument);
-    outcome = (uint16_t)fathom_a16_set_switch_threshold_mm(&a16_modbus, argument);
+    outcome = (uint16_t)fathom_a16_modbus_set_switch_threshold_mm(&a16_modbus, argument);
 }

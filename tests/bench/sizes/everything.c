@@ -1,18 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 #include "programs.h"
 
-/* Every program at once: one of each driver. Those that share a driver share its memory too. */
+/* Every program at once: one of each driver, and all that a line can do. Programs that share a driver share its memory
+ * too. */
 
 #define COUNT(program) +1
 enum { SENSORS = 0 PROGRAMS(COUNT) };
 
 static fathom_sensor_t sensors[SENSORS];
 
+static uint16_t counters[FATHOM_LINE_COUNTERS];
+static const fathom_line_config_t line_config = {.uart = &uart,
+                                                 .clock = &clock,
+                                                 .frame = frame,
+                                                 .frame_size = sizeof frame,
+                                                 .find_echo = fathom_line_find_echo,
+                                                 .marks = fathom_line_marks,
+                                                 .count = fathom_line_count,
+                                                 .counters = counters};
+
 fathom_sensor_t everything_begin(void)
 {
     fathom_sensor_t *next = sensors;
 #define BEGIN_ONE(program) *next++ = program##_begin();
     PROGRAMS(BEGIN_ONE)
+    fathom_line_init(&line, &line_config);
+    modbus = fathom_modbus_client_with_zero(&line);
     return sensors[argument];
 }
 

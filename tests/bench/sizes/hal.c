@@ -9,24 +9,17 @@ static const fathom_line_config_t line_config = {.uart = &uart,
                                                  .clock = &clock,
                                                  .frame = frame,
                                                  .frame_size = sizeof frame,
+                                                 .echo = FATHOM_LINE_ECHO_OFF,
                                                  .silence_us = FATHOM_T3_5_US(19200, 11)};
 
 void line_begin(void) { fathom_line_init(&line, &line_config); }
+
+void listening_begin(void) { fathom_line_init_listening(&line, &line_config); }
 
 void modbus_begin(void)
 {
     line_begin();
     modbus = fathom_modbus_client(&line);
-}
-
-/* GCC copies structs by it, on RISC-V those of 28 bytes and more, and wants it from whoever has no libc. volatile: or
- * it would make a call of memcpy of this too. */
-void *memcpy(void *restrict to, const void *restrict from, size_t length);
-void *memcpy(void *restrict to, const void *restrict from, size_t length)
-{
-    volatile uint8_t *at = to;
-    for (const uint8_t *byte = from; length != 0; length--) *at++ = *byte++;
-    return to;
 }
 
 static void stub_set(void *ctx, bool high) { level = high; }

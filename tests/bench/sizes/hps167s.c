@@ -3,7 +3,7 @@
 
 static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
 
-DRIVER(hps167s, modbus_begin(), .modbus = &modbus, .clock = &clock, .settings = &settings)
+DRIVER(hps167s, modbus_begin(), .modbus.transport = &modbus, .modbus.settings = &settings)
 
 void hps167s_use(const fathom_sample_t *sample)
 {
@@ -44,5 +44,5 @@ void hps167s_settings_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_hps167s_restore_factory_settings(&hps167s);
 }
 
-DRIVER(hps167s_auto, line_begin(), .line = &line)
+DRIVER(hps167s_auto, listening_begin(), .line = &line)
 ONLY(hps167s_auto, distance_mm)

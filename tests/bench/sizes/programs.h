@@ -16,10 +16,13 @@
  * variables of these files that are linked, and the linker tells their names and sizes.
  */
 
-/* What hal.c has for all of them. Whoever does not call line_begin() has no line. */
+/* What hal.c has for all of them. A program that calls none of these has no line; one that calls listening_begin() has
+ * a line that asks nothing. Echo is told, and the line counts nothing: each of that is everything.c's. */
 extern fathom_line_t line;
 extern fathom_modbus_t modbus;
+extern uint8_t frame[32];
 void line_begin(void);
+void listening_begin(void);
 void modbus_begin(void); /* with line_begin() */
 
 /* Those of ../mcu.c, and those of hal.c. */

@@ -70,6 +70,12 @@ int remote_write(const uint8_t *bytes, uint8_t length)
 
 bool remote_sent(void) { return run(REMOTE_SENT) != 0; }
 
+uint32_t remote_leaves_in_us(void)
+{
+    run(REMOTE_LEAVES);
+    return remote_of()->time_us;
+}
+
 int remote_set_line(const fathom_line_settings_t *line)
 {
     set_line(remote_of(), line);

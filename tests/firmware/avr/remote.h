@@ -17,6 +17,7 @@ bool remote_begin(const fathom_line_settings_t *line, bool driver, uint8_t reque
 int remote_read(uint8_t *bytes, uint8_t capacity, uint8_t *flags);
 int remote_write(const uint8_t *bytes, uint8_t length);
 bool remote_sent(void);
+uint32_t remote_leaves_in_us(void);
 int remote_set_line(const fathom_line_settings_t *line);
 int remote_set_break(bool on);
 uint32_t remote_now_us(void);

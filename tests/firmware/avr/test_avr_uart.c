@@ -208,6 +208,30 @@ TEST(sent_is_exact_to_the_stop_bit)
     assert_true(first_true_cycle - last_false_cycle < 1000); /* so near did we look */
 }
 
+/* "at most": of the one or two bytes that the hardware has it is not known how much has left. */
+TEST(when_the_request_has_left_is_known_to_two_characters)
+{
+    enum { LOOKS = 40 };
+    uint64_t cycles[LOOKS];
+    uint32_t left_us[LOOKS];
+    unsigned looks = 0;
+    assert_int_equal(remote_leaves_in_us(), 0);
+    remote_write(request, sizeof request);
+    do {
+        assert_true(looks < LOOKS);
+        cycles[looks] = board.avr->cycle;
+        left_us[looks++] = remote_leaves_in_us();
+        board_run_us(200);
+    } while (!remote_sent());
+    assert_in_range(left_us[0], 4583, 4584); /* 8 characters of 11 bits at 19200 baud */
+    const uint64_t end_cycle = board.bytes[sizeof request - 1].end_cycle;
+    while (looks-- != 0) {
+        const uint64_t left_cycles = (uint64_t)left_us[looks] * BOARD_CYCLES_PER_US;
+        assert_in_range(cycles[looks] + left_cycles, end_cycle - 1000, end_cycle + 2 * CHARACTER + 1000);
+    }
+    assert_int_equal(remote_leaves_in_us(), 0);
+}
+
 TEST(a_write_is_refused_while_bytes_leave_and_does_not_touch_them)
 {
     static const uint8_t other[] = {0xAA, 0xAA, 0xAA, 0xAA};

@@ -74,10 +74,10 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
             self.assertIn(f'{other} probe 1 ', ''.join(image.lines()[before:]), 'it has not gone on')
 
     def test_four_go_on_beside_an_a05_that_does_not_answer(self):
-        self.nobody_answers('bumper', 3, 24)
+        self.nobody_answers('bumper', 'NO_ANSWER', 24)
 
     def test_four_go_on_beside_an_a16_that_does_not_send(self):
-        self.nobody_answers('silo', 7, 24)
+        self.nobody_answers('silo', 'STALE', 24)
 
     def answer_to_the_end(self, image, device, request, answer):
         """The last request may be cut off by the end of the image."""
@@ -104,8 +104,8 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         def asked():
             self.assertEqual(tank.read(8, qemu.PATIENCE), request)
 
-        def failed(number):
-            image.expect(rf'^tank error {number}$', seconds=qemu.PATIENCE)
+        def failed(error):
+            image.expect(rf'^tank error {error}$', seconds=qemu.PATIENCE)
 
         def answered():
             asked()
@@ -114,18 +114,18 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         answered()
         asked()
         tank.write(b'\x55\xAA\x00\xFF\x02\xF2' * 20)
-        failed(3)
+        failed('NO_ANSWER')
         answered()
         asked()
         tank.write(right[:-1] + bytes((right[-1] ^ 1,)))
-        failed(4)
+        failed('CHECKSUM')
         answered()
         asked()
         tank.write(e2e.registers(2, 999))
-        failed(3)
+        failed('NO_ANSWER')
         answered()
         asked()
-        failed(3)
+        failed('NO_ANSWER')
         tank.write(right)  # late
         self.answer_to_the_end(image, tank, request, right)
         done = self.end_well(image)

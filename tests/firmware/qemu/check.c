@@ -72,13 +72,13 @@ int set(const fathom_uart_t *uart, uint32_t baud, uint8_t parity, uint8_t stop_b
     return uart->set_line(uart->ctx, &line);
 }
 
-void check_request(const fathom_uart_t *uart, uint8_t size)
+void check_request(const fathom_uart_t *uart, uint8_t size, uint32_t takes_us)
 {
     static const uint8_t many[32];
     check(uart->write(uart->ctx, many, size + 1U) < 0, "more than its memory holds is refused");
-    check(uart->sent(uart->ctx), "nothing leaves");
+    check(uart->sent(uart->ctx) && uart->leaves_in_us(uart->ctx) == 0, "nothing leaves");
     check(uart->write(uart->ctx, many, size) == size, "a request is taken");
-    check(!uart->sent(uart->ctx), "which leaves");
+    check(!uart->sent(uart->ctx) && uart->leaves_in_us(uart->ctx) == takes_us, "which leaves");
     check(uart->write(uart->ctx, many, 8) == 0, "so that the next one is not taken");
     check(set(uart, 9600, FATHOM_PARITY_NONE, 1) == 0, "and no other rate");
 }

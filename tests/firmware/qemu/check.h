@@ -36,7 +36,7 @@ int check_short_sleeps(fathom_idle_t idle, void *idle_ctx);
 int set(const fathom_uart_t *uart, uint32_t baud, uint8_t parity, uint8_t stop_bits);
 
 /* A request of as much as the port's memory holds, while interrupts are off or none comes; it leaves afterwards. */
-void check_request(const fathom_uart_t *uart, uint8_t size);
+void check_request(const fathom_uart_t *uart, uint8_t size, uint32_t takes_us);
 
 /* What main returns: 0 if nothing failed, else 1. */
 int check_result(void);

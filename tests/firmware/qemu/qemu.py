@@ -22,7 +22,7 @@ MACHINES = {'mps2': ('qemu-system-arm', '-M', 'mps2-an385'),
             'virt': ('qemu-system-riscv32', '-M', 'virt', '-bios', 'none')}
 # What a slow far end may cause: no answer, one that broke off, a stream that was read out of step and refused, a stale
 # one.
-LATE = {'3', '4', '6', '7'}
+LATE = {'NO_ANSWER', 'CHECKSUM', 'MALFORMED', 'STALE'}
 
 DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 723.1744
 

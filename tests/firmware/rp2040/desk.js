@@ -6,7 +6,7 @@ const {Machine} = require('./machine.js');
 const RAM = 0x20000000;
 const ASK = 0, OPERATION = 4, ARGUMENTS = 8, RESULT = 40, FLAGS = 44, LAST_US = 48, BYTES = 52;
 const OPERATIONS = ['begin', 'read', 'write', 'sent', 'setLine', 'setBreak', 'idle', 'output', 'set', 'input', 'get', 'now',
-  'counter'];
+  'counter', 'leavesInUs'];
 const TIMED = 1; // FATHOM_RX_TIMED
 const PARITY = {N: 0, E: 1, O: 2};
 

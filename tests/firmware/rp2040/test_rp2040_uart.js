@@ -137,6 +137,21 @@ test('sent is exact: false until the last stop bit has left, then true', () => {
   }
 });
 
+// A bit of 9600 baud is 104 us, and a call takes some microseconds.
+test('when the request has left is told to a bit', () => {
+  const bench = begin('9600 8N1');
+  assert.strictEqual(bench.desk.call('leavesInUs'), 0);
+  bench.desk.write([1, 2, 3]);
+  bench.machine.until(() => bench.uart.sent.length === 1);
+  const left = bench.desk.call('leavesInUs');
+  const asked = bench.machine.clock.nanos;
+  bench.machine.until(() => bench.uart.sent.length === 3);
+  const took = (bench.uart.sent[2].end - asked) / 1000;
+  assert.ok(left >= took && left < took + 120, `${left} ${took}`);
+  bench.machine.run(0.1);
+  assert.strictEqual(bench.desk.call('leavesInUs'), 0);
+});
+
 test('the driver is on from before the first start bit until the last stop bit has left, at every rate', () => {
   for (const [line, bits] of [['9600 8N1', 10], ['19200 8E1', 11], ['115200 8E1', 11], ['230400 8E2', 12]])
     for (const length of [1, 8, 33, 200]) {

@@ -2,6 +2,6 @@
 ROWS = (
     ('alias-ignored', 'a05_modbus.h: the block of registers that the config names', 'unit/test_a05_modbus',
      ('src/a05_modbus.c', 'fathom_a05_modbus_init',
-      'question->first = (uint16_t)(registers + first);',
-      'question->first = (uint16_t)(FATHOM_A05_REGISTERS + first);')),
+      'base->question.first = (uint16_t)(registers + first);',
+      'base->question.first = (uint16_t)(FATHOM_A05_REGISTERS + first);')),
 )

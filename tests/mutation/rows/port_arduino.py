@@ -3,5 +3,5 @@ ROWS = (
     ('driver-dropped-early', 'fathom_arduino.h: sent when the time of the request has passed, too',
      'firmware/test_arduino_rs485',
      ('port/arduino/fathom_arduino.cpp', 'serial_uart::release',
-      '!is_over(since_us_, span_us_) ||', '')),
+      'left_us(since_us_, span_us_) != 0 ||', '')),
 )

@@ -19,8 +19,11 @@ static fathom_avr_usart_config_t usart = {.request = sending,
                                           .driver = {&PORTD, _BV(PD3)},
                                           .line = {9600, FATHOM_PARITY_EVEN, 1}};
 static uint8_t frame[13];
-static fathom_line_config_t line_config = {
-    .uart = &fathom_avr_usart0, .clock = &fathom_avr_clock, .frame = frame, .frame_size = sizeof frame};
+static fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
+                                           .clock = &fathom_avr_clock,
+                                           .frame = frame,
+                                           .frame_size = sizeof frame,
+                                           .echo = FATHOM_LINE_ECHO_OFF};
 static fathom_line_t line;
 static fathom_modbus_t modbus;
 static fathom_hps167s_t gate;
@@ -37,7 +40,7 @@ int main(void)
     if (!fathom_avr_usart0_begin(&usart)) return 1;
     if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 1;
     modbus = fathom_modbus_client(&line);
-    const fathom_hps167s_config_t config = {.modbus = &modbus, .clock = &fathom_avr_clock};
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) return 1;
     sei();
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);

@@ -67,6 +67,9 @@ static int16_t call(uint8_t what)
         return send();
     case REMOTE_SENT:
         return fathom_avr_usart0.sent(NULL);
+    case REMOTE_LEAVES:
+        remote.time_us = fathom_avr_usart0.leaves_in_us(NULL);
+        return 0;
     case REMOTE_SET_LINE:
         return (int16_t)fathom_avr_usart0.set_line(NULL, &line);
     case REMOTE_SET_BREAK:

@@ -71,8 +71,16 @@ static fathom_sensor_t sensors[2];
 
 static fathom_avr_usart_config_t usart = {
     .request = request, .request_size = sizeof request, .line = {9600, FATHOM_PARITY_NONE, 1}};
-static fathom_line_config_t line_config = {
-    .uart = &fathom_avr_usart0, .clock = &fathom_avr_clock, .frame = frame, .frame_size = sizeof frame};
+static uint16_t counters[FATHOM_LINE_COUNTERS];
+
+static fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
+                                           .clock = &fathom_avr_clock,
+                                           .frame = frame,
+                                           .frame_size = sizeof frame,
+                                           .find_echo = fathom_line_find_echo,
+                                           .marks = fathom_line_marks,
+                                           .count = fathom_line_count,
+                                           .counters = counters};
 
 static void set_up_rs485(uint8_t orders)
 {
@@ -101,11 +109,10 @@ static uint8_t begin(uint8_t orders)
     } else {
         modbus = fathom_modbus_client(&line);
         for (uint8_t i = 0; i < units; i++) {
-            const fathom_hps167s_config_t config = {.modbus = &modbus,
-                                                    .clock = &fathom_avr_clock,
-                                                    .address = (uint8_t)(1 + i),
-                                                    .timeout_us = 100000,
-                                                    .retries = (orders & ORDER_RETRY) != 0};
+            const fathom_hps167s_config_t config = {.modbus.transport = &modbus,
+                                                    .modbus.address = (uint8_t)(1 + i),
+                                                    .modbus.timeout_us = 100000,
+                                                    .modbus.retries = (orders & ORDER_RETRY) != 0};
             if (fathom_hps167s_init(&hps[i], &config) != FATHOM_READY) GPIOR2 = 5;
             sensors[i] = fathom_hps167s_sensor(&hps[i]);
         }
@@ -119,7 +126,7 @@ static void obey(uint8_t order)
     GPIOR1 = REPORT_ASKED;
     if (order == ORDER_AWAY) _delay_ms(60);
     if (order != ORDER_COUNTERS) return;
-    report_counters(line.counters, FATHOM_LINE_COUNTERS);
+    report_counters(counters, FATHOM_LINE_COUNTERS);
     const uint16_t port[] = {fathom_avr_usart0_counters.parity, fathom_avr_usart0_counters.framing,
                              fathom_avr_usart0_counters.overruns};
     report_counters(port, 3);

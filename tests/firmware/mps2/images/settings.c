@@ -50,7 +50,7 @@ int main(void)
     check(uart.set_break == 0, "it has no break");
     check(uart.read(uart.ctx, &byte, 1, &rx) == 0, "nothing has come");
     __asm__ volatile("cpsid i"); /* QEMU takes a byte at once, so that interrupts would take all */
-    check_request(&uart, sizeof request);
+    check_request(&uart, sizeof request, 348); /* 8 characters of 10 bits at 230400 baud */
     check(set(&uart, 230400, FATHOM_PARITY_NONE, 1) == 1, "but the same one");
     __asm__ volatile("cpsie i");
     const uint32_t since_us = fathom_mps2_clock.now_us(0);

@@ -76,8 +76,9 @@ int main(void)
     fathom_rp2040_edges_begin(&echo, &edges, ECHO, NULL);
     const fathom_capture_t capture = fathom_edges_capture(&edges);
     fathom_a16_pwm_t a16;
-    const fathom_a16_pwm_config_t a16_config = {
-        .clock = &fathom_rp2040_clock, .capture = &capture, .trigger = &trigger};
+    const fathom_a16_pwm_config_t a16_config = {.pulse = {.clock = &fathom_rp2040_clock,
+                                                          .capture = &capture,
+                                                          .trigger = fathom_output_pin(&trigger)}};
     if (fathom_a16_pwm_init(&a16, &a16_config) != FATHOM_READY) return 3;
 
     uint8_t frame[32];
@@ -87,12 +88,14 @@ int main(void)
         .clock = &fathom_rp2040_clock,
         .frame = frame,
         .frame_size = sizeof frame,
+        .echo = FATHOM_LINE_ECHO_OFF,
+        .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 4;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
-    const fathom_hps167s_config_t hps_config = {.modbus = &modbus, .clock = &fathom_rp2040_clock};
+    const fathom_hps167s_config_t hps_config = {.modbus.transport = &modbus};
     if (fathom_hps167s_init(&hps, &hps_config) != FATHOM_READY) return 5;
 
     const fathom_sensor_t pulse = fathom_a16_pwm_sensor(&a16);

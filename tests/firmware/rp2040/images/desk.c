@@ -8,7 +8,7 @@
  * The port's functions, one at a time, as the test asks for them: it writes the desk's operation, arguments and bytes,
  * then 1 to `ask`, and waits until that is 0 again. desk.js has the same layout.
  */
-enum { BEGIN, READ, WRITE, SENT, SET_LINE, SET_BREAK, IDLE, OUTPUT, SET, INPUT, GET, NOW, COUNTER };
+enum { BEGIN, READ, WRITE, SENT, SET_LINE, SET_BREAK, IDLE, OUTPUT, SET, INPUT, GET, NOW, COUNTER, LEAVES };
 enum { DE_ALARM = 1, IDLE_ALARM = 2, REQUEST_SIZE = 200 };
 
 typedef struct {
@@ -101,6 +101,8 @@ static int32_t do_it(const uint32_t *argument)
         return (int32_t)fathom_rp2040_clock.now_us(fathom_rp2040_clock.ctx);
     case COUNTER:
         return argument[0] == 0 ? port.parity : (argument[0] == 1 ? port.framing : port.overruns);
+    case LEAVES:
+        return (int32_t)uart.leaves_in_us(uart.ctx);
     default:
         return -99;
     }

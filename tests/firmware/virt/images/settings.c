@@ -55,7 +55,7 @@ int main(void)
     check((registers[IER] & 2) == 0, "room for bytes that are not there interrupts once");
     __asm__ volatile(
         "csrc mstatus, %0" ::"r"(8)); /* QEMU takes a FIFO at once, so that interrupts would take all */
-    check_request(&uart, sizeof request);
+    check_request(&uart, sizeof request, 733334); /* 20 characters of 11 bits at 300 baud */
     check(uart.set_break(uart.ctx, true) == 0, "and no break");
     __asm__ volatile("csrs mstatus, %0" ::"r"(8));
     const uint32_t since_us = fathom_virt_clock.now_us(0);

@@ -69,7 +69,10 @@ static void check_write(const fathom_uart_t &uart)
     CHECK(digitalRead(driver_pin) == LOW);
 
     // 63 characters of 11 bits at 19200 baud: 36.094 ms, and 2.5 %, 2 bits and 9 us more: 37.11 ms.
+    CHECK(uart.leaves_in_us(uart.ctx) == 0);
     CHECK(uart.write(uart.ctx, many, 63) == 63);
+    const uint32_t leaves_in_us = uart.leaves_in_us(uart.ctx);
+    CHECK(leaves_in_us > 36800 && leaves_in_us < 37150);
     const uint32_t took_us = until_sent(uart);
     CHECK(took_us >= 37000 && took_us < 37300);
     CHECK(Serial.availableForWrite() == 63);
@@ -79,6 +82,7 @@ static void check_write(const fathom_uart_t &uart)
     UCSR0B &= static_cast<uint8_t>(~_BV(UDRIE0));
     delay(10);
     CHECK(!uart.sent(uart.ctx) && digitalRead(driver_pin) == HIGH);
+    CHECK(uart.leaves_in_us(uart.ctx) == 0);
     UCSR0B |= _BV(UDRIE0);
     CHECK(until_sent(uart) > 0 && digitalRead(driver_pin) == LOW);
 }
@@ -118,6 +122,7 @@ static void check_stream(const fathom_uart_t &uart)
     CHECK(uart.write(uart.ctx, many, 8) == 8);
     CHECK(uart.write(uart.ctx, many, 8) == 0);
     // 8 characters of 10 bits at 9600 baud: 8.333 ms, and 2.5 %, 2 bits and 9 us more: 8.76 ms
+    CHECK(uart.leaves_in_us(uart.ctx) > 8600 && uart.leaves_in_us(uart.ctx) < 8770);
     const uint32_t took_us = until_sent(uart);
     CHECK(took_us >= 8650 && took_us < 8850);
     stream.takes = 3;

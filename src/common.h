@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_COMMON_H
+#define FATHOM_COMMON_H
+
+#include "fathom/hal.h"
+#include "fathom/sensor.h"
+
+/* What several sources need and no user does. Inline: each is less code than a call of it. */
+
+static inline uint32_t clock_us(const fathom_clock_t *clock) { return clock->now_us(clock->ctx); }
+
+static inline uint32_t least_us(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
+/* How much of `us` is left when so much of it has passed. */
+static inline uint32_t rest_us(uint32_t us, uint32_t passed_us)
+{
+    return us > passed_us ? us - passed_us : 0;
+}
+
+/* A member of a config of which 0 means its default. */
+static inline uint32_t or_default(uint32_t value, uint32_t default_value)
+{
+    return value != 0 ? value : default_value;
+}
+
+/* A counter that stops at 65535. */
+static inline void count_one(uint16_t *counter)
+{
+    *counter = (uint16_t)(*counter + (*counter != UINT16_MAX));
+}
+
+/* All bytes 0. volatile: or compilers make it a call of memset, which costs more. */
+static inline void clear(void *object, size_t size)
+{
+    volatile uint8_t *at = object;
+    while (size-- != 0) *at++ = 0;
+}
+
+static inline fathom_sensor_t sensor_of(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),
+                                        uint32_t (*due_us)(void *ctx), void *driver)
+{
+    fathom_sensor_t sensor;
+    sensor.poll = poll;
+    sensor.due_us = due_us;
+    sensor.ctx = driver;
+    return sensor;
+}
+
+#endif

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include "line_bench.h"
+
+/* A line that only listens, and one that is told nothing but what it cannot do without: no marks, no counters, no search
+ * for an echo. */
+
+static void keep_only_what_is_needed(void)
+{
+    bench.config.find_echo = NULL;
+    bench.config.marks = NULL;
+    bench.config.count = NULL;
+    bench.config.counters = NULL;
+}
+
+static int set_up_listening(void **state)
+{
+    set_up(state);
+    keep_only_what_is_needed();
+    bench.config.echo = FATHOM_LINE_ECHO_AUTO; /* "nothing needs to be said of echo" */
+    assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_READY);
+    return 0;
+}
+
+static int set_up_bare(void **state)
+{
+    set_up(state);
+    keep_only_what_is_needed();
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up_listening};
+static const suite_t bare = {.set_up = set_up_bare};
+
+TEST(a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it)
+{
+    listen_for(5000);
+    run(6000);
+    deliver_all(auto_frame);
+    deliver_all(exception_1_2);
+    expect_heard(auto_frame, sizeof auto_frame, exception_1_2, sizeof exception_1_2);
+    assert_int_equal(ear.gaps, 1);
+    assert_int_equal(ear.gap_at, 0);
+    assert_int_equal(ear.time_us, bench.fake.now_us);
+    assert_true(fathom_line_is_idle(&bench.line));
+}
+
+TEST(a_line_that_only_listens_hands_over_each_byte_as_it_comes)
+{
+    listen_for(5000);
+    receive(auto_frame, 1);
+    assert_int_equal(poll_line(), FATHOM_PENDING);
+    expect_heard(auto_frame, 1, NULL, 0);
+}
+
+TEST(a_line_that_only_listens_tells_of_lost_bytes_once)
+{
+    bench.config.marks = fathom_line_marks;
+    listen_for(5000);
+    receive_rx(auto_frame, sizeof auto_frame, FATHOM_RX_FRAMING);
+    run(100);
+    assert_int_equal(ear.calls, 1);
+    assert_int_equal(ear.losses, 1);
+}
+
+TEST(what_comes_to_no_listener_is_forgotten)
+{
+    deliver_all(auto_frame);
+    listen_for(500);
+    deliver_all(exception_1_2);
+    expect_heard(exception_1_2, sizeof exception_1_2, NULL, 0);
+}
+
+TEST(a_line_that_only_listens_is_due_when_the_silence_is_one_for_its_listener)
+{
+    expect_due(FATHOM_NO_DEADLINE);
+    listen_for(5000);
+    deliver_all(auto_frame);
+    expect_due(5000);
+    run(5100);
+    expect_due(FATHOM_NO_DEADLINE);
+}
+
+TEST(a_line_that_only_listens_lives_through_a_broken_port)
+{
+    listen_for(5000);
+    break_port();
+    deliver_all(auto_frame);
+    expect_heard(auto_frame, sizeof auto_frame, NULL, 0);
+}
+
+TEST(a_line_that_only_listens_can_hold_its_output_low)
+{
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    assert_true(bench.fake.in_break);
+    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+    assert_false(bench.fake.in_break);
+}
+
+/* Marks of the port count where they are named: the bytes are the CRC's to judge. */
+TEST_IN(bare, without_marks_the_bytes_that_the_port_marks_are_as_any_other)
+{
+    static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN,
+                                    FATHOM_RX_SILENCE};
+    for (size_t i = 0; i != sizeof flags; i++) {
+        set_up_bare(state);
+        ask_1_and_send(0);
+        receive(answer_1_754, 4);
+        receive_rx(answer_1_754 + 4, 3, flags[i]);
+        run(100);
+        expect_mm(754);
+    }
+}
+
+/* A line that is told stays told, whatever comes: here an echo where there was to be none. */
+TEST_IN(bare, what_is_told_of_an_echo_stays)
+{
+    ask_1_and_send(0);
+    receive_all(ask_1_processed);
+    deliver_all(answer_1_754);
+    expect_mm(754);
+    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
+    break_port();
+    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
+}
+
+TEST_IN(bare, a_write_is_acknowledged_by_one_copy_without_echo_and_by_two_with_it)
+{
+    for (unsigned echoes = 0; echoes != 2; echoes++) {
+        set_up(state);
+        keep_only_what_is_needed();
+        set_up_echo(echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
+        ask_to_write(&bench.request, 1);
+        run(REQUEST_US);
+        deliver_all(set_address_5);
+        expect(echoes != 0 ? FATHOM_PENDING : FATHOM_READY);
+        if (echoes == 0) continue;
+        deliver_all(set_address_5);
+        expect(FATHOM_READY);
+    }
+}
+
+TEST_IN(bare, an_exception_a_late_answer_and_a_damaged_one_end_as_on_any_line)
+{
+    ask_1_and_send(0);
+    deliver_all(exception_1_2);
+    expect(FATHOM_ERR_EXCEPTION);
+    set_up_bare(state);
+    ask_1_and_send(0);
+    receive_damaged();
+    expect_after(GAP_US + 300, FATHOM_ERR_CHECKSUM);
+    set_up_bare(state);
+    ask_1_and_send(1);
+    run(TIMEOUT_US + 200);
+    deliver_all(answer_1_754);
+    expect_mm(754);
+}
+
+/* fathom_modbus_client_submit: "A read of unit 0: FATHOM_ERR_UNSUPPORTED". */
+TEST_IN(bare, a_client_without_unit_0_does_not_read_it)
+{
+    fathom_modbus_read_holding_registers(&bench.request.message, 0, 0x0100, 1, &bench.value);
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_UNSUPPORTED);
+    run(100000);
+    expect_written(0);
+}
+
+/* A 55 AA frame of unit 1, which owes an answer to Modbus: it is late, and not that answer, though it is one to a read of
+ * the same register. */
+TEST_IN(bare, a_late_frame_of_another_protocol_is_not_the_answer)
+{
+    ask_dyp(&bench.other, 1, 1, &bench.other_value);
+    run(REQUEST_US + TIMEOUT_US);
+    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_ANSWER);
+    run(TIMEOUT_US + 200);
+    bench.value = 0xDEAD;
+    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 1, &bench.value);
+    bench.request.exchange.retries = 1;
+    submit(&bench.request);
+    run(REQUEST_US + TIMEOUT_US);
+    ask_dyp(&bench.other, 2, 1, &bench.other_value);
+    run(REQUEST_US);
+    expect_written(3);
+    deliver_all(dyp_first_1953);
+    expect(FATHOM_PENDING);
+    assert_int_equal(bench.value, 0xDEAD);
+}
