@@ -100,17 +100,26 @@ static bool is_believed(fathom_hps167s_t *sensor)
     return false;
 }
 
+/* It gives up. Where an unasked frame was taken for an answer, one of the answers is still to come, and has the shape of
+ * a measurement: until it cannot come any more there is no outcome, or it would meet the next request of the next driver. */
+static fathom_status_t give_up(const fathom_hps167s_t *sensor)
+{
+    return sensor->is_owed && sensor->unit.pause_us != 0 ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;
+}
+
 fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
 {
     fathom_status_t status;
     be_wary(sensor);
-    do {
-        status =
-            fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION, FATHOM_HPS167S_CONFIGURATION_COUNT);
+    for (;;) {
+        status = sensor->answers == MAX_ANSWERS
+                     ? give_up(sensor)
+                     : fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION,
+                                               FATHOM_HPS167S_CONFIGURATION_COUNT);
         if (status == FATHOM_PENDING || status == FATHOM_ERR_BUSY) return status;
         if (status != FATHOM_READY || is_believed(sensor)) break;
-        if (sensor->answers == MAX_ANSWERS) status = FATHOM_ERR_MALFORMED;
-    } while (status == FATHOM_READY);
+        if (sensor->answers == MAX_ANSWERS) sensor->unit.pause_us = sensor->unit.command_timeout_us;
+    }
     sensor->answers = 0;
     return status;
 }

@@ -106,7 +106,8 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
  * or not over max_mm, min_mm over max_mm. */
 fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
 
-/* Cancels what is under way; the memory is the caller's again. */
+/* Cancels what is under way; the memory is the caller's again. After the configuration (#2) was read among unasked frames
+ * an answer may still be on its way: initialise another driver for the same unit a command's time-out later. */
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 
 /*

@@ -36,8 +36,9 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
  * succession agree (config.same_answers). Whatever its baud code and reconnect time are.
  * What does not count came unasked. For 2 s after such a frame three answers have to agree, and the questions
  * come at intervals that are no multiple of 18519 us, or they would go in step with what the device sends by itself.
- * It is asked up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Of what can be measured only exactly 255 mm can
- * pass the first test.
+ * It is asked up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for an answer,
+ * that is said command_timeout_us later, when no answer can come any more: it would be taken for the next measurement.
+ * Of what can be measured only exactly 255 mm can pass the first test.
  */
 fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out);
 

@@ -138,6 +138,26 @@ TEST(after_eight_answers_without_agreement_it_gives_up)
     PLAY(configuration, OK, TELLS(RATE_2));
 }
 
+/* The one answer that is still to come has a measurement's shape: until the command's time-out (1 s) has passed there is
+ * no outcome, and nothing is asked. */
+TEST(where_unasked_frames_were_taken_for_it_it_gives_up_when_no_answer_can_come_any_more)
+{
+    const row_t row = HPS_2(1, OK, 0, MEASURES);
+    PART(configuration, row, row, row, row, row, row, row, row);
+    PENDS(configuration());
+    fake.now_us += 999999;
+    PENDS(configuration());
+    desk_waits(0);
+    assert_int_equal(fathom_due_us(&desk.sensor, 1), 1);
+    fake.now_us++;
+    assert_int_equal(configuration(), FATHOM_ERR_MALFORMED);
+    assert_int_equal(fake.submits, 0); /* since the eighth */
+    /* and where there are none, at once */
+    hps_set_up(NULL);
+    PART(configuration, TWICE, TWICE, TWICE, TWICE);
+    assert_int_equal(configuration(), FATHOM_ERR_MALFORMED);
+}
+
 /* Each differs from an answer to #2 in one thing. */
 TEST(what_cannot_be_an_answer_to_2_never_counts)
 {
