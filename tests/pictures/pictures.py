@@ -15,6 +15,9 @@ import sys
 
 sys.dont_write_bytecode = True
 import events
+import layers
+import quarantine
+import resync
 import transaction
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -24,7 +27,7 @@ TRACES = os.path.join(HERE, 'traces')
 SIMULATED = ('quarantine', 'resync-silence', 'resync-none', 'resync-repeated')
 FIRMWARE = 'transaction'
 MOST_US = 50
-FAMILIES = (transaction,)
+FAMILIES = (transaction, quarantine, resync, layers)
 
 
 def load(path):

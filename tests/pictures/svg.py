@@ -103,7 +103,7 @@ class Picture:
         if bold:
             attributes += ' font-weight="bold"'
         if mono:
-            attributes += f' font-family="{MONO}"'
+            attributes += ' class="m"'
         self.parts.append(f'<text {attributes}>{escape(text)}</text>')
 
     def lines(self, x, y, texts, size=12, gap=1.4, **how):
@@ -121,7 +121,7 @@ class Picture:
         head = (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
                 f'width="{self.width}" height="{self.height}" role="img" font-family="{FONTS}" font-size="12" '
                 f'fill="{INK}">\n<title>{escape(self.title)}</title>\n<desc>{escape(self.description)}</desc>\n'
-                f'<rect width="{self.width}" height="{self.height}" rx="8" fill="{PAPER}"/>\n')
+                f'<style>.m{{font-family:{MONO}}}</style>\n<rect width="{self.width}" height="{self.height}" rx="8" fill="{PAPER}"/>\n')
         whole = head + '\n'.join(self.parts) + '\n</svg>\n'
         if len(whole.encode()) > MOST_BYTES:
             raise Overlap(f'{self.title}: {len(whole)} bytes')

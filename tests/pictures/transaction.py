@@ -102,8 +102,8 @@ def zoom(picture, x, title, driver_edge, edge_us, edges, bits):
     shown = [(at(us), level) for us, level in edges if left < at(us) < right]
     picture.path(steps(shown, left, right, y + 72, y + 92), svg.BLUE[1], 1.8)
     for (begin, name), (end, _) in zip(bits, bits[1:]):
-        middle = (max(at(begin), left) + min(at(end), right)) / 2
-        picture.text(middle, y + 110, name, 10.5, svg.MUTED, 'middle')
+        shown_middle = (max(at(begin), left) + min(at(end), right)) / 2
+        picture.text(shown_middle, y + 110, name, 10.5, svg.MUTED, 'middle')
 
 
 def draw_zooms(picture, events, request, driver):
