@@ -5,7 +5,8 @@ import os
 import svg
 from events import demand
 
-INCLUDE = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), 'include', 'fathom')
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+INCLUDE = os.path.join(ROOT, 'include', 'fathom')
 # folder ('': include/fathom itself), colors, what it is, headers
 LAYERS = [
     ('sensor', svg.GREEN, 'what a device knows, and what is made of its readings',
@@ -18,6 +19,8 @@ LAYERS = [
 ]
 LEFT, WIDTH, TOP, HEIGHT, STEP = 48, 600, 196, 70, 100
 PORT, PORT_WIDTH = 740, 252
+PORTS = [['posix', 'libmodbus'], ['avr', 'rp2040', 'stm32f4'], ['arduino', 'mps2', 'virt']]
+DOWN = LEFT + 546  # arrows
 
 
 def check():
@@ -26,19 +29,21 @@ def check():
         for header in headers:
             path = os.path.join(INCLUDE, folder if sorted_in else '', header + '.h')
             demand(os.path.exists(path), f'{path}: the picture of the layers names it')
+    for port in [*sum(PORTS, []), 'sim']:
+        demand(os.path.isdir(os.path.join(ROOT, 'port', port)), f'port/{port}: the picture of the layers names it')
 
 
 def layer(picture, y, name, colors, what, headers):
     picture.rect(LEFT, y, WIDTH, HEIGHT, colors, 6)
     picture.text(LEFT + 18, y + 27, name, 15, colors[1], bold=True)
     picture.text(LEFT + 96, y + 27, what, 12)
-    picture.text(LEFT + 18, y + 53, '  '.join(headers) + ('  ...' if len(headers) > 4 or name == 'codec/' else ''), 11,
+    picture.text(LEFT + 18, y + 53, ', '.join(headers) + (', ...' if len(headers) > 4 or name == 'codec/' else ''), 11,
                  svg.MUTED, mono=True, within=WIDTH - 30)
 
 
 def draw(_):
     check()
-    picture = svg.Picture(1040, 640, 'The layers, and what may include what', (
+    picture = svg.Picture(1040, 622, 'The layers, and what may include what', (
         'From the top: the program; the library with sensor, engine, codec and the words that all share; beside them the '
         'ports. Arrows of includes point down only. A codec never includes an engine, an engine never a sensor, and '
         'nothing in the library includes a port, which implements hal.h.'))
@@ -54,21 +59,21 @@ def draw(_):
         y = TOP + i * STEP
         layer(picture, y, folder + '/' if folder else 'words', colors, what, headers)
         if i:
-            picture.arrow([(LEFT + 300, y - STEP + HEIGHT), (LEFT + 300, y)], svg.INK, size=8)
-    picture.arrow([(LEFT + 300, 140), (LEFT + 300, TOP)], svg.INK, size=8)
+            picture.arrow([(DOWN, y - STEP + HEIGHT), (DOWN, y)], svg.INK, size=8)
+    picture.arrow([(DOWN, 140), (DOWN, TOP)], svg.INK, size=8)
     # a sensor may use a codec, and all use the words: past the layers between
     side = LEFT + WIDTH
-    picture.arrow([(side - 60, TOP + HEIGHT), (side - 60, TOP + STEP - 13), (side + 10, TOP + STEP - 13),
+    picture.arrow([(side - 24, TOP + HEIGHT), (side - 24, TOP + STEP - 13), (side + 10, TOP + STEP - 13),
                    (side + 10, TOP + 2 * STEP + 30), (side, TOP + 2 * STEP + 30)], svg.INK, size=8)
 
     port_top, port_height = TOP + STEP, 3 * STEP + HEIGHT - STEP
     picture.rect(PORT, port_top, PORT_WIDTH, port_height, svg.RED, 6)
     picture.text(PORT + 18, port_top + 27, 'port/', 15, svg.RED[1], bold=True)
     y = picture.lines(PORT + 18, port_top + 52, ('fills in the structs of hal.h:', 'UART, clock, pin, capture.'), 12)
-    y = picture.lines(PORT + 18, y + 8, ('posix  libmodbus', 'avr  rp2040  stm32f4', 'arduino  mps2  virt'), 11,
-                      color=svg.MUTED, mono=True)
-    y = picture.lines(PORT + 18, y + 8, ('sim: simulated sensors at the', 'far end, without hardware'), 11, color=svg.MUTED)
-    picture.lines(PORT + 18, y + 10, ('The only place for a header of', 'an OS or of a chip.'), 12)
+    y = picture.lines(PORT + 18, y + 8, [', '.join(ports) for ports in PORTS], 11, color=svg.MUTED, mono=True)
+    y = picture.lines(PORT + 18, y + 4, ('sim: simulated sensors at the', 'far end, without hardware'), 11, color=svg.MUTED)
+    y = picture.lines(PORT + 18, y + 10, ('The only place for a header of', 'an OS or of a chip.'), 12)
+    picture.lines(PORT + 18, y + 8, ('May include the library, which', 'never includes a port.'), 12)
     picture.arrow([(PORT + 126, 140), (PORT + 126, port_top)], svg.INK, size=8)
     words = TOP + 3 * STEP
     picture.arrow([(PORT, words + 24), (LEFT + WIDTH, words + 24)], svg.INK, size=8)

@@ -19,6 +19,7 @@ import layers
 import quarantine
 import resync
 import transaction
+import wiring
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -27,7 +28,7 @@ TRACES = os.path.join(HERE, 'traces')
 SIMULATED = ('quarantine', 'resync-silence', 'resync-none', 'resync-repeated')
 FIRMWARE = 'transaction'
 MOST_US = 50
-FAMILIES = (transaction, quarantine, resync, layers)
+FAMILIES = (transaction, quarantine, resync, layers, wiring)
 
 
 def load(path):
