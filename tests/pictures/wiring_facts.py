@@ -31,7 +31,7 @@ A16_LEVELS = ('Levels: high is 3 V at the outputs, and at most 5 V may be put on
               'High for an ATmega328P at 5 V is 3.0 V and more (0.6 VCC, by its datasheet); for 74HCT inputs 2.0 V and '
               'more.')
 BUFFER = Block('buffer\n74HCT, 5 V', 0, 1, [('A', 'Y')])
-DIRECT_3V3 = 'No level shifter: 3 V is high for an input of 3.3 V, and RX may have 5 V.'
+DIRECT_3V3 = 'No level shifter: 3 V is high for an input of 3.3 V, and RX stands 5 V.'
 BUFFER_5V = ('A buffer with TTL inputs in TX: 3 V is where high begins at 5 V, with no margin. Where the input\'s threshold '
              'is well below 3 V it goes direct. RX stands 5 V.')
 
@@ -144,7 +144,7 @@ A05 = [
                     'at 5 V they go direct.']),
              Panel(BOARDS[2], 'A05', 'USB to\nUART 3.3 V', [Row('TX', 'RXD', 'signal', '>'),
                                                             Row('RX', 'TXD', 'signal', '<'), GROUND], None,
-                   ['An adapter with logic levels of 3.3 V; one that stands 5 V at RXD, where TX rests there. Not one for '
+                   ['An adapter with logic levels of 3.3 V. Where TX rests at 5 V, one whose RXD stands that. Not one for '
                     'RS-232.'])],
             ['RX may stay open: processed values. Low in the first second after power-on: real-time ones (A05 1(1)); a pin '
              'does that, or TX by a break. Modbus needs both wires, and ends automatic output until power-off.', NO_SUPPLY]),
@@ -163,7 +163,7 @@ A05 = [
             ['NO, normally open, conducts when something is near; NC, normally closed, when nothing is (A05 4(1)). Each state '
              'lasts 1 s or more. A module without power looks like "nothing near" at either contact. 1 m from the factory, '
              'taught by a button on the module (A05 4(2)).',
-             'What the contact may switch is not in the text: an input of a board is little. ' + NO_SUPPLY]),
+             'What the contact may switch is not in the text: an input of a board is little load. ' + NO_SUPPLY]),
 ]
 
 # ---- HPS-167S ----
