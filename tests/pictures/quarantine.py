@@ -116,8 +116,9 @@ def draw(traces):
         'come or twice the time-out is over: nothing is asked of it, so that the late response is not taken for that to '
         'a new request. Unit 2 is asked meanwhile. The late response ends the quarantine and is dropped; after the '
         'inter-frame gap unit 1 is asked anew.'))
-    picture.head('Two HPS-167S on one line; unit 1 takes 47 ms where 30 ms are allowed. Drivers and line of the library, '
-                 'simulated devices and time')
+    took_us = story.late.begin_us - story.request.end_us
+    picture.head(f'Two HPS-167S on one line; unit 1 takes {took_us / 1000:.0f} ms where {TIMEOUT_US / 1000:.0f} ms are '
+                 'allowed. Drivers and line of the library, simulated devices and time')
     draw_axis(picture, story)
     draw_told(picture, story)
     draw_line(picture, story)
