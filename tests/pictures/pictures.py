@@ -74,7 +74,7 @@ def draw_all(traces):
 
 
 def broken_rules(name, text):
-    """What a picture may not be, whoever has made it."""
+    """What no picture may be."""
     problems = []
     tags = [element.tag.rsplit('}', 1)[-1] for element in ET.fromstring(text).iter()]
     if tags[1:3] != ['title', 'desc']:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A byte lost from a stream that nobody asks for, from traces of an A05's driver on a simulated line."""
+"""A byte lost from a stream, from traces of an A05's driver on a simulated line."""
 import svg
 from events import demand, of
 
