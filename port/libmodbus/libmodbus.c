@@ -2,7 +2,6 @@
 #define _GNU_SOURCE 1 /* ppoll */
 #include "fathom_libmodbus.h"
 
-#include <errno.h>
 #include <poll.h>
 #include <string.h>
 #include <time.h>
@@ -20,28 +19,6 @@ enum {
      * is not taken for one of ours. */
     FIRST_TRANSACTION = 0xF000
 };
-
-int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
-{
-    if (port->error == FATHOM_LIBMODBUS_OK) port->error = (int8_t)error;
-    return -1;
-}
-
-int fathom_libmodbus_failed(fathom_libmodbus_t *port)
-{
-    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return 0;
-    /* What a tty says whose adapter was unplugged. */
-    if (errno == EIO || errno == ENXIO || errno == ENODEV)
-        return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
-    if (port->error == FATHOM_LIBMODBUS_OK) port->system_error = errno;
-    return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_SYSTEM);
-}
-
-void fathom_libmodbus_works(fathom_libmodbus_t *port)
-{
-    port->error = FATHOM_LIBMODBUS_OK;
-    port->system_error = 0;
-}
 
 fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus,
                                       const fathom_libmodbus_config_t *config)
@@ -105,11 +82,6 @@ fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port)
                                .sent = fathom_libmodbus_tcp_sent,
                                .ctx = port};
     return port->is_tcp ? tcp : rtu;
-}
-
-fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port)
-{
-    return (fathom_libmodbus_error_t)port->error;
 }
 
 void fathom_libmodbus_wait(void *port, uint32_t max_us)

@@ -135,15 +135,3 @@ fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom
     port->line = *settings;
     return FATHOM_POSIX_OK;
 }
-
-fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
-{
-    if (port == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
-    if (settings == NULL) return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "no settings were given");
-    /* sent first: it is what finds a port that has just been lost. */
-    const bool sent = fathom_posix_sent(port);
-    const fathom_posix_status_t status = fathom_posix_usable(port);
-    if (status != FATHOM_POSIX_OK) return status;
-    if (!sent) return fathom_posix_fail(port, FATHOM_POSIX_ERR_BUSY, "bytes are still leaving");
-    return fathom_posix_apply(port, settings);
-}

@@ -81,7 +81,7 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     return (int)length;
 }
 
-bool fathom_posix_sent(fathom_posix_uart_t *port)
+static bool is_sent(fathom_posix_uart_t *port)
 {
     if (!port->is_open || port->is_lost) return true;
     fathom_posix_push(port);
@@ -101,7 +101,7 @@ bool fathom_posix_sent(fathom_posix_uart_t *port)
     return true;
 }
 
-static bool uart_sent(void *ctx) { return fathom_posix_sent(ctx); }
+static bool uart_sent(void *ctx) { return is_sent(ctx); }
 
 static uint32_t uart_leaves_in_us(void *ctx)
 {
@@ -110,6 +110,18 @@ static uint32_t uart_leaves_in_us(void *ctx)
     if (!port->is_open || port->is_lost || port->pending_at != port->pending_end) return 0;
     const uint64_t now_us = fathom_posix_now_us();
     return now_us < port->leaving_until_us ? (uint32_t)(port->leaving_until_us - now_us) : 0;
+}
+
+fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
+{
+    if (port == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
+    if (settings == NULL) return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "no settings were given");
+    /* sent first: it is what finds a port that has just been lost. */
+    const bool sent = is_sent(port);
+    const fathom_posix_status_t status = fathom_posix_usable(port);
+    if (status != FATHOM_POSIX_OK) return status;
+    if (!sent) return fathom_posix_fail(port, FATHOM_POSIX_ERR_BUSY, "bytes are still leaving");
+    return fathom_posix_apply(port, settings);
 }
 
 static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
@@ -128,7 +140,7 @@ static int uart_set_break(void *ctx, bool on)
 {
     fathom_posix_uart_t *const port = ctx;
     if (fathom_posix_usable(port) != FATHOM_POSIX_OK) return -1;
-    if (!fathom_posix_sent(port)) return 0;
+    if (!is_sent(port)) return 0;
     /* A pseudo terminal has no wire to hold low. A break that arrives is read as a 0 (termios(3), without BRKINT and
      * PARMRK), so that stands for it. */
     if (port->is_pty) return on ? uart_write(ctx, (const uint8_t[]){0}, 1) : 1;

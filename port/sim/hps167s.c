@@ -22,12 +22,6 @@ static const uint8_t default_version[6] = {20, 9, 27, 2, 1, 0};
 /* The example of #5. */
 static const fathom_sim_optics_t example_optics = {0xDCB2, 0x07, 0x01, 0x0000};
 
-/* The device is the first member. */
-fathom_sim_hps167s_t *fathom_sim_hps167s_of(fathom_sim_device_t *device)
-{
-    return (fathom_sim_hps167s_t *)(void *)device;
-}
-
 static uint16_t pair(uint8_t high, uint8_t low) { return (uint16_t)(high * 256u + low); }
 
 static uint16_t get16(const uint8_t *at) { return pair(at[0], at[1]); }

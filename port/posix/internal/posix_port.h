@@ -21,6 +21,5 @@ fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom
 
 /* uart.c: offers the kernel the rest of an accepted write. */
 void fathom_posix_push(fathom_posix_uart_t *port);
-bool fathom_posix_sent(fathom_posix_uart_t *port);
 
 #endif

@@ -4,12 +4,16 @@
 
 #include "../hps167s.h"
 
-/* Between the files of the HPS-167S: hps167s.c reads and measures, hps167s_settings.c changes and keeps. */
+/* hps167s.c reads and measures, and uses hps167s_settings.c, which changes and keeps. */
 
 enum { FATHOM_SIM_HPS167S_RESET = 0x0009 }; /* #6 */
 enum { FATHOM_SIM_HPS167S_UNIT = 1, FATHOM_SIM_HPS167S_BAUD_CODE = 1, FATHOM_SIM_HPS167S_RECONNECT_MS = 180 };
 
-fathom_sim_hps167s_t *fathom_sim_hps167s_of(fathom_sim_device_t *device);
+/* The device is the first member. */
+static inline fathom_sim_hps167s_t *fathom_sim_hps167s_of(fathom_sim_device_t *device)
+{
+    return (fathom_sim_hps167s_t *)(void *)device;
+}
 
 /* The rate of baud_code acts. */
 void fathom_sim_hps167s_set_rate(fathom_sim_hps167s_t *hps);
