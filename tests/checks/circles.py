@@ -23,6 +23,9 @@ ENDS = ('.c', '.h', '.cpp', '.ino')
 
 # Where circles are still there: how the paths of all their files begin, and why. What is mended is to be taken out.
 KNOWN = {
+    'src/line': 'sending, the wait for a response and the queue name each other through line_inside.h',
+    'examples/fathom/': 'usage_error stands in commands.c, which names every command; channel, tcp and sensors',
+    'tests/second/second': 'second.h includes second_device.h at its end, which includes it',
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]', re.M)
@@ -157,23 +160,21 @@ def check(root, only):
     problems, seen = [], set()
     for circle, words in found:
         places = [place for place in KNOWN if all(node.startswith(place) for node in circle)]
-        seen.update(places)
+        seen.update(places[:1])
         if not places:
             problems.append(words)
     return problems + [f'{place}: no circle there any more; take it out of KNOWN' for place in KNOWN if place not in seen]
 
 
 FAULTS = [
-    ('include/fathom/status.h', '#define FATHOM_STATUS_H', '#define FATHOM_STATUS_H\n#include "fathom/sample.h"\n',
-     'a circle of includes'),
-    ('port/sim/scene.h', '#define FATHOM_SIM_SCENE_H', '#define FATHOM_SIM_SCENE_H\n#include "device.h"\n',
-     'a circle of includes'),
+    ('include/fathom/hal.h', None, '#include "fathom/line.h"\n', 'a circle of includes'),
+    ('port/sim/wire.h', None, '#include "device.h"\n', 'a circle of includes'),
     ('port/sim/itself.h', None, '#include "itself.h"\n', 'a circle of includes'),
-    ('examples/rp2040/report.c', None, '#include "tasks.h"\n', 'a circle of 2 modules'),
+    ('examples/rp2040/task.c', None, '#include "tasks.h"\n', 'includes examples/rp2040/tasks.h'),
     ('port/posix/settings.c', None, 'void f(void);\nvoid f(void) { fathom_posix_push(0); }\n',
      'names fathom_posix_push'),
-    ('port/sim/scene.c', None, 'void *f(void);\nvoid *f(void) { return fathom_sim_device_measure; }\n'
-     '#include "device.h"\n', 'includes port/sim/device.h'),
+    ('port/sim/fault_random.c', None, 'void *f(void);\nvoid *f(void) { return fathom_sim_fault_forge; }\n',
+     'names fathom_sim_fault_forge'),
 ]
 
 if __name__ == '__main__':
