@@ -40,12 +40,12 @@ static const fathom_avr_usart_config_t usart = {
 typedef struct {
     channel_t channel;
     fathom_uart_t uart;
-    uint8_t frame[8]; /* the least that a line takes; nothing is asked here */
+    uint8_t frame[8]; /* the least that a line takes; nothing is requested here */
     fathom_line_config_t config;
     fathom_line_t line;
-} ear_t;
+} receiver_t;
 
-static ear_t ears[SENSORS];
+static receiver_t receivers[SENSORS];
 static fathom_a16_auto_t a16;
 static fathom_a05_auto_t a05;
 static fathom_sensor_t sensors[SENSORS];
@@ -55,21 +55,21 @@ static uint32_t turned_us;
 
 static uint32_t now_us(void) { return fathom_avr_clock.now_us(fathom_avr_clock.ctx); }
 
-static bool begin_ear(ear_t *ear)
+static bool begin_receiver(receiver_t *receiver)
 {
-    ear->channel.uart = &fathom_avr_usart0;
-    ear->uart = channel_uart(&ear->channel);
-    ear->config.uart = &ear->uart;
-    ear->config.clock = &fathom_avr_clock;
-    ear->config.frame = ear->frame;
-    ear->config.frame_size = sizeof ear->frame;
-    ear->config.marks = fathom_line_marks;
-    return fathom_line_init_listening(&ear->line, &ear->config) == FATHOM_READY;
+    receiver->channel.uart = &fathom_avr_usart0;
+    receiver->uart = channel_uart(&receiver->channel);
+    receiver->config.uart = &receiver->uart;
+    receiver->config.clock = &fathom_avr_clock;
+    receiver->config.frame = receiver->frame;
+    receiver->config.frame_size = sizeof receiver->frame;
+    receiver->config.marks = fathom_line_marks;
+    return fathom_line_init_listening(&receiver->line, &receiver->config) == FATHOM_READY;
 }
 
 static void turn_to(uint8_t next)
 {
-    channel_turn(&ears[selected].channel, &ears[next].channel, &select, next == A05);
+    channel_turn(&receivers[selected].channel, &receivers[next].channel, &select, next == A05);
     selected = next;
     turned_us = now_us();
 }
@@ -80,9 +80,9 @@ static bool begin(void)
     select = fathom_avr_output(&select_at);
     if (!fathom_avr_usart0_begin(&usart)) return false;
     sei();
-    if (!begin_ear(&ears[A16]) || !begin_ear(&ears[A05])) return false;
-    const fathom_a16_auto_config_t one = {.line = &ears[A16].line, .stale_us = STALE_US};
-    const fathom_a05_auto_config_t four = {.line = &ears[A05].line, .stale_us = STALE_US};
+    if (!begin_receiver(&receivers[A16]) || !begin_receiver(&receivers[A05])) return false;
+    const fathom_a16_auto_config_t one = {.line = &receivers[A16].line, .stale_us = STALE_US};
+    const fathom_a05_auto_config_t four = {.line = &receivers[A05].line, .stale_us = STALE_US};
     if (fathom_a16_auto_init(&a16, &one) != FATHOM_READY) return false;
     if (fathom_a05_auto_init(&a05, &four) != FATHOM_READY) return false;
     sensors[A16] = fathom_a16_auto_sensor(&a16);
@@ -91,10 +91,10 @@ static bool begin(void)
     return true;
 }
 
-typedef enum { NOTHING, MORE, ALL } said_t;
+typedef enum { NOTHING, MORE, ALL } printed_t;
 
-/* One line of text, if this sensor has something to say; ALL: this was the last one of its answer. */
-static said_t say(text_t *text, uint8_t which)
+/* One line of text, if this sensor has news; ALL: this was the last line of its frame. */
+static printed_t print(text_t *text, uint8_t which)
 {
     fathom_sample_t sample;
     const fathom_status_t status = fathom_poll(&sensors[which], &sample);
@@ -128,17 +128,17 @@ int main(void)
     text_t text = {0};
     for (;;) {
         if (!text_send(&text, &fathom_avr_usart0)) {
-            /* The line of text before is still leaving; what there is to say waits, an A05 has four at a time. */
-            fathom_line_poll(&ears[selected].line);
+            /* The line of text before is still leaving; the next one waits. An A05 has four at a time. */
+            fathom_line_poll(&receivers[selected].line);
             fathom_avr_idle(NULL, BUSY_US);
             continue;
         }
         const uint8_t other = (uint8_t)(1 - selected);
-        const said_t said = say(&text, selected);
+        const printed_t printed = print(&text, selected);
         const bool is_long = fathom_elapsed_us(now_us(), turned_us) >= LISTEN_US;
-        if (said == ALL || (said == NOTHING && is_long))
+        if (printed == ALL || (printed == NOTHING && is_long))
             turn_to(other);
-        else if (said == NOTHING && say(&text, other) == NOTHING) /* that it is silent, or a frame more */
+        else if (printed == NOTHING && print(&text, other) == NOTHING) /* STALE, or a frame more */
             fathom_avr_idle(NULL, idle_us());
     }
 }

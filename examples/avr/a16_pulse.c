@@ -49,7 +49,7 @@ static bool begin(void)
                                                     .trigger = fathom_output_pin(&trigger)}}) == FATHOM_READY;
 }
 
-/* Nobody talks to it; but a byte of noise that nobody takes would keep it awake. */
+/* Nothing is sent to it; but a byte of noise that is not read would keep it awake. */
 static void forget_what_came(void)
 {
     uint8_t byte;

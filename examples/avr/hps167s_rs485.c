@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * ATmega328P at 16 MHz with an HPS-167S on RS-485: a gate that knows whether something stands before it. It asks as
+ * ATmega328P at 16 MHz with an HPS-167S on RS-485: a gate that knows whether something stands before it. It reads as
  * often as the sensor measures, 54 times a second, and sleeps in between.
  *
  *   PD1 (TXD), PD0 (RXD)   DI and RO of a transceiver for 5 V, as the MAX485
  *   PD2, Arduino 2         DE and /RE together: no echo. 10 kOhm to ground keep it quiet until this runs
  *   A, B of it             white and green of the sensor, which has a terminating resistor, as from the factory. 560 Ohm
- *                          from A to 5 V and from B to ground: else a MAX485 may hear noise while nobody drives them
+ *                          from A to 5 V and from B to ground: else a MAX485 may receive noise on an idle pair
  *   PB0, Arduino 8         LED "near", from the supply: a low pin lights it. A relay board with low inputs does, too
  *   PB1, Arduino 9         LED "far", the same
  *   PB2, Arduino 10        LED "error", the same
  *
  * 19200 8E1, address 1. Near is nearer than 1500 mm, three times in a row, far is farther, five times in a row (or
- * nothing in range). In the first seconds, and while anything is wrong, neither is lit: an old level is no answer.
+ * nothing in range). In the first seconds, and while anything is wrong, neither is lit: an old level is no reading.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>

@@ -62,7 +62,7 @@ void text_error(text_t *text, fathom_status_t status)
         text_say(text, PSTR(": silent"));
         break;
     default:
-        break; /* the others do not come of sensors that nobody asks */
+        break; /* sensors that send by themselves have no others */
     }
 }
 

@@ -12,8 +12,8 @@
  *       -semihosting-config enable=on,target=native,arg=five_lines,arg=20,arg=23 \
  *       -chardev serial,id=a,path=/dev/pts/3 -serial chardev:a -serial null ...
  *
- * prints each reading and each error, and ends with status 0 when each of some lines has had some good answers. The
- * words say how many, 1..9999 (else 10), and which: the sum of 1 for UART 0, 2, 4, 8, 16 (else 31, all of them).
+ * prints each reading and each error, and ends with status 0 when each of some lines has had some readings. The
+ * words tell how many, 1..9999 (else 10), and which: the sum of 1 for UART 0, 2, 4, 8, 16 (else 31, all of them).
  */
 #include "fathom/fathom.h"
 #include "fathom_mps2.h"
@@ -88,7 +88,7 @@ static bool begin(fathom_sensor_t sensors[LINES])
     /* No period is printed; this one is known to send ten times a second. */
     const fathom_a16_auto_config_t silo_config = {
         .line = &lanes[SILO].line, .stale_us = 2000000, .gap_us = 25000};
-    lanes[REAR].modbus = fathom_dyp_client(&lanes[REAR].line); /* the same seam, with the frames 55 AA */
+    lanes[REAR].modbus = fathom_dyp_client(&lanes[REAR].line); /* the same transport, with the frames 55 AA */
     const fathom_a05_dyp_config_t rear_config = {.modbus.transport = &lanes[REAR].modbus, .probes = 1};
     if (fathom_a16_modbus_init(&tank, &tank_config) != FATHOM_READY ||
         fathom_a05_modbus_init(&bumper, &bumper_config) != FATHOM_READY ||
@@ -119,7 +119,7 @@ int main(void)
     static fathom_sensor_t sensors[LINES];
     static char words[64];
     static fathom_mps2_idle_t idle = {uarts, LINES};
-    unsigned answers[LINES] = {0};
+    unsigned readings[LINES] = {0};
     unsigned waiting;
 
     semihosting_words(words, sizeof words);
@@ -144,8 +144,8 @@ int main(void)
                 continue;
             }
             tell_sample(names[i], &sample);
-            /* An A05's answer is as many samples as there are probes, of which the last may not be fitted. */
-            if (sample.probe == 1 && ++answers[i] == wanted) waiting &= ~(1u << i);
+            /* An A05's response is as many samples as there are probes, of which the last may not be fitted. */
+            if (sample.probe == 1 && ++readings[i] == wanted) waiting &= ~(1u << i);
         }
         if (is_idle) fathom_mps2_idle(&idle, fathom_due_us(sensors, LINES));
     }

@@ -25,8 +25,8 @@ enum {
 typedef struct {
     fathom_rp2040_wiring_t wiring; /* without a driver; the alarm is used here */
     fathom_line_settings_t line;
-    uint8_t channel; /* 0..11, nobody else's */
-    /* Is told when the line falls silent; the looks before that wake the core as well. NULL: nobody is. */
+    uint8_t channel; /* 0..11, used for nothing else */
+    /* Woken when the line falls silent; the looks before that wake the core as well. NULL: none. */
     fathom_rp2040_idle_t *idle;
 } dma_uart_config_t;
 
@@ -55,7 +55,7 @@ typedef struct {
 /* Begins to receive; enables DMA_IRQ_0, IO_IRQ_BANK0 and the alarm's. false: as fathom_rp2040_uart_setup. */
 bool dma_uart_begin(dma_uart_t *uart, const dma_uart_config_t *config);
 
-/* It only reads: write, sent, set_line and set_break are NULL, which a line without exchanges never calls. */
+/* It only reads: write, sent, set_line and set_break are NULL, which a line without transactions never calls. */
 fathom_uart_t dma_uart(dma_uart_t *uart);
 
 void dma_uart_ended(dma_uart_t *uart); /* for DMA_IRQ_0 */

@@ -9,7 +9,7 @@
 enum { REPORT_SIZE = 48 }; /* the longest line */
 
 /*
- * What fathom_poll said, as a line of text. It does not wait: while the line before is leaving, this one is dropped.
+ * What fathom_poll returned, as a line of text. It does not wait: while another line is leaving, this one is dropped.
  *   target 2083 mm, raw 2083
  *   no target, raw 94000
  *   fault, raw 0

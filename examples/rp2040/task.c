@@ -83,7 +83,7 @@ static task_t *choose(void)
 
 void task_run(fathom_rp2040_idle_t *idle)
 {
-    uint32_t *start_up; /* nobody comes back to it */
+    uint32_t *start_up; /* never switched back to */
     sleeper = idle;
     current = choose();
     task_switch(&start_up, current->stack);

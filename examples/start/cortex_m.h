@@ -8,7 +8,7 @@
  * The least that starts C on a Cortex-M: for simulators, and to read. On a board take the start-up code of its maker,
  * which sets the clocks too. Each machine has its vector table and its linker script beside its examples.
  */
-enum { START_FAULT = 99 }; /* start_end's, after an exception that nobody expected */
+enum { START_FAULT = 99 }; /* start_end's, after an exception without a handler */
 
 typedef void (*start_vector_t)(void);
 

@@ -21,7 +21,7 @@ static uintptr_t call(uintptr_t operation, const void *argument)
     register const void *with __asm__("r1") = argument;
     __asm__ volatile("bkpt 0xab" : "+r"(result) : "r"(with) : "memory");
 #else
-    const uintptr_t result = (uintptr_t)-1; /* nobody is called */
+    const uintptr_t result = (uintptr_t)-1; /* there is no such call */
     (void)operation;
     (void)argument;
 #endif

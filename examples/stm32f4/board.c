@@ -17,7 +17,7 @@ const board_clocks_t *board_begin(void)
     return &clocks;
 }
 
-/* On PB0: high while something is nearer than 1 m, and while nobody knows. */
+/* On PB0: high while something is nearer than 1 m, and while that is not known. */
 void board_use(const fathom_sample_t *sample)
 {
     const bool is_far =

@@ -14,7 +14,7 @@ typedef struct {
     uint32_t timer_hz; /* of TIM2 and TIM5 */
 } board_clocks_t;
 
-/* Begins what the place needs, and tells its clocks. */
+/* Begins what the board needs, and returns its clocks. */
 const board_clocks_t *board_begin(void);
 
 /* A reading, or how an attempt failed. */

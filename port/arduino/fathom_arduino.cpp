@@ -99,8 +99,8 @@ void pulse_input::changed()
 fathom_capture_t pulse_input::capture() { return fathom_edges_capture(&edges); }
 
 serial_uart::serial_uart(HardwareSerial &serial, uint8_t driver_enable)
-    : serial_(serial), driver_enable_(driver_enable), leaving_(false), since_us_(0), span_us_(0), room_(0),
-      line_()
+    : serial_(serial), driver_enable_(driver_enable), leaving_(false), since_us_(0), span_us_(0),
+      capacity_(0), line_()
 {
 }
 
@@ -113,7 +113,7 @@ bool serial_uart::begin(uint32_t baud, fathom_parity_t parity, uint8_t stop_bits
     }
     if (!set(line)) return false;
     leaving_ = false;
-    room_ = serial_.availableForWrite();
+    capacity_ = serial_.availableForWrite();
     return true;
 }
 
@@ -156,7 +156,7 @@ bool serial_uart::set(const fathom_line_settings_t &line)
 bool serial_uart::release()
 {
     if (!leaving_) return true;
-    if (left_us(since_us_, span_us_) != 0 || serial_.availableForWrite() < room_) return false;
+    if (left_us(since_us_, span_us_) != 0 || serial_.availableForWrite() < capacity_) return false;
     if (driver_enable_ != no_pin) digitalWrite(driver_enable_, LOW);
     leaving_ = false;
     return true;
@@ -172,7 +172,7 @@ int serial_uart::read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *)
 int serial_uart::write(void *ctx, const uint8_t *bytes, size_t length)
 {
     serial_uart &self = *static_cast<serial_uart *>(ctx);
-    if (static_cast<int>(length) > self.room_) return -1;
+    if (static_cast<int>(length) > self.capacity_) return -1;
     if (!self.release() || self.serial_.availableForWrite() < static_cast<int>(length)) return 0;
     self.span_us_ = span_us_of(length, bits_of(self.line_), self.line_.baud);
     if (self.driver_enable_ != no_pin) digitalWrite(self.driver_enable_, HIGH);

@@ -103,8 +103,8 @@ enum : uint8_t { no_pin = 255 };
  * RS-485: the driver-enable pin (DE, with /RE if there is to be no echo; then RX wants a pull-up) is high while a
  * request leaves. It is raised in write, and dropped by the first call of read, sent, set_line or release() after
  * `sent` is true; fathom_poll makes one each time while a request leaves. No interrupt of the core does it, so a slow
- * loop drops it late by its own period, and a device that answers meanwhile is talked into: the answer is lost.
- * How long the loop may take at most: what the device waits before its answer, less the lateness of `sent`:
+ * loop drops it late by its own period, and a device that answers meanwhile collides with it: the response is lost.
+ * How long the loop may take at most: what the device waits before its response, less the lateness of `sent`:
  *     HPS-167S at 19200    1.6 ms (it keeps t3.5, 2.0 ms)          at 115200    1.6 ms
  *     A05 55 AA            60 ms (65 ms or more, A05 2(3))         A16, A05 Modbus: 3.4 ms (t3.5 at 9600)
  * If it takes longer: release() from a timer interrupt every millisecond, or a transceiver that switches by itself.
@@ -136,7 +136,7 @@ class serial_uart
     volatile bool leaving_;
     volatile uint32_t since_us_; /* release() may be an interrupt's: set while leaving_ is false */
     volatile uint32_t span_us_;
-    int room_; /* of the core's buffer when it is empty */
+    int capacity_; /* of the core's buffer when it is empty */
     fathom_line_settings_t line_;
 
     bool set(const fathom_line_settings_t &line);

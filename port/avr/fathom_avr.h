@@ -34,7 +34,7 @@ extern "C" {
  * more than one of each.
  */
 
-/* Timer1 runs from here on, from 0; nobody else uses it. Called before all the others. */
+/* Timer1 runs from here on, from 0; the program uses it for nothing else. Called before all the others. */
 void fathom_avr_clock_begin(void);
 
 /* us since then; wraps as hal.h has it. Right as long as interrupts are never off for longer than half a period of Timer1:
@@ -59,11 +59,11 @@ enum {
 };
 
 typedef struct {
-    uint8_t *request;     /* memory for the longest request, which is kept there while it leaves; 8 bytes for
-                                    all reads and single writes */
+    /* memory for the longest request, which is kept there while it leaves; 8 bytes for all reads and single writes */
+    uint8_t *request;
     uint8_t request_size; /* 1..255 */
-    fathom_avr_pin_t driver; /* DE of an RS-485 transceiver (with /RE, if there is to be no echo), high while
-                                    bytes leave; port NULL: none */
+    /* DE of an RS-485 transceiver (with /RE, if there is to be no echo), high while bytes leave; port NULL: none */
+    fathom_avr_pin_t driver;
     fathom_line_settings_t line; /* to begin with */
 } fathom_avr_usart_config_t;
 
@@ -76,10 +76,10 @@ typedef struct {
 } fathom_avr_usart_counters_t;
 
 /*
- * USART0. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before and after such a byte.
+ * USART0. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are reported byte by byte; a read ends before and after such a byte.
  * No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE: they would cost in each receive interrupt what the main loop sees as well.
- * write       takes 1 to request_size bytes; of none or more it says < 0. It begins with the first byte at once, and drives
- *             `driver` from before that until the last stop bit has left (transmit complete), in the interrupt.
+ * write       takes 1 to request_size bytes; of none or more it returns < 0. It begins with the first byte at once, and
+ *             drives `driver` from before that until the last stop bit has left (transmit complete), in the interrupt.
  * sent        is exact.
  * leaves_in_us  counts bytes, and is two characters too long at most.
  * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; at 8 MHz no 115200 either; < 0 beyond.
@@ -111,7 +111,7 @@ void fathom_avr_int0_begin(fathom_edges_t *edges);
  * edge fed, a request has left, or max_us have passed, and returns; at once if a byte waits already. At most one
  * period of Timer1, 32 ms at 16 MHz, in one call. Interrupts are enabled afterwards.
  * ctx: NULL, or a const uint16_t, us: for so long bytes do not wake it, so that the main loop finds several at once.
- * 1000 halves what an HPS-167S at 115200 baud takes of the processor, and an answer is known up to so much later. Not
+ * 1000 halves what an HPS-167S at 115200 baud takes of the processor, and a response is known up to so much later. Not
  * more than FATHOM_AVR_RX_RING bytes take to come.
  */
 void fathom_avr_idle(void *ctx, uint32_t max_us);

@@ -3,15 +3,15 @@
 
 /*
  * Bytes that wait for the main loop, each followed by UCSR0A as it was when it came. One writer, the interrupt, and
- * one reader; the indices fathom_avr_rx_in and fathom_avr_rx_out count by two and are one byte each, which nobody
- * reads in halves. One place stays free.
+ * one reader; the indices fathom_avr_rx_in and fathom_avr_rx_out count by two and are one byte each, so that no
+ * access finds half of one changed. One place stays free.
  */
 #define RING  (2 * FATHOM_AVR_RX_RING)
 #define ERROR (_BV(FE0) | _BV(DOR0) | _BV(UPE0))
 
 static volatile uint8_t ring[RING];
 static volatile uint8_t
-    dropped; /* DOR0, of a byte for which there was no place; the next one that gets in tells it */
+    dropped; /* DOR0, of a byte for which there was no place; the next one that gets in reports it */
 
 static const fathom_avr_usart_config_t *config;
 static const uint8_t *volatile next; /* of the request */
@@ -253,7 +253,7 @@ bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *new_config)
     sending = in_break = false;
     dropped = 0;
     fathom_avr_rx_out = fathom_avr_rx_in = 0;
-    PORTD |= _BV(PORTD0); /* a pull-up for RXD: of a transceiver whose receiver is off nobody drives it */
+    PORTD |= _BV(PORTD0); /* a pull-up for RXD: a transceiver whose receiver is off does not drive it */
     UCSR0B = _BV(RXCIE0) | _BV(TXCIE0) | _BV(RXEN0) | _BV(TXEN0);
     return true;
 }

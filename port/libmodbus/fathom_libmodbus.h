@@ -14,8 +14,8 @@ extern "C" {
 #endif
 
 /*
- * The Modbus seam (modbus.h) over a modbus_t of libmodbus, RTU or TCP, that the program has made and connected: for
- * programs that use libmodbus already, and for sensors behind an Ethernet gateway.
+ * The Modbus transport (modbus.h) over a modbus_t of libmodbus, RTU or TCP, that the program has made and connected:
+ * for programs that use libmodbus already, and for sensors behind an Ethernet gateway.
  *
  *     modbus_t *const modbus = modbus_new_tcp("192.168.1.20", 502);
  *     if (modbus == NULL || modbus_connect(modbus) != 0) return 1;
@@ -23,8 +23,8 @@ extern "C" {
  *     const fathom_libmodbus_config_t config = {.clock = &clock};
  *     static fathom_libmodbus_t port;
  *     if (fathom_libmodbus_init(&port, modbus, &config) != FATHOM_READY) return 1;
- *     const fathom_modbus_t carrier = fathom_libmodbus(&port);
- *     ... .modbus = &carrier in the configs of as many drivers as there are sensors ...
+ *     const fathom_modbus_t transport = fathom_libmodbus(&port);
+ *     ... .modbus = &transport in the configs of as many drivers as there are sensors ...
  *     ... fathom_wait(&sensor, &sample, fathom_libmodbus_wait, &port) ...
  *
  * What it cannot do, because libmodbus cannot (3.1.6, which Debian 12 has):
@@ -33,8 +33,8 @@ extern "C" {
  *    more of them if the program asks for it (modbus_enable_quirks), and then so does this.
  *  - Line settings of a request (fathom_exchange_t.settings): it ends with FATHOM_ERR_UNSUPPORTED, and nothing was
  *    sent. What modbus_new_rtu was given holds.
- *  - Listening to frames that nobody asked for: they are dropped and counted. Sensors that send by themselves, and
- *    the protocol 55 AA, need fathom_posix.h.
+ *  - Listening to unsolicited frames: they are dropped and counted. Sensors that send by themselves, and the protocol
+ *    55 AA, need fathom_posix.h.
  *  - A transceiver that libmodbus switches with RTS (modbus_rtu_set_rts): it sleeps until the request has left, so
  *    fathom_libmodbus_init refuses it. Let the adapter or the kernel switch it (TIOCSRS485).
  *  - Connecting: that is the program's, and modbus_connect waits.
@@ -42,27 +42,27 @@ extern "C" {
  * What it uses of libmodbus. On RTU, requests leave through modbus_send_raw_request, so that a trace
  * (modbus_set_debug) shows them. What comes in is read from the descriptor as far as it is there (FIONREAD), and
  * never by modbus_receive_confirmation: that waits for what the first bytes promise, takes noise for them, and
- * throws away another unit's answer without saying whose it was. On TCP the port uses the connection alone:
- * modbus_send_raw_request gives every request the transaction 0, by which no answer could be told from a late one,
- * and modbus_receive_confirmation does not look at the length in the header, so that one answer with a wrong length
- * puts all that follow out of step.
+ * throws away another unit's response without saying whose it was. On TCP the port uses the connection alone:
+ * modbus_send_raw_request gives every request the transaction 0, by which a late response looks like the one that is
+ * due, and modbus_receive_confirmation does not look at the length in the header, so that one response with a wrong
+ * length puts all that follow out of step.
  *
- * What it does, beside what line.h says, which holds here too (queue, time-outs, late and damaged answers, retries,
+ * What it does, besides what line.h says, which holds here too (queue, time-outs, late and damaged responses, retries,
  * broadcasts, counters):
- *  - On TCP every request has a transaction of its own, and only the answer to the last request that was sent is
- *    taken. An answer to an earlier one is dropped and counted (late_answers), whatever it says. A unit that did not
- *    answer in time is asked nothing until twice the time-out has passed, while others are asked; its answer still
- *    counts if it comes then and nobody else was asked meanwhile.
- *  - On TCP an answer is looked at when all of it is there (MSG_PEEK); until then it is left in the socket, whose
+ *  - On TCP every request has a transaction identifier of its own, and only the response to the last request that
+ *    was sent is taken. A response to an earlier one is dropped and counted (late_answers), whatever it contains. A
+ *    unit that did not respond in time gets no request until twice the time-out has passed, while others do; its
+ *    response still counts if it comes in that time and no other unit got a request meanwhile.
+ *  - On TCP a response is looked at when all of it is there (MSG_PEEK); until then it is left in the socket, whose
  *    SO_RCVLOWAT keeps poll(2) from seeing it so long.
- *  - On TCP a gateway's exceptions 0x0A (path unavailable) and 0x0B (target silent) are no answer of the unit: the
+ *  - On TCP a gateway's exceptions 0x0A (path unavailable) and 0x0B (target silent) are no response of the unit: the
  *    request ends with FATHOM_ERR_NO_ANSWER when its time-out is over. gateway_exception has the last one. Over RTU
  *    they are exceptions like any other.
- *  - On TCP an answer from another unit than was asked is not taken.
+ *  - On TCP a response from another unit than the request was for is not taken.
  *
  * A broken connection: what is under way ends with FATHOM_ERR_PORT, and so does every request until modbus_close and
  * modbus_connect have made a new one; then it goes on by itself. On TCP the port shuts the connection down
- * (shutdown(2)) where requests and answers have got out of step: the server sent what is no Modbus, or the system
+ * (shutdown(2)) where requests and responses have got out of step: the server sent what is no Modbus, or the system
  * took a part of a request.
  *
  * Time-outs on TCP should be longer than the gateway's own, which is often 1 s: a gateway that still waits for a
@@ -127,16 +127,16 @@ typedef struct {
 fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus,
                                       const fathom_libmodbus_config_t *config);
 
-/* The seam over a port that is ready, by value: keep it as long as the drivers that point to it. Beside what
+/* The transport over a port that is ready, by value: keep it as long as the drivers that point to it. Besides what
  * fathom_modbus_t says, submit may return FATHOM_ERR_UNSUPPORTED: modbus_set_slave refuses the unit. */
 fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port);
 
 /*
- * The HAL under that seam, for a program that wants the line (line.h) in its own hands, as for a listener on RTU: it
- * carries RTU frames on TCP as well. Then neither port->line nor fathom_libmodbus() may be used.
+ * The HAL under that transport, for a program that polls the line (line.h) itself, as for a listener on RTU: it carries
+ * RTU frames on TCP as well. Then neither port->line nor fathom_libmodbus() may be used.
  *
- * read   < 0 when the connection is broken. Never part of a TCP answer.
- * write  A whole RTU frame with its CRC, which libmodbus (RTU) or nobody (TCP) computes again.
+ * read   < 0 when the connection is broken. Never part of a TCP response.
+ * write  A whole RTU frame with its CRC, which libmodbus computes again on RTU, and which is left out on TCP.
  * sent   RTU: the kernel's queue is empty; the UART may have some characters left. TCP: true.
  * set_line, set_break, leaves_in_us  NULL; for the last, `sent` is true too soon for a sleep to be worth it.
  */
@@ -150,7 +150,7 @@ fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port);
  * (FATHOM_NO_DEADLINE: without limit) have passed: an idle hook for fathom_wait, ctx is the port. While the connection
  * is broken it returns at once, so look at what the poll functions return, or the loop spins.
  *
- * A program's own poll(2) takes modbus_get_socket, POLLIN and the seam's due_us.
+ * A program's own poll(2) takes modbus_get_socket, POLLIN and the transport's due_us.
  */
 void fathom_libmodbus_wait(void *port, uint32_t max_us);
 

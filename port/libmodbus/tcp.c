@@ -9,8 +9,9 @@
 #include "internal/libmodbus_port.h"
 
 /*
- * The line speaks RTU; here a frame changes its clothes. Both are a unit and a PDU: RTU has a CRC behind them, TCP a
- * header before them: transaction, protocol (0), and how many bytes follow (MODBUS Messaging on TCP/IP V1.0b, 3.1.3).
+ * The line has RTU frames; here they become TCP frames and back. Both are a unit and a PDU: RTU has a CRC behind them,
+ * TCP a header before them: transaction, protocol (0), and how many bytes follow (MODBUS Messaging on TCP/IP V1.0b,
+ * 3.1.3).
  */
 enum {
     TRANSACTION = 0,
@@ -41,7 +42,7 @@ static void count(uint16_t *counter)
     if (*counter != UINT16_MAX) (*counter)++;
 }
 
-/* Requests and answers are out of step. What comes from now on, or is sent, would be of no use. */
+/* Requests and responses are out of step. What comes from now on, or is sent, would be of no use. */
 static int out_of_step(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
 {
     (void)shutdown(modbus_get_socket(port->modbus), SHUT_RDWR);
@@ -53,7 +54,7 @@ static ssize_t peek(int fd, uint8_t *adu)
     return recv(fd, adu, UNIT + MOST_LENGTH, MSG_PEEK | MSG_DONTWAIT);
 }
 
-/* From how many bytes on poll(2) sees them: or a loop that waits for the rest of an answer would never sleep. */
+/* From how many bytes on poll(2) sees them: or a loop that waits for the rest of a response would never sleep. */
 static void wake_at(int fd, int bytes)
 {
     (void)setsockopt(fd, SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
@@ -68,7 +69,7 @@ static int wait_for_rest(fathom_libmodbus_t *port, int fd, ssize_t there, int ne
     return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
 }
 
-/* Takes the next answer out of the socket if all of it is there: 1, 0, or -1: the connection is broken. */
+/* Takes the next response out of the socket if all of it is there: 1, 0, or -1: the connection is broken. */
 static int take(fathom_libmodbus_t *port)
 {
     const int fd = modbus_get_socket(port->modbus);

@@ -20,7 +20,7 @@ extern "C" {
  *   uart.c    CMSDK APB UART 0..4, RX and TX interrupts   fathom_uart_t
  *   idle.c    CMSDK timer 0 and its interrupt             sleep until bytes come or time is up
  *
- * These UARTs have 8 data bits, one stop bit and NO parity, and tell of no framing errors. An HPS-167S, which speaks
+ * These UARTs have 8 data bits, one stop bit and NO parity, and report no framing errors. An HPS-167S, which speaks
  * 19200 8E1 from the factory, cannot be on such a UART; in front of QEMU it can, since no bits are there.
  * Registers: "Cortex-M System Design Kit Technical Reference Manual" (DDI 0479), "AN385".
  * All functions but the interrupts belong to the main loop.
@@ -34,10 +34,10 @@ extern const fathom_clock_t fathom_mps2_clock;
 
 /* Read by begin only. */
 typedef struct {
-    uint8_t *request;     /* memory for the longest request; outlives the use of the UART. 8 bytes for all
-                         reads and single writes */
-    uint8_t request_size; /* 1..255 */
-    uint8_t number;       /* 0..4 */
+    /* memory for the longest request; outlives the use of the UART. 8 bytes for all reads and single writes */
+    uint8_t *request;
+    uint8_t request_size;        /* 1..255 */
+    uint8_t number;              /* 0..4 */
     fathom_line_settings_t line; /* to begin with */
 } fathom_mps2_uart_config_t;
 
@@ -60,9 +60,9 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
 void fathom_mps2_uart_interrupt(fathom_mps2_uart_t *uart);
 
 /*
- * By value; it points to `uart`. FATHOM_RX_OVERRUN is told; there is no FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
- * write      takes 1 to request_size bytes; of none or more it says < 0. It begins with the first byte at once.
- * sent       one character of time after the last byte has left the buffer: no flag tells more. Up to one character
+ * By value; it points to `uart`. FATHOM_RX_OVERRUN is reported; there is no FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
+ * write      takes 1 to request_size bytes; of none or more it returns < 0. It begins with the first byte at once.
+ * sent       one character of time after the last byte has left the buffer: no flag shows more. Up to one character
  *            late.
  * set_line   8N1, the clock divided by 16 or more: 24..1562500 baud, within 2.5 %; < 0 beyond, and for parity or 2 stop bits.
  * set_break  NULL: it has none. An RS-485 transceiver has to switch over by itself.

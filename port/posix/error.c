@@ -80,7 +80,7 @@ static fathom_posix_status_t fail_permission(fathom_posix_uart_t *port, const ch
     (void)snprintf(number, sizeof number, "%lu", (unsigned long)status.st_gid);
     const char *const name = found == 0 && group != NULL ? entry.gr_name : number;
 
-    /* Nobody should join root, and joining does not help where the group may not read and write either. */
+    /* No user should join the group root, and joining does not help where the group may not read and write either. */
     const unsigned mode = (unsigned)status.st_mode & 07777u;
     if (status.st_gid == 0 || (mode & (S_IRGRP | S_IWGRP)) != (S_IRGRP | S_IWGRP))
         return fathom_posix_fail(

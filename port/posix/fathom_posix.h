@@ -30,8 +30,8 @@ extern "C" {
  * What it does not do:
  *  - It says nothing about single bytes: FATHOM_RX_... is never set. A tty has no time stamps, and its error
  *    marks (PARMRK) cannot be believed: the drivers of the commonest USB adapters (ftdi_sio, pl2303) put one
- *    mark on all bytes of a USB packet, so that a spike on the line before an answer would condemn the whole
- *    answer. A byte with wrong parity is delivered like any other; checksums have to find it.
+ *    mark on all bytes of a USB packet, so that a spike on the line before a response would condemn the whole
+ *    response. A byte with wrong parity is delivered like any other; checksums have to find it.
  *    fathom_posix_line_errors has the driver's counts, for diagnosis.
  *  - It does not drive an RS-485 transceiver by itself. The adapter does, or the kernel's driver (device tree
  *    `linux,rs485-enabled-at-boot-time`, or TIOCSRS485 through fathom_posix_fd).
@@ -134,8 +134,8 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
  *        there because a USB adapter's driver knows its own queue and not the chip's, and a pseudo terminal
  *        is always empty at once. What remains: an adapter begins when the next USB frame has reached it
  *        (they are 1 ms apart at full speed), and by that much sent may be early; an FTDI chip tells in its
- *        status packets, up to 16 ms late. True on a port that is lost or closed, so that nobody waits;
- *        read and write tell.
+ *        status packets, up to 16 ms late. True on a port that is lost or closed, so that no caller
+ *        waits; read and write return the error.
  * leaves_in_us  The last of these three, to the microsecond; 0 where the kernel has not taken all yet, so that it is
  *        offered the rest, and where an adapter takes longer.
  * set_break  TIOCSBRK and TIOCCBRK, when all that was written has left. Not every adapter can; most drivers do not
@@ -157,7 +157,7 @@ const char *fathom_posix_error_text(const fathom_posix_uart_t *port);
 typedef struct {
     uint32_t parity;
     uint32_t framing; /* mostly: another baud rate than the device's */
-    uint32_t overrun; /* bytes lost in the UART, or because nobody read */
+    uint32_t overrun; /* bytes lost in the UART, or because the program did not read */
     uint32_t breaks;
 } fathom_posix_line_errors_t;
 

@@ -197,7 +197,7 @@ fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *p
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "no path or no settings were given");
     strncpy(port->path, path, sizeof port->path - 1);
 
-    /* Without O_NONBLOCK a tty that waits for a carrier would not open. */
+    /* Without O_NONBLOCK a tty that waits for DCD (a modem's line) would not open. */
     do port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     while (port->fd < 0 && errno == EINTR);
     if (port->fd < 0) return fathom_posix_fail_open(port, path, errno);

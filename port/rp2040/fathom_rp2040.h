@@ -48,7 +48,7 @@ extern const fathom_clock_t fathom_rp2040_clock;
 
 /* For fathom_wait, or a main loop that has nothing to do. */
 typedef struct {
-    uint8_t alarm; /* 0..3, nobody else's. The caller's to set, before begin */
+    uint8_t alarm; /* 0..3, used for nothing else. The caller's to set, before begin */
     /* Something has come since idle returned last. UARTs and edges set it; other interrupts may. */
     volatile bool has_news;
 } fathom_rp2040_idle_t;
@@ -85,7 +85,7 @@ typedef struct {
     uint8_t rx;           /* GPIO; UART0: 1, 13, 17, 29. UART1: 5, 9, 21, 25. It gets the pull-up */
     bool has_driver;      /* there is an RS-485 transceiver: */
     uint8_t driver;       /* GPIO of its DE (with /RE, if there is to be no echo), high while bytes leave */
-    uint8_t alarm;        /* 0..3, nobody else's, for the end of that */
+    uint8_t alarm;        /* 0..3, used for nothing else, for the end of that */
 } fathom_rp2040_wiring_t;
 
 /* Read at every call; both it and `request` outlive the use of the port. */
@@ -94,7 +94,7 @@ typedef struct {
     fathom_line_settings_t line; /* to begin with */
     uint8_t *request;            /* the longest request is kept here while it leaves */
     uint8_t request_size;        /* 1..255; 8 for all reads and single writes */
-    fathom_rp2040_idle_t *idle;  /* is told of news; NULL: nobody is */
+    fathom_rp2040_idle_t *idle;  /* woken by news; NULL: none */
 } fathom_rp2040_uart_config_t;
 
 enum {
@@ -133,13 +133,13 @@ typedef struct {
 bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config);
 
 /*
- * The HAL's view of it. Errors are told of single bytes: a read ends before and after such a byte. No
+ * The HAL's view of it. Errors are reported byte by byte: a read ends before and after such a byte. No
  * FATHOM_RX_SILENCE.
- * read        looks into the hardware's FIFO too, so that a loop that polls sees each byte when it has come. Who sleeps
- *             is woken by every fourth, and by the last one 32 bits later (1.7 ms at 19200 baud): the receive time-out.
- *             That byte's time is told, FATHOM_RX_TIMED, so that the silence before the next request is no longer for
- *             it; late by what else interrupts.
- * write       takes up to request_size bytes; of more it says < 0. The first byte begins at once; an interrupt keeps
+ * read        looks into the hardware's FIFO too, so that a loop that polls sees each byte when it has come. A program
+ *             that sleeps is woken by every fourth, and by the last one 32 bits later (1.7 ms at 19200 baud): the
+ *             receive time-out. That byte's time is reported, FATHOM_RX_TIMED, so that the silence before the next
+ *             request is no longer for it; late by what else interrupts.
+ * write       takes up to request_size bytes; of more it returns < 0. The first byte begins at once; an interrupt keeps
  *             the FIFO filled, if the request is longer than its 32 bytes. The driver is high from before that until
  *             BUSY has ended. PL011 has no interrupt for that end, so the alarm is set to when it is due and looks;
  *             if it is not over, it looks again a bit later. So the driver stays one bit longer at most, and what
@@ -174,7 +174,7 @@ unsigned fathom_rp2040_uart_bits(const fathom_line_settings_t *line);
 
 typedef struct {
     fathom_edges_t *edges;
-    fathom_rp2040_idle_t *idle; /* is told of news; NULL: nobody is */
+    fathom_rp2040_idle_t *idle; /* woken by news; NULL: none */
     uint8_t gpio;
 } fathom_rp2040_edges_t;
 

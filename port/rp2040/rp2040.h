@@ -6,7 +6,7 @@
 
 /*
  * The registers of the RP2040 that the port uses, by their names in its datasheet, whose sections stand beside them.
- * Not for applications, but for whoever goes on from here: DMA, another timer.
+ * Not for applications, but for code that adds to the port: DMA, another timer.
  */
 
 /* 2.1.2: at these distances each register of a peripheral (not of SIO or the core) has aliases that set and clear

@@ -36,7 +36,7 @@ typedef struct {
     /* Since init; each stops at 65535, and the caller may set it to 0. */
     volatile uint16_t parity;   /* bytes with wrong parity */
     volatile uint16_t framing;  /* bytes without a stop bit: breaks, noise, another rate */
-    volatile uint16_t overruns; /* losses that the UART told of, and bytes that found the ring full */
+    volatile uint16_t overruns; /* losses that the UART reported, and bytes that found the ring full */
 
     /* The main loop's, but for the end of `leaving`, which the interrupt sets to false. */
     volatile uint8_t got; /* bytes so far; wraps */
@@ -63,7 +63,7 @@ static inline void fathom_serial_count(volatile uint16_t *counter)
 
 /* ---- for the interrupt ---- */
 
-/* Bytes were lost, and none has come with that news: the next one is told of it. */
+/* Bytes were lost, and none has come with that news: the next one is marked with it. */
 static inline void fathom_serial_lose(fathom_serial_t *serial)
 {
     fathom_serial_count(&serial->overruns);

@@ -106,7 +106,7 @@ static void power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_a05_t *const a05 = a05_of(device);
     fathom_sim_device_set_level(device, true, now_us);
-    /* The start bits of what the host says just then are no choice. */
+    /* The start bits of what the host sends just then are no choice. */
     const uint8_t held = device->rx_held & (FATHOM_SIM_HELD_BY_PIN | FATHOM_SIM_HELD_BY_BREAK);
     a05->selected = a05->real_time || held != 0;
 }

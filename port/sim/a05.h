@@ -19,14 +19,14 @@ extern "C" {
  * when power came chooses real-time or processed values for them; all other ways to ask give real-time ones.
  * Modbus (A05 3): function 03 of
  *   0x0106..0x0109 probes 1..4 and the same at 0x0010..0x0013, 1..4 in a read but not past the last; about
- *   100 ms a probe (all are measured at the moment of the answer)
+ *   100 ms a probe (all are measured at the moment of the response)
  *   0x0200 address, by itself
  * and function 06 of 0x0200, 0x00..0xFE: echoed from the old address, obeyed at once. Everything else is
  * silence: the datasheet knows no exceptions. 0xFF is obeyed and not answered. The address is kept without
  * power, however it was set; each time wears the flash (counters.flash_writes).
- * 55 AA (A05 2), 01..FE as address: 01 all probes, 10..13 one, measured at the moment of the answer; 03 sets
+ * 55 AA (A05 2), 01..FE as address: 01 all probes, 10..13 one, measured at the moment of the response; 03 sets
  * the address, which is the only one in it, so that every unit obeys that hears it, also when what it hears
- * is another unit's answer, which has the same bytes: several units may then answer each other for ever.
+ * is another unit's response, which has the same bytes: several units may then respond to each other for ever.
  * 0xFF is obeyed, and answered from its own address (whether it is, is not in the datasheet). Silence: 00 or
  * FF as a new address, another command, another length, a wrong sum. A frame ends with t3.5 of silence.
  * Relay (A05 4): measures all probes every 300 ms (the datasheet prints no period) and hears nothing. The relay
@@ -42,32 +42,33 @@ typedef enum {
 
 /* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
 typedef struct {
-    uint8_t unit;                      /* Modbus address; default 1 */
-    bool unit_zero;                    /* its address is 0, and it answers there; `unit` means nothing */
-    uint8_t mode;                      /* fathom_sim_a05_mode_t; must be given */
-    bool exceptions;                   /* answers 01, 02 or 03 where the default is silence */
-    bool answers_broadcast;            /* answers 0xFF in Modbus, from its own address */
-    bool answers_from_new;             /* acknowledges a new address from itself; default: from the old. In 55
-                                          AA it does so anyway (A05 2(3)5) */
-    bool real_time;                    /* RX is low in the first second after power-on (A05 1(1)), also where
-                                          neither its pin (pin.h) nor a break of the host holds it */
+    uint8_t unit;           /* Modbus address; default 1 */
+    bool unit_zero;         /* its address is 0, and it answers there; `unit` means nothing */
+    uint8_t mode;           /* fathom_sim_a05_mode_t; must be given */
+    bool exceptions;        /* answers 01, 02 or 03 where the default is silence */
+    bool answers_broadcast; /* answers 0xFF in Modbus, from its own address */
+    /* acknowledges a new address from itself; default: from the old. In 55 AA it does so anyway (A05 2(3)5) */
+    bool answers_from_new;
+    /* RX is low in the first second after power-on (A05 1(1)), also where neither its pin (pin.h) nor a break of the
+     * host holds it */
+    bool real_time;
     bool dyp_silent_broadcast;         /* obeys 0xFF in 55 AA, but does not answer it */
-    uint32_t seed;                     /* of the spread of the answer times; any */
+    uint32_t seed;                     /* of the spread of the response times; any */
     fathom_sim_scene_t scene;          /* probes 1..4; no target when empty */
     fathom_sim_scene_t processed;      /* their processed values; as `scene` when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
-    uint32_t period_us;                /* of automatic frames, from start to start, and of a relay's
-                                          measurements; default 300 ms */
-    uint32_t start_us;                 /* from power-on, silent and deaf; default none */
-    uint32_t linger_us;                /* automatic frames still come for so long after the first command;
-                                          default 150 ms; 1: none that has not begun */
-    uint32_t probe_us;                 /* longest time a probe of a read takes; default 100 ms (A05 3(3)) */
-    uint32_t settings_us;              /* register 0x0200, and 55 AA 03; 20 ms */
-    uint32_t all_us;                   /* 55 AA 01, longest, at least 10 ms; it is up to 10 ms less; 210 ms */
-    uint32_t one_us;                   /* 55 AA 10..13; 75 ms */
-    uint32_t hold_us;                  /* relay: it does not move again before; default 1 s (A05 4(1)) */
-    uint16_t threshold_mm;             /* relay: as it was taught on the board; default 1000 (A05 4(2)) */
-    uint8_t probes;                    /* relay: bit probe - 1, fitted; default all */
+    /* of automatic frames, from start to start, and of a relay's measurements; default 300 ms */
+    uint32_t period_us;
+    uint32_t start_us; /* from power-on, silent and deaf; default none */
+    /* automatic frames still come for so long after the first command; default 150 ms; 1: none that has not begun */
+    uint32_t linger_us;
+    uint32_t probe_us;     /* longest time a probe of a read takes; default 100 ms (A05 3(3)) */
+    uint32_t settings_us;  /* register 0x0200, and 55 AA 03; 20 ms */
+    uint32_t all_us;       /* 55 AA 01, longest, at least 10 ms; it is up to 10 ms less; 210 ms */
+    uint32_t one_us;       /* 55 AA 10..13; 75 ms */
+    uint32_t hold_us;      /* relay: it does not move again before; default 1 s (A05 4(1)) */
+    uint16_t threshold_mm; /* relay: as it was taught on the board; default 1000 (A05 4(2)) */
+    uint8_t probes;        /* relay: bit probe - 1, fitted; default all */
     uint8_t bounces; /* relay: edges too many when it moves, 0.7 ms apart; even, up to 200; default none */
     bool normally_closed; /* relay: which contact is wired */
 } fathom_sim_a05_config_t;

@@ -17,7 +17,7 @@ extern "C" {
  * Automatic: FF H L SUM every 100 ms (A16 2, 5; the datasheet prints no period). The first Modbus command
  * to its address or to 0xFF ends that until power-off or 0x0202 = 1 (A16 5(0), 6(3)).
  * Modbus (A16 6): function 03, one register a read, function 06:
- *   0x0100 processed distance    03; measured at the moment of the answer
+ *   0x0100 processed distance    03; measured at the moment of the response
  *   0x0101 real-time distance    03; the same
  *   0x0200 address               03, 06 of 0x00..0xFE: obeyed at once
  *   0x0202 operating mode        06 of 0 (as it is then: controlled) and 1 (automatic again, the first frame a
@@ -32,8 +32,8 @@ extern "C" {
  * and not answered.
  * Switch (A16 4): measures every 500 ms; 3 in a row nearer than the threshold (0x0206) make its TX pin high, 5
  * farther low, or the other way round (0x0205 = 0); a distance that equals it ends a row, and low is what TX has
- * before the first decision. RX hears Modbus, and 06 of these two registers is obeyed at once; the answers leave by
- * TX. Where that rests low, the host's UART gets a break whenever it falls and before each answer: 00 with
+ * before the first decision. RX hears Modbus, and 06 of these two registers is obeyed at once; the responses leave by
+ * TX. Where that rests low, the host's UART gets a break whenever it falls and before each response: 00 with
  * FATHOM_RX_FRAMING. The line is full-duplex; pin.h has the host's end of the pin.
  *
  * PWM and controlled: a falling edge at the RX pin (pin.h, or a break or byte of the host) begins a measurement, if
@@ -62,18 +62,18 @@ typedef struct {
     bool answers_from_new;             /* a new address is acknowledged from itself; default: from the old */
     bool real_time;                    /* 0x0207 is 1; UART: RX is held low (A16 2(2)) */
     uint16_t threshold_mm;             /* register 0x0206; default 1000 (A16 4(2)) */
-    uint32_t seed;                     /* of the spread of the answer times; any */
+    uint32_t seed;                     /* of the spread of the response times; any */
     fathom_sim_scene_t scene;          /* probe 1; no target when empty */
     fathom_sim_scene_t processed;      /* the processed value; as `scene` when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
-    uint32_t period_us;                /* of automatic frames, from start to start; default 100 ms. Of the
-                                          measurements of a switch; default 500 ms */
-    uint32_t start_us;                 /* from power-on, silent and deaf; default none */
-    uint32_t linger_us;                /* automatic frames still come for so long after the first command;
-                                          default 150 ms; 1: none that has not begun */
-    uint32_t realtime_us;              /* longest from the end of a request to the answer: 0x0101; 120 ms */
-    uint32_t processed_us;             /* 0x0100; 520 ms (neither is in the datasheet) */
-    uint32_t settings_us;              /* the other registers; 20 ms */
+    /* of automatic frames, from start to start; default 100 ms. Of the measurements of a switch; default 500 ms */
+    uint32_t period_us;
+    uint32_t start_us; /* from power-on, silent and deaf; default none */
+    /* automatic frames still come for so long after the first command; default 150 ms; 1: none that has not begun */
+    uint32_t linger_us;
+    uint32_t realtime_us;  /* longest from the end of a request to the response: 0x0101; 120 ms */
+    uint32_t processed_us; /* 0x0100; 520 ms (neither is in the datasheet) */
+    uint32_t settings_us;  /* the other registers; 20 ms */
     /* An edge not later than this after the one before is ignored; PWM 220 ms (A16 1(2)), controlled 120 ms (3(2)). */
     uint32_t cycle_us;
     uint32_t pulse_us; /* PWM: from the edge to the pulse; 110 ms (A16 1(3)) */

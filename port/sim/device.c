@@ -106,7 +106,7 @@ static void stop(fathom_sim_device_t *device)
     device->sender.on_wire = false;
     device->length = 0;
     device->off_us = 0;
-    device->torn = device->busy = device->leaving = device->in_break = device->is_raised = false;
+    device->is_invalid = device->busy = device->leaving = device->in_break = device->is_raised = false;
 }
 
 void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us)
@@ -144,11 +144,11 @@ static bool deaf(const fathom_sim_device_t *device, bool full_duplex)
 
 void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
 {
-    /* The line may carry several bytes at once: they garble each other, which the line says at their end. */
+    /* Several bytes may be on the line at once: they garble each other, which the line reports at their end. */
     device->carriers++;
     if (device->model->strict_gap && device->alarms[SILENCE].set &&
         fathom_elapsed_us(now_us, device->heard_us) > fathom_sim_gap_us(&device->settings))
-        device->torn = true;
+        device->is_invalid = true;
 }
 
 void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
@@ -158,7 +158,7 @@ void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_s
     if (deaf(device, full_duplex)) {
         device->counters.unheard++;
         /* what was heard of a frame before is no frame any more */
-        if (device->alarms[SILENCE].set) device->torn = true;
+        if (device->alarms[SILENCE].set) device->is_invalid = true;
         return;
     }
     if (!fathom_sim_same_settings(&device->settings, settings)) {
@@ -168,7 +168,7 @@ void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_s
     if (good && device->length < FATHOM_SIM_MAX_FRAME)
         device->frame[device->length++] = byte;
     else
-        device->torn = true;
+        device->is_invalid = true;
     device->heard_us = now_us;
     fathom_sim_device_set_alarm(device, SILENCE, now_us + fathom_sim_silence_us(&device->settings));
 }
@@ -176,10 +176,10 @@ void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_s
 static void frame_ended(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_frame_t frame = {.bytes = device->frame, .length = device->length, .now_us = now_us};
-    const bool torn = device->torn;
+    const bool is_invalid = device->is_invalid;
     device->length = 0;
-    device->torn = false;
-    if (torn) {
+    device->is_invalid = false;
+    if (is_invalid) {
         device->counters.torn++;
         return;
     }
@@ -222,7 +222,7 @@ static bool send(fathom_sim_device_t *device, const fathom_line_settings_t *sett
     return device->own != 0;
 }
 
-/* True: TX rests low, and the host's UART makes noise of its rise; the answer follows that. */
+/* True: TX rests low, and the host's UART makes noise of its rise; the response follows that. */
 static bool rise(fathom_sim_device_t *device, uint32_t now_us)
 {
     if (!device->tx_is_uart || device->tx_high || device->is_raised) return false;
@@ -250,7 +250,7 @@ static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t
     fathom_sim_frame_t frame = {
         .bytes = bytes, .automatic = true, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
     if (device->leaving && fathom_sim_until_us(device->leave_us, now_us) == 0) return;
-    /* from start to start, also where an answer was in the way, and never two for one delay */
+    /* from start to start, also where a response was in the way, and never two for one delay */
     do was_due_us += device->period_us;
     while (fathom_sim_until_us(was_due_us, now_us) == 0);
     fathom_sim_device_set_alarm(device, AUTOMATIC, was_due_us);
@@ -259,11 +259,11 @@ static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t
     frame.length = unasked != NULL ? unasked->unasked(device, bytes, now_us)
                                    : device->model->automatic(device, bytes, now_us);
     device->counters.automatic++;
-    /* a new rate counts from behind the answer to the command that sets it */
+    /* a new rate counts from behind the response to the command that sets it */
     send(device, device->busy ? &device->reply_settings : &device->settings, &frame);
 }
 
-/* A frame of Modbus stands alone (HPS-167S 2.2.3), also beside those that nobody asked for. */
+/* There is silence on both sides of a Modbus frame (HPS-167S 2.2.3), also of an unsolicited one. */
 static void keep_silence(fathom_sim_device_t *device, uint32_t now_us)
 {
     const uint32_t silence_us = fathom_sim_silence_us(&device->sender.settings);
@@ -275,10 +275,10 @@ static void keep_silence(fathom_sim_device_t *device, uint32_t now_us)
 void fathom_sim_device_answer(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
                               uint32_t now_us)
 {
-    uint8_t room[FATHOM_SIM_MAX_FRAME]; /* a hook may alter them */
-    memcpy(room, bytes, length);
+    uint8_t copy[FATHOM_SIM_MAX_FRAME]; /* a hook may alter it */
+    memcpy(copy, bytes, length);
     fathom_sim_frame_t frame = {
-        .bytes = room, .length = length, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
+        .bytes = copy, .length = length, .now_us = now_us, .protocol = FATHOM_SIM_STREAM};
     device->counters.answered++;
     send(device, &device->settings, &frame);
 }

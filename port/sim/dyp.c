@@ -16,7 +16,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
     }
     const uint8_t command = frame[COMMAND];
     const bool to_all = frame[ADDRESS] == FATHOM_DYP_ANY_ADDRESS;
-    /* 03 carries the new address and no other, so it is for whoever hears it (A05 2(3)5). */
+    /* 03 has the new address and no other, so it is for every device that receives it (A05 2(3)5). */
     if (!to_all && frame[ADDRESS] != device->unit && command != FATHOM_DYP_SET_ADDRESS) {
         device->counters.others++;
         return true;

@@ -23,10 +23,10 @@ extern "C" {
  *     fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_LATE, 1000000, 7)->us = 700000; the 7th, by 0.7 s
  *     fathom_sim_fault_attach(&fault, &line, &a16.device);
  *
- * A frame here is what a device sends at a time: an answer or an automatic frame. They are counted from 1,
+ * A frame here is what a device sends at a time: a response or an automatic frame. They are counted from 1,
  * those too that a fault keeps back. Several kinds may hit one frame; they are applied in the order of the
  * list below, and each is counted when it was. A kind that does not fit a frame (an exception instead of an
- * automatic frame) leaves it alone and is not counted; fathom_sim_fault_applies says so beforehand.
+ * automatic frame) leaves it alone and is not counted; fathom_sim_fault_applies tells so beforehand.
  *
  * Each rule has its own random numbers, so that one more rule does not move the hits of the others.
  * One fathom_sim_fault_t a device. It costs nothing but the draws: millions of frames are no matter.
@@ -41,10 +41,10 @@ typedef enum {
     FATHOM_SIM_FAULT_NO_TARGET,    /* FATHOM_SIM_NO_TARGET */
 
     /* another frame, with a right CRC or sum */
-    FATHOM_SIM_FAULT_UNIT,      /* from another unit (1..254); not automatic */
-    FATHOM_SIM_FAULT_FUNCTION,  /* another function (1..127) or command (any); not automatic */
-    FATHOM_SIM_FAULT_COUNT,     /* one register or distance less, or more where there is one; in an answer
-                                   without any, one byte more */
+    FATHOM_SIM_FAULT_UNIT,     /* from another unit (1..254); not automatic */
+    FATHOM_SIM_FAULT_FUNCTION, /* another function (1..127) or command (any); not automatic */
+    /* one register or distance less, or more where there is one; in a response without any, one byte more */
+    FATHOM_SIM_FAULT_COUNT,
     FATHOM_SIM_FAULT_EXCEPTION, /* the exception `code`, 0: any of 1..255; Modbus only */
 
     /* its bytes */
@@ -55,30 +55,31 @@ typedef enum {
     FATHOM_SIM_FAULT_TRUNCATE,  /* it ends after 1..length-1 bytes */
     FATHOM_SIM_FAULT_TRAILING,  /* 1..4 random bytes more at its end, without a gap */
 
-    /* what the host's UART says of a byte (FATHOM_RX_...). Another device takes a marked byte for spoiled */
+    /* what the host's UART reports of a byte (FATHOM_RX_...). To another device a marked byte is damaged */
     FATHOM_SIM_FAULT_PARITY,  /* one bit of one byte is wrong, and marked FATHOM_RX_PARITY */
     FATHOM_SIM_FAULT_FRAMING, /* another value in one byte, marked FATHOM_RX_FRAMING */
     FATHOM_SIM_FAULT_OVERRUN, /* one byte is missing; the next that comes is marked FATHOM_RX_OVERRUN */
 
     /* time, and whether it comes at all */
-    FATHOM_SIM_FAULT_SPLIT,       /* a pause of `us` (default 10 ms) before one of its bytes but the first */
-    FATHOM_SIM_FAULT_DUPLICATE,   /* it comes twice, with `us` between (default 0: none) */
-    FATHOM_SIM_FAULT_DELAY,       /* `us` later (default 20 ms), which is meant to be in time */
-    FATHOM_SIM_FAULT_LATE,        /* `us` later (default 1.5 s), which is meant to be after a time-out; the
-                                     device is deaf until it has left */
-    FATHOM_SIM_FAULT_SILENCE,     /* it does not come */
-    FATHOM_SIM_FAULT_POWER_CYCLE, /* 0..length-1 bytes of it come, then the device is off for `us` (default
-                                     2 s) and starts anew */
+    FATHOM_SIM_FAULT_SPLIT,     /* a pause of `us` (default 10 ms) before one of its bytes but the first */
+    FATHOM_SIM_FAULT_DUPLICATE, /* it comes twice, with `us` between (default 0: none) */
+    FATHOM_SIM_FAULT_DELAY,     /* `us` later (default 20 ms), which is meant to be in time */
+    /* `us` later (default 1.5 s), which is meant to be after a time-out; the device is deaf until it has left */
+    FATHOM_SIM_FAULT_LATE,
+    FATHOM_SIM_FAULT_SILENCE, /* it does not come */
+    /* 0..length-1 bytes of it come, then the device is off for `us` (default 2 s) and starts anew */
+    FATHOM_SIM_FAULT_POWER_CYCLE,
 
     /* around it */
-    FATHOM_SIM_FAULT_NOISE,      /* 1..8 random bytes before or after it, `us` from it (default 3 ms) */
-    FATHOM_SIM_FAULT_UNASKED,    /* a frame that nobody asked for, before or after it, `us` from it (default
-                                    10 ms): what the device measures, in the same protocol */
-    FATHOM_SIM_FAULT_BREAK,      /* 00 with FATHOM_RX_FRAMING, `us` before it (default 1 ms) */
-    FATHOM_SIM_FAULT_ECHO,       /* the line repeats to the host what it sends, from the end of the frame
-                                    before until this one; not automatic */
-    FATHOM_SIM_FAULT_CLOCK_JUMP, /* the host's clock goes forward by `us` (default 10 s) at the beginning of
-                                    the frame; needs `clock` */
+    FATHOM_SIM_FAULT_NOISE, /* 1..8 random bytes before or after it, `us` from it (default 3 ms) */
+    /* an unsolicited frame, before or after it, `us` from it (default 10 ms): what the device measures, in the same
+     * protocol */
+    FATHOM_SIM_FAULT_UNASKED,
+    FATHOM_SIM_FAULT_BREAK, /* 00 with FATHOM_RX_FRAMING, `us` before it (default 1 ms) */
+    /* the line repeats to the host what it sends, from the end of the frame before until this one; not automatic */
+    FATHOM_SIM_FAULT_ECHO,
+    /* the host's clock goes forward by `us` (default 10 s) at the beginning of the frame; needs `clock` */
+    FATHOM_SIM_FAULT_CLOCK_JUMP,
     FATHOM_SIM_FAULT_END
 } fathom_sim_fault_kind_t;
 
@@ -138,7 +139,7 @@ fathom_sim_fault_rule_t *fathom_sim_fault_add(fathom_sim_fault_t *fault, uint8_t
  * device had in `faults`. `fault` may not be moved then, and lives as long as the device does. */
 void fathom_sim_fault_attach(fathom_sim_fault_t *fault, fathom_sim_line_t *line, fathom_sim_device_t *device);
 
-/* No more faults, or again. What is under way goes on: a late answer, a device without power. Frames are
+/* No more faults, or again. What is under way goes on: a late response, a device without power. Frames are
  * counted on. At the beginning they are on. */
 void fathom_sim_fault_enable(fathom_sim_fault_t *fault, bool on);
 

@@ -108,7 +108,7 @@ uint8_t fathom_sim_fault_unasked(const fathom_sim_fault_t *fault, const fathom_s
 {
     fathom_sim_device_t *const device = fault->device;
     if (frame->protocol == FATHOM_SIM_STREAM) return device->model->automatic(device, bytes, frame->now_us);
-    /* by the frame, not by what was asked last: perhaps nothing was */
+    /* by the frame, not by the last request: perhaps there was none */
     uint8_t i = 0;
     while (device->protocols[i]->id != frame->protocol) i++;
     return device->protocols[i]->unasked(device, bytes, frame->now_us);

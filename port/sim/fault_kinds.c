@@ -3,7 +3,7 @@
 
 #include "internal/fault_parts.h"
 
-enum { ASKED = FATHOM_SIM_MODBUS | FATHOM_SIM_DYP, ANY = ASKED | FATHOM_SIM_STREAM };
+enum { ON_REQUEST = FATHOM_SIM_MODBUS | FATHOM_SIM_DYP, ANY = ON_REQUEST | FATHOM_SIM_STREAM };
 
 static const struct {
     const char *name;
@@ -11,11 +11,11 @@ static const struct {
     uint8_t protocols;
 } kinds[FATHOM_SIM_FAULT_END] = {
     [FATHOM_SIM_FAULT_STUCK] = {"stuck", "the value of the frame before", ANY},
-    [FATHOM_SIM_FAULT_INTERFERENCE] = {"interference", "says interference (a16, a05)", ANY},
-    [FATHOM_SIM_FAULT_FAULT] = {"fault", "says that it has failed (hps167s)", ANY},
-    [FATHOM_SIM_FAULT_NO_TARGET] = {"no-target", "says that there is no target", ANY},
-    [FATHOM_SIM_FAULT_UNIT] = {"unit", "from another unit, checksum right", ASKED},
-    [FATHOM_SIM_FAULT_FUNCTION] = {"function", "another function, checksum right", ASKED},
+    [FATHOM_SIM_FAULT_INTERFERENCE] = {"interference", "reports interference (a16, a05)", ANY},
+    [FATHOM_SIM_FAULT_FAULT] = {"fault", "reports that it has failed (hps167s)", ANY},
+    [FATHOM_SIM_FAULT_NO_TARGET] = {"no-target", "reports that there is no target", ANY},
+    [FATHOM_SIM_FAULT_UNIT] = {"unit", "from another unit, checksum right", ON_REQUEST},
+    [FATHOM_SIM_FAULT_FUNCTION] = {"function", "another function, checksum right", ON_REQUEST},
     [FATHOM_SIM_FAULT_COUNT] = {"count", "a value less or more, checksum right", ANY},
     [FATHOM_SIM_FAULT_EXCEPTION] = {"exception", "a Modbus exception, any of 1..255", FATHOM_SIM_MODBUS},
     [FATHOM_SIM_FAULT_FLIP_BIT] = {"flip-bit", "one bit is wrong", ANY},
@@ -34,9 +34,9 @@ static const struct {
     [FATHOM_SIM_FAULT_SILENCE] = {"silence", "no frame at all", ANY},
     [FATHOM_SIM_FAULT_POWER_CYCLE] = {"power-cycle", "off in mid-frame, back after 2 s", ANY},
     [FATHOM_SIM_FAULT_NOISE] = {"noise", "1..8 random bytes before or after it", ANY},
-    [FATHOM_SIM_FAULT_UNASKED] = {"unasked", "a frame more that nobody asked for", ANY},
+    [FATHOM_SIM_FAULT_UNASKED] = {"unasked", "an unsolicited frame besides", ANY},
     [FATHOM_SIM_FAULT_BREAK] = {"break", "a break before the frame", ANY},
-    [FATHOM_SIM_FAULT_ECHO] = {"echo", "the line repeats what the host sends", ASKED},
+    [FATHOM_SIM_FAULT_ECHO] = {"echo", "the line repeats what the host sends", ON_REQUEST},
     [FATHOM_SIM_FAULT_CLOCK_JUMP] = {"clock-jump", "the host's clock jumps forward by 10 s", ANY},
 };
 

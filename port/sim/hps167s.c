@@ -60,7 +60,7 @@ static uint32_t until_us(const fathom_sim_hps167s_t *hps, uint8_t alarm, uint32_
     return due_us > least_us ? due_us : least_us;
 }
 
-/* From the end of the request to the answer: a measurement is ready, under way, or begins now. */
+/* From the end of the request to the response: a measurement is ready, under way, or begins now. */
 static uint32_t measure_us(const fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message,
                            uint32_t reply_us)
 {

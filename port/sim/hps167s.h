@@ -37,8 +37,8 @@ extern "C" {
  *   #15 reconnect time  at once                  kept
  * Each write that is obeyed wears the flash, also one that changes nothing (counters.flash_writes).
  *
- * It measures inside, 54 times a second, and says nothing unless asked (2.2.1). A measurement is handed out
- * once: so the answer to #5 comes in 2.5 ms when there is one, and not less than a period after the last.
+ * It measures inside, 54 times a second, and sends nothing without a request (2.2.1). A measurement is handed out
+ * once: so the response to #5 comes in 2.5 ms when there is one, and not less than a period after the last.
  * Where it sends by itself (unasked_us), each frame is a measurement that is handed out, t3.5 from others.
  *
  * #6, the factory reset of the interface, is carried out and counted (counters.resets) for exactly 0x0009 x1
@@ -54,7 +54,7 @@ typedef enum {
     FATHOM_SIM_HPS167S_ABNORMAL = 2   /* the abnormal packet of #5, also unasked */
 } fathom_sim_hps167s_warm_up_t;
 
-/* What #5 says besides the distance, as it goes over the wire. */
+/* What #5 has besides the distance, as it goes over the wire. */
 typedef struct {
     uint16_t magnitude; /* of the reflected light: (magnitude << exponent) / 10000 */
     uint8_t exponent;
@@ -65,32 +65,33 @@ typedef struct {
 /* Zero means the default. Copied by init; what the scene, the faults, the optics and the details point at
  * stays the caller's and may be changed. */
 typedef struct {
-    uint8_t unit;             /* 1..32; default 1 */
-    uint8_t baud_code;        /* as #9 has it: 1 = 19200 (default), 2 = 57600, 3, 4 = 230400 */
-    uint8_t warm_up_s;        /* as #7 has it; default none (the factory's is 5); #2 reports it */
-    uint8_t warm_up_says;     /* fathom_sim_hps167s_warm_up_t; default silence */
-    uint8_t wrong_length;     /* exception to a known address with another length: default 2, or 3 */
-    uint8_t wrong_value;      /* exception to a value that a command does not have: default 3, or any */
-    bool no_termination;      /* #2 reports 00 (FF) */
-    bool no_auto_output;      /* #2 reports 00 (FF); and each #5 takes a whole period from when it was asked,
-                               and nothing is sent unasked */
-    bool baud_at_power_on;    /* #9 acts from the next power-on; default: behind its acknowledgement, which
-                               leaves at the old rate */
-    bool offset_adds;         /* #12 is added to the offset that is there; default: it replaces that */
-    bool no_baud_code;        /* #2 reports 00 for its rate, whatever that is: table 12 has no encoding */
-    bool answers_from_new;    /* #8 and #6 are answered from the new address; default: the old one */
-    int16_t temperature_f;    /* #4; default 77 degrees Fahrenheit */
-    uint32_t reconnect_ms;    /* #15, #2; default 180; any, also what #15 could not set */
-    uint32_t unasked_us;      /* sends frames of the shape of #5 by itself, so often, when #10 was on at
-                               power-on ("continuous output", #15); default never (2.2.1) */
-    uint32_t seed;            /* of the spread of the answer times; any */
-    fathom_sim_scene_t scene; /* no target when empty */
+    uint8_t unit;         /* 1..32; default 1 */
+    uint8_t baud_code;    /* as #9 has it: 1 = 19200 (default), 2 = 57600, 3, 4 = 230400 */
+    uint8_t warm_up_s;    /* as #7 has it; default none (the factory's is 5); #2 reports it */
+    uint8_t warm_up_says; /* fathom_sim_hps167s_warm_up_t; default silence */
+    uint8_t wrong_length; /* exception to a known address with another length: default 2, or 3 */
+    uint8_t wrong_value;  /* exception to a value that a command does not have: default 3, or any */
+    bool no_termination;  /* #2 reports 00 (FF) */
+    /* #2 reports 00 (FF); and each #5 takes a whole period from its request on, and nothing is sent unasked */
+    bool no_auto_output;
+    /* #9 acts from the next power-on; default: behind its acknowledgement, which leaves at the old rate */
+    bool baud_at_power_on;
+    bool offset_adds;      /* #12 is added to the offset that is there; default: it replaces that */
+    bool no_baud_code;     /* #2 reports 00 for its rate, whatever that is: table 12 has no encoding */
+    bool answers_from_new; /* #8 and #6 are answered from the new address; default: the old one */
+    int16_t temperature_f; /* #4; default 77 degrees Fahrenheit */
+    uint32_t reconnect_ms; /* #15, #2; default 180; any, also what #15 could not set */
+    /* sends frames of the shape of #5 by itself, so often, when #10 was on at power-on ("continuous output", #15);
+     * default never (2.2.1) */
+    uint32_t unasked_us;
+    uint32_t seed;                     /* of the spread of the response times; any */
+    fathom_sim_scene_t scene;          /* no target when empty */
     const fathom_sim_faults_t *faults; /* NULL: none */
     const fathom_sim_optics_t *optics; /* NULL: DC B2 07, 01, 00 00 as in the datasheet's example of #5 */
     const uint8_t *details;            /* 22 bytes of #3; NULL: those of the datasheet's example */
     const uint8_t *version;            /* 6 bytes of #1; NULL: 2020-09-27, 2.1.0 (no example is printed) */
     uint32_t period_us;                /* of its measuring; default 18519 us, 54 Hz; 166667 is 6 Hz */
-    uint32_t reply_us;                 /* longest from the end of a request to the answer; 2.5 ms */
+    uint32_t reply_us;                 /* longest from the end of a request to the response; 2.5 ms */
 } fathom_sim_hps167s_config_t;
 
 /* Of the sensor behind the interface. */
@@ -129,7 +130,7 @@ typedef struct {
 void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s_config_t *config);
 
 /*
- * The interface hears nothing any more of the sensor behind it (lost), or does again. For a device that hangs
+ * The interface gets no more data from the sensor behind it (lost), or does again. For a device that hangs
  * on a line which has been run until now_us. Until the reconnect time of #15 is over there is nothing to
  * hand out: #5 waits so long, nothing is sent unasked; from then on both are the abnormal packet. Without
  * continuous measuring (#10) the abnormal packet comes as a measurement would. Power does not mend it, and

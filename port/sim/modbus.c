@@ -14,7 +14,7 @@ static void leave_automatic(fathom_sim_device_t *device, uint32_t now_us)
     device->leave_us = now_us + device->linger_us;
 }
 
-/* Is it one of the shapes that a request can have? An answer of another device to its own host may have the
+/* Is it one of the shapes that a request can have? A response of another device may have the
  * same address and function. */
 static bool fits(const uint8_t *frame, uint8_t length)
 {
@@ -59,7 +59,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
             message->head[UNIT] = device->unit;
         else if (to_all && device->answers_broadcast)
             message->head[UNIT] = unit;
-        /* whatever a write asked for: a refused one was sent all the same */
+        /* whatever a write was for: a refused one was sent all the same */
         if (is_write(frame) && (delay_us == FATHOM_NO_DEADLINE || message->exception != 0))
             device->counters.writes_refused++;
     }

@@ -15,7 +15,7 @@ extern "C" {
 /*
  * The pins of a simulated device as the host's board has them: its RX driven by a pin, its TX read as a level,
  * captured as pulses, or seen edge by edge, in simulated time. What a fathom_sim_uart_t on the same line does to RX,
- * a break or a byte, is the same wire: RX is high when none of them holds it low, and when nobody drives it.
+ * a break or a byte, is the same wire: RX is high when none of them holds it low, and when it is not driven.
  *
  * The bits of bytes that the device sends can be seen by `get`; they make no pulses and no edges.
  */

@@ -195,16 +195,16 @@ static int take_from_client(fathom_sim_pty_t *pty, uint32_t now_us)
 {
     uint8_t bytes[FATHOM_SIM_QUEUE];
     for (;;) {
-        size_t room = FATHOM_SIM_QUEUE - fathom_sim_queued(pty->line, now_us);
-        if (room == 0) return 0; /* the rest waits in the terminal, as behind a slow UART */
-        const ssize_t count = read(pty->master, bytes, room);
+        size_t space = FATHOM_SIM_QUEUE - fathom_sim_queued(pty->line, now_us);
+        if (space == 0) return 0; /* the rest waits in the terminal, as behind a slow UART */
+        const ssize_t count = read(pty->master, bytes, space);
         if (count < 0) return nothing_now() ? 0 : -1;
         if (count == 0) return 0;
         (void)fathom_sim_receive(pty->line, bytes, (size_t)count, now_us);
     }
 }
 
-/* Nobody has read for long: what waits is old, and new bytes are worth more. */
+/* The client has not read for long: what waits is old, and new bytes are worth more. */
 static void forget_old(const fathom_sim_pty_t *pty)
 {
     int unread = 0;

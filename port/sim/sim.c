@@ -15,10 +15,10 @@ void fathom_sim_line_init(fathom_sim_line_t *line, const fathom_line_settings_t 
 
 /* ---- what reaches the host ---- */
 
-/* What a UART makes of a byte that it cannot hear right is anybody's guess; here the same every time. */
+/* What a UART makes of a byte at another rate is not specified; here it is the same every time. */
 static uint8_t garbled(uint8_t byte) { return (uint8_t) ~(byte << 1); }
 
-/* mark: what the UART says of the byte besides (FATHOM_RX_...). */
+/* mark: what the UART reports of the byte besides (FATHOM_RX_...). */
 static void arrive(fathom_sim_line_t *line, const fathom_sim_sender_t *sender, uint8_t byte, uint8_t mark)
 {
     uint8_t flags = (uint8_t)((sender->after_silence ? FATHOM_RX_SILENCE : 0) | (mark & BYTE_ERRORS));
@@ -51,7 +51,7 @@ static void notice_quiet(fathom_sim_line_t *line)
         line->quiet = true;
 }
 
-/* ---- bytes on the wire; `device` is the talker, NULL the host ---- */
+/* ---- bytes on the wire; `device` is the sender, NULL the host ---- */
 
 static void collide(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fathom_sim_sender_t *other)
 {
@@ -191,7 +191,7 @@ void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
     *end = device;
     device->next = NULL;
     device->carriers = 0;
-    /* whoever talks now is in the middle of a byte, whose end will be counted too */
+    /* a sender that is active now is in the middle of a byte, whose end will be counted too */
     fathom_sim_device_power_on(device, line->now_us);
     fathom_sim_device_hold_rx(device, FATHOM_SIM_HELD_BY_BYTE, line->host.on_wire, line->now_us);
     fathom_sim_device_hold_rx(device, FATHOM_SIM_HELD_BY_BREAK, line->in_break, line->now_us);

@@ -16,10 +16,10 @@ extern "C" {
 
 /*
  * A line with simulated sensors on it, seen from the host's end. It does no I/O, has no clock and allocates
- * nothing: whoever owns it says what time it is. uart.h makes a HAL of it, pty.h a serial port of Linux.
+ * nothing: its owner passes the time to every call. uart.h makes a HAL of it, pty.h a serial port of Linux.
  *
  * Time is true to the bit: what the host sends takes its time on the wire, a device knows that a request has
- * ended after t3.5 of silence, works, and its answer arrives byte by byte. Between two calls nothing
+ * ended after t3.5 of silence, works, and its response arrives byte by byte. Between two calls nothing
  * happens; a call first runs through everything that was due until its `now_us`, in the order of time. So a
  * slow caller loses no precision, only bytes: the host's buffer holds FATHOM_SIM_QUEUE of them, and what
  * finds it full is lost and counted, as in a UART.
@@ -34,7 +34,7 @@ typedef struct {
     uint32_t from_host;  /* bytes that the host sent */
     uint32_t to_host;    /* bytes that reached it */
     uint32_t overruns;   /* bytes lost because the host did not read, or marked so by a fault */
-    uint32_t collisions; /* bytes that began while another talked (two-wire lines) */
+    uint32_t collisions; /* bytes that began while another device sent (two-wire lines) */
 } fathom_sim_line_counters_t;
 
 typedef struct {
@@ -45,9 +45,10 @@ typedef struct {
 
 typedef struct fathom_sim_line {
     /* the caller's to change after init */
-    bool full_duplex; /* RS-232 and logic level: a wire each way. false: RS-485, all hear all. Set it before
-                         the first device is attached */
-    bool echo;        /* the host hears itself (RS-485 without receiver disable); at any time */
+    /* RS-232 and logic level: a wire each way. false: RS-485, all hear all. Set it before the first device is
+     * attached */
+    bool full_duplex;
+    bool echo; /* the host hears itself (RS-485 without receiver disable); at any time */
     fathom_sim_line_counters_t counters;
 
     /* the line's */
@@ -75,7 +76,7 @@ void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
 void fathom_sim_detach(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t now_us);
 
 /* Takes the power from a device that hangs on the line for `off_us` (up to 30 minutes; 0: it comes back at
- * once), in mid-byte if need be. What its datasheet says is kept is there afterwards, the rest is as at the
+ * once), in mid-byte if need be. What is kept by its datasheet is there afterwards, the rest is as at the
  * beginning. fault.h has the same as an accident, at the end of a frame. */
 void fathom_sim_power_cycle(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t off_us,
                             uint32_t now_us);
@@ -91,7 +92,7 @@ size_t fathom_sim_receive(fathom_sim_line_t *line, const uint8_t *bytes, size_t 
 size_t fathom_sim_queued(fathom_sim_line_t *line, uint32_t now_us);
 
 /*
- * The host holds its TX low (true), or lets it go: an edge at the RX pin of every device, and one spoilt byte to those
+ * The host holds its TX low (true), or lets it go: an edge at the RX pin of every device, and one damaged byte to those
  * that listen. While it lasts no bytes of the host are taken. Of a two-wire line it disturbs what the host sends to
  * the devices, and nothing else.
  */
@@ -108,8 +109,8 @@ size_t fathom_sim_transmit(fathom_sim_line_t *line, uint32_t now_us, uint8_t *by
 
 /*
  * The same with what a good UART knows of them, by the rules of fathom_uart_t.read: `knows` is the set of
- * FATHOM_RX_... to tell; what is not in it is not told and does not divide the bytes. A byte that was talked
- * into or came at another rate is garbled and marked FATHOM_RX_FRAMING; silence is t3.5 without a byte.
+ * FATHOM_RX_... to report; what is not in it is not reported and does not divide the bytes. A byte that collided
+ * with another or came at another rate is garbled and marked FATHOM_RX_FRAMING; silence is t3.5 without a byte.
  */
 size_t fathom_sim_transmit_timed(fathom_sim_line_t *line, uint32_t now_us, uint8_t *bytes, size_t capacity,
                                  uint8_t knows, fathom_rx_t *rx);

@@ -27,7 +27,7 @@ typedef struct {
     uint32_t now_us;  /* may be read; is moved by the functions below only */
     uint32_t step_us; /* the caller's to change */
     uint32_t unseen_us;
-    uint32_t ahead_us; /* of now_us is what the HAL's clock and time stamps say */
+    uint32_t ahead_us; /* of now_us is what the HAL's clock and time stamps have */
     uint32_t was_ahead_us;
     uint32_t jumped_us; /* at this now_us it was `was_ahead_us` until then */
     fathom_sim_line_t *lines;
@@ -39,8 +39,8 @@ void fathom_sim_clock_init(fathom_sim_clock_t *clock, uint32_t start_us, uint32_
 /* Moves the time on by as much as you like and lets all lines live through it. */
 void fathom_sim_clock_advance(fathom_sim_clock_t *clock, uint32_t by_us);
 
-/* The HAL's clock, and nothing else, jumps: the host was stopped with its clock going on, or somebody set it.
- * From then on it says so much more than now_us; bytes that ended before at_us keep their time stamps. */
+/* The HAL's clock, and nothing else, jumps: the host was stopped with its clock going on, or the user set it.
+ * From then on it is ahead of now_us by so much; bytes that ended before at_us keep their time stamps. */
 void fathom_sim_clock_jump(fathom_sim_clock_t *clock, uint32_t at_us, uint32_t by_us);
 
 /* The idle hook; `clock` is a fathom_sim_clock_t. With no limit (FATHOM_NO_DEADLINE) and nothing to come it
@@ -50,7 +50,7 @@ void fathom_sim_clock_idle(void *clock, uint32_t max_us);
 /* Puts `line` on the clock, if it is not there yet: it lives through what the clock does. */
 void fathom_sim_clock_add(fathom_sim_clock_t *clock, fathom_sim_line_t *line);
 
-/* What the HAL's clock said when it was at_us, up to 10 minutes ago. */
+/* What the HAL's clock had when it was at_us, up to 10 minutes ago. */
 uint32_t fathom_sim_clock_stamp_us(const fathom_sim_clock_t *clock, uint32_t at_us);
 
 /* The HAL's clock: each now_us() moves the time by step_us first. */
@@ -58,7 +58,7 @@ fathom_clock_t fathom_sim_clock(fathom_sim_clock_t *clock);
 
 /*
  * A UART at the host's end of a line. write takes all or, until the last one has left the pin, nothing;
- * sent is exact. set_break holds the RX pins of the devices low. read tells what is in `knows` (FATHOM_RX_..., all of
+ * sent is exact. set_break holds the RX pins of the devices low. read reports what is in `knows` (FATHOM_RX_..., all of
  * them after init): set it to 0 to be a port that knows nothing. None of them moves the time.
  */
 typedef struct {

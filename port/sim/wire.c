@@ -68,8 +68,8 @@ size_t fathom_sim_sender_put(fathom_sim_sender_t *sender, const fathom_line_sett
         memmove(sender->bytes, sender->bytes + sender->sent, sender->length);
     }
     sender->sent = 0;
-    const size_t room = FATHOM_SIM_QUEUE - (size_t)sender->length;
-    if (count > room) count = room;
+    const size_t space = FATHOM_SIM_QUEUE - (size_t)sender->length;
+    if (count > space) count = space;
     if (count != 0) memcpy(sender->bytes + sender->length, bytes, count);
     sender->length = (uint16_t)(sender->length + count);
     return count;

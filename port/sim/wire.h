@@ -45,19 +45,19 @@ bool fathom_sim_same_settings(const fathom_line_settings_t *a, const fathom_line
 /* How long until `at_us`; 0 when it is now or up to 35 minutes ago. Right across the wrap. */
 uint32_t fathom_sim_until_us(uint32_t at_us, uint32_t now_us);
 
-/* One talker on the wire. All zero: idle. */
+/* One sender on the wire. All zero: idle. */
 typedef struct {
     fathom_line_settings_t settings; /* of what is leaving, whatever was set since */
     uint32_t begin_us;               /* start bit of bytes[0] */
     uint16_t length;                 /* bytes to send in all */
     uint16_t sent;                   /* so many of them have left */
     bool on_wire;                    /* bytes[sent] is leaving now */
-    bool spoiled;                    /* somebody else talked into it */
+    bool spoiled;                    /* another device sent at the same time */
     bool after_silence;              /* t3.5 had passed before it */
     uint8_t paused;                  /* used of `pauses` */
     bool marked;                     /* `marks` has any */
     fathom_sim_pause_t pauses[FATHOM_SIM_PAUSES];
-    uint8_t marks[FATHOM_SIM_QUEUE]; /* FATHOM_RX_... that the host's UART will say of each byte */
+    uint8_t marks[FATHOM_SIM_QUEUE]; /* FATHOM_RX_... that the host's UART will report of each byte */
     uint8_t bytes[FATHOM_SIM_QUEUE];
 } fathom_sim_sender_t;
 

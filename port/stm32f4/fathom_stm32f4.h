@@ -50,24 +50,24 @@ typedef enum {
 } fathom_stm32f4_pull_t;
 fathom_pin_t fathom_stm32f4_input(const fathom_stm32f4_pin_t *pin, fathom_stm32f4_pull_t pull);
 
-/* TIM2 counts us from here on, from 0; nobody else sets it up. It wraps at 2^32 by itself. timer_hz: what TIM2 and
- * TIM5 are clocked with, a whole number of MHz; twice PCLK1 where APB1 is divided, else PCLK1 (RM0090 7.2). Called
- * before all the others. */
+/* TIM2 counts us from here on, from 0, and the program does not set it up. It wraps at 2^32 by itself. timer_hz: what
+ * TIM2 and TIM5 are clocked with, a whole number of MHz; twice PCLK1 where APB1 is divided, else PCLK1 (RM0090 7.2).
+ * Called before all the others. */
 void fathom_stm32f4_clock_begin(uint32_t timer_hz);
 extern const fathom_clock_t fathom_stm32f4_clock;
 
 /* Read by begin, but for the pins, which outlive the use of the UART. */
 typedef struct {
-    uint8_t *request;     /* memory for the longest request; outlives the use of the UART. 8 bytes for all
-                         reads and single writes */
-    uint8_t request_size; /* 1..255 */
-    uint8_t number;       /* 1..6: USART1..3, UART4, UART5, USART6 */
-    uint32_t bus_hz;      /* PCLK2 for 1 and 6, PCLK1 for the others */
+    /* memory for the longest request; outlives the use of the UART. 8 bytes for all reads and single writes */
+    uint8_t *request;
+    uint8_t request_size;        /* 1..255 */
+    uint8_t number;              /* 1..6: USART1..3, UART4, UART5, USART6 */
+    uint32_t bus_hz;             /* PCLK2 for 1 and 6, PCLK1 for the others */
     fathom_line_settings_t line; /* to begin with */
     fathom_stm32f4_pin_t tx;     /* the datasheet's table of alternate functions has the choice */
     fathom_stm32f4_pin_t rx;     /* with pull-up */
-    fathom_stm32f4_pin_t driver; /* DE of an RS-485 transceiver (with /RE, if there is to be no echo), high
-                                    while bytes leave; port 0: none */
+    /* DE of an RS-485 transceiver (with /RE, if there is to be no echo), high while bytes leave; port 0: none */
+    fathom_stm32f4_pin_t driver;
 } fathom_stm32f4_usart_config_t;
 
 /* The port's; `serial` has counters that the caller may read. */
@@ -94,16 +94,16 @@ bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm3
 void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart);
 
 /*
- * By value; it points to `usart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before
+ * By value; it points to `usart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are reported byte by byte; a read ends before
  * and after such a byte. No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
  *             While bytes leave, a parity error may be missed (errata ES0182: a write to DR can clear it).
- * write       takes 1 to request_size bytes; of none or more it says < 0. It drives `driver` from before the first start bit
- *             until the last stop bit has left (TC), and lets it go in the interrupt.
+ * write       takes 1 to request_size bytes; of none or more it returns < 0. It drives `driver` from before the first
+ *             start bit until the last stop bit has left (TC), and lets it go in the interrupt.
  * sent        is exact.
  * leaves_in_us  counts bytes, and is two characters too long at most.
  * set_line    within 2.5 %: bus_hz / 65535 to bus_hz / 16 baud. 8E1 and 8O1 are words of 9 bits here (M and PCE).
  * set_break   TX becomes an output that is low, since SBK sends one character of break and no more; `driver` is high
- *             as long. Meanwhile write says 0.
+ *             as long. Meanwhile write returns 0.
  */
 fathom_uart_t fathom_stm32f4_usart(fathom_stm32f4_usart_t *usart);
 

@@ -39,11 +39,11 @@ static inline uint32_t fathom_virt_us(uint64_t ticks)
 
 /* Read by begin only. */
 typedef struct {
-    uint8_t *request;     /* memory for the longest request; outlives the use of the UART. 8 bytes for all
-                         reads and single writes */
+    /* memory for the longest request; outlives the use of the UART. 8 bytes for all reads and single writes */
+    uint8_t *request;
     uint8_t request_size; /* 1..255 */
-    uint32_t clock_hz;    /* of the UART, 16 times the highest rate. QEMU 7.2 counts with
-                         FATHOM_VIRT_UART_HZ, whatever its device tree says */
+    /* of the UART, 16 times the highest rate. QEMU 7.2 counts with FATHOM_VIRT_UART_HZ, whatever its device tree has */
+    uint32_t clock_hz;
     fathom_line_settings_t line; /* to begin with */
 } fathom_virt_uart_config_t;
 #define FATHOM_VIRT_UART_HZ (399193u * 16)
@@ -53,7 +53,7 @@ typedef struct {
     fathom_serial_t serial;
     uint32_t clock_hz;
     fathom_line_settings_t line;
-    uint8_t told; /* errors of the byte that is next */
+    uint8_t next_errors; /* errors of the byte that is next */
     bool is_break;
 } fathom_virt_uart_t;
 
@@ -66,13 +66,13 @@ bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_con
 void fathom_virt_external_interrupt(fathom_virt_uart_t *uart);
 
 /*
- * By value; it points to `uart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are told of single bytes; a read ends before
+ * By value; it points to `uart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are reported byte by byte; a read ends before
  * and after such a byte. No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
- * write       takes 1 to request_size bytes; of none or more it says < 0. It begins with up to 16 bytes at once.
- * sent        is exact: TEMT. No interrupt tells of it, so this UART drives no RS-485 transceiver: take one that
+ * write       takes 1 to request_size bytes; of none or more it returns < 0. It begins with up to 16 bytes at once.
+ * sent        is exact: TEMT. No interrupt comes with it, so this UART drives no RS-485 transceiver: take one that
  *             switches over by itself, or another UART.
  * set_line    within 2.5 %: 8 data bits, any parity, 1 or 2 stop bits.
- * set_break   as long as it is on (bit 6 of LCR). Meanwhile write says 0.
+ * set_break   as long as it is on (bit 6 of LCR). Meanwhile write returns 0.
  */
 fathom_uart_t fathom_virt_uart(fathom_virt_uart_t *uart);
 

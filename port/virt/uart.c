@@ -8,7 +8,8 @@
 #define UART VIRT_UART
 enum { RBR = 0, THR = 0, DLL = 0, IER = 1, DLM = 1, FCR = 2, LCR = 3, LSR = 5 };
 enum { IER_RECEIVED = 1, IER_EMPTY = 2, IER_ERROR = 4 };
-enum { FCR_ON = 1, FCR_CLEAR = 6 }; /* interrupt from the first byte on: an answer's last one must not wait */
+/* Interrupt from the first byte on: a response's last one must not wait. */
+enum { FCR_ON = 1, FCR_CLEAR = 6 };
 enum { LCR_8_BITS = 3, LCR_2_STOPS = 4, LCR_PARITY = 8, LCR_EVEN = 0x10, LCR_BREAK = 0x40, LCR_DLAB = 0x80 };
 enum { LSR_READY = 1, LSR_OVERRUN = 2, LSR_PARITY = 4, LSR_FRAMING = 8, LSR_EMPTY = 0x20, LSR_SENT = 0x40 };
 enum { LSR_ERRORS = LSR_OVERRUN | LSR_PARITY | LSR_FRAMING };
@@ -35,11 +36,11 @@ static void set_up(fathom_virt_uart_t *uart, const fathom_line_settings_t *line,
     uart->line = *line;
 }
 
-/* LSR; what it tells of the byte that is next is cleared by this, and kept for whoever reads that byte. */
+/* LSR; its errors of the next byte are cleared by reading it, so they are kept until that byte is read. */
 static unsigned status(fathom_virt_uart_t *uart)
 {
     const unsigned now = UART[LSR];
-    uart->told = (uint8_t)(uart->told | (now & LSR_ERRORS));
+    uart->next_errors = (uint8_t)(uart->next_errors | (now & LSR_ERRORS));
     return now;
 }
 
@@ -47,13 +48,13 @@ static void receive(fathom_virt_uart_t *uart)
 {
     fathom_serial_t *const serial = &uart->serial;
     for (;;) {
-        const unsigned why = status(uart) | uart->told;
+        const unsigned why = status(uart) | uart->next_errors;
         uint8_t flags = 0;
-        uart->told = 0;
+        uart->next_errors = 0;
         if ((why & LSR_PARITY) != 0) flags |= FATHOM_RX_PARITY;
         if ((why & LSR_FRAMING) != 0) flags |= FATHOM_RX_FRAMING;
         if ((why & LSR_READY) != 0) fathom_serial_put(serial, UART[RBR], flags);
-        /* The FIFO keeps what it has: the loss is behind it, and where exactly, nobody can tell. */
+        /* The FIFO keeps what it has: the loss is behind that; where exactly is not known. */
         if ((why & LSR_OVERRUN) != 0) fathom_serial_lose(serial);
         if ((why & LSR_READY) == 0) return;
     }
@@ -63,7 +64,7 @@ static void receive(fathom_virt_uart_t *uart)
 static void send(fathom_virt_uart_t *uart)
 {
     uint8_t byte;
-    for (int room = FIFO; room != 0; room--) {
+    for (int space = FIFO; space != 0; space--) {
         if (!fathom_serial_next(&uart->serial, &byte)) {
             UART[IER] = IER_RECEIVED | IER_ERROR;
             uart->serial.leaving = false;
@@ -149,7 +150,7 @@ bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_con
     fathom_serial_init(&uart->serial, config->request, config->request_size);
     uart->clock_hz = config->clock_hz;
     uart->is_break = false;
-    uart->told = 0;
+    uart->next_errors = 0;
     UART[FCR] = FCR_ON | FCR_CLEAR;
     set_up(uart, &config->line, by);
     VIRT_PLIC_PRIORITY[VIRT_UART_SOURCE] = 1;

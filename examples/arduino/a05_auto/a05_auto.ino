@@ -2,8 +2,8 @@
 // An A05 that sends by itself (UART automatic), its TX to pin 10. The distances of its four probes are printed at
 // 115200 baud.
 //
-// An Uno has one hardware serial, which prints, so the sensor is heard by SoftwareSerial; at 9600 baud, and with nobody
-// who writes to it, that loses nothing. A board with Serial1 uses that: the sensor's TX to its RX.
+// An Uno has one hardware serial, which prints, so the sensor is read by SoftwareSerial; at 9600 baud, and while
+// nothing is written to it, that loses nothing. A board with Serial1 uses that: the sensor's TX to its RX.
 #include <fathom_arduino.h>
 
 #if defined(ARDUINO_ARCH_AVR) && !defined(HAVE_HWSERIAL1)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An HPS-167S behind an RS-485 transceiver: DI to TX, RO to RX, which has 10 kOhm to the supply as well, since nobody
-// drives it while bytes leave; DE and /RE together to pin 2, A and B to white and green. The transceiver has the board's
+// An HPS-167S behind an RS-485 transceiver: DI to TX, RO to RX, which has 10 kOhm to the supply as well, since RO
+// floats while bytes leave; DE and /RE together to pin 2, A and B to white and green. The transceiver has the board's
 // own voltage, 5 V or 3.3 V. 19200 8E1, as it comes from the factory. The LED is lit while something is nearer than 1 m,
 // and blinks while the sensor does not answer.
 //

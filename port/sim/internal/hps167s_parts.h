@@ -21,7 +21,7 @@ void fathom_sim_hps167s_set_rate(fathom_sim_hps167s_t *hps);
 /* #6 */
 void fathom_sim_hps167s_reset(fathom_sim_hps167s_t *hps);
 
-/* #7 to #14, #15; message->exception says what is wrong with them, and nothing has changed then. */
+/* #7 to #14, #15; message->exception has what is wrong with them, and nothing has changed then. */
 void fathom_sim_hps167s_write(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message);
 void fathom_sim_hps167s_write_many(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message);
 

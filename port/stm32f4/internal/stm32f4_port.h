@@ -29,7 +29,7 @@ enum {
 enum { TIM_CR1_CEN = 1, TIM_CR1_URS = 4, TIM_CR1_OPM = 8, TIM_EGR_UG = 1 };
 enum { RCC_TIM2 = 1, RCC_TIM5 = 8 };
 
-/* An interrupt has done what the main loop may be waiting for, but for a byte, which the ring tells of. idle clears it. */
+/* An interrupt has done what the main loop may be waiting for, but for a byte, which the ring shows. idle clears it. */
 extern volatile uint8_t fathom_stm32f4_happened;
 
 void fathom_stm32f4_enable_interrupt(uint8_t number);
