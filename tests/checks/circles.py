@@ -4,11 +4,11 @@
 
  1. Files: no file includes itself through others, in any folder.
  2. Modules of the library, the ports and the examples: X.c and X.h are one module (include/fathom/.../X.h and
-    src/.../X.c too). It uses another module when it includes that one's header, or when its source names what the
-    other's source defines and a header that both include declares. No module uses itself through others. A source
-    with main() is a program, and nothing uses one, though start-up code names main and interrupt handlers. What
-    several sources define is a hook, of which each program links one (start_end of the boards): to name it uses
-    none of them.
+    src/.../X.c too). It uses another module when it includes that one's header, unless for what its own source
+    defines, or when its source names what the other's source defines and a header that both include declares. No
+    module uses itself through others. A source with main() is a program, and nothing uses one, though start-up code
+    names main and interrupt handlers. What several sources define is a hook, of which each program links one
+    (start_end of the boards): to name it uses none of them.
 
 A header that has no source of its name (X_internal.h, what stands in internal/, types) is counted by the first rule
 only: what it declares is in the sources of its folder, and the second rule asks which of them define it."""
@@ -131,8 +131,10 @@ def uses(paths, code, includes):
             why.setdefault((module, used), reason)
 
     for path in paths:
+        own = {name for name in words[path] if path in defined.get(name, ())}
         for other in includes[path]:
-            add(path, other, f'{path} includes {other}')
+            if not own & words.get(other, set()):
+                add(path, other, f'{path} includes {other}')
     for path in sources:
         for name in sorted(words[path] & set(defined)):
             other, *others = sorted(defined[name])
