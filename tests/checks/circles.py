@@ -165,7 +165,8 @@ def check(root, only):
         seen.update(places[:1])
         if not places:
             problems.append(words)
-    return problems + [f'{place}: no circle there any more; take it out of KNOWN' for place in KNOWN if place not in seen]
+    mended = [place for place in KNOWN if place not in seen]
+    return problems + [f'{place}: no circle there any more; take it out of KNOWN' for place in mended]
 
 
 FAULTS = [
