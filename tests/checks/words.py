@@ -19,7 +19,7 @@ LEFT_OUT = ('.csv', '.svg', '.json')  # figures
 NOT_READ = ('tests/checks/words.py',)  # this table. CHANGELOG.md, which has the old names, is in none of the folders
 
 TABLE = [  # the word, as it is in names (None: allowed there), as it is in prose, what to use instead
-    ('owes', r'owe[ds]?|owing', r'owes?|owing', 'quarantined, quarantine_left_us'),
+    ('owes', r'owe[ds]?|owing', r'owe[ds]?|owing', 'quarantined, quarantine_left_us'),
     ('torn', r'torn', r'torn', 'truncated'),
     ('spoilt', r'spoil(t|ed|s)?', r'spoil(t|ed|s)?', 'corrupt, damaged'),
     ('answered wrong', r'answered wrong', r'answered wrong', 'unexpected response'),
@@ -160,7 +160,11 @@ FAULTS = [
 
 
 def self_check():
-    """What the planted faults cannot show: words that are allowed."""
+    """What the planted faults do not show: each row finds its word, and words that are allowed are left alone."""
+    for word, *_ in TABLE:
+        found = [*in_names([word.replace(' ', '_')]), *in_prose(f'The {word}.')]
+        if word not in (row[0] for row in found):
+            raise SystemExit(f'the row {word!r} does not find its word')
     allowed = ['/* The years, a hearing, an early end: seamless. */', '/* It was told so, and said it. */',
                'int fathom_early, fathom_talked, untold;', '/* Quarantine: it still owes a response. */',
                'int a; /* two silences */', 'const char *a = "it answers";']
