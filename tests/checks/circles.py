@@ -25,7 +25,6 @@ ENDS = ('.c', '.h', '.cpp', '.ino')
 KNOWN = {
     'src/line': 'sending, the wait for a response and the queue name each other through line_inside.h',
     'examples/fathom/': 'usage_error stands in commands.c, which names every command; channel, tcp and sensors',
-    'tests/second/second': 'second.h includes second_device.h at its end, which includes it',
 }
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]', re.M)

@@ -186,6 +186,4 @@ typedef struct {
 } second_state_t;
 second_state_t second_state(const second_device_t *device);
 
-#include "second_device.h"
-
 #endif

@@ -3,7 +3,7 @@
 #ifndef SECOND_TEST_HOST_H
 #define SECOND_TEST_HOST_H
 
-#include "second.h"
+#include "second_device.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
 #define SECOND_RIG_H
 
 #include "fathom/fathom.h"
-#include "second.h"
+#include "second_device.h"
 
 enum { RIG_BYTES = 4096, RIG_FRAME = 32 };
 

@@ -17,7 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "second.h"
+#include "second_device.h"
 
 enum { POWERED_US = 12000000, LONGEST_MS = 20 };
 
