@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Prints the figures beside their bounds, keeps them in figures.csv and sizes.csv and in the README, and says what is
+"""Prints the figures beside their bounds, keeps them in figures.csv and sizes.csv and in the pages, and says what is
 worse than kept. A bound that is missed is an aim, and is printed; it fails nothing."""
 import csv
 import os
@@ -15,8 +15,9 @@ BOUNDS = os.path.join(HERE, 'bounds.csv')
 PEERS = os.path.join(HERE, 'peers.csv')
 VALUES = 8  # what the job reads: the user's, and counted with RAM beside the peers
 # What is kept in the pages: (page, name of the table)
-PLACES = [(os.path.join(ROOT, 'README.md'), 'figures'), (os.path.join(ROOT, 'README.md'), 'sizes'),
-          (os.path.join(ROOT, 'README.md'), 'peers'), (os.path.join(ROOT, 'tests', 'README.md'), 'peers')]
+PAGE = os.path.join(HERE, 'README.md')
+PLACES = [(PAGE, 'figures'), (PAGE, 'sizes'), (PAGE, 'peers'), (os.path.join(ROOT, 'README.md'), 'footprints')]
+FOOTPRINTS = ('a05_relay', 'a16_pwm', 'a16_auto', 'a05_modbus', 'hps167s')  # of the sizes, on the first page
 ANY = 'any driver'  # the worst of all drivers, in bounds.csv
 
 
@@ -112,7 +113,7 @@ def beside_bound(value, unit, bound):
     return f'{value} {unit}, {"" if value <= bound else "over "}{bound}'
 
 
-def readme_table(figures, sizes):
+def figures_table(figures, sizes):
     """The jobs; then what of the sizes has a bound."""
     aims, found = bounds(), all_figures(figures, sizes)
     lines = ['| | the least | with counters | all |', '|---|---|---|---|']
@@ -128,9 +129,9 @@ def readme_table(figures, sizes):
     return '\n'.join(lines) + '\n'
 
 
-def readme_sizes(sizes):
+def sizes_table(sizes, names):
     lines = ['| | ' + ' | '.join(machine.what for machine in MACHINES) + ' |', '|---' * (1 + len(MACHINES)) + '|']
-    for row in rows():
+    for row in names:
         cells = ' | '.join(cell(sizes[row, machine.name]) for machine in MACHINES)
         lines.append(f'| {row if row in JOBS or row == "everything" else f"`{row}`"} | {cells} |')
     return '\n'.join(lines) + '\n'
@@ -139,19 +140,6 @@ def readme_sizes(sizes):
 def peers():
     with open(PEERS, encoding='utf-8') as file:
         return list(csv.DictReader(file))
-
-
-def standing(figures):
-    """One line: those that fit a microcontroller, from the smallest to the largest, and the fastest likewise."""
-    def ranked(column, own, unit):
-        others = [(int(row[column]), f'{row["name"]} {row[column]} {unit} ({row["short"]})') for row in peers()
-                  if row[column] and row['m0_flash']]
-        return ', '.join(text for _, text in sorted([*others, (own, f'**Fathom {own} {unit}**')]))
-    return ('Where that stands: flash of the same job on a Cortex-M0+: '
-            + ranked('m0_flash', figures['job.m0_flash_256'], 'B') + '; a read on x86-64: '
-            + ranked('x86', figures['job.x86_transaction'], 'instructions')
-            + '. Versions, what each does and does not, and how it was measured: '
-              '[tests/README.md](tests/README.md#peers).\n')
 
 
 def peers_table(figures):
@@ -173,7 +161,8 @@ def peers_table(figures):
 
 def tables(figures, sizes):
     """Of the pages, in the order of PLACES."""
-    return readme_table(figures, sizes), readme_sizes(sizes), standing(figures), peers_table(figures)
+    return (figures_table(figures, sizes), sizes_table(sizes, rows()), peers_table(figures),
+            sizes_table(sizes, FOOTPRINTS))
 
 
 def pattern(name):
@@ -240,6 +229,6 @@ def compare(lines, what, was, now, unit):
         print(f'better: {what}: {now} {unit}, was {was}; keep it with run.py --update')
 
 
-def not_in_readme(figures, sizes):
+def not_in_pages(figures, sizes):
     return [f'the table {name} of {os.path.relpath(page, ROOT)} is not what is kept: run.py --update'
             for (page, name), table in zip(PLACES, tables(figures, sizes)) if pattern(name).findall(read(page)) != [table]]

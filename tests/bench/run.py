@@ -4,8 +4,8 @@
 
     run.py            prints the tables; exit status 0 unless something could not be measured
     run.py --check    also fails when a figure is worse than the one kept in figures.csv or sizes.csv, or when the
-                      README's tables are not what is kept
-    run.py --update   also keeps today's figures there, and in the README's tables
+                      tables of README.md here and of the first page are not what is kept
+    run.py --update   also keeps today's figures there, and in those tables
     run.py --csv FILE also writes the tables as CSV
     run.py --functions
                       also prints which function of the job costs what
@@ -73,7 +73,7 @@ def main():
     lines = report.worse(figures, kept_figures, made_with, versions())
     if made_with == versions():
         lines += report.worse_sizes(sizes, kept_sizes)
-    lines += report.not_in_readme(kept_figures, kept_sizes)
+    lines += report.not_in_pages(kept_figures, kept_sizes)
     print('\n'.join(lines))
     return 1 if lines else 0
 

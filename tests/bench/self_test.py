@@ -4,7 +4,7 @@ import os
 import tempfile
 
 from job import ROWS
-from report import (PLACES, all_figures, beside_bound, bounds, pattern, tables, verdict, worse,
+from report import (FOOTPRINTS, PLACES, all_figures, beside_bound, bounds, pattern, tables, verdict, worse,
                     worse_sizes)
 from sizes import HEAD, rows
 from stack import Image, arm, avr, riscv
@@ -36,8 +36,9 @@ def sizes():
     assert found(costs, same) == kept
     for name in ROWS:
         assert found(dict(costs, **{name: 101}), same)[0] != kept[0], name
-    for at in (2, 3):
-        assert found(dict(costs, **{'job.m0_flash_256': 101}), same)[at] != kept[at]
+    assert found(dict(costs, **{'job.m0_flash_256': 101}), same)[2] != kept[2]
+    for row in FOOTPRINTS:
+        assert found(costs, {**same, (row, 'm0'): dict.fromkeys(HEAD, 101)})[3] != kept[3], row
     for place, size in same.items():
         for what in HEAD:
             other = {**same, place: dict(size, **{what: 101})}

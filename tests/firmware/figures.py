@@ -8,7 +8,8 @@ time for one version of the compiler, which the file names.
                                  runs PROGRAM, whose lines "figure NAME VALUE UNIT" are GROUP's, and shows them
     figures.py --check ...       also fails when one is worse than the kept one or over its bound, missing or new
     figures.py --update ...      also keeps them; bounds stay, and are written into the file by hand
-    figures.py --readme          fails unless the README's table is that of figures.csv; with --update it writes it
+    figures.py --page            fails unless the table of tests/bench/README.md is that of figures.csv; with --update it
+                                 writes it
     figures.py --self-test       shows that the comparison works
 
 Less is better in all of them. It fails when PROGRAM does, and prints first what that has printed, so PROGRAM may be a
@@ -24,12 +25,12 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 FIGURES = os.path.join(HERE, 'figures.csv')
-README = os.path.join(os.path.dirname(os.path.dirname(HERE)), 'README.md')
-TABLE = re.compile(r'(?s)(?<=<!-- firmware: kept by tests/firmware/figures.py --readme --update -->\n).*?(?=<!-- end -->)')
+PAGE = os.path.join(os.path.dirname(HERE), 'bench', 'README.md')
+TABLE = re.compile(r'(?s)(?<=<!-- firmware: kept by tests/firmware/figures.py --page --update -->\n).*?(?=<!-- end -->)')
 LINE = re.compile(r'^figure (\w+) (-?\d+(?:\.\d+)?) (\S+)$', re.M)
 
-# What the README tells of them; the rest is in the file.
-IN_README = [
+# What the page tells of them; the rest is in the file.
+IN_PAGE = [
     ('avr_receive_interrupt', 'ATmega328P: receive interrupt, and 4 more of entry'),
     ('avr_empty_interrupt', 'transmit buffer empty'),
     ('avr_transmit_interrupt', 'transmit complete, which drops driver-enable'),
@@ -57,24 +58,24 @@ IN_README = [
 ]
 
 
-def readme_table(rows):
+def page_table(rows):
     lines = ['| | measured |', '|---|---|']
-    for name, what in IN_README:
+    for name, what in IN_PAGE:
         lines.append(f'| {what} | {rows[name]["figure"]} {rows[name]["unit"]} |')
     return '\n'.join(lines) + '\n'
 
 
-def readme(is_update):
-    with open(README, encoding='utf-8') as file:
+def page(is_update):
+    with open(PAGE, encoding='utf-8') as file:
         text = file.read()
-    table = readme_table(read(FIGURES)[1])
+    table = page_table(read(FIGURES)[1])
     found = TABLE.findall(text)
     if is_update and len(found) == 1:
-        with open(README, 'w', encoding='utf-8') as file:
+        with open(PAGE, 'w', encoding='utf-8') as file:
             file.write(TABLE.sub(lambda _: table, text))
         found = [table]
     good = found == [table]
-    print('1 passed, 0 failed' if good else 'the README\'s table is not that of figures.csv: figures.py --readme --update\n'
+    print('1 passed, 0 failed' if good else 'the table of tests/bench/README.md is not that of figures.csv: figures.py --page --update\n'
           '0 passed, 1 failed')
     return 0 if good else 1
 
@@ -185,11 +186,11 @@ def self_test():
     update({'chip_isr': ('40', 'cycles')}, 'chip', 'cc 3', compilers, rows)
     assert list(rows) == ['core_isr', 'chip_isr'] and rows['chip_isr']['bound'] == '60'
     assert compilers == {'core': 'cc 2', 'chip': 'cc 3'}
-    shown = {name: {'figure': '1', 'unit': 'B'} for name, _ in IN_README}
-    marked = '<!-- firmware: kept by tests/firmware/figures.py --readme --update -->\n%s<!-- end -->'
-    assert TABLE.findall(marked % readme_table(shown)) == [readme_table(shown)]
-    changed = {**shown, IN_README[0][0]: {'figure': '2', 'unit': 'B'}}
-    assert TABLE.findall(marked % readme_table(shown)) != [readme_table(changed)]
+    shown = {name: {'figure': '1', 'unit': 'B'} for name, _ in IN_PAGE}
+    marked = '<!-- firmware: kept by tests/firmware/figures.py --page --update -->\n%s<!-- end -->'
+    assert TABLE.findall(marked % page_table(shown)) == [page_table(shown)]
+    changed = {**shown, IN_PAGE[0][0]: {'figure': '2', 'unit': 'B'}}
+    assert TABLE.findall(marked % page_table(shown)) != [page_table(changed)]
     print('1 passed, 0 failed')
     return 0
 
@@ -198,7 +199,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--check', action='store_true', help='fail when a figure is worse than the kept one')
     parser.add_argument('--update', action='store_true', help='keep the figures in figures.csv')
-    parser.add_argument('--readme', action='store_true', help='only look at the table of the README')
+    parser.add_argument('--page', action='store_true', help='only look at the table of tests/bench/README.md')
     parser.add_argument('--self-test', action='store_true', help='show that the comparison works')
     parser.add_argument('group', nargs='?')
     parser.add_argument('compiler', nargs='?')
@@ -206,8 +207,8 @@ def main():
     options = parser.parse_args()
     if options.self_test:
         return self_test()
-    if options.readme:
-        return readme(options.update)
+    if options.page:
+        return page(options.update)
     if not options.program:
         parser.error('which program measures?')
 

@@ -23,7 +23,7 @@ from count import cases  # noqa: E402: it counts what the host's tests print, an
 # Lines of left_out.txt. Whoever makes one longer changes this too.
 LEFT_OUT = {'avr': 56, 'powerpc': 20, 's390x': 16}
 # A target with fewer cases than this has lost some.
-AT_LEAST = {'avr': 1107, 'powerpc': 2713, 's390x': 2842}
+AT_LEAST = {'avr': 1105, 'powerpc': 2711, 's390x': 2840}
 SECONDS = 500  # for one suite; a busy machine is slow, not wrong
 
 
