@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The README's table of the datasheets: a row for each section of tests/golden/sections.csv, and what a row names is
-there: functions and headers, commands of the tool, tests. The headers that the README names elsewhere are there too."""
+"""include/README.md's table of the datasheets: a row for each section of tests/golden/sections.csv, and what a row names
+is there: functions and headers, commands of the tool, tests. The headers that the pages name elsewhere are there too, and
+the first page's table of sensors and modes has every driver."""
 import os
 import re
 
@@ -11,6 +12,8 @@ from common import code_of, files, main, read
 common.COPIED = (*common.COPIED, 'tests', 'README.md')
 
 LIST = 'tests/golden/sections.csv'
+PAGE, FIRST = 'include/README.md', 'README.md'
+DRIVER = re.compile(r'(a16|a05|hps167s)(_|\.h$)(?!registers)')
 BEGIN, END = '<!-- datasheets: ', '<!-- end -->'
 
 
@@ -41,9 +44,11 @@ class Tree:
         self.names = set(re.findall(r'\b[A-Za-z_]\w*\b', code))
         self.commands = set(re.findall(r'&(\w+)_command\b', read(root, 'examples/fathom/commands.c')))
 
+        self.headers = files(root, 'include', ends='.h')
+
     def has_header(self, name):
-        return any(os.path.exists(os.path.join(self.root, folder, name))
-                   for folder in ('include/fathom', 'include', ''))
+        return os.path.exists(os.path.join(self.root, name)) or any(
+            f'/{path}'.endswith(f'/{name}') for path in self.headers)
 
     def has_api(self, name):
         return self.has_header(name) if name.endswith('.h') else name in self.names
@@ -63,39 +68,45 @@ class Tree:
 def check(root, only):
     tree = Tree(root)
     wanted = sections(read(root, LIST))
-    readme = read(root, 'README.md')
-    prose = re.sub(r'^```.*?^```', '', readme, flags=re.S | re.M)
-    found = rows(readme)
+    found = rows(read(root, PAGE))
     names = [row[0] for row in found]
-    problems = [f'README.md: no row for {name} of {LIST}' for name in wanted if name not in names]
-    problems += [f'README.md: {name} is no section of {LIST}' for name in names if name not in wanted]
-    problems += [f'README.md: {name} stands there twice' for name in set(names) if names.count(name) > 1]
+    problems = [f'{PAGE}: no row for {name} of {LIST}' for name in wanted if name not in names]
+    problems += [f'{PAGE}: {name} is no section of {LIST}' for name in names if name not in wanted]
+    problems += [f'{PAGE}: {name} stands there twice' for name in set(names) if names.count(name) > 1]
     for name, api, tool, tests in found:
         if not quoted(api):
-            problems.append(f'README.md: {name}: no function or header')
-        problems += [f'README.md: {name}: {word} is not in include/fathom'
+            problems.append(f'{PAGE}: {name}: no function or header')
+        problems += [f'{PAGE}: {name}: {word} is not in include/fathom'
                      for word in quoted(api) if not tree.has_api(word)]
         for words in quoted(tool):
             if words.split()[0] not in tree.commands:
-                problems.append(f'README.md: {name}: the tool has no command {words.split()[0]}')
+                problems.append(f'{PAGE}: {name}: the tool has no command {words.split()[0]}')
         if not quoted(tests):
-            problems.append(f'README.md: {name}: no test')
-        problems += [f'README.md: {name}: there is no test {word}' for word in quoted(tests)
+            problems.append(f'{PAGE}: {name}: no test')
+        problems += [f'{PAGE}: {name}: there is no test {word}' for word in quoted(tests)
                      if not tree.has_test(word)]
-    problems += [f'README.md: {word} is not in include/fathom' for word in set(quoted(prose))
-                 if re.fullmatch(r'[\w/]+\.h', word) and not tree.has_header(word)]
+    first = set()
+    for page in (FIRST, PAGE):
+        prose = set(quoted(re.sub(r'^```.*?^```', '', read(root, page), flags=re.S | re.M)))
+        first = first or prose
+        problems += [f'{page}: {word} is not in include/fathom' for word in prose
+                     if re.fullmatch(r'[\w/]+\.h', word) and not tree.has_header(word)]
+    problems += [f'{FIRST}: no row for {path}' for path in tree.headers
+                 if DRIVER.match(os.path.basename(path)) and os.path.basename(path) not in first]
     return [problem for problem in problems if only is None or any(path in problem for path in only)]
 
 
 FAULTS = [
     (LIST, None, 'HPS 3 #16,another command\n', 'no row for HPS 3 #16'),
     (LIST, 'A16 1(1),', 'A16 1(0),', 'is no section of'),
-    ('README.md', '| A16 1(1) |', '| A16 1(2) |', 'stands there twice'),
-    ('README.md', '`fathom_a16_modbus_set_address`', '`fathom_a16_modbus_set_adress`', 'is not in include/fathom'),
-    ('README.md', '`a16_pwm.h`', '`a16_pmw.h`', 'is not in include/fathom'),
-    ('README.md', '`set hps167s', '`put hps167s', 'the tool has no command put'),
-    ('README.md', '`golden/test_mistakes_dyp.c:', '`golden/test_mistake_dyp.c:', 'there is no test'),
-    ('README.md', ':a05_2_3_3_prints_60', ':a05_2_3_3_prints_61', 'there is no test'),
+    (PAGE, '| A16 1(1) |', '| A16 1(2) |', 'stands there twice'),
+    (PAGE, '`fathom_a16_modbus_set_address`', '`fathom_a16_modbus_set_adress`', 'is not in include/fathom'),
+    (PAGE, '`modbus_rtu.h`', '`modbus_rut.h`', 'is not in include/fathom'),
+    (PAGE, '`set hps167s', '`put hps167s', 'the tool has no command put'),
+    (PAGE, '`golden/test_mistakes_dyp.c:', '`golden/test_mistake_dyp.c:', 'there is no test'),
+    (PAGE, ':a05_2_3_3_prints_60', ':a05_2_3_3_prints_61', 'there is no test'),
+    (FIRST, '`a16_pwm.h`', '`a16_pmw.h`', 'is not in include/fathom'),
+    (FIRST, '`a16_pwm.h`', '`a16_auto.h`', 'no row for'),
 ]
 
 if __name__ == '__main__':

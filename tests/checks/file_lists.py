@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""include/README.md's lists of the files of src/ that a program has to compile: for each driver, and for what may be
+named beside it. They are what the linker takes from an archive, by its map, for the programs of tests/bench/sizes; so a
+program that compiles them and no others links, also without --gc-sections.
+
+    file_lists.py             fails unless the page has what the linker takes
+    file_lists.py --update    writes it
+    file_lists.py --self-test"""
+import os
+import re
+import sys
+import tempfile
+
+import common
+from common import ROOT, files, main, read, run
+from linked import PROGRAMS, REGISTERS, TARGETS, Library
+
+PAGE = 'include/README.md'
+TABLE = r'(?s)(?<=<!-- {}: kept by tests/checks/file_lists.py --update -->\n).*?(?=<!-- end -->)'
+# What a program may name beside a driver that asks, HPS-167S for one: what that takes is given beside what both take.
+BESIDE = {
+    'fathom_line_find_echo': 'a line that finds its echo out',
+    'fathom_line_marks': 'a line that uses the marks and time stamps of the port',
+    'fathom_line_count': 'a line that counts',
+    'fathom_line_listen': 'a listener on a line that asks too',
+    'fathom_fair_share': 'the share of time instead of turns',
+    'fathom_modbus_client_with_zero': 'a unit at address 0',
+    'fathom_output_line_break': 'trigger or select by a break',
+    'fathom_edges_capture': 'pulses by a pin interrupt',
+    'fathom_debounce_sample': 'a switch in software',
+    'fathom_wait': 'the blocking form',
+    'fathom_status_name': 'the names of errors',
+}
+WITH = 'hps167s'
+
+
+class Linker(Library):
+    def __init__(self, root, work):
+        _, prefix, flags = TARGETS[0]
+        super().__init__(root, prefix, flags, work)
+        self.names = {os.path.basename(self.object(path)): path for path in files(root, 'src', ends='.c')}
+
+    def takes(self, program, *symbols):
+        """The sources that the linker takes for a program that names these symbols, too."""
+        wanted = os.path.join(self.work, program + '_wanted.o')
+        image = os.path.join(self.work, program + '_alone')
+        # First the program alone out of the file with its neighbours, then with the archive, nothing left out.
+        for arguments in (['-r', '-Wl,--gc-sections', f'-DBEGIN={program}_begin', f'-DUSE={program}_use',
+                           os.path.join(PROGRAMS, 'sizes', 'main.c'), *map(self.object, self.programs), '-o', wanted],
+                          [f'-Wl,-Map,{image}.map', *(f'-Wl,-u,{symbol}' for symbol in symbols), wanted, self.archive,
+                           '-lgcc', '-o', image]):
+            good, said = run([*self.compiler, '-nostdlib', '-nostartfiles', '-Wl,-e,main', *REGISTERS, *arguments],
+                             self.root)
+            if not good:
+                self.problems.append(f'{PAGE}: {program} does not link:\n{said}')
+                return set()
+        with open(image + '.map', encoding='utf-8') as file:
+            members = re.findall(r'libfathom\.a\((\w+\.o)\)', file.read())
+        return {self.names[member] for member in members}
+
+
+def listed(sources):
+    """By folder, as a Makefile or a shell takes it from src/."""
+    return '`' + ' '.join(os.path.relpath(path, 'src') for path in sorted(sources)) + '`'
+
+
+def tables(linker):
+    programs = re.findall(r'^ +X\((\w+)\)', read(ROOT, 'tests/bench/sizes/programs.h'), re.M)
+    drivers = ['| a program that reads | in `src/` |', '|---|---|']
+    drivers += [f'| `{program}` | {listed(linker.takes(program))} |' for program in programs]
+    base = linker.takes(WITH)
+    beside = ['| names | for | more of `src/` |', '|---|---|---|']
+    for symbol, what in BESIDE.items():
+        more = linker.takes(WITH, symbol) - base
+        beside.append(f'| `{symbol}` | {what} | {listed(more) if more else "nothing"} |')
+    return {'drivers': '\n'.join(drivers) + '\n', 'beside': '\n'.join(beside) + '\n'}
+
+
+def made(root):
+    """(tables, problems)"""
+    with tempfile.TemporaryDirectory() as work:
+        linker = Linker(root, work)
+        return (tables(linker) if not linker.problems else {}), linker.problems
+
+
+def check(root, only):
+    wanted, problems = made(root)
+    page = read(root, PAGE)
+    for name, table in wanted.items():
+        found = re.findall(TABLE.format(name), page)
+        if len(found) != 1:
+            problems.append(f'{PAGE}: no table {name}')
+            continue
+        has, right = set(found[0].splitlines()), set(table.splitlines())
+        problems += [f'{PAGE}: the linker does not say {line}' for line in has - right]
+        problems += [f'{PAGE}: the linker says {line}' for line in right - has]
+        if not problems and found[0] != table:
+            problems.append(f'{PAGE}: the rows of the table {name} are in another order')
+    # A program that links a driver needs it in a row of its own name.
+    return [f'{problem}; by {", ".join(only)}' for problem in problems] if only else problems
+
+
+def update():
+    wanted, problems = made(ROOT)
+    text = read(ROOT, PAGE)
+    for name, table in wanted.items():
+        text = re.sub(TABLE.format(name), lambda _, table=table: table, text, count=1)
+    with open(os.path.join(ROOT, PAGE), 'w', encoding='utf-8') as file:
+        file.write(text)
+    print('\n'.join(problems), end='')
+    return 1 if problems else 0
+
+
+FAULTS = [
+    (PAGE, '| `a05_relay` |', '| `a05_relax` |', 'the linker says | `a05_relay`'),
+    (PAGE, '| `a05_relay_rule` | `', '| `a05_relay_rule` | `line_pins.c ', 'the linker does not say'),
+    (PAGE, '<!-- drivers: ', '<!-- driver: ', 'no table drivers'),
+    # A driver that names more than it did: each program with it needs another file.
+    ('src/a05_relay.c', None, 'extern int fathom_line_poll(void *line);\nint new(void *line);\n'
+     'int new(void *line) { return fathom_line_poll(line); }\n', 'the linker says | `a05_relay`'),
+]
+
+if __name__ == '__main__':
+    if sys.argv[1:] == ['--update']:
+        sys.exit(update())
+    main(check, FAULTS)
