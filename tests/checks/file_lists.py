@@ -23,10 +23,10 @@ BESIDE = {
     'fathom_line_find_echo': 'a line that finds its echo out',
     'fathom_line_marks': 'a line that uses the marks and time stamps of the port',
     'fathom_line_count': 'a line that counts',
-    'fathom_line_listen': 'a listener on a line that asks too',
     'fathom_fair_share': 'the share of time instead of turns',
     'fathom_modbus_client_with_zero': 'a unit at address 0',
-    'fathom_output_line_break': 'trigger or select by a break',
+    'fathom_output_set_line_break': 'trigger or select by a break (`fathom_output_line_break`)',
+    'fathom_contact_line_guard': 'a switch on the pins of a line',
     'fathom_edges_capture': 'pulses by a pin interrupt',
     'fathom_debounce_sample': 'a switch in software',
     'fathom_wait': 'the blocking form',
@@ -48,7 +48,7 @@ class Linker(Library):
         # First the program alone out of the file with its neighbours, then with the archive, nothing left out.
         for arguments in (['-r', '-Wl,--gc-sections', f'-DBEGIN={program}_begin', f'-DUSE={program}_use',
                            os.path.join(PROGRAMS, 'sizes', 'main.c'), *map(self.object, self.programs), '-o', wanted],
-                          [f'-Wl,-Map,{image}.map', *(f'-Wl,-u,{symbol}' for symbol in symbols), wanted, self.archive,
+                          [f'-Wl,-Map,{image}.map', *(f'-Wl,--require-defined={symbol}' for symbol in symbols), wanted, self.archive,
                            '-lgcc', '-o', image]):
             good, said = run([*self.compiler, '-nostdlib', '-nostartfiles', '-Wl,-e,main', *REGISTERS, *arguments],
                              self.root)

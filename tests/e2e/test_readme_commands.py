@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The commands that the README shows: the tool understands each, and those that need no real sensor work."""
+"""The commands that the pages show: the tool understands each, and those that need no real sensor work. The tool's own page
+names every option that the tool explains, and no other."""
 import os
 import re
 import shlex
@@ -10,6 +11,11 @@ import e2e
 
 BLOCK = r'^build/fathom ([^#&\n]*[^#&\s])'
 CELL = r'^\|(?:[^|\n]*\|){3} `([^`\n]+)` \|[^|\n]*\|$'
+
+
+def text_of(page):
+    with open(os.path.join(e2e.ROOT, page), encoding='utf-8') as file:
+        return file.read()
 
 
 class Commands(e2e.Case):
@@ -31,14 +37,27 @@ class Commands(e2e.Case):
             words = [*words[:at], self.path('none'), *words[at + 1:], *(['--duration', '1'] if waits else [])]
             self.ends(words, 0 if waits else 1, self.path('none'))
 
-    @e2e.each(those_of_the_introduction=(BLOCK, 8, 8), those_of_the_table_of_the_datasheets=(CELL, 51, 500))
-    def shown(self, pattern, at_least, at_most):
-        with open(os.path.join(e2e.ROOT, 'README.md'), encoding='utf-8') as file:
-            shown = re.findall(pattern, file.read(), re.M)
+    @e2e.each(those_of_the_first_page=('README.md', BLOCK, 1, 1),
+              those_of_the_manual=('examples/fathom/README.md', BLOCK, 8, 8),
+              those_of_the_table_of_the_datasheets=('include/README.md', CELL, 51, 500))
+    def shown(self, page, pattern, at_least, at_most):
+        shown = re.findall(pattern, text_of(page), re.M)
         self.assertTrue(at_least <= len(shown) <= at_most, shown)
         for line in shown:
             with self.subTest(line):
                 self.check(shlex.split(line))
+
+    def test_the_manual_has_every_command_and_every_option_and_no_other(self):
+        manual = text_of('examples/fathom/README.md')
+        commands = re.findall(r'^  (\w+) +\S', self.run_fathom('--help').out, re.M)
+        self.assertEqual(len([name for name in commands if name != 'fathom']), 9, commands)
+        explained = {'--help'}
+        for command in commands[:9]:
+            self.assertIn(f'`fathom {command}`', manual)
+            explained |= set(re.findall(r'^ +(--[\w-]+)', self.run_fathom(command, '--help').out, re.M))
+        self.assertGreater(len(explained), 30)
+        shown = set(re.findall(r'(?<![\w-])(--[a-z][\w-]+)', manual)) - {'--preset', '--build', '--yes'}
+        self.assertEqual(shown, explained)
 
     def test_a_command_that_is_wrong_would_be_seen(self):
         for line in ('set a16 --port P switch-treshold 2000', 'read a17 --port P',

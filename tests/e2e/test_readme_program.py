@@ -22,7 +22,7 @@ class Gate(e2e.Case):
         gate.expect(f'^{words}$')
 
     def test_after_a_silence_it_goes_on(self):
-        gate = self.gate(self.sim('hps167s --distance 2083 --fault silence@2'))
+        gate = self.gate(self.sim('hps167s --distance 2083 --fault silence=1@2'))
         gate.expect('^2083 mm$')
         gate.expect('^no reading: NO_ANSWER$')
         gate.expect('^2083 mm$')
