@@ -2,31 +2,42 @@
 #ifndef FATHOM_FATHOM_H
 #define FATHOM_FATHOM_H
 
-/* Everything that an application needs. Including it costs nothing: what is not called is not linked. */
-#include "fathom/a05_auto.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/a05_relay.h"
-#include "fathom/a05_relay_rule.h"
-#include "fathom/a16_auto.h"
-#include "fathom/a16_controlled.h"
-#include "fathom/a16_modbus.h"
-#include "fathom/a16_pwm.h"
-#include "fathom/a16_rs232.h"
-#include "fathom/a16_settings.h"
-#include "fathom/a16_switch.h"
-#include "fathom/debounce.h"
-#include "fathom/edges.h"
-#include "fathom/fair_share.h"
-#include "fathom/hps167s.h"
-#include "fathom/hps167s_auto.h"
-#include "fathom/hps167s_info.h"
-#include "fathom/hps167s_registers.h"
-#include "fathom/hps167s_settings.h"
-#include "fathom/line_pins.h"
-#include "fathom/modbus_client.h"
-#include "fathom/sensor.h"
-#include "fathom/version.h"
-#include "fathom/wait.h"
+/*
+ * The map: which header for which sensor and mode. This one includes them all, which costs nothing: what is not called
+ * is not linked. Every driver makes a fathom_sensor_t (sensor.h), and every reading is a fathom_sample_t (sample.h).
+ */
+
+/* A16, one ultrasonic probe */
+#include "fathom/a16_auto.h"       /* UART automatic, and RS232 until its first Modbus request */
+#include "fathom/a16_controlled.h" /* UART controlled: a frame for each trigger */
+#include "fathom/a16_modbus.h"     /* Modbus RTU on RS485 or RS232: distances */
+#include "fathom/a16_pwm.h"        /* PWM: the width of a pulse for each trigger */
+#include "fathom/a16_rs232.h"      /* RS232: from Modbus back to automatic output */
+#include "fathom/a16_settings.h"   /* Modbus RTU: all other registers */
+#include "fathom/a16_switch.h"     /* switch output */
+
+/* A05, four ultrasonic probes */
+#include "fathom/a05_auto.h"       /* UART automatic */
+#include "fathom/a05_dyp.h"        /* RS485 by 55 AA, the "DYP protocol" */
+#include "fathom/a05_modbus.h"     /* Modbus RTU on RS485 or UART; the address */
+#include "fathom/a05_relay.h"      /* relay output */
+#include "fathom/a05_relay_rule.h" /* the relay's rule over distances of any other mode */
+
+/* HPS-167S, infrared time of flight, Modbus RTU on RS485 */
+#include "fathom/hps167s.h"           /* distances */
+#include "fathom/hps167s_auto.h"      /* frames that it sends without a request */
+#include "fathom/hps167s_info.h"      /* what it tells: commands #1 to #4 */
+#include "fathom/hps167s_registers.h" /* where each command is and what its figures mean: a codec */
+#include "fathom/hps167s_settings.h"  /* what can be set: commands #6 to #15 */
+
+/* What goes with them */
+#include "fathom/debounce.h"      /* a switch made of distances, by the A16's rule */
+#include "fathom/edges.h"         /* pulses by a pin interrupt, without capture hardware */
+#include "fathom/fair_share.h"    /* sensors of different speed on one line */
+#include "fathom/line_pins.h"     /* a line whose TX triggers or selects, or whose RX is a switch */
+#include "fathom/modbus_client.h" /* the transport of the Modbus drivers over a line (line.h) */
+#include "fathom/sensor.h"        /* fathom_poll, for all of them */
+#include "fathom/version.h"       /* which Fathom this is */
+#include "fathom/wait.h"          /* fathom_wait, which blocks */
 
 #endif
