@@ -24,7 +24,7 @@ COSTS = [
     ('avr_const', 'ATmega328P RAM for the const structs, apart', 'B'),
     ('avr_stack', 'ATmega328P stack below fathom_line_poll, seen', 'B'),
     ('avr_transaction', 'ATmega328P, a read of 4 registers, library only', 'cycles'),
-    ('avr_answer', 'ATmega328P, the poll that gets the answer', 'cycles'),
+    ('avr_answer', 'ATmega328P, the poll that gets the response', 'cycles'),
     ('avr_idle', 'ATmega328P, a poll that waits for it', 'cycles'),
     ('x86_transaction', 'x86-64 -O2, a read of 4 registers, library only', 'instr.'),
     ('x86_two_polls', 'the same, answered before the second poll', 'instr.'),

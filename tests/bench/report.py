@@ -148,9 +148,9 @@ def peers_table(figures):
     for row in peers():
         cells = [row[column] or '–' for column in ('m0_flash', 'm0_ram', 'avr_flash', 'x86')]
         lines.append(f'| {row["name"]} | {row["version"]} | {" | ".join(cells)} | {row["what"]} |')
-    whats = {'job': 'polled; a queue, retries, told echo, broadcast, break, any unit, quarantine of late answers',
+    whats = {'job': 'polled; a queue, retries, told echo, broadcast, break, any unit, quarantine',
              'job_counters': 'the same with counters',
-             'job_all': 'echo found out, a listener, marks of the port, settings of an exchange, counters, unit 0'}
+             'job_all': 'echo found out, a listener, marks of the port, settings of a transaction, counters, unit 0'}
     for job, what in whats.items():
         cells = [f'{figures[f"{job}.m0_flash_256"]} / {figures[f"{job}.m0_flash_16"]}',
                  f'{figures[f"{job}.m0_ram"] + VALUES}', f'{figures[f"{job}.avr_flash"]}',
