@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: MIT
 """The README's program for Linux, as it is printed there: what it says of a simulated HPS-167S, and how it ends."""
 import os
+import re
+import shlex
+import subprocess
 
 import e2e
 
@@ -20,6 +23,20 @@ class Gate(e2e.Case):
         gate = self.gate(sim)
         gate.expect(f'^{words}$')
         gate.expect(f'^{words}$')
+
+    def test_the_line_that_compiles_it_does(self):
+        """As it is printed, with this build's compiler and folder."""
+        with open(os.path.join(e2e.ROOT, 'README.md'), encoding='utf-8') as file:
+            text = file.read()
+        source, gate = self.path('gate.c'), self.path('gate')
+        with open(source, 'w', encoding='utf-8') as file:
+            file.write(re.search(r'(?sm)^```c\n(.*?)^```$', text)[1])
+        line = re.search(r'(?m)^cc (.*) gate\.c (.*) -o gate$', text)
+        build = os.environ['FATHOM_BUILD'] + '/'
+        subprocess.run([os.environ['CC'], *shlex.split(os.environ['CFLAGS']), *line[1].split(), source,
+                        *(word.replace('build/', build) for word in line[2].split()), '-o', gate], cwd=e2e.ROOT,
+                       check=True)
+        self.start([gate, str(self.sim('hps167s --distance 2083'))]).expect('^2083 mm$')
 
     def test_after_a_silence_it_goes_on(self):
         gate = self.gate(self.sim('hps167s --distance 2083 --fault silence=1@2'))
