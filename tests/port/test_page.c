@@ -3,20 +3,23 @@
 
 #include "fathom/a16_modbus.h"
 #include "fathom/modbus_client.h"
+#include "fathom/wait.h"
 
 /* What port/README.md shows, and its interrupts. */
 void timer_interrupt(void);
 void receive_interrupt(void);
 void room_interrupt(void);
 void sent_interrupt(void);
+void byte_left_interrupt(void);
 void pin_interrupt(void);
 void port_begin(void);
+void port_idle(void *ctx, uint32_t max_us);
 fathom_capture_t port_capture(void);
 
 #include "port_page.c" /* all blocks of C of port/README.md, cut out by support/cut.py */
 
 /* The chip, and an A16 at the end of its line. */
-enum { BIT_US = 104, CHARACTER_US = 1040, DEVICE_US = 50000, MOST = 32 };
+enum { BIT_US = 104, CHARACTER_US = 1040, DEVICE_US = 50000, OUT = 32 };
 
 /* A16 6(4), example 2: real-time value, 0x02EF = 751 mm. */
 static const uint8_t question[8] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36};
@@ -30,13 +33,20 @@ static struct {
     bool on_room, on_sent, driver, is_register_full, is_shifting;
     uint8_t in_register, in_shifter;
     uint32_t shift_left_us;
-    uint8_t out[MOST], sent;
+    uint8_t out[OUT], sent;
+    bool is_event; /* its transmit interrupt: a byte has left */
+    bool has_left;
+    uint32_t divider;
+    uint8_t parity, stop_bits;
     unsigned undriven;      /* us of a character without the driver */
     uint32_t last_us;       /* the end of the last stop bit */
     uint32_t driver_off_us; /* when it was let go */
     uint32_t driver_on_us, first_start_us;
 
+    bool has_byte;
     uint8_t byte, flags; /* that have come */
+    uint32_t alarm_left_us;
+    unsigned sleeps;
     uint32_t answer_left_us;
     uint8_t answered;
 
@@ -55,10 +65,31 @@ static void interrupt_timer(void)
     if (chip.has_wrapped && !chip.is_locked) timer_interrupt();
 }
 
+static bool has_room(void) { return chip.on_room && !chip.is_register_full; }
+
+static bool has_sent(void) { return chip.on_sent && !chip.is_register_full && !chip.is_shifting; }
+
+/* The interrupts of the UART that are pending and not masked. */
+static void interrupt_uart(void)
+{
+    if (chip.is_locked) return;
+    if (chip.has_byte) {
+        chip.has_byte = false;
+        receive_interrupt();
+    }
+    if (chip.has_left) {
+        chip.has_left = false;
+        byte_left_interrupt();
+    }
+    if (has_room()) room_interrupt();
+    if (has_sent()) sent_interrupt();
+}
+
 void chip_unlock(uint32_t before)
 {
     chip.is_locked = before != 0;
     interrupt_timer();
+    interrupt_uart();
 }
 
 static void tick(uint32_t us)
@@ -95,6 +126,13 @@ void chip_uart_put(uint8_t byte)
 void chip_uart_on_room(bool on) { chip.on_room = on; }
 void chip_uart_on_sent(bool on) { chip.on_sent = on; }
 
+void chip_uart_set(uint32_t divider, uint8_t parity, uint8_t stop_bits)
+{
+    chip.divider = divider;
+    chip.parity = parity;
+    chip.stop_bits = stop_bits;
+}
+
 void chip_driver(bool on)
 {
     if (on)
@@ -121,7 +159,8 @@ static void shift(void)
         if (--chip.shift_left_us != 0) return;
         chip.is_shifting = false;
         chip.last_us = chip.us;
-        chip.out[chip.sent++ % MOST] = chip.in_shifter;
+        chip.has_left = chip.is_event;
+        chip.out[chip.sent++ % OUT] = chip.in_shifter;
         if (chip.sent == sizeof question) chip.answer_left_us = DEVICE_US;
     }
     if (!chip.is_register_full) return;
@@ -137,18 +176,37 @@ static void device(void)
 {
     if (chip.answer_left_us == 0 || --chip.answer_left_us != 0) return;
     if (memcmp(chip.out, question, sizeof question) != 0) return;
-    come(answer[chip.answered++], 0);
+    assert_false(chip.has_byte); /* or it would be lost */
+    chip.byte = answer[chip.answered++];
+    chip.has_byte = true;
     if (chip.answered < sizeof answer) chip.answer_left_us = CHARACTER_US;
+}
+
+static void step(void)
+{
+    tick(1);
+    shift();
+    device();
 }
 
 static void run(uint32_t us)
 {
     for (; us != 0; us--) {
-        tick(1);
-        shift();
-        device();
-        if (chip.on_room && !chip.is_register_full) room_interrupt();
-        if (chip.on_sent && !chip.is_register_full && !chip.is_shifting) sent_interrupt();
+        step();
+        interrupt_uart();
+    }
+}
+
+void chip_alarm(uint16_t us) { chip.alarm_left_us = us; }
+
+void chip_sleep(void)
+{
+    assert_true(chip.is_locked);
+    chip.sleeps++;
+    while (!chip.has_byte && !chip.has_left && !has_room() && !has_sent() && !chip.has_wrapped &&
+           chip.alarm_left_us != 0) {
+        step();
+        chip.alarm_left_us--;
     }
 }
 
@@ -156,7 +214,8 @@ static int start(void **state)
 {
     memset(&chip, 0, sizeof chip);
     wraps = 0;
-    chip.driver = true; /* as nobody has set the pin */
+    settings = (fathom_line_settings_t){9600, FATHOM_PARITY_NONE, 1};
+    chip.driver = true; /* the pin has not been set */
     port_begin();
     return 0;
 }
@@ -259,42 +318,110 @@ TEST(a_full_ring_loses_what_comes_and_says_so)
     assert_int_equal(flags, FATHOM_RX_OVERRUN);
 }
 
-TEST(a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit)
+/* late_us: between the bytes, where the interrupt puts the next one after the one before has left. */
+static void send_whole(const fathom_uart_t *uart, uint32_t late_us)
 {
     assert_false(chip.driver);
     run(1000);
-    assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
-    assert_int_equal(port_uart.write(port_uart.ctx, answer, sizeof answer), 0); /* busy */
-    for (unsigned left = 2 * sizeof question * CHARACTER_US; !port_uart.sent(port_uart.ctx); left--) {
+    assert_int_equal(uart->write(uart->ctx, question, sizeof question), sizeof question);
+    assert_int_equal(uart->leaves_in_us(uart->ctx),
+                     8334); /* 8 characters of 10 bits at 9600 baud, rounded up */
+    assert_int_equal(uart->write(uart->ctx, answer, sizeof answer), 0); /* busy */
+    for (unsigned left = 2 * sizeof question * CHARACTER_US; !uart->sent(uart->ctx); left--) {
         assert_int_not_equal(left, 0);
         run(1);
     }
+    assert_int_equal(uart->leaves_in_us(uart->ctx), 0);
     assert_int_equal(chip.sent, sizeof question);
     assert_memory_equal(chip.out, question, sizeof question);
     assert_int_equal(chip.undriven, 0);
     assert_true(chip.driver_on_us <= chip.first_start_us);
     assert_false(chip.driver);
     assert_in_range(chip.driver_off_us - chip.last_us, 0, BIT_US);
-    assert_int_equal(chip.last_us - chip.first_start_us, sizeof question * CHARACTER_US); /* no gap */
+    assert_int_equal(chip.last_us - chip.first_start_us,
+                     sizeof question * CHARACTER_US + (sizeof question - 1) * late_us);
     chip.sent = 0;
-    assert_int_equal(port_uart.write(port_uart.ctx, answer, sizeof answer), sizeof answer);
+    assert_int_equal(uart->write(uart->ctx, answer, sizeof answer), sizeof answer);
 }
 
-TEST(a_request_that_finds_no_memory_is_refused)
+TEST(a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit) { send_whole(&port_uart, 0); }
+
+TEST(so_it_does_where_the_interrupt_is_an_event)
+{
+    chip.is_event = true;
+    send_whole(&event_uart, 1);
+}
+
+TEST(where_the_interrupt_is_an_event_nothing_leaves_by_the_code_for_a_level)
+{
+    assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
+    chip.on_room = false; /* there is no such interrupt */
+    chip.is_event = true;
+    run(1000000);
+    assert_int_equal(chip.sent, 0);
+}
+
+TEST(an_event_of_what_was_sent_before_the_port_began_sends_nothing)
+{
+    chip.is_event = chip.has_left = true;
+    run(1);
+    assert_false(chip.is_register_full);
+    assert_true(event_uart.sent(event_uart.ctx));
+}
+
+static void refuse_nine(const fathom_uart_t *uart)
 {
     const uint8_t bytes[9] = {0};
-    assert_true(port_uart.write(port_uart.ctx, bytes, sizeof bytes) < 0);
+    assert_true(uart->write(uart->ctx, bytes, sizeof bytes) < 0);
     run(10 * CHARACTER_US);
     assert_int_equal(chip.sent, 0);
     assert_false(chip.driver);
 }
 
-/* A line and a sensor on this port, in a loop of `round_us`, from `us` on. */
-static void read_sensor(uint32_t us, uint32_t round_us)
+TEST(a_request_that_finds_no_memory_is_refused)
+{
+    refuse_nine(&port_uart);
+    refuse_nine(&event_uart);
+}
+
+static int set_line(uint32_t baud, uint8_t parity)
+{
+    const fathom_line_settings_t line = {baud, parity, 1};
+    return port_uart.set_line(port_uart.ctx, &line);
+}
+
+/* 16 MHz / 19200 is 833.3, which is within 0.1 %. 969697 would be 16.5: 17 is off by 2.9 %. 1000001 would be less
+ * than 16. */
+TEST(settings_hold_at_once_or_when_the_bytes_have_left_or_are_refused)
+{
+    assert_int_equal(set_line(9600, FATHOM_PARITY_NONE), 1);
+    assert_int_equal(chip.divider, 0); /* it had these */
+    assert_int_equal(set_line(19200, FATHOM_PARITY_EVEN), 1);
+    assert_int_equal(chip.divider, 833);
+    assert_int_equal(chip.parity, FATHOM_PARITY_EVEN);
+    assert_int_equal(chip.stop_bits, 1);
+    assert_true(set_line(969697, FATHOM_PARITY_NONE) < 0);
+    assert_true(set_line(1000001, FATHOM_PARITY_NONE) < 0);
+    assert_int_equal(chip.divider, 833);
+    come(7, 0);
+    assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
+    assert_int_equal(set_line(19200, FATHOM_PARITY_EVEN), 1);
+    assert_int_equal(set_line(9600, FATHOM_PARITY_NONE), 0);
+    assert_int_equal(chip.divider, 833);
+    run(2 * sizeof question * CHARACTER_US);
+    assert_int_equal(set_line(9600, FATHOM_PARITY_NONE), 1);
+    assert_int_equal(chip.divider, 1667);
+    uint8_t byte = 0, flags;
+    assert_int_equal(read_port(&byte, 1, &flags), 1); /* what was received is kept */
+    assert_int_equal(byte, 7);
+}
+
+/* A line and a sensor on this port, from `us` on, in a loop of `round_us`; 0: that sleeps. */
+static void read_sensor(const fathom_uart_t *uart, uint32_t us, uint32_t round_us)
 {
     uint8_t frame[16];
     fathom_line_t line;
-    const fathom_line_config_t line_config = {.uart = &port_uart,
+    const fathom_line_config_t line_config = {.uart = uart,
                                               .clock = &port_clock,
                                               .frame = frame,
                                               .frame_size = sizeof frame,
@@ -302,6 +429,7 @@ static void read_sensor(uint32_t us, uint32_t round_us)
                                               .silence_us = FATHOM_T3_5_US(9600, 10)};
     fathom_a16_modbus_t a16;
     (void)start(NULL);
+    chip.is_event = uart == &event_uart;
     begin_at(us);
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
@@ -309,10 +437,11 @@ static void read_sensor(uint32_t us, uint32_t round_us)
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     fathom_sample_t sample;
-    fathom_status_t status;
-    unsigned rounds = 0;
-    while ((status = fathom_poll(&sensor, &sample)) == FATHOM_PENDING) {
-        assert_true(rounds++ < 200000 / round_us + 1);
+    fathom_status_t status = FATHOM_PENDING;
+    if (round_us == 0) status = fathom_wait(&sensor, &sample, port_idle, NULL);
+    for (unsigned rounds = 0; status == FATHOM_PENDING; rounds++) {
+        assert_true(rounds < 200000 / round_us + 1);
+        status = fathom_poll(&sensor, &sample);
         run(round_us);
     }
     assert_int_equal(status, FATHOM_READY);
@@ -324,10 +453,30 @@ TEST_IN(plain, a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap)
 {
     static const uint32_t from_us[] = {0, 0x0000F000, UINT32_MAX - 1000, UINT32_MAX - 20000,
                                        UINT32_MAX - 60000};
-    for (unsigned i = 0; i != 5; i++) {
-        read_sensor(from_us[i], 100);
-        read_sensor(from_us[i], 20000);
-    }
+    for (unsigned i = 0; i != 5; i++)
+        for (int is_event = 0; is_event != 2; is_event++) {
+            const fathom_uart_t *const uart = is_event != 0 ? &event_uart : &port_uart;
+            read_sensor(uart, from_us[i], 100);
+            read_sensor(uart, from_us[i], 20000);
+            read_sensor(uart, from_us[i], 0);
+            /* An interrupt a byte each way, and few alarms. */
+            assert_in_range(chip.sleeps, sizeof answer, 2 * (sizeof question + sizeof answer));
+        }
+}
+
+TEST(a_sleep_ends_in_time_and_does_not_begin_when_a_byte_waits)
+{
+    port_idle(NULL, 1000);
+    assert_int_equal(chip.us, 1000);
+    port_idle(NULL, 0);
+    assert_int_equal(chip.us, 1000);
+    port_idle(NULL, FATHOM_NO_DEADLINE);
+    assert_int_equal(chip.us, 65536); /* the timer's wrap has ended it */
+    assert_int_equal(wraps, 1);
+    assert_false(chip.is_locked);
+    come(1, 0);
+    port_idle(NULL, 1000);
+    assert_int_equal(chip.us, 65536);
 }
 
 static void edge(bool high)
