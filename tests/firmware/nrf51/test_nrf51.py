@@ -4,6 +4,7 @@
 on QEMU's microbit. Its UART does not tell its rate, so that the far ends are at 115200 baud, QEMU's own."""
 import os
 import re
+import select
 import shutil
 import subprocess
 import tempfile
@@ -14,6 +15,8 @@ from qemu import e2e
 qemu.MACHINES['nrf51'] = ('qemu-system-arm', '-M', 'microbit')
 EXAMPLE = os.path.join(e2e.ROOT, 'examples', 'nrf51')
 FATHOM = ('CMakeLists.txt', 'include', 'src', 'port', os.path.join('examples', 'start'))
+NOT_SEEN = ['clock_wrap', 'clock_us', 'write_no_gap', 'driver', 'read_silence', 'read_stamp', 'mark_parity',
+            'mark_framing', 'set_break']
 
 
 def run(*command):
@@ -54,6 +57,25 @@ class Nrf51(qemu.Exchange, qemu.Case):
 
     def test_what_the_makefile_makes_reads_too(self):
         self.check(self.sim('hps167s', *self.sim_options, '--distance', '2083').port, 'made/hps167s')
+
+    def test_the_conformance_kit_finds_nothing_on_joined_wires(self):
+        """What QEMU's wire does not show: bytes take no time, and none has an error."""
+        device = self.device()
+        image = self.boot('conformance', device.port)
+        while True:
+            ready = select.select([device.master, image.pidfd], [], [], qemu.PATIENCE)[0]
+            self.assertNotEqual(ready, [], 'the image does not end')
+            if device.master not in ready:
+                break
+            device.write(os.read(device.master, 4096))
+        done = self.end_well(image)
+        found = re.findall(r'^(\w+): (kept|NOT KEPT|not seen), (\d+) ', done.out, re.M)
+        self.assertEqual(len(found), 25)
+        # On a busy machine all bytes have left before the settings are changed.
+        unseen = [name for name, verdict, _ in found if verdict != 'kept' and name != 'set_line_waits']
+        self.assertEqual(unseen, NOT_SEEN)
+        # 40 requests of 8 bytes, of which the ring has kept 128.
+        self.assertIn(('read_overrun', 'kept', '192'), found)
 
 
 if __name__ == '__main__':

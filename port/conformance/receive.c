@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+#include <stddef.h>
+
+#include "internal/kit.h"
+
+enum { WORD = 5, PAUSE = 20 /* characters */ };
+
+static bool tells(const kit_t *kit, uint8_t mark) { return (kit->bench->marks & mark) != 0; }
+
+/* Two words with a silence between them, and then a read. *ends_us: of each, by `sent`. */
+static bool two_words(kit_t *kit, uint32_t begins_us[2], uint32_t ends_us[2])
+{
+    kit_begin(kit);
+    for (int i = 0; i != 2; i++) {
+        if (!kit_has_wire(kit) || !kit_send(kit, WORD)) return false;
+        begins_us[i] = kit->wrote_us;
+        if (!kit_await_sent(kit)) return false;
+        ends_us[i] = kit_now(kit);
+        kit_wait(kit, (WORD + PAUSE) * kit->character_us + kit->bench->late_us);
+    }
+    return true;
+}
+
+/* The mark stands at the second word, and at the first, before which there was silence too; nowhere else. */
+static void read_silence(kit_t *kit)
+{
+    uint32_t begins_us[2], ends_us[2];
+    uint16_t at = 0;
+    if (!tells(kit, FATHOM_RX_SILENCE) || kit_lacks(kit, BIT_OF(WRITE_NO_GAP)) ||
+        !two_words(kit, begins_us, ends_us) || !kit_await(kit, 2 * WORD)) {
+        kit_tell(kit, READ_SILENCE, FATHOM_NOT_SEEN, 0);
+        return;
+    }
+    bool is_right = true;
+    for (uint16_t i = 1; i != 2 * WORD; i++) {
+        const bool is_marked = (kit->arrivals[i].flags & FATHOM_RX_SILENCE) != 0;
+        if (is_marked && at == 0) at = i;
+        is_right = is_right && is_marked == (i == WORD);
+    }
+    kit_tell(kit, READ_SILENCE, kit_kept_if(is_right), at);
+}
+
+/* The stamp of the first read: not before its bytes can have come, not after they have. */
+static void read_stamp(kit_t *kit)
+{
+    uint32_t begins_us[2], ends_us[2];
+    fathom_verdict_t verdict = FATHOM_NOT_SEEN;
+    uint32_t late_us = 0;
+    if (tells(kit, FATHOM_RX_TIMED) && !kit_lacks(kit, BIT_OF(SENT_NOT_EARLY)) &&
+        two_words(kit, begins_us, ends_us)) {
+        const uint32_t most_us = kit->character_us + kit->bench->late_us + 2 * kit->step_us;
+        const uint32_t read_us = kit_now(kit);
+        kit->stamp_us = read_us - INT32_MAX;
+        kit_read(kit);
+        const unsigned word = kit->got <= WORD ? 0 : 1;
+        late_us = fathom_elapsed_us(kit->stamp_us, ends_us[word]);
+        if (late_us > INT32_MAX) late_us = 0;
+        verdict =
+            kit_kept_if(late_us <= most_us && fathom_elapsed_us(kit->stamp_us, begins_us[word]) < INT32_MAX);
+    }
+    kit_tell(kit, READ_STAMP, verdict, late_us);
+}
+
+/* Three bytes of the far end, the second one with the mark and in a read of its own. */
+static void mark(kit_t *kit, item_t item, uint8_t flag)
+{
+    const fathom_conformance_t *const bench = kit->bench;
+    uint32_t marked = 0;
+    kit_begin(kit);
+    if (!tells(kit, flag) || bench->damage == NULL || !bench->damage(bench->ctx, flag)) {
+        kit_tell(kit, item, FATHOM_NOT_SEEN, 0);
+        return;
+    }
+    kit_wait(kit, kit_patience_us(kit, 3));
+    kit_read(kit);
+    (void)kit_await(kit, 3);
+    for (uint16_t i = 0; i != kit->got; i++) marked += (kit->arrivals[i].flags & flag) != 0;
+    const arrival_t *const second = &kit->arrivals[1];
+    const bool is_right = kit->got == 3 && marked == 1 && (second->flags & flag) != 0 && second->is_last;
+    kit_tell(kit, item, kit_kept_if(is_right), marked);
+}
+
+/* What was sent while nothing was read; losses are found by the values, of which less than 255 in a row are lost. */
+static uint32_t count_lost(const kit_t *kit, bool *is_marked)
+{
+    uint8_t awaited = kit->awaited;
+    uint32_t lost = 0;
+    *is_marked = true;
+    for (uint16_t i = 0; i != kit->got; i++) {
+        uint32_t skipped = 0;
+        while (awaited != kit->arrivals[i].byte && skipped != 255) {
+            awaited = (uint8_t)(awaited + (awaited == POISON - 1 ? 2 : 1));
+            skipped++;
+        }
+        awaited = (uint8_t)(awaited + (awaited == POISON - 1 ? 2 : 1));
+        lost += skipped;
+        if ((skipped != 0) != ((kit->arrivals[i].flags & FATHOM_RX_OVERRUN) != 0)) *is_marked = false;
+    }
+    return lost;
+}
+
+static void full(kit_t *kit)
+{
+    uint16_t sent = 0;
+    bool is_taken = kit_has_wire(kit), is_marked = false;
+    kit_begin(kit);
+    while (is_taken && sent < FILL) {
+        is_taken = kit_send(kit, 8) && kit_await_sent(kit);
+        if (is_taken) sent = (uint16_t)(sent + 8);
+    }
+    kit_tell(kit, WRITE_WHEN_FULL, kit_has_wire(kit) ? kit_kept_if(is_taken) : FATHOM_NOT_SEEN, sent);
+    if (!is_taken) {
+        kit_tell(kit, READ_OVERRUN, FATHOM_NOT_SEEN, 0);
+        return;
+    }
+    kit_wait(kit, kit_patience_us(kit, 8));
+    for (uint16_t before = UINT16_MAX; kit->got != before;) {
+        before = kit->got;
+        kit_read(kit);
+    }
+    /* The loss is told of the next byte, which has to come first. */
+    const uint16_t had = kit->got;
+    if (kit_send(kit, 8)) (void)kit_await(kit, (uint16_t)(had + 8));
+    const uint32_t lost = count_lost(kit, &is_marked);
+    const bool is_seen = tells(kit, FATHOM_RX_OVERRUN) && (lost != 0 || !is_marked);
+    kit_tell(kit, READ_OVERRUN, is_seen ? kit_kept_if(is_marked) : FATHOM_NOT_SEEN, lost);
+}
+
+void kit_receiving(kit_t *kit)
+{
+    read_silence(kit);
+    read_stamp(kit);
+    mark(kit, MARK_PARITY, FATHOM_RX_PARITY);
+    mark(kit, MARK_FRAMING, FATHOM_RX_FRAMING);
+    full(kit);
+}

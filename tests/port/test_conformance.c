@@ -1,0 +1,451 @@
+/* SPDX-License-Identifier: MIT */
+#include "suite.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "fathom_conformance.h"
+#include "fathom_posix.h"
+#include "posix_pty.h"
+#include "sim/uart.h"
+
+/* The kit on simulated wires that keep everything, with one fault, which one item and no other finds; and on a pseudo
+ * terminal. */
+
+typedef enum {
+    NO_FAULT,
+    NO_WIRE,
+    CLOCK_STANDS,
+    CLOCK_OF_26_BITS,
+    CLOCK_AT_DOUBLE_SPEED,
+    CLOCK_GOES_BACK,
+    WRITE_PARTIAL,
+    WRITE_SENDS_WHAT_IT_REFUSED,
+    WRITE_KEEPS_THE_POINTER,
+    WRITE_LOSES_THE_LAST,
+    WRITE_WAITS,
+    WRITE_PAUSES,
+    WRITE_REFUSES_WHEN_FULL,
+    SENT_AT_ONCE,
+    SENT_A_CHARACTER_EARLY,
+    SENT_NEVER,
+    LEAVES_AFTERWARDS,
+    LEAVES_IN_AN_HOUR,
+    DRIVER_NEVER_ON,
+    DRIVER_ALWAYS_ON,
+    DRIVER_OFF_EARLY,
+    DRIVER_OFF_LATE,
+    READ_SWAPS,
+    READ_LOSES,
+    READ_BEYOND,
+    READ_SPANS_SILENCE,
+    READ_MAKES_SILENCE,
+    STAMP_OF_THE_READ,
+    STAMP_OF_BEFORE,
+    PARITY_UNTOLD,
+    PARITY_ON_ALL,
+    FRAMING_UNTOLD,
+    FRAMING_SPANNED,
+    OVERRUN_UNTOLD,
+    OVERRUN_ALWAYS,
+    LINE_UNCHANGED,
+    LINE_AT_ONCE,
+    LINE_FORGETS,
+    LINE_OF_ANY_RATE,
+    BREAK_AT_ONCE,
+    FAULTS
+} fault_t;
+
+enum { CHARACTER_US = 573, NAMES = 4 }; /* 19200 8E1: 11 bits of 52.08 us */
+
+static struct {
+    fathom_sim_line_t line;
+    fathom_sim_clock_t time;
+    fathom_sim_uart_t sim;
+    fathom_uart_t real;
+    fathom_clock_t real_clock;
+    fathom_uart_t uart;
+    fathom_clock_t clock;
+    fathom_conformance_t bench;
+    fault_t fault;
+
+    unsigned looks, taken, unread;
+    const uint8_t *held; /* what leaves later */
+    uint8_t half[255], held_length;
+    uint8_t injected, mark; /* bytes that the far end still has to send */
+
+    unsigned told, verdicts[4];
+    const char *names[FATHOM_CONFORMANCE_ITEMS];
+    fathom_verdict_t each[FATHOM_CONFORMANCE_ITEMS];
+    const char *not_kept[NAMES];
+    unsigned failed;
+} rig;
+
+/* ---- the clock ---- */
+
+static uint32_t shown(uint32_t now)
+{
+    if (rig.fault == CLOCK_STANDS) return 7;
+    if (rig.fault == CLOCK_OF_26_BITS) return now & 0x3FFFFFF;
+    return rig.fault == CLOCK_AT_DOUBLE_SPEED ? 2 * now : now;
+}
+
+static uint32_t rig_now(void *ctx)
+{
+    const uint32_t now = shown(rig.real_clock.now_us(rig.real_clock.ctx));
+    return rig.fault == CLOCK_GOES_BACK && ++rig.looks % 1000 == 0 ? now - 100 : now;
+}
+
+static void set_clock(void *ctx, uint32_t now_us)
+{
+    if (rig.fault == CLOCK_AT_DOUBLE_SPEED) now_us = now_us / 2 + 1;
+    fathom_sim_clock_jump(&rig.time, rig.time.now_us, now_us - rig.time.now_us - rig.time.ahead_us);
+}
+
+/* ---- transmit ---- */
+
+static bool really_sent(void) { return rig.real.sent(rig.real.ctx); }
+
+/* What is held back leaves 4 characters behind what has left. */
+static void let_go(void)
+{
+    if (rig.held == NULL || !really_sent()) return;
+    if (rig.fault == WRITE_PAUSES) fathom_sim_clock_advance(&rig.time, 4 * CHARACTER_US);
+    const uint8_t *const held = rig.held;
+    rig.held = NULL;
+    (void)rig.real.write(rig.real.ctx, held, rig.held_length);
+}
+
+static int hold(const uint8_t *bytes, size_t length, int result)
+{
+    rig.held = bytes;
+    rig.held_length = (uint8_t)length;
+    return result;
+}
+
+static int rig_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    if (rig.held != NULL) return 0;
+    if (rig.fault == WRITE_REFUSES_WHEN_FULL && rig.unread > 200) return 0;
+    if (rig.fault == WRITE_SENDS_WHAT_IT_REFUSED && !really_sent()) {
+        (void)fathom_sim_receive(&rig.line, bytes, length, rig.time.now_us);
+        return 0;
+    }
+    if (!really_sent()) return 0;
+    if (rig.fault == WRITE_KEEPS_THE_POINTER) return hold(bytes, length, (int)length);
+    const bool is_cut = rig.fault == WRITE_PARTIAL || rig.fault == WRITE_LOSES_THE_LAST;
+    size_t now = is_cut && length > 1 ? length - 1 : length;
+    if (rig.fault == WRITE_PAUSES) now = (length + 1) / 2;
+    int taken = rig.real.write(rig.real.ctx, bytes, now);
+    assert_int_equal(taken, now);
+    rig.unread += (unsigned)now;
+    if (rig.fault == WRITE_LOSES_THE_LAST) taken = (int)length;
+    while (rig.fault == WRITE_WAITS && !really_sent()) fathom_sim_clock_advance(&rig.time, 100);
+    if (rig.fault != WRITE_PAUSES || length == now) return taken;
+    memcpy(rig.half, bytes + now, length - now);
+    return hold(rig.half, length - now, (int)length);
+}
+
+static uint32_t left_us(void) { return fathom_sim_leaves_in_us(&rig.line, rig.time.now_us); }
+
+static bool rig_sent(void *ctx)
+{
+    let_go();
+    if (rig.fault == SENT_AT_ONCE) return true;
+    if (rig.fault == SENT_A_CHARACTER_EARLY) return left_us() <= CHARACTER_US;
+    return rig.fault != SENT_NEVER && rig.held == NULL && really_sent();
+}
+
+static uint32_t rig_leaves_in_us(void *ctx)
+{
+    if (rig.fault == LEAVES_IN_AN_HOUR) return really_sent() ? 0 : 3600000000u;
+    return left_us() + (rig.fault == LEAVES_AFTERWARDS ? 1000 : 0);
+}
+
+static bool driver(void *ctx)
+{
+    static uint32_t on_us;
+    if (rig.fault == DRIVER_NEVER_ON) return false;
+    if (rig.fault == DRIVER_ALWAYS_ON) return true;
+    if (rig.fault == DRIVER_OFF_EARLY) return left_us() > 2 * CHARACTER_US;
+    const bool is_on = rig.held != NULL || !really_sent();
+    if (is_on) on_us = rig.time.now_us;
+    return is_on || (rig.fault == DRIVER_OFF_LATE && rig.time.now_us - on_us < 5 * CHARACTER_US);
+}
+
+/* ---- receive ---- */
+
+static bool damage(void *ctx, uint8_t mark)
+{
+    rig.injected = 3;
+    rig.mark = mark;
+    return true;
+}
+
+/* 11 22 33, of which the second is marked and alone. */
+static int read_injected(uint8_t *bytes, fathom_rx_t *rx)
+{
+    const bool is_untold = rig.fault == (rig.mark == FATHOM_RX_PARITY ? PARITY_UNTOLD : FRAMING_UNTOLD);
+    const bool is_spanned = rig.fault == FRAMING_SPANNED && rig.mark == FATHOM_RX_FRAMING;
+    const bool is_all = rig.fault == PARITY_ON_ALL && rig.mark == FATHOM_RX_PARITY;
+    int count = 1;
+    bytes[0] = (uint8_t)(0x11 * (4 - rig.injected));
+    if (rig.injected == 2 && is_spanned) bytes[count++] = 0x33;
+    if ((rig.injected == 2 && !is_untold) || is_all) rx->flags |= rig.mark;
+    rig.injected = (uint8_t)(rig.injected - count);
+    return count;
+}
+
+static void spoil(uint8_t *bytes, int *count, fathom_rx_t *rx)
+{
+    switch (rig.fault) {
+    case READ_SWAPS:
+        if (*count > 1) {
+            const uint8_t first = bytes[0];
+            bytes[0] = bytes[1];
+            bytes[1] = first;
+        }
+        break;
+    case READ_LOSES:
+        if ((rig.taken + (unsigned)*count) / 50 != rig.taken / 50) --*count;
+        break;
+    case READ_MAKES_SILENCE:
+        rx->flags |= FATHOM_RX_SILENCE;
+        break;
+    case STAMP_OF_THE_READ:
+        rx->last_us = rig.time.now_us + rig.time.ahead_us;
+        break;
+    case STAMP_OF_BEFORE:
+        rx->last_us -= 1000000;
+        break;
+    case OVERRUN_UNTOLD:
+        rx->flags &= (uint8_t)~FATHOM_RX_OVERRUN;
+        break;
+    case OVERRUN_ALWAYS:
+        rx->flags |= FATHOM_RX_OVERRUN;
+        break;
+    default:
+        break;
+    }
+}
+
+static int rig_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    let_go();
+    if (rig.injected != 0) return read_injected(bytes, rx);
+    if (rig.fault == READ_BEYOND && capacity < 255) capacity++;
+    if (rig.fault == READ_MAKES_SILENCE && capacity > 3) capacity = 3;
+    int count = rig.real.read(rig.real.ctx, bytes, capacity, rx);
+    if (count > 0) spoil(bytes, &count, rx);
+    if (rig.fault == READ_SPANS_SILENCE && count > 0) {
+        const uint8_t flags = rx->flags;
+        count += rig.real.read(rig.real.ctx, bytes + count, capacity - (size_t)count, rx);
+        rx->flags = flags;
+    }
+    rig.taken += (unsigned)count;
+    rig.unread = 0;
+    rx->last_us = shown(rx->last_us);
+    return count;
+}
+
+/* ---- settings ---- */
+
+static int rig_set_line(void *ctx, const fathom_line_settings_t *line)
+{
+    uint8_t bytes[255];
+    fathom_rx_t rx;
+    if (rig.held != NULL) return 0;
+    if (line->baud < 1200 || line->baud > 1000000) return rig.fault == LINE_OF_ANY_RATE ? 1 : -1;
+    if (fathom_sim_same_settings(line, &rig.line.settings)) return 1;
+    if (rig.fault == LINE_AT_ONCE) {
+        fathom_sim_set_line(&rig.line, line, rig.time.now_us);
+        return 1;
+    }
+    if (rig.fault == LINE_UNCHANGED) return really_sent() ? 1 : 0;
+    const int result = rig.real.set_line(rig.real.ctx, line);
+    while (rig.fault == LINE_FORGETS && result == 1 && rig.real.read(rig.real.ctx, bytes, 255, &rx) > 0)
+        continue;
+    return result;
+}
+
+static int rig_set_break(void *ctx, bool on)
+{
+    if (rig.fault == BREAK_AT_ONCE && !really_sent()) return 1;
+    return rig.held != NULL ? 0 : rig.real.set_break(rig.real.ctx, on);
+}
+
+/* ---- the tests ---- */
+
+static void report(void *ctx, const fathom_finding_t *finding)
+{
+    assert_in_range(finding->verdict, FATHOM_KEPT, FATHOM_NOT_SEEN);
+    assert_in_range(rig.told, 0, FATHOM_CONFORMANCE_ITEMS - 1);
+    rig.each[rig.told] = finding->verdict;
+    rig.names[rig.told++] = finding->name;
+    rig.verdicts[finding->verdict]++;
+    if (getenv("FATHOM_TELL") != NULL)
+        (void)printf("%2d %-8s %-16s %lu %s\n", rig.fault, fathom_verdict_name(finding->verdict),
+                     finding->name, (unsigned long)finding->figure, finding->of);
+    if (finding->verdict == FATHOM_NOT_KEPT && rig.failed < NAMES) rig.not_kept[rig.failed++] = finding->name;
+}
+
+static void run(fault_t fault)
+{
+    const fathom_line_settings_t line = {19200, FATHOM_PARITY_EVEN, 1};
+    memset(&rig, 0, sizeof rig);
+    rig.fault = fault;
+    fathom_sim_clock_init(&rig.time, 5, 20);
+    fathom_sim_line_init(&rig.line, &line, rig.time.now_us);
+    rig.line.echo = fault != NO_WIRE; /* TX and RX are joined */
+    fathom_sim_uart_init(&rig.sim, &rig.line, &rig.time);
+    rig.real = fathom_sim_uart(&rig.sim);
+    rig.real_clock = fathom_sim_clock(&rig.time);
+    rig.clock = (fathom_clock_t){rig_now, NULL};
+    rig.uart = (fathom_uart_t){.read = rig_read,
+                               .write = rig_write,
+                               .sent = rig_sent,
+                               .set_line = rig_set_line,
+                               .set_break = rig_set_break,
+                               .leaves_in_us = rig_leaves_in_us};
+    rig.bench = (fathom_conformance_t){.uart = &rig.uart,
+                                       .clock = &rig.clock,
+                                       .line = line,
+                                       .other = {57600, FATHOM_PARITY_EVEN, 1},
+                                       .longest = 64,
+                                       .marks = rig.sim.knows,
+                                       .driver = driver,
+                                       .set_clock = set_clock,
+                                       .damage = damage,
+                                       .report = report};
+    const unsigned failed = fathom_conformance_run(&rig.bench);
+    assert_int_equal(rig.told, FATHOM_CONFORMANCE_ITEMS);
+    assert_int_equal(failed, rig.verdicts[FATHOM_NOT_KEPT]);
+}
+
+TEST(a_hal_that_keeps_everything_is_seen_to_keep_it)
+{
+    run(NO_FAULT);
+    assert_int_equal(rig.verdicts[FATHOM_KEPT], FATHOM_CONFORMANCE_ITEMS);
+}
+
+/* The clock is, the far end's marks are, and what write and sent say by themselves. */
+TEST(where_nothing_comes_back_nothing_is_held_against_the_port)
+{
+    run(NO_WIRE);
+    assert_int_equal(rig.verdicts[FATHOM_NOT_KEPT], 0);
+    assert_int_equal(rig.verdicts[FATHOM_KEPT], 7);
+}
+
+TEST(each_fault_is_found_by_one_item_and_no_other)
+{
+    static const char *const found_by[FAULTS] = {[CLOCK_STANDS] = "clock_runs",
+                                                 [CLOCK_OF_26_BITS] = "clock_wrap",
+                                                 [CLOCK_AT_DOUBLE_SPEED] = "clock_us",
+                                                 [CLOCK_GOES_BACK] = "clock_forward",
+                                                 [WRITE_PARTIAL] = "write_whole",
+                                                 [WRITE_SENDS_WHAT_IT_REFUSED] = "write_whole",
+                                                 [WRITE_KEEPS_THE_POINTER] = "write_copy",
+                                                 [WRITE_LOSES_THE_LAST] = "read_order",
+                                                 [WRITE_WAITS] = "write_at_once",
+                                                 [WRITE_PAUSES] = "write_no_gap",
+                                                 [WRITE_REFUSES_WHEN_FULL] = "write_when_full",
+                                                 [SENT_AT_ONCE] = "sent_not_early",
+                                                 [SENT_A_CHARACTER_EARLY] = "sent_not_early",
+                                                 [SENT_NEVER] = "sent_comes",
+                                                 [LEAVES_AFTERWARDS] = "leaves_in_us",
+                                                 [LEAVES_IN_AN_HOUR] = "leaves_in_us",
+                                                 [DRIVER_NEVER_ON] = "driver",
+                                                 [DRIVER_ALWAYS_ON] = "driver",
+                                                 [DRIVER_OFF_EARLY] = "driver",
+                                                 [DRIVER_OFF_LATE] = "driver",
+                                                 [READ_SWAPS] = "read_order",
+                                                 [READ_LOSES] = "read_order",
+                                                 [READ_BEYOND] = "read_bounds",
+                                                 [READ_SPANS_SILENCE] = "read_silence",
+                                                 [READ_MAKES_SILENCE] = "read_silence",
+                                                 [STAMP_OF_THE_READ] = "read_stamp",
+                                                 [STAMP_OF_BEFORE] = "read_stamp",
+                                                 [PARITY_UNTOLD] = "mark_parity",
+                                                 [PARITY_ON_ALL] = "mark_parity",
+                                                 [FRAMING_UNTOLD] = "mark_framing",
+                                                 [FRAMING_SPANNED] = "mark_framing",
+                                                 [OVERRUN_UNTOLD] = "read_overrun",
+                                                 [OVERRUN_ALWAYS] = "read_overrun",
+                                                 [LINE_UNCHANGED] = "set_line_holds",
+                                                 [LINE_AT_ONCE] = "set_line_waits",
+                                                 [LINE_FORGETS] = "set_line_keeps",
+                                                 [LINE_OF_ANY_RATE] = "set_line_refuses",
+                                                 [BREAK_AT_ONCE] = "set_break"};
+    unsigned missed = 0;
+    for (unsigned fault = NO_WIRE + 1; fault != FAULTS; fault++) {
+        run((fault_t)fault);
+        if (rig.failed == 1 && strcmp(rig.not_kept[0], found_by[fault]) == 0) continue;
+        print_error("fault %u is not found by %s alone, but by %u\n", fault, found_by[fault], rig.failed);
+        for (unsigned i = 0; i != rig.failed; i++) print_error("    %s\n", rig.not_kept[i]);
+        missed++;
+    }
+    assert_int_equal(missed, 0);
+    for (unsigned i = 0; i != FATHOM_CONFORMANCE_ITEMS; i++) {
+        unsigned finds = 0;
+        for (unsigned fault = NO_WIRE + 1; fault != FAULTS; fault++)
+            finds += strcmp(rig.names[i], found_by[fault]) == 0;
+        if (finds == 0) fail_msg("%s has found nothing", rig.names[i]);
+    }
+}
+
+/* The far end of a pseudo terminal that hands back what comes, in a process of its own, until the terminal is gone. */
+static pid_t join_wires(const posix_pty_t *pty)
+{
+    const pid_t child = fork();
+    if (child != 0) return child;
+    for (;;) {
+        uint8_t bytes[256];
+        struct pollfd ready = {pty->master, POLLIN, 0};
+        (void)poll(&ready, 1, 60000);
+        const ssize_t count = read(pty->master, bytes, sizeof bytes);
+        if (count <= 0 || write(pty->master, bytes, (size_t)count) != count) _exit(0);
+    }
+}
+
+/* A pseudo terminal takes no time, and this port marks no bytes: so much is not seen. */
+TEST(the_posix_port_keeps_what_can_be_seen_on_a_pseudo_terminal)
+{
+    static const char *const not_seen[] = {"clock_wrap",  "clock_us",     "write_no_gap",
+                                           "driver",      "read_silence", "read_stamp",
+                                           "mark_parity", "mark_framing", "read_overrun"};
+    posix_pty_t pty;
+    fathom_posix_uart_t port;
+    const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
+    memset(&rig, 0, sizeof rig);
+    posix_pty_open(&pty);
+    assert_int_equal(fathom_posix_open(&port, pty.path, &line), FATHOM_POSIX_OK);
+    const pid_t child = join_wires(&pty);
+    assert_true(child > 0);
+    const fathom_uart_t uart = fathom_posix_uart(&port);
+    const fathom_clock_t clock = fathom_posix_clock();
+    rig.bench = (fathom_conformance_t){.uart = &uart,
+                                       .clock = &clock,
+                                       .line = line,
+                                       .other = {57600, FATHOM_PARITY_NONE, 1},
+                                       .longest = 255,
+                                       .late_us = 100000,
+                                       .report = report};
+    assert_int_equal(fathom_conformance_run(&rig.bench), 0);
+    assert_int_equal(kill(child, SIGKILL), 0);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    fathom_posix_close(&port);
+    posix_pty_close(&pty);
+    assert_int_equal(rig.told, FATHOM_CONFORMANCE_ITEMS);
+    unsigned at = 0;
+    for (unsigned i = 0; i != FATHOM_CONFORMANCE_ITEMS; i++) {
+        if (rig.each[i] == FATHOM_KEPT) continue;
+        /* Where this process was stopped until all had left. */
+        if (strcmp(rig.names[i], "set_line_waits") == 0) continue;
+        assert_string_equal(rig.names[i], not_seen[at++]);
+    }
+    assert_int_equal(at, sizeof not_seen / sizeof not_seen[0]);
+}
