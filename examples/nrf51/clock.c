@@ -12,7 +12,8 @@ void nrf51_clock_begin(void)
 {
     CLOCK(HFCLKSTARTED) = 0;
     CLOCK(HFCLKSTART) = 1;
-    while (CLOCK(HFCLKSTARTED) == 0) continue;
+    while (CLOCK(HFCLKSTARTED) == 0) {
+    }
     TIMER(MODE) = MODE_TIMER;
     TIMER(BITMODE) = BITMODE_32;
     TIMER(PRESCALER) = TO_1_MHZ;

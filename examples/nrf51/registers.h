@@ -5,13 +5,11 @@
 #include <stdint.h>
 
 /* The parts of the chip as arrays of words, by the offsets of the manual. */
-#define AT(base, offset) (((volatile uint32_t *)(base))[(offset) / 4])
-
-#define CLOCK(offset) AT(0x40000000u, offset) /* 13 */
-#define UART(offset)  AT(0x40002000u, offset) /* 29 */
-#define TIMER(offset) AT(0x40008000u, offset) /* 18 */
-#define GPIO(offset)  AT(0x50000000u, offset) /* 14 */
-#define NVIC_ISER     AT(0xE000E100u, 0)
+#define CLOCK(offset) (((volatile uint32_t *)0x40000000u)[(offset) / 4]) /* 13 */
+#define UART(offset)  (((volatile uint32_t *)0x40002000u)[(offset) / 4]) /* 29 */
+#define TIMER(offset) (((volatile uint32_t *)0x40008000u)[(offset) / 4]) /* 18 */
+#define GPIO(offset)  (((volatile uint32_t *)0x50000000u)[(offset) / 4]) /* 14 */
+#define NVIC_ISER     (*(volatile uint32_t *)0xE000E100u)
 
 enum { UART_INTERRUPT = 2, TIMER_INTERRUPT = 8 };
 

@@ -92,7 +92,8 @@ uint32_t kit_patience_us(const kit_t *kit, uint32_t count)
 void kit_wait(kit_t *kit, uint32_t us)
 {
     const uint32_t since_us = kit_now(kit);
-    while (kit_since(kit, since_us) < us) continue;
+    while (kit_since(kit, since_us) < us) {
+    }
 }
 
 static void take(kit_t *kit, int count, uint8_t flags)

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /*
- * Does a HAL keep what fathom/hal.h says? For whoever writes a port: link the C files of this folder with it, join TX
+ * Does a HAL keep what fathom/hal.h says? Link the C files of this folder with it, join TX
  * and RX (an RS-485 transceiver hears itself where its receiver stays on), and look at what is reported.
  *
  * It can be seen so that bytes are lost, early, late, torn or put in another order. A loop-back has the same rate and

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* kill */
 #include "suite.h"
 
 #include <poll.h>

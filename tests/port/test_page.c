@@ -18,6 +18,14 @@ fathom_capture_t port_capture(void);
 
 #include "port_page.c" /* all blocks of C of port/README.md, cut out by support/cut.py */
 
+/* The port of a chip whose transmit interrupt is an event. */
+static const fathom_uart_t event_uart = {.read = port_read,
+                                         .write = event_write,
+                                         .sent = port_sent,
+                                         .set_line = port_set_line,
+                                         .leaves_in_us = port_leaves_in_us,
+                                         .ctx = &serial};
+
 /* The chip, and an A16 at the end of its line. */
 enum { BIT_US = 104, CHARACTER_US = 1040, DEVICE_US = 50000, OUT = 32 };
 
