@@ -3,7 +3,7 @@
 
 #include "internal/kit.h"
 
-enum { WORD = 5, PAUSE = 20 /* characters */ };
+enum { WORD = 5, PAUSE = 20 /* characters */, PAUSE_US = 5000 /* at least; t3.5 is 1750 us at high rates */ };
 
 static bool tells(const kit_t *kit, uint8_t mark) { return (kit->bench->marks & mark) != 0; }
 
@@ -16,7 +16,7 @@ static bool two_words(kit_t *kit, uint32_t begins_us[2], uint32_t ends_us[2])
         begins_us[i] = kit->wrote_us;
         if (!kit_await_sent(kit)) return false;
         ends_us[i] = kit_now(kit);
-        kit_wait(kit, (WORD + PAUSE) * kit->character_us + kit->bench->late_us);
+        kit_wait(kit, (WORD + PAUSE) * kit->character_us + PAUSE_US + kit->bench->late_us);
     }
     return true;
 }

@@ -294,15 +294,24 @@ static void report(void *ctx, const fathom_finding_t *finding)
     if (finding->verdict == FATHOM_NOT_KEPT && rig.failed < NAMES) rig.not_kept[rig.failed++] = finding->name;
 }
 
-static void run(fault_t fault)
+typedef struct {
+    uint32_t baud, other;
+    uint8_t longest, knows;
+    uint32_t step_us; /* of the clock */
+} kind_t;
+
+enum { ALL_MARKS = 31 };
+
+static void run_on(fault_t fault, const kind_t *kind)
 {
-    const fathom_line_settings_t line = {19200, FATHOM_PARITY_EVEN, 1};
+    const fathom_line_settings_t line = {kind->baud, FATHOM_PARITY_EVEN, 1};
     memset(&rig, 0, sizeof rig);
     rig.fault = fault;
-    fathom_sim_clock_init(&rig.time, 5, 20);
+    fathom_sim_clock_init(&rig.time, 5, kind->step_us);
     fathom_sim_line_init(&rig.line, &line, rig.time.now_us);
     rig.line.echo = fault != NO_WIRE; /* TX and RX are joined */
     fathom_sim_uart_init(&rig.sim, &rig.line, &rig.time);
+    rig.sim.knows = kind->knows;
     rig.real = fathom_sim_uart(&rig.sim);
     rig.real_clock = fathom_sim_clock(&rig.time);
     rig.clock = (fathom_clock_t){rig_now, NULL};
@@ -315,8 +324,8 @@ static void run(fault_t fault)
     rig.bench = (fathom_conformance_t){.uart = &rig.uart,
                                        .clock = &rig.clock,
                                        .line = line,
-                                       .other = {57600, FATHOM_PARITY_EVEN, 1},
-                                       .longest = 64,
+                                       .other = {kind->other, FATHOM_PARITY_EVEN, 1},
+                                       .longest = kind->longest,
                                        .marks = rig.sim.knows,
                                        .driver = driver,
                                        .set_clock = set_clock,
@@ -327,10 +336,30 @@ static void run(fault_t fault)
     assert_int_equal(failed, rig.verdicts[FATHOM_NOT_KEPT]);
 }
 
+static void run(fault_t fault)
+{
+    static const kind_t kind = {19200, 57600, 64, ALL_MARKS, 20};
+    run_on(fault, &kind);
+}
+
 TEST(a_hal_that_keeps_everything_is_seen_to_keep_it)
 {
     run(NO_FAULT);
     assert_int_equal(rig.verdicts[FATHOM_KEPT], FATHOM_CONFORMANCE_ITEMS);
+}
+
+TEST(a_good_hal_is_found_good_at_other_rates_with_less_memory_fewer_marks_and_a_coarser_clock)
+{
+    static const kind_t kinds[] = {
+        {9600, 19200, 8, ALL_MARKS, 20},    {115200, 9600, 255, ALL_MARKS, 2},
+        {230400, 57600, 8, ALL_MARKS, 1},   {1200, 9600, 32, ALL_MARKS, 100},
+        {19200, 9600, 64, 0, 20},           {19200, 9600, 64, FATHOM_RX_TIMED, 200},
+        {19200, 57600, 8, ALL_MARKS, 1000}, {57600, 230400, 16, ALL_MARKS, 300}};
+    for (unsigned i = 0; i != sizeof kinds / sizeof kinds[0]; i++) {
+        run_on(NO_FAULT, &kinds[i]);
+        for (unsigned k = 0; k != rig.failed; k++) print_error("%u: %s\n", i, rig.not_kept[k]);
+        assert_int_equal(rig.failed, 0);
+    }
 }
 
 /* The clock is, the far end's marks are, and what write and sent say by themselves. */
