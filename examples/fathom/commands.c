@@ -2,8 +2,8 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "command.h"
 #include "fathom/version.h"
+#include "shared/command.h"
 
 static const command_t *const commands[] = {
     &scan_command, &read_command,  &watch_command,  &info_command, &get_command,

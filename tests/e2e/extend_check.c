@@ -3,8 +3,8 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "command.h"
-#include "output.h"
+#include "read/output.h"
+#include "shared/command.h"
 
 int usage_error(const char *command, const char *format, ...)
 {

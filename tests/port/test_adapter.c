@@ -9,7 +9,7 @@
 
 #include "suite.h"
 
-#include "../../examples/fathom/adapter.h"
+#include "../../examples/fathom/shared/sysfs_adapter.h"
 
 enum { LONG = 512 };
 

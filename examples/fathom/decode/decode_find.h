@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef DECODE_FIND_H
+#define DECODE_FIND_H
+
+#include "decode/decode_input.h"
+
+/* What may be in the input; sets of them. */
+enum {
+    DECODE_MODBUS = 1,
+    DECODE_DYP = 2,         /* 55 AA */
+    DECODE_STREAM_ONE = 4,  /* FF H L SUM */
+    DECODE_STREAM_FOUR = 8, /* FF, four distances, SUM */
+    DECODE_ALL = 15
+};
+
+enum { DECODE_REQUEST = 1, DECODE_ANSWER = 2, DECODE_BOTH = 3 };
+
+/* A frame, or bytes that belong to none (protocol 0). */
+typedef struct {
+    size_t offset;
+    size_t length;
+    uint8_t protocol;
+    uint8_t direction; /* DECODE_REQUEST, DECODE_ANSWER, or both where the bytes are the same */
+    bool is_damaged;   /* the shape of a frame, but its checksum is wrong */
+} decode_piece_t;
+
+/*
+ * Cuts the input into pieces such that as much as possible is explained: frames with a right checksum count
+ * most, then damaged ones, and single bytes are the last resort. An 8-bit sum says little, so a frame that only
+ * has that gives way to a Modbus frame around it.
+ */
+typedef struct {
+    const decode_input_t *input;
+    uint8_t protocols;
+    size_t at;
+    struct decode_choice *choices; /* one a byte */
+} decode_finder_t;
+
+/* False after saying that there is no memory. To be freed in any case. */
+bool decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uint8_t protocols);
+
+/* The next piece; false: that was all. */
+bool decode_find_next(decode_finder_t *finder, decode_piece_t *piece);
+
+void decode_find_free(decode_finder_t *finder);
+
+#endif

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef READERS_H
+#define READERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/a05_auto.h"
+#include "fathom/a05_dyp.h"
+#include "fathom/a05_modbus.h"
+#include "fathom/a16_auto.h"
+#include "fathom/a16_controlled.h"
+#include "fathom/a16_modbus.h"
+#include "fathom/hps167s.h"
+#include "fathom/line_pins.h"
+#include "shared/channel.h"
+
+/* What the user may set; 0: the driver's default. */
+typedef struct {
+    uint32_t timeout_us; /* of an answer; of a sensor that sends by itself: until it is stale */
+    uint32_t period_us;  /* between two requests */
+    const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
+    uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
+    fathom_dyp_window_t window;         /* of A16 and A05 */
+    uint8_t probes;                     /* of an A05: bit probe - 1 */
+    uint8_t address;
+    uint8_t retries;
+} reader_settings_t;
+
+/* For the only sensor on a line: less than any period, so that one that does not answer is asked as often as one that
+ * does: somebody may be looking for the loose wire. */
+enum { READER_BACKOFF_US = 1 };
+
+/* Any driver, with what the library's common interface does not show: the causes of an error. */
+typedef struct {
+    fathom_sensor_t sensor;
+    const uint16_t *values;            /* the 16-bit values of the last answer, ... */
+    uint8_t value_count;               /* ... and how many there are */
+    const fathom_dyp_answer_t *answer; /* of A16 and A05; NULL: an answer is one sample */
+    uint16_t *sequence;                /* of the last answer */
+    fathom_modbus_unit_t *unit;        /* NULL: it sends by itself */
+    fathom_stream_t *stream;           /* NULL: it is asked */
+    const char *protocol;              /* with which it is asked */
+    bool is_paced;                     /* it keeps the user's interval by itself */
+    fathom_line_t *line;
+    union {
+        fathom_a16_auto_t a16_auto;
+        fathom_a16_modbus_t a16_modbus;
+        fathom_a16_controlled_t a16_controlled;
+        fathom_a05_auto_t a05_auto;
+        fathom_a05_modbus_t a05_modbus;
+        fathom_a05_dyp_t a05_dyp;
+        fathom_hps167s_t hps167s;
+    } driver;
+} reader_t;
+
+/* Begins to read through an open channel. False: settings that the driver does not take. */
+typedef bool (*reader_init_t)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+/* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the answer that did not fit, and not a value in it? */
+bool reader_was_answered_wrong(const reader_t *reader);
+
+/* The same, where a value of A16 or A05 was refused: of which probe? 0: it was not that. */
+uint8_t reader_refused_probe(const reader_t *reader);
+
+/* Has the last answer more samples? Then poll again before anything else. */
+bool reader_has_more(const reader_t *reader);
+
+#endif

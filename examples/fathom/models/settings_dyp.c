@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT */
+#include <inttypes.h>
+
+#include "fathom/a16_rs232.h"
+#include "settings/settings.h"
+
+/* The settings of A16 (A16 6(3)) and A05 (A05 2(3)5, 3(3)). */
+
+#define KEPT_UNSAID "at once; whether it is kept over power-off is not in the datasheet"
+
+static const char *const off_words[] = {"controlled", "automatic", NULL};
+static const char *const on_only[] = {"on", NULL};
+static const char *const polarities[] = {"negative", "positive", NULL};
+static const char *const values[] = {"processed", "real-time", NULL};
+
+static void print_number(char text[SETTING_TEXT], fathom_status_t status, uint32_t number)
+{
+    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%" PRIu32, number);
+}
+
+/* Where no word stands for it nothing is READY: the driver has refused it. */
+static void print_word(char text[SETTING_TEXT], fathom_status_t status, const char *const *words,
+                       unsigned number)
+{
+    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%s", words[number]);
+}
+
+static void print_distance(char text[SETTING_TEXT], fathom_status_t status, const fathom_sample_t *sample)
+{
+    if (status != FATHOM_READY) return;
+    if (sample->kind == FATHOM_TARGET)
+        print_number(text, status, sample->distance_mm);
+    else if (sample->kind == FATHOM_NO_TARGET)
+        (void)snprintf(text, SETTING_TEXT, "%s", sample->interference ? "interference" : "no target");
+    else
+        (void)snprintf(text, SETTING_TEXT, "unknown value %u", (unsigned)sample->raw);
+}
+
+/* ---- A16 ---- */
+
+static fathom_status_t a16_address(reader_t *reader, char text[SETTING_TEXT])
+{
+    uint8_t address = 0;
+    const fathom_status_t status = fathom_a16_modbus_address(&reader->driver.a16_modbus, &address);
+    print_number(text, status, address);
+    return status;
+}
+
+static fathom_status_t a16_set_address(reader_t *reader, int32_t value)
+{
+    fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
+    return value == 0 ? fathom_a16_modbus_set_address_to_0_perhaps_for_ever(driver)
+                      : fathom_a16_modbus_set_address(driver, (uint8_t)value);
+}
+
+static fathom_status_t a16_set_mode(reader_t *reader, int32_t value)
+{
+    return fathom_a16_modbus_set_operating_mode(&reader->driver.a16_modbus,
+                                                (fathom_a16_operating_mode_t)value);
+}
+
+/* Back to frames that come by themselves; with the first one it is done. */
+static fathom_status_t a16_send_again(reader_t *reader, int32_t value)
+{
+    static fathom_a16_auto_t automatic;
+    static fathom_a16_rs232_t rs232;
+    static bool is_begun;
+    fathom_sample_t sample;
+    (void)value;
+    if (!is_begun) {
+        const fathom_a16_auto_config_t config = {.line = reader->line, .gap_us = CHANNEL_STREAM_GAP_US};
+        if (fathom_a16_auto_init(&automatic, &config) != FATHOM_READY) return FATHOM_ERR_ARGUMENT;
+        fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
+        is_begun = true;
+    }
+    const fathom_status_t status = fathom_a16_rs232_return_to_automatic(&rs232, &sample);
+    is_begun = status == FATHOM_PENDING;
+    return status;
+}
+
+static fathom_status_t a16_polarity(reader_t *reader, char text[SETTING_TEXT])
+{
+    fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
+    const fathom_status_t status = fathom_a16_modbus_switch_polarity(&reader->driver.a16_modbus, &polarity);
+    print_word(text, status, polarities, (unsigned)polarity);
+    return status;
+}
+
+static fathom_status_t a16_set_polarity(reader_t *reader, int32_t value)
+{
+    return fathom_a16_modbus_set_switch_polarity(&reader->driver.a16_modbus, (fathom_a16_polarity_t)value);
+}
+
+static fathom_status_t a16_threshold(reader_t *reader, char text[SETTING_TEXT])
+{
+    uint16_t threshold_mm = 0;
+    const fathom_status_t status =
+        fathom_a16_modbus_switch_threshold_mm(&reader->driver.a16_modbus, &threshold_mm);
+    print_number(text, status, threshold_mm);
+    return status;
+}
+
+static fathom_status_t a16_set_threshold(reader_t *reader, int32_t value)
+{
+    return fathom_a16_modbus_set_switch_threshold_mm(&reader->driver.a16_modbus, (uint16_t)value);
+}
+
+static fathom_status_t a16_value(reader_t *reader, char text[SETTING_TEXT])
+{
+    fathom_dyp_value_t value = FATHOM_PROCESSED;
+    const fathom_status_t status = fathom_a16_modbus_automatic_value(&reader->driver.a16_modbus, &value);
+    print_word(text, status, values, (unsigned)value);
+    return status;
+}
+
+static fathom_status_t a16_set_value(reader_t *reader, int32_t value)
+{
+    return fathom_a16_modbus_set_automatic_value(&reader->driver.a16_modbus, (fathom_dyp_value_t)value);
+}
+
+static fathom_status_t a16_distance(reader_t *reader, char text[SETTING_TEXT], fathom_dyp_value_t value)
+{
+    fathom_sample_t sample;
+    const fathom_status_t status = fathom_a16_modbus_measure(&reader->driver.a16_modbus, value, &sample);
+    print_distance(text, status, &sample);
+    return status;
+}
+
+static fathom_status_t a16_processed(reader_t *reader, char text[SETTING_TEXT])
+{
+    return a16_distance(reader, text, FATHOM_PROCESSED);
+}
+
+static fathom_status_t a16_real_time(reader_t *reader, char text[SETTING_TEXT])
+{
+    return a16_distance(reader, text, FATHOM_REAL_TIME);
+}
+
+const setting_t settings_a16[] = {
+    {.name = "address",
+     .what = "Modbus address (register 0x0200)",
+     .mode = "modbus",
+     .effect = KEPT_UNSAID,
+     .least = 1,
+     .most = 254,
+     .has_zero = true,
+     .moves = true,
+     .is_never_blind = true,
+     .get = a16_address,
+     .set = a16_set_address},
+    {.name = "operating-mode",
+     .what = "the register by itself (0x0202); to have automatic output back: automatic-output",
+     .mode = "modbus",
+     .effect = "at once; not kept over power-off. Any further command ends automatic output again",
+     .words = off_words,
+     .set = a16_set_mode},
+    {.name = "automatic-output",
+     .what = "RS232 variant: takes up again the output that a Modbus command has ended (0x0202)",
+     .mode = "modbus",
+     .effect = "at once; any further Modbus command ends it again",
+     .words = on_only,
+     .confirmed = "frames are heard",
+     .unconfirmed = "no frame was heard in 10 s; only the RS232 variant sends by itself",
+     .set = a16_send_again},
+    {.name = "switch-polarity",
+     .what = "switch variant: the level when something is nearer than the threshold (0x0205)",
+     .mode = "modbus",
+     .effect = KEPT_UNSAID,
+     .words = polarities,
+     .get = a16_polarity,
+     .set = a16_set_polarity},
+    {.name = "switch-threshold",
+     .what = "switch variant: the distance at which it switches (0x0206)",
+     .mode = "modbus",
+     .unit = "mm",
+     .effect = KEPT_UNSAID,
+     .least = 1,
+     .most = FATHOM_A16_MAX_MM,
+     .get = a16_threshold,
+     .set = a16_set_threshold},
+    {.name = "automatic-value",
+     .what = "RS232 variant: the distance that automatic output sends (0x0207)",
+     .mode = "modbus",
+     .effect = KEPT_UNSAID,
+     .words = values,
+     .get = a16_value,
+     .set = a16_set_value},
+    {.name = "distance",
+     .what = "the processed distance (0x0100)",
+     .mode = "modbus",
+     .unit = "mm",
+     .get = a16_processed},
+    {.name = "real-time-distance",
+     .what = "the last measurement (0x0101)",
+     .mode = "modbus",
+     .unit = "mm",
+     .get = a16_real_time},
+    {.name = NULL},
+};
+
+/* ---- A05 ---- */
+
+static fathom_status_t a05_address(reader_t *reader, char text[SETTING_TEXT])
+{
+    uint8_t address = 0;
+    const fathom_status_t status = fathom_a05_modbus_address(&reader->driver.a05_modbus, &address);
+    print_number(text, status, address);
+    return status;
+}
+
+static fathom_status_t a05_set_address(reader_t *reader, int32_t value)
+{
+    fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
+    return value == 0 ? fathom_a05_modbus_set_address_to_0_perhaps_for_ever(driver)
+                      : fathom_a05_modbus_set_address(driver, (uint8_t)value);
+}
+
+static fathom_status_t a05_set_every_address(reader_t *reader, int32_t value)
+{
+    return fathom_a05_dyp_set_every_address(&reader->driver.a05_dyp, (uint8_t)value);
+}
+
+/* All probes, as they are read: the samples of one answer, one after the other. */
+static fathom_status_t a05_distances(reader_t *reader, char text[SETTING_TEXT])
+{
+    size_t length = 0;
+    fathom_sample_t sample;
+    fathom_status_t status = fathom_poll(&reader->sensor, &sample);
+    if (status == FATHOM_PENDING || (status < 0 && status != FATHOM_ERR_MALFORMED)) return status;
+    do {
+        char one[SETTING_TEXT] = "no distance";
+        print_distance(one, status, &sample);
+        length +=
+            (size_t)snprintf(text + length, SETTING_TEXT - length, "%s%s", length != 0 ? ", " : "", one);
+        if (!reader_has_more(reader)) return FATHOM_READY;
+        status = fathom_poll(&reader->sensor, &sample);
+    } while (length < SETTING_TEXT);
+    return FATHOM_READY;
+}
+
+const setting_t settings_a05[] = {
+    {.name = "address",
+     .what = "Modbus address (register 0x0200), of 55 AA too",
+     .mode = "modbus",
+     .effect = KEPT_UNSAID,
+     .least = 1,
+     .most = 254,
+     .has_zero = true,
+     .moves = true,
+     .is_never_blind = true,
+     .get = a05_address,
+     .set = a05_set_address},
+    {.name = "every-address",
+     .what = "the same by 55 AA 03, which EVERY A05 on the line obeys; with --mode dyp",
+     .mode = "dyp",
+     .effect = KEPT_UNSAID,
+     .least = 1,
+     .most = 254,
+     .moves = true,
+     .is_never_blind = true,
+     .set = a05_set_every_address},
+    {.name = "distances", .what = "of the four probes", .mode = "modbus", .unit = "mm", .get = a05_distances},
+    {.name = NULL},
+};

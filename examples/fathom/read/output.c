@@ -1,0 +1,228 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gmtime_r */
+#include "read/output.h"
+
+#include <inttypes.h>
+#include <string.h>
+#include <time.h>
+
+#include "shared/command.h"
+
+/* ---- JSON and CSV: the same fields in the same order ---- */
+
+enum { VALUE_TEXT = 48 };
+
+typedef struct {
+    const char *name;
+    bool is_string;                                                  /* quoted in JSON */
+    bool needs_optics;                                               /* only of sensors that have them */
+    void (*format)(const reading_t *reading, char text[VALUE_TEXT]); /* leaves text empty for null */
+} field_t;
+
+static const char *status_name(const fathom_sample_t *sample)
+{
+    switch (sample->kind) {
+    case FATHOM_TARGET:
+        return "target";
+    case FATHOM_NO_TARGET:
+        return "no_target";
+    case FATHOM_NEAR:
+        return "too_near";
+    case FATHOM_UNKNOWN:
+        return "unknown";
+    default:
+        return "fault";
+    }
+}
+
+static void put_number(char text[VALUE_TEXT], uint64_t number)
+{
+    (void)snprintf(text, VALUE_TEXT, "%" PRIu64, number);
+}
+
+static void put_string(char text[VALUE_TEXT], const char *string)
+{
+    (void)snprintf(text, VALUE_TEXT, "%s", string);
+}
+
+static void put_sensor(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_string(text, reading->sensor->name);
+}
+
+static void put_mode(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_string(text, reading->mode->name);
+}
+
+static void put_address(const reading_t *reading, char text[VALUE_TEXT])
+{
+    if (reading->mode->is_asked) put_number(text, reading->sample->unit);
+}
+
+static void put_probe(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_number(text, reading->sample->probe);
+}
+
+static void put_sequence(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_number(text, reading->sample->sequence);
+}
+
+static void put_time(const reading_t *reading, char text[VALUE_TEXT]) { put_number(text, reading->time_us); }
+
+static void put_utc(const reading_t *reading, char text[VALUE_TEXT])
+{
+    (void)utc_text(reading->utc_us, text);
+}
+
+static void put_status(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_string(text, status_name(reading->sample));
+}
+
+static void put_interference(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_string(text, reading->sample->interference ? "true" : "false");
+}
+
+static void put_distance(const reading_t *reading, char text[VALUE_TEXT])
+{
+    if (reading->sample->kind == FATHOM_TARGET) put_number(text, reading->sample->distance_mm);
+}
+
+static void put_raw(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_number(text, reading->sample->raw);
+}
+
+/* The sample has it times 10000, so four decimals are all of it. */
+static void put_magnitude(const reading_t *reading, char text[VALUE_TEXT])
+{
+    const uint32_t magnitude = reading->sample->magnitude;
+    (void)snprintf(text, VALUE_TEXT, "%" PRIu32 ".%04" PRIu32, magnitude / 10000, magnitude % 10000);
+}
+
+static void put_ambient(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_number(text, reading->sample->ambient);
+}
+
+static void put_precision(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_number(text, reading->sample->precision);
+}
+
+static const field_t fields[] = {
+    {"sensor", true, false, put_sensor},
+    {"mode", true, false, put_mode},
+    {"address", false, false, put_address},
+    {"probe", false, false, put_probe},
+    {"sequence", false, false, put_sequence},
+    {"time_us", false, false, put_time},
+    {"utc", true, false, put_utc},
+    {"status", true, false, put_status},
+    {"interference", false, false, put_interference},
+    {"distance_mm", false, false, put_distance},
+    {"raw", false, false, put_raw},
+    {"magnitude", false, true, put_magnitude},
+    {"ambient", false, true, put_ambient},
+    {"precision", false, true, put_precision},
+};
+enum { FIELDS = sizeof fields / sizeof fields[0] };
+
+static void write_json(FILE *to, const reading_t *reading)
+{
+    for (size_t i = 0; i != FIELDS; i++) {
+        char text[VALUE_TEXT] = "";
+        if (fields[i].needs_optics && !reading->sensor->has_optics) continue;
+        fields[i].format(reading, text);
+        const char *const quote = fields[i].is_string ? "\"" : "";
+        (void)fprintf(to, "%s\"%s\":%s%s%s", i == 0 ? "{" : ",", fields[i].name, quote,
+                      text[0] != '\0' ? text : "null", quote);
+    }
+    (void)fputs("}\n", to);
+}
+
+static void begin_csv(FILE *to, bool has_optics)
+{
+    for (size_t i = 0; i != FIELDS; i++)
+        if (!fields[i].needs_optics || has_optics)
+            (void)fprintf(to, "%s%s", i == 0 ? "" : ",", fields[i].name);
+    (void)fputs("\n", to);
+}
+
+/* No value holds a comma or a quotation mark. */
+static void write_csv(FILE *to, const reading_t *reading)
+{
+    for (size_t i = 0; i != FIELDS; i++) {
+        char text[VALUE_TEXT] = "";
+        if (fields[i].needs_optics && !reading->has_optics) continue;
+        if (!fields[i].needs_optics || reading->sensor->has_optics) fields[i].format(reading, text);
+        (void)fprintf(to, "%s%s", i == 0 ? "" : ",", text);
+    }
+    (void)fputs("\n", to);
+}
+
+/* ---- text, for people ---- */
+
+static void write_text(FILE *to, const reading_t *reading)
+{
+    const fathom_sample_t *const sample = reading->sample;
+    (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
+                  (unsigned)(reading->time_us / 1000u % 1000u), reading->name);
+    if (reading->sensor->probes > 1) (void)fprintf(to, " probe %u", sample->probe);
+    if (sample->kind == FATHOM_TARGET)
+        (void)fprintf(to, "  %6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
+                      sample->distance_mm % 1000u);
+    else if (sample->kind == FATHOM_NO_TARGET)
+        (void)fprintf(to, "  no target in range%s", sample->interference ? " (interference)" : "");
+    else if (sample->kind == FATHOM_NEAR)
+        (void)fputs("  nearer than it can measure", to);
+    else if (sample->kind == FATHOM_UNKNOWN)
+        (void)fprintf(to, "  unknown: the value %" PRIu32 "%s", sample->raw,
+                      reading->sensor->has_optics ? "" : " has been given no meaning (--means)");
+    else
+        (void)fputs("  fault: the sensor says that it has failed", to);
+    if (reading->sensor->has_optics && sample->kind != FATHOM_FAULT) {
+        char magnitude[VALUE_TEXT];
+        put_magnitude(reading, magnitude);
+        (void)fprintf(to, "  magnitude %s  ambient %u  precision %u", magnitude, sample->ambient,
+                      sample->precision);
+    }
+    (void)fputs("\n", to);
+}
+
+/* ---- formats ---- */
+
+static const format_t formats[] = {
+    {"text", false, NULL, write_text},
+    {"json", true, NULL, write_json},
+    {"csv", false, begin_csv, write_csv},
+};
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+const format_t *format_find(const char *command, const char *name)
+{
+    if (name == NULL) return &formats[0];
+    for (size_t i = 0; i != FORMATS; i++)
+        if (strcmp(name, formats[i].name) == 0) return &formats[i];
+    (void)usage_error(command, "there is no format '%s', only text, json, csv", name);
+    return NULL;
+}
+
+uint64_t time_extend(uint64_t now_us, uint32_t then_us)
+{
+    return now_us - fathom_elapsed_us((uint32_t)now_us, then_us);
+}
+
+const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
+{
+    const time_t seconds = (time_t)(utc_us / 1000000u);
+    struct tm parts;
+    char whole[24] = "";
+    if (gmtime_r(&seconds, &parts) != NULL) (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
+    (void)snprintf(text, UTC_TEXT, "%s.%06uZ", whole, (unsigned)(utc_us % 1000000u));
+    return text;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef OUTPUT_H
+#define OUTPUT_H
+
+#include "models/models.h"
+
+/* One line of output: a sample and what the library does not know of it. */
+typedef struct {
+    const sensor_t *sensor;
+    const sensor_mode_t *mode;
+    const char *name; /* in text */
+    const fathom_sample_t *sample;
+    uint64_t time_us; /* since the program's start; does not wrap */
+    uint64_t utc_us;  /* since 1970 */
+    bool has_optics;  /* this sensor or another one that stands in the same table */
+} reading_t;
+
+/* A way to write readings. begin may be NULL. */
+typedef struct {
+    const char *name;
+    bool is_json;
+    void (*begin)(FILE *to, bool has_optics);
+    void (*write)(FILE *to, const reading_t *reading);
+} format_t;
+
+/* By name; NULL: the default, text. NULL after a usage error that lists what there is. */
+const format_t *format_find(const char *command, const char *name);
+
+/* The clock's 64 bits at a moment in the last 71 minutes of which it gave the lower 32. */
+uint64_t time_extend(uint64_t now_us, uint32_t then_us);
+
+/* "2025-11-21T09:43:12.123456Z", in a buffer of the caller's. */
+enum { UTC_TEXT = 48 };
+const char *utc_text(uint64_t utc_us, char text[UTC_TEXT]);
+
+#endif

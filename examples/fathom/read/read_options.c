@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+#include "read/read_options.h"
+
+#include <string.h>
+
+#include "shared/command.h"
+#include "shared/options.h"
+
+static const char command[] = "read";
+
+enum { MODE = SESSION_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, HELP, OPTIONS };
+
+static const struct option table[OPTIONS + 1] = {
+    SESSION_OPTION_ROWS,
+    [MODE] = {"mode", required_argument, NULL, 256},
+    [ADDRESS] = {"address", required_argument, NULL, 256},
+    [COUNT] = {"count", required_argument, NULL, 256},
+    [FORMAT] = {"format", required_argument, NULL, 256},
+    [STATS] = {"stats", optional_argument, NULL, 256},
+    [HELP] = {"help", no_argument, NULL, 256},
+};
+
+enum { MAX_COUNT = 1000000000, MAX_STATS_S = 4000 };
+
+static bool take_stats(read_options_t *options, const char *text)
+{
+    uint32_t seconds = 0;
+    options->stats = text != NULL;
+    if (text == NULL || text[0] == '\0') return true;
+    if (!option_number(command, "stats", text, 1, MAX_STATS_S, &seconds)) return false;
+    options->stats_us = seconds * 1000000u;
+    return true;
+}
+
+bool read_options(read_options_t *options, session_options_t *session, int argc, char **argv)
+{
+    const char *values[OPTIONS] = {NULL};
+    memset(options, 0, sizeof *options);
+    const int rest = options_parse(command, argc, argv, table, values);
+    if (rest < 0) return false;
+    options->wants_help = values[HELP] != NULL;
+    if (options->wants_help) return true;
+    if (!session_options(session, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]))
+        return false;
+    options->format = format_find(command, values[FORMAT]);
+    if (options->format == NULL || !take_stats(options, values[STATS]) ||
+        !option_number(command, "count", values[COUNT], 1, MAX_COUNT, &session->count))
+        return false;
+    session_tell_useless(session, values[ADDRESS], values);
+    return true;
+}
+
+void read_help(FILE *to)
+{
+    (void)fputs("fathom read reads sensors on a serial port and prints what they say.\n\n"
+                "usage: fathom read SENSOR[:ADDRESS[:MODE]]... --port PATH [OPTIONS]\n\n",
+                to);
+    sensors_print(to);
+    (void)fputs(
+        "\nThe first mode is the default, or with an address or several sensors the first in which it is "
+        "asked: auto\n"
+        "listens to a sensor that sends by itself, modbus and dyp (frames 55 AA) ask it, controlled triggers "
+        "it by "
+        "a break.\n"
+        "A single Modbus request ends the automatic output of an A16 or A05; for an A05 until power-off.\n\n"
+        "Several sensors that are asked may share a line, also with different settings: each is asked at its "
+        "own.\n"
+        "One that does not answer three times in a row is then left alone, longer each time up to 16 "
+        "time-outs, so that\n"
+        "it does not slow the others; the only one on a line is asked again and again. --baud and --parity "
+        "go for all.\n\n"
+        "  --mode MODE       how the only sensor is read\n"
+        "  --address N       of the only sensor; 1 from the factory\n"
+        "  --count N         ends after N attempts of each sensor\n"
+        "  --format FORMAT   text (default), json (an object a line) or csv (with a header line)\n"
+        "  --stats[=SECONDS] all counters at the end, and every so many seconds; with --format json an "
+        "object a\n"
+        "                    line. Every request, and every frame that came, is in them: read, failed or "
+        "skipped\n",
+        to);
+    session_options_help(to);
+    (void)fputs(
+        "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
+        "in range\n"
+        "and a fault that the sensor reports are readings. An attempt that fails is a line that says what to "
+        "try.\n"
+        "Exit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a sensor gave "
+        "no "
+        "good\n"
+        "reading, 2 for wrong usage.\n\n"
+        "examples:\n"
+        "  fathom read a16 --port /dev/ttyUSB0                          live, until Ctrl-C\n"
+        "  fathom read hps167s --port /dev/ttyUSB0 --address 7 --count 1\n"
+        "  fathom read a16:1:modbus hps167s:7 --port /dev/ttyUSB0       two on one pair, 9600 8N1 and 19200 "
+        "8E1\n"
+        "  fathom read a05 --mode modbus --port /dev/ttyUSB0 --format csv --interval 1000 > log.csv\n"
+        "  fathom read a16 --port /dev/ttyUSB0 --format json | jq .distance_mm\n",
+        to);
+}

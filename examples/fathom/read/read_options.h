@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef READ_OPTIONS_H
+#define READ_OPTIONS_H
+
+#include "read/output.h"
+#include "stations/sensor_options.h"
+
+/* What `fathom read` was asked to do, besides reading. */
+typedef struct {
+    const format_t *format;
+    uint32_t stats_us; /* all counters so often; 0: at the end only */
+    bool stats;        /* all counters at the end */
+    bool wants_help;
+} read_options_t;
+
+/* False after saying what is wrong with them. */
+bool read_options(read_options_t *options, session_options_t *session, int argc, char **argv);
+
+void read_help(FILE *to);
+
+#endif

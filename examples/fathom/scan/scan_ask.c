@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+#include "scan/scan_ask.h"
+
+#include <string.h>
+
+#include "fathom/dyp_client.h"
+#include "fathom/hps167s_registers.h"
+#include "fathom/modbus_client.h"
+
+enum { SET_LINE_POLL_US = 1000 };
+
+bool scan_is_answered(fathom_status_t status)
+{
+    return status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED;
+}
+
+static uint32_t now_us(const scan_wire_t *wire) { return wire->clock->now_us(wire->clock->ctx); }
+
+static bool wait_for_line(const scan_wire_t *wire, uint32_t max_us)
+{
+    const uint32_t due_us = fathom_line_due_us(wire->line);
+    return wire->wait(wire->ctx, due_us < max_us ? due_us : max_us);
+}
+
+/* Listens with the line as it is. */
+static fathom_status_t listen(const scan_wire_t *wire, uint32_t us, void (*each)(void *ctx), void *ctx)
+{
+    const uint32_t began_us = now_us(wire);
+    for (;;) {
+        if (fathom_line_poll(wire->line) != FATHOM_PENDING) return FATHOM_ERR_PORT;
+        if (each != NULL) each(ctx);
+        const uint32_t passed_us = fathom_elapsed_us(now_us(wire), began_us);
+        if (passed_us >= us) return FATHOM_READY;
+        if (!wait_for_line(wire, us - passed_us)) return FATHOM_ERR_CANCELLED;
+    }
+}
+
+fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t *line, uint32_t us,
+                          void (*each)(void *ctx), void *ctx)
+{
+    const fathom_uart_t *const uart = wire->line->config->uart;
+    for (;;) {
+        const int is_set = uart->set_line != NULL ? uart->set_line(uart->ctx, line) : -1;
+        if (is_set < 0) return FATHOM_ERR_UNSUPPORTED;
+        if (is_set > 0) break;
+        if (!wire->wait(wire->ctx, SET_LINE_POLL_US)) return FATHOM_ERR_CANCELLED;
+    }
+    ear_forget(wire->ear);
+    return listen(wire, us, each, ctx);
+}
+
+/* At 0 an A16 or A05 may be, and an HPS-167S, to which it is a broadcast, has none of their registers. */
+static bool is_harmless(const scan_question_t *question)
+{
+    enum { FIRST_OF_DYP = 0x0100 };
+    const bool is_to_all =
+        question->address == FATHOM_LINE_ALL_UNITS && (question->is_dyp || question->first < FIRST_OF_DYP);
+    return question->first != FATHOM_HPS167S_RESET && question->count <= SCAN_REGISTERS && !is_to_all;
+}
+
+static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *request)
+{
+    const fathom_exchange_t *const exchange = &request->exchange;
+    for (;;) {
+        (void)fathom_line_poll(wire->line); /* a broken port ends the exchange */
+        if (exchange->status != FATHOM_PENDING) return exchange->status;
+        if (!wait_for_line(wire, FATHOM_NO_DEADLINE)) fathom_line_cancel(wire->line, &request->exchange);
+        if (exchange->status != FATHOM_PENDING) return exchange->status;
+    }
+}
+
+void scan_ask(const scan_wire_t *wire, const scan_question_t *question, scan_answer_t *answer)
+{
+    fathom_modbus_request_t request;
+    memset(&request, 0, sizeof request);
+    memset(answer, 0, sizeof *answer);
+    answer->status = FATHOM_ERR_ARGUMENT;
+    if (!is_harmless(question)) return;
+    request.exchange.timeout_us = question->timeout_us;
+    request.exchange.settings = question->line;
+    fathom_modbus_read_holding_registers(&request.message, question->address, question->first,
+                                         question->count, answer->values);
+    ear_forget(wire->ear);
+    const fathom_modbus_t modbus = fathom_modbus_client_with_zero(wire->line);
+    answer->status = question->is_dyp ? fathom_dyp_client_submit(wire->line, &request)
+                                      : modbus.submit(modbus.ctx, &request);
+    if (answer->status == FATHOM_PENDING) answer->status = wait_for_answer(wire, &request);
+    answer->address = request.message.head[0];
+    if (scan_is_answered(answer->status) && question->linger_us != 0) {
+        const fathom_status_t heard = listen(wire, question->linger_us, NULL, NULL);
+        if (heard != FATHOM_READY) answer->status = heard;
+    }
+    ear_judge(wire->ear, question->address, &answer->evidence);
+}

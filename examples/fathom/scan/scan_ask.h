@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef SCAN_ASK_H
+#define SCAN_ASK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/line.h"
+#include "shared/listener.h"
+
+/* A line with an ear on it, and a way to wait: what a scan needs of the world. */
+typedef struct {
+    fathom_line_t *line;
+    ear_t *ear;
+    const fathom_clock_t *clock;
+    /* Sleeps until bytes come, but no longer than max_us. False: the scan is to end. */
+    bool (*wait)(void *ctx, uint32_t max_us);
+    void *ctx;
+} scan_wire_t;
+
+enum { SCAN_REGISTERS = 11 }; /* of the longest answer: HPS-167S #3 */
+
+/* A read: the only thing that a scan can ask. */
+typedef struct {
+    const fathom_line_settings_t *line;
+    uint32_t timeout_us;
+    uint32_t linger_us; /* after an answer it goes on listening for so long: a second one may come */
+    uint16_t first;     /* register */
+    uint8_t count;
+    uint8_t address;
+    bool is_dyp; /* by 55 AA; first and count as dyp_client.h has them */
+} scan_question_t;
+
+typedef struct {
+    /* As fathom_exchange_t.status. FATHOM_ERR_CANCELLED: the scan is to end. FATHOM_ERR_ARGUMENT: a question that may
+     * not be asked. */
+    fathom_status_t status;
+    uint8_t address; /* of FATHOM_READY: who answered */
+    uint16_t values[SCAN_REGISTERS];
+    evidence_t evidence; /* what was heard since the question */
+} scan_answer_t;
+
+/*
+ * Asks, and comes back with the answer.
+ *
+ * Nothing that changes a device is ever sent: there is no write among the questions, register 0x0009, the factory
+ * reset of an HPS-167S (#6), is refused here whatever the count is, and so is unit 0, the broadcast.
+ */
+void scan_ask(const scan_wire_t *wire, const scan_question_t *question, scan_answer_t *answer);
+
+/* Somebody has answered, whatever it was. */
+bool scan_is_answered(fathom_status_t status);
+
+/* Sets the line, asks nothing, and listens for so long; what came is in wire->ear and with the line's listener.
+ * `each`, unless NULL, is called after every poll. FATHOM_READY; FATHOM_ERR_CANCELLED, _PORT, _UNSUPPORTED. */
+fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t *line, uint32_t us,
+                          void (*each)(void *ctx), void *ctx);
+
+#endif

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+#include "scan/scan_walk.h"
+
+#include <string.h>
+
+#include "fathom/dyp_client.h"
+#include "scan/scan_identify.h"
+
+/* What is known of an address at the present settings. */
+enum { NOT_ASKED = 0, SILENT, ANSWERED, LATE, GARBLED, DAMAGED };
+
+/* A damaged answer is asked for again so often; once only, where most addresses are answered like that. */
+enum { DAMAGED_REPEATS = 3, FEW_GARBLED = 3 };
+
+/* For those that have been late. */
+enum { LATE_TIMEOUT_US = 1000000 };
+
+static bool has_ended(fathom_status_t status)
+{
+    return status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
+}
+
+/* Sets aside what the ear has heard of others. */
+static void note(scan_walk_t *walk, const evidence_t *evidence)
+{
+    const scan_plan_t *const plan = walk->plan;
+    scan_heard_t *const heard = &walk->heard;
+    const uint8_t other = evidence->foreign_address;
+    heard->echoes += evidence->echoes;
+    heard->bytes += evidence->rest;
+    if (evidence->masters != 0) {
+        heard->has_master = true;
+        heard->master_address = evidence->masters_address;
+    }
+    if (evidence->foreign == 0) return;
+    if (other < plan->first || other > plan->last)
+        heard->outside = other;
+    else if (walk->states[other] == SILENT)
+        walk->states[other] = LATE;
+}
+
+/* Something came that is neither a frame nor an echo, or what began as the answer was damaged. */
+static bool is_troubled(const scan_answer_t *answer)
+{
+    if (answer->status == FATHOM_ERR_CHECKSUM) return true;
+    return answer->evidence.rest != 0;
+}
+
+/* How often an address is asked again after so many damaged answers. */
+static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
+{
+    if (troubles == 0) return walk->plan->repeats;
+    return walk->is_talking || walk->garbled >= FEW_GARBLED ? 1 : DAMAGED_REPEATS;
+}
+
+/* Asks one address until it is clear what becomes of it; FATHOM_READY unless the scan is over or the port cannot. */
+static fathom_status_t probe(scan_walk_t *walk, const scan_question_t *question, scan_answer_t *answer)
+{
+    uint8_t *const state = &walk->states[question->address];
+    uint8_t silences = 0;
+    uint8_t troubles = 0;
+    bool has_checksum = false;
+    for (;;) {
+        scan_ask(walk->wire, question, answer);
+        const fathom_status_t status = answer->status;
+        if (has_ended(status) || status == FATHOM_ERR_UNSUPPORTED) return status;
+        note(walk, &answer->evidence);
+        *state = ANSWERED;
+        if (scan_is_answered(status)) return FATHOM_READY;
+        if (is_troubled(answer)) {
+            troubles++;
+            if (status == FATHOM_ERR_CHECKSUM) has_checksum = true;
+        } else {
+            silences++;
+        }
+        if (silences + troubles > repeats(walk, troubles)) break;
+    }
+    /* Once may be noise, and more may be what somebody sends by himself. */
+    *state = SILENT;
+    if (troubles >= 2 && !walk->is_talking) *state = has_checksum ? DAMAGED : GARBLED;
+    if (*state == GARBLED) walk->garbled++;
+    return FATHOM_READY;
+}
+
+static fathom_status_t identify(scan_walk_t *walk, const scan_question_t *question,
+                                const scan_answer_t *answer)
+{
+    scan_finding_t finding;
+    const fathom_status_t status = scan_identify(walk->wire, question, answer, &finding);
+    if (status != FATHOM_READY) return status;
+    walk->found_baud[question->address] = question->line->baud;
+    if (finding.model == FATHOM_A05) walk->has_a05 = true;
+    walk->tell->found(walk->tell->ctx, &finding);
+    return FATHOM_READY;
+}
+
+/* Asks an address, and who is there. timeout_us: 0, or longer than the plan's. */
+static fathom_status_t visit(scan_walk_t *walk, const fathom_line_settings_t *line, uint8_t address,
+                             uint32_t timeout_us)
+{
+    scan_question_t question;
+    scan_answer_t answer;
+    scan_first_question(line, address, &question);
+    question.timeout_us = scan_timeout_us(walk->plan, line);
+    if (question.timeout_us < timeout_us) question.timeout_us = timeout_us;
+    walk->asked++;
+    const fathom_status_t status = probe(walk, &question, &answer);
+    if (status != FATHOM_READY || walk->states[address] != ANSWERED) return status;
+    return identify(walk, &question, &answer);
+}
+
+static void tell_damaged(const scan_walk_t *walk, const fathom_line_settings_t *line, uint8_t kind,
+                         uint8_t address)
+{
+    const scan_finding_t finding = {.line = *line, .kind = kind, .mode = SCAN_MODBUS, .address = address};
+    walk->tell->found(walk->tell->ctx, &finding);
+}
+
+/* All addresses have been asked: what do the damaged answers mean? */
+static void judge_damaged(const scan_walk_t *walk, const fathom_line_settings_t *line)
+{
+    const bool is_other_protocol = 2 * walk->garbled > walk->asked;
+    if (is_other_protocol) tell_damaged(walk, line, SCAN_NOT_MODBUS, 0);
+    for (unsigned address = walk->plan->first; address <= walk->plan->last; address++) {
+        const uint8_t state = walk->states[address];
+        if (state == DAMAGED || (state == GARBLED && !is_other_protocol))
+            tell_damaged(walk, line, SCAN_DAMAGED, (uint8_t)address);
+    }
+}
+
+/* One A05 that speaks 55 AA answers this whatever its address is. Several answer at once, and damage each other. */
+static fathom_status_t ask_any_a05(scan_walk_t *walk)
+{
+    const scan_question_t question = {.line = &scan_dyp_line,
+                                      .timeout_us = SCAN_ANY_TIMEOUT_US,
+                                      .first = FATHOM_DYP_FIRST_REGISTER,
+                                      .count = 1,
+                                      .address = FATHOM_LINE_ANY_UNIT,
+                                      .is_dyp = true};
+    scan_finding_t finding = {
+        .line = scan_dyp_line, .kind = SCAN_SENSOR, .model = FATHOM_A05, .mode = SCAN_DYP, .has_value = true};
+    scan_answer_t answer;
+    scan_ask(walk->wire, &question, &answer);
+    if (has_ended(answer.status)) return answer.status;
+    finding.address = answer.address;
+    finding.value = answer.values[0];
+    if (answer.status != FATHOM_READY) return FATHOM_READY;
+    walk->has_a05 = true;
+    walk->tell->found(walk->tell->ctx, &finding);
+    return FATHOM_READY;
+}
+
+static fathom_status_t walk_line(scan_walk_t *walk, const fathom_line_settings_t *line)
+{
+    const scan_plan_t *const plan = walk->plan;
+    fathom_status_t status = FATHOM_READY;
+    memset(walk->states, NOT_ASKED, sizeof walk->states);
+    walk->garbled = 0;
+    walk->asked = 0;
+    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_READY; address++) {
+        walk->tell->progress(walk->tell->ctx, walk->done_us, line, (uint8_t)address);
+        if (walk->found_baud[address] != line->baud) status = visit(walk, line, (uint8_t)address, 0);
+        walk->done_us += scan_probe_us(plan, line);
+    }
+    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_READY; address++)
+        if (walk->states[address] == LATE) status = visit(walk, line, (uint8_t)address, LATE_TIMEOUT_US);
+    if (status != FATHOM_READY) return status;
+    judge_damaged(walk, line);
+    if (!scan_is_dyp_line(line)) return FATHOM_READY;
+    if (!walk->has_a05) status = ask_any_a05(walk);
+    walk->done_us += scan_any_us(plan);
+    return status;
+}
+
+fathom_status_t scan_walk(scan_walk_t *walk)
+{
+    const scan_plan_t *const plan = walk->plan;
+    for (uint8_t i = 0; i != plan->setting_count; i++) {
+        const fathom_line_settings_t *const line = &plan->settings[i];
+        const uint64_t began_us = walk->done_us;
+        const fathom_status_t status = walk_line(walk, line);
+        if (has_ended(status)) return status;
+        if (status != FATHOM_READY) {
+            walk->tell->unsupported(walk->tell->ctx, line);
+            walk->done_us = began_us + (uint64_t)scan_probe_us(plan, line) * scan_addresses(plan);
+        }
+    }
+    return FATHOM_READY;
+}

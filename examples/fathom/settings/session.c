@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT */
+#include "settings/session.h"
+
+#include <string.h>
+
+#include "shared/command.h"
+#include "shared/options.h"
+#include "stations/advice.h"
+
+const struct option talk_table[TALK_OPTIONS + 1] = {
+    TALK_OPTION_ROWS,
+};
+
+static bool has_mode(const char *word)
+{
+    const char *const colon = strchr(word, ':');
+    return colon != NULL && strchr(colon + 1, ':') != NULL;
+}
+
+static bool take_format(talk_t *talk, const char *command, const char *text)
+{
+    talk->is_json = text != NULL && strcmp(text, "json") == 0;
+    if (text == NULL || talk->is_json || strcmp(text, "text") == 0) return true;
+    (void)usage_error(command, "--format takes text or json, not '%s'", text);
+    return false;
+}
+
+bool talk_options(talk_t *talk, const char *command, int argc, char **argv, const struct option *table,
+                  const char **values, char ***words, int *count, bool *wants_help)
+{
+    memset(talk, 0, sizeof *talk);
+    const int rest = options_parse(command, argc, argv, table, values);
+    if (rest < 0) return false;
+    *wants_help = values[TALK_HELP] != NULL;
+    if (*wants_help) return true;
+    if (rest == argc) {
+        (void)usage_error(command, "which sensor? a16, a05 or hps167s");
+        return false;
+    }
+    const char *mode = values[TALK_MODE];
+    if (mode == NULL && !has_mode(argv[rest])) mode = "modbus";
+    talk->station = &talk->options.stations[0];
+    if (!take_format(talk, command, values[TALK_FORMAT]) ||
+        !session_options(&talk->options, command, argv + rest, 1, values, values[TALK_ADDRESS], mode))
+        return false;
+    if (!talk->station->mode->is_asked) {
+        (void)usage_error(command, "in mode %s nothing is asked; leave it out", talk->station->mode->name);
+        return false;
+    }
+    *words = argv + rest + 1;
+    *count = argc - rest - 1;
+    return true;
+}
+
+bool talk_set_mode(talk_t *talk, const char *command, const char *const *values, const char *mode)
+{
+    if (strcmp(talk->station->mode->name, mode) == 0) return true;
+    if (values[TALK_MODE] != NULL) {
+        (void)usage_error(command, "this takes --mode %s", mode);
+        return false;
+    }
+    talk->station->mode = sensor_mode_find(command, talk->station->sensor, mode);
+    return talk->station->mode != NULL;
+}
+
+const setting_t *talk_settings(const talk_t *talk) { return talk->station->sensor->settings; }
+
+/* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
+static void listen(talk_t *talk)
+{
+    enum { LISTEN_US = 66000 };
+    channel_t *const channel = &talk->channel;
+    const host_t *const host = channel->host;
+    const uint64_t end_us = host->now_us(host->ctx) + LISTEN_US;
+    for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
+        if (fathom_line_poll(&channel->line) < 0) return;
+        host->wait(host->ctx, &channel->port, (uint32_t)(end_us - now_us), false);
+    }
+}
+
+bool talk_open(talk_t *talk, const host_t *host)
+{
+    const session_options_t *const options = &talk->options;
+    station_t *const station = talk->station;
+    const reader_settings_t settings = {.timeout_us = options->timeout_us,
+                                        .period_us = options->interval_us,
+                                        .line = &station->line,
+                                        .backoff_us = READER_BACKOFF_US,
+                                        .address = station->address,
+                                        .retries = options->retries};
+    talk->channel.echo = options->echo;
+    if (!host->begin(host->ctx)) return false;
+    if (!channel_open(&talk->channel, host, options->port, &options->line)) {
+        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&talk->channel.port));
+        return false;
+    }
+    tally_begin_port(&talk->port_counts, &talk->channel);
+    if (station->mode->read(&station->reader, &talk->channel, &settings)) {
+        if (talk->channel.tcp == NULL && station->reader.unit == &station->reader.driver.hps167s.unit) {
+            const fathom_hps167s_auto_config_t hears = {.line = &talk->channel.line};
+            (void)fathom_hps167s_auto_init(&talk->hears, &hears);
+            fathom_hps167s_auto_beside(&talk->hears, &station->reader.driver.hps167s);
+        }
+        if (talk->channel.tcp == NULL) listen(talk);
+        return true;
+    }
+    (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->sensor->name);
+    channel_close(&talk->channel);
+    return false;
+}
+
+void talk_close(talk_t *talk) { channel_close(&talk->channel); }
+
+fathom_status_t talk_call(talk_t *talk, talk_call_t call, void *ctx)
+{
+    reader_t *const reader = &talk->station->reader;
+    const host_t *const host = talk->channel.host;
+    const fathom_posix_uart_t *const port = &talk->channel.port;
+    tally_begin_attempt(&talk->station->tally);
+    ear_forget(&talk->channel.ear);
+    while (!host->has_ended(host->ctx)) {
+        const fathom_status_t status = call(reader, ctx);
+        if (status != FATHOM_PENDING) return status;
+        if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
+        if (channel_is_stuck(&talk->channel))
+            return reader->unit->is_written ? FATHOM_ERR_UNCONFIRMED : FATHOM_ERR_NO_ANSWER;
+        host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
+    }
+    return FATHOM_ERR_CANCELLED;
+}
+
+/* ---- settings ---- */
+
+typedef struct {
+    const setting_t *setting;
+    char *text;
+    int32_t value;
+} what_t;
+
+static fathom_status_t call_get(reader_t *reader, void *ctx)
+{
+    const what_t *const what = ctx;
+    return what->setting->get(reader, what->text);
+}
+
+static fathom_status_t call_set(reader_t *reader, void *ctx)
+{
+    const what_t *const what = ctx;
+    return what->setting->set(reader, what->value);
+}
+
+/* Calls again what has written nothing, where a frame that the device sent unasked may have met question or answer. */
+static fathom_status_t call_again(talk_t *talk, talk_call_t call, what_t *what)
+{
+    enum { TIMES = 4 };
+    const fathom_modbus_unit_t *const unit = talk->station->reader.unit;
+    fathom_status_t status = FATHOM_PENDING;
+    for (unsigned times = 0; times != TIMES; times++) {
+        status = talk_call(talk, call, what);
+        const bool is_met =
+            status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+        const bool is_among_unasked = talk->hears.is_new || talk->hears.implausible != 0;
+        if (!is_met || unit->is_written || !is_among_unasked) break;
+    }
+    return status;
+}
+
+fathom_status_t talk_get(talk_t *talk, const setting_t *setting, char text[SETTING_TEXT])
+{
+    what_t what = {.setting = setting, .text = text};
+    text[0] = '\0';
+    return call_again(talk, call_get, &what);
+}
+
+fathom_status_t talk_set(talk_t *talk, const setting_t *setting, int32_t value)
+{
+    what_t what = {.setting = setting, .value = value};
+    return call_again(talk, call_set, &what);
+}
+
+const char *talk_line_text(const talk_t *talk, char text[SETTINGS_TEXT])
+{
+    if (talk->channel.tcp == NULL) return settings_text(&talk->station->line, text);
+    (void)snprintf(text, SETTINGS_TEXT, "Modbus TCP");
+    return text;
+}
+
+void talk_explain(talk_t *talk, fathom_status_t status)
+{
+    station_t *const station = talk->station;
+    failure_t failure = {.status = status,
+                         .sensor = station->sensor,
+                         .reader = &station->reader,
+                         .channel = &talk->channel,
+                         .tally = &station->tally,
+                         .line = &station->line,
+                         .address = station->address};
+    tally_take(&station->tally, &talk->port_counts, &talk->channel, &station->reader);
+    ear_judge(&talk->channel.ear, station->address, &failure.evidence);
+    if (status == FATHOM_ERR_CANCELLED)
+        (void)fputs("ended before the answer came", stderr);
+    else if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(&station->reader))
+        (void)fprintf(stderr, "its answers cannot be that%s; check that it is %s, and alone at this address",
+                      strcmp(station->sensor->name, "hps167s") == 0
+                          ? ", or what it sends unasked stands between them"
+                          : "",
+                      station->sensor->name);
+    else
+        advice_print(stderr, &failure);
+}
+
+void talk_options_help(FILE *to)
+{
+    (void)fputs(
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or tcp:HOST[:PORT]\n"
+        "  --address N       1 from the factory; also as in hps167s:7\n"
+        "  --mode MODE       modbus (default), or dyp for an a05 with frames 55 AA\n"
+        "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
+        "  --parity P        if not the factory's: none, even or odd\n"
+        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
+        "  --timeout MS      how long to wait for a measurement\n"
+        "  --retries N       how often a failed question is repeated; what changes something never is\n"
+        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n"
+        "  --format FORMAT   text (default) or json\n",
+        to);
+}
+
+void talk_print_json(FILE *to, const char *text)
+{
+    const char *const digits = text[0] == '-' ? text + 1 : text;
+    const size_t length = strlen(digits);
+    const bool is_number = length != 0 && strspn(digits, "0123456789.") == length && digits[0] != '.' &&
+                           digits[length - 1] != '.' &&
+                           (digits[0] != '0' || length == 1 || digits[1] == '.') &&
+                           strchr(digits, '.') == strrchr(digits, '.');
+    (void)fprintf(to, is_number ? "%s" : "\"%s\"", text);
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+#include "settings/settings.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "shared/command.h"
+
+enum { LIST = 400 };
+
+static void add(char *list, const char *gap, const char *text)
+{
+    const size_t length = strlen(list);
+    (void)snprintf(list + length, LIST - length, "%s%s", length != 0 ? gap : "", text);
+}
+
+/* "on, off": what it may be. */
+static const char *values_text(const setting_t *setting, char text[LIST])
+{
+    text[0] = '\0';
+    if (setting->words != NULL) {
+        for (const char *const *word = setting->words; *word != NULL; word++) add(text, ", ", *word);
+        return text;
+    }
+    (void)snprintf(text, LIST, "%" PRId32 " to %" PRId32, setting->least, setting->most);
+    if (setting->step > 1) {
+        char multiple[LIST / 8];
+        (void)snprintf(multiple, sizeof multiple, "a multiple of %" PRId32, setting->step);
+        add(text, ", ", multiple);
+    }
+    return text;
+}
+
+const setting_t *setting_find(const char *command, const char *sensor, const setting_t *settings,
+                              const char *name)
+{
+    char known[LIST] = "";
+    for (const setting_t *setting = settings; setting->name != NULL; setting++) {
+        if (strcmp(setting->name, name) == 0) return setting;
+        add(known, ", ", setting->name);
+    }
+    (void)usage_error(command, "%s has no setting '%s', only %s", sensor, name, known);
+    return NULL;
+}
+
+static bool parse_number(const setting_t *setting, const char *text, int32_t *value)
+{
+    char *end = NULL;
+    const char *const digits = text[0] == '-' ? text + 1 : text;
+    if (*digits < '0' || *digits > '9' || strlen(digits) > 10) return false;
+    const long long number = strtoll(text, &end, 10);
+    if (*end != '\0' || number < setting->least || number > setting->most) return false;
+    if (setting->step > 1 && number % setting->step != 0) return false;
+    *value = (int32_t)number;
+    return true;
+}
+
+bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value)
+{
+    char values[LIST];
+    if (setting->words == NULL && parse_number(setting, text, value)) return true;
+    for (int32_t i = 0; setting->words != NULL && setting->words[i] != NULL; i++) {
+        if (strcmp(setting->words[i], text) != 0) continue;
+        *value = i;
+        return true;
+    }
+    (void)usage_error(command, "%s takes %s%s%s, not '%s'", setting->name, values_text(setting, values),
+                      setting->unit != NULL ? " " : "", setting->unit != NULL ? setting->unit : "", text);
+    return false;
+}
+
+void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT])
+{
+    if (setting->words != NULL)
+        (void)snprintf(text, SETTING_TEXT, "%s", setting->words[value]);
+    else
+        (void)snprintf(text, SETTING_TEXT, "%" PRId32, value);
+}
+
+void settings_print(FILE *to, const setting_t *settings)
+{
+    for (const setting_t *setting = settings; setting->name != NULL; setting++) {
+        (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->get == NULL ? " (write-only)" : "",
+                      setting->what);
+        if (setting->effect == NULL) {
+            (void)fputs("; cannot be set", to);
+        } else {
+            char values[LIST];
+            (void)fprintf(to, ": %s%s%s\n      %s", values_text(setting, values),
+                          setting->unit != NULL ? " " : "", setting->unit != NULL ? setting->unit : "",
+                          setting->effect);
+        }
+        (void)fputs("\n", to);
+    }
+}

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+#include "shared/channel.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "fathom/hps167s_registers.h"
+#include "shared/tcp_address.h"
+
+/* What the line has to know of a serial port, ... */
+static void suit_serial(channel_t *channel, const fathom_line_settings_t *settings)
+{
+    const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
+    /* An HPS-167S may move to 19200 baud, by its reset too: the slowest rate that is used counts (line.h). */
+    const uint32_t baud =
+        settings->baud > FATHOM_HPS167S_FACTORY_BAUD ? FATHOM_HPS167S_FACTORY_BAUD : settings->baud;
+    channel->config.silence_us = FATHOM_T3_5_US(baud, bits);
+    channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
+    channel->config.echo = channel->echo;
+}
+
+/* ... and of a connection, where answers come whole and need no silence between them. */
+static void suit_tcp(channel_t *channel)
+{
+    channel->config.silence_us = 1;
+    channel->config.gap_us = 1000;
+    channel->config.echo = FATHOM_LINE_ECHO_OFF;
+}
+
+static uint32_t now_us(void *ctx)
+{
+    const channel_t *const channel = ctx;
+    return (uint32_t)channel->host->now_us(channel->host->ctx);
+}
+
+bool channel_open(channel_t *channel, const host_t *host, const char *path,
+                  const fathom_line_settings_t *settings)
+{
+    channel->host = host;
+    if (tcp_names(path)) {
+        channel->tcp = tcp_open(path, &channel->port, &channel->uart);
+        if (channel->tcp == NULL) return false;
+        suit_tcp(channel);
+    } else {
+        channel->tcp = NULL;
+        if (!host->open(host->ctx, path, settings, &channel->port, &channel->uart)) return false;
+        suit_serial(channel, settings);
+    }
+    channel->clock = (fathom_clock_t){now_us, channel};
+    ear_begin(&channel->ear, &channel->uart, &channel->clock);
+    channel->config.uart = &channel->uart;
+    channel->config.clock = &channel->clock;
+    channel->config.frame = channel->frame;
+    channel->config.frame_size = sizeof channel->frame;
+    channel->config.find_echo = fathom_line_find_echo;
+    channel->config.marks = fathom_line_marks;
+    channel->config.count = fathom_line_count;
+    channel->config.counters = channel->counters;
+    (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
+    channel->modbus = fathom_modbus_client_with_zero(&channel->line);
+    channel->dyp = fathom_dyp_client(&channel->line);
+    channel->requests = 0;
+    channel->moved_us = host->now_us(host->ctx);
+    return true;
+}
+
+void channel_close(channel_t *channel)
+{
+    if (channel->tcp == NULL)
+        channel->host->close(channel->host->ctx, &channel->port);
+    else
+        tcp_close(channel->tcp);
+    channel->tcp = NULL;
+}
+
+bool channel_is_stuck(channel_t *channel)
+{
+    enum { STUCK_US = 10000000 };
+    const fathom_exchange_t *const first = channel->line.head;
+    const uint64_t now = channel->host->now_us(channel->host->ctx);
+    const bool is_waiting = first != NULL && channel->line.owing == 0;
+    const uint64_t most_us = is_waiting ? STUCK_US + 2ull * first->timeout_us : 0;
+    const bool is_stuck =
+        is_waiting && channel->ear.requests == channel->requests && now - channel->moved_us > most_us;
+    if (!is_stuck && is_waiting && channel->ear.requests == channel->requests) return false;
+    channel->moved_us = now;
+    channel->requests = channel->ear.requests;
+    return is_stuck;
+}
+
+const char *settings_text(const fathom_line_settings_t *settings, char text[SETTINGS_TEXT])
+{
+    static const char parities[] = "NEO";
+    (void)snprintf(text, SETTINGS_TEXT, "%" PRIu32 " 8%c%u", settings->baud, parities[settings->parity],
+                   settings->stop_bits);
+    return text;
+}
+
+const char *parity_name(uint8_t parity)
+{
+    static const char *const names[] = {
+        [FATHOM_PARITY_NONE] = "none", [FATHOM_PARITY_EVEN] = "even", [FATHOM_PARITY_ODD] = "odd"};
+    return names[parity];
+}
+
+const char *line_options(const fathom_line_settings_t *line, const fathom_line_settings_t *factory,
+                         char text[LINE_OPTIONS])
+{
+    int at = 0;
+    text[0] = '\0';
+    if (line->baud != factory->baud) at += snprintf(text, LINE_OPTIONS, " --baud %" PRIu32, line->baud);
+    if (line->parity != factory->parity)
+        at += snprintf(text + at, (size_t)(LINE_OPTIONS - at), " --parity %s", parity_name(line->parity));
+    if (line->stop_bits != factory->stop_bits)
+        (void)snprintf(text + at, (size_t)(LINE_OPTIONS - at), " --stop-bits %u", line->stop_bits);
+    return text;
+}

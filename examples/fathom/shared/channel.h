@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef CHANNEL_H
+#define CHANNEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fathom/dyp_client.h"
+#include "fathom/line.h"
+#include "fathom/modbus_client.h"
+#include "shared/host.h"
+#include "shared/listener.h"
+#include "shared/tcp.h"
+
+/* A serial port, or a connection to a Modbus TCP server, with a line and a Modbus client on it: what every command
+ * that talks to sensors needs. */
+typedef struct {
+    const host_t *host;
+    uint64_t moved_us; /* when a request has left last, or none waited, */
+    uint64_t requests; /* and how many had left then */
+    fathom_posix_uart_t port;
+    tcp_t *tcp; /* then `port` stands in for it (tcp.h); NULL: a serial port */
+    fathom_uart_t uart;
+    fathom_clock_t clock;
+    ear_t ear; /* between uart and port */
+    fathom_line_config_t config;
+    uint16_t counters[FATHOM_LINE_COUNTERS];
+    fathom_line_t line;
+    fathom_modbus_t modbus;
+    fathom_modbus_t dyp;
+    uint8_t echo; /* fathom_line_config_t.echo; to be set before it is opened */
+    uint8_t frame[255];
+} channel_t;
+
+/*
+ * The silence that ends a frame. A USB adapter holds bytes back for up to 16 ms, and the system may be late too: 25
+ * ms, which is less than the pause between two frames of a sensor that sends by itself. Where a sensor is asked
+ * nothing hangs on it but how soon a damaged answer is given up; there the far end may also be a program,
+ * which a busy system interrupts in mid-frame.
+ */
+enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
+
+/* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may
+ * not be moved. One that was closed may be opened again. */
+bool channel_open(channel_t *channel, const host_t *host, const char *path,
+                  const fathom_line_settings_t *settings);
+void channel_close(channel_t *channel);
+
+/* Has a request waited for more than 10 s, and its time-out twice, without finding a silence to leave in? Said once in so
+ * long. To be asked whenever the line was polled. */
+bool channel_is_stuck(channel_t *channel);
+
+/* "9600 8N1", in a buffer of the caller's. */
+enum { SETTINGS_TEXT = 24 };
+const char *settings_text(const fathom_line_settings_t *settings, char text[SETTINGS_TEXT]);
+
+/* "none", "even" or "odd". */
+const char *parity_name(uint8_t parity);
+
+/* What of a sensor's line has to be told because it is not the factory's, as options: " --baud 57600", "". In a buffer of
+ * the caller's. */
+enum { LINE_OPTIONS = 64 };
+const char *line_options(const fathom_line_settings_t *line, const fathom_line_settings_t *factory,
+                         char text[LINE_OPTIONS]);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "shared/options.h"
+
+#include <inttypes.h>
+
+#include "shared/command.h"
+
+int options_parse(const char *command, int argc, char **argv, const struct option *table, const char **values)
+{
+    return options_parse_each(command, argc, argv, table, values, NULL, NULL);
+}
+
+int options_parse_each(const char *command, int argc, char **argv, const struct option *table,
+                       const char **values, option_each_t each, void *ctx)
+{
+    int row = 0;
+    opterr = 0;
+    optind = 0; /* from the beginning, whatever was read before */
+    for (;;) {
+        const int found = getopt_long(argc, argv, ":", table, &row);
+        if (found == -1) return optind;
+        if (found == ':') {
+            (void)usage_error(command, "%s needs a value", argv[optind - 1]);
+            return -1;
+        }
+        if (found == '?') {
+            /* A short option may stand in the middle of a word; there are none. */
+            if (optopt > 0 && optopt < 256)
+                (void)usage_error(command, "there is no option -%c", optopt);
+            else
+                (void)usage_error(command, "there is no option %s", argv[optind - 1]);
+            return -1;
+        }
+        values[row] = optarg != NULL ? optarg : "";
+        if (each != NULL) each(ctx, row, values[row]);
+    }
+}
+
+bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number)
+{
+    uint64_t sum = 0;
+    if (*text == '\0') return false;
+    for (; *text != '\0'; text++) {
+        if (*text < '0' || *text > '9') return false;
+        sum = sum * 10 + (uint64_t)(*text - '0');
+        if (sum > max) return false;
+    }
+    if (sum < min) return false;
+    *number = (uint32_t)sum;
+    return true;
+}
+
+bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
+                   uint32_t *number)
+{
+    if (text == NULL || number_parse(text, min, max, number)) return true;
+    (void)usage_error(command, "--%s takes a whole number from %" PRIu32 " to %" PRIu32 ", not '%s'", name,
+                      min, max, text);
+    return false;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef TCP_ADDRESS_H
+#define TCP_ADDRESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "models/models.h"
+
+/* tcp:HOST[:PORT] wherever the path of a serial port may stand; an IPv6 address in brackets. */
+typedef struct {
+    char host[256]; /* the longest name that DNS has */
+    char service[6];
+} tcp_address_t;
+
+/* Is the path one over TCP, right or wrong? */
+bool tcp_names(const char *path);
+
+/* NULL, or what is wrong with it. */
+const char *tcp_parse(const char *path, tcp_address_t *address);
+
+/* Can the sensor be read in this mode at that path? False after saying why not. True for any serial port. */
+bool tcp_suits(const char *command, const char *path, const sensor_mode_t *mode);
+
+/*
+ * Connects: the descriptor, which does not wait; or -1, and what happened and what to try is in `text`, and whether
+ * that may pass by itself in *may_pass. Takes TCP_CONNECT_S for each address of the host at most, less when the user
+ * ends the command; looking up a name takes as long as the system needs.
+ */
+enum { TCP_CONNECT_S = 5 };
+int tcp_connect(const tcp_address_t *address, char *text, size_t capacity, bool *may_pass);
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef USB_ADAPTER_H
+#define USB_ADAPTER_H
+
+#include "shared/channel.h"
+#include "shared/sysfs_adapter.h"
+
+/* Where a port is plugged in: finds and opens it again after it was lost. */
+typedef struct {
+    const char *path;  /* as the user gave it */
+    adapter_t adapter; /* behind it when it was last open; not one of USB: all "" */
+    char found[ADAPTER_PATH];
+    fathom_posix_status_t error; /* of the last try, ... */
+    uint32_t repeats;            /* ... so often in a row */
+} plug_t;
+
+/* How long to wait between two tries. One at least lies between a loss and the next try, so that a port which opens
+ * and fails at once costs next to nothing. */
+enum { PLUG_RETRY_US = 500000 };
+
+/*
+ * Tries once. A USB adapter is looked for by what it is, anything else by its path. False: it is not there, or not
+ * to be had; if that lasts and is something else than "not there", it says so once on stderr.
+ */
+bool plug_try(plug_t *plug, channel_t *channel, const host_t *host, const fathom_line_settings_t *settings);
+
+/* Where it is. */
+const char *plug_path(const plug_t *plug);
+
+#endif

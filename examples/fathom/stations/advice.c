@@ -1,0 +1,333 @@
+/* SPDX-License-Identifier: MIT */
+#include "stations/advice.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "shared/sysfs_adapter.h"
+
+typedef struct {
+    const char *name;
+    const char *meaning;
+    bool is_other_sensor; /* most likely */
+} exception_t;
+
+/* MODBUS Application Protocol V1.1b3, 7; the last two are a gateway's. */
+static exception_t exception_text(uint8_t number)
+{
+    static const exception_t texts[] = {
+        [1] = {"illegal function", "it does not know this kind of request", true},
+        [2] = {"illegal data address", "it has no such register", true},
+        [3] = {"illegal data value", "it does not take so many registers", true},
+        [4] = {"device failure", "it has failed; switch its supply off and on", false},
+        [5] = {"acknowledge", "it is still at work; try a longer --interval", false},
+        [6] = {"device busy", "try --retries 2 or a longer --interval", false},
+        [8] = {"memory parity error", "its memory is damaged; switch its supply off and on", false},
+        [10] = {"gateway path unavailable", "a gateway in between cannot reach it; check the gateway", false},
+        [11] = {"gateway target silent", "a gateway in between hears nothing of it; check the wiring there",
+                false},
+    };
+    static const exception_t unknown = {"unknown", "no code of the Modbus standard", true};
+    return number < sizeof texts / sizeof texts[0] && texts[number].name != NULL ? texts[number] : unknown;
+}
+
+/* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
+static void print_settings(FILE *to, const failure_t *failure)
+{
+    const fathom_line_settings_t *const now = failure->line;
+    const fathom_line_settings_t *const factory = &failure->sensor->line;
+    const uint64_t *const port = failure->tally->attempt.port;
+    char text[SETTINGS_TEXT];
+    (void)fprintf(to, "check --baud and --parity (now %s)", settings_text(now, text));
+    if (now->baud != factory->baud || now->parity != factory->parity || now->stop_bits != factory->stop_bits)
+        (void)fprintf(to, ", try without them (%s, as from the factory)", settings_text(factory, text));
+    else if (failure->sensor->other_settings != NULL)
+        (void)fprintf(to, ", try %s", failure->sensor->other_settings);
+    if (port[PORT_FRAMING] != 0)
+        (void)fputs("; the port saw characters without an end, so most likely --baud", to);
+    else if (port[PORT_PARITY] != 0)
+        (void)fputs("; the port saw wrong parity, so most likely --parity", to);
+}
+
+static bool is_only_echo(const evidence_t *evidence)
+{
+    return evidence->echoes != 0 && evidence->rest == 0 && evidence->own == 0 && evidence->foreign == 0 &&
+           evidence->masters == 0;
+}
+
+static void print_late(FILE *to, uint32_t slowest_us)
+{
+    /* Twice as long as it took, in steps of 100 ms. */
+    const uint32_t try_ms = (slowest_us / 500u + 99u) / 100u * 100u;
+    (void)fprintf(to, "it answers, but too late; try a longer --timeout");
+    if (slowest_us != 0)
+        (void)fprintf(to, ": it took %" PRIu32 " ms, so --timeout %" PRIu32, slowest_us / 1000u, try_ms);
+}
+
+/* What else is on the line, if that explains why nothing was understood. */
+static bool print_others(FILE *to, const failure_t *failure)
+{
+    const evidence_t *const evidence = &failure->evidence;
+    if (evidence->masters != 0)
+        (void)fprintf(to,
+                      "requests of another master were heard (it asked address %u), so two ask on this line; "
+                      "disconnect the other one or stop its program",
+                      evidence->masters_address);
+    else if (evidence->foreign_address > failure->sensor->max_address)
+        (void)fprintf(to, "the line works, but it was address %u that was heard, which no %s can have",
+                      evidence->foreign_address, failure->sensor->name);
+    else if (evidence->foreign != 0)
+        (void)fprintf(to, "the line works, but it was address %u that was heard; try %s%s%u",
+                      evidence->foreign_address,
+                      failure->shared != NULL ? failure->sensor->name : "--address",
+                      failure->shared != NULL ? ":" : " ", evidence->foreign_address);
+    else if (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)
+        (void)fprintf(to, "frames of %s that sends by itself were heard; try: fathom read %s --mode auto",
+                      evidence->streamed_a05 != 0 ? "an a05" : "an a16",
+                      evidence->streamed_a05 != 0 ? "a05" : "a16");
+    else
+        return false;
+    return true;
+}
+
+/* Nothing was understood, over TCP. */
+static void print_tcp(FILE *to, const failure_t *failure)
+{
+    const uint8_t exception = tcp_gateway_exception(failure->channel->tcp);
+    if (exception != 0)
+        (void)fprintf(
+            to, "the gateway says exception %02u (%s); check --address, and there the line and the supply",
+            exception, exception_text(exception).name);
+    else if (failure->evidence.bytes != 0)
+        (void)fputs("an answer came that does not fit; check that the server is one of Modbus TCP", to);
+    else
+        (void)fputs("the connection stands, but nothing came back; check --address, the sensor's line and "
+                    "supply, and "
+                    "try a --timeout that is longer than the gateway's own",
+                    to);
+}
+
+/* Of a sensor without an address: a break on our TX is its trigger. */
+static void print_untriggered(FILE *to, const failure_t *failure)
+{
+    if (failure->status == FATHOM_ERR_CHECKSUM) {
+        (void)fputs("what came after the trigger is no frame; ", to);
+        print_settings(to, failure);
+        (void)fputs(", and for noise", to);
+    } else {
+        (void)fputs(
+            "no answer to the trigger; check the supply, the wires from the adapter's TX to the module's RX "
+            "and back, that the adapter can send a break, and that the module is a UART-controlled one (if "
+            "not: --mode auto or modbus)",
+            to);
+    }
+}
+
+/* A device that sends by itself leaves little room, and none at all where its frames are known late. */
+static bool print_unasked(FILE *to, const failure_t *failure)
+{
+    enum { LEAST = 3, LITTLE_MS = 2 };
+    const char *const path = failure->channel->port.path;
+    if (failure->channel->tcp != NULL || failure->reader->protocol == NULL ||
+        strcmp(failure->sensor->name, "hps167s") != 0 || failure->evidence.own < LEAST)
+        return false;
+    const unsigned latency_ms = adapter_latency_ms(ADAPTER_SYSFS, path);
+    (void)fprintf(to,
+                  "it sends measurements by itself, %" PRIu32
+                  " were heard, and a request has to fit between two of them; ",
+                  failure->evidence.own);
+    if (latency_ms != 0 && latency_ms < LITTLE_MS)
+        (void)fputs("try again", to);
+    else if (latency_ms != 0)
+        (void)fprintf(to, "the adapter keeps them back for %u ms: `setserial %s low_latency` ends that",
+                      latency_ms, path);
+    else
+        (void)fprintf(to, "if the adapter keeps them back, as USB adapters do: `setserial %s low_latency`",
+                      path);
+    return true;
+}
+
+static void print_no_answer(FILE *to, const failure_t *failure)
+{
+    const evidence_t *const evidence = &failure->evidence;
+    (void)fprintf(to, "no answer from address %u: ", failure->address);
+    if (failure->tally->attempt.line[FATHOM_LINE_LATE_ANSWERS] != 0) {
+        print_late(to, evidence->slowest_us);
+    } else if (print_others(to, failure) || print_unasked(to, failure)) {
+        return;
+    } else if (failure->channel->tcp != NULL) {
+        print_tcp(to, failure);
+    } else if (is_only_echo(evidence)) {
+        (void)fputs("only the tool's own request came back, so the adapter works and echoes, but no sensor "
+                    "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
+                    "supply, and --address",
+                    to);
+    } else if (evidence->own != 0) {
+        (void)fputs("frames of this address were heard, but none that answers; check that no other master "
+                    "asks, and that only one sensor has this address",
+                    to);
+    } else if (evidence->bytes != 0) {
+        (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->reader->protocol);
+        print_settings(to, failure);
+        (void)fputs("; A and B swapped and noise look like this too", to);
+    } else if (failure->others_answer) {
+        char settings[SETTINGS_TEXT];
+        (void)fprintf(
+            to,
+            "nothing was heard of it, while others on this line answer; check its supply, its wires, "
+            "its address and its settings (asked at %s)",
+            settings_text(failure->line, settings));
+    } else {
+        char settings[SETTINGS_TEXT];
+        (void)fprintf(
+            to,
+            "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, --address, and "
+            "--baud and --parity (now %s)",
+            settings_text(failure->line, settings));
+    }
+}
+
+static void print_damaged(FILE *to, const failure_t *failure)
+{
+    const tally_t *const tally = failure->tally;
+    (void)fprintf(to, "the answer of address %u was damaged; ", failure->address);
+    if (print_others(to, failure) || print_unasked(to, failure)) return;
+    if (failure->channel->tcp != NULL)
+        (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
+    else if (tally->readings != 0)
+        (void)fprintf(to,
+                      "other answers were good, so the settings are right and it is the line: check the "
+                      "screw terminals, the cable, its termination and its ground, and keep it away from "
+                      "motors (%" PRIu64 " of %" PRIu64 " attempts damaged)",
+                      tally->failures[-FATHOM_ERR_CHECKSUM], tally->attempts + 1);
+    else
+        (void)fputs("check --parity, the cable and its termination, and that no other unit has this address",
+                    to);
+}
+
+static void print_stale(FILE *to, const failure_t *failure)
+{
+    const uint64_t *const stream = failure->tally->attempt.stream;
+    const evidence_t *const evidence = &failure->evidence;
+    const bool is_other =
+        failure->sensor->probes > 1 ? evidence->streamed_a05 == 0 : evidence->streamed_a16 == 0;
+    if (evidence->bytes == 0) {
+        (void)fputs(
+            "nothing was heard at all; check the supply, the wire from the sensor's TX, and that it sends by "
+            "itself (if not: --mode modbus)",
+            to);
+    } else if (is_other && (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)) {
+        (void)print_others(to, failure);
+    } else if (evidence->masters + evidence->foreign != 0) {
+        (void)fputs(
+            "Modbus was heard on this line, and no frame of a sensor that sends by itself; try --mode modbus",
+            to);
+    } else if (stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE] != 0) {
+        (void)fprintf(
+            to,
+            "bytes were heard that look like frames of %s, but not where one begins; check that nothing else "
+            "sends on this line, and for noise",
+            failure->sensor->name);
+    } else {
+        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->sensor->name);
+        print_settings(to, failure);
+        (void)fprintf(to, ", that it is an %s, and for noise", failure->sensor->name);
+    }
+}
+
+/* Which value of an A16 or A05 was refused and why, and what became of the other probes. */
+static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
+{
+    const fathom_dyp_answer_t *const answer = failure->reader->answer;
+    const uint16_t raw = answer->refused_raw;
+    const bool is_code = raw == 0 || raw >= 0xFFFD;
+    const bool has_probes = failure->sensor->probes > 1;
+    if (has_probes) (void)fprintf(to, "probe %u: ", probe);
+    if (is_code)
+        (void)fprintf(to, "%u (%X) is refused", raw, raw);
+    else
+        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw,
+                      answer->window.min_mm != 0 ? answer->window.min_mm : 1u, answer->window.max_mm);
+    if (failure->is_whole)
+        (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
+    if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
+    if (has_probes) (void)fputs("; --probes leaves out a probe that is not fitted", to);
+    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
+}
+
+/* Which values of an HPS-167S were refused. */
+static void print_values(FILE *to, const failure_t *failure)
+{
+    const reader_t *const reader = failure->reader;
+    (void)fputs("a value that cannot be a distance:", to);
+    for (uint8_t i = 0; i != reader->value_count; i++) (void)fprintf(to, " %u", reader->values[i]);
+    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
+}
+
+static void print_port(FILE *to, const failure_t *failure)
+{
+    const fathom_posix_uart_t *const port = &failure->channel->port;
+    if (fathom_posix_error(port) != FATHOM_POSIX_ERR_LOST) {
+        (void)fprintf(to, "%s: the port did not send the request; check the adapter", port->path);
+        return;
+    }
+    (void)fputs(fathom_posix_error_text(port), to);
+    if (!failure->waits && failure->channel->tcp != NULL)
+        (void)fputs("; start again (with --reconnect it is connected again)", to);
+    else if (!failure->waits)
+        (void)fputs("; connect it again and start again (with --reconnect it is waited for)", to);
+    else
+        (void)fputs("; waiting until it is back", to);
+}
+
+void advice_print(FILE *to, const failure_t *failure)
+{
+    const bool is_triggered = failure->reader->protocol == NULL && failure->reader->is_paced;
+    if (is_triggered && (failure->status == FATHOM_ERR_NO_ANSWER || failure->status == FATHOM_ERR_CHECKSUM)) {
+        print_untriggered(to, failure);
+        return;
+    }
+    switch (failure->status) {
+    case FATHOM_ERR_CHECKSUM:
+        if (is_only_echo(&failure->evidence))
+            print_no_answer(to, failure);
+        else
+            print_damaged(to, failure);
+        break;
+    case FATHOM_ERR_STALE:
+        print_stale(to, failure);
+        break;
+    case FATHOM_ERR_MALFORMED:
+        if (print_unasked(to, failure)) break;
+        if (reader_was_answered_wrong(failure->reader))
+            (void)fprintf(to,
+                          "address %u answered something else than was asked; check that it is %s, and alone "
+                          "at this address",
+                          failure->address, failure->sensor->name);
+        else if (reader_refused_probe(failure->reader) != 0)
+            print_refused(to, failure, reader_refused_probe(failure->reader));
+        else
+            print_values(to, failure);
+        break;
+    case FATHOM_ERR_EXCEPTION: {
+        const uint8_t number = fathom_modbus_unit_exception(failure->reader->unit);
+        const exception_t text = exception_text(number);
+        (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, number, text.name,
+                      text.meaning);
+        if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->sensor->name);
+        break;
+    }
+    case FATHOM_ERR_PORT:
+        print_port(to, failure);
+        break;
+    case FATHOM_ERR_UNSUPPORTED: {
+        char settings[SETTINGS_TEXT];
+        (void)fprintf(to, "the port cannot be set to %s; nothing was sent",
+                      settings_text(failure->line, settings));
+        break;
+    }
+    default: /* FATHOM_ERR_NO_ANSWER, and that only the echo came */
+        print_no_answer(to, failure);
+        break;
+    }
+}

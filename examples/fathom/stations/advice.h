@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef ADVICE_H
+#define ADVICE_H
+
+#include <stdio.h>
+
+#include "models/models.h"
+#include "stations/counters.h"
+
+/* A failed attempt. */
+typedef struct {
+    fathom_status_t status;
+    const sensor_t *sensor;
+    const reader_t *reader;
+    const channel_t *channel;
+    const tally_t *tally;
+    const fathom_line_settings_t *line; /* at which it was asked */
+    const char *shared;                 /* its name on a line with others; NULL: it is alone */
+    evidence_t evidence;                /* of this attempt */
+    uint8_t address;
+    bool others_answer; /* on this line */
+    bool waits;         /* for a lost port, which is opened again */
+    bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
+} failure_t;
+
+/* What happened and what to try, without a line feed: the cause as far as the evidence tells it. */
+void advice_print(FILE *to, const failure_t *failure);
+
+#endif

@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: MIT */
+#include "stations/counters_print.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* Also the members of the JSON object, with underscores for spaces. */
+static const char *const line_names[FATHOM_LINE_COUNTERS] = {
+    [FATHOM_LINE_ANSWERS] = "answers",
+    [FATHOM_LINE_DROPPED_BYTES] = "bytes of no frame",
+    [FATHOM_LINE_PORT_ERRORS] = "port errors",
+    [FATHOM_LINE_NO_ANSWERS] = "requests without an answer",
+    [FATHOM_LINE_CHECKSUM_ERRORS] = "damaged answers",
+    [FATHOM_LINE_EXCEPTIONS] = "exceptions",
+    [FATHOM_LINE_MALFORMED] = "answers that do not fit",
+    [FATHOM_LINE_LATE_ANSWERS] = "late answers",
+    [FATHOM_LINE_STRAYS] = "frames that nobody asked for",
+    [FATHOM_LINE_BAD_BYTES] = "bad bytes",
+};
+
+static const char *const stream_names[FATHOM_STREAM_COUNTERS] = {
+    [FATHOM_STREAM_FRAMES] = "frames",
+    [FATHOM_STREAM_MISSED] = "missed frames",
+    [FATHOM_STREAM_AMBIGUOUS] = "ambiguous frames",
+    [FATHOM_STREAM_UNSURE] = "unsure frames",
+    [FATHOM_STREAM_STALES] = "stale",
+    [FATHOM_STREAM_BYTES] = "bytes",
+};
+
+static const char *const unit_names[UNIT_COUNTERS] = {
+    [UNIT_ANSWERS] = "answers",
+    [UNIT_FAILURES] = "failures",
+};
+
+static const char *const port_names[PORT_COUNTERS] = {
+    [PORT_PARITY] = "parity errors",
+    [PORT_FRAMING] = "framing errors",
+    [PORT_OVERRUN] = "overruns",
+    [PORT_BREAKS] = "breaks",
+};
+
+enum { GROUPS = 5 };
+
+typedef struct {
+    const char *name;
+    const char *const *names;
+    const uint64_t *counts;
+    size_t count;
+    bool is_there; /* it means something for these sensors and this port */
+} group_t;
+
+static bool is_asked(const account_t *account) { return account->stations[0].mode->is_asked; }
+
+static void get_groups(group_t groups[GROUPS], const char *const failure_names[FAILURE_KINDS],
+                       const account_t *account)
+{
+    const counts_t *const total = &account->sum.total;
+    const group_t all[GROUPS] = {
+        {"failures", failure_names, account->sum.failures, FAILURE_KINDS, true},
+        {"line", line_names, total->line, FATHOM_LINE_COUNTERS, true},
+        {"stream", stream_names, total->stream, FATHOM_STREAM_COUNTERS, !is_asked(account)},
+        {"unit", unit_names, total->unit, UNIT_COUNTERS, is_asked(account)},
+        {"port", port_names, total->port, PORT_COUNTERS, account->has_port},
+    };
+    memcpy(groups, all, sizeof all);
+}
+
+static void get_failure_names(const char *names[FAILURE_KINDS])
+{
+    for (size_t i = 0; i != FAILURE_KINDS; i++) names[i] = tally_failure_name(i);
+}
+
+/* ---- for people ---- */
+
+static bool print(FILE *to, const uint64_t *counts, const char *const *names, size_t count, bool is_first)
+{
+    for (size_t i = 0; i != count; i++) {
+        if (counts[i] == 0) continue;
+        (void)fprintf(to, "%s%s %" PRIu64, is_first ? "fathom: line: " : ", ", names[i], counts[i]);
+        is_first = false;
+    }
+    return is_first;
+}
+
+/* of: "" or "a16:1: ". */
+static void print_attempts(const tally_t *tally, FILE *to, const char *of, const char *gap)
+{
+    (void)fprintf(to, "fathom: %s%sattempts %" PRIu64 ", failed %" PRIu64 ", readings %" PRIu64, of, gap,
+                  tally->attempts, tally->failed, tally->readings);
+}
+
+/* Before the port was there, there is no unit. */
+static unsigned silences(const station_t *station)
+{
+    return station->reader.unit != NULL ? station->reader.unit->silences : 0u;
+}
+
+static uint32_t alone_us(const station_t *station)
+{
+    return station->reader.unit != NULL ? station->reader.unit->alone_us : 0u;
+}
+
+/* Silences in a row, and for how long the driver leaves it alone because of them. */
+static void print_back_off(const station_t *station, FILE *to)
+{
+    (void)fprintf(to, ", silences in a row %u, left alone for %.1f s", silences(station),
+                  alone_us(station) / 1000000.0);
+}
+
+void tally_print(const account_t *account, FILE *to)
+{
+    const counts_t *const total = &account->sum.total;
+    print_attempts(&account->sum, to, "", "");
+    (void)fputs("\n", to);
+    for (size_t i = 0; i != account->station_count && account->station_count > 1; i++) {
+        const station_t *const station = &account->stations[i];
+        print_attempts(&station->tally, to, station->name, ": ");
+        if (silences(station) != 0) print_back_off(station, to);
+        (void)fputs("\n", to);
+    }
+    bool is_empty = print(to, total->stream, stream_names, FATHOM_STREAM_COUNTERS, true);
+    is_empty = print(to, total->line, line_names, FATHOM_LINE_COUNTERS, is_empty);
+    if (!is_empty) (void)fputs("\n", to);
+}
+
+static double mean_us(const tally_t *tally) { return (double)tally->time_sum_us / (double)tally->timed; }
+
+static void print_time(const tally_t *tally, FILE *to, const char *start)
+{
+    if (tally->timed == 0) return;
+    (void)fprintf(to, "%stime to answer: shortest %.1f ms, mean %.1f ms, longest %.1f ms", start,
+                  tally->time_min_us / 1000.0, mean_us(tally) / 1000.0, tally->time_max_us / 1000.0);
+}
+
+static void print_unit(const station_t *station, FILE *to)
+{
+    const uint64_t *const unit = station->tally.total.unit;
+    print_attempts(&station->tally, to, station->name, ": ");
+    (void)fprintf(to, ", answers %" PRIu64 ", failures %" PRIu64, unit[UNIT_ANSWERS], unit[UNIT_FAILURES]);
+    print_back_off(station, to);
+    print_time(&station->tally, to, ", ");
+    (void)fputs("\n", to);
+}
+
+void tally_print_all(const account_t *account, FILE *to)
+{
+    group_t groups[GROUPS];
+    const char *failure_names[FAILURE_KINDS];
+    get_failure_names(failure_names);
+    get_groups(groups, failure_names, account);
+    print_attempts(&account->sum, to, "", "");
+    (void)fprintf(to, "\nfathom: requests %" PRIu64 ", skipped frames %" PRIu64 ", reconnects %" PRIu64 "\n",
+                  account->requests, account->sum.skipped, account->reconnects);
+    for (size_t g = 0; g != GROUPS; g++) {
+        const group_t *const group = &groups[g];
+        const char *gap = ": ";
+        if (!group->is_there) continue;
+        (void)fprintf(to, "fathom: %s", group->name);
+        for (size_t i = 0; i != group->count; i++) {
+            if (group->names[i] == NULL) continue;
+            (void)fprintf(to, "%s%s %" PRIu64, gap, group->names[i], group->counts[i]);
+            gap = ", ";
+        }
+        (void)fputs("\n", to);
+    }
+    for (size_t i = 0; i != account->station_count && is_asked(account); i++)
+        print_unit(&account->stations[i], to);
+}
+
+/* ---- for programs ---- */
+
+/* A member's name: spaces become underscores. */
+static void print_name(FILE *to, const char *name)
+{
+    (void)fputc('"', to);
+    for (; *name != '\0'; name++) (void)fputc(*name == ' ' ? '_' : *name, to);
+    (void)fputs("\":", to);
+}
+
+static void print_json_attempts(const tally_t *tally, FILE *to)
+{
+    (void)fprintf(to, "\"attempts\":%" PRIu64 ",\"failed\":%" PRIu64 ",\"readings\":%" PRIu64,
+                  tally->attempts, tally->failed, tally->readings);
+}
+
+static void print_json_time(const tally_t *tally, FILE *to)
+{
+    if (tally->timed != 0)
+        (void)fprintf(to,
+                      ",\"answer_us\":{\"answers\":%" PRIu64 ",\"min\":%" PRIu32
+                      ",\"mean\":%.0f,\"max\":%" PRIu32 "}",
+                      tally->timed, tally->time_min_us, mean_us(tally), tally->time_max_us);
+    else
+        (void)fputs(",\"answer_us\":null", to);
+}
+
+static void print_json_group(const group_t *group, FILE *to)
+{
+    const char *gap = "{";
+    (void)fputs(",", to);
+    print_name(to, group->name);
+    if (!group->is_there) {
+        (void)fputs("null", to);
+        return;
+    }
+    for (size_t i = 0; i != group->count; i++) {
+        if (group->names[i] == NULL) continue;
+        (void)fputs(gap, to);
+        print_name(to, group->names[i]);
+        (void)fprintf(to, "%" PRIu64, group->counts[i]);
+        gap = ",";
+    }
+    (void)fputs("}", to);
+}
+
+static void print_json_unit(const station_t *station, FILE *to)
+{
+    const uint64_t *const counts = station->tally.total.unit;
+    (void)fprintf(to, "{\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", station->sensor->name,
+                  station->mode->name, station->address);
+    print_json_attempts(&station->tally, to);
+    (void)fprintf(to,
+                  ",\"answers\":%" PRIu64 ",\"failures\":%" PRIu64 ",\"silences\":%u,\"alone_us\":%" PRIu32,
+                  counts[UNIT_ANSWERS], counts[UNIT_FAILURES], silences(station), alone_us(station));
+    print_json_time(&station->tally, to);
+    (void)fputs("}", to);
+}
+
+void tally_print_json(const account_t *account, FILE *to)
+{
+    group_t groups[GROUPS];
+    const char *failure_names[FAILURE_KINDS];
+    get_failure_names(failure_names);
+    get_groups(groups, failure_names, account);
+    (void)fprintf(to, "{\"time_us\":%" PRIu64 ",", account->time_us);
+    print_json_attempts(&account->sum, to);
+    (void)fprintf(to, ",\"requests\":%" PRIu64 ",\"skipped_frames\":%" PRIu64 ",\"reconnects\":%" PRIu64,
+                  account->requests, account->sum.skipped, account->reconnects);
+    for (size_t g = 0; g != GROUPS; g++) print_json_group(&groups[g], to);
+    print_json_time(&account->sum, to);
+    (void)fputs(",\"units\":[", to);
+    for (size_t i = 0; i != account->station_count && is_asked(account); i++) {
+        if (i != 0) (void)fputs(",", to);
+        print_json_unit(&account->stations[i], to);
+    }
+    (void)fputs("]}\n", to);
+}

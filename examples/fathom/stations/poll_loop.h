@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef POLL_LOOP_H
+#define POLL_LOOP_H
+
+#include "shared/usb_adapter.h"
+#include "stations/advice.h"
+#include "stations/counters_print.h"
+#include "stations/sensor_options.h"
+
+/* Reads the sensors on one port, all of them in one loop, until the user, the count, the time or a loss ends it: what
+ * `fathom read` and `fathom watch` share. */
+typedef struct session session_t;
+
+/* What a command does with it. ctx: session_t.ctx. */
+typedef struct {
+    /* False: it could not be told. */
+    bool (*reading)(void *ctx, const station_t *station, const fathom_sample_t *sample);
+    /* attempt: its number, from 1. Once for each failed part of an attempt. */
+    void (*failure)(void *ctx, const failure_t *failure, const station_t *station);
+    /* What happened to the port, a line of text; is_there: false while it is waited for. */
+    void (*port)(void *ctx, const char *text, bool is_there);
+    /* Called before each sleep. Returns how long it may take at most, in us. */
+    uint32_t (*tick)(void *ctx);
+    /* Ends it. */
+    bool (*is_over)(const void *ctx);
+} session_user_t;
+
+struct session {
+    session_options_t options;
+    const host_t *host;
+    const session_user_t *user;
+    void *ctx;
+    channel_t channel;
+    plug_t plug;
+    port_counts_t port_counts;
+    uint64_t start_us; /* the program's */
+    uint64_t reconnects;
+    bool is_lost; /* the port */
+};
+
+/* To be called first; all of it is cleared. */
+void session_begin(session_t *session, const host_t *host, const session_user_t *user, void *ctx);
+
+/* Opens the port. False, after saying why: it cannot be opened, or (is_lost) it was waited for until the user ended
+ * that. */
+bool session_open(session_t *session);
+
+/* False, after saying why: a driver did not take its settings. */
+bool session_run(session_t *session);
+
+void session_close(session_t *session);
+
+/* Has nothing failed, and has each sensor given a reading that is not unknown? One that has said nothing is forgiven where
+ * the user ended it, or the port was still waited for. */
+bool session_is_good(const session_t *session);
+
+/* Takes and adds up all counters. */
+void session_account(session_t *session, account_t *account);
+
+/* How long it has been running; and for a sample, when that was. */
+uint64_t session_time_us(const session_t *session);
+uint64_t session_sample_us(const session_t *session, const fathom_sample_t *sample);
+
+#endif

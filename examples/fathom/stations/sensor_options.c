@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+#include "stations/sensor_options.h"
+
+#include <string.h>
+#include <strings.h>
+
+#include "shared/command.h"
+#include "shared/options.h"
+#include "shared/tcp_address.h"
+
+static const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400};
+enum { RATES = sizeof rates / sizeof rates[0] };
+
+/* The longest ones keep every sum of times below the 32 bits of the library's clock. */
+enum { MAX_WORD = 24 };
+enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
+
+static bool take_baud(const char *command, const char *text, uint32_t *baud)
+{
+    uint32_t number = 0;
+    if (text == NULL) return true;
+    const bool is_number = number_parse(text, 1, UINT32_MAX, &number);
+    for (size_t i = 0; i != RATES && is_number; i++) {
+        if (number != rates[i]) continue;
+        *baud = number;
+        return true;
+    }
+    (void)usage_error(command, "--baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not '%s'", text);
+    return false;
+}
+
+static bool take_parity(const char *command, const char *text, uint8_t *parity)
+{
+    if (text == NULL) return true;
+    for (uint8_t i = FATHOM_PARITY_NONE; i <= FATHOM_PARITY_ODD; i++) {
+        if (strcmp(text, parity_name(i)) != 0) continue;
+        *parity = i;
+        return true;
+    }
+    (void)usage_error(command, "--parity takes none, even or odd, not '%s'", text);
+    return false;
+}
+
+/* Two of them take the place of the parity bit: a character has 11 bits either way (HPS-167S 2.2.2). */
+static bool take_stop_bits(const char *command, const char *text, fathom_line_settings_t *line)
+{
+    uint32_t number = line->stop_bits;
+    if (!option_number(command, "stop-bits", text, 1, 2, &number)) return false;
+    line->stop_bits = (uint8_t)number;
+    if (number == 2) line->parity = FATHOM_PARITY_NONE;
+    return true;
+}
+
+/* In the order of fathom_line_config_t.echo: found out, told that there is none, told that there is. */
+static bool take_echo(const char *command, const char *text, uint8_t *echo)
+{
+    static const char *const names[] = {"auto", "off", "on"};
+    if (text == NULL) return true;
+    for (uint8_t i = 0; i != sizeof names / sizeof names[0]; i++) {
+        if (strcmp(text, names[i]) != 0) continue;
+        *echo = i;
+        return true;
+    }
+    (void)usage_error(command, "--echo takes auto, on or off, not '%s'", text);
+    return false;
+}
+
+static bool take_numbers(session_options_t *options, const char *command, const char *const *values)
+{
+    uint32_t interval_ms = 0;
+    uint32_t timeout_ms = 0;
+    uint32_t retries = 0;
+    uint32_t duration_s = 0;
+    if (!option_number(command, "interval", values[OPTION_INTERVAL], 0, MAX_INTERVAL_MS, &interval_ms) ||
+        !option_number(command, "timeout", values[OPTION_TIMEOUT], 1, MAX_TIMEOUT_MS, &timeout_ms) ||
+        !option_number(command, "retries", values[OPTION_RETRIES], 0, MAX_RETRIES, &retries) ||
+        !option_number(command, "duration", values[OPTION_DURATION], 1, MAX_DURATION_S, &duration_s))
+        return false;
+    options->interval_us = interval_ms * 1000u;
+    options->timeout_us = timeout_ms * 1000u;
+    options->retries = (uint8_t)retries;
+    options->duration_us = (uint64_t)duration_s * 1000000u;
+    return true;
+}
+
+/* The next word of a list, without its separator. Returns what follows it; NULL: the list ends, or the word is too
+ * long, when it is empty. */
+static const char *next_word(const char *list, char separator, char word[MAX_WORD])
+{
+    const char *const end = strchr(list, separator);
+    const size_t length = end != NULL ? (size_t)(end - list) : strlen(list);
+    (void)snprintf(word, MAX_WORD, "%.*s", length < MAX_WORD ? (int)length : 0, list);
+    return end != NULL ? end + 1 : NULL;
+}
+
+static bool has_sensor(const session_options_t *options, const char *a, const char *b)
+{
+    for (size_t i = 0; i != options->station_count; i++) {
+        const char *const name = options->stations[i].sensor->name;
+        if (strcmp(name, a) == 0 || strcmp(name, b) == 0) return true;
+    }
+    return false;
+}
+
+static bool take_probes(session_options_t *options, const char *command, const char *text)
+{
+    if (text == NULL) return true;
+    if (!has_sensor(options, "a05", "a05")) {
+        (void)usage_error(command, "--probes is for an a05, which has four");
+        return false;
+    }
+    for (const char *at = text; at != NULL;) {
+        char word[MAX_WORD];
+        uint32_t probe = 0;
+        at = next_word(at, ',', word);
+        if (!number_parse(word, 1, FATHOM_DYP_PROBES, &probe) || (options->probes >> (probe - 1) & 1) != 0) {
+            (void)usage_error(command, "--probes takes some of 1,2,3,4, each once, not '%s'", text);
+            return false;
+        }
+        options->probes |= (uint8_t)(1u << (probe - 1));
+    }
+    return true;
+}
+
+static const struct {
+    const char *name;
+    uint8_t meaning;
+} meanings[] = {
+    {"unknown", FATHOM_MEANS_UNKNOWN},
+    {"no-target", FATHOM_MEANS_NO_TARGET},
+    {"interference", FATHOM_MEANS_INTERFERENCE},
+    {"too-near", FATHOM_MEANS_TOO_NEAR},
+    {"fault", FATHOM_MEANS_FAULT},
+    {"refused", FATHOM_MEANS_REFUSED},
+};
+
+/* "0", "fffd" ...: where its meaning stands; NULL: it is none of the four. */
+static uint8_t *place_of(fathom_dyp_window_t *window, const char *value)
+{
+    if (strcmp(value, "0") == 0) return &window->value_0;
+    if (strcasecmp(value, "fffd") == 0) return &window->value_fffd;
+    if (strcasecmp(value, "fffe") == 0) return &window->value_fffe;
+    return strcasecmp(value, "ffff") == 0 ? &window->value_ffff : NULL;
+}
+
+/* VALUE=MEANING */
+static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
+{
+    char value[MAX_WORD];
+    const char *const name = next_word(pair, '=', value);
+    uint8_t *const place = place_of(window, value);
+    for (size_t i = 0; place != NULL && name != NULL && i != sizeof meanings / sizeof meanings[0]; i++) {
+        if (strcmp(name, meanings[i].name) != 0) continue;
+        *place = meanings[i].meaning;
+        return true;
+    }
+    return false;
+}
+
+static bool take_means(session_options_t *options, const char *command, const char *text)
+{
+    if (text == NULL) return true;
+    if (!has_sensor(options, "a16", "a05")) {
+        (void)usage_error(command, "--means is for a16 and a05");
+        return false;
+    }
+    for (const char *at = text; at != NULL;) {
+        char pair[MAX_WORD];
+        at = next_word(at, ',', pair);
+        if (take_meaning(&options->window, pair)) continue;
+        (void)usage_error(command,
+                          "--means takes 0, fffd, fffe or ffff, each with =unknown, no-target, interference, "
+                          "too-near, fault or refused, such as 0=no-target,ffff=unknown, not '%s'",
+                          text);
+        return false;
+    }
+    return true;
+}
+
+static bool take_stations(session_options_t *options, const char *command, char **words, size_t count,
+                          const char *address, const char *mode)
+{
+    if (count == 0 || count > SESSION_STATIONS) {
+        (void)usage_error(command,
+                          count == 0 ? "which sensor? a16, a05 or hps167s" : "a line has 32 sensors at most");
+        return false;
+    }
+    if (count > 1 && (address != NULL || mode != NULL)) {
+        (void)usage_error(command,
+                          "with several sensors --address and --mode stand behind each name, such as "
+                          "a16:1:modbus");
+        return false;
+    }
+    for (size_t i = 0; i != count; i++)
+        if (!station_parse(&options->stations[i], command, words[i], address, mode, count > 1)) return false;
+    options->station_count = count;
+    return true;
+}
+
+static bool take_lines(session_options_t *options, const char *command, const char *const *values)
+{
+    for (size_t i = 0; i != options->station_count; i++) {
+        fathom_line_settings_t *const line = &options->stations[i].line;
+        *line = options->stations[i].sensor->line;
+        if (!take_baud(command, values[OPTION_BAUD], &line->baud) ||
+            !take_stop_bits(command, values[OPTION_STOP_BITS], line) ||
+            !take_parity(command, values[OPTION_PARITY], &line->parity))
+            return false;
+        if (i == 0 || line->baud < options->line.baud) options->line = *line;
+    }
+    for (size_t i = 0; i != options->station_count; i++) {
+        const fathom_line_settings_t *const line = &options->stations[i].line;
+        if (line->baud != options->line.baud || line->parity != options->line.parity)
+            options->has_mixed_lines = true;
+    }
+    return true;
+}
+
+bool session_options(session_options_t *options, const char *command, char **words, int word_count,
+                     const char *const *values, const char *address, const char *mode)
+{
+    const char *const port = values[OPTION_PORT];
+    const bool has_settings = port == NULL || !tcp_names(port);
+    if (!take_stations(options, command, words, (size_t)word_count, address, mode) ||
+        !take_lines(options, command, values) ||
+        !stations_check(options->stations, options->station_count, command, has_settings) ||
+        !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo) ||
+        !take_probes(options, command, values[OPTION_PROBES]) ||
+        !take_means(options, command, values[OPTION_MEANS]))
+        return false;
+    options->reconnect = values[OPTION_RECONNECT] != NULL;
+    options->port = port;
+    if (options->port == NULL) {
+        (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
+        return false;
+    }
+    for (size_t i = 0; i != options->station_count; i++)
+        if (!tcp_suits(command, options->port, options->stations[i].mode)) return false;
+    return true;
+}
+
+static void tell_useless(const session_options_t *options, const char *name, const char *value)
+{
+    const sensor_mode_t *const mode = options->stations[0].mode;
+    if (value != NULL && !mode->is_asked)
+        (void)fprintf(stderr, "fathom: in mode %s nothing is asked, so %s has no effect\n", mode->name, name);
+}
+
+void session_tell_useless(const session_options_t *options, const char *address, const char *const *values)
+{
+    tell_useless(options, "--address", address);
+    tell_useless(options, "--retries", values[OPTION_RETRIES]);
+    tell_useless(options, "--echo", values[OPTION_ECHO]);
+}
+
+void session_options_help(FILE *to)
+{
+    (void)fputs(
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or a Modbus TCP "
+        "server "
+        "or\n"
+        "                    gateway: tcp:HOST, tcp:HOST:PORT (502 if not given), tcp:[IPV6]:PORT, for mode "
+        "modbus;\n"
+        "                    --baud, --parity, --stop-bits and --echo mean nothing there\n"
+        "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
+        "  --parity P        if not the factory's: none, even or odd\n"
+        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
+        "  --duration S      ends after so many seconds; without it Ctrl-C does\n"
+        "  --interval MS     from one attempt to the next; default: as fast as the sensor can\n"
+        "  --timeout MS      how long to wait for an answer (default: as the sensor needs, 0.5 to 1 s), or "
+        "for a\n"
+        "                    good frame of a sensor that sends by itself (default 10000)\n"
+        "  --retries N       how often a failed request is repeated before it counts; default 0\n"
+        "  --reconnect       when the adapter is unplugged, or not there yet: waits for it and goes on. A "
+        "USB "
+        "adapter\n"
+        "                    is known again by its serial number, also as another /dev/ttyUSB; one without "
+        "by the\n"
+        "                    USB socket that it was in. Any other port is known by its path\n"
+        "  --probes LIST     of an a05: those that are fitted or wanted, such as 1,2,4; default: all four\n"
+        "  --means LIST      of a16 and a05: what a value is that is no distance, such as "
+        "0=no-target,ffff=unknown; 0,\n"
+        "                    fffd, fffe or ffff = unknown, no-target, interference, too-near, fault or "
+        "refused.\n"
+        "                    Default: 0=unknown,fffd=no-target,fffe=interference,ffff=refused\n"
+        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n",
+        to);
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef SENSOR_OPTIONS_H
+#define SENSOR_OPTIONS_H
+
+#include <getopt.h>
+
+#include "stations/station.h"
+
+/* The options of every command that reads sensors: the first rows of its table. */
+enum {
+    OPTION_PORT,
+    OPTION_BAUD,
+    OPTION_PARITY,
+    OPTION_STOP_BITS,
+    OPTION_INTERVAL,
+    OPTION_TIMEOUT,
+    OPTION_RETRIES,
+    OPTION_ECHO,
+    OPTION_RECONNECT,
+    OPTION_DURATION,
+    OPTION_PROBES,
+    OPTION_MEANS,
+    SESSION_OPTIONS
+};
+
+/* getopt_long returns 256 for each: the row counts. */
+#define SESSION_OPTION_ROWS                                                                                  \
+    [OPTION_PORT] = {"port", required_argument, NULL, 256},                                                  \
+    [OPTION_BAUD] = {"baud", required_argument, NULL, 256},                                                  \
+    [OPTION_PARITY] = {"parity", required_argument, NULL, 256},                                              \
+    [OPTION_STOP_BITS] = {"stop-bits", required_argument, NULL, 256},                                        \
+    [OPTION_INTERVAL] = {"interval", required_argument, NULL, 256},                                          \
+    [OPTION_TIMEOUT] = {"timeout", required_argument, NULL, 256},                                            \
+    [OPTION_RETRIES] = {"retries", required_argument, NULL, 256},                                            \
+    [OPTION_ECHO] = {"echo", required_argument, NULL, 256},                                                  \
+    [OPTION_RECONNECT] = {"reconnect", no_argument, NULL, 256},                                              \
+    [OPTION_DURATION] = {"duration", required_argument, NULL, 256},                                          \
+    [OPTION_PROBES] = {"probes", required_argument, NULL, 256},                                              \
+    [OPTION_MEANS] = {"means", required_argument, NULL, 256}
+
+/* A line has 32 unit loads. */
+enum { SESSION_STATIONS = 32 };
+
+/* What a command was asked to read. */
+typedef struct {
+    station_t stations[SESSION_STATIONS];
+    size_t station_count;
+    const char *port;
+    fathom_line_settings_t line; /* with which the port is opened: the slowest of the sensors' */
+    bool has_mixed_lines;        /* the sensors differ in that */
+    uint32_t count;              /* attempts of each sensor; 0: endless */
+    uint32_t interval_us;
+    uint32_t timeout_us;
+    uint64_t duration_us;       /* 0: endless */
+    fathom_dyp_window_t window; /* of A16 and A05: what their values mean; 0: the default */
+    uint8_t probes;             /* of A05, bit probe - 1; 0: all */
+    uint8_t retries;
+    uint8_t echo; /* fathom_line_config_t.echo */
+    bool reconnect;
+} session_options_t;
+
+/*
+ * words: SENSOR[:ADDRESS[:MODE]], word_count of them. values: what options_parse has found. address and mode: what
+ * further options have said of the one sensor; NULL: nothing. False after saying what is wrong.
+ */
+bool session_options(session_options_t *options, const char *command, char **words, int word_count,
+                     const char *const *values, const char *address, const char *mode);
+
+/* Says which of these options have no effect because nothing is asked. */
+void session_tell_useless(const session_options_t *options, const char *address, const char *const *values);
+
+/* Their help, a line each. */
+void session_options_help(FILE *to);
+
+#endif

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef STATION_H
+#define STATION_H
+
+#include "models/models.h"
+#include "stations/counters.h"
+
+/* One sensor on a line, as a command reads it. */
+enum { STATION_NAME = 16 };
+
+typedef struct {
+    const sensor_t *sensor;
+    const sensor_mode_t *mode;
+    fathom_line_settings_t line; /* at which it is asked */
+    uint8_t address;
+    char name[STATION_NAME]; /* "a16:1", as the user may write it; of one that sends by itself "a16" */
+    reader_t reader;
+    tally_t tally;
+    ear_t own_ear;    /* where several sensors are asked: what was heard while it was this one's turn */
+    ear_t *ear;       /* the line's or its own */
+    uint64_t next_us; /* when the present attempt began, or will */
+    bool skipping;    /* the present answer came before it */
+    bool answering;   /* the present attempt has begun to hand over an answer, ... */
+    bool has_failed;  /* ... or a part of it was an error */
+    bool has_good;    /* there has been a reading that is not unknown */
+} station_t;
+
+/*
+ * Reads SENSOR[:ADDRESS[:MODE]]; an empty ADDRESS is the factory's. Without a MODE it is the sensor's first one; the
+ * first in which it is asked if it has an ADDRESS or shares the line, for only then can it have or do that.
+ * address, mode: what options have said of the same; NULL: nothing. False after a usage error.
+ */
+bool station_parse(station_t *station, const char *command, const char *text, const char *address,
+                   const char *mode, bool is_shared);
+
+/* Can these be read on one line? has_settings: a line where each is asked at its own settings; not so behind a
+ * gateway. False after a usage error. */
+bool stations_check(const station_t *stations, size_t count, const char *command, bool has_settings);
+
+#endif

@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
+#include <errno.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <string.h>
+
+#include "shared/command.h"
+#include "shared/events.h"
+#include "shared/options.h"
+#include "watch/watch_terminal.h"
+
+static const char command[] = "watch";
+
+enum { HELP = SESSION_OPTIONS, OPTIONS };
+
+static const struct option table[OPTIONS + 1] = {
+    SESSION_OPTION_ROWS,
+    [HELP] = {"help", no_argument, NULL, 256},
+};
+
+/* Eight pictures a second are smooth; a line a second can be read. A message stays for a while. */
+enum { PICTURE_US = 125000, LINE_US = 1000000, MESSAGE_US = 5000000, MESSAGE = 512 };
+
+typedef struct {
+    session_t session;
+    lanes_t lanes;
+    picture_t picture;
+    uint16_t rows; /* of the window */
+    uint16_t columns;
+    uint64_t next_us;      /* when the next picture or line is due */
+    char message[MESSAGE]; /* the last failure, or what has happened to the port */
+    uint64_t message_end_us;
+    fathom_status_t told[SESSION_STATIONS]; /* for lines: what has been said of each sensor's last failure */
+    bool draws;                             /* pictures, else lines */
+    bool wants_all;   /* of the next picture, because something else may have written to the terminal */
+    int output_error; /* errno */
+} watch_t;
+
+static void say(watch_t *watch, const char *text, uint64_t for_us)
+{
+    (void)snprintf(watch->message, sizeof watch->message, "%s", text);
+    watch->message_end_us = session_time_us(&watch->session) + for_us;
+}
+
+static bool take_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
+{
+    watch_t *const watch = ctx;
+    lanes_pass(&watch->lanes, session_time_us(&watch->session));
+    lanes_reading(&watch->lanes, station, sample);
+    watch->told[station - watch->session.options.stations] = FATHOM_READY;
+    return true;
+}
+
+/* What to try, as fathom read has it. */
+static void get_advice(char text[MESSAGE], const failure_t *failure, const station_t *station)
+{
+    const int start = failure->status != FATHOM_ERR_PORT ? snprintf(text, MESSAGE, "%s: ", station->name) : 0;
+    FILE *const to = fmemopen(text + start, (size_t)(MESSAGE - start), "w");
+    if (to == NULL) return;
+    advice_print(to, failure);
+    (void)fclose(to);
+    text[MESSAGE - 1] = '\0';
+}
+
+static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
+{
+    watch_t *const watch = ctx;
+    fathom_status_t *const told = &watch->told[station - watch->session.options.stations];
+    char text[MESSAGE] = "";
+    lanes_pass(&watch->lanes, session_time_us(&watch->session));
+    lanes_failure(&watch->lanes, failure, station);
+    get_advice(text, failure, station);
+    say(watch, text, MESSAGE_US);
+    if (!watch->draws && *told != failure->status) (void)fprintf(stderr, "fathom: %s\n", text);
+    *told = failure->status;
+}
+
+static void take_port(void *ctx, const char *text, bool is_there)
+{
+    watch_t *const watch = ctx;
+    say(watch, text, is_there ? MESSAGE_US : UINT32_MAX);
+    watch->wants_all = true;
+    if (!is_there) lanes_port_lost(&watch->lanes);
+    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", text);
+}
+
+static void draw(watch_t *watch, uint64_t now_us)
+{
+    const uint32_t seconds = (uint32_t)(now_us / 1000000u);
+    char title[MESSAGE];
+    (void)snprintf(title, sizeof title,
+                   "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   Ctrl-C ends",
+                   watch->session.options.port, seconds / 3600, seconds / 60 % 60, seconds % 60);
+    picture_draw(&watch->picture, watch->rows, watch->columns, &watch->lanes, title,
+                 now_us < watch->message_end_us ? watch->message : "");
+    watch->output_error = terminal_show(&watch->picture, watch->wants_all);
+    /* While a port is waited for, others may write to the terminal. */
+    watch->wants_all = watch->session.is_lost;
+}
+
+/* All lanes in one line. */
+static void print_line(watch_t *watch, uint64_t now_us)
+{
+    const lanes_t *const lanes = &watch->lanes;
+    errno = 0;
+    (void)printf("%6" PRIu64 ".%" PRIu64 " s", now_us / 1000000u, now_us / 100000u % 10);
+    for (size_t i = 0; i != lanes->count; i++) {
+        const lane_t *const lane = &lanes->lane[i];
+        const uint32_t rate = lane_rate_tenths(lanes, lane);
+        char value[LANE_VALUE];
+        (void)printf("  %s %s %" PRIu32 ".%" PRIu32 "/s", lane->name, lane_value(lane, value), rate / 10,
+                     rate % 10);
+        if (lane->lost != 0) (void)printf(" lost %" PRIu64 " of %" PRIu64, lane->lost, lane->outcomes);
+    }
+    (void)puts("");
+    if (fflush(stdout) != 0 || ferror(stdout)) watch->output_error = errno != 0 ? errno : EIO;
+}
+
+static uint32_t tick(void *ctx)
+{
+    watch_t *const watch = ctx;
+    const uint64_t now_us = session_time_us(&watch->session);
+    const uint32_t every_us = watch->draws ? PICTURE_US : LINE_US;
+    if (events_noted()) {
+        terminal_size(&watch->rows, &watch->columns);
+        watch->wants_all = true;
+        watch->next_us = now_us;
+    }
+    if (now_us < watch->next_us) return (uint32_t)(watch->next_us - now_us);
+    lanes_pass(&watch->lanes, now_us);
+    if (watch->draws)
+        draw(watch, now_us);
+    else
+        print_line(watch, now_us);
+    watch->next_us += every_us;
+    if (watch->next_us <= now_us) watch->next_us = now_us + every_us;
+    return (uint32_t)(watch->next_us - now_us);
+}
+
+static bool is_over(const void *ctx) { return ((const watch_t *)ctx)->output_error != 0; }
+
+static int finish(watch_t *watch)
+{
+    const host_t *const host = watch->session.host;
+    account_t account;
+    const bool is_lost = watch->session.is_lost;
+    terminal_give_back();
+    if (watch->output_error == EINTR && host->has_ended(host->ctx)) watch->output_error = 0;
+    if (watch->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
+    if (watch->output_error != 0)
+        (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
+    /* On the screen that has just gone, this stood last. */
+    if (is_lost && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->message);
+    session_account(&watch->session, &account);
+    tally_print(&account, stderr);
+    return !session_is_good(&watch->session) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+}
+
+static void help(FILE *to)
+{
+    (void)fputs(
+        "fathom watch shows live in the terminal what sensors say: distance over time, one lane for each "
+        "probe.\n\n"
+        "usage: fathom watch SENSOR[:ADDRESS[:MODE]]... --port PATH [OPTIONS]\n\n",
+        to);
+    sensors_print(to);
+    (void)fputs(
+        "\nSensors and options are those of fathom read. Each lane has the present value, readings a second, "
+        "and "
+        "how many\n"
+        "attempts were lost; below, time goes from left to right, a column 0.25 s or one --interval. What "
+        "came "
+        "instead of a\n"
+        "distance stands there as a letter: - no target, ~ no target and interference, ? a value without a "
+        "meaning, n\n"
+        "something nearer than it can measure, x no answer, ! a "
+        "damaged, wrong or\n"
+        "impossible answer, s nothing for too long, F the sensor says that it has failed, P the port is "
+        "lost.\n\n"
+        "The picture fits the window and follows it. NO_COLOR=1 turns colours off; without UTF-8 in the "
+        "locale "
+        "the bars are\n"
+        "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
+        to);
+    session_options_help(to);
+    (void)fputs("\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a "
+                "sensor gave no "
+                "good\n"
+                "reading, 2 for wrong usage.\n\n"
+                "examples:\n"
+                "  fathom watch a16 --port /dev/ttyUSB0\n"
+                "  fathom watch a05:2:modbus hps167s:7 --port /dev/ttyUSB0 --interval 500\n"
+                "  fathom watch hps167s --port /dev/ttyUSB0 --duration 60 > log.txt\n",
+                to);
+}
+
+static bool take_options(session_options_t *options, int argc, char **argv, bool *wants_help)
+{
+    const char *values[OPTIONS] = {NULL};
+    const int rest = options_parse(command, argc, argv, table, values);
+    *wants_help = rest >= 0 && values[HELP] != NULL;
+    if (rest < 0 || *wants_help) return rest >= 0;
+    if (!session_options(options, command, argv + rest, argc - rest, values, NULL, NULL)) return false;
+    session_tell_useless(options, NULL, values);
+    return true;
+}
+
+static int run(const host_t *host, int argc, char **argv)
+{
+    static const session_user_t user = {take_reading, take_failure, take_port, tick, is_over};
+    static watch_t watch; /* too large for any stack */
+    session_t *const session = &watch.session;
+    bool wants_help = false;
+    memset(&watch, 0, sizeof watch);
+    session_begin(session, host, &user, &watch);
+    if (!take_options(&session->options, argc, argv, &wants_help)) return STATUS_USAGE;
+    if (wants_help) {
+        help(stdout);
+        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+    }
+    if (!host->begin(host->ctx)) return STATUS_FAILED;
+    lanes_begin(&watch.lanes, &session->options);
+    watch.draws = terminal_can_draw();
+    if (watch.draws) {
+        events_note(SIGWINCH);
+        terminal_take();
+    }
+    terminal_size(&watch.rows, &watch.columns);
+    if (!session_open(session)) {
+        if (session->is_lost) return finish(&watch);
+        terminal_give_back();
+        if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.message);
+        return STATUS_FAILED;
+    }
+    const bool has_run = session_run(session);
+    const int status = finish(&watch);
+    session_close(session);
+    return has_run ? status : STATUS_FAILED;
+}
+
+const command_t watch_command = {"watch", "shows sensors live in the terminal", help, run};
