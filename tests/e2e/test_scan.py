@@ -189,7 +189,7 @@ class Automatic(Case):
     def test_an_hps167s_that_sends_unasked_is_named_at_its_rate(self):
         sim = self.sim('hps167s:3 --with unasked=180 --baud 57600 --counters')
         self.scan(sim, '--listen 2',
-                  'nothing was sent, because questions would go into what it sends; --wake')
+                  'nothing was sent, because requests would go into what it sends; --wake')
         self.assertEqual([(one['model'], one['address'], one['baud'], one['next']) for one in self.found],
                          [('hps167s', 3, 57600,
                            f'fathom read hps167s --address 3 --baud 57600 --port {sim}')])

@@ -7,7 +7,7 @@ import e2e
 
 LINE = ['answers', 'bytes_of_no_frame', 'port_errors', 'requests_without_an_answer', 'damaged_answers',
         'exceptions',
-        'answers_that_do_not_fit', 'late_answers', 'frames_that_nobody_asked_for', 'bad_bytes']
+        'answers_that_do_not_fit', 'late_answers', 'unasked_frames', 'bad_bytes']
 STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'stale', 'bytes']
 FAILURES = ['impossible_values', 'port', 'no_answer', 'damaged', 'exception', 'other_answer', 'stale',
             'other']
@@ -63,8 +63,8 @@ class Stats(e2e.Case):
             'answer 0, stale 0, other 0',
             'fathom: line: answers 1, bytes of no frame 0, port errors 0, requests without an answer 1, '
             'damaged '
-            'answers 0, exceptions 0, answers that do not fit 0, late answers 0, frames that nobody asked '
-            'for 0, bad bytes 0', 'fathom: unit: answers 1, failures 1'])
+            'answers 0, exceptions 0, answers that do not fit 0, late answers 0, unasked frames 0, '
+            'bad bytes 0', 'fathom: unit: answers 1, failures 1'])
         self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, answers 1, failures '
                                    r'1, silences in a row 1, left alone for 0\.0 s, '
                                    r'time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')

@@ -9,7 +9,7 @@
 
 #include "suite.h"
 
-#include "../../examples/fathom/shared/sysfs_adapter.h"
+#include "shared/sysfs_adapter.h"
 
 enum { LONG = 512 };
 
@@ -87,20 +87,20 @@ static void plug_in_as(const char *tty, const char *socket, const char *vendor, 
     add_tty(tty, below);
 }
 
-static adapter_t adapter;
-static char path[ADAPTER_PATH];
+static sysfs_adapter_t adapter;
+static char path[SYSFS_PATH];
 
 static bool identify(const char *tty)
 {
     char device[LONG];
     (void)snprintf(device, sizeof device, "%s/dev/%s", root, tty);
-    return adapter_identify(&adapter, root, device);
+    return sysfs_adapter_identify(&adapter, root, device);
 }
 
 /* The adapter is there, under that name; NULL: it is not. */
 static void expect_found(const char *name)
 {
-    assert_int_equal(adapter_find(&adapter, root, path), name != NULL);
+    assert_int_equal(sysfs_adapter_find(&adapter, root, path), name != NULL);
     if (name != NULL) assert_string_equal(path, name);
 }
 
@@ -124,10 +124,10 @@ TEST(the_time_for_which_an_adapter_keeps_bytes_back_is_told_where_it_is_known)
     char device[LONG];
     plug_in_as("ttyUSB0", "1-2", "0403", "6001", "A50285BI");
     (void)snprintf(device, sizeof device, "%s/dev/ttyUSB0", root);
-    assert_int_equal(adapter_latency_ms(root, device), 0);
+    assert_int_equal(sysfs_adapter_latency_ms(root, device), 0);
     write_file("usb1/1-2/1-2:1.0/ttyUSB0", "latency_timer", "16");
-    assert_int_equal(adapter_latency_ms(root, device), 16);
-    assert_int_equal(adapter_latency_ms(root, "/no/such/port"), 0);
+    assert_int_equal(sysfs_adapter_latency_ms(root, device), 16);
+    assert_int_equal(sysfs_adapter_latency_ms(root, "/no/such/port"), 0);
 }
 
 TEST(an_adapter_of_the_cdc_class_too_and_through_a_link)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan_rig.h"
 
-/* What `fathom scan` finds, how long it takes, and that it harms nobody. */
+/* What `fathom scan` finds, how long it takes, and that it harms no device. */
 
 static const uint32_t starts_us[] = {0, UINT32_C(0xFFF00000), UINT32_C(0x7FFFF000)};
 enum { STARTS = sizeof starts_us / sizeof starts_us[0] };
@@ -122,7 +122,7 @@ TEST(test_every_address_at_every_rate_and_parity_takes_less_than_10_minutes_and_
     assert_int_equal(rig.requests, 254 * 5 * 3 + 1); /* and one to any A05 */
     for (unsigned rate = 0; rate != 5; rate++)
         for (unsigned parity = 0; parity != 3; parity++) assert_int_equal(rig.probed[rate][parity], 254);
-    /* Simulated time has no late wake-ups, for which 5 ms a question are in the estimate. */
+    /* Simulated time has no late wake-ups, for which 5 ms a request are in the estimate. */
     assert_true(rig.passed_us <= said_us);
     assert_true(rig.passed_us + 254u * 15u * 5000u + 5000u >= said_us);
     assert_true(rig.progress_us < said_us);

@@ -4,11 +4,11 @@
 
 /* What `fathom scan` hears before it asks, and what it may not ask. */
 
-static scan_talk_t talk;
+static scan_unasked_t unasked;
 
 static void listen_for_3_s(void)
 {
-    assert_int_equal(scan_listen(&rig.wire, 3000000, &talk), FATHOM_READY);
+    assert_int_equal(scan_listen(&rig.wire, 3000000, &unasked), FATHOM_READY);
     assert_int_equal(rig.requests, 0);
     assert_int_equal(rig.sim_line.counters.from_host, 0);
 }
@@ -21,17 +21,17 @@ TEST(test_a_quiet_line_is_listened_to_for_just_that_long)
     rig_begin(UINT32_C(0xFFF00000));
     rig_a16((a16_config_t){.unit = 1});
     listen_for_3_s();
-    assert_false(talk.is_heard);
+    assert_false(unasked.is_heard);
     assert_int_equal(rig.passed_us, 3000000);
 }
 
-/* Somebody is heard. */
+/* A device is heard. */
 static void hear(scan_kind_t kind, uint8_t address)
 {
     listen_for_3_s();
-    assert_true(talk.is_heard);
-    assert_int_equal(talk.finding.kind, kind);
-    assert_int_equal(talk.finding.address, address);
+    assert_true(unasked.is_heard);
+    assert_int_equal(unasked.finding.kind, kind);
+    assert_int_equal(unasked.finding.address, address);
 }
 
 TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
@@ -49,8 +49,8 @@ TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
         else
             rig_a05((a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = scene});
         hear(SCAN_SENSOR, 0);
-        assert_int_equal(talk.finding.model, i / 2 % 2 == 0 ? FATHOM_A16 : FATHOM_A05);
-        assert_int_equal(talk.finding.mode, SCAN_AUTO);
+        assert_int_equal(unasked.finding.model, i / 2 % 2 == 0 ? FATHOM_A16 : FATHOM_A05);
+        assert_int_equal(unasked.finding.mode, SCAN_AUTO);
     }
 }
 
@@ -59,7 +59,7 @@ TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devi
     rig.sim_line.full_duplex = true;
     rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_AUTO});
     listen_for_3_s();
-    rig.walk.is_talking = talk.is_heard;
+    rig.walk.has_sender = unasked.is_heard;
     rig_finds(1);
     rig_expect(7, FATHOM_A16);
 
@@ -67,7 +67,7 @@ TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devi
     rig_begin(0);
     rig.sim_line.full_duplex = true;
     rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_UART});
-    rig.walk.is_talking = true;
+    rig.walk.has_sender = true;
     rig_finds(0);
 }
 
@@ -76,8 +76,8 @@ static void hear_hps167s_at_115200(uint32_t period_us)
     const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
     begin_speaker(&fast, period_us, hps_answer, sizeof hps_answer);
     hear(SCAN_SENSOR, 1);
-    assert_int_equal(talk.finding.model, FATHOM_HPS167S);
-    assert_int_equal(talk.finding.line.baud, 115200);
+    assert_int_equal(unasked.finding.model, FATHOM_HPS167S);
+    assert_int_equal(unasked.finding.line.baud, 115200);
 }
 
 TEST(test_an_hps167s_that_sends_unasked_is_found_at_its_rate)
@@ -105,31 +105,31 @@ TEST(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise)
     rig_begin(0);
     begin_speaker(&scan_dyp_line, 2000000, junk, sizeof junk); /* once */
     listen_for_3_s();
-    assert_false(talk.is_heard);
+    assert_false(unasked.is_heard);
 }
 
 TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
 {
-    scan_question_t question = {
+    scan_request_t request = {
         .line = &scan_hps167s_line, .timeout_us = 100000, .first = 0x0009, .address = 1};
     scan_answer_t answer;
     rig_begin(0);
     rig_hps((hps_config_t){.unit = 1});
     for (uint8_t count = 1; count <= SCAN_REGISTERS; count++) {
-        question.count = count;
-        scan_ask(&rig.wire, &question, &answer);
+        request.count = count;
+        scan_ask(&rig.wire, &request, &answer);
         assert_int_equal(answer.status, FATHOM_ERR_ARGUMENT);
     }
-    question = (scan_question_t){.line = &scan_hps167s_line, .timeout_us = 100000, .first = 1, .count = 3};
-    scan_ask(&rig.wire, &question, &answer); /* unit 0 */
+    request = (scan_request_t){.line = &scan_hps167s_line, .timeout_us = 100000, .first = 1, .count = 3};
+    scan_ask(&rig.wire, &request, &answer); /* unit 0 */
     assert_int_equal(answer.status, FATHOM_ERR_ARGUMENT);
-    question.address = 1;
-    question.count = SCAN_REGISTERS + 1; /* more than an answer has room for */
-    scan_ask(&rig.wire, &question, &answer);
+    request.address = 1;
+    request.count = SCAN_REGISTERS + 1; /* more than an answer has room for */
+    scan_ask(&rig.wire, &request, &answer);
     assert_int_equal(answer.status, FATHOM_ERR_ARGUMENT);
     assert_int_equal(rig.requests, 0);
-    question.count = 3;
-    scan_ask(&rig.wire, &question, &answer);
+    request.count = 3;
+    scan_ask(&rig.wire, &request, &answer);
     assert_int_equal(answer.status, FATHOM_READY);
     assert_int_equal(rig.requests, 1);
     rig_expect_unharmed();

@@ -234,7 +234,7 @@ TEST(test_a_measurement_that_comes_unasked_is_no_configuration)
     for (uint32_t i = 0; i != 60; i++) {
         rig_begin(0);
         rig_hps((hps_config_t){.unasked_us = 25000 + i * 7000, .scene = fathom_sim_fixed(&near)});
-        rig.walk.is_talking = true;
+        rig.walk.has_sender = true;
         if (i % 2 != 0) fathom_sim_hps167s_lose(&rig.hps[0], true, rig.sim_clock.now_us);
         write_to_line = rig.inner.write;
         rig.inner.write = write_all_but_2;

@@ -26,7 +26,7 @@ static void decode_set_address(decode_frame_t *frame)
     decode_meaning_t *const meaning = decode_mean(frame, "a05", "A05 2(3)5", "set the address");
     decode_field_t *const field = decode_number(meaning, "new address", frame->unit, "");
     if (frame->unit == 0 || frame->unit == FATHOM_DYP_ANY_ADDRESS) field->note = "not from 1 to 254";
-    frame->unit = -1; /* whoever hears it */
+    frame->unit = -1; /* every unit that hears it */
     decode_note(frame, "it has no old address in it: every a05 on the line obeys");
 }
 

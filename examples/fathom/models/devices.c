@@ -15,8 +15,8 @@ static void make_a16(device_t *device, const device_settings_t *settings, uint8_
                                             .real_time = traits[DEVICE_REAL_TIME] != 0,
                                             .seed = settings->seed,
                                             .scene = settings->scene};
-    fathom_sim_a16_init(&device->model.a16, &config);
-    device->base = &device->model.a16.device;
+    fathom_sim_a16_init(&device->simulator.a16, &config);
+    device->base = &device->simulator.a16.device;
 }
 
 static void make_a05(device_t *device, const device_settings_t *settings, uint8_t mode)
@@ -31,8 +31,8 @@ static void make_a05(device_t *device, const device_settings_t *settings, uint8_
                                             .real_time = traits[DEVICE_REAL_TIME] != 0,
                                             .seed = settings->seed,
                                             .scene = settings->scene};
-    fathom_sim_a05_init(&device->model.a05, &config);
-    device->base = &device->model.a05.device;
+    fathom_sim_a05_init(&device->simulator.a05, &config);
+    device->base = &device->simulator.a05.device;
 }
 
 void device_a16_auto(device_t *device, const device_settings_t *settings)
@@ -90,6 +90,6 @@ void device_hps167s(device_t *device, const device_settings_t *settings)
         .unasked_us = traits[DEVICE_UNASKED],
         .seed = settings->seed,
         .scene = settings->scene};
-    fathom_sim_hps167s_init(&device->model.hps167s, &config);
-    device->base = &device->model.hps167s.device;
+    fathom_sim_hps167s_init(&device->simulator.hps167s, &config);
+    device->base = &device->simulator.hps167s.device;
 }

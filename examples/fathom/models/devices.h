@@ -41,7 +41,7 @@ typedef struct {
         fathom_sim_a16_t a16;
         fathom_sim_a05_t a05;
         fathom_sim_hps167s_t hps167s;
-    } model;
+    } simulator;
 } device_t;
 
 typedef void (*device_init_t)(device_t *device, const device_settings_t *settings);

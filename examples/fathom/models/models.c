@@ -7,7 +7,7 @@
 #include "shared/channel.h"
 #include "shared/command.h"
 
-static const sensor_t sensors[] = {
+static const model_t models[] = {
     {
         "a16",
         "one ultrasonic probe",
@@ -48,7 +48,7 @@ static const sensor_t sensors[] = {
         .far_mm = 12000,
     },
 };
-enum { SENSORS = sizeof sensors / sizeof sensors[0] };
+enum { MODELS = sizeof models / sizeof models[0] };
 
 /* Adds ", NAME" to a list. */
 static void add_name(char *list, size_t capacity, const char *name)
@@ -57,43 +57,43 @@ static void add_name(char *list, size_t capacity, const char *name)
     (void)snprintf(list + length, capacity - length, "%s%s", length != 0 ? ", " : "", name);
 }
 
-const sensor_t *sensor_find(const char *command, const char *name)
+const model_t *model_find(const char *command, const char *name)
 {
     char known[80] = "";
-    for (size_t i = 0; i != SENSORS; i++) {
-        if (strcmp(name, sensors[i].name) == 0) return &sensors[i];
-        add_name(known, sizeof known, sensors[i].name);
+    for (size_t i = 0; i != MODELS; i++) {
+        if (strcmp(name, models[i].name) == 0) return &models[i];
+        add_name(known, sizeof known, models[i].name);
     }
     (void)usage_error(command, "there is no sensor '%s', only %s", name, known);
     return NULL;
 }
 
-const sensor_mode_t *sensor_mode_find(const char *command, const sensor_t *sensor, const char *name)
+const model_mode_t *model_mode_find(const char *command, const model_t *model, const char *name)
 {
     char known[80] = "";
-    if (name == NULL) return &sensor->modes[0];
-    for (size_t i = 0; i != SENSOR_MODES && sensor->modes[i].name != NULL; i++) {
-        if (strcmp(name, sensor->modes[i].name) == 0) return &sensor->modes[i];
-        add_name(known, sizeof known, sensor->modes[i].name);
+    if (name == NULL) return &model->modes[0];
+    for (size_t i = 0; i != MODEL_MODES && model->modes[i].name != NULL; i++) {
+        if (strcmp(name, model->modes[i].name) == 0) return &model->modes[i];
+        add_name(known, sizeof known, model->modes[i].name);
     }
-    (void)usage_error(command, "there is no mode '%s' for %s, only %s", name, sensor->name, known);
+    (void)usage_error(command, "there is no mode '%s' for %s, only %s", name, model->name, known);
     return NULL;
 }
 
-uint8_t sensor_least_address(const sensor_t *sensor, const sensor_mode_t *mode)
+uint8_t model_least_address(const model_t *model, const model_mode_t *mode)
 {
-    return sensor->max_address > FATHOM_HPS167S_MAX_ADDRESS && strcmp(mode->name, "modbus") == 0 ? 0 : 1;
+    return model->max_address > FATHOM_HPS167S_MAX_ADDRESS && strcmp(mode->name, "modbus") == 0 ? 0 : 1;
 }
 
-void sensors_print(FILE *to)
+void models_print(FILE *to)
 {
-    for (size_t i = 0; i != SENSORS; i++) {
-        const sensor_t *const sensor = &sensors[i];
+    for (size_t i = 0; i != MODELS; i++) {
+        const model_t *const model = &models[i];
         char modes[80] = "";
         char line[SETTINGS_TEXT];
-        for (size_t m = 0; m != SENSOR_MODES && sensor->modes[m].name != NULL; m++)
-            add_name(modes, sizeof modes, sensor->modes[m].name);
-        (void)fprintf(to, "  %-8s %-24s %-10s address 1..%-4u modes: %s\n", sensor->name, sensor->what,
-                      settings_text(&sensor->line, line), sensor->max_address, modes);
+        for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL; m++)
+            add_name(modes, sizeof modes, model->modes[m].name);
+        (void)fprintf(to, "  %-8s %-24s %-10s address 1..%-4u modes: %s\n", model->name, model->what,
+                      settings_text(&model->line, line), model->max_address, modes);
     }
 }

@@ -28,7 +28,7 @@ typedef struct {
 } reader_settings_t;
 
 /* For the only sensor on a line: less than any period, so that one that does not answer is asked as often as one that
- * does: somebody may be looking for the loose wire. */
+ * does: its user may be looking for the loose wire. */
 enum { READER_BACKOFF_US = 1 };
 
 /* Any driver, with what the library's common interface does not show: the causes of an error. */

@@ -47,7 +47,7 @@ static void put_string(char text[VALUE_TEXT], const char *string)
 
 static void put_sensor(const reading_t *reading, char text[VALUE_TEXT])
 {
-    put_string(text, reading->sensor->name);
+    put_string(text, reading->model->name);
 }
 
 static void put_mode(const reading_t *reading, char text[VALUE_TEXT])
@@ -136,7 +136,7 @@ static void write_json(FILE *to, const reading_t *reading)
 {
     for (size_t i = 0; i != FIELDS; i++) {
         char text[VALUE_TEXT] = "";
-        if (fields[i].needs_optics && !reading->sensor->has_optics) continue;
+        if (fields[i].needs_optics && !reading->model->has_optics) continue;
         fields[i].format(reading, text);
         const char *const quote = fields[i].is_string ? "\"" : "";
         (void)fprintf(to, "%s\"%s\":%s%s%s", i == 0 ? "{" : ",", fields[i].name, quote,
@@ -159,7 +159,7 @@ static void write_csv(FILE *to, const reading_t *reading)
     for (size_t i = 0; i != FIELDS; i++) {
         char text[VALUE_TEXT] = "";
         if (fields[i].needs_optics && !reading->has_optics) continue;
-        if (!fields[i].needs_optics || reading->sensor->has_optics) fields[i].format(reading, text);
+        if (!fields[i].needs_optics || reading->model->has_optics) fields[i].format(reading, text);
         (void)fprintf(to, "%s%s", i == 0 ? "" : ",", text);
     }
     (void)fputs("\n", to);
@@ -172,7 +172,7 @@ static void write_text(FILE *to, const reading_t *reading)
     const fathom_sample_t *const sample = reading->sample;
     (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
                   (unsigned)(reading->time_us / 1000u % 1000u), reading->name);
-    if (reading->sensor->probes > 1) (void)fprintf(to, " probe %u", sample->probe);
+    if (reading->model->probes > 1) (void)fprintf(to, " probe %u", sample->probe);
     if (sample->kind == FATHOM_TARGET)
         (void)fprintf(to, "  %6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
                       sample->distance_mm % 1000u);
@@ -182,10 +182,10 @@ static void write_text(FILE *to, const reading_t *reading)
         (void)fputs("  nearer than it can measure", to);
     else if (sample->kind == FATHOM_UNKNOWN)
         (void)fprintf(to, "  unknown: the value %" PRIu32 "%s", sample->raw,
-                      reading->sensor->has_optics ? "" : " has been given no meaning (--means)");
+                      reading->model->has_optics ? "" : " has been given no meaning (--means)");
     else
         (void)fputs("  fault: the sensor says that it has failed", to);
-    if (reading->sensor->has_optics && sample->kind != FATHOM_FAULT) {
+    if (reading->model->has_optics && sample->kind != FATHOM_FAULT) {
         char magnitude[VALUE_TEXT];
         put_magnitude(reading, magnitude);
         (void)fprintf(to, "  magnitude %s  ambient %u  precision %u", magnitude, sample->ambient,

@@ -6,8 +6,8 @@
 
 /* One line of output: a sample and what the library does not know of it. */
 typedef struct {
-    const sensor_t *sensor;
-    const sensor_mode_t *mode;
+    const model_t *model;
+    const model_mode_t *mode;
     const char *name; /* in text */
     const fathom_sample_t *sample;
     uint64_t time_us; /* since the program's start; does not wrap */

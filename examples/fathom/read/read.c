@@ -9,7 +9,7 @@
 
 typedef struct {
     read_options_t options;
-    session_t session;
+    poll_loop_t loop;
     uint64_t stats_us; /* when all counters are told next */
     int output_error;  /* errno */
 } reading_run_t;
@@ -20,29 +20,29 @@ static void flush(reading_run_t *run)
     if (fflush(stdout) != 0 || ferror(stdout)) run->output_error = errno != 0 ? errno : EIO;
 }
 
-static bool is_shared(const reading_run_t *run) { return run->session.options.station_count > 1; }
+static bool is_shared(const reading_run_t *run) { return run->loop.options.station_count > 1; }
 
 /* Has any of the sensors, so that their columns stand in the table? */
 static bool has_optics(const reading_run_t *run)
 {
-    const session_options_t *const options = &run->session.options;
+    const sensor_options_t *const options = &run->loop.options;
     for (size_t i = 0; i != options->station_count; i++)
-        if (options->stations[i].sensor->has_optics) return true;
+        if (options->stations[i].model->has_optics) return true;
     return false;
 }
 
 static bool write_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
 {
     reading_run_t *const run = ctx;
-    const host_t *const host = run->session.host;
-    const uint64_t time_us = session_sample_us(&run->session, sample);
+    const host_t *const host = run->loop.host;
+    const uint64_t time_us = poll_loop_sample_us(&run->loop, sample);
     const reading_t reading = {
-        .sensor = station->sensor,
+        .model = station->model,
         .mode = station->mode,
-        .name = is_shared(run) ? station->name : station->sensor->name,
+        .name = is_shared(run) ? station->name : station->model->name,
         .sample = sample,
         .time_us = time_us,
-        .utc_us = host->utc_us(host->ctx) - (session_time_us(&run->session) - time_us),
+        .utc_us = host->utc_us(host->ctx) - (poll_loop_time_us(&run->loop) - time_us),
         .has_optics = has_optics(run),
     };
     errno = 0;
@@ -55,7 +55,7 @@ static void write_failure(void *ctx, const failure_t *failure, const station_t *
 {
     const bool has_name = is_shared(ctx) && failure->status != FATHOM_ERR_PORT;
     (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", has_name ? station->name : "",
-                  has_name ? ": " : "", station->tally.attempts + 1);
+                  has_name ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
     (void)fputs("\n", stderr);
 }
@@ -70,9 +70,9 @@ static void write_port(void *ctx, const char *text, bool is_there)
 static void tell_stats(const reading_run_t *run, const account_t *account)
 {
     if (run->options.format->is_json)
-        tally_print_json(account, stderr);
+        counters_print_json(account, stderr);
     else
-        tally_print_all(account, stderr);
+        counters_print_all(account, stderr);
 }
 
 /* Tells the counters when it is time for that. */
@@ -80,11 +80,11 @@ static uint32_t tick(void *ctx)
 {
     reading_run_t *const run = ctx;
     const uint32_t every_us = run->options.stats_us;
-    const uint64_t now_us = session_time_us(&run->session);
+    const uint64_t now_us = poll_loop_time_us(&run->loop);
     if (every_us == 0) return FATHOM_NO_DEADLINE;
     if (now_us >= run->stats_us) {
         account_t account;
-        session_account(&run->session, &account);
+        poll_loop_account(&run->loop, &account);
         tell_stats(run, &account);
         run->stats_us += every_us;
         if (run->stats_us < now_us) run->stats_us = now_us + every_us;
@@ -96,7 +96,7 @@ static bool is_over(const void *ctx) { return ((const reading_run_t *)ctx)->outp
 
 static int finish(reading_run_t *run)
 {
-    const host_t *const host = run->session.host;
+    const host_t *const host = run->loop.host;
     account_t account;
     /* A signal may have cut a write short: then ending was asked for, and is no failure. */
     if (run->output_error == EINTR && host->has_ended(host->ctx)) run->output_error = 0;
@@ -104,32 +104,32 @@ static int finish(reading_run_t *run)
     if (run->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written: %s\n", strerror(run->output_error));
-    session_account(&run->session, &account);
-    if (!run->options.stats || run->options.format->is_json) tally_print(&account, stderr);
+    poll_loop_account(&run->loop, &account);
+    if (!run->options.stats || run->options.format->is_json) counters_print(&account, stderr);
     if (run->options.stats) tell_stats(run, &account);
-    return !session_is_good(&run->session) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+    return !poll_loop_is_good(&run->loop) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
 static int run_read(const host_t *host, int argc, char **argv)
 {
-    static const session_user_t user = {write_reading, write_failure, write_port, tick, is_over};
+    static const poll_loop_user_t user = {write_reading, write_failure, write_port, tick, is_over};
     static reading_run_t run; /* too large for a small stack */
-    session_t *const session = &run.session;
+    poll_loop_t *const loop = &run.loop;
     run.output_error = 0;
-    session_begin(session, host, &user, &run);
-    if (!read_options(&run.options, &session->options, argc, argv)) return STATUS_USAGE;
+    poll_loop_begin(loop, host, &user, &run);
+    if (!read_options(&run.options, &loop->options, argc, argv)) return STATUS_USAGE;
     if (run.options.wants_help) {
         read_help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
-    if (!session_open(session)) return session->is_lost ? finish(&run) : STATUS_FAILED;
+    if (!poll_loop_open(loop)) return loop->is_lost ? finish(&run) : STATUS_FAILED;
     errno = 0;
     if (run.options.format->begin != NULL) run.options.format->begin(stdout, has_optics(&run));
     flush(&run);
-    const int status = session_run(session) ? finish(&run) : STATUS_FAILED;
-    session_close(session);
+    const int status = poll_loop_run(loop) ? finish(&run) : STATUS_FAILED;
+    poll_loop_close(loop);
     return status;
 }
 

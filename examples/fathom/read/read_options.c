@@ -8,10 +8,10 @@
 
 static const char command[] = "read";
 
-enum { MODE = SESSION_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, HELP, OPTIONS };
+enum { MODE = SENSOR_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
+    SENSOR_OPTION_ROWS,
     [MODE] = {"mode", required_argument, NULL, 256},
     [ADDRESS] = {"address", required_argument, NULL, 256},
     [COUNT] = {"count", required_argument, NULL, 256},
@@ -32,7 +32,7 @@ static bool take_stats(read_options_t *options, const char *text)
     return true;
 }
 
-bool read_options(read_options_t *options, session_options_t *session, int argc, char **argv)
+bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     memset(options, 0, sizeof *options);
@@ -40,13 +40,13 @@ bool read_options(read_options_t *options, session_options_t *session, int argc,
     if (rest < 0) return false;
     options->wants_help = values[HELP] != NULL;
     if (options->wants_help) return true;
-    if (!session_options(session, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]))
+    if (!sensor_options(sensors, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]))
         return false;
     options->format = format_find(command, values[FORMAT]);
     if (options->format == NULL || !take_stats(options, values[STATS]) ||
-        !option_number(command, "count", values[COUNT], 1, MAX_COUNT, &session->count))
+        !option_number(command, "count", values[COUNT], 1, MAX_COUNT, &sensors->count))
         return false;
-    session_tell_useless(session, values[ADDRESS], values);
+    sensor_options_tell_useless(sensors, values[ADDRESS], values);
     return true;
 }
 
@@ -55,7 +55,7 @@ void read_help(FILE *to)
     (void)fputs("fathom read reads sensors on a serial port and prints what they say.\n\n"
                 "usage: fathom read SENSOR[:ADDRESS[:MODE]]... --port PATH [OPTIONS]\n\n",
                 to);
-    sensors_print(to);
+    models_print(to);
     (void)fputs(
         "\nThe first mode is the default, or with an address or several sensors the first in which it is "
         "asked: auto\n"
@@ -78,7 +78,7 @@ void read_help(FILE *to)
         "                    line. Every request, and every frame that came, is in them: read, failed or "
         "skipped\n",
         to);
-    session_options_help(to);
+    sensor_options_help(to);
     (void)fputs(
         "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
         "in range\n"

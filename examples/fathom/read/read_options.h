@@ -14,7 +14,7 @@ typedef struct {
 } read_options_t;
 
 /* False after saying what is wrong with them. */
-bool read_options(read_options_t *options, session_options_t *session, int argc, char **argv);
+bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, char **argv);
 
 void read_help(FILE *to);
 

@@ -19,52 +19,52 @@ typedef struct {
     channel_t channel;
     scan_wire_t wire;
     scan_walk_t walk;
-    scan_talk_t talk;
+    scan_unasked_t unasked;
     scan_progress_t progress;
     uint64_t start_us;
     uint32_t sensors;      /* found */
     uint32_t terminations; /* of these, HPS-167S whose resistor is on */
     uint32_t awakened;     /* of these, those of the model that was heard to send by itself */
     int output_error;      /* errno */
-} session_t;
+} scan_t;
 
-static uint64_t now_us(const session_t *session) { return session->host->now_us(session->host->ctx); }
+static uint64_t now_us(const scan_t *scan) { return scan->host->now_us(scan->host->ctx); }
 
 /* ---- what it tells ---- */
 
 static void tell_found(void *ctx, const scan_finding_t *finding)
 {
-    session_t *const session = ctx;
-    const scan_options_t *const options = &session->options;
-    scan_progress_clear(&session->progress);
+    scan_t *const scan = ctx;
+    const scan_options_t *const options = &scan->options;
+    scan_progress_clear(&scan->progress);
     errno = 0;
     if (options->is_json)
         scan_print_json(stdout, finding, options->port);
     else
         scan_print_text(stdout, finding, options->port);
     /* Readers of a pipe see each line at once. */
-    if (fflush(stdout) != 0 || ferror(stdout)) session->output_error = errno != 0 ? errno : EIO;
+    if (fflush(stdout) != 0 || ferror(stdout)) scan->output_error = errno != 0 ? errno : EIO;
     scan_print_advice(stderr, finding);
     if (finding->kind != SCAN_SENSOR) return;
-    session->sensors++;
-    if (finding->has_config && finding->has_termination) session->terminations++;
-    if (session->talk.is_heard && finding->model == session->talk.finding.model) session->awakened++;
+    scan->sensors++;
+    if (finding->has_config && finding->has_termination) scan->terminations++;
+    if (scan->unasked.is_heard && finding->model == scan->unasked.finding.model) scan->awakened++;
 }
 
 static void tell_progress(void *ctx, uint64_t done_us, const fathom_line_settings_t *line, uint8_t address)
 {
-    session_t *const session = ctx;
+    scan_t *const scan = ctx;
     char settings[SETTINGS_TEXT];
     char what[SETTINGS_TEXT + 16];
     (void)snprintf(what, sizeof what, "%s address %u", settings_text(line, settings), address);
-    scan_progress_show(&session->progress, now_us(session), session->options.plan.listen_us + done_us, what);
+    scan_progress_show(&scan->progress, now_us(scan), scan->options.plan.listen_us + done_us, what);
 }
 
 static void tell_unsupported(void *ctx, const fathom_line_settings_t *line)
 {
-    session_t *const session = ctx;
+    scan_t *const scan = ctx;
     char settings[SETTINGS_TEXT];
-    scan_progress_clear(&session->progress);
+    scan_progress_clear(&scan->progress);
     (void)fprintf(stderr, "fathom: this port cannot do %s, which is left out\n",
                   settings_text(line, settings));
 }
@@ -109,73 +109,73 @@ static void announce(const scan_plan_t *plan)
 
 static bool wait_for(void *ctx, uint32_t max_us)
 {
-    session_t *const session = ctx;
-    const host_t *const host = session->host;
-    if (host->has_ended(host->ctx) || host->is_output_gone(host->ctx) || session->output_error != 0)
+    scan_t *const scan = ctx;
+    const host_t *const host = scan->host;
+    if (host->has_ended(host->ctx) || host->is_output_gone(host->ctx) || scan->output_error != 0)
         return false;
-    host->wait(host->ctx, &session->channel.port, max_us, true);
+    host->wait(host->ctx, &scan->channel.port, max_us, true);
     return true;
 }
 
 /* While it listens there is nothing else to show. */
 static bool wait_and_show(void *ctx, uint32_t max_us)
 {
-    session_t *const session = ctx;
-    const uint64_t now = now_us(session);
-    scan_progress_show(&session->progress, now, now - session->start_us, "listens");
+    scan_t *const scan = ctx;
+    const uint64_t now = now_us(scan);
+    scan_progress_show(&scan->progress, now, now - scan->start_us, "listens");
     return wait_for(ctx, max_us < PROGRESS_US ? max_us : PROGRESS_US);
 }
 
-static fathom_status_t scan_line(session_t *session)
+static fathom_status_t scan_line(scan_t *scan)
 {
-    const scan_plan_t *const plan = &session->options.plan;
-    const scan_tell_t tell = {tell_found, tell_progress, tell_unsupported, session};
-    session->wire.wait = wait_and_show;
-    const fathom_status_t status = scan_listen(&session->wire, plan->listen_us, &session->talk);
-    session->wire.wait = wait_for;
-    if (status != FATHOM_READY || (session->talk.is_heard && !session->options.wake)) return status;
-    session->walk.wire = &session->wire;
-    session->walk.plan = plan;
-    session->walk.tell = &tell;
-    session->walk.is_talking = session->talk.is_heard;
-    return scan_walk(&session->walk);
+    const scan_plan_t *const plan = &scan->options.plan;
+    const scan_tell_t tell = {tell_found, tell_progress, tell_unsupported, scan};
+    scan->wire.wait = wait_and_show;
+    const fathom_status_t status = scan_listen(&scan->wire, plan->listen_us, &scan->unasked);
+    scan->wire.wait = wait_for;
+    if (status != FATHOM_READY || (scan->unasked.is_heard && !scan->options.wake)) return status;
+    scan->walk.wire = &scan->wire;
+    scan->walk.plan = plan;
+    scan->walk.tell = &tell;
+    scan->walk.has_sender = scan->unasked.is_heard;
+    return scan_walk(&scan->walk);
 }
 
 /* ---- the end ---- */
 
-/* Somebody sent by himself: what that means for the scan, and for him. */
-static void conclude_talk(session_t *session)
+/* A device sent by itself: what that means for the scan, and for the device. */
+static void conclude_unasked(scan_t *scan)
 {
-    const scan_finding_t *const finding = &session->talk.finding;
-    if (session->awakened == 0) tell_found(session, finding);
-    if (session->options.wake && session->awakened != 0 && finding->mode == SCAN_AUTO)
+    const scan_finding_t *const finding = &scan->unasked.finding;
+    if (scan->awakened == 0) tell_found(scan, finding);
+    if (scan->options.wake && scan->awakened != 0 && finding->mode == SCAN_AUTO)
         (void)fprintf(stderr,
                       "fathom: it sent by itself until it was asked, and sends again after power-off%s\n",
                       finding->model == FATHOM_A16 ? ", or when 1 is written to its register 0x0202" : "");
-    else if (!session->options.wake && finding->kind == SCAN_MASTER)
+    else if (!scan->options.wake && finding->kind == SCAN_MASTER)
         (void)fputs(
             "fathom: nothing was sent, because another master asks on this line; disconnect it or stop "
             "its program, and scan again (--wake asks all the same)\n",
             stderr);
-    else if (!session->options.wake && finding->kind == SCAN_SENDER && finding->address == 0)
+    else if (!scan->options.wake && finding->kind == SCAN_SENDER && finding->address == 0)
         (void)fputs("fathom: nothing was sent, because something sends by itself: an HPS-167S made before "
                     "2020-09 speaks another protocol; another rate, A and B swapped and noise look like this "
                     "too; --wake asks all the same\n",
                     stderr);
-    else if (!session->options.wake && finding->mode == SCAN_AUTO)
+    else if (!scan->options.wake && finding->mode == SCAN_AUTO)
         (void)fputs("fathom: nothing was sent, because even a read ends what an A16 or A05 sends by itself "
                     "(of an A05 until power-off); --wake asks all the same\n",
                     stderr);
-    else if (!session->options.wake)
+    else if (!scan->options.wake)
         (void)fputs(
-            "fathom: nothing was sent, because questions would go into what it sends; --wake asks all the "
+            "fathom: nothing was sent, because requests would go into what it sends; --wake asks all the "
             "same\n",
             stderr);
 }
 
-static void advise_on_nothing(const session_t *session)
+static void advise_on_nothing(const scan_t *scan)
 {
-    const scan_heard_t *const heard = &session->walk.heard;
+    const scan_heard_t *const heard = &scan->walk.heard;
     (void)fputs("fathom: no sensor was found: ", stderr);
     if (heard->bytes != 0)
         (void)fputs(
@@ -187,15 +187,15 @@ static void advise_on_nothing(const session_t *session)
                     stderr);
     else
         (void)fputs("nothing was heard at all; check the supply, and A and B (or RX and TX) swapped", stderr);
-    if (session->options.is_default)
+    if (scan->options.is_default)
         (void)fputs("; a sensor that was set otherwise is found with --address 1-254 --baud all", stderr);
     (void)fputs("; one that was switched on just now may need 5 s\n", stderr);
 }
 
-static void conclude_walk(const session_t *session)
+static void conclude_walk(const scan_t *scan)
 {
-    const scan_heard_t *const heard = &session->walk.heard;
-    const uint64_t took_us = now_us(session) - session->start_us;
+    const scan_heard_t *const heard = &scan->walk.heard;
+    const uint64_t took_us = now_us(scan) - scan->start_us;
     char duration[DURATION_TEXT];
     if (heard->has_master)
         (void)fprintf(stderr,
@@ -206,33 +206,32 @@ static void conclude_walk(const session_t *session)
         (void)fprintf(stderr,
                       "fathom: a frame of address %u was heard, which was not asked; try --address %u\n",
                       heard->outside, heard->outside);
-    if (session->terminations > 1)
+    if (scan->terminations > 1)
         (void)fprintf(stderr,
                       "fathom: %" PRIu32
                       " HPS-167S have their termination resistor on, as from the factory, which "
                       "overloads the line: switch it off in all but the last one, as fathom set "
                       "hps167s:ADDRESS --port %s termination off does\n",
-                      session->terminations, session->options.port);
-    if (session->sensors == 0) advise_on_nothing(session);
-    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", session->sensors,
+                      scan->terminations, scan->options.port);
+    if (scan->sensors == 0) advise_on_nothing(scan);
+    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
                   duration_text(took_us, duration));
 }
 
-static int finish(session_t *session, fathom_status_t status)
+static int finish(scan_t *scan, fathom_status_t status)
 {
-    const host_t *const host = session->host;
-    scan_progress_clear(&session->progress);
+    const host_t *const host = scan->host;
+    scan_progress_clear(&scan->progress);
     const bool is_cut = status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
-    if (session->output_error == EINTR && host->has_ended(host->ctx)) session->output_error = 0;
+    if (scan->output_error == EINTR && host->has_ended(host->ctx)) scan->output_error = 0;
     /* The reader of a pipe has seen enough, as head does: no reason for words. */
-    if (session->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
-    if (session->output_error != 0) {
-        (void)fprintf(stderr, "fathom: what was found cannot be written: %s\n",
-                      strerror(session->output_error));
+    if (scan->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
+    if (scan->output_error != 0) {
+        (void)fprintf(stderr, "fathom: what was found cannot be written: %s\n", strerror(scan->output_error));
         return STATUS_FAILED;
     }
     if (status == FATHOM_ERR_PORT) {
-        const fathom_posix_uart_t *const port = &session->channel.port;
+        const fathom_posix_uart_t *const port = &scan->channel.port;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST)
             (void)fprintf(stderr, "fathom: %s; connect it again and start again\n",
                           fathom_posix_error_text(port));
@@ -241,42 +240,42 @@ static int finish(session_t *session, fathom_status_t status)
                           port->path);
         return STATUS_FAILED;
     }
-    if (session->talk.is_heard && !is_cut) conclude_talk(session);
+    if (scan->unasked.is_heard && !is_cut) conclude_unasked(scan);
     if (is_cut)
         (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 "\n",
-                      session->sensors);
-    else if (!session->talk.is_heard || session->options.wake)
-        conclude_walk(session);
-    return session->sensors != 0 && session->output_error == 0 ? STATUS_OK : STATUS_FAILED;
+                      scan->sensors);
+    else if (!scan->unasked.is_heard || scan->options.wake)
+        conclude_walk(scan);
+    return scan->sensors != 0 && scan->output_error == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 static int run(const host_t *host, int argc, char **argv)
 {
-    static session_t session; /* too large for a small stack */
-    const scan_options_t *const options = &session.options;
-    memset(&session, 0, sizeof session);
-    session.host = host;
-    if (!scan_options(&session.options, argc, argv)) return STATUS_USAGE;
+    static scan_t scan; /* too large for a small stack */
+    const scan_options_t *const options = &scan.options;
+    memset(&scan, 0, sizeof scan);
+    scan.host = host;
+    if (!scan_options(&scan.options, argc, argv)) return STATUS_USAGE;
     if (options->wants_help) {
         scan_help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (options->estimate) return print_estimate(options);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    if (!channel_open(&session.channel, host, options->port, &scan_dyp_line)) {
-        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&session.channel.port));
+    if (!channel_open(&scan.channel, host, options->port, &scan_dyp_line)) {
+        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&scan.channel.port));
         return STATUS_FAILED;
     }
-    session.channel.config.silence_us = scan_silence_us(&options->plan);
-    session.wire.line = &session.channel.line;
-    session.wire.ear = &session.channel.ear;
-    session.wire.clock = &session.channel.clock;
-    session.wire.ctx = &session;
+    scan.channel.config.silence_us = scan_silence_us(&options->plan);
+    scan.wire.line = &scan.channel.line;
+    scan.wire.listener = &scan.channel.listener;
+    scan.wire.clock = &scan.channel.clock;
+    scan.wire.ctx = &scan;
     announce(&options->plan);
-    session.start_us = now_us(&session);
-    scan_progress_begin(&session.progress, stderr, scan_plan_us(&options->plan));
-    const int status = finish(&session, scan_line(&session));
-    channel_close(&session.channel);
+    scan.start_us = now_us(&scan);
+    scan_progress_begin(&scan.progress, stderr, scan_plan_us(&options->plan));
+    const int status = finish(&scan, scan_line(&scan));
+    channel_close(&scan.channel);
     return status;
 }
 

@@ -45,50 +45,50 @@ fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t 
         if (is_set > 0) break;
         if (!wire->wait(wire->ctx, SET_LINE_POLL_US)) return FATHOM_ERR_CANCELLED;
     }
-    ear_forget(wire->ear);
+    listener_forget(wire->listener);
     return listen(wire, us, each, ctx);
 }
 
 /* At 0 an A16 or A05 may be, and an HPS-167S, to which it is a broadcast, has none of their registers. */
-static bool is_harmless(const scan_question_t *question)
+static bool is_harmless(const scan_request_t *request)
 {
     enum { FIRST_OF_DYP = 0x0100 };
     const bool is_to_all =
-        question->address == FATHOM_LINE_ALL_UNITS && (question->is_dyp || question->first < FIRST_OF_DYP);
-    return question->first != FATHOM_HPS167S_RESET && question->count <= SCAN_REGISTERS && !is_to_all;
+        request->address == FATHOM_LINE_ALL_UNITS && (request->is_dyp || request->first < FIRST_OF_DYP);
+    return request->first != FATHOM_HPS167S_RESET && request->count <= SCAN_REGISTERS && !is_to_all;
 }
 
-static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *request)
+static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *transaction)
 {
-    const fathom_exchange_t *const exchange = &request->exchange;
+    const fathom_exchange_t *const exchange = &transaction->exchange;
     for (;;) {
         (void)fathom_line_poll(wire->line); /* a broken port ends the exchange */
         if (exchange->status != FATHOM_PENDING) return exchange->status;
-        if (!wait_for_line(wire, FATHOM_NO_DEADLINE)) fathom_line_cancel(wire->line, &request->exchange);
+        if (!wait_for_line(wire, FATHOM_NO_DEADLINE)) fathom_line_cancel(wire->line, &transaction->exchange);
         if (exchange->status != FATHOM_PENDING) return exchange->status;
     }
 }
 
-void scan_ask(const scan_wire_t *wire, const scan_question_t *question, scan_answer_t *answer)
+void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_answer_t *answer)
 {
-    fathom_modbus_request_t request;
-    memset(&request, 0, sizeof request);
+    fathom_modbus_request_t transaction;
+    memset(&transaction, 0, sizeof transaction);
     memset(answer, 0, sizeof *answer);
     answer->status = FATHOM_ERR_ARGUMENT;
-    if (!is_harmless(question)) return;
-    request.exchange.timeout_us = question->timeout_us;
-    request.exchange.settings = question->line;
-    fathom_modbus_read_holding_registers(&request.message, question->address, question->first,
-                                         question->count, answer->values);
-    ear_forget(wire->ear);
+    if (!is_harmless(request)) return;
+    transaction.exchange.timeout_us = request->timeout_us;
+    transaction.exchange.settings = request->line;
+    fathom_modbus_read_holding_registers(&transaction.message, request->address, request->first,
+                                         request->count, answer->values);
+    listener_forget(wire->listener);
     const fathom_modbus_t modbus = fathom_modbus_client_with_zero(wire->line);
-    answer->status = question->is_dyp ? fathom_dyp_client_submit(wire->line, &request)
-                                      : modbus.submit(modbus.ctx, &request);
-    if (answer->status == FATHOM_PENDING) answer->status = wait_for_answer(wire, &request);
-    answer->address = request.message.head[0];
-    if (scan_is_answered(answer->status) && question->linger_us != 0) {
-        const fathom_status_t heard = listen(wire, question->linger_us, NULL, NULL);
+    answer->status = request->is_dyp ? fathom_dyp_client_submit(wire->line, &transaction)
+                                     : modbus.submit(modbus.ctx, &transaction);
+    if (answer->status == FATHOM_PENDING) answer->status = wait_for_answer(wire, &transaction);
+    answer->address = transaction.message.head[0];
+    if (scan_is_answered(answer->status) && request->linger_us != 0) {
+        const fathom_status_t heard = listen(wire, request->linger_us, NULL, NULL);
         if (heard != FATHOM_READY) answer->status = heard;
     }
-    ear_judge(wire->ear, question->address, &answer->evidence);
+    listener_judge(wire->listener, request->address, &answer->evidence);
 }

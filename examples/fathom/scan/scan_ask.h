@@ -8,10 +8,10 @@
 #include "fathom/line.h"
 #include "shared/listener.h"
 
-/* A line with an ear on it, and a way to wait: what a scan needs of the world. */
+/* A line with an listener on it, and a way to wait: what a scan needs of the world. */
 typedef struct {
     fathom_line_t *line;
-    ear_t *ear;
+    listener_t *listener;
     const fathom_clock_t *clock;
     /* Sleeps until bytes come, but no longer than max_us. False: the scan is to end. */
     bool (*wait)(void *ctx, uint32_t max_us);
@@ -29,29 +29,29 @@ typedef struct {
     uint8_t count;
     uint8_t address;
     bool is_dyp; /* by 55 AA; first and count as dyp_client.h has them */
-} scan_question_t;
+} scan_request_t;
 
 typedef struct {
-    /* As fathom_exchange_t.status. FATHOM_ERR_CANCELLED: the scan is to end. FATHOM_ERR_ARGUMENT: a question that may
+    /* As fathom_exchange_t.status. FATHOM_ERR_CANCELLED: the scan is to end. FATHOM_ERR_ARGUMENT: a request that may
      * not be asked. */
     fathom_status_t status;
     uint8_t address; /* of FATHOM_READY: who answered */
     uint16_t values[SCAN_REGISTERS];
-    evidence_t evidence; /* what was heard since the question */
+    evidence_t evidence; /* what was heard since the request */
 } scan_answer_t;
 
 /*
  * Asks, and comes back with the answer.
  *
- * Nothing that changes a device is ever sent: there is no write among the questions, register 0x0009, the factory
+ * Nothing that changes a device is ever sent: there is no write among the requests, register 0x0009, the factory
  * reset of an HPS-167S (#6), is refused here whatever the count is, and so is unit 0, the broadcast.
  */
-void scan_ask(const scan_wire_t *wire, const scan_question_t *question, scan_answer_t *answer);
+void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_answer_t *answer);
 
-/* Somebody has answered, whatever it was. */
+/* A device has answered, whatever it was. */
 bool scan_is_answered(fathom_status_t status);
 
-/* Sets the line, asks nothing, and listens for so long; what came is in wire->ear and with the line's listener.
+/* Sets the line, asks nothing, and listens for so long; what came is in wire->listener and with the line's listener.
  * `each`, unless NULL, is called after every poll. FATHOM_READY; FATHOM_ERR_CANCELLED, _PORT, _UNSUPPORTED. */
 fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t *line, uint32_t us,
                           void (*each)(void *ctx), void *ctx);

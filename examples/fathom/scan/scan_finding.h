@@ -27,7 +27,7 @@ typedef struct {
     uint8_t model;   /* fathom_model_t, of a sensor */
     uint8_t mode;    /* scan_mode_t, of a sensor */
     uint8_t address; /* 0: none */
-    bool is_double;  /* two answers came to one question */
+    bool is_double;  /* two answers came to one request */
 
     /* of an A16 or A05 that was asked */
     bool has_value;

@@ -17,26 +17,26 @@ enum { PROCESSED = 0x0100, REALTIME = 0x0101, FIRST_PROBE = 0x0106, ADDRESS = 0x
 /* An A16 answers 0x0101 in about 120 ms and 0x0100 in up to 520, an A05 takes about 100 ms a probe. */
 enum { MEASURE_US = 300000, PROCESSED_US = 1000000 };
 
-/* A second answer to one question is there by then: two units differ by a few milliseconds. */
+/* A second answer to one request is there by then: two units differ by a few milliseconds. */
 enum { LINGER_US = 40000 };
 
 enum { DAMAGED_TRIES = 4, ROUNDS = 2 };
 
-void scan_first_question(const fathom_line_settings_t *line, uint8_t address, scan_question_t *question)
+void scan_first_request(const fathom_line_settings_t *line, uint8_t address, scan_request_t *request)
 {
     const bool may_be_hps167s =
         scan_is_hps167s_rate(line->baud) && address != 0 && address <= FATHOM_HPS167S_MAX_ADDRESS;
-    memset(question, 0, sizeof *question);
-    question->line = line;
-    question->linger_us = LINGER_US;
-    question->first = may_be_hps167s ? FATHOM_HPS167S_VERSION : ADDRESS;
-    question->count = may_be_hps167s ? FATHOM_HPS167S_VERSION_COUNT : 1;
-    question->address = address;
+    memset(request, 0, sizeof *request);
+    request->line = line;
+    request->linger_us = LINGER_US;
+    request->first = may_be_hps167s ? FATHOM_HPS167S_VERSION : ADDRESS;
+    request->count = may_be_hps167s ? FATHOM_HPS167S_VERSION_COUNT : 1;
+    request->address = address;
 }
 
 typedef struct {
     const scan_wire_t *wire;
-    const scan_question_t *question; /* the first one: whom, with which settings */
+    const scan_request_t *request; /* the first one: whom, with which settings */
     scan_finding_t *finding;
     scan_answer_t answer;
     fathom_status_t failed; /* FATHOM_READY, or why it cannot go on */
@@ -46,13 +46,13 @@ typedef struct {
  * asked again. True: the values are in inquiry->answer. */
 static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us, uint8_t silence_tries)
 {
-    scan_question_t question = *inquiry->question;
-    question.first = first;
-    question.count = count;
-    question.linger_us = 0;
-    if (question.timeout_us < timeout_us) question.timeout_us = timeout_us;
+    scan_request_t request = *inquiry->request;
+    request.first = first;
+    request.count = count;
+    request.linger_us = 0;
+    if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     for (uint8_t tries = DAMAGED_TRIES; tries != 0 && inquiry->failed == FATHOM_READY; tries--) {
-        scan_ask(inquiry->wire, &question, &inquiry->answer);
+        scan_ask(inquiry->wire, &request, &inquiry->answer);
         const fathom_status_t status = inquiry->answer.status;
         if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_READY;
         if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) inquiry->failed = status;
@@ -138,23 +138,23 @@ static uint8_t ask_dyp(inquiry_t *inquiry)
 
 static uint8_t find_model(inquiry_t *inquiry, const scan_answer_t *first)
 {
-    const bool has_version = inquiry->question->first == FATHOM_HPS167S_VERSION;
+    const bool has_version = inquiry->request->first == FATHOM_HPS167S_VERSION;
     if (has_version && is_hps167s(inquiry, first)) return FATHOM_HPS167S;
     if (inquiry->failed != FATHOM_READY) return 0;
     if (has_version && !ask(inquiry, ADDRESS, 1, MEASURE_US, 1)) return 0;
     const scan_answer_t *const answer = has_version ? &inquiry->answer : first;
     /* 0x0200 is the address, in the low byte; so who answers something else is no A16 or A05. */
-    if (answer->status != FATHOM_READY || answer->values[0] != inquiry->question->address) return 0;
+    if (answer->status != FATHOM_READY || answer->values[0] != inquiry->request->address) return 0;
     return ask_dyp(inquiry);
 }
 
-fathom_status_t scan_identify(const scan_wire_t *wire, const scan_question_t *question,
+fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *request,
                               const scan_answer_t *first, scan_finding_t *finding)
 {
-    inquiry_t inquiry = {.wire = wire, .question = question, .finding = finding, .failed = FATHOM_READY};
+    inquiry_t inquiry = {.wire = wire, .request = request, .finding = finding, .failed = FATHOM_READY};
     memset(finding, 0, sizeof *finding);
-    finding->line = *question->line;
-    finding->address = question->address;
+    finding->line = *request->line;
+    finding->address = request->address;
     finding->mode = SCAN_MODBUS;
     finding->is_double = first->evidence.fitting >= 2;
     finding->model = find_model(&inquiry, first);

@@ -48,7 +48,7 @@ static void begin_stream(fathom_stream_t *stream, fathom_stream_config_t *config
     (void)fathom_stream_init(stream, config, now_us); /* all of it is there */
 }
 
-/* Listens with these settings; what the streams and the ear have heard is there then. */
+/* Listens with these settings; what the streams and the listener have heard is there then. */
 static fathom_status_t hear(const scan_wire_t *wire, const fathom_line_settings_t *line, uint32_t us,
                             streams_t *streams)
 {
@@ -77,7 +77,7 @@ static bool understand(const scan_wire_t *wire, const fathom_line_settings_t *li
                        scan_finding_t *finding)
 {
     evidence_t evidence;
-    ear_judge(wire->ear, 0, &evidence);
+    listener_judge(wire->listener, 0, &evidence);
     finding->line = *line;
     /* Four frames of an A16 may hold one of an A05, by chance, but not between two silences. */
     if (streams->a05.counters[FATHOM_STREAM_FRAMES] >= LEAST_FRAMES) {
@@ -88,7 +88,7 @@ static bool understand(const scan_wire_t *wire, const fathom_line_settings_t *li
         finding->kind = SCAN_MASTER;
         finding->address = evidence.masters_address;
     } else if (evidence.foreign != 0) {
-        /* Answers to nobody: tables 12, #10 and #15 of the HPS-167S speak of continuous output. */
+        /* Answers to no request: tables 12, #10 and #15 of the HPS-167S speak of continuous output. */
         finding->kind = SCAN_SENDER;
         finding->address = evidence.foreign_address;
         if (scan_is_hps167s_rate(line->baud)) name_sensor(finding, FATHOM_HPS167S, SCAN_MODBUS);
@@ -98,23 +98,23 @@ static bool understand(const scan_wire_t *wire, const fathom_line_settings_t *li
     return true;
 }
 
-fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_talk_t *talk)
+fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_unasked_t *unasked)
 {
     streams_t streams;
-    memset(talk, 0, sizeof *talk);
+    memset(unasked, 0, sizeof *unasked);
     fathom_status_t status = hear(wire, &scan_dyp_line, listen_us, &streams);
-    talk->is_heard = wire->ear->bytes >= LEAST_BYTES;
-    if (status != FATHOM_READY || !talk->is_heard) return status;
-    if (understand(wire, &scan_dyp_line, &streams, &talk->finding)) return FATHOM_READY;
+    unasked->is_heard = wire->listener->bytes >= LEAST_BYTES;
+    if (status != FATHOM_READY || !unasked->is_heard) return status;
+    if (understand(wire, &scan_dyp_line, &streams, &unasked->finding)) return FATHOM_READY;
     for (uint8_t code = 1; code <= FATHOM_HPS167S_BAUD_CODES; code++) {
         const uint32_t baud = fathom_hps167s_baud(code);
         const fathom_line_settings_t line = {baud, scan_factory_parity(baud), 1};
         status = hear(wire, &line, OTHER_RATE_US, &streams);
         if (status == FATHOM_ERR_UNSUPPORTED) continue; /* a port that cannot do this rate */
         if (status != FATHOM_READY) return status;
-        if (understand(wire, &line, &streams, &talk->finding)) return FATHOM_READY;
+        if (understand(wire, &line, &streams, &unasked->finding)) return FATHOM_READY;
     }
-    talk->finding.kind = SCAN_SENDER;
-    talk->finding.line = scan_dyp_line;
+    unasked->finding.kind = SCAN_SENDER;
+    unasked->finding.line = scan_dyp_line;
     return FATHOM_READY;
 }

@@ -9,7 +9,7 @@
 typedef struct {
     bool is_heard;
     scan_finding_t finding; /* with is_heard: a sensor that sends by itself, SCAN_SENDER or SCAN_MASTER */
-} scan_talk_t;
+} scan_unasked_t;
 
 /*
  * Listens, and sends nothing: even a read would end the automatic output of an A16 RS232 or an A05 UART.
@@ -18,8 +18,8 @@ typedef struct {
  * another rate, so that each that an HPS-167S can have is listened to as well, for a second. Fewer bytes than two
  * frames of an A16 have are taken for noise.
  *
- * FATHOM_READY: *talk is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT.
+ * FATHOM_READY: *unasked is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT.
  */
-fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_talk_t *talk);
+fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_unasked_t *unasked);
 
 #endif

@@ -15,7 +15,7 @@ enum { SCAN_RATES = 6, SCAN_PARITIES = 3, SCAN_SETTINGS = SCAN_RATES * SCAN_PARI
 typedef struct {
     fathom_line_settings_t settings[SCAN_SETTINGS];
     uint32_t timeout_us; /* of every probe; 0: the defaults below */
-    uint32_t listen_us;  /* before the first question */
+    uint32_t listen_us;  /* before the first request */
     uint8_t setting_count;
     uint8_t first; /* address */
     uint8_t last;
@@ -48,7 +48,7 @@ uint32_t scan_timeout_us(const scan_plan_t *plan, const fathom_line_settings_t *
 /* The silence before a request, of the slowest line of the plan: who is slower than the host has to see it too. */
 uint16_t scan_silence_us(const scan_plan_t *plan);
 
-/* What one silent address takes, and all of it if nobody answers. Whoever answers adds SCAN_FOUND_US at most. */
+/* What one silent address takes, and all of it if none answers. A device that answers adds SCAN_FOUND_US at most. */
 enum { SCAN_FOUND_US = 1500000 };
 uint32_t scan_probe_us(const scan_plan_t *plan, const fathom_line_settings_t *line);
 uint64_t scan_plan_us(const scan_plan_t *plan);
@@ -56,8 +56,8 @@ uint64_t scan_plan_us(const scan_plan_t *plan);
 /* How many addresses the plan has. */
 uint32_t scan_addresses(const scan_plan_t *plan);
 
-/* The question to any A05 by 55 AA, which the line of A16 and A05 gets besides. It waits until nobody owes an answer,
- * and after it anybody may owe one: so it takes three time-outs. */
+/* The request to any A05 by 55 AA, which the line of A16 and A05 gets besides. It waits until no unit is in
+ * quarantine, and after it any may be: so it takes three time-outs. */
 enum { SCAN_ANY_TIMEOUT_US = 300000 };
 uint32_t scan_any_us(const scan_plan_t *plan);
 

@@ -20,7 +20,7 @@ static bool has_ended(fathom_status_t status)
     return status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
 }
 
-/* Sets aside what the ear has heard of others. */
+/* Sets aside what the listener has heard of others. */
 static void note(scan_walk_t *walk, const evidence_t *evidence)
 {
     const scan_plan_t *const plan = walk->plan;
@@ -50,18 +50,18 @@ static bool is_troubled(const scan_answer_t *answer)
 static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
 {
     if (troubles == 0) return walk->plan->repeats;
-    return walk->is_talking || walk->garbled >= FEW_GARBLED ? 1 : DAMAGED_REPEATS;
+    return walk->has_sender || walk->garbled >= FEW_GARBLED ? 1 : DAMAGED_REPEATS;
 }
 
 /* Asks one address until it is clear what becomes of it; FATHOM_READY unless the scan is over or the port cannot. */
-static fathom_status_t probe(scan_walk_t *walk, const scan_question_t *question, scan_answer_t *answer)
+static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, scan_answer_t *answer)
 {
-    uint8_t *const state = &walk->states[question->address];
+    uint8_t *const state = &walk->states[request->address];
     uint8_t silences = 0;
     uint8_t troubles = 0;
     bool has_checksum = false;
     for (;;) {
-        scan_ask(walk->wire, question, answer);
+        scan_ask(walk->wire, request, answer);
         const fathom_status_t status = answer->status;
         if (has_ended(status) || status == FATHOM_ERR_UNSUPPORTED) return status;
         note(walk, &answer->evidence);
@@ -75,20 +75,19 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_question_t *question,
         }
         if (silences + troubles > repeats(walk, troubles)) break;
     }
-    /* Once may be noise, and more may be what somebody sends by himself. */
+    /* Once may be noise, and more may be what a device sends by itself. */
     *state = SILENT;
-    if (troubles >= 2 && !walk->is_talking) *state = has_checksum ? DAMAGED : GARBLED;
+    if (troubles >= 2 && !walk->has_sender) *state = has_checksum ? DAMAGED : GARBLED;
     if (*state == GARBLED) walk->garbled++;
     return FATHOM_READY;
 }
 
-static fathom_status_t identify(scan_walk_t *walk, const scan_question_t *question,
-                                const scan_answer_t *answer)
+static fathom_status_t identify(scan_walk_t *walk, const scan_request_t *request, const scan_answer_t *answer)
 {
     scan_finding_t finding;
-    const fathom_status_t status = scan_identify(walk->wire, question, answer, &finding);
+    const fathom_status_t status = scan_identify(walk->wire, request, answer, &finding);
     if (status != FATHOM_READY) return status;
-    walk->found_baud[question->address] = question->line->baud;
+    walk->found_baud[request->address] = request->line->baud;
     if (finding.model == FATHOM_A05) walk->has_a05 = true;
     walk->tell->found(walk->tell->ctx, &finding);
     return FATHOM_READY;
@@ -98,15 +97,15 @@ static fathom_status_t identify(scan_walk_t *walk, const scan_question_t *questi
 static fathom_status_t visit(scan_walk_t *walk, const fathom_line_settings_t *line, uint8_t address,
                              uint32_t timeout_us)
 {
-    scan_question_t question;
+    scan_request_t request;
     scan_answer_t answer;
-    scan_first_question(line, address, &question);
-    question.timeout_us = scan_timeout_us(walk->plan, line);
-    if (question.timeout_us < timeout_us) question.timeout_us = timeout_us;
+    scan_first_request(line, address, &request);
+    request.timeout_us = scan_timeout_us(walk->plan, line);
+    if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     walk->asked++;
-    const fathom_status_t status = probe(walk, &question, &answer);
+    const fathom_status_t status = probe(walk, &request, &answer);
     if (status != FATHOM_READY || walk->states[address] != ANSWERED) return status;
-    return identify(walk, &question, &answer);
+    return identify(walk, &request, &answer);
 }
 
 static void tell_damaged(const scan_walk_t *walk, const fathom_line_settings_t *line, uint8_t kind,
@@ -131,16 +130,16 @@ static void judge_damaged(const scan_walk_t *walk, const fathom_line_settings_t 
 /* One A05 that speaks 55 AA answers this whatever its address is. Several answer at once, and damage each other. */
 static fathom_status_t ask_any_a05(scan_walk_t *walk)
 {
-    const scan_question_t question = {.line = &scan_dyp_line,
-                                      .timeout_us = SCAN_ANY_TIMEOUT_US,
-                                      .first = FATHOM_DYP_FIRST_REGISTER,
-                                      .count = 1,
-                                      .address = FATHOM_LINE_ANY_UNIT,
-                                      .is_dyp = true};
+    const scan_request_t request = {.line = &scan_dyp_line,
+                                    .timeout_us = SCAN_ANY_TIMEOUT_US,
+                                    .first = FATHOM_DYP_FIRST_REGISTER,
+                                    .count = 1,
+                                    .address = FATHOM_LINE_ANY_UNIT,
+                                    .is_dyp = true};
     scan_finding_t finding = {
         .line = scan_dyp_line, .kind = SCAN_SENSOR, .model = FATHOM_A05, .mode = SCAN_DYP, .has_value = true};
     scan_answer_t answer;
-    scan_ask(walk->wire, &question, &answer);
+    scan_ask(walk->wire, &request, &answer);
     if (has_ended(answer.status)) return answer.status;
     finding.address = answer.address;
     finding.value = answer.values[0];

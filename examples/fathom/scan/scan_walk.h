@@ -32,7 +32,7 @@ typedef struct {
     const scan_wire_t *wire;
     const scan_plan_t *plan;
     const scan_tell_t *tell;
-    bool is_talking; /* somebody sends by itself: bytes that nobody asked for are no sign of a device */
+    bool has_sender; /* a device sends by itself: bytes that come unasked are no sign of another one */
     scan_heard_t heard;
 
     /* the walk's own */
@@ -45,12 +45,12 @@ typedef struct {
 } scan_walk_t;
 
 /*
- * Asks what the plan says: first a probe of each address, then, of whoever answers, who it is.
+ * Asks what the plan says: first a probe of each address, then, where a device answers, what it is.
  *
  *  - An answer that comes too late is heard while another address is asked, and its sender is asked again with a long
  *    time-out.
  *  - Bytes that are no frame, or a damaged one, make it ask again; if that happens each time, the address is
- *    DAMAGED. If more than half of the addresses are, and nobody's answer was whole, it is NOT_MODBUS.
+ *    DAMAGED. If more than half of the addresses are, and no answer was whole, it is NOT_MODBUS.
  *  - Where a device was found, other parities of the same rate are not tried.
  *  - On the line of A16 and A05, if no A05 was found, any A05 is asked by 55 AA: one with an address beyond the plan's
  *    is found by that, if it is alone.

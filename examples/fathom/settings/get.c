@@ -6,7 +6,7 @@
 
 /* fathom info and fathom get: all that a device tells, or some of it. */
 
-static talk_t talk;
+static session_t session;
 
 /* Is it perhaps just this one that is not told? */
 static bool is_of_one(fathom_status_t status)
@@ -35,45 +35,45 @@ static void print_json(const setting_t *setting, fathom_status_t status, const c
 {
     (void)printf(", \"%s\": ", setting->name);
     if (status == FATHOM_READY)
-        talk_print_json(stdout, text);
+        session_print_json(stdout, text);
     else
         (void)fputs("null", stdout);
 }
 
 static void begin(void)
 {
-    const station_t *const station = talk.station;
+    const station_t *const station = session.station;
     char line[SETTINGS_TEXT];
-    (void)talk_line_text(&talk, line);
-    if (talk.is_json)
+    (void)session_line_text(&session, line);
+    if (session.is_json)
         (void)printf("{\"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",
-                     station->sensor->name, station->address, station->mode->name, line);
+                     station->model->name, station->address, station->mode->name, line);
     else
-        (void)printf("%s, %s, asked at address %u, %s\n", station->sensor->name, station->sensor->what,
+        (void)printf("%s, %s, asked at address %u, %s\n", station->model->name, station->model->what,
                      station->address, line);
 }
 
 static bool can_be_told(const setting_t *setting)
 {
-    return setting->get != NULL && strcmp(setting->mode, talk.station->mode->name) == 0;
+    return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
 }
 
 /* False: nothing further can be told, for a reason that was said. */
 static bool tell_one(const setting_t *setting, bool *is_known, unsigned *told)
 {
     char text[SETTING_TEXT];
-    const fathom_status_t status = talk_get(&talk, setting, text);
+    const fathom_status_t status = session_get(&session, setting, text);
     if (status != FATHOM_READY && !(*is_known && is_of_one(status))) {
         (void)fflush(stdout);
         (void)fprintf(stderr, "fathom: %s: ", setting->name);
-        talk_explain(&talk, status);
+        session_explain(&session, status);
         (void)fputs("\n", stderr);
         return false;
     }
     if (!*is_known) begin();
     *is_known = true;
     *told += status == FATHOM_READY;
-    if (talk.is_json)
+    if (session.is_json)
         print_json(setting, status, text);
     else
         print_text(setting, status, text);
@@ -92,7 +92,7 @@ static int tell(const setting_t *settings, size_t count)
         if (is_good) is_good = tell_one(&settings[i], &is_known, &told);
         all++;
     }
-    if (is_known && talk.is_json) (void)puts("}");
+    if (is_known && session.is_json) (void)puts("}");
     if (fflush(stdout) != 0 || ferror(stdout)) {
         (void)fputs("fathom: the output cannot be written\n", stderr);
         is_good = false;
@@ -115,11 +115,11 @@ static void help(FILE *to, bool is_info)
             "usage: fathom get SENSOR[:ADDRESS[:MODE]] --port PATH SETTING [OPTIONS]\n"
             "       fathom get SENSOR        lists the settings, their values, and when they take effect\n\n",
             to);
-    sensors_print(to);
+    models_print(to);
     (void)fputs("\n", to);
-    talk_options_help(to);
+    session_options_help(to);
     (void)fputs(
-        "\nThe first question ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
+        "\nThe first request ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
         "until\npower-off, for an A16 `fathom set a16 automatic-output on` brings it back.\n"
         "Exit status: 0 when all of it was told, 1 when some of it was not, 2 for wrong usage.\n\n"
         "examples:\n",
@@ -140,56 +140,56 @@ static int help_of(bool is_info)
 /* `fathom get SENSOR` and nothing else. */
 static int list(const char *name)
 {
-    const sensor_t *const sensor = sensor_find("get", name);
-    if (sensor == NULL) return STATUS_USAGE;
-    (void)printf("%s, %s, tells and takes:\n\n", sensor->name, sensor->what);
-    settings_print(stdout, sensor->settings);
+    const model_t *const model = model_find("get", name);
+    if (model == NULL) return STATUS_USAGE;
+    (void)printf("%s, %s, tells and takes:\n\n", model->name, model->what);
+    settings_print(stdout, model->settings);
     (void)printf("\nfathom get %s --port PATH SETTING          fathom set %s --port PATH SETTING VALUE\n",
-                 sensor->name, sensor->name);
+                 model->name, model->name);
     return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 static int tell_on_port(const host_t *host, const setting_t *settings, size_t count)
 {
-    if (!talk_open(&talk, host)) return STATUS_FAILED;
+    if (!session_open(&session, host)) return STATUS_FAILED;
     const int status = tell(settings, count);
-    talk_close(&talk);
+    session_close(&session);
     return status;
 }
 
 static int run_info(const host_t *host, int argc, char **argv)
 {
-    const char *values[TALK_OPTIONS] = {NULL};
+    const char *values[SESSION_OPTIONS] = {NULL};
     char **words = NULL;
     int count = 0;
     bool wants_help = false;
-    if (!talk_options(&talk, "info", argc, argv, talk_table, values, &words, &count, &wants_help))
+    if (!session_options(&session, "info", argc, argv, session_table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
     if (wants_help) return help_of(true);
     if (count != 0) return usage_error("info", "one sensor at a time; '%s' is too much", words[0]);
-    return tell_on_port(host, talk_settings(&talk), SIZE_MAX);
+    return tell_on_port(host, session_settings(&session), SIZE_MAX);
 }
 
 static int run_get(const host_t *host, int argc, char **argv)
 {
-    const char *values[TALK_OPTIONS] = {NULL};
+    const char *values[SESSION_OPTIONS] = {NULL};
     char **words = NULL;
     int count = 0;
     bool wants_help = false;
     if (argc == 2 && argv[1][0] != '-') return list(argv[1]);
-    if (!talk_options(&talk, "get", argc, argv, talk_table, values, &words, &count, &wants_help))
+    if (!session_options(&session, "get", argc, argv, session_table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
     if (wants_help) return help_of(false);
     if (count != 1)
         return usage_error("get",
                            count == 0 ? "which setting? `fathom get %s` lists them" : "one setting at a time",
-                           talk.station->sensor->name);
+                           session.station->model->name);
     const setting_t *const setting =
-        setting_find("get", talk.station->sensor->name, talk_settings(&talk), words[0]);
+        setting_find("get", session.station->model->name, session_settings(&session), words[0]);
     if (setting == NULL) return STATUS_USAGE;
     if (setting->get == NULL)
         return usage_error("get", "%s is write-only: the device does not tell it", setting->name);
-    if (!talk_set_mode(&talk, "get", values, setting->mode)) return STATUS_USAGE;
+    if (!session_set_mode(&session, "get", values, setting->mode)) return STATUS_USAGE;
     return tell_on_port(host, setting, 1);
 }
 

@@ -10,15 +10,15 @@
 
 static const char command[] = "reset";
 
-enum { RESTORE = TALK_OPTIONS, LOAD, OPTIONS };
+enum { RESTORE = SESSION_OPTIONS, LOAD, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    TALK_OPTION_ROWS,
+    SESSION_OPTION_ROWS,
     [RESTORE] = {"yes-restore-factory-settings", no_argument, NULL, 256},
     [LOAD] = {"yes-load-factory-sensor-settings", no_argument, NULL, 256},
 };
 
-static talk_t talk;
+static session_t session;
 
 static fathom_status_t restore(reader_t *reader, void *ctx)
 {
@@ -34,13 +34,13 @@ static fathom_status_t load(reader_t *reader, void *ctx)
 
 static int finish(bool is_restore, fathom_status_t status)
 {
-    const station_t *const station = talk.station;
+    const station_t *const station = session.station;
     if (status == FATHOM_READY) {
         if (is_restore)
             (void)printf("%s: the interface has its factory settings: address 1, "
                          "19200 8E1, termination on\n"
                          "from now on: fathom read hps167s --port %s\n",
-                         station->name, talk.options.port);
+                         station->name, session.options.port);
         else
             (void)printf("%s: the sensor has acknowledged that it loads its factory "
                          "settings; they cannot be read "
@@ -63,9 +63,9 @@ static int finish(bool is_restore, fathom_status_t status)
                       "the reset was sent, and then the device could not be read: "
                       "it is at address 1, 19200 8E1, or "
                       "still at address %u, %s; try fathom scan --port %s",
-                      station->address, settings_text(&station->line, line), talk.options.port);
+                      station->address, settings_text(&station->line, line), session.options.port);
     } else {
-        talk_explain(&talk, status);
+        session_explain(&session, status);
     }
     (void)fputs("\n", stderr);
     return STATUS_FAILED;
@@ -86,7 +86,7 @@ static void help(FILE *to)
                 "                    of the sensor behind it (#13): its filter "
                 "and its distance offset\n",
                 to);
-    talk_options_help(to);
+    session_options_help(to);
     (void)fputs("\nOn a line with several units, see first that none of the "
                 "others has address 1.\n"
                 "Exit status: 0 when it is done, 1 when not or when that is not "
@@ -100,24 +100,24 @@ static int run(const host_t *host, int argc, char **argv)
     char **words = NULL;
     int count = 0;
     bool wants_help = false;
-    if (!talk_options(&talk, command, argc, argv, table, values, &words, &count, &wants_help))
+    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
     if (wants_help) {
         help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
-    if (strcmp(talk.station->sensor->name, "hps167s") != 0)
+    if (strcmp(session.station->model->name, "hps167s") != 0)
         return usage_error(command, "only an hps167s can be reset; %s has no such command",
-                           talk.station->sensor->name);
+                           session.station->model->name);
     const bool is_restore = values[RESTORE] != NULL;
     if (is_restore == (values[LOAD] != NULL))
         return usage_error(command, "what was set is lost: say so by "
                                     "--yes-restore-factory-settings (the interface) or "
                                     "--yes-load-factory-sensor-settings");
-    if (!talk_open(&talk, host)) return STATUS_FAILED;
-    const int status = finish(is_restore, talk_call(&talk, is_restore ? restore : load, NULL));
-    talk_close(&talk);
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const int status = finish(is_restore, session_call(&session, is_restore ? restore : load, NULL));
+    session_close(&session);
     return status;
 }
 

@@ -7,8 +7,8 @@
 #include "shared/options.h"
 #include "stations/advice.h"
 
-const struct option talk_table[TALK_OPTIONS + 1] = {
-    TALK_OPTION_ROWS,
+const struct option session_table[SESSION_OPTIONS + 1] = {
+    SESSION_OPTION_ROWS,
 };
 
 static bool has_mode(const char *word)
@@ -17,34 +17,35 @@ static bool has_mode(const char *word)
     return colon != NULL && strchr(colon + 1, ':') != NULL;
 }
 
-static bool take_format(talk_t *talk, const char *command, const char *text)
+static bool take_format(session_t *session, const char *command, const char *text)
 {
-    talk->is_json = text != NULL && strcmp(text, "json") == 0;
-    if (text == NULL || talk->is_json || strcmp(text, "text") == 0) return true;
+    session->is_json = text != NULL && strcmp(text, "json") == 0;
+    if (text == NULL || session->is_json || strcmp(text, "text") == 0) return true;
     (void)usage_error(command, "--format takes text or json, not '%s'", text);
     return false;
 }
 
-bool talk_options(talk_t *talk, const char *command, int argc, char **argv, const struct option *table,
-                  const char **values, char ***words, int *count, bool *wants_help)
+bool session_options(session_t *session, const char *command, int argc, char **argv,
+                     const struct option *table, const char **values, char ***words, int *count,
+                     bool *wants_help)
 {
-    memset(talk, 0, sizeof *talk);
+    memset(session, 0, sizeof *session);
     const int rest = options_parse(command, argc, argv, table, values);
     if (rest < 0) return false;
-    *wants_help = values[TALK_HELP] != NULL;
+    *wants_help = values[SESSION_HELP] != NULL;
     if (*wants_help) return true;
     if (rest == argc) {
         (void)usage_error(command, "which sensor? a16, a05 or hps167s");
         return false;
     }
-    const char *mode = values[TALK_MODE];
+    const char *mode = values[SESSION_MODE];
     if (mode == NULL && !has_mode(argv[rest])) mode = "modbus";
-    talk->station = &talk->options.stations[0];
-    if (!take_format(talk, command, values[TALK_FORMAT]) ||
-        !session_options(&talk->options, command, argv + rest, 1, values, values[TALK_ADDRESS], mode))
+    session->station = &session->options.stations[0];
+    if (!take_format(session, command, values[SESSION_FORMAT]) ||
+        !sensor_options(&session->options, command, argv + rest, 1, values, values[SESSION_ADDRESS], mode))
         return false;
-    if (!talk->station->mode->is_asked) {
-        (void)usage_error(command, "in mode %s nothing is asked; leave it out", talk->station->mode->name);
+    if (!session->station->mode->is_asked) {
+        (void)usage_error(command, "in mode %s nothing is asked; leave it out", session->station->mode->name);
         return false;
     }
     *words = argv + rest + 1;
@@ -52,24 +53,24 @@ bool talk_options(talk_t *talk, const char *command, int argc, char **argv, cons
     return true;
 }
 
-bool talk_set_mode(talk_t *talk, const char *command, const char *const *values, const char *mode)
+bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode)
 {
-    if (strcmp(talk->station->mode->name, mode) == 0) return true;
-    if (values[TALK_MODE] != NULL) {
+    if (strcmp(session->station->mode->name, mode) == 0) return true;
+    if (values[SESSION_MODE] != NULL) {
         (void)usage_error(command, "this takes --mode %s", mode);
         return false;
     }
-    talk->station->mode = sensor_mode_find(command, talk->station->sensor, mode);
-    return talk->station->mode != NULL;
+    session->station->mode = model_mode_find(command, session->station->model, mode);
+    return session->station->mode != NULL;
 }
 
-const setting_t *talk_settings(const talk_t *talk) { return talk->station->sensor->settings; }
+const setting_t *session_settings(const session_t *session) { return session->station->model->settings; }
 
 /* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
-static void listen(talk_t *talk)
+static void listen(session_t *session)
 {
     enum { LISTEN_US = 66000 };
-    channel_t *const channel = &talk->channel;
+    channel_t *const channel = &session->channel;
     const host_t *const host = channel->host;
     const uint64_t end_us = host->now_us(host->ctx) + LISTEN_US;
     for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
@@ -78,51 +79,51 @@ static void listen(talk_t *talk)
     }
 }
 
-bool talk_open(talk_t *talk, const host_t *host)
+bool session_open(session_t *session, const host_t *host)
 {
-    const session_options_t *const options = &talk->options;
-    station_t *const station = talk->station;
+    const sensor_options_t *const options = &session->options;
+    station_t *const station = session->station;
     const reader_settings_t settings = {.timeout_us = options->timeout_us,
                                         .period_us = options->interval_us,
                                         .line = &station->line,
                                         .backoff_us = READER_BACKOFF_US,
                                         .address = station->address,
                                         .retries = options->retries};
-    talk->channel.echo = options->echo;
+    session->channel.echo = options->echo;
     if (!host->begin(host->ctx)) return false;
-    if (!channel_open(&talk->channel, host, options->port, &options->line)) {
-        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&talk->channel.port));
+    if (!channel_open(&session->channel, host, options->port, &options->line)) {
+        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&session->channel.port));
         return false;
     }
-    tally_begin_port(&talk->port_counts, &talk->channel);
-    if (station->mode->read(&station->reader, &talk->channel, &settings)) {
-        if (talk->channel.tcp == NULL && station->reader.unit == &station->reader.driver.hps167s.unit) {
-            const fathom_hps167s_auto_config_t hears = {.line = &talk->channel.line};
-            (void)fathom_hps167s_auto_init(&talk->hears, &hears);
-            fathom_hps167s_auto_beside(&talk->hears, &station->reader.driver.hps167s);
+    counters_begin_port(&session->port_counts, &session->channel);
+    if (station->mode->read(&station->reader, &session->channel, &settings)) {
+        if (session->channel.tcp == NULL && station->reader.unit == &station->reader.driver.hps167s.unit) {
+            const fathom_hps167s_auto_config_t hears = {.line = &session->channel.line};
+            (void)fathom_hps167s_auto_init(&session->hears, &hears);
+            fathom_hps167s_auto_beside(&session->hears, &station->reader.driver.hps167s);
         }
-        if (talk->channel.tcp == NULL) listen(talk);
+        if (session->channel.tcp == NULL) listen(session);
         return true;
     }
-    (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->sensor->name);
-    channel_close(&talk->channel);
+    (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->model->name);
+    channel_close(&session->channel);
     return false;
 }
 
-void talk_close(talk_t *talk) { channel_close(&talk->channel); }
+void session_close(session_t *session) { channel_close(&session->channel); }
 
-fathom_status_t talk_call(talk_t *talk, talk_call_t call, void *ctx)
+fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
-    reader_t *const reader = &talk->station->reader;
-    const host_t *const host = talk->channel.host;
-    const fathom_posix_uart_t *const port = &talk->channel.port;
-    tally_begin_attempt(&talk->station->tally);
-    ear_forget(&talk->channel.ear);
+    reader_t *const reader = &session->station->reader;
+    const host_t *const host = session->channel.host;
+    const fathom_posix_uart_t *const port = &session->channel.port;
+    counters_begin_attempt(&session->station->counters);
+    listener_forget(&session->channel.listener);
     while (!host->has_ended(host->ctx)) {
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
-        if (channel_is_stuck(&talk->channel))
+        if (channel_is_stuck(&session->channel))
             return reader->unit->is_written ? FATHOM_ERR_UNCONFIRMED : FATHOM_ERR_NO_ANSWER;
         host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
     }
@@ -149,67 +150,67 @@ static fathom_status_t call_set(reader_t *reader, void *ctx)
     return what->setting->set(reader, what->value);
 }
 
-/* Calls again what has written nothing, where a frame that the device sent unasked may have met question or answer. */
-static fathom_status_t call_again(talk_t *talk, talk_call_t call, what_t *what)
+/* Calls again what has written nothing, where a frame that the device sent unasked may have met request or answer. */
+static fathom_status_t call_again(session_t *session, session_call_t call, what_t *what)
 {
     enum { TIMES = 4 };
-    const fathom_modbus_unit_t *const unit = talk->station->reader.unit;
+    const fathom_modbus_unit_t *const unit = session->station->reader.unit;
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned times = 0; times != TIMES; times++) {
-        status = talk_call(talk, call, what);
+        status = session_call(session, call, what);
         const bool is_met =
             status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
-        const bool is_among_unasked = talk->hears.is_new || talk->hears.implausible != 0;
+        const bool is_among_unasked = session->hears.is_new || session->hears.implausible != 0;
         if (!is_met || unit->is_written || !is_among_unasked) break;
     }
     return status;
 }
 
-fathom_status_t talk_get(talk_t *talk, const setting_t *setting, char text[SETTING_TEXT])
+fathom_status_t session_get(session_t *session, const setting_t *setting, char text[SETTING_TEXT])
 {
     what_t what = {.setting = setting, .text = text};
     text[0] = '\0';
-    return call_again(talk, call_get, &what);
+    return call_again(session, call_get, &what);
 }
 
-fathom_status_t talk_set(talk_t *talk, const setting_t *setting, int32_t value)
+fathom_status_t session_set(session_t *session, const setting_t *setting, int32_t value)
 {
     what_t what = {.setting = setting, .value = value};
-    return call_again(talk, call_set, &what);
+    return call_again(session, call_set, &what);
 }
 
-const char *talk_line_text(const talk_t *talk, char text[SETTINGS_TEXT])
+const char *session_line_text(const session_t *session, char text[SETTINGS_TEXT])
 {
-    if (talk->channel.tcp == NULL) return settings_text(&talk->station->line, text);
+    if (session->channel.tcp == NULL) return settings_text(&session->station->line, text);
     (void)snprintf(text, SETTINGS_TEXT, "Modbus TCP");
     return text;
 }
 
-void talk_explain(talk_t *talk, fathom_status_t status)
+void session_explain(session_t *session, fathom_status_t status)
 {
-    station_t *const station = talk->station;
+    station_t *const station = session->station;
     failure_t failure = {.status = status,
-                         .sensor = station->sensor,
+                         .model = station->model,
                          .reader = &station->reader,
-                         .channel = &talk->channel,
-                         .tally = &station->tally,
+                         .channel = &session->channel,
+                         .counters = &station->counters,
                          .line = &station->line,
                          .address = station->address};
-    tally_take(&station->tally, &talk->port_counts, &talk->channel, &station->reader);
-    ear_judge(&talk->channel.ear, station->address, &failure.evidence);
+    counters_take(&station->counters, &session->port_counts, &session->channel, &station->reader);
+    listener_judge(&session->channel.listener, station->address, &failure.evidence);
     if (status == FATHOM_ERR_CANCELLED)
         (void)fputs("ended before the answer came", stderr);
     else if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(&station->reader))
         (void)fprintf(stderr, "its answers cannot be that%s; check that it is %s, and alone at this address",
-                      strcmp(station->sensor->name, "hps167s") == 0
+                      strcmp(station->model->name, "hps167s") == 0
                           ? ", or what it sends unasked stands between them"
                           : "",
-                      station->sensor->name);
+                      station->model->name);
     else
         advice_print(stderr, &failure);
 }
 
-void talk_options_help(FILE *to)
+void session_options_help(FILE *to)
 {
     (void)fputs(
         "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or tcp:HOST[:PORT]\n"
@@ -219,13 +220,13 @@ void talk_options_help(FILE *to)
         "  --parity P        if not the factory's: none, even or odd\n"
         "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --timeout MS      how long to wait for a measurement\n"
-        "  --retries N       how often a failed question is repeated; what changes something never is\n"
+        "  --retries N       how often a failed request is repeated; what changes something never is\n"
         "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n"
         "  --format FORMAT   text (default) or json\n",
         to);
 }
 
-void talk_print_json(FILE *to, const char *text)
+void session_print_json(FILE *to, const char *text)
 {
     const char *const digits = text[0] == '-' ? text + 1 : text;
     const size_t length = strlen(digits);

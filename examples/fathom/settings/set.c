@@ -8,12 +8,12 @@
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
 
 static const char command[] = "set";
-static talk_t talk;
+static session_t session;
 
-enum { BLIND = TALK_OPTIONS, ALL_UNITS, YES, LOST, OPTIONS };
+enum { BLIND = SESSION_OPTIONS, ALL_UNITS, YES, LOST, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    TALK_OPTION_ROWS,
+    SESSION_OPTION_ROWS,
     [BLIND] = {"blind", no_argument, NULL, 256},
     [ALL_UNITS] = {"all-units", no_argument, NULL, 256},
     [YES] = {"yes", no_argument, NULL, 256},
@@ -29,19 +29,19 @@ static void print_value(const setting_t *setting, const char *text)
 /* Where the device is asked from now on. */
 static void print_next(const setting_t *setting)
 {
-    const station_t *const station = talk.station;
-    const sensor_t *const sensor = station->sensor;
+    const station_t *const station = session.station;
+    const model_t *const model = station->model;
     const fathom_modbus_unit_t *const unit = station->reader.unit;
     const fathom_line_settings_t *const line = unit->settings != NULL ? unit->settings : &station->line;
     char options[LINE_OPTIONS];
     if (!setting->moves) return;
-    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", sensor->name, unit->address,
-                 station->mode->name, talk.options.port, line_options(line, &sensor->line, options));
+    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, unit->address,
+                 station->mode->name, session.options.port, line_options(line, &model->line, options));
 }
 
 static bool is_later(const setting_t *setting)
 {
-    return setting->is_later != NULL && setting->is_later(&talk.station->reader);
+    return setting->is_later != NULL && setting->is_later(&session.station->reader);
 }
 
 /* What has become of a setting, and whether it holds now is known. */
@@ -80,7 +80,7 @@ static bool is_read_back(const change_t *change)
 
 static outcome_t outcome_of(const change_t *change, fathom_status_t status)
 {
-    const fathom_modbus_unit_t *const unit = talk.station->reader.unit;
+    const fathom_modbus_unit_t *const unit = session.station->reader.unit;
     const bool has_ended = unit->setting == 0;
     if (!unit->is_written) return status == FATHOM_READY ? UNCHANGED : NOT_WRITTEN;
     if (status == FATHOM_READY) return DONE;
@@ -93,14 +93,14 @@ static outcome_t outcome_of(const change_t *change, fathom_status_t status)
 
 static void print_json(const change_t *change, outcome_t outcome)
 {
-    const station_t *const station = talk.station;
+    const station_t *const station = session.station;
     const bool is_written = outcome != UNCHANGED && outcome != NOT_WRITTEN;
-    (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->sensor->name,
+    (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->model->name,
                  change->setting->name);
-    talk_print_json(stdout, change->wanted);
+    session_print_json(stdout, change->wanted);
     (void)fputs(", \"was\": ", stdout);
     if (change->was[0] != '\0')
-        talk_print_json(stdout, change->was);
+        session_print_json(stdout, change->was);
     else
         (void)fputs("null", stdout);
     (void)printf(", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
@@ -112,7 +112,7 @@ static void print_json(const change_t *change, outcome_t outcome)
 static void print_done(const change_t *change, outcome_t outcome)
 {
     const setting_t *const setting = change->setting;
-    (void)printf("%s: %s is ", talk.station->name, setting->name);
+    (void)printf("%s: %s is ", session.station->name, setting->name);
     print_value(setting, change->wanted);
     if (is_later(setting))
         (void)printf(" from the next power-on (%s until then)\n", change->was);
@@ -131,7 +131,7 @@ static void print_done(const change_t *change, outcome_t outcome)
 /* The two places at which the device may be, or what else is not known. */
 static void print_unknown(FILE *to, const change_t *change)
 {
-    const station_t *const station = talk.station;
+    const station_t *const station = session.station;
     const setting_t *const setting = change->setting;
     const bool is_acknowledged =
         station->reader.unit->setting == 0 && station->reader.unit->outcome == FATHOM_READY;
@@ -141,11 +141,11 @@ static void print_unknown(FILE *to, const change_t *change)
         (void)fprintf(to,
                       "it is at %" PRIu32 " or at %s baud, perhaps from the next power-on; try fathom scan "
                       "--port %s --baud %" PRIu32 ",%s",
-                      was, change->wanted, talk.options.port, was, change->wanted);
+                      was, change->wanted, session.options.port, was, change->wanted);
     } else if (setting->moves) {
         char line[SETTINGS_TEXT];
         (void)fprintf(to, "it is at address %u or at address %s, %s; try fathom read with either",
-                      station->address, change->wanted, talk_line_text(&talk, line));
+                      station->address, change->wanted, session_line_text(&session, line));
     } else if (setting->unconfirmed != NULL) {
         (void)fputs(setting->unconfirmed, to);
     } else {
@@ -167,15 +167,15 @@ static void print_not_written(const change_t *change, fathom_status_t status)
                       change->wanted);
         break;
     default:
-        talk_explain(&talk, status);
+        session_explain(&session, status);
         break;
     }
 }
 
 static void print_failed(const change_t *change, outcome_t outcome, fathom_status_t status)
 {
-    const fathom_modbus_unit_t *const unit = talk.station->reader.unit;
-    (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", talk.station->name, change->setting->name,
+    const fathom_modbus_unit_t *const unit = session.station->reader.unit;
+    (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", session.station->name, change->setting->name,
                   change->wanted, outcomes[outcome]);
     switch (outcome) {
     case UNCONFIRMED:
@@ -186,7 +186,7 @@ static void print_failed(const change_t *change, outcome_t outcome, fathom_statu
                       unit->outcome == FATHOM_READY ? "it was acknowledged" : "no acknowledgement came");
         break;
     case REFUSED:
-        talk_explain(&talk, status);
+        session_explain(&session, status);
         break;
     default:
         print_not_written(change, status);
@@ -198,7 +198,7 @@ static void print_failed(const change_t *change, outcome_t outcome, fathom_statu
 /* What was asked for is done, and more than that cannot be known. */
 static bool is_done_blind(const change_t *change, outcome_t outcome)
 {
-    const int8_t answer = talk.station->reader.unit->outcome;
+    const int8_t answer = session.station->reader.unit->outcome;
     /* what came back is its acknowledgement, or may be: nothing was read that could tell an echo from one */
     const bool is_answered = answer == FATHOM_READY || answer == FATHOM_ERR_ECHO;
     return outcome == SENT || (change->is_blind && outcome == UNCONFIRMED && is_answered);
@@ -209,14 +209,14 @@ static int tell(const change_t *change, fathom_status_t status)
     const outcome_t outcome = outcome_of(change, status);
     const bool is_blind = is_done_blind(change, outcome);
     const bool is_done = outcome == UNCHANGED || outcome == DONE || is_blind;
-    if (talk.is_json) print_json(change, outcome);
+    if (session.is_json) print_json(change, outcome);
     if (!is_done) {
         (void)fflush(stdout);
         print_failed(change, outcome, status);
-    } else if (is_blind && !talk.is_json) {
-        (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : talk.station->name,
+    } else if (is_blind && !session.is_json) {
+        (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : session.station->name,
                      change->setting->name, change->wanted, outcomes[outcome]);
-    } else if (!talk.is_json) {
+    } else if (!session.is_json) {
         print_done(change, outcome);
     }
     if (fflush(stdout) != 0 || ferror(stdout)) {
@@ -236,14 +236,14 @@ static int set(change_t *change)
 {
     setting_print_value(change->setting, change->value, change->wanted);
     change->was[0] = '\0';
-    if (change->is_for_all) return tell(change, talk_call(&talk, call_all, change));
+    if (change->is_for_all) return tell(change, session_call(&session, call_all, change));
     if (change->is_blind) {
-        (void)fathom_modbus_next_is_blind(talk.station->reader.unit);
+        (void)fathom_modbus_next_is_blind(session.station->reader.unit);
     } else if (change->setting->get != NULL) {
-        const fathom_status_t status = talk_get(&talk, change->setting, change->was);
+        const fathom_status_t status = session_get(&session, change->setting, change->was);
         if (status != FATHOM_READY) return tell(change, status);
     }
-    return tell(change, talk_set(&talk, change->setting, change->value));
+    return tell(change, session_set(&session, change->setting, change->value));
 }
 
 static void help(FILE *to)
@@ -254,7 +254,7 @@ static void help(FILE *to)
                 "usage: fathom set SENSOR[:ADDRESS[:MODE]] --port PATH SETTING VALUE [OPTIONS]\n\n"
                 "`fathom get SENSOR` lists the settings, their values, and when they take effect.\n\n",
                 to);
-    talk_options_help(to);
+    session_options_help(to);
     (void)fputs(
         "  --blind           write it once without reading anything, for a device whose settings cannot be "
         "made out;\n"
@@ -342,33 +342,33 @@ static int run(const host_t *host, int argc, char **argv)
     int count = 0;
     change_t change = {0};
     bool wants_help = false;
-    if (!talk_options(&talk, command, argc, argv, table, values, &words, &count, &wants_help))
+    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
     if (wants_help) {
         help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    const char *const sensor = talk.station->sensor->name;
+    const char *const model = session.station->model->name;
     if (count != 2)
         return usage_error(command,
                            count == 0   ? "which setting? `fathom get %s` lists them"
                            : count == 1 ? "a value is missing; `fathom get %s` lists them"
                                         : "one setting and one value of %s at a time",
-                           sensor);
-    const setting_t *const setting = setting_find(command, sensor, talk_settings(&talk), words[0]);
+                           model);
+    const setting_t *const setting = setting_find(command, model, session_settings(&session), words[0]);
     if (setting == NULL) return STATUS_USAGE;
     if (setting->set == NULL)
         return usage_error(command, "%s is told by the device and cannot be set", setting->name);
     change.setting = setting;
     if (!take_value(&change, words[1], values[LOST] != NULL) ||
-        !talk_set_mode(&talk, command, values, setting->mode) || !take_kind(&change, values))
+        !session_set_mode(&session, command, values, setting->mode) || !take_kind(&change, values))
         return STATUS_USAGE;
-    if (talk.station->address == 0)
+    if (session.station->address == 0)
         return usage_error(command,
                            "what is written to address 0 goes to all units, so nothing can be set there");
-    if (!talk_open(&talk, host)) return STATUS_FAILED;
+    if (!session_open(&session, host)) return STATUS_FAILED;
     const int status = set(&change);
-    talk_close(&talk);
+    session_close(&session);
     return status;
 }
 

@@ -32,7 +32,7 @@ static const char *values_text(const setting_t *setting, char text[LIST])
     return text;
 }
 
-const setting_t *setting_find(const char *command, const char *sensor, const setting_t *settings,
+const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
                               const char *name)
 {
     char known[LIST] = "";
@@ -40,7 +40,7 @@ const setting_t *setting_find(const char *command, const char *sensor, const set
         if (strcmp(setting->name, name) == 0) return setting;
         add(known, ", ", setting->name);
     }
-    (void)usage_error(command, "%s has no setting '%s', only %s", sensor, name, known);
+    (void)usage_error(command, "%s has no setting '%s', only %s", model, name, known);
     return NULL;
 }
 

@@ -48,7 +48,7 @@ extern const setting_t settings_a05[];
 extern const setting_t settings_hps167s[];
 
 /* By name; NULL after a usage error that lists what there is. */
-const setting_t *setting_find(const char *command, const char *sensor, const setting_t *settings,
+const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
                               const char *name);
 
 /* False after a usage error. */

@@ -47,7 +47,7 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
         suit_serial(channel, settings);
     }
     channel->clock = (fathom_clock_t){now_us, channel};
-    ear_begin(&channel->ear, &channel->uart, &channel->clock);
+    listener_begin(&channel->listener, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;
     channel->config.clock = &channel->clock;
     channel->config.frame = channel->frame;
@@ -81,10 +81,10 @@ bool channel_is_stuck(channel_t *channel)
     const bool is_waiting = first != NULL && channel->line.owing == 0;
     const uint64_t most_us = is_waiting ? STUCK_US + 2ull * first->timeout_us : 0;
     const bool is_stuck =
-        is_waiting && channel->ear.requests == channel->requests && now - channel->moved_us > most_us;
-    if (!is_stuck && is_waiting && channel->ear.requests == channel->requests) return false;
+        is_waiting && channel->listener.requests == channel->requests && now - channel->moved_us > most_us;
+    if (!is_stuck && is_waiting && channel->listener.requests == channel->requests) return false;
     channel->moved_us = now;
-    channel->requests = channel->ear.requests;
+    channel->requests = channel->listener.requests;
     return is_stuck;
 }
 

@@ -22,7 +22,7 @@ typedef struct {
     tcp_t *tcp; /* then `port` stands in for it (tcp.h); NULL: a serial port */
     fathom_uart_t uart;
     fathom_clock_t clock;
-    ear_t ear; /* between uart and port */
+    listener_t listener; /* between uart and port */
     fathom_line_config_t config;
     uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_t line;

@@ -46,7 +46,7 @@ static void handle(int number, void (*handler)(int))
     struct sigaction action;
     memset(&action, 0, sizeof action);
     action.sa_handler = handler;
-    /* No SA_RESTART: a write to an output that nobody reads must end too. */
+    /* No SA_RESTART: a write to an output without a reader must end too. */
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(number, &action, NULL);
 }

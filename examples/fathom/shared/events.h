@@ -23,7 +23,7 @@ bool events_noted(void);
 /* Has a signal asked to end? */
 bool events_ended(void);
 
-/* Has nobody been reading the standard output any more, as far as events_wait has seen? */
+/* Has the standard output lost its reader, as far as events_wait has seen? */
 bool events_output_gone(void);
 
 /*

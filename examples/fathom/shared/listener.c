@@ -8,89 +8,89 @@
 #include "fathom/dyp_protocol.h"
 #include "fathom/modbus_rtu.h"
 
-static uint32_t now_us(const ear_t *ear) { return ear->clock.now_us(ear->clock.ctx); }
+static uint32_t now_us(const listener_t *listener) { return listener->clock.now_us(listener->clock.ctx); }
 
-static int ear_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+static int listener_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
-    const ear_t *const tap = ctx;
-    ear_t *const ear = tap->now != NULL ? tap->now : ctx;
+    const listener_t *const tap = ctx;
+    listener_t *const listener = tap->now != NULL ? tap->now : ctx;
     const int n = tap->inner.read(tap->inner.ctx, bytes, capacity, rx);
     if (n <= 0) return n;
-    const size_t room = sizeof ear->window - ear->have;
+    const size_t room = sizeof listener->window - listener->have;
     const size_t kept = (size_t)n < room ? (size_t)n : room;
-    memcpy(ear->window + ear->have, bytes, kept);
-    ear->have = (uint16_t)(ear->have + kept);
-    ear->bytes += (uint32_t)n;
-    const uint32_t took_us = fathom_elapsed_us(now_us(tap), ear->asked_us);
-    if (ear->request_length != 0 && took_us > ear->slowest_us) ear->slowest_us = took_us;
+    memcpy(listener->window + listener->have, bytes, kept);
+    listener->have = (uint16_t)(listener->have + kept);
+    listener->bytes += (uint32_t)n;
+    const uint32_t took_us = fathom_elapsed_us(now_us(tap), listener->asked_us);
+    if (listener->request_length != 0 && took_us > listener->slowest_us) listener->slowest_us = took_us;
     return n;
 }
 
-static int ear_write(void *ctx, const uint8_t *bytes, size_t length)
+static int listener_write(void *ctx, const uint8_t *bytes, size_t length)
 {
-    ear_t *const tap = ctx;
+    listener_t *const tap = ctx;
     const uint32_t asked_us = now_us(tap); /* an answer may be there before the write returns */
     const int n = tap->inner.write(tap->inner.ctx, bytes, length);
     if (n <= 0 || length > sizeof tap->request) return n;
     if (tap->whose != NULL) tap->now = tap->whose(tap->ctx);
-    ear_t *const ear = tap->now != NULL ? tap->now : tap;
-    memcpy(ear->request, bytes, length);
-    ear->request_length = (uint8_t)length;
-    ear->asked_us = asked_us;
-    ear->requests++;
+    listener_t *const listener = tap->now != NULL ? tap->now : tap;
+    memcpy(listener->request, bytes, length);
+    listener->request_length = (uint8_t)length;
+    listener->asked_us = asked_us;
+    listener->requests++;
     return n;
 }
 
-static bool ear_sent(void *ctx)
+static bool listener_sent(void *ctx)
 {
-    ear_t *const ear = ctx;
-    return ear->inner.sent(ear->inner.ctx);
+    listener_t *const listener = ctx;
+    return listener->inner.sent(listener->inner.ctx);
 }
 
-static int ear_set_line(void *ctx, const fathom_line_settings_t *settings)
+static int listener_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
-    ear_t *const ear = ctx;
-    return ear->inner.set_line(ear->inner.ctx, settings);
+    listener_t *const listener = ctx;
+    return listener->inner.set_line(listener->inner.ctx, settings);
 }
 
-static int ear_set_break(void *ctx, bool on)
+static int listener_set_break(void *ctx, bool on)
 {
-    ear_t *const ear = ctx;
-    return ear->inner.set_break(ear->inner.ctx, on);
+    listener_t *const listener = ctx;
+    return listener->inner.set_break(listener->inner.ctx, on);
 }
 
-static uint32_t ear_leaves_in_us(void *ctx)
+static uint32_t listener_leaves_in_us(void *ctx)
 {
-    ear_t *const ear = ctx;
-    return ear->inner.leaves_in_us(ear->inner.ctx);
+    listener_t *const listener = ctx;
+    return listener->inner.leaves_in_us(listener->inner.ctx);
 }
 
-void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock)
+void listener_begin(listener_t *listener, fathom_uart_t *uart, const fathom_clock_t *clock)
 {
-    ear->inner = *uart;
-    ear->clock = *clock;
-    ear->now = NULL;
-    ear->request_length = 0;
-    ear_forget(ear);
-    uart->read = ear_read;
-    uart->write = ear_write;
-    uart->sent = ear_sent;
-    if (uart->set_line != NULL) uart->set_line = ear_set_line;
-    if (uart->set_break != NULL) uart->set_break = ear_set_break;
-    if (uart->leaves_in_us != NULL) uart->leaves_in_us = ear_leaves_in_us;
-    uart->ctx = ear;
+    listener->inner = *uart;
+    listener->clock = *clock;
+    listener->now = NULL;
+    listener->request_length = 0;
+    listener_forget(listener);
+    uart->read = listener_read;
+    uart->write = listener_write;
+    uart->sent = listener_sent;
+    if (uart->set_line != NULL) uart->set_line = listener_set_line;
+    if (uart->set_break != NULL) uart->set_break = listener_set_break;
+    if (uart->leaves_in_us != NULL) uart->leaves_in_us = listener_leaves_in_us;
+    uart->ctx = listener;
 }
 
-void ear_forget(ear_t *ear)
+void listener_forget(listener_t *listener)
 {
-    ear->have = 0;
-    ear->bytes = 0;
-    ear->slowest_us = 0;
+    listener->have = 0;
+    listener->bytes = 0;
+    listener->slowest_us = 0;
 }
 
-static uint8_t room_of(const ear_t *ear, uint16_t at)
+static uint8_t room_of(const listener_t *listener, uint16_t at)
 {
-    const unsigned left = (unsigned)ear->have - at;
+    const unsigned left = (unsigned)listener->have - at;
     return left < UINT8_MAX ? (uint8_t)left : UINT8_MAX;
 }
 
@@ -102,12 +102,12 @@ static uint8_t whole(const uint8_t *bytes, uint8_t have, uint8_t length)
 
 /* The bytes that two or more frames FF..SUM of this length in a row take; 0: there are none. One alone may be
  * chance. */
-static uint16_t streamed(const ear_t *ear, uint16_t at, uint8_t length, uint32_t *frames)
+static uint16_t streamed(const listener_t *listener, uint16_t at, uint8_t length, uint32_t *frames)
 {
     uint16_t end = at;
     uint32_t in_a_row = 0;
-    while (ear->have - end >= length && ear->window[end] == FATHOM_DYP_START &&
-           fathom_dyp_frame_valid(ear->window + end, length)) {
+    while (listener->have - end >= length && listener->window[end] == FATHOM_DYP_START &&
+           fathom_dyp_frame_valid(listener->window + end, length)) {
         end = (uint16_t)(end + length);
         in_a_row++;
     }
@@ -129,11 +129,11 @@ static void note_request(evidence_t *evidence, uint8_t to)
     if (evidence->masters++ == 0) evidence->masters_address = to;
 }
 
-static bool is_fitting(const ear_t *ear, const uint8_t *answer, uint8_t length)
+static bool is_fitting(const listener_t *listener, const uint8_t *answer, uint8_t length)
 {
     enum { FUNCTION = 1, COUNT = 5, READ_REQUEST = 8, READ_ANSWER = 5 };
-    return answer[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS || ear->request_length != READ_REQUEST ||
-           length == READ_ANSWER + 2 * ear->request[COUNT];
+    return answer[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS ||
+           listener->request_length != READ_REQUEST || length == READ_ANSWER + 2 * listener->request[COUNT];
 }
 
 /* As account, for the frames 55 AA. A request that is no echo has the length and the sum of one and the command of a
@@ -155,20 +155,20 @@ static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, 
 }
 
 /* What begins at the front of these bytes: how many of them are accounted for, 0 if none. */
-static uint16_t account(const ear_t *ear, uint16_t at, uint8_t address, evidence_t *evidence)
+static uint16_t account(const listener_t *listener, uint16_t at, uint8_t address, evidence_t *evidence)
 {
-    const uint8_t *const bytes = ear->window + at;
-    const uint8_t have = room_of(ear, at);
-    if (ear->request_length != 0 && have >= ear->request_length &&
-        memcmp(bytes, ear->request, ear->request_length) == 0) {
+    const uint8_t *const bytes = listener->window + at;
+    const uint8_t have = room_of(listener, at);
+    if (listener->request_length != 0 && have >= listener->request_length &&
+        memcmp(bytes, listener->request, listener->request_length) == 0) {
         evidence->echoes++;
-        return ear->request_length;
+        return listener->request_length;
     }
     uint8_t length = fathom_modbus_rtu_response_length(bytes, have);
     length = bytes[0] == 0 && address != 0 ? 0 : whole(bytes, have, length);
     if (length != 0) {
         note_answer(evidence, bytes[0], address);
-        if (bytes[0] == address && is_fitting(ear, bytes, length)) evidence->fitting++;
+        if (bytes[0] == address && is_fitting(listener, bytes, length)) evidence->fitting++;
         return length;
     }
     length = whole(bytes, have, fathom_modbus_rtu_request_length(bytes, have));
@@ -178,17 +178,17 @@ static uint16_t account(const ear_t *ear, uint16_t at, uint8_t address, evidence
     }
     length = account_dyp(bytes, have, address, evidence);
     if (length != 0) return length;
-    const uint16_t a05 = streamed(ear, at, FATHOM_DYP_A05_LENGTH, &evidence->streamed_a05);
-    return a05 != 0 ? a05 : streamed(ear, at, FATHOM_DYP_A16_LENGTH, &evidence->streamed_a16);
+    const uint16_t a05 = streamed(listener, at, FATHOM_DYP_A05_LENGTH, &evidence->streamed_a05);
+    return a05 != 0 ? a05 : streamed(listener, at, FATHOM_DYP_A16_LENGTH, &evidence->streamed_a16);
 }
 
-void ear_judge(const ear_t *ear, uint8_t address, evidence_t *evidence)
+void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence)
 {
     memset(evidence, 0, sizeof *evidence);
-    evidence->bytes = ear->bytes;
-    evidence->slowest_us = ear->slowest_us;
-    for (uint16_t at = 0; at < ear->have;) {
-        const uint16_t length = account(ear, at, address, evidence);
+    evidence->bytes = listener->bytes;
+    evidence->slowest_us = listener->slowest_us;
+    for (uint16_t at = 0; at < listener->have;) {
+        const uint16_t length = account(listener, at, address, evidence);
         if (length == 0) evidence->rest++;
         at = (uint16_t)(at + (length != 0 ? length : 1));
     }

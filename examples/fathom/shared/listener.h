@@ -11,23 +11,23 @@
  * Sits between the line and its port, changes nothing, and remembers what passes: the evidence from which a failure is
  * explained.
  */
-enum { EAR_WINDOW = 512, EAR_REQUEST = 255 };
+enum { LISTENER_WINDOW = 512, LISTENER_REQUEST = 255 };
 
-typedef struct ear ear_t;
-struct ear {
+typedef struct listener listener_t;
+struct listener {
     fathom_uart_t inner;
     fathom_clock_t clock;
-    /* Where several sensors are asked: who remembers the request that is about to leave, and what passes until the
-     * next one does. NULL: this ear itself. */
-    ear_t *(*whose)(void *ctx);
+    /* Where several sensors are asked: the listener that remembers the request which is about to leave, and what
+     * passes until the next one does. NULL: this one. */
+    listener_t *(*whose)(void *ctx);
     void *ctx;
-    ear_t *now;                 /* who does at present; NULL: this ear itself */
-    uint8_t window[EAR_WINDOW]; /* what was heard in this attempt; of more than fits, the beginning */
+    listener_t *now;                 /* the one that does at present; NULL: this one */
+    uint8_t window[LISTENER_WINDOW]; /* what was heard in this attempt; of more than fits, the beginning */
     uint16_t have;
     uint32_t bytes;      /* heard in this attempt, the window's included */
     uint32_t slowest_us; /* the longest time from a request to a byte that came after it, in this attempt */
-    uint8_t request[EAR_REQUEST]; /* the last one */
-    uint8_t request_length;       /* 0: none has been sent */
+    uint8_t request[LISTENER_REQUEST]; /* the last one */
+    uint8_t request_length;            /* 0: none has been sent */
     uint32_t asked_us;
     uint64_t requests; /* since the start */
 };
@@ -41,20 +41,20 @@ typedef struct {
     uint32_t fitting; /* ... and those of them that are no measurement which came unasked, by their length */
     uint32_t foreign; /* frames with a right CRC from another unit than the one that was asked, ... */
     uint8_t foreign_address; /* ... and the first of these units */
-    uint32_t masters;        /* requests of somebody else with a right CRC, ... */
+    uint32_t masters;        /* requests of another master with a right CRC, ... */
     uint8_t masters_address; /* ... and whom the first one asked */
     uint32_t streamed_a16;   /* frames FF..SUM, two or more in a row: of a sensor that sends by itself */
     uint32_t streamed_a05;
     uint32_t slowest_us;
 } evidence_t;
 
-/* Stands before *uart, which is replaced; the ear may not be moved then. */
-void ear_begin(ear_t *ear, fathom_uart_t *uart, const fathom_clock_t *clock);
+/* Stands before *uart, which is replaced; the listener may not be moved then. */
+void listener_begin(listener_t *listener, fathom_uart_t *uart, const fathom_clock_t *clock);
 
 /* A new attempt: forgets what was heard. */
-void ear_forget(ear_t *ear);
+void listener_forget(listener_t *listener);
 
-/* address: who is asked; 0: nobody. */
-void ear_judge(const ear_t *ear, uint8_t address, evidence_t *evidence);
+/* address: of the unit that is asked; 0: none is. */
+void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence);
 
 #endif

@@ -15,20 +15,20 @@ static const char *last_name(const char *path)
     return slash != NULL ? slash + 1 : path;
 }
 
-static void copy_word(char word[ADAPTER_WORD], const char *text)
+static void copy_word(char word[SYSFS_WORD], const char *text)
 {
-    (void)snprintf(word, ADAPTER_WORD, "%.*s", ADAPTER_WORD - 1, text);
+    (void)snprintf(word, SYSFS_WORD, "%.*s", SYSFS_WORD - 1, text);
 }
 
 /* The one line of an attribute; false, and "", where there is none. */
-static bool read_attribute(const char *folder, const char *name, char word[ADAPTER_WORD])
+static bool read_attribute(const char *folder, const char *name, char word[SYSFS_WORD])
 {
     char path[PATH_MAX];
     word[0] = '\0';
     if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path) return false;
     FILE *const file = fopen(path, "re");
     if (file == NULL) return false;
-    const bool is_read = fgets(word, ADAPTER_WORD, file) != NULL;
+    const bool is_read = fgets(word, SYSFS_WORD, file) != NULL;
     (void)fclose(file);
     if (!is_read) word[0] = '\0';
     word[strcspn(word, "\n")] = '\0';
@@ -39,7 +39,7 @@ static bool read_attribute(const char *folder, const char *name, char word[ADAPT
  * A tty's `device` is the interface (cdc_acm: .../1-2/1-2:1.0), or a port below it (usb-serial:
  * .../1-2/1-2:1.0/ttyUSB0); the USB device is the first one above that has an idVendor.
  */
-static bool identify_tty(adapter_t *adapter, const char *sysfs, const char *name)
+static bool identify_tty(sysfs_adapter_t *adapter, const char *sysfs, const char *name)
 {
     char link[PATH_MAX];
     char folder[PATH_MAX];
@@ -64,29 +64,29 @@ static bool identify_tty(adapter_t *adapter, const char *sysfs, const char *name
     return true;
 }
 
-static bool is_same_make(const adapter_t *a, const adapter_t *b)
+static bool is_same_make(const sysfs_adapter_t *a, const sysfs_adapter_t *b)
 {
     return strcmp(a->vendor, b->vendor) == 0 && strcmp(a->product, b->product) == 0 &&
            strcmp(a->serial, b->serial) == 0 && strcmp(a->interface, b->interface) == 0 &&
            strcmp(a->port, b->port) == 0;
 }
 
-static bool is_it(const adapter_t *adapter, const adapter_t *other)
+static bool is_it(const sysfs_adapter_t *adapter, const sysfs_adapter_t *other)
 {
     return is_same_make(adapter, other) &&
            (!adapter->needs_socket || strcmp(adapter->socket, other->socket) == 0);
 }
 
 /* One that cannot be told from it but by its socket: makers give a whole series the serial number 0001. */
-static bool is_double(const adapter_t *adapter, const adapter_t *other)
+static bool is_double(const sysfs_adapter_t *adapter, const sysfs_adapter_t *other)
 {
     return is_same_make(adapter, other) && strcmp(adapter->socket, other->socket) != 0;
 }
 
 /* The first tty of which this is so; its name goes to *name. */
-static bool find_tty(const adapter_t *adapter, const char *sysfs,
-                     bool (*is_wanted)(const adapter_t *adapter, const adapter_t *other),
-                     char name[ADAPTER_NAME])
+static bool find_tty(const sysfs_adapter_t *adapter, const char *sysfs,
+                     bool (*is_wanted)(const sysfs_adapter_t *adapter, const sysfs_adapter_t *other),
+                     char name[SYSFS_NAME])
 {
     char folder[PATH_MAX];
     bool is_found = false;
@@ -95,37 +95,37 @@ static bool find_tty(const adapter_t *adapter, const char *sysfs,
     if (ttys == NULL) return false;
     const struct dirent *entry = NULL;
     while (!is_found && (entry = readdir(ttys)) != NULL) { /* NOLINT(concurrency-mt-unsafe): one thread */
-        adapter_t other;
+        sysfs_adapter_t other;
         is_found = identify_tty(&other, sysfs, entry->d_name) && is_wanted(adapter, &other);
-        if (is_found) (void)snprintf(name, ADAPTER_NAME, "%s", entry->d_name);
+        if (is_found) (void)snprintf(name, SYSFS_NAME, "%s", entry->d_name);
     }
     (void)closedir(ttys);
     return is_found;
 }
 
-bool adapter_identify(adapter_t *adapter, const char *sysfs, const char *path)
+bool sysfs_adapter_identify(sysfs_adapter_t *adapter, const char *sysfs, const char *path)
 {
     char real[PATH_MAX];
-    char other[ADAPTER_NAME];
+    char other[SYSFS_NAME];
     memset(adapter, 0, sizeof *adapter);
     if (realpath(path, real) == NULL || !identify_tty(adapter, sysfs, last_name(real))) return false;
     adapter->needs_socket = adapter->serial[0] == '\0' || find_tty(adapter, sysfs, is_double, other);
     return true;
 }
 
-bool adapter_find(const adapter_t *adapter, const char *sysfs, char path[ADAPTER_PATH])
+bool sysfs_adapter_find(const sysfs_adapter_t *adapter, const char *sysfs, char path[SYSFS_PATH])
 {
-    char name[ADAPTER_NAME];
+    char name[SYSFS_NAME];
     if (adapter->vendor[0] == '\0' || !find_tty(adapter, sysfs, is_it, name)) return false;
-    (void)snprintf(path, ADAPTER_PATH, "/dev/%s", name);
+    (void)snprintf(path, SYSFS_PATH, "/dev/%s", name);
     return true;
 }
 
-unsigned adapter_latency_ms(const char *sysfs, const char *path)
+unsigned sysfs_adapter_latency_ms(const char *sysfs, const char *path)
 {
     char real[PATH_MAX];
     char folder[PATH_MAX];
-    char word[ADAPTER_WORD];
+    char word[SYSFS_WORD];
     if (realpath(path, real) == NULL ||
         snprintf(folder, sizeof folder, "%s/class/tty/%s/device", sysfs, last_name(real)) >=
             (int)sizeof folder ||

@@ -62,7 +62,7 @@ const char *tcp_parse(const char *path, tcp_address_t *address)
     return wrong != NULL ? wrong : take_port(end, address);
 }
 
-bool tcp_suits(const char *command, const char *path, const sensor_mode_t *mode)
+bool tcp_suits(const char *command, const char *path, const model_mode_t *mode)
 {
     tcp_address_t address;
     if (!tcp_names(path)) return true;

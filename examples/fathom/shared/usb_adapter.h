@@ -7,24 +7,25 @@
 
 /* Where a port is plugged in: finds and opens it again after it was lost. */
 typedef struct {
-    const char *path;  /* as the user gave it */
-    adapter_t adapter; /* behind it when it was last open; not one of USB: all "" */
-    char found[ADAPTER_PATH];
+    const char *path;      /* as the user gave it */
+    sysfs_adapter_t sysfs; /* behind it when it was last open; not one of USB: all "" */
+    char found[SYSFS_PATH];
     fathom_posix_status_t error; /* of the last try, ... */
     uint32_t repeats;            /* ... so often in a row */
-} plug_t;
+} usb_adapter_t;
 
 /* How long to wait between two tries. One at least lies between a loss and the next try, so that a port which opens
  * and fails at once costs next to nothing. */
-enum { PLUG_RETRY_US = 500000 };
+enum { USB_ADAPTER_RETRY_US = 500000 };
 
 /*
  * Tries once. A USB adapter is looked for by what it is, anything else by its path. False: it is not there, or not
  * to be had; if that lasts and is something else than "not there", it says so once on stderr.
  */
-bool plug_try(plug_t *plug, channel_t *channel, const host_t *host, const fathom_line_settings_t *settings);
+bool usb_adapter_try(usb_adapter_t *adapter, channel_t *channel, const host_t *host,
+                     const fathom_line_settings_t *settings);
 
 /* Where it is. */
-const char *plug_path(const plug_t *plug);
+const char *usb_adapter_path(const usb_adapter_t *adapter);
 
 #endif

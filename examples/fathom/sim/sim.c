@@ -20,34 +20,34 @@ typedef struct {
     fathom_sim_pty_t pty;
     device_t devices[SIM_DEVICES];
     fathom_sim_fault_t faults[SIM_DEVICES];
-} session_t;
+} simulation_t;
 
-static void hang_device(session_t *session, uint32_t i, uint32_t now_us)
+static void hang_device(simulation_t *simulation, uint32_t i, uint32_t now_us)
 {
-    const sim_device_t *const asked = &session->options.devices[i];
+    const sim_device_t *const asked = &simulation->options.devices[i];
     device_settings_t settings = {.address = asked->address,
                                   .baud = asked->line.baud,
                                   .seed = asked->seed,
                                   .scene = asked->scene.scene};
-    device_t *const device = &session->devices[i];
+    device_t *const device = &simulation->devices[i];
     memcpy(settings.traits, asked->traits, sizeof settings.traits);
     asked->mode->simulate(device, &settings);
-    sim_faults_begin(&asked->faults, &session->faults[i], asked->seed);
-    fathom_sim_fault_attach(&session->faults[i], &session->line, device->base);
-    fathom_sim_attach(&session->line, device->base, now_us);
+    sim_faults_begin(&asked->faults, &simulation->faults[i], asked->seed);
+    fathom_sim_fault_attach(&simulation->faults[i], &simulation->line, device->base);
+    fathom_sim_attach(&simulation->line, device->base, now_us);
 }
 
-static bool open_line(session_t *session)
+static bool open_line(simulation_t *simulation)
 {
-    const sim_options_t *const options = &session->options;
+    const sim_options_t *const options = &simulation->options;
     const fathom_sim_pty_config_t config = {.link = options->link};
     const uint32_t now_us = fathom_sim_pty_now_us();
-    fathom_sim_line_init(&session->line, &options->devices[0].line, now_us);
+    fathom_sim_line_init(&simulation->line, &options->devices[0].line, now_us);
     /* What sends by itself has a wire each way; several share an RS485 pair. */
-    session->line.full_duplex = options->count == 1 && !options->devices[0].mode->is_asked;
-    session->line.echo = options->echo;
-    for (uint32_t i = 0; i != options->count; i++) hang_device(session, i, now_us);
-    if (fathom_sim_pty_open(&session->pty, &session->line, &config) == 0) return true;
+    simulation->line.full_duplex = options->count == 1 && !options->devices[0].mode->is_asked;
+    simulation->line.echo = options->echo;
+    for (uint32_t i = 0; i != options->count; i++) hang_device(simulation, i, now_us);
+    if (fathom_sim_pty_open(&simulation->pty, &simulation->line, &config) == 0) return true;
     if (options->link != NULL && errno == EEXIST)
         (void)fprintf(stderr,
                       "fathom: %s is there already, and is no link that a killed fathom sim has left behind; "
@@ -61,60 +61,61 @@ static bool open_line(session_t *session)
 }
 
 /* The path alone on stdout, for scripts; what a person may want to know on stderr. */
-static bool announce(const session_t *session)
+static bool announce(const simulation_t *simulation)
 {
-    const char *const path = fathom_sim_pty_path(&session->pty);
+    const char *const path = fathom_sim_pty_path(&simulation->pty);
     if (printf("%s\n", path) < 0 || fflush(stdout) != 0) {
         (void)fprintf(stderr, "fathom: the path of the port cannot be written: %s\n", strerror(errno));
         return false;
     }
-    sim_announce(stderr, &session->options, session->options.link != NULL ? session->options.link : path);
+    sim_announce(stderr, &simulation->options,
+                 simulation->options.link != NULL ? simulation->options.link : path);
     return true;
 }
 
 /* Of all: what hangs on one line hangs on one supply, most often. */
-static void cycle_power(session_t *session)
+static void cycle_power(simulation_t *simulation)
 {
     const uint32_t now_us = fathom_sim_pty_now_us();
-    for (uint32_t i = 0; i != session->options.count; i++)
-        fathom_sim_power_cycle(&session->line, session->devices[i].base, POWER_OFF_US, now_us);
+    for (uint32_t i = 0; i != simulation->options.count; i++)
+        fathom_sim_power_cycle(&simulation->line, simulation->devices[i].base, POWER_OFF_US, now_us);
     (void)fprintf(stderr, "fathom: power off for a second\n");
 }
 
-static int serve(session_t *session)
+static int serve(simulation_t *simulation)
 {
     uint32_t due_us = 0;
     while (!events_ended()) {
-        if (events_noted()) cycle_power(session);
-        if (fathom_sim_pty_pump(&session->pty, &due_us) < 0) {
+        if (events_noted()) cycle_power(simulation);
+        if (fathom_sim_pty_pump(&simulation->pty, &due_us) < 0) {
             (void)fprintf(stderr, "fathom: the simulated port has failed: %s\n", strerror(errno));
             return STATUS_FAILED;
         }
-        events_wait(fathom_sim_pty_fd(&session->pty), POLLIN, due_us, false);
+        events_wait(fathom_sim_pty_fd(&simulation->pty), POLLIN, due_us, false);
     }
     return STATUS_OK;
 }
 
-static void print_counters(const session_t *session)
+static void print_counters(const simulation_t *simulation)
 {
-    for (uint32_t i = 0; i != session->options.count; i++)
-        sim_print_counters(stderr, &session->options, i, session->devices[i].base, &session->line);
+    for (uint32_t i = 0; i != simulation->options.count; i++)
+        sim_print_counters(stderr, &simulation->options, i, simulation->devices[i].base, &simulation->line);
 }
 
 static int run(const host_t *host, int argc, char **argv)
 {
-    static session_t session;
+    static simulation_t simulation;
     (void)host; /* it runs in real time, on a pseudo terminal */
-    if (!sim_options(&session.options, argc, argv)) return STATUS_USAGE;
-    if (session.options.wants_help) {
+    if (!sim_options(&simulation.options, argc, argv)) return STATUS_USAGE;
+    if (simulation.options.wants_help) {
         sim_help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    if (!events_begin() || !open_line(&session)) return STATUS_FAILED;
-    events_note(SIGUSR1); /* before anybody can know whom to send it to */
-    const int status = announce(&session) ? serve(&session) : STATUS_FAILED;
-    if (session.options.counters) print_counters(&session);
-    fathom_sim_pty_close(&session.pty);
+    if (!events_begin() || !open_line(&simulation)) return STATUS_FAILED;
+    events_note(SIGUSR1); /* before the path is printed, by which the process can be known */
+    const int status = announce(&simulation) ? serve(&simulation) : STATUS_FAILED;
+    if (simulation.options.counters) print_counters(&simulation);
+    fathom_sim_pty_close(&simulation.pty);
     return status;
 }
 

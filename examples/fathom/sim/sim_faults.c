@@ -17,7 +17,7 @@ void sim_faults_note(sim_faults_t *faults, const char *text)
 /* A port has no clock that could jump. */
 static bool is_offered(uint8_t kind) { return kind != FATHOM_SIM_FAULT_CLOCK_JUMP; }
 
-static bool applies(uint8_t kind, const sensor_mode_t *mode)
+static bool applies(uint8_t kind, const model_mode_t *mode)
 {
     const device_settings_t settings = {.address = FACTORY_ADDRESS};
     device_t device;
@@ -67,7 +67,7 @@ static bool parse_rest(const char *text, sim_fault_t *fault)
     return text[length] == '\0' || number_parse(text + length + 1, 1, UINT32_MAX, &fault->at_frame);
 }
 
-static void list_kinds(const sensor_mode_t *mode, char *list, size_t capacity)
+static void list_kinds(const model_mode_t *mode, char *list, size_t capacity)
 {
     size_t length = 0;
     for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END && length < capacity; kind++)
@@ -76,8 +76,8 @@ static void list_kinds(const sensor_mode_t *mode, char *list, size_t capacity)
                                        fathom_sim_fault_name(kind));
 }
 
-static bool parse_one(const char *command, const sensor_t *sensor, const sensor_mode_t *mode,
-                      const char *text, sim_fault_t *fault)
+static bool parse_one(const char *command, const model_t *model, const model_mode_t *mode, const char *text,
+                      sim_fault_t *fault)
 {
     const size_t length = strcspn(text, "=");
     char name[MAX_KIND] = "";
@@ -87,7 +87,7 @@ static bool parse_one(const char *command, const sensor_t *sensor, const sensor_
         char known[KINDS_TEXT] = "";
         list_kinds(mode, known, sizeof known);
         (void)usage_error(command, "there is no fault '%.*s' for %s in mode %s, only %s", (int)length, text,
-                          sensor->name, mode->name, known);
+                          model->name, mode->name, known);
         return false;
     }
     if (!parse_rest(text + length, fault)) {
@@ -98,15 +98,15 @@ static bool parse_one(const char *command, const sensor_t *sensor, const sensor_
     return true;
 }
 
-bool sim_faults_parse(sim_faults_t *faults, const char *command, const sensor_t *sensor,
-                      const sensor_mode_t *mode)
+bool sim_faults_parse(sim_faults_t *faults, const char *command, const model_t *model,
+                      const model_mode_t *mode)
 {
     if (faults->count > FATHOM_SIM_FAULT_RULES) {
         (void)usage_error(command, "--fault may be given up to %u times", FATHOM_SIM_FAULT_RULES);
         return false;
     }
     for (uint32_t i = 0; i != faults->count; i++)
-        if (!parse_one(command, sensor, mode, faults->texts[i], &faults->list[i])) return false;
+        if (!parse_one(command, model, mode, faults->texts[i], &faults->list[i])) return false;
     return true;
 }
 

@@ -22,8 +22,8 @@ typedef struct {
 void sim_faults_note(sim_faults_t *faults, const char *text);
 
 /* Understands them all. False after saying what is wrong with one. */
-bool sim_faults_parse(sim_faults_t *faults, const char *command, const sensor_t *sensor,
-                      const sensor_mode_t *mode);
+bool sim_faults_parse(sim_faults_t *faults, const char *command, const model_t *model,
+                      const model_mode_t *mode);
 
 void sim_faults_begin(const sim_faults_t *faults, fathom_sim_fault_t *fault, uint32_t seed);
 

@@ -12,7 +12,7 @@ void sim_help(FILE *to)
                 "port. It prints the port's path and runs until Ctrl-C.\n\n"
                 "usage: fathom sim SENSOR[:ADDRESS[:MODE]]... [OPTIONS]\n\n",
                 to);
-    sensors_print(to);
+    models_print(to);
     (void)fputs(
         "\nThe first mode is the default, the address from the factory is 1. Up to 64 sensors hang on the "
         "one\n"

@@ -99,32 +99,32 @@ static bool take_device(sim_device_t *device, const char *text)
 {
     char parts[MAX_DEVICE_TEXT];
     uint32_t address = FACTORY_ADDRESS;
-    if (strlen(text) >= sizeof parts) return sensor_find(command, text) != NULL;
+    if (strlen(text) >= sizeof parts) return model_find(command, text) != NULL;
     memcpy(parts, text, strlen(text) + 1);
     char *const address_text = strchr(parts, ':');
     char *const mode_text = address_text != NULL ? strchr(address_text + 1, ':') : NULL;
     if (address_text != NULL) *address_text = '\0';
     if (mode_text != NULL) *mode_text = '\0';
-    device->sensor = sensor_find(command, parts);
-    if (device->sensor == NULL) return false;
-    device->mode = sensor_mode_find(command, device->sensor, mode_text != NULL ? mode_text + 1 : NULL);
+    device->model = model_find(command, parts);
+    if (device->model == NULL) return false;
+    device->mode = model_mode_find(command, device->model, mode_text != NULL ? mode_text + 1 : NULL);
     if (device->mode == NULL) return false;
     if (address_text != NULL && address_text[1] != '\0' &&
-        !number_parse(address_text + 1, sensor_least_address(device->sensor, device->mode),
-                      device->sensor->max_address, &address)) {
+        !number_parse(address_text + 1, model_least_address(device->model, device->mode),
+                      device->model->max_address, &address)) {
         (void)usage_error(command, "the address of %s is a number from %u to %u, not '%s'",
-                          device->sensor->name, sensor_least_address(device->sensor, device->mode),
-                          device->sensor->max_address, address_text + 1);
+                          device->model->name, model_least_address(device->model, device->mode),
+                          device->model->max_address, address_text + 1);
         return false;
     }
     device->address = (uint8_t)address;
-    device->line = device->sensor->line;
+    device->line = device->model->line;
     return true;
 }
 
 static bool take_devices(sim_options_t *options, int count, char **texts)
 {
-    const sim_device_t *talker = NULL;
+    const sim_device_t *sender = NULL;
     if (count == 0 || count > SIM_DEVICES) {
         if (count == 0)
             (void)usage_error(command, "which sensor? a16, a05 or hps167s");
@@ -136,25 +136,25 @@ static bool take_devices(sim_options_t *options, int count, char **texts)
         sim_device_t *const device = &options->devices[options->count];
         if (!take_device(device, texts[options->count])) return false;
         if (device->mode->is_asked) continue;
-        if (talker != NULL) {
+        if (sender != NULL) {
             (void)usage_error(command,
                               "%s and %s would both send by themselves, which one line cannot carry; "
                               "give one of them a mode in which it is asked",
-                              talker->sensor->name, device->sensor->name);
+                              sender->model->name, device->model->name);
             return false;
         }
-        talker = device;
+        sender = device;
     }
     return true;
 }
 
-static bool has_rates(const sim_device_t *device) { return device->sensor->other_settings != NULL; }
+static bool has_rates(const sim_device_t *device) { return device->model->other_settings != NULL; }
 
 static bool take_baud(sim_device_t *device, const char *text)
 {
     uint32_t baud = 0;
     if (!has_rates(device)) {
-        (void)usage_error(command, "%s has one baud rate only", device->sensor->name);
+        (void)usage_error(command, "%s has one baud rate only", device->model->name);
         return false;
     }
     if (number_parse(text, 1, UINT32_MAX, &baud) && fathom_hps167s_baud_code(baud) != 0) {
@@ -162,7 +162,7 @@ static bool take_baud(sim_device_t *device, const char *text)
         return true;
     }
     (void)usage_error(command, "--baud of %s takes 19200, 57600, 115200 or 230400, not '%s'",
-                      device->sensor->name, text);
+                      device->model->name, text);
     return false;
 }
 
@@ -175,9 +175,9 @@ static bool take_traits(sim_options_t *options, const givens_t *givens, uint32_t
         if (given->row != WITH || (given->device != 0 && given->device != number)) continue;
         bool others_can = false;
         for (uint32_t other = 0; other != options->count && given->device == 0; other++)
-            others_can = others_can || sim_trait_fits(given->value, options->devices[other].sensor);
-        if (others_can && !sim_trait_fits(given->value, device->sensor)) continue;
-        if (!sim_trait_take(device->traits, command, device->sensor, given->value)) return false;
+            others_can = others_can || sim_trait_fits(given->value, options->devices[other].model);
+        if (others_can && !sim_trait_fits(given->value, device->model)) continue;
+        if (!sim_trait_take(device->traits, command, device->model, given->value)) return false;
     }
     return true;
 }
@@ -196,11 +196,11 @@ static bool equip(sim_device_t *device, const givens_t *givens, uint32_t number,
         if (given->row == FAULT && (given->device == 0 || given->device == number))
             sim_faults_note(&device->faults, given->value);
     }
-    if (!sim_faults_parse(&device->faults, command, device->sensor, device->mode)) return false;
+    if (!sim_faults_parse(&device->faults, command, device->model, device->mode)) return false;
     if (baud != NULL && !(for_all && any_rates && !has_rates(device)) && !take_baud(device, baud))
         return false;
-    if (distance != NULL) return scenery_fixed(&device->scene, command, device->sensor, distance);
-    scenery_moving(&device->scene, device->sensor, device->seed, fathom_sim_pty_now_us());
+    if (distance != NULL) return sim_scene_fixed(&device->scene, command, device->model, distance);
+    sim_scene_moving(&device->scene, device->model, device->seed, fathom_sim_pty_now_us());
     return true;
 }
 

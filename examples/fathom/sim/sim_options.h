@@ -9,13 +9,13 @@
 enum { SIM_DEVICES = 64 };
 
 typedef struct {
-    const sensor_t *sensor;
-    const sensor_mode_t *mode;
+    const model_t *model;
+    const model_mode_t *mode;
     fathom_line_settings_t line; /* its own */
     uint32_t seed;
     uint8_t address;
     uint32_t traits[DEVICE_TRAITS];
-    scenery_t scene;
+    sim_scene_t scene;
     sim_faults_t faults;
 } sim_device_t;
 

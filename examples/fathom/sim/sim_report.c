@@ -8,17 +8,17 @@
 static void print_device(FILE *to, const sim_device_t *device)
 {
     char line[SETTINGS_TEXT];
-    (void)fprintf(to, "%s, mode %s, address %u, %s", device->sensor->name, device->mode->name,
-                  device->address, settings_text(&device->line, line));
+    (void)fprintf(to, "%s, mode %s, address %u, %s", device->model->name, device->mode->name, device->address,
+                  settings_text(&device->line, line));
 }
 
 static void print_reader(FILE *to, const sim_device_t *device, const char *port)
 {
-    (void)fprintf(to, "fathom read %s", device->sensor->name);
-    if (device->mode != &device->sensor->modes[0]) (void)fprintf(to, " --mode %s", device->mode->name);
+    (void)fprintf(to, "fathom read %s", device->model->name);
+    if (device->mode != &device->model->modes[0]) (void)fprintf(to, " --mode %s", device->mode->name);
     if (device->mode->is_asked && device->address != FACTORY_ADDRESS)
         (void)fprintf(to, " --address %u", device->address);
-    if (device->line.baud != device->sensor->line.baud)
+    if (device->line.baud != device->model->line.baud)
         (void)fprintf(to, " --baud %" PRIu32, device->line.baud);
     (void)fprintf(to, " --port %s\n", port);
 }
@@ -89,7 +89,7 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
         {"line_collisions", line->counters.collisions},
     };
     (void)fprintf(to, "{\"device\":%" PRIu32 ",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u", i + 1,
-                  options->devices[i].sensor->name, options->devices[i].mode->name, device->unit);
+                  options->devices[i].model->name, options->devices[i].mode->name, device->unit);
     for (size_t f = 0; f != sizeof fields / sizeof fields[0]; f++)
         (void)fprintf(to, ",\"%s\":%" PRIu32, fields[f].name, fields[f].value);
     (void)fprintf(to, "}\n");

@@ -5,19 +5,19 @@
 #include "models/models.h"
 #include "sim/scene.h"
 
-enum { SCENERY_PROBES = 4 };
+enum { SIM_SCENE_PROBES = 4 };
 
 /* What a simulated sensor sees. It may not be moved while one looks at it. */
 typedef struct {
     fathom_sim_scene_t scene;
     fathom_sim_fixed_t fixed;
-    fathom_sim_moving_t moving[SCENERY_PROBES];
-} scenery_t;
+    fathom_sim_moving_t moving[SIM_SCENE_PROBES];
+} sim_scene_t;
 
 /* A list such as "1000,2000,no-target". False after saying what is wrong with it. */
-bool scenery_fixed(scenery_t *scenery, const char *command, const sensor_t *sensor, const char *list);
+bool sim_scene_fixed(sim_scene_t *scene, const char *command, const model_t *model, const char *list);
 
 /* Something that moves, each probe's at another speed. */
-void scenery_moving(scenery_t *scenery, const sensor_t *sensor, uint32_t seed, uint32_t now_us);
+void sim_scene_moving(sim_scene_t *scene, const model_t *model, uint32_t seed, uint32_t now_us);
 
 #endif

@@ -45,23 +45,23 @@ static const trait_t *find(const char *text)
     return NULL;
 }
 
-static bool has(const sensor_t *sensor, const trait_t *trait)
+static bool has(const model_t *model, const trait_t *trait)
 {
-    return trait != NULL && strstr(trait->sensors, sensor->name) != NULL;
+    return trait != NULL && strstr(trait->sensors, model->name) != NULL;
 }
 
-bool sim_trait_fits(const char *text, const sensor_t *sensor) { return has(sensor, find(text)); }
+bool sim_trait_fits(const char *text, const model_t *model) { return has(model, find(text)); }
 
-static bool unknown(const char *command, const sensor_t *sensor, const char *text)
+static bool unknown(const char *command, const model_t *model, const char *text)
 {
     char known[NAMES_TEXT] = "";
     for (size_t i = 0; i != DEVICE_TRAITS; i++) {
         const size_t used = strlen(known);
-        if (has(sensor, &traits[i]))
+        if (has(model, &traits[i]))
             (void)snprintf(known + used, sizeof known - used, "%s%s", used != 0 ? ", " : "", traits[i].name);
     }
     (void)usage_error(command, "there is no '%.*s' for %s, only %s", (int)strcspn(text, "="), text,
-                      sensor->name, known);
+                      model->name, known);
     return false;
 }
 
@@ -85,12 +85,12 @@ static bool ms_parse(const char *text, uint32_t most, uint32_t *us)
     return *text == '\0' && part != US / 10 && *us <= most * US;
 }
 
-bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const sensor_t *sensor,
+bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const model_t *model,
                     const char *text)
 {
     const trait_t *const trait = find(text);
     const size_t length = strcspn(text, "=");
-    if (!has(sensor, trait)) return unknown(command, sensor, text);
+    if (!has(model, trait)) return unknown(command, model, text);
     uint32_t value = 1;
     const bool has_value = text[length] == '=';
     const char *const number = text + length + 1;

@@ -35,14 +35,14 @@ static exception_t exception_text(uint8_t number)
 static void print_settings(FILE *to, const failure_t *failure)
 {
     const fathom_line_settings_t *const now = failure->line;
-    const fathom_line_settings_t *const factory = &failure->sensor->line;
-    const uint64_t *const port = failure->tally->attempt.port;
+    const fathom_line_settings_t *const factory = &failure->model->line;
+    const uint64_t *const port = failure->counters->attempt.port;
     char text[SETTINGS_TEXT];
     (void)fprintf(to, "check --baud and --parity (now %s)", settings_text(now, text));
     if (now->baud != factory->baud || now->parity != factory->parity || now->stop_bits != factory->stop_bits)
         (void)fprintf(to, ", try without them (%s, as from the factory)", settings_text(factory, text));
-    else if (failure->sensor->other_settings != NULL)
-        (void)fprintf(to, ", try %s", failure->sensor->other_settings);
+    else if (failure->model->other_settings != NULL)
+        (void)fprintf(to, ", try %s", failure->model->other_settings);
     if (port[PORT_FRAMING] != 0)
         (void)fputs("; the port saw characters without an end, so most likely --baud", to);
     else if (port[PORT_PARITY] != 0)
@@ -73,13 +73,12 @@ static bool print_others(FILE *to, const failure_t *failure)
                       "requests of another master were heard (it asked address %u), so two ask on this line; "
                       "disconnect the other one or stop its program",
                       evidence->masters_address);
-    else if (evidence->foreign_address > failure->sensor->max_address)
+    else if (evidence->foreign_address > failure->model->max_address)
         (void)fprintf(to, "the line works, but it was address %u that was heard, which no %s can have",
-                      evidence->foreign_address, failure->sensor->name);
+                      evidence->foreign_address, failure->model->name);
     else if (evidence->foreign != 0)
         (void)fprintf(to, "the line works, but it was address %u that was heard; try %s%s%u",
-                      evidence->foreign_address,
-                      failure->shared != NULL ? failure->sensor->name : "--address",
+                      evidence->foreign_address, failure->shared != NULL ? failure->model->name : "--address",
                       failure->shared != NULL ? ":" : " ", evidence->foreign_address);
     else if (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)
         (void)fprintf(to, "frames of %s that sends by itself were heard; try: fathom read %s --mode auto",
@@ -129,9 +128,9 @@ static bool print_unasked(FILE *to, const failure_t *failure)
     enum { LEAST = 3, LITTLE_MS = 2 };
     const char *const path = failure->channel->port.path;
     if (failure->channel->tcp != NULL || failure->reader->protocol == NULL ||
-        strcmp(failure->sensor->name, "hps167s") != 0 || failure->evidence.own < LEAST)
+        strcmp(failure->model->name, "hps167s") != 0 || failure->evidence.own < LEAST)
         return false;
-    const unsigned latency_ms = adapter_latency_ms(ADAPTER_SYSFS, path);
+    const unsigned latency_ms = sysfs_adapter_latency_ms(SYSFS_ROOT, path);
     (void)fprintf(to,
                   "it sends measurements by itself, %" PRIu32
                   " were heard, and a request has to fit between two of them; ",
@@ -151,7 +150,7 @@ static void print_no_answer(FILE *to, const failure_t *failure)
 {
     const evidence_t *const evidence = &failure->evidence;
     (void)fprintf(to, "no answer from address %u: ", failure->address);
-    if (failure->tally->attempt.line[FATHOM_LINE_LATE_ANSWERS] != 0) {
+    if (failure->counters->attempt.line[FATHOM_LINE_LATE_ANSWERS] != 0) {
         print_late(to, evidence->slowest_us);
     } else if (print_others(to, failure) || print_unasked(to, failure)) {
         return;
@@ -189,17 +188,17 @@ static void print_no_answer(FILE *to, const failure_t *failure)
 
 static void print_damaged(FILE *to, const failure_t *failure)
 {
-    const tally_t *const tally = failure->tally;
+    const counters_t *const counters = failure->counters;
     (void)fprintf(to, "the answer of address %u was damaged; ", failure->address);
     if (print_others(to, failure) || print_unasked(to, failure)) return;
     if (failure->channel->tcp != NULL)
         (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
-    else if (tally->readings != 0)
+    else if (counters->readings != 0)
         (void)fprintf(to,
                       "other answers were good, so the settings are right and it is the line: check the "
                       "screw terminals, the cable, its termination and its ground, and keep it away from "
                       "motors (%" PRIu64 " of %" PRIu64 " attempts damaged)",
-                      tally->failures[-FATHOM_ERR_CHECKSUM], tally->attempts + 1);
+                      counters->failures[-FATHOM_ERR_CHECKSUM], counters->attempts + 1);
     else
         (void)fputs("check --parity, the cable and its termination, and that no other unit has this address",
                     to);
@@ -207,10 +206,10 @@ static void print_damaged(FILE *to, const failure_t *failure)
 
 static void print_stale(FILE *to, const failure_t *failure)
 {
-    const uint64_t *const stream = failure->tally->attempt.stream;
+    const uint64_t *const stream = failure->counters->attempt.stream;
     const evidence_t *const evidence = &failure->evidence;
     const bool is_other =
-        failure->sensor->probes > 1 ? evidence->streamed_a05 == 0 : evidence->streamed_a16 == 0;
+        failure->model->probes > 1 ? evidence->streamed_a05 == 0 : evidence->streamed_a16 == 0;
     if (evidence->bytes == 0) {
         (void)fputs(
             "nothing was heard at all; check the supply, the wire from the sensor's TX, and that it sends by "
@@ -227,11 +226,11 @@ static void print_stale(FILE *to, const failure_t *failure)
             to,
             "bytes were heard that look like frames of %s, but not where one begins; check that nothing else "
             "sends on this line, and for noise",
-            failure->sensor->name);
+            failure->model->name);
     } else {
-        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->sensor->name);
+        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->model->name);
         print_settings(to, failure);
-        (void)fprintf(to, ", that it is an %s, and for noise", failure->sensor->name);
+        (void)fprintf(to, ", that it is an %s, and for noise", failure->model->name);
     }
 }
 
@@ -241,7 +240,7 @@ static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
     const fathom_dyp_answer_t *const answer = failure->reader->answer;
     const uint16_t raw = answer->refused_raw;
     const bool is_code = raw == 0 || raw >= 0xFFFD;
-    const bool has_probes = failure->sensor->probes > 1;
+    const bool has_probes = failure->model->probes > 1;
     if (has_probes) (void)fprintf(to, "probe %u: ", probe);
     if (is_code)
         (void)fprintf(to, "%u (%X) is refused", raw, raw);
@@ -252,7 +251,7 @@ static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
         (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
     if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
     if (has_probes) (void)fputs("; --probes leaves out a probe that is not fitted", to);
-    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
+    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->model->name);
 }
 
 /* Which values of an HPS-167S were refused. */
@@ -261,7 +260,7 @@ static void print_values(FILE *to, const failure_t *failure)
     const reader_t *const reader = failure->reader;
     (void)fputs("a value that cannot be a distance:", to);
     for (uint8_t i = 0; i != reader->value_count; i++) (void)fprintf(to, " %u", reader->values[i]);
-    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->sensor->name);
+    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->model->name);
 }
 
 static void print_port(FILE *to, const failure_t *failure)
@@ -303,7 +302,7 @@ void advice_print(FILE *to, const failure_t *failure)
             (void)fprintf(to,
                           "address %u answered something else than was asked; check that it is %s, and alone "
                           "at this address",
-                          failure->address, failure->sensor->name);
+                          failure->address, failure->model->name);
         else if (reader_refused_probe(failure->reader) != 0)
             print_refused(to, failure, reader_refused_probe(failure->reader));
         else
@@ -314,7 +313,7 @@ void advice_print(FILE *to, const failure_t *failure)
         const exception_t text = exception_text(number);
         (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, number, text.name,
                       text.meaning);
-        if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->sensor->name);
+        if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->model->name);
         break;
     }
     case FATHOM_ERR_PORT:

@@ -10,10 +10,10 @@
 /* A failed attempt. */
 typedef struct {
     fathom_status_t status;
-    const sensor_t *sensor;
+    const model_t *model;
     const reader_t *reader;
     const channel_t *channel;
-    const tally_t *tally;
+    const counters_t *counters;
     const fathom_line_settings_t *line; /* at which it was asked */
     const char *shared;                 /* its name on a line with others; NULL: it is alone */
     evidence_t evidence;                /* of this attempt */

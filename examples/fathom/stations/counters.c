@@ -11,7 +11,7 @@ static const char *const failure_names[FAILURE_KINDS] = {
     [-FATHOM_ERR_STALE] = "stale",         [FAILURE_KINDS - 1] = "other",
 };
 
-const char *tally_failure_name(size_t kind) { return failure_names[kind]; }
+const char *counters_failure_name(size_t kind) { return failure_names[kind]; }
 
 static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t count)
 {
@@ -28,13 +28,13 @@ static bool read_port(const port_counts_t *port, channel_t *channel, fathom_posi
     return port->is_there && fathom_posix_line_errors(&channel->port, now) == FATHOM_POSIX_OK;
 }
 
-void tally_begin_port(port_counts_t *port, channel_t *channel)
+void counters_begin_port(port_counts_t *port, channel_t *channel)
 {
     port->is_there = true;
     port->is_there = read_port(port, channel, &port->at);
 }
 
-static void take_port(tally_t *tally, port_counts_t *port, channel_t *channel)
+static void take_port(counters_t *counters, port_counts_t *port, channel_t *channel)
 {
     fathom_posix_line_errors_t now;
     if (!read_port(port, channel, &now)) return;
@@ -45,46 +45,48 @@ static void take_port(tally_t *tally, port_counts_t *port, channel_t *channel)
         [PORT_BREAKS] = now.breaks - port->at.breaks,
     };
     for (size_t i = 0; i != PORT_COUNTERS; i++) {
-        tally->attempt.port[i] += passed[i];
-        tally->total.port[i] += passed[i];
+        counters->attempt.port[i] += passed[i];
+        counters->total.port[i] += passed[i];
     }
     port->at = now;
 }
 
-void tally_take(tally_t *tally, port_counts_t *port, channel_t *channel, const reader_t *reader)
+void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader)
 {
-    take(channel->counters, tally->attempt.line, tally->total.line, FATHOM_LINE_COUNTERS);
+    take(channel->counters, counters->attempt.line, counters->total.line, FATHOM_LINE_COUNTERS);
     if (reader->stream != NULL)
-        take(reader->stream->counters, tally->attempt.stream, tally->total.stream, FATHOM_STREAM_COUNTERS);
+        take(reader->stream->counters, counters->attempt.stream, counters->total.stream,
+             FATHOM_STREAM_COUNTERS);
     if (reader->unit != NULL) {
-        take(&reader->unit->answers, tally->attempt.unit + UNIT_ANSWERS, tally->total.unit + UNIT_ANSWERS, 1);
-        take(&reader->unit->failures, tally->attempt.unit + UNIT_FAILURES, tally->total.unit + UNIT_FAILURES,
-             1);
+        take(&reader->unit->answers, counters->attempt.unit + UNIT_ANSWERS,
+             counters->total.unit + UNIT_ANSWERS, 1);
+        take(&reader->unit->failures, counters->attempt.unit + UNIT_FAILURES,
+             counters->total.unit + UNIT_FAILURES, 1);
     }
-    take_port(tally, port, channel);
+    take_port(counters, port, channel);
 }
 
-void tally_take_late(tally_t *tally, channel_t *channel)
+void counters_take_late(counters_t *counters, channel_t *channel)
 {
     enum { LATE = FATHOM_LINE_LATE_ANSWERS };
-    take(&channel->counters[LATE], &tally->attempt.line[LATE], &tally->total.line[LATE], 1);
+    take(&channel->counters[LATE], &counters->attempt.line[LATE], &counters->total.line[LATE], 1);
 }
 
-void tally_begin_attempt(tally_t *tally) { memset(&tally->attempt, 0, sizeof tally->attempt); }
+void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0, sizeof counters->attempt); }
 
-void tally_failure(tally_t *tally, fathom_status_t status, const reader_t *reader)
+void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
 {
     size_t kind = (size_t)-status;
     if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(reader)) kind = FAILURE_VALUE;
-    if (kind >= FAILURE_KINDS || tally_failure_name(kind) == NULL) kind = FAILURE_KINDS - 1;
-    tally->failures[kind]++;
+    if (kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL) kind = FAILURE_KINDS - 1;
+    counters->failures[kind]++;
 }
 
-void tally_time(tally_t *tally, uint32_t took_us)
+void counters_time(counters_t *counters, uint32_t took_us)
 {
-    if (tally->timed++ == 0 || took_us < tally->time_min_us) tally->time_min_us = took_us;
-    if (took_us > tally->time_max_us) tally->time_max_us = took_us;
-    tally->time_sum_us += took_us;
+    if (counters->timed++ == 0 || took_us < counters->time_min_us) counters->time_min_us = took_us;
+    if (took_us > counters->time_max_us) counters->time_max_us = took_us;
+    counters->time_sum_us += took_us;
 }
 
 static void add(uint64_t *to, const uint64_t *from, size_t count)
@@ -92,7 +94,7 @@ static void add(uint64_t *to, const uint64_t *from, size_t count)
     for (size_t i = 0; i != count; i++) to[i] += from[i];
 }
 
-void tally_add(tally_t *sum, const tally_t *part)
+void counters_add(counters_t *sum, const counters_t *part)
 {
     add(sum->total.line, part->total.line, FATHOM_LINE_COUNTERS);
     add(sum->total.stream, part->total.stream, FATHOM_STREAM_COUNTERS);

@@ -28,7 +28,7 @@ typedef struct {
 } counts_t;
 
 typedef struct {
-    counts_t attempt; /* since tally_begin_attempt */
+    counts_t attempt; /* since counters_begin_attempt */
     counts_t total;
     uint64_t attempts;
     uint64_t failed;
@@ -39,7 +39,7 @@ typedef struct {
     uint64_t time_sum_us;
     uint32_t time_min_us;
     uint32_t time_max_us;
-} tally_t;
+} counters_t;
 
 /* The counters of the port's driver. */
 typedef struct {
@@ -48,24 +48,24 @@ typedef struct {
 } port_counts_t;
 
 /* A port has been opened: the driver's counters begin here. */
-void tally_begin_port(port_counts_t *port, channel_t *channel);
+void counters_begin_port(port_counts_t *port, channel_t *channel);
 
 /* Takes the counters out of the line, the stream, the unit and the port and adds them. */
-void tally_take(tally_t *tally, port_counts_t *port, channel_t *channel, const reader_t *reader);
+void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader);
 
 /* Takes the line's late answers alone: they are this sensor's. */
-void tally_take_late(tally_t *tally, channel_t *channel);
+void counters_take_late(counters_t *counters, channel_t *channel);
 
-void tally_begin_attempt(tally_t *tally);
+void counters_begin_attempt(counters_t *counters);
 
 /* FAILURE_VALUE, or -status: its name; NULL: counted as the last one, "other". */
-const char *tally_failure_name(size_t kind);
+const char *counters_failure_name(size_t kind);
 
-void tally_failure(tally_t *tally, fathom_status_t status, const reader_t *reader);
+void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader);
 
-void tally_time(tally_t *tally, uint32_t took_us);
+void counters_time(counters_t *counters, uint32_t took_us);
 
 /* Adds what one sensor has counted to the sums of all; the present attempt is left out. */
-void tally_add(tally_t *sum, const tally_t *part);
+void counters_add(counters_t *sum, const counters_t *part);
 
 #endif

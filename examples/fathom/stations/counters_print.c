@@ -14,7 +14,7 @@ static const char *const line_names[FATHOM_LINE_COUNTERS] = {
     [FATHOM_LINE_EXCEPTIONS] = "exceptions",
     [FATHOM_LINE_MALFORMED] = "answers that do not fit",
     [FATHOM_LINE_LATE_ANSWERS] = "late answers",
-    [FATHOM_LINE_STRAYS] = "frames that nobody asked for",
+    [FATHOM_LINE_STRAYS] = "unasked frames",
     [FATHOM_LINE_BAD_BYTES] = "bad bytes",
 };
 
@@ -67,7 +67,7 @@ static void get_groups(group_t groups[GROUPS], const char *const failure_names[F
 
 static void get_failure_names(const char *names[FAILURE_KINDS])
 {
-    for (size_t i = 0; i != FAILURE_KINDS; i++) names[i] = tally_failure_name(i);
+    for (size_t i = 0; i != FAILURE_KINDS; i++) names[i] = counters_failure_name(i);
 }
 
 /* ---- for people ---- */
@@ -83,10 +83,10 @@ static bool print(FILE *to, const uint64_t *counts, const char *const *names, si
 }
 
 /* of: "" or "a16:1: ". */
-static void print_attempts(const tally_t *tally, FILE *to, const char *of, const char *gap)
+static void print_attempts(const counters_t *counters, FILE *to, const char *of, const char *gap)
 {
     (void)fprintf(to, "fathom: %s%sattempts %" PRIu64 ", failed %" PRIu64 ", readings %" PRIu64, of, gap,
-                  tally->attempts, tally->failed, tally->readings);
+                  counters->attempts, counters->failed, counters->readings);
 }
 
 /* Before the port was there, there is no unit. */
@@ -107,14 +107,14 @@ static void print_back_off(const station_t *station, FILE *to)
                   alone_us(station) / 1000000.0);
 }
 
-void tally_print(const account_t *account, FILE *to)
+void counters_print(const account_t *account, FILE *to)
 {
     const counts_t *const total = &account->sum.total;
     print_attempts(&account->sum, to, "", "");
     (void)fputs("\n", to);
     for (size_t i = 0; i != account->station_count && account->station_count > 1; i++) {
         const station_t *const station = &account->stations[i];
-        print_attempts(&station->tally, to, station->name, ": ");
+        print_attempts(&station->counters, to, station->name, ": ");
         if (silences(station) != 0) print_back_off(station, to);
         (void)fputs("\n", to);
     }
@@ -123,26 +123,29 @@ void tally_print(const account_t *account, FILE *to)
     if (!is_empty) (void)fputs("\n", to);
 }
 
-static double mean_us(const tally_t *tally) { return (double)tally->time_sum_us / (double)tally->timed; }
-
-static void print_time(const tally_t *tally, FILE *to, const char *start)
+static double mean_us(const counters_t *counters)
 {
-    if (tally->timed == 0) return;
+    return (double)counters->time_sum_us / (double)counters->timed;
+}
+
+static void print_time(const counters_t *counters, FILE *to, const char *start)
+{
+    if (counters->timed == 0) return;
     (void)fprintf(to, "%stime to answer: shortest %.1f ms, mean %.1f ms, longest %.1f ms", start,
-                  tally->time_min_us / 1000.0, mean_us(tally) / 1000.0, tally->time_max_us / 1000.0);
+                  counters->time_min_us / 1000.0, mean_us(counters) / 1000.0, counters->time_max_us / 1000.0);
 }
 
 static void print_unit(const station_t *station, FILE *to)
 {
-    const uint64_t *const unit = station->tally.total.unit;
-    print_attempts(&station->tally, to, station->name, ": ");
+    const uint64_t *const unit = station->counters.total.unit;
+    print_attempts(&station->counters, to, station->name, ": ");
     (void)fprintf(to, ", answers %" PRIu64 ", failures %" PRIu64, unit[UNIT_ANSWERS], unit[UNIT_FAILURES]);
     print_back_off(station, to);
-    print_time(&station->tally, to, ", ");
+    print_time(&station->counters, to, ", ");
     (void)fputs("\n", to);
 }
 
-void tally_print_all(const account_t *account, FILE *to)
+void counters_print_all(const account_t *account, FILE *to)
 {
     group_t groups[GROUPS];
     const char *failure_names[FAILURE_KINDS];
@@ -177,19 +180,19 @@ static void print_name(FILE *to, const char *name)
     (void)fputs("\":", to);
 }
 
-static void print_json_attempts(const tally_t *tally, FILE *to)
+static void print_json_attempts(const counters_t *counters, FILE *to)
 {
     (void)fprintf(to, "\"attempts\":%" PRIu64 ",\"failed\":%" PRIu64 ",\"readings\":%" PRIu64,
-                  tally->attempts, tally->failed, tally->readings);
+                  counters->attempts, counters->failed, counters->readings);
 }
 
-static void print_json_time(const tally_t *tally, FILE *to)
+static void print_json_time(const counters_t *counters, FILE *to)
 {
-    if (tally->timed != 0)
+    if (counters->timed != 0)
         (void)fprintf(to,
                       ",\"answer_us\":{\"answers\":%" PRIu64 ",\"min\":%" PRIu32
                       ",\"mean\":%.0f,\"max\":%" PRIu32 "}",
-                      tally->timed, tally->time_min_us, mean_us(tally), tally->time_max_us);
+                      counters->timed, counters->time_min_us, mean_us(counters), counters->time_max_us);
     else
         (void)fputs(",\"answer_us\":null", to);
 }
@@ -215,18 +218,18 @@ static void print_json_group(const group_t *group, FILE *to)
 
 static void print_json_unit(const station_t *station, FILE *to)
 {
-    const uint64_t *const counts = station->tally.total.unit;
-    (void)fprintf(to, "{\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", station->sensor->name,
+    const uint64_t *const counts = station->counters.total.unit;
+    (void)fprintf(to, "{\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", station->model->name,
                   station->mode->name, station->address);
-    print_json_attempts(&station->tally, to);
+    print_json_attempts(&station->counters, to);
     (void)fprintf(to,
                   ",\"answers\":%" PRIu64 ",\"failures\":%" PRIu64 ",\"silences\":%u,\"alone_us\":%" PRIu32,
                   counts[UNIT_ANSWERS], counts[UNIT_FAILURES], silences(station), alone_us(station));
-    print_json_time(&station->tally, to);
+    print_json_time(&station->counters, to);
     (void)fputs("}", to);
 }
 
-void tally_print_json(const account_t *account, FILE *to)
+void counters_print_json(const account_t *account, FILE *to)
 {
     group_t groups[GROUPS];
     const char *failure_names[FAILURE_KINDS];

@@ -8,7 +8,7 @@
 
 /* All that has been counted, to be told. */
 typedef struct {
-    tally_t sum; /* of all sensors */
+    counters_t sum; /* of all sensors */
     const station_t *stations;
     size_t station_count;
     uint64_t requests; /* that were sent */
@@ -18,10 +18,10 @@ typedef struct {
 } account_t;
 
 /* The sums, in two lines or less, and a line a sensor where there are several; what is 0 is left out. */
-void tally_print(const account_t *account, FILE *to);
+void counters_print(const account_t *account, FILE *to);
 
 /* All of it, for people and as a JSON object in one line. */
-void tally_print_all(const account_t *account, FILE *to);
-void tally_print_json(const account_t *account, FILE *to);
+void counters_print_all(const account_t *account, FILE *to);
+void counters_print_json(const account_t *account, FILE *to);
 
 #endif

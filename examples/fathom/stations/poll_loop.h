@@ -9,9 +9,9 @@
 
 /* Reads the sensors on one port, all of them in one loop, until the user, the count, the time or a loss ends it: what
  * `fathom read` and `fathom watch` share. */
-typedef struct session session_t;
+typedef struct loop poll_loop_t;
 
-/* What a command does with it. ctx: session_t.ctx. */
+/* What a command does with it. ctx: poll_loop_t.ctx. */
 typedef struct {
     /* False: it could not be told. */
     bool (*reading)(void *ctx, const station_t *station, const fathom_sample_t *sample);
@@ -23,15 +23,15 @@ typedef struct {
     uint32_t (*tick)(void *ctx);
     /* Ends it. */
     bool (*is_over)(const void *ctx);
-} session_user_t;
+} poll_loop_user_t;
 
-struct session {
-    session_options_t options;
+struct loop {
+    sensor_options_t options;
     const host_t *host;
-    const session_user_t *user;
+    const poll_loop_user_t *user;
     void *ctx;
     channel_t channel;
-    plug_t plug;
+    usb_adapter_t adapter;
     port_counts_t port_counts;
     uint64_t start_us; /* the program's */
     uint64_t reconnects;
@@ -39,26 +39,26 @@ struct session {
 };
 
 /* To be called first; all of it is cleared. */
-void session_begin(session_t *session, const host_t *host, const session_user_t *user, void *ctx);
+void poll_loop_begin(poll_loop_t *loop, const host_t *host, const poll_loop_user_t *user, void *ctx);
 
 /* Opens the port. False, after saying why: it cannot be opened, or (is_lost) it was waited for until the user ended
  * that. */
-bool session_open(session_t *session);
+bool poll_loop_open(poll_loop_t *loop);
 
 /* False, after saying why: a driver did not take its settings. */
-bool session_run(session_t *session);
+bool poll_loop_run(poll_loop_t *loop);
 
-void session_close(session_t *session);
+void poll_loop_close(poll_loop_t *loop);
 
 /* Has nothing failed, and has each sensor given a reading that is not unknown? One that has said nothing is forgiven where
  * the user ended it, or the port was still waited for. */
-bool session_is_good(const session_t *session);
+bool poll_loop_is_good(const poll_loop_t *loop);
 
 /* Takes and adds up all counters. */
-void session_account(session_t *session, account_t *account);
+void poll_loop_account(poll_loop_t *loop, account_t *account);
 
 /* How long it has been running; and for a sample, when that was. */
-uint64_t session_time_us(const session_t *session);
-uint64_t session_sample_us(const session_t *session, const fathom_sample_t *sample);
+uint64_t poll_loop_time_us(const poll_loop_t *loop);
+uint64_t poll_loop_sample_us(const poll_loop_t *loop, const fathom_sample_t *sample);
 
 #endif

@@ -65,7 +65,7 @@ static bool take_echo(const char *command, const char *text, uint8_t *echo)
     return false;
 }
 
-static bool take_numbers(session_options_t *options, const char *command, const char *const *values)
+static bool take_numbers(sensor_options_t *options, const char *command, const char *const *values)
 {
     uint32_t interval_ms = 0;
     uint32_t timeout_ms = 0;
@@ -93,16 +93,16 @@ static const char *next_word(const char *list, char separator, char word[MAX_WOR
     return end != NULL ? end + 1 : NULL;
 }
 
-static bool has_sensor(const session_options_t *options, const char *a, const char *b)
+static bool has_sensor(const sensor_options_t *options, const char *a, const char *b)
 {
     for (size_t i = 0; i != options->station_count; i++) {
-        const char *const name = options->stations[i].sensor->name;
+        const char *const name = options->stations[i].model->name;
         if (strcmp(name, a) == 0 || strcmp(name, b) == 0) return true;
     }
     return false;
 }
 
-static bool take_probes(session_options_t *options, const char *command, const char *text)
+static bool take_probes(sensor_options_t *options, const char *command, const char *text)
 {
     if (text == NULL) return true;
     if (!has_sensor(options, "a05", "a05")) {
@@ -157,7 +157,7 @@ static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
     return false;
 }
 
-static bool take_means(session_options_t *options, const char *command, const char *text)
+static bool take_means(sensor_options_t *options, const char *command, const char *text)
 {
     if (text == NULL) return true;
     if (!has_sensor(options, "a16", "a05")) {
@@ -177,10 +177,10 @@ static bool take_means(session_options_t *options, const char *command, const ch
     return true;
 }
 
-static bool take_stations(session_options_t *options, const char *command, char **words, size_t count,
+static bool take_stations(sensor_options_t *options, const char *command, char **words, size_t count,
                           const char *address, const char *mode)
 {
-    if (count == 0 || count > SESSION_STATIONS) {
+    if (count == 0 || count > MAX_STATIONS) {
         (void)usage_error(command,
                           count == 0 ? "which sensor? a16, a05 or hps167s" : "a line has 32 sensors at most");
         return false;
@@ -197,11 +197,11 @@ static bool take_stations(session_options_t *options, const char *command, char 
     return true;
 }
 
-static bool take_lines(session_options_t *options, const char *command, const char *const *values)
+static bool take_lines(sensor_options_t *options, const char *command, const char *const *values)
 {
     for (size_t i = 0; i != options->station_count; i++) {
         fathom_line_settings_t *const line = &options->stations[i].line;
-        *line = options->stations[i].sensor->line;
+        *line = options->stations[i].model->line;
         if (!take_baud(command, values[OPTION_BAUD], &line->baud) ||
             !take_stop_bits(command, values[OPTION_STOP_BITS], line) ||
             !take_parity(command, values[OPTION_PARITY], &line->parity))
@@ -216,8 +216,8 @@ static bool take_lines(session_options_t *options, const char *command, const ch
     return true;
 }
 
-bool session_options(session_options_t *options, const char *command, char **words, int word_count,
-                     const char *const *values, const char *address, const char *mode)
+bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
+                    const char *const *values, const char *address, const char *mode)
 {
     const char *const port = values[OPTION_PORT];
     const bool has_settings = port == NULL || !tcp_names(port);
@@ -239,21 +239,22 @@ bool session_options(session_options_t *options, const char *command, char **wor
     return true;
 }
 
-static void tell_useless(const session_options_t *options, const char *name, const char *value)
+static void tell_useless(const sensor_options_t *options, const char *name, const char *value)
 {
-    const sensor_mode_t *const mode = options->stations[0].mode;
+    const model_mode_t *const mode = options->stations[0].mode;
     if (value != NULL && !mode->is_asked)
         (void)fprintf(stderr, "fathom: in mode %s nothing is asked, so %s has no effect\n", mode->name, name);
 }
 
-void session_tell_useless(const session_options_t *options, const char *address, const char *const *values)
+void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
+                                 const char *const *values)
 {
     tell_useless(options, "--address", address);
     tell_useless(options, "--retries", values[OPTION_RETRIES]);
     tell_useless(options, "--echo", values[OPTION_ECHO]);
 }
 
-void session_options_help(FILE *to)
+void sensor_options_help(FILE *to)
 {
     (void)fputs(
         "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or a Modbus TCP "

@@ -20,11 +20,11 @@ enum {
     OPTION_DURATION,
     OPTION_PROBES,
     OPTION_MEANS,
-    SESSION_OPTIONS
+    SENSOR_OPTIONS
 };
 
 /* getopt_long returns 256 for each: the row counts. */
-#define SESSION_OPTION_ROWS                                                                                  \
+#define SENSOR_OPTION_ROWS                                                                                   \
     [OPTION_PORT] = {"port", required_argument, NULL, 256},                                                  \
     [OPTION_BAUD] = {"baud", required_argument, NULL, 256},                                                  \
     [OPTION_PARITY] = {"parity", required_argument, NULL, 256},                                              \
@@ -39,11 +39,11 @@ enum {
     [OPTION_MEANS] = {"means", required_argument, NULL, 256}
 
 /* A line has 32 unit loads. */
-enum { SESSION_STATIONS = 32 };
+enum { MAX_STATIONS = 32 };
 
 /* What a command was asked to read. */
 typedef struct {
-    station_t stations[SESSION_STATIONS];
+    station_t stations[MAX_STATIONS];
     size_t station_count;
     const char *port;
     fathom_line_settings_t line; /* with which the port is opened: the slowest of the sensors' */
@@ -57,19 +57,20 @@ typedef struct {
     uint8_t retries;
     uint8_t echo; /* fathom_line_config_t.echo */
     bool reconnect;
-} session_options_t;
+} sensor_options_t;
 
 /*
  * words: SENSOR[:ADDRESS[:MODE]], word_count of them. values: what options_parse has found. address and mode: what
  * further options have said of the one sensor; NULL: nothing. False after saying what is wrong.
  */
-bool session_options(session_options_t *options, const char *command, char **words, int word_count,
-                     const char *const *values, const char *address, const char *mode);
+bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
+                    const char *const *values, const char *address, const char *mode);
 
 /* Says which of these options have no effect because nothing is asked. */
-void session_tell_useless(const session_options_t *options, const char *address, const char *const *values);
+void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
+                                 const char *const *values);
 
 /* Their help, a line each. */
-void session_options_help(FILE *to);
+void sensor_options_help(FILE *to);
 
 #endif

@@ -8,9 +8,9 @@
 
 enum { MAX_TEXT = 40 };
 
-static const sensor_mode_t *asked_mode(const sensor_t *sensor)
+static const model_mode_t *asked_mode(const model_t *model)
 {
-    const sensor_mode_t *mode = sensor->modes;
+    const model_mode_t *mode = model->modes;
     while (!mode->is_asked) mode++; /* each sensor has one */
     return mode;
 }
@@ -19,12 +19,12 @@ static const sensor_mode_t *asked_mode(const sensor_t *sensor)
 static bool take_address(station_t *station, const char *command, const char *part, const char *option)
 {
     uint32_t number = FACTORY_ADDRESS;
-    const uint8_t least = sensor_least_address(station->sensor, station->mode);
-    const uint8_t max = station->sensor->max_address;
+    const uint8_t least = model_least_address(station->model, station->mode);
+    const uint8_t max = station->model->max_address;
     if (!option_number(command, "address", option, least, max, &number)) return false;
     if (part != NULL && part[0] != '\0' && !number_parse(part, least, max, &number)) {
         (void)usage_error(command, "the address of %s is a number from %u to %u, not '%s'",
-                          station->sensor->name, least, max, part);
+                          station->model->name, least, max, part);
         return false;
     }
     station->address = (uint8_t)number;
@@ -35,27 +35,27 @@ bool station_parse(station_t *station, const char *command, const char *text, co
                    const char *mode, bool is_shared)
 {
     char parts[MAX_TEXT];
-    if (strlen(text) >= sizeof parts) return sensor_find(command, text) != NULL;
+    if (strlen(text) >= sizeof parts) return model_find(command, text) != NULL;
     memcpy(parts, text, strlen(text) + 1);
     char *const address_part = strchr(parts, ':');
     char *const mode_part = address_part != NULL ? strchr(address_part + 1, ':') : NULL;
     if (address_part != NULL) *address_part = '\0';
     if (mode_part != NULL) *mode_part = '\0';
-    station->sensor = sensor_find(command, parts);
-    if (station->sensor == NULL) return false;
+    station->model = model_find(command, parts);
+    if (station->model == NULL) return false;
     if ((address_part != NULL && address != NULL) || (mode_part != NULL && mode != NULL)) {
         (void)usage_error(command, "'%s' and an option say the same; leave one of them out", text);
         return false;
     }
     if (mode_part != NULL) mode = mode_part + 1;
     station->mode = mode == NULL && (is_shared || address_part != NULL)
-                        ? asked_mode(station->sensor)
-                        : sensor_mode_find(command, station->sensor, mode);
+                        ? asked_mode(station->model)
+                        : model_mode_find(command, station->model, mode);
     if (station->mode == NULL ||
         !take_address(station, command, address_part != NULL ? address_part + 1 : NULL, address))
         return false;
     (void)snprintf(station->name, sizeof station->name, station->mode->is_asked ? "%s:%u" : "%s",
-                   station->sensor->name, station->address);
+                   station->model->name, station->address);
     return true;
 }
 
@@ -74,12 +74,12 @@ static bool check_two(const station_t *one, const station_t *other, const char *
         return false;
     }
     /* One flipped bit in an answer 55 AA gives its address to every other A05 that hears it. */
-    if (one->sensor == other->sensor && (is_a05_dyp(one) || is_a05_dyp(other))) {
+    if (one->model == other->model && (is_a05_dyp(one) || is_a05_dyp(other))) {
         (void)usage_error(
             command,
             "a damaged answer in mode dyp can change the address of another %s on the line; ask "
             "them all by Modbus, such as %s:modbus",
-            one->sensor->name, is_a05_dyp(one) ? one->name : other->name);
+            one->model->name, is_a05_dyp(one) ? one->name : other->name);
         return false;
     }
     return true;
@@ -94,7 +94,7 @@ bool stations_check(const station_t *stations, size_t count, const char *command
                 command,
                 "%s in mode %s sends by itself and cannot share a line with others; ask it, such "
                 "as %s:%u:modbus",
-                one->sensor->name, one->mode->name, one->sensor->name, one->address);
+                one->model->name, one->mode->name, one->model->name, one->address);
             return false;
         }
         for (size_t j = 0; j != i; j++)

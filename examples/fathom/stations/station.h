@@ -9,20 +9,21 @@
 enum { STATION_NAME = 16 };
 
 typedef struct {
-    const sensor_t *sensor;
-    const sensor_mode_t *mode;
+    const model_t *model;
+    const model_mode_t *mode;
     fathom_line_settings_t line; /* at which it is asked */
     uint8_t address;
     char name[STATION_NAME]; /* "a16:1", as the user may write it; of one that sends by itself "a16" */
     reader_t reader;
-    tally_t tally;
-    ear_t own_ear;    /* where several sensors are asked: what was heard while it was this one's turn */
-    ear_t *ear;       /* the line's or its own */
-    uint64_t next_us; /* when the present attempt began, or will */
-    bool skipping;    /* the present answer came before it */
-    bool answering;   /* the present attempt has begun to hand over an answer, ... */
-    bool has_failed;  /* ... or a part of it was an error */
-    bool has_good;    /* there has been a reading that is not unknown */
+    counters_t counters;
+    listener_t
+        own_listener;     /* where several sensors are asked: what was heard while it was this one's turn */
+    listener_t *listener; /* the line's or its own */
+    uint64_t next_us;     /* when the present attempt began, or will */
+    bool skipping;        /* the present answer came before it */
+    bool answering;       /* the present attempt has begun to hand over an answer, ... */
+    bool has_failed;      /* ... or a part of it was an error */
+    bool has_good;        /* there has been a reading that is not unknown */
 } station_t;
 
 /*

@@ -12,10 +12,10 @@
 
 static const char command[] = "watch";
 
-enum { HELP = SESSION_OPTIONS, OPTIONS };
+enum { HELP = SENSOR_OPTIONS, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
+    SENSOR_OPTION_ROWS,
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -23,7 +23,7 @@ static const struct option table[OPTIONS + 1] = {
 enum { PICTURE_US = 125000, LINE_US = 1000000, MESSAGE_US = 5000000, MESSAGE = 512 };
 
 typedef struct {
-    session_t session;
+    poll_loop_t loop;
     lanes_t lanes;
     picture_t picture;
     uint16_t rows; /* of the window */
@@ -31,8 +31,8 @@ typedef struct {
     uint64_t next_us;      /* when the next picture or line is due */
     char message[MESSAGE]; /* the last failure, or what has happened to the port */
     uint64_t message_end_us;
-    fathom_status_t told[SESSION_STATIONS]; /* for lines: what has been said of each sensor's last failure */
-    bool draws;                             /* pictures, else lines */
+    fathom_status_t told[MAX_STATIONS]; /* for lines: what has been said of each sensor's last failure */
+    bool draws;                         /* pictures, else lines */
     bool wants_all;   /* of the next picture, because something else may have written to the terminal */
     int output_error; /* errno */
 } watch_t;
@@ -40,15 +40,15 @@ typedef struct {
 static void say(watch_t *watch, const char *text, uint64_t for_us)
 {
     (void)snprintf(watch->message, sizeof watch->message, "%s", text);
-    watch->message_end_us = session_time_us(&watch->session) + for_us;
+    watch->message_end_us = poll_loop_time_us(&watch->loop) + for_us;
 }
 
 static bool take_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
 {
     watch_t *const watch = ctx;
-    lanes_pass(&watch->lanes, session_time_us(&watch->session));
+    lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_reading(&watch->lanes, station, sample);
-    watch->told[station - watch->session.options.stations] = FATHOM_READY;
+    watch->told[station - watch->loop.options.stations] = FATHOM_READY;
     return true;
 }
 
@@ -66,9 +66,9 @@ static void get_advice(char text[MESSAGE], const failure_t *failure, const stati
 static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
 {
     watch_t *const watch = ctx;
-    fathom_status_t *const told = &watch->told[station - watch->session.options.stations];
+    fathom_status_t *const told = &watch->told[station - watch->loop.options.stations];
     char text[MESSAGE] = "";
-    lanes_pass(&watch->lanes, session_time_us(&watch->session));
+    lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_failure(&watch->lanes, failure, station);
     get_advice(text, failure, station);
     say(watch, text, MESSAGE_US);
@@ -91,12 +91,12 @@ static void draw(watch_t *watch, uint64_t now_us)
     char title[MESSAGE];
     (void)snprintf(title, sizeof title,
                    "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   Ctrl-C ends",
-                   watch->session.options.port, seconds / 3600, seconds / 60 % 60, seconds % 60);
+                   watch->loop.options.port, seconds / 3600, seconds / 60 % 60, seconds % 60);
     picture_draw(&watch->picture, watch->rows, watch->columns, &watch->lanes, title,
                  now_us < watch->message_end_us ? watch->message : "");
     watch->output_error = terminal_show(&watch->picture, watch->wants_all);
     /* While a port is waited for, others may write to the terminal. */
-    watch->wants_all = watch->session.is_lost;
+    watch->wants_all = watch->loop.is_lost;
 }
 
 /* All lanes in one line. */
@@ -120,7 +120,7 @@ static void print_line(watch_t *watch, uint64_t now_us)
 static uint32_t tick(void *ctx)
 {
     watch_t *const watch = ctx;
-    const uint64_t now_us = session_time_us(&watch->session);
+    const uint64_t now_us = poll_loop_time_us(&watch->loop);
     const uint32_t every_us = watch->draws ? PICTURE_US : LINE_US;
     if (events_noted()) {
         terminal_size(&watch->rows, &watch->columns);
@@ -142,9 +142,9 @@ static bool is_over(const void *ctx) { return ((const watch_t *)ctx)->output_err
 
 static int finish(watch_t *watch)
 {
-    const host_t *const host = watch->session.host;
+    const host_t *const host = watch->loop.host;
     account_t account;
-    const bool is_lost = watch->session.is_lost;
+    const bool is_lost = watch->loop.is_lost;
     terminal_give_back();
     if (watch->output_error == EINTR && host->has_ended(host->ctx)) watch->output_error = 0;
     if (watch->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
@@ -152,9 +152,9 @@ static int finish(watch_t *watch)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
     /* On the screen that has just gone, this stood last. */
     if (is_lost && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->message);
-    session_account(&watch->session, &account);
-    tally_print(&account, stderr);
-    return !session_is_good(&watch->session) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+    poll_loop_account(&watch->loop, &account);
+    counters_print(&account, stderr);
+    return !poll_loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
 static void help(FILE *to)
@@ -164,7 +164,7 @@ static void help(FILE *to)
         "probe.\n\n"
         "usage: fathom watch SENSOR[:ADDRESS[:MODE]]... --port PATH [OPTIONS]\n\n",
         to);
-    sensors_print(to);
+    models_print(to);
     (void)fputs(
         "\nSensors and options are those of fathom read. Each lane has the present value, readings a second, "
         "and "
@@ -183,7 +183,7 @@ static void help(FILE *to)
         "the bars are\n"
         "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
         to);
-    session_options_help(to);
+    sensor_options_help(to);
     (void)fputs("\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a "
                 "sensor gave no "
                 "good\n"
@@ -195,47 +195,47 @@ static void help(FILE *to)
                 to);
 }
 
-static bool take_options(session_options_t *options, int argc, char **argv, bool *wants_help)
+static bool take_options(sensor_options_t *options, int argc, char **argv, bool *wants_help)
 {
     const char *values[OPTIONS] = {NULL};
     const int rest = options_parse(command, argc, argv, table, values);
     *wants_help = rest >= 0 && values[HELP] != NULL;
     if (rest < 0 || *wants_help) return rest >= 0;
-    if (!session_options(options, command, argv + rest, argc - rest, values, NULL, NULL)) return false;
-    session_tell_useless(options, NULL, values);
+    if (!sensor_options(options, command, argv + rest, argc - rest, values, NULL, NULL)) return false;
+    sensor_options_tell_useless(options, NULL, values);
     return true;
 }
 
 static int run(const host_t *host, int argc, char **argv)
 {
-    static const session_user_t user = {take_reading, take_failure, take_port, tick, is_over};
+    static const poll_loop_user_t user = {take_reading, take_failure, take_port, tick, is_over};
     static watch_t watch; /* too large for any stack */
-    session_t *const session = &watch.session;
+    poll_loop_t *const loop = &watch.loop;
     bool wants_help = false;
     memset(&watch, 0, sizeof watch);
-    session_begin(session, host, &user, &watch);
-    if (!take_options(&session->options, argc, argv, &wants_help)) return STATUS_USAGE;
+    poll_loop_begin(loop, host, &user, &watch);
+    if (!take_options(&loop->options, argc, argv, &wants_help)) return STATUS_USAGE;
     if (wants_help) {
         help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    lanes_begin(&watch.lanes, &session->options);
+    lanes_begin(&watch.lanes, &loop->options);
     watch.draws = terminal_can_draw();
     if (watch.draws) {
         events_note(SIGWINCH);
         terminal_take();
     }
     terminal_size(&watch.rows, &watch.columns);
-    if (!session_open(session)) {
-        if (session->is_lost) return finish(&watch);
+    if (!poll_loop_open(loop)) {
+        if (loop->is_lost) return finish(&watch);
         terminal_give_back();
         if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.message);
         return STATUS_FAILED;
     }
-    const bool has_run = session_run(session);
+    const bool has_run = poll_loop_run(loop);
     const int status = finish(&watch);
-    session_close(session);
+    poll_loop_close(loop);
     return has_run ? status : STATUS_FAILED;
 }
 

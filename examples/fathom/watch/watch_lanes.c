@@ -36,13 +36,13 @@ const char *mark_name(mark_t mark) { return marks[mark].name; }
 
 bool mark_is_loss(mark_t mark) { return marks[mark].is_loss; }
 
-void lanes_begin(lanes_t *lanes, const session_options_t *options)
+void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
 {
     lanes->step_us = options->interval_us > LEAST_STEP_US ? options->interval_us : LEAST_STEP_US;
     lanes->count = 0;
     for (size_t i = 0; i != options->station_count; i++) {
         const station_t *const station = &options->stations[i];
-        const uint8_t probes = station->sensor->probes;
+        const uint8_t probes = station->model->probes;
         for (uint8_t probe = 1; probe <= probes; probe++) {
             if (probes > 1 && options->probes != 0 && (options->probes >> (probe - 1) & 1) == 0) continue;
             lane_t *const lane = &lanes->lane[lanes->count++];

@@ -52,7 +52,7 @@ typedef struct {
     uint64_t lost; /* of these */
 } lane_t;
 
-enum { MAX_LANES = SESSION_STATIONS * 4 };
+enum { MAX_LANES = MAX_STATIONS * 4 };
 
 typedef struct {
     lane_t lane[MAX_LANES];
@@ -62,7 +62,7 @@ typedef struct {
     uint32_t step_us;
 } lanes_t;
 
-void lanes_begin(lanes_t *lanes, const session_options_t *options);
+void lanes_begin(lanes_t *lanes, const sensor_options_t *options);
 
 /* The time has come so far: steps in which nothing has happened yet are empty. */
 void lanes_pass(lanes_t *lanes, uint64_t now_us);

@@ -84,7 +84,7 @@ void terminal_give_back(void)
     if (!terminal.is_taken) return;
     terminal.is_taken = false;
     (void)write_all("\x1B[0m\x1B[?7h\x1B[?25h\x1B[?1049l");
-    /* What was typed meanwhile was for nobody. */
+    /* What was typed meanwhile was meant for no program. */
     if (terminal.has_input) (void)tcsetattr(STDIN_FILENO, TCSAFLUSH, &terminal.before);
 }
 
@@ -102,7 +102,7 @@ static bool is_same_row(const picture_t *one, const picture_t *other, uint16_t r
     return memcmp(one->cells[row], other->cells[row], one->columns * sizeof one->cells[row][0]) == 0;
 }
 
-/* In one write as a rule, so that nobody sees half a picture. */
+/* In one write as a rule, so that no half picture is seen. */
 int terminal_show(const picture_t *picture, bool all)
 {
     static char text[OUTPUT];

@@ -39,7 +39,7 @@ static int rig_write(void *ctx, const uint8_t *bytes, size_t length)
     if (n <= 0) return n;
     expect_harmless(bytes, length);
     rig.requests++;
-    /* 0001 and 0200 are the first questions */
+    /* 0001 and 0200 are the first requests */
     if ((bytes[2] == 0x00 && bytes[3] == 0x01) || (bytes[2] == 0x02 && bytes[3] == 0x00))
         rig.probed[rate_index(rig.sim_line.settings.baud)][rig.sim_line.settings.parity]++;
     return n;
@@ -104,7 +104,7 @@ void rig_begin(uint32_t start_us)
     rig.uart.write = rig_write;
     rig.uart.set_line = rig_set_line;
     rig.clock = fathom_sim_clock(&rig.sim_clock);
-    ear_begin(&rig.ear, &rig.uart, &rig.clock);
+    listener_begin(&rig.listener, &rig.uart, &rig.clock);
     rig.config = (fathom_line_config_t){.uart = &rig.uart,
                                         .clock = &rig.clock,
                                         .frame = rig.frame,
@@ -114,7 +114,8 @@ void rig_begin(uint32_t start_us)
                                         .gap_us = 60000};
     rig.config.silence_us = scan_silence_us(&rig.plan);
     assert_int_equal(fathom_line_init(&rig.line, &rig.config), FATHOM_READY);
-    rig.wire = (scan_wire_t){.line = &rig.line, .ear = &rig.ear, .clock = &rig.clock, .wait = rig_wait};
+    rig.wire =
+        (scan_wire_t){.line = &rig.line, .listener = &rig.listener, .clock = &rig.clock, .wait = rig_wait};
     rig.tell = (scan_tell_t){.found = note_found, .progress = note_progress, .unsupported = note_unsupported};
     rig.walk = (scan_walk_t){.wire = &rig.wire, .plan = &rig.plan, .tell = &rig.tell};
 }

@@ -24,10 +24,10 @@ typedef struct {
     fathom_sim_hps167s_t hps[RIG_DEVICES];
     uint8_t a16s, a05s, hpss;
 
-    fathom_uart_t uart; /* the ear's */
+    fathom_uart_t uart; /* the listener's */
     fathom_uart_t inner;
     fathom_clock_t clock;
-    ear_t ear;
+    listener_t listener;
     uint8_t frame[255];
     fathom_line_config_t config;
     fathom_line_t line;
@@ -39,7 +39,7 @@ typedef struct {
     uint32_t refused_baud;
     bool is_broken;
     uint32_t requests;
-    uint32_t probed[SCAN_RATES][SCAN_PARITIES]; /* first questions, by the settings of the line */
+    uint32_t probed[SCAN_RATES][SCAN_PARITIES]; /* first requests, by the settings of the line */
 
     scan_plan_t plan;
     scan_tell_t tell;
