@@ -1,27 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include <stdarg.h>
+#include "commands.h"
+
 #include <string.h>
 
 #include "fathom/version.h"
-#include "shared/command.h"
 
 static const command_t *const commands[] = {
     &scan_command, &read_command,  &watch_command,  &info_command, &get_command,
     &set_command,  &reset_command, &decode_command, &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
-
-int usage_error(const char *command, const char *format, ...)
-{
-    const char *const gap = command[0] != '\0' ? " " : "";
-    va_list arguments;
-    (void)fprintf(stderr, "fathom%s%s: ", gap, command);
-    va_start(arguments, format);
-    (void)vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    (void)fprintf(stderr, "; try: fathom%s%s --help\n", gap, command);
-    return STATUS_USAGE;
-}
 
 static int no_command(void)
 {

@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "shared/command.h"
+#include "commands.h"
 
 /*
  * A descriptor that is closed at the start would be given to the next file that is opened, and readings would

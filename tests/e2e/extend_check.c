@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* For test_clock.py, built with the tool's output.c: what the tool makes of the library's 32-bit times. */
+/* For test_clock.py, built with the tool's timestamp.c: what the tool makes of the library's 32-bit times. */
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-#include "read/output.h"
-#include "shared/command.h"
-
-int usage_error(const char *command, const char *format, ...)
-{
-    (void)command;
-    (void)format;
-    return 2;
-}
+#include "shared/timestamp.h"
 
 /* extend_check NOW THEN ...: a line each */
 int main(int argc, char **argv)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shared/command.h"
+#include "commands.h"
 
 enum { WORDS = 64, TEXT = 1024 };
 static const uint64_t longest_us = UINT64_C(7200000000);

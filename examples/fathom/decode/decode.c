@@ -2,11 +2,11 @@
 #include <errno.h>
 #include <string.h>
 
+#include "commands.h"
 #include "decode/decode_print.h"
 #include "fathom/crc16.h"
 #include "fathom/dyp_frame.h"
 #include "fathom/modbus_rtu.h"
-#include "shared/command.h"
 #include "shared/options.h"
 
 static const char command[] = "decode";
@@ -23,7 +23,7 @@ static const struct option table[OPTIONS + 1] = {
 
 typedef struct {
     uint8_t protocols;
-    uint8_t sensors;
+    uint8_t models; /* as in decode_context_t */
     const decode_format_t *format;
 } settings_t;
 
@@ -58,37 +58,42 @@ static void help(FILE *to)
 
 typedef struct {
     const char *name;
-    uint8_t sensors;
     uint8_t protocols;
 } choice_t;
 
-/* What each leaves; both are applied. */
-static const choice_t protocols[] = {{"auto", DECODE_SENSORS, DECODE_ALL},
-                                     {"modbus", DECODE_SENSORS, DECODE_MODBUS},
-                                     {"dyp", DECODE_SENSORS, DECODE_DYP},
-                                     {"stream", DECODE_SENSORS, DECODE_STREAM_ONE | DECODE_STREAM_FOUR}};
-static const choice_t sensors[] = {{"a16", DECODE_A16, DECODE_MODBUS | DECODE_STREAM_ONE},
-                                   {"a05", DECODE_A05, DECODE_MODBUS | DECODE_DYP | DECODE_STREAM_FOUR},
-                                   {"hps167s", DECODE_HPS167S, DECODE_MODBUS}};
-enum { PROTOCOLS = sizeof protocols / sizeof protocols[0], SENSORS = sizeof sensors / sizeof sensors[0] };
+static const choice_t protocols[] = {{"auto", DECODE_ALL},
+                                     {"modbus", DECODE_MODBUS},
+                                     {"dyp", DECODE_DYP},
+                                     {"stream", DECODE_STREAM_ONE | DECODE_STREAM_FOUR}};
+enum { PROTOCOLS = sizeof protocols / sizeof protocols[0], ALL_MODELS = (1 << MODELS) - 1 };
 
 /* text NULL: it was not given. */
-static bool narrow(settings_t *settings, const char *what, const char *text, const choice_t *choices,
-                   size_t count)
+static bool take_protocol(settings_t *settings, const char *text)
 {
     char known[80] = "";
     if (text == NULL) return true;
-    for (size_t i = 0; i != count; i++) {
-        if (strcmp(text, choices[i].name) == 0) {
-            settings->sensors &= choices[i].sensors;
-            settings->protocols &= choices[i].protocols;
+    for (size_t i = 0; i != PROTOCOLS; i++) {
+        if (strcmp(text, protocols[i].name) == 0) {
+            settings->protocols &= protocols[i].protocols;
             return true;
         }
         const size_t length = strlen(known);
-        (void)snprintf(known + length, sizeof known - length, "%s%s", i != 0 ? ", " : "", choices[i].name);
+        (void)snprintf(known + length, sizeof known - length, "%s%s", i != 0 ? ", " : "", protocols[i].name);
     }
-    (void)usage_error(command, "there is no %s '%s', only %s", what, text, known);
+    (void)usage_error(command, "there is no protocol '%s', only %s", text, known);
     return false;
+}
+
+/* The same. */
+static bool take_model(settings_t *settings, const char *text)
+{
+    if (text == NULL) return true;
+    const model_t *const named = model_find(command, text);
+    if (named == NULL) return false;
+    for (size_t i = 0; i != MODELS; i++)
+        if (models[i] == named) settings->models = (uint8_t)(1u << i);
+    settings->protocols &= named->protocols;
+    return true;
 }
 
 static bool take_format(settings_t *settings, const char *text)
@@ -140,7 +145,7 @@ static void guess(const decode_input_t *input, const decode_piece_t *piece, uint
 static int explain(const settings_t *settings, const decode_input_t *input, decode_finder_t *finder)
 {
     static decode_frame_t frame;
-    decode_context_t context = {settings->sensors, false, {0}};
+    decode_context_t context = {settings->models, false, {0}};
     decode_piece_t piece;
     char why[WHY_TEXT];
     int status = STATUS_OK;
@@ -176,7 +181,7 @@ static int decode(const settings_t *settings, const decode_input_t *input)
 static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
-    settings_t settings = {DECODE_ALL, DECODE_SENSORS, NULL};
+    settings_t settings = {DECODE_ALL, ALL_MODELS, NULL};
     decode_input_t input;
     (void)host; /* it opens no port */
     const int rest = options_parse(command, argc, argv, table, values);
@@ -185,8 +190,7 @@ static int run(const host_t *host, int argc, char **argv)
         help(stdout);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    if (!narrow(&settings, "protocol", values[PROTOCOL], protocols, PROTOCOLS) ||
-        !narrow(&settings, "sensor", values[SENSOR], sensors, SENSORS) ||
+    if (!take_protocol(&settings, values[PROTOCOL]) || !take_model(&settings, values[SENSOR]) ||
         !take_format(&settings, values[FORMAT]))
         return STATUS_USAGE;
     if (settings.protocols == 0)

@@ -3,26 +3,7 @@
 #define DECODE_FIND_H
 
 #include "decode/decode_input.h"
-
-/* What may be in the input; sets of them. */
-enum {
-    DECODE_MODBUS = 1,
-    DECODE_DYP = 2,         /* 55 AA */
-    DECODE_STREAM_ONE = 4,  /* FF H L SUM */
-    DECODE_STREAM_FOUR = 8, /* FF, four distances, SUM */
-    DECODE_ALL = 15
-};
-
-enum { DECODE_REQUEST = 1, DECODE_ANSWER = 2, DECODE_BOTH = 3 };
-
-/* A frame, or bytes that belong to none (protocol 0). */
-typedef struct {
-    size_t offset;
-    size_t length;
-    uint8_t protocol;
-    uint8_t direction; /* DECODE_REQUEST, DECODE_ANSWER, or both where the bytes are the same */
-    bool is_damaged;   /* the shape of a frame, but its checksum is wrong */
-} decode_piece_t;
+#include "models/decoding.h"
 
 /*
  * Cuts the input into pieces such that as much as possible is explained: frames with a right checksum count

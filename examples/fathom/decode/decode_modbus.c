@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "fathom/crc16.h"
-#include "fathom/hps167s_registers.h"
 #include "fathom/modbus_rtu.h"
 
-enum { UNIT = 0, FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 4, HEAD = 6, EVERYBODY = 0xFF };
+enum { UNIT = 0, HEAD = 6, ALL_UNITS = 0xFF };
 enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, EXCEPTION = FATHOM_MODBUS_EXCEPTION };
 
 static const char *function_name(uint8_t function)
@@ -25,7 +24,7 @@ static const char *function_name(uint8_t function)
     }
 }
 
-/* By the specification's name, section 7; the HPS-167S has its own words for the first four (table 39). */
+/* By the specification's name, section 7. */
 static const char *exception_name(uint8_t code)
 {
     static const char *const names[] = {[1] = "illegal function",
@@ -41,24 +40,21 @@ static const char *exception_name(uint8_t code)
     return name != NULL ? name : "no code of the specification";
 }
 
-static const char *hps167s_exception_name(uint8_t code)
-{
-    static const char *const names[] = {[1] = "illegal function code",
-                                        [2] = "illegal start address or register address",
-                                        [3] = "illegal register count",
-                                        [4] = "device operation failed"};
-    return code != 0 && code < sizeof names / sizeof names[0] ? names[code] : NULL;
-}
-
 static void decode_exception(decode_frame_t *frame, const decode_context_t *context, bool is_asked)
 {
-    const uint8_t code = frame->bytes[SIZE];
+    const uint8_t code = frame->bytes[DECODE_AT_SIZE];
     decode_meaning_t *const meaning = decode_mean(frame, "", "", "the request is refused");
     decode_number(meaning, "exception", code, "")->note = exception_name(code);
-    if ((context->sensors & DECODE_HPS167S) != 0 && hps167s_exception_name(code) != NULL)
-        (void)decode_mean(frame, "hps167s", "HPS table 39", "%s", hps167s_exception_name(code));
-    if ((context->sensors & (DECODE_A16 | DECODE_A05)) != 0)
-        decode_note(frame, "no exceptions are in the datasheets of a16 and a05");
+    bool has_none = false;
+    for (size_t i = 0; i != MODELS; i++) {
+        const model_t *const model = models[i];
+        if ((context->models >> i & 1) == 0) continue;
+        if (model->exception_name == NULL)
+            has_none = true;
+        else if (model->exception_name(code) != NULL)
+            (void)decode_mean(frame, model->name, model->exception_source, "%s", model->exception_name(code));
+    }
+    if (has_none) decode_note(frame, "no exceptions are in the datasheets of a16 and a05");
     if (is_asked) decode_note(frame, "refuses the request before");
 }
 
@@ -67,14 +63,15 @@ static void decode_plain(decode_frame_t *frame)
 {
     const uint8_t *const bytes = frame->bytes;
     const bool is_answer = frame->piece->direction == DECODE_ANSWER;
-    if (bytes[FUNCTION] == READ && is_answer) {
-        (void)decode_mean(frame, "", "", "%u registers", bytes[SIZE] / 2u);
+    if (bytes[DECODE_AT_FUNCTION] == READ && is_answer) {
+        (void)decode_mean(frame, "", "", "%u registers", bytes[DECODE_AT_SIZE] / 2u);
         return;
     }
     decode_meaning_t *const meaning = decode_mean(frame, "", "", "none of these sensors knows this");
-    decode_string(meaning, "address", "0x%04X", decode_get16(bytes + FIRST));
-    decode_number(meaning, bytes[FUNCTION] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER ? "value" : "registers",
-                  decode_get16(bytes + COUNT), "");
+    decode_string(meaning, "address", "0x%04X", decode_get16(bytes + DECODE_AT_FIRST));
+    decode_number(meaning,
+                  bytes[DECODE_AT_FUNCTION] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER ? "value" : "registers",
+                  decode_get16(bytes + DECODE_AT_COUNT), "");
 }
 
 static bool answers(const decode_frame_t *frame, const decode_context_t *context)
@@ -82,11 +79,12 @@ static bool answers(const decode_frame_t *frame, const decode_context_t *context
     const uint8_t *const bytes = frame->bytes;
     const uint8_t *const head = context->head;
     if (!context->is_asked || (frame->piece->direction & DECODE_ANSWER) == 0) return false;
-    if (bytes[UNIT] != head[UNIT] && head[UNIT] != EVERYBODY) return false;
-    if ((bytes[FUNCTION] & (uint8_t)~EXCEPTION) != head[FUNCTION]) return false;
-    if ((bytes[FUNCTION] & EXCEPTION) != 0) return true;
-    if (bytes[FUNCTION] == READ) return bytes[SIZE] == 2 * decode_get16(head + COUNT);
-    return memcmp(bytes + FIRST, head + FIRST, HEAD - FIRST) == 0;
+    if (bytes[UNIT] != head[UNIT] && head[UNIT] != ALL_UNITS) return false;
+    if ((bytes[DECODE_AT_FUNCTION] & (uint8_t)~EXCEPTION) != head[DECODE_AT_FUNCTION]) return false;
+    if ((bytes[DECODE_AT_FUNCTION] & EXCEPTION) != 0) return true;
+    if (bytes[DECODE_AT_FUNCTION] == READ)
+        return bytes[DECODE_AT_SIZE] == 2 * decode_get16(head + DECODE_AT_COUNT);
+    return memcmp(bytes + DECODE_AT_FIRST, head + DECODE_AT_FIRST, HEAD - DECODE_AT_FIRST) == 0;
 }
 
 static void decode_checksum(decode_frame_t *frame)
@@ -103,11 +101,12 @@ static void decode_checksum(decode_frame_t *frame)
 
 static void decode_meanings(decode_frame_t *frame, const decode_context_t *context, const uint8_t *request)
 {
-    const bool is_wide = frame->unit > FATHOM_HPS167S_MAX_ADDRESS;
-    if ((context->sensors & DECODE_A16) != 0) decode_a16(frame, request);
-    if ((context->sensors & DECODE_A05) != 0) decode_a05(frame, request);
-    if ((context->sensors & DECODE_HPS167S) != 0 && (!is_wide || context->sensors == DECODE_HPS167S))
-        decode_hps167s(frame, request);
+    for (size_t i = 0; i != MODELS; i++) {
+        const model_t *const model = models[i];
+        const bool is_only = context->models == 1u << i;
+        const bool is_beyond = !model->is_dyp && frame->unit > model->max_address;
+        if ((context->models >> i & 1) != 0 && (is_only || !is_beyond)) model->decode(frame, request);
+    }
     if (frame->meanings == 0) decode_plain(frame);
 }
 
@@ -117,17 +116,18 @@ void decode_modbus(decode_frame_t *frame, decode_context_t *context)
     const uint8_t *const bytes = frame->bytes;
     const bool is_asked = answers(frame, context);
     frame->unit = bytes[UNIT];
-    frame->code = bytes[FUNCTION];
+    frame->code = bytes[DECODE_AT_FUNCTION];
     frame->code_is = "function";
     (void)snprintf(frame->what, sizeof frame->what, "%s%s",
-                   (bytes[FUNCTION] & EXCEPTION) != 0 ? "refuses to " : "", function_name(bytes[FUNCTION]));
+                   (bytes[DECODE_AT_FUNCTION] & EXCEPTION) != 0 ? "refuses to " : "",
+                   function_name(bytes[DECODE_AT_FUNCTION]));
     decode_checksum(frame);
     if (frame->unit == FATHOM_MODBUS_BROADCAST)
         decode_note(frame, "0 is the broadcast address: all obey, none answers");
-    if (frame->unit == EVERYBODY) decode_note(frame, "FF is the broadcast address of a16 and a05");
-    if ((bytes[FUNCTION] & EXCEPTION) != 0) {
+    if (frame->unit == ALL_UNITS) decode_note(frame, "FF is the broadcast address of a16 and a05");
+    if ((bytes[DECODE_AT_FUNCTION] & EXCEPTION) != 0) {
         decode_exception(frame, context, is_asked);
-    } else if (piece->direction == DECODE_ANSWER && bytes[FUNCTION] == READ) {
+    } else if (piece->direction == DECODE_ANSWER && bytes[DECODE_AT_FUNCTION] == READ) {
         decode_meanings(frame, context, is_asked ? context->head : NULL);
         if (!is_asked) decode_note(frame, "its request is not here; what it answers hangs on that");
     } else {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gmtime_r */
 #include "read/output.h"
 
 #include <inttypes.h>
 #include <string.h>
-#include <time.h>
 
 #include "shared/command.h"
+#include "shared/timestamp.h"
 
 /* ---- JSON and CSV: the same fields in the same order ---- */
 
@@ -210,19 +209,4 @@ const format_t *format_find(const char *command, const char *name)
         if (strcmp(name, formats[i].name) == 0) return &formats[i];
     (void)usage_error(command, "there is no format '%s', only text, json, csv", name);
     return NULL;
-}
-
-uint64_t time_extend(uint64_t now_us, uint32_t then_us)
-{
-    return now_us - fathom_elapsed_us((uint32_t)now_us, then_us);
-}
-
-const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
-{
-    const time_t seconds = (time_t)(utc_us / 1000000u);
-    struct tm parts;
-    char whole[24] = "";
-    if (gmtime_r(&seconds, &parts) != NULL) (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
-    (void)snprintf(text, UTC_TEXT, "%s.%06uZ", whole, (unsigned)(utc_us % 1000000u));
-    return text;
 }

@@ -3,8 +3,8 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "commands.h"
 #include "read/read_options.h"
-#include "shared/command.h"
 #include "stations/poll_loop.h"
 
 typedef struct {

@@ -3,13 +3,14 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "commands.h"
 #include "scan/scan_listen.h"
 #include "scan/scan_options.h"
 #include "scan/scan_progress.h"
 #include "scan/scan_report.h"
 #include "scan/scan_walk.h"
 #include "shared/channel.h"
-#include "shared/command.h"
+#include "shared/line_text.h"
 
 enum { PROGRESS_US = 100000 };
 
@@ -54,31 +55,30 @@ static void tell_found(void *ctx, const scan_finding_t *finding)
 static void tell_progress(void *ctx, uint64_t done_us, const fathom_line_settings_t *line, uint8_t address)
 {
     scan_t *const scan = ctx;
-    char settings[SETTINGS_TEXT];
-    char what[SETTINGS_TEXT + 16];
-    (void)snprintf(what, sizeof what, "%s address %u", settings_text(line, settings), address);
+    char settings[LINE_TEXT];
+    char what[LINE_TEXT + 16];
+    (void)snprintf(what, sizeof what, "%s address %u", line_text(line, settings), address);
     scan_progress_show(&scan->progress, now_us(scan), scan->options.plan.listen_us + done_us, what);
 }
 
 static void tell_unsupported(void *ctx, const fathom_line_settings_t *line)
 {
     scan_t *const scan = ctx;
-    char settings[SETTINGS_TEXT];
+    char settings[LINE_TEXT];
     scan_progress_clear(&scan->progress);
-    (void)fprintf(stderr, "fathom: this port cannot do %s, which is left out\n",
-                  settings_text(line, settings));
+    (void)fprintf(stderr, "fathom: this port cannot do %s, which is left out\n", line_text(line, settings));
 }
 
 /* "addresses 1 to 32 at 9600 8N1, 19200 8E1" */
 static void print_plan(FILE *to, const scan_plan_t *plan)
 {
-    char settings[SETTINGS_TEXT];
+    char settings[LINE_TEXT];
     if (plan->first == plan->last)
         (void)fprintf(to, "address %u at", plan->first);
     else
         (void)fprintf(to, "addresses %u to %u at", plan->first, plan->last);
     for (uint8_t i = 0; i != plan->setting_count; i++)
-        (void)fprintf(to, "%s %s", i != 0 ? "," : "", settings_text(&plan->settings[i], settings));
+        (void)fprintf(to, "%s %s", i != 0 ? "," : "", line_text(&plan->settings[i], settings));
 }
 
 static int print_estimate(const scan_options_t *options)

@@ -2,11 +2,11 @@
 #ifndef SCAN_IDENTIFY_H
 #define SCAN_IDENTIFY_H
 
+#include "models/finding.h"
 #include "scan/scan_ask.h"
-#include "scan/scan_finding.h"
 
 /*
- * The first request to an address, and what its answer is compared with.
+ * The first request to an address: model_t.scan.first of the model that is most likely there.
  *
  * At the rates of an HPS-167S and its addresses 1..32: #1, the interface version (03 @0x0001 x3), which it answers in
  * a few milliseconds. Elsewhere the address register of A16 and A05 (03 @0x0200 x1), which takes no measurement.
@@ -17,7 +17,8 @@ void scan_first_request(const fathom_line_settings_t *line, uint8_t address, sca
 /*
  * Who is it that has answered the first request? Asks for what only one model has:
  *
- *   HPS-167S  #1 has a date, #3 begins with the acknowledge byte B0, #2 has two switches and is the same before and after another measurement
+ *   HPS-167S  #1 has a date, #3 begins with the acknowledge byte B0, #2 has two switches and is the same before and
+ *             after a measurement
  *   A05       0x0200 is its address, 0x0106 (probe 1) is answered, 0x0101 is not
  *   A16       0x0200 is its address, 0x0101 or 0x0100 (distance) is answered, 0x0106 is not
  *

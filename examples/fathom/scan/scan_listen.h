@@ -2,8 +2,8 @@
 #ifndef SCAN_LISTEN_H
 #define SCAN_LISTEN_H
 
+#include "models/finding.h"
 #include "scan/scan_ask.h"
-#include "scan/scan_finding.h"
 
 /* Who was heard without being asked. */
 typedef struct {

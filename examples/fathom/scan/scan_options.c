@@ -5,6 +5,7 @@
 
 #include "shared/channel.h"
 #include "shared/command.h"
+#include "shared/line_text.h"
 #include "shared/options.h"
 
 static const char command[] = "scan";

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan/scan_plan.h"
 
-#include "fathom/hps167s_registers.h"
 #include "fathom/line.h"
+#include "models/dyp.h"
+#include "models/hps167s/hps167s.h"
 
-const fathom_line_settings_t scan_dyp_line = {9600, FATHOM_PARITY_NONE, 1};
-const fathom_line_settings_t scan_hps167s_line = {FATHOM_HPS167S_FACTORY_BAUD, FATHOM_PARITY_EVEN, 1};
+const fathom_line_settings_t scan_dyp_line = DYP_LINE;
+const fathom_line_settings_t scan_hps167s_line = HPS167S_LINE;
 
 enum { REQUEST_BYTES = 8 };
 
@@ -21,8 +22,6 @@ uint8_t scan_factory_parity(uint32_t baud)
 {
     return baud == scan_dyp_line.baud ? scan_dyp_line.parity : scan_hps167s_line.parity;
 }
-
-bool scan_is_hps167s_rate(uint32_t baud) { return fathom_hps167s_baud_code(baud) != 0; }
 
 bool scan_is_dyp_line(const fathom_line_settings_t *line)
 {

@@ -30,9 +30,6 @@ extern const fathom_line_settings_t scan_hps167s_line; /* 19200 8E1 */
  * keeps at all its rates (HPS-167S 2.2.2). */
 uint8_t scan_factory_parity(uint32_t baud);
 
-/* Can an HPS-167S have this rate (#9)? An A16 and an A05 have 9600 and nothing else. */
-bool scan_is_hps167s_rate(uint32_t baud);
-
 bool scan_is_dyp_line(const fathom_line_settings_t *line);
 
 /*

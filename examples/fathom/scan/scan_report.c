@@ -4,11 +4,11 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "fathom/dyp.h"
-#include "scan/scan_plan.h"
+#include "models/models.h"
 #include "shared/channel.h"
+#include "shared/line_text.h"
 
-enum { TOLD_TEXT = 160, NEXT_TEXT = 1024 };
+enum { NEXT_TEXT = 1024 };
 
 const char *duration_text(uint64_t us, char text[DURATION_TEXT])
 {
@@ -18,13 +18,6 @@ const char *duration_text(uint64_t us, char text[DURATION_TEXT])
     else
         (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " min %" PRIu64 " s", s / 60, s % 60);
     return text;
-}
-
-static const char *model_name(const scan_finding_t *finding)
-{
-    static const char *const names[] = {
-        [FATHOM_A16] = "a16", [FATHOM_A05] = "a05", [FATHOM_HPS167S] = "hps167s"};
-    return names[finding->model];
 }
 
 static const char *mode_name(const scan_finding_t *finding)
@@ -67,118 +60,66 @@ static void next_command(const scan_finding_t *finding, const char *port, char t
     text[0] = '\0';
     if (finding->kind != SCAN_SENSOR) return;
     char options[LINE_OPTIONS];
-    const bool is_hps167s = finding->model == FATHOM_HPS167S;
-    const fathom_line_settings_t *const factory = is_hps167s ? &scan_hps167s_line : &scan_dyp_line;
-    ADD(text, NEXT_TEXT, "fathom read %s", model_name(finding));
-    if (!is_hps167s && finding->mode != SCAN_AUTO) ADD(text, NEXT_TEXT, " --mode %s", mode_name(finding));
+    const model_t *const model = model_of(finding->model);
+    const char *const mode = mode_name(finding);
+    ADD(text, NEXT_TEXT, "fathom read %s", model->name);
+    if (strcmp(mode, model->modes[0].name) != 0) ADD(text, NEXT_TEXT, " --mode %s", mode);
     if (finding->mode != SCAN_AUTO) ADD(text, NEXT_TEXT, " --address %u", finding->address);
-    ADD(text, NEXT_TEXT, "%s --port ", line_options(&finding->line, factory, options));
+    ADD(text, NEXT_TEXT, "%s --port ", line_options(&finding->line, &model->line, options));
     add_word(text, NEXT_TEXT, port);
 }
 
 /* ---- text ---- */
 
-/* What #1 and #3 tell of a part of the device. */
-typedef struct {
-    uint16_t year;
-    uint8_t month;
-    uint8_t day;
-    char version[16];
-} part_t;
-
-static part_t part_of_interface(const fathom_hps167s_version_t *is)
+static void tell_sensor(FILE *to, const scan_finding_t *finding)
 {
-    part_t part = {.year = is->year, .month = is->month, .day = is->day};
-    (void)snprintf(part.version, sizeof part.version, "%u.%u.%u", is->major, is->minor, is->revision);
-    return part;
-}
-
-static part_t part_of_sensor(const fathom_hps167s_details_t *is)
-{
-    part_t part = {.year = is->year, .month = is->month, .day = is->day};
-    (void)snprintf(part.version, sizeof part.version, "%u.%u", is->major, is->minor);
-    return part;
-}
-
-static void add_part(char text[TOLD_TEXT], const char *what, part_t part)
-{
-    ADD(text, TOLD_TEXT, "%s%s %s of %u-%02u-%02u", text[0] != '\0' ? ", " : "", what, part.version,
-        part.year, part.month, part.day);
-}
-
-/* FFFD and FFFE are not in the datasheets; sister models say these. */
-static void add_value(char text[TOLD_TEXT], const scan_finding_t *finding)
-{
-    const char *const probe = finding->model == FATHOM_A05 ? "probe 1: " : "";
-    if (!finding->has_value) return;
-    const uint16_t max_mm = finding->model == FATHOM_A05 ? FATHOM_A05_MAX_MM : FATHOM_A16_MAX_MM;
-    if (finding->value == 0xFFFD)
-        ADD(text, TOLD_TEXT, "%sno target", probe);
-    else if (finding->value == 0xFFFE)
-        ADD(text, TOLD_TEXT, "%sno target, interference", probe);
-    else if (finding->value != 0 && finding->value <= max_mm)
-        ADD(text, TOLD_TEXT, "%s%u mm", probe, finding->value);
+    if (finding->mode == SCAN_AUTO)
+        (void)fputs("sends by itself", to);
     else
-        ADD(text, TOLD_TEXT, "%sthe value %u, which is no distance", probe, finding->value);
+        model_of(finding->model)->print_finding(to, finding);
+    if (finding->is_double) (void)fputs(", answered twice", to);
 }
 
-static void tell_sensor(const scan_finding_t *finding, char text[TOLD_TEXT])
-{
-    if (finding->mode == SCAN_AUTO) {
-        ADD(text, TOLD_TEXT, "sends by itself");
-    } else if (finding->model != FATHOM_HPS167S) {
-        add_value(text, finding);
-    } else {
-        if (finding->has_interface) add_part(text, "interface", part_of_interface(&finding->interface));
-        if (finding->has_details) add_part(text, "sensor", part_of_sensor(&finding->details));
-        if (finding->has_config)
-            ADD(text, TOLD_TEXT, ", termination %s", finding->has_termination ? "on" : "off");
-        if (text[0] == '\0') ADD(text, TOLD_TEXT, "sends answers unasked");
-    }
-    if (finding->is_double) ADD(text, TOLD_TEXT, ", answered twice");
-}
-
-static void tell_other(const scan_finding_t *finding, char text[TOLD_TEXT])
+static void tell_other(FILE *to, const scan_finding_t *finding)
 {
     switch (finding->kind) {
     case SCAN_OTHER:
-        ADD(text, TOLD_TEXT, "another Modbus device: none of the three sensors");
+        (void)fputs("another Modbus device: none of the three sensors", to);
         break;
     case SCAN_DAMAGED:
-        ADD(text, TOLD_TEXT, "its answers are damaged: two sensors with one address?");
+        (void)fputs("its answers are damaged: two sensors with one address?", to);
         break;
     case SCAN_NOT_MODBUS:
-        ADD(text, TOLD_TEXT, "something answers, but not Modbus");
+        (void)fputs("something answers, but not Modbus", to);
         break;
     case SCAN_MASTER:
-        ADD(text, TOLD_TEXT, "another master asks this address");
+        (void)fputs("another master asks this address", to);
         break;
     default:
-        ADD(text, TOLD_TEXT, "something sends by itself, but no frames of these sensors");
+        (void)fputs("something sends by itself, but no frames of these sensors", to);
         break;
     }
 }
 
-static void tell(const scan_finding_t *finding, char text[TOLD_TEXT])
+static void tell(FILE *to, const scan_finding_t *finding)
 {
-    text[0] = '\0';
     if (finding->kind == SCAN_SENSOR)
-        tell_sensor(finding, text);
+        tell_sensor(to, finding);
     else
-        tell_other(finding, text);
+        tell_other(to, finding);
 }
 
 void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
 {
-    char line[SETTINGS_TEXT];
+    char line[LINE_TEXT];
     char address[16] = "-";
-    char told[TOLD_TEXT];
     char next[NEXT_TEXT];
     if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
-    tell(finding, told);
     next_command(finding, port, next);
-    (void)fprintf(to, "%-8s %-12s %-11s  %s", finding->kind == SCAN_SENSOR ? model_name(finding) : "?",
-                  address, settings_text(&finding->line, line), told);
+    (void)fprintf(to, "%-8s %-12s %-11s  ",
+                  finding->kind == SCAN_SENSOR ? model_of(finding->model)->name : "?", address,
+                  line_text(&finding->line, line));
+    tell(to, finding);
     if (next[0] != '\0') (void)fprintf(to, "  ->  %s", next);
     (void)fputs("\n", to);
 }
@@ -199,29 +140,6 @@ static void print_string(FILE *to, const char *text)
     (void)fputs("\"", to);
 }
 
-static void print_part(FILE *to, const char *name, part_t part)
-{
-    (void)fprintf(to, ",\"%s_version\":\"%s\",\"%s_date\":\"%u-%02u-%02u\"", name, part.version, name,
-                  part.year, part.month, part.day);
-}
-
-static void print_sensor(FILE *to, const scan_finding_t *finding)
-{
-    (void)fprintf(to, ",\"mode\":\"%s\"", mode_name(finding));
-    if (finding->has_value && finding->model != FATHOM_HPS167S)
-        (void)fprintf(to, ",\"raw\":%u", finding->value);
-    if (finding->has_interface) print_part(to, "interface", part_of_interface(&finding->interface));
-    if (finding->has_details) {
-        print_part(to, "sensor", part_of_sensor(&finding->details));
-        (void)fputs(",\"uuid\":\"", to);
-        for (size_t i = 0; i != sizeof finding->details.uuid; i++)
-            (void)fprintf(to, "%02x", finding->details.uuid[i]);
-        (void)fputs("\"", to);
-    }
-    if (finding->has_config)
-        (void)fprintf(to, ",\"termination\":%s", finding->has_termination ? "true" : "false");
-}
-
 void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
 {
     static const char *const kinds[] = {
@@ -231,7 +149,7 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
     next_command(finding, port, next);
     (void)fprintf(to, "{\"kind\":\"%s\",\"model\":", kinds[finding->kind]);
     if (finding->kind == SCAN_SENSOR)
-        print_string(to, model_name(finding));
+        print_string(to, model_of(finding->model)->name);
     else
         (void)fputs("null", to);
     (void)fputs(",\"address\":", to);
@@ -241,7 +159,10 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
         (void)fputs("null", to);
     (void)fprintf(to, ",\"baud\":%" PRIu32 ",\"parity\":\"%s\",\"stop_bits\":%u", finding->line.baud,
                   parity_name(finding->line.parity), finding->line.stop_bits);
-    if (finding->kind == SCAN_SENSOR) print_sensor(to, finding);
+    if (finding->kind == SCAN_SENSOR) {
+        (void)fprintf(to, ",\"mode\":\"%s\"", mode_name(finding));
+        model_of(finding->model)->print_finding_json(to, finding);
+    }
     if (finding->is_double) (void)fputs(",\"double\":true", to);
     (void)fputs(",\"next\":", to);
     if (next[0] != '\0')
@@ -255,8 +176,8 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
 
 void scan_print_advice(FILE *to, const scan_finding_t *finding)
 {
-    char line[SETTINGS_TEXT];
-    (void)settings_text(&finding->line, line);
+    char line[LINE_TEXT];
+    (void)line_text(&finding->line, line);
     if (finding->kind == SCAN_DAMAGED)
         (void)fprintf(to,
                       "fathom: answers at address %u (%s) are damaged: two sensors with one address? Connect "

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "scan/scan_finding.h"
+#include "models/finding.h"
 
 /* A finding in one line, with what to type next where there is something. port: as the user gave it. */
 void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port);

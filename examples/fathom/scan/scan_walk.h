@@ -2,8 +2,8 @@
 #ifndef SCAN_WALK_H
 #define SCAN_WALK_H
 
+#include "models/finding.h"
 #include "scan/scan_ask.h"
-#include "scan/scan_finding.h"
 #include "scan/scan_plan.h"
 
 /* What a walk tells its owner. */

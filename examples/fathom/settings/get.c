@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "commands.h"
 #include "settings/session.h"
-#include "shared/command.h"
+#include "settings/setting_text.h"
+#include "shared/line_text.h"
 
 /* fathom info and fathom get: all that a device tells, or some of it. */
 
@@ -43,7 +45,7 @@ static void print_json(const setting_t *setting, fathom_status_t status, const c
 static void begin(void)
 {
     const station_t *const station = session.station;
-    char line[SETTINGS_TEXT];
+    char line[LINE_TEXT];
     (void)session_line_text(&session, line);
     if (session.is_json)
         (void)printf("{\"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "commands.h"
 #include "fathom/hps167s_settings.h"
 #include "settings/session.h"
-#include "shared/command.h"
+#include "shared/line_text.h"
 
 /* fathom reset: the two commands of an HPS-167S that throw settings away.
  * Nothing else of the tool sends them. */
@@ -23,13 +24,13 @@ static session_t session;
 static fathom_status_t restore(reader_t *reader, void *ctx)
 {
     (void)ctx;
-    return fathom_hps167s_restore_factory_settings(&reader->driver.hps167s);
+    return session.station->model->reset.restore(reader);
 }
 
 static fathom_status_t load(reader_t *reader, void *ctx)
 {
     (void)ctx;
-    return fathom_hps167s_load_factory_settings(&reader->driver.hps167s);
+    return session.station->model->reset.load(reader);
 }
 
 static int finish(bool is_restore, fathom_status_t status)
@@ -48,7 +49,7 @@ static int finish(bool is_restore, fathom_status_t status)
                          station->name);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    const bool is_sent = fathom_hps167s_is_written(&station->reader.driver.hps167s);
+    const bool is_sent = station->model->reset.is_sent(&station->reader);
     const bool is_told = status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_EXCEPTION;
     (void)fprintf(stderr, "fathom: %s: %s", station->name,
                   !is_sent  ? "nothing was written: "
@@ -58,12 +59,12 @@ static int finish(bool is_restore, fathom_status_t status)
         (void)fputs("it was sent, and no acknowledgement came: it may hold or not, and cannot be read back",
                     stderr);
     } else if (status == FATHOM_ERR_UNCONFIRMED) {
-        char line[SETTINGS_TEXT];
+        char line[LINE_TEXT];
         (void)fprintf(stderr,
                       "the reset was sent, and then the device could not be read: "
                       "it is at address 1, 19200 8E1, or "
                       "still at address %u, %s; try fathom scan --port %s",
-                      station->address, settings_text(&station->line, line), session.options.port);
+                      station->address, line_text(&station->line, line), session.options.port);
     } else {
         session_explain(&session, status);
     }
@@ -107,7 +108,7 @@ static int run(const host_t *host, int argc, char **argv)
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
     if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
-    if (strcmp(session.station->model->name, "hps167s") != 0)
+    if (session.station->model->reset.restore == NULL)
         return usage_error(command, "only an hps167s can be reset; %s has no such command",
                            session.station->model->name);
     const bool is_restore = values[RESTORE] != NULL;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "shared/command.h"
+#include "shared/line_text.h"
 #include "shared/options.h"
 #include "stations/advice.h"
 
@@ -97,12 +98,9 @@ bool session_open(session_t *session, const host_t *host)
     }
     counters_begin_port(&session->port_counts, &session->channel);
     if (station->mode->read(&station->reader, &session->channel, &settings)) {
-        if (session->channel.tcp == NULL && station->reader.unit == &station->reader.driver.hps167s.unit) {
-            const fathom_hps167s_auto_config_t hears = {.line = &session->channel.line};
-            (void)fathom_hps167s_auto_init(&session->hears, &hears);
-            fathom_hps167s_auto_beside(&session->hears, &station->reader.driver.hps167s);
-        }
-        if (session->channel.tcp == NULL) listen(session);
+        if (session->channel.tcp != NULL) return true;
+        if (station->model->listen_unasked != NULL) station->model->listen_unasked(&station->reader);
+        listen(session);
         return true;
     }
     (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->model->name);
@@ -155,12 +153,14 @@ static fathom_status_t call_again(session_t *session, session_call_t call, what_
 {
     enum { TIMES = 4 };
     const fathom_modbus_unit_t *const unit = session->station->reader.unit;
+    const model_t *const model = session->station->model;
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned times = 0; times != TIMES; times++) {
         status = session_call(session, call, what);
         const bool is_met =
             status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
-        const bool is_among_unasked = session->hears.is_new || session->hears.implausible != 0;
+        const bool is_among_unasked =
+            model->has_unasked != NULL && model->has_unasked(&session->station->reader);
         if (!is_met || unit->is_written || !is_among_unasked) break;
     }
     return status;
@@ -179,10 +179,10 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
     return call_again(session, call_set, &what);
 }
 
-const char *session_line_text(const session_t *session, char text[SETTINGS_TEXT])
+const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
-    if (session->channel.tcp == NULL) return settings_text(&session->station->line, text);
-    (void)snprintf(text, SETTINGS_TEXT, "Modbus TCP");
+    if (session->channel.tcp == NULL) return line_text(&session->station->line, text);
+    (void)snprintf(text, LINE_TEXT, "Modbus TCP");
     return text;
 }
 
@@ -202,9 +202,8 @@ void session_explain(session_t *session, fathom_status_t status)
         (void)fputs("ended before the answer came", stderr);
     else if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(&station->reader))
         (void)fprintf(stderr, "its answers cannot be that%s; check that it is %s, and alone at this address",
-                      strcmp(station->model->name, "hps167s") == 0
-                          ? ", or what it sends unasked stands between them"
-                          : "",
+                      station->model->has_unasked != NULL ? ", or what it sends unasked stands between them"
+                                                          : "",
                       station->model->name);
     else
         advice_print(stderr, &failure);

@@ -2,8 +2,8 @@
 #ifndef SESSION_H
 #define SESSION_H
 
-#include "fathom/hps167s_auto.h"
-#include "settings/settings.h"
+#include "models/setting.h"
+#include "shared/line_text.h"
 #include "stations/sensor_options.h"
 
 /* A session with one sensor on a port: what `fathom info`, `get`, `set` and `reset` share. */
@@ -12,7 +12,6 @@ typedef struct {
     station_t *station; /* the only one */
     channel_t channel;
     port_counts_t port_counts;
-    fathom_hps167s_auto_t hears; /* frames that an hps167s sends unasked, so that the driver knows of them */
     bool is_json;
 } session_t;
 
@@ -51,7 +50,7 @@ fathom_status_t session_get(session_t *session, const setting_t *setting, char t
 fathom_status_t session_set(session_t *session, const setting_t *setting, int32_t value);
 
 /* "9600 8N1", at which the sensor is asked; of a connection "Modbus TCP". */
-const char *session_line_text(const session_t *session, char text[SETTINGS_TEXT]);
+const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
 
 /* What has gone wrong with the last call, and what to try, without a line feed. An answer that cannot be what was asked
  * for is no distance here. */

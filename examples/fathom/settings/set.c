@@ -2,8 +2,10 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "commands.h"
 #include "settings/session.h"
-#include "shared/command.h"
+#include "settings/setting_text.h"
+#include "shared/line_text.h"
 
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
 
@@ -143,7 +145,7 @@ static void print_unknown(FILE *to, const change_t *change)
                       "--port %s --baud %" PRIu32 ",%s",
                       was, change->wanted, session.options.port, was, change->wanted);
     } else if (setting->moves) {
-        char line[SETTINGS_TEXT];
+        char line[LINE_TEXT];
         (void)fprintf(to, "it is at address %u or at address %s, %s; try fathom read with either",
                       station->address, change->wanted, session_line_text(&session, line));
     } else if (setting->unconfirmed != NULL) {

@@ -50,17 +50,4 @@ void channel_close(channel_t *channel);
  * long. To be asked whenever the line was polled. */
 bool channel_is_stuck(channel_t *channel);
 
-/* "9600 8N1", in a buffer of the caller's. */
-enum { SETTINGS_TEXT = 24 };
-const char *settings_text(const fathom_line_settings_t *settings, char text[SETTINGS_TEXT]);
-
-/* "none", "even" or "odd". */
-const char *parity_name(uint8_t parity);
-
-/* What of a sensor's line has to be told because it is not the factory's, as options: " --baud 57600", "". In a buffer of
- * the caller's. */
-enum { LINE_OPTIONS = 64 };
-const char *line_options(const fathom_line_settings_t *line, const fathom_line_settings_t *factory,
-                         char text[LINE_OPTIONS]);
-
 #endif

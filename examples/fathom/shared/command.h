@@ -6,7 +6,7 @@
 
 #include "shared/host.h"
 
-/* A command of the tool: a row in commands.c's table. */
+/* A command of the tool: a row in the table of commands.c. */
 typedef struct {
     const char *name;
     const char *summary;    /* a line of `fathom --help` */
@@ -15,25 +15,12 @@ typedef struct {
     int (*run)(const host_t *host, int argc, char **argv);
 } command_t;
 
-extern const command_t scan_command;
-extern const command_t read_command;
-extern const command_t watch_command;
-extern const command_t info_command;
-extern const command_t get_command;
-extern const command_t set_command;
-extern const command_t reset_command;
-extern const command_t decode_command;
-extern const command_t sim_command;
-
 /* Exit statuses of every command. */
 enum {
     STATUS_OK = 0,
     STATUS_FAILED = 1, /* the line, the port or the output failed */
     STATUS_USAGE = 2
 };
-
-/* The tool: argv[1] names the command. Returns the exit status. */
-int run_command(const host_t *host, int argc, char **argv);
 
 /* Says on stderr, in one line, what is wrong with the command line and where help is. command: "" before one
  * is known. Returns STATUS_USAGE. */

@@ -62,7 +62,7 @@ const char *tcp_parse(const char *path, tcp_address_t *address)
     return wrong != NULL ? wrong : take_port(end, address);
 }
 
-bool tcp_suits(const char *command, const char *path, const model_mode_t *mode)
+bool tcp_suits(const char *command, const char *path, const char *mode)
 {
     tcp_address_t address;
     if (!tcp_names(path)) return true;
@@ -71,10 +71,9 @@ bool tcp_suits(const char *command, const char *path, const model_mode_t *mode)
         (void)usage_error(command, "--port %s: %s", path, wrong);
         return false;
     }
-    if (strcmp(mode->name, "modbus") == 0) return true;
-    (void)usage_error(command,
-                      "mode %s needs a serial port; over tcp: a sensor is asked by Modbus: --mode modbus",
-                      mode->name);
+    if (strcmp(mode, "modbus") == 0) return true;
+    (void)usage_error(
+        command, "mode %s needs a serial port; over tcp: a sensor is asked by Modbus: --mode modbus", mode);
     return false;
 }
 

@@ -5,8 +5,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "models/models.h"
-
 /* tcp:HOST[:PORT] wherever the path of a serial port may stand; an IPv6 address in brackets. */
 typedef struct {
     char host[256]; /* the longest name that DNS has */
@@ -20,7 +18,7 @@ bool tcp_names(const char *path);
 const char *tcp_parse(const char *path, tcp_address_t *address);
 
 /* Can the sensor be read in this mode at that path? False after saying why not. True for any serial port. */
-bool tcp_suits(const char *command, const char *path, const model_mode_t *mode);
+bool tcp_suits(const char *command, const char *path, const char *mode);
 
 /*
  * Connects: the descriptor, which does not wait; or -1, and what happened and what to try is in `text`, and whether

@@ -5,7 +5,7 @@
 #include <signal.h>
 #include <string.h>
 
-#include "shared/command.h"
+#include "commands.h"
 #include "shared/events.h"
 #include "sim/pty.h"
 #include "sim/sim_help.h"

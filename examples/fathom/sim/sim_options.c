@@ -4,7 +4,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "fathom/hps167s_registers.h"
 #include "shared/command.h"
 #include "shared/options.h"
 #include "sim/pty.h"
@@ -148,7 +147,7 @@ static bool take_devices(sim_options_t *options, int count, char **texts)
     return true;
 }
 
-static bool has_rates(const sim_device_t *device) { return device->model->other_settings != NULL; }
+static bool has_rates(const sim_device_t *device) { return device->model->rates != NULL; }
 
 static bool take_baud(sim_device_t *device, const char *text)
 {
@@ -157,7 +156,7 @@ static bool take_baud(sim_device_t *device, const char *text)
         (void)usage_error(command, "%s has one baud rate only", device->model->name);
         return false;
     }
-    if (number_parse(text, 1, UINT32_MAX, &baud) && fathom_hps167s_baud_code(baud) != 0) {
+    if (number_parse(text, 1, UINT32_MAX, &baud) && model_has_rate(device->model, baud)) {
         device->line.baud = baud;
         return true;
     }

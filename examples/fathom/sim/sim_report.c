@@ -4,12 +4,13 @@
 #include <inttypes.h>
 
 #include "shared/channel.h"
+#include "shared/line_text.h"
 
 static void print_device(FILE *to, const sim_device_t *device)
 {
-    char line[SETTINGS_TEXT];
+    char line[LINE_TEXT];
     (void)fprintf(to, "%s, mode %s, address %u, %s", device->model->name, device->mode->name, device->address,
-                  settings_text(&device->line, line));
+                  line_text(&device->line, line));
 }
 
 static void print_reader(FILE *to, const sim_device_t *device, const char *port)

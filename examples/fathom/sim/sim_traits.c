@@ -11,30 +11,27 @@ enum { NAMES_TEXT = 300 };
 
 typedef struct {
     const char *name;
-    const char *sensors;
     const char *unit; /* of the value; NULL: it has none */
     uint32_t most;    /* of the value, from 1 */
     const char *text;
 } trait_t;
 
 static const trait_t traits[DEVICE_TRAITS] = {
-    [DEVICE_EXCEPTIONS] = {"exceptions", "a16 a05", NULL, 0, "refuses by exception instead of silence"},
-    [DEVICE_ANSWERS_BROADCAST] = {"broadcast", "a16 a05", NULL, 0, "answers what goes to address FF"},
-    [DEVICE_REAL_TIME] = {"real-time", "a16 a05", NULL, 0, "sends real-time values by itself"},
-    [DEVICE_ANSWERS_FROM_NEW] = {"new-address", "a16 a05 hps167s", NULL, 0,
-                                 "answers from the new address when it is set"},
-    [DEVICE_WARM_UP] = {"warm-up", "hps167s", "S", 255, "measures nothing for so long after power-on"},
-    [DEVICE_WARM_UP_REFUSES] = {"warm-up-04", "hps167s", NULL, 0,
-                                "says exception 04 meanwhile; else silence"},
-    [DEVICE_WARM_UP_ABNORMAL] = {"warm-up-ff", "hps167s", NULL, 0, "sends the abnormal packet meanwhile"},
-    [DEVICE_UNASKED] = {"unasked", "hps167s", "MS", 60000, "sends measurements unasked, so often"},
-    [DEVICE_NO_OUTPUT] = {"output-off", "hps167s", NULL, 0, "as #10 has set it"},
-    [DEVICE_NO_TERMINATION] = {"termination-off", "hps167s", NULL, 0, "as #11 has set it"},
-    [DEVICE_BAUD_LATER] = {"baud-later", "hps167s", NULL, 0, "#9 acts from the next power-on, not at once"},
-    [DEVICE_OFFSET_ADDS] = {"offset-adds", "hps167s", NULL, 0, "#12 adds to the offset before"},
-    [DEVICE_RECONNECT] = {"reconnect", "hps167s", "MS", 1000000, "#2 tells this reconnect time"},
-    [DEVICE_NO_BAUD_CODE] = {"baud-code-00", "hps167s", NULL, 0, "#2 tells 00 for its rate"},
-    [DEVICE_COUNT_EXCEPTION] = {"count-03", "hps167s", NULL, 0, "exception 03 to a wrong length, not 02"},
+    [DEVICE_EXCEPTIONS] = {"exceptions", NULL, 0, "refuses by exception instead of silence"},
+    [DEVICE_ANSWERS_BROADCAST] = {"broadcast", NULL, 0, "answers what goes to address FF"},
+    [DEVICE_REAL_TIME] = {"real-time", NULL, 0, "sends real-time values by itself"},
+    [DEVICE_ANSWERS_FROM_NEW] = {"new-address", NULL, 0, "answers from the new address when it is set"},
+    [DEVICE_WARM_UP] = {"warm-up", "S", 255, "measures nothing for so long after power-on"},
+    [DEVICE_WARM_UP_REFUSES] = {"warm-up-04", NULL, 0, "says exception 04 meanwhile; else silence"},
+    [DEVICE_WARM_UP_ABNORMAL] = {"warm-up-ff", NULL, 0, "sends the abnormal packet meanwhile"},
+    [DEVICE_UNASKED] = {"unasked", "MS", 60000, "sends measurements unasked, so often"},
+    [DEVICE_NO_OUTPUT] = {"output-off", NULL, 0, "as #10 has set it"},
+    [DEVICE_NO_TERMINATION] = {"termination-off", NULL, 0, "as #11 has set it"},
+    [DEVICE_BAUD_LATER] = {"baud-later", NULL, 0, "#9 acts from the next power-on, not at once"},
+    [DEVICE_OFFSET_ADDS] = {"offset-adds", NULL, 0, "#12 adds to the offset before"},
+    [DEVICE_RECONNECT] = {"reconnect", "MS", 1000000, "#2 tells this reconnect time"},
+    [DEVICE_NO_BAUD_CODE] = {"baud-code-00", NULL, 0, "#2 tells 00 for its rate"},
+    [DEVICE_COUNT_EXCEPTION] = {"count-03", NULL, 0, "exception 03 to a wrong length, not 02"},
 };
 
 static const trait_t *find(const char *text)
@@ -47,7 +44,7 @@ static const trait_t *find(const char *text)
 
 static bool has(const model_t *model, const trait_t *trait)
 {
-    return trait != NULL && strstr(trait->sensors, model->name) != NULL;
+    return trait != NULL && (model->traits >> (trait - traits) & 1) != 0;
 }
 
 bool sim_trait_fits(const char *text, const model_t *model) { return has(model, find(text)); }
@@ -115,8 +112,15 @@ void sim_traits_print(FILE *to)
     for (size_t i = 0; i != DEVICE_TRAITS; i++) {
         const trait_t *const trait = &traits[i];
         const int rest = 15 - (int)strlen(trait->name);
-        (void)fprintf(to, "    %s%s%-*s  %-46s (%s)\n", trait->name, trait->unit != NULL ? "=" : "",
+        const char *gap = "(";
+        (void)fprintf(to, "    %s%s%-*s  %-46s ", trait->name, trait->unit != NULL ? "=" : "",
                       rest > 0 ? rest - (trait->unit != NULL ? 1 : 0) : 0,
-                      trait->unit != NULL ? trait->unit : "", trait->text, trait->sensors);
+                      trait->unit != NULL ? trait->unit : "", trait->text);
+        for (size_t m = 0; m != MODELS; m++) {
+            if (!has(models[m], trait)) continue;
+            (void)fprintf(to, "%s%s", gap, models[m]->name);
+            gap = " ";
+        }
+        (void)fputs(")\n", to);
     }
 }

@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "shared/line_text.h"
 #include "shared/sysfs_adapter.h"
 
 typedef struct {
@@ -37,10 +38,10 @@ static void print_settings(FILE *to, const failure_t *failure)
     const fathom_line_settings_t *const now = failure->line;
     const fathom_line_settings_t *const factory = &failure->model->line;
     const uint64_t *const port = failure->counters->attempt.port;
-    char text[SETTINGS_TEXT];
-    (void)fprintf(to, "check --baud and --parity (now %s)", settings_text(now, text));
+    char text[LINE_TEXT];
+    (void)fprintf(to, "check --baud and --parity (now %s)", line_text(now, text));
     if (now->baud != factory->baud || now->parity != factory->parity || now->stop_bits != factory->stop_bits)
-        (void)fprintf(to, ", try without them (%s, as from the factory)", settings_text(factory, text));
+        (void)fprintf(to, ", try without them (%s, as from the factory)", line_text(factory, text));
     else if (failure->model->other_settings != NULL)
         (void)fprintf(to, ", try %s", failure->model->other_settings);
     if (port[PORT_FRAMING] != 0)
@@ -128,7 +129,7 @@ static bool print_unasked(FILE *to, const failure_t *failure)
     enum { LEAST = 3, LITTLE_MS = 2 };
     const char *const path = failure->channel->port.path;
     if (failure->channel->tcp != NULL || failure->reader->protocol == NULL ||
-        strcmp(failure->model->name, "hps167s") != 0 || failure->evidence.own < LEAST)
+        failure->model->has_unasked == NULL || failure->evidence.own < LEAST)
         return false;
     const unsigned latency_ms = sysfs_adapter_latency_ms(SYSFS_ROOT, path);
     (void)fprintf(to,
@@ -170,19 +171,19 @@ static void print_no_answer(FILE *to, const failure_t *failure)
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
     } else if (failure->others_answer) {
-        char settings[SETTINGS_TEXT];
+        char settings[LINE_TEXT];
         (void)fprintf(
             to,
             "nothing was heard of it, while others on this line answer; check its supply, its wires, "
             "its address and its settings (asked at %s)",
-            settings_text(failure->line, settings));
+            line_text(failure->line, settings));
     } else {
-        char settings[SETTINGS_TEXT];
+        char settings[LINE_TEXT];
         (void)fprintf(
             to,
             "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, --address, and "
             "--baud and --parity (now %s)",
-            settings_text(failure->line, settings));
+            line_text(failure->line, settings));
     }
 }
 
@@ -320,9 +321,9 @@ void advice_print(FILE *to, const failure_t *failure)
         print_port(to, failure);
         break;
     case FATHOM_ERR_UNSUPPORTED: {
-        char settings[SETTINGS_TEXT];
+        char settings[LINE_TEXT];
         (void)fprintf(to, "the port cannot be set to %s; nothing was sent",
-                      settings_text(failure->line, settings));
+                      line_text(failure->line, settings));
         break;
     }
     default: /* FATHOM_ERR_NO_ANSWER, and that only the echo came */

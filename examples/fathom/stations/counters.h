@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "models/readers.h"
+#include "models/reader.h"
 #include "shared/channel.h"
 
 /* What the port's driver counts, where it does. */

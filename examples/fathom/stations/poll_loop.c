@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "read/output.h"
+#include "shared/timestamp.h"
 
 enum { TEXT = 512 };
 

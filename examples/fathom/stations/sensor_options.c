@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "shared/command.h"
+#include "shared/line_text.h"
 #include "shared/options.h"
 #include "shared/tcp_address.h"
 
@@ -93,19 +94,13 @@ static const char *next_word(const char *list, char separator, char word[MAX_WOR
     return end != NULL ? end + 1 : NULL;
 }
 
-static bool has_sensor(const sensor_options_t *options, const char *a, const char *b)
-{
-    for (size_t i = 0; i != options->station_count; i++) {
-        const char *const name = options->stations[i].model->name;
-        if (strcmp(name, a) == 0 || strcmp(name, b) == 0) return true;
-    }
-    return false;
-}
-
 static bool take_probes(sensor_options_t *options, const char *command, const char *text)
 {
     if (text == NULL) return true;
-    if (!has_sensor(options, "a05", "a05")) {
+    bool has_probes = false;
+    for (size_t i = 0; i != options->station_count; i++)
+        has_probes = has_probes || options->stations[i].model->probes > 1;
+    if (!has_probes) {
         (void)usage_error(command, "--probes is for an a05, which has four");
         return false;
     }
@@ -160,7 +155,10 @@ static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
 static bool take_means(sensor_options_t *options, const char *command, const char *text)
 {
     if (text == NULL) return true;
-    if (!has_sensor(options, "a16", "a05")) {
+    bool is_dyp = false;
+    for (size_t i = 0; i != options->station_count; i++)
+        is_dyp = is_dyp || options->stations[i].model->is_dyp;
+    if (!is_dyp) {
         (void)usage_error(command, "--means is for a16 and a05");
         return false;
     }
@@ -235,7 +233,7 @@ bool sensor_options(sensor_options_t *options, const char *command, char **words
         return false;
     }
     for (size_t i = 0; i != options->station_count; i++)
-        if (!tcp_suits(command, options->port, options->stations[i].mode)) return false;
+        if (!tcp_suits(command, options->port, options->stations[i].mode->name)) return false;
     return true;
 }
 

@@ -5,7 +5,7 @@
 #include <signal.h>
 #include <string.h>
 
-#include "shared/command.h"
+#include "commands.h"
 #include "shared/events.h"
 #include "shared/options.h"
 #include "watch/watch_terminal.h"

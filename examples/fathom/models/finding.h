@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef SCAN_FINDING_H
-#define SCAN_FINDING_H
+#ifndef FINDING_H
+#define FINDING_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -3,10 +3,9 @@
 
 #include "fathom/hps167s_info.h"
 #include "fathom/hps167s_settings.h"
-#include "settings/settings.h"
+#include "models/hps167s/hps167s.h"
 
-/* The commands of the HPS-167S (3, #1 to #15) but for the two that restore the
- * factory's settings: reset.c. */
+/* The commands of the HPS-167S (3, #1 to #15) but for the two that restore the factory's settings: hps167s.c. */
 
 #define KEPT       "kept in flash"
 #define NEXT_POWER "from the next power-on; " KEPT
@@ -183,7 +182,7 @@ static fathom_status_t load_user(reader_t *reader, int32_t value)
     return fathom_hps167s_load_user_settings(driver(reader));
 }
 
-const setting_t settings_hps167s[] = {
+const setting_t hps167s_settings[] = {
     {.name = "interface-version",
      .what = "of the RS485 interface (#1)",
      .mode = "modbus",

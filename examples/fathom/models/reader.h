@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef READERS_H
-#define READERS_H
+#ifndef READER_H
+#define READER_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,6 +12,7 @@
 #include "fathom/a16_controlled.h"
 #include "fathom/a16_modbus.h"
 #include "fathom/hps167s.h"
+#include "fathom/hps167s_auto.h"
 #include "fathom/line_pins.h"
 #include "shared/channel.h"
 
@@ -52,18 +53,21 @@ typedef struct {
         fathom_a05_dyp_t a05_dyp;
         fathom_hps167s_t hps167s;
     } driver;
+    fathom_hps167s_auto_t unasked; /* of an HPS-167S: listens to the measurements that it sends unasked */
 } reader_t;
 
 /* Begins to read through an open channel. False: settings that the driver does not take. */
 typedef bool (*reader_init_t)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 
-bool reader_a16_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool reader_a16_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool reader_a16_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool reader_a05_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool reader_a05_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool reader_a05_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool reader_hps167s(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+/* An empty one, for reader_init_t to fill. */
+void reader_begin(reader_t *reader, channel_t *channel);
+
+/* What all that are asked have in common. Address 0 is the driver's to refuse, where the device cannot be there. */
+fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,
+                                     const fathom_modbus_t *transport);
+
+/* reader_t.protocol. */
+extern const char reader_modbus[];
 
 /* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the answer that did not fit, and not a value in it? */
 bool reader_was_answered_wrong(const reader_t *reader);

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "decode/decode_frame.h"
-
 #include <inttypes.h>
 #include <stddef.h>
 #include <stdio.h>
 
 #include "fathom/hps167s_registers.h"
 #include "fathom/modbus_rtu.h"
+#include "models/hps167s/hps167s.h"
 
-enum { FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 4, VALUE = 4, MANY_SIZE = 6 };
+enum { MANY_SIZE = 6 };
 enum {
     READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS,
     WRITE = FATHOM_MODBUS_WRITE_SINGLE_REGISTER,
@@ -257,22 +256,23 @@ static void command_known(decode_frame_t *frame, const command_row_t *row, const
     decode_meaning_t *const meaning =
         decode_mean(frame, "hps167s", row->source, "#%u %s", row->number, row->name);
     uint16_t registers[FATHOM_HPS167S_MAX_REGISTERS] = {0};
-    if (row->function != WRITE && decode_get16(request + COUNT) != row->registers) {
+    if (row->function != WRITE && decode_get16(request + DECODE_AT_COUNT) != row->registers) {
         decode_note(frame, "hps167s: #%u has %u registers, not %u; it refuses this", row->number,
-                    row->registers, decode_get16(request + COUNT));
+                    row->registers, decode_get16(request + DECODE_AT_COUNT));
         return;
     }
     if (row->function == READ && is_answer) {
-        get_registers(frame->bytes + SIZE, row->registers, registers);
+        get_registers(frame->bytes + DECODE_AT_SIZE, row->registers, registers);
         row->answer(meaning, registers);
     }
-    if (row->function == WRITE) row->write(meaning, decode_get16(frame->bytes + VALUE));
+    if (row->function == WRITE) row->write(meaning, decode_get16(frame->bytes + DECODE_AT_VALUE));
     if (row->function == WRITE_MANY && !is_answer) {
         get_registers(frame->bytes + MANY_SIZE, row->registers, registers);
         put_reconnect(meaning, fathom_hps167s_reconnect_time_ms(registers[0], registers[1], false));
     }
     if (row->address == FATHOM_HPS167S_RESET && !is_answer) decode_note(frame, "hps167s: resets the device");
-    if (row->address == FATHOM_HPS167S_LOAD && decode_get16(frame->bytes + VALUE) == FATHOM_HPS167S_FACTORY)
+    if (row->address == FATHOM_HPS167S_LOAD &&
+        decode_get16(frame->bytes + DECODE_AT_VALUE) == FATHOM_HPS167S_FACTORY)
         decode_note(frame, "hps167s: resets the device's settings");
 }
 
@@ -280,22 +280,22 @@ static void command_known(decode_frame_t *frame, const command_row_t *row, const
 static void command_guessed(decode_frame_t *frame, const command_row_t *row)
 {
     uint16_t registers[FATHOM_HPS167S_MAX_REGISTERS];
-    if (2 * row->registers != frame->bytes[SIZE]) return;
-    get_registers(frame->bytes + SIZE, row->registers, registers);
+    if (2 * row->registers != frame->bytes[DECODE_AT_SIZE]) return;
+    get_registers(frame->bytes + DECODE_AT_SIZE, row->registers, registers);
     if (frame->is_sure || row->is_likely(registers))
         row->answer(
             decode_mean(frame, "hps167s", row->source, "if #%u was asked: %s", row->number, row->name),
             registers);
 }
 
-void decode_hps167s(decode_frame_t *frame, const uint8_t *request)
+void hps167s_decode(decode_frame_t *frame, const uint8_t *request)
 {
     for (size_t i = 0; i != ROWS; i++) {
         const command_row_t *const row = &rows[i];
-        if (row->function != frame->bytes[FUNCTION]) continue;
+        if (row->function != frame->bytes[DECODE_AT_FUNCTION]) continue;
         if (request == NULL)
             command_guessed(frame, row);
-        else if (decode_get16(request + FIRST) == row->address)
+        else if (decode_get16(request + DECODE_AT_FIRST) == row->address)
             command_known(frame, row, request);
     }
 }

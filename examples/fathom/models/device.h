@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef DEVICES_H
-#define DEVICES_H
+#ifndef DEVICE_H
+#define DEVICE_H
 
 #include "sim/a05.h"
 #include "sim/a16.h"
 #include "sim/hps167s.h"
 
-/* What a device may have besides; 0: it has not. sim_traits.c says what each is. */
+/* What a device may have besides; 0: it has not. sim_traits.c says what each is, model_t.traits which model can have it. */
 typedef enum {
     DEVICE_EXCEPTIONS,
     DEVICE_ANSWERS_BROADCAST,
@@ -45,13 +45,5 @@ typedef struct {
 } device_t;
 
 typedef void (*device_init_t)(device_t *device, const device_settings_t *settings);
-
-void device_a16_auto(device_t *device, const device_settings_t *settings);
-void device_a16_controlled(device_t *device, const device_settings_t *settings);
-void device_a16_modbus(device_t *device, const device_settings_t *settings);
-void device_a05_auto(device_t *device, const device_settings_t *settings);
-void device_a05_modbus(device_t *device, const device_settings_t *settings);
-void device_a05_dyp(device_t *device, const device_settings_t *settings);
-void device_hps167s(device_t *device, const device_settings_t *settings);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "settings/settings.h"
+#include "settings/setting_text.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+#include "models/a16/a16.h"
+
+#include "models/dyp.h"
+
+/* ---- reading ---- */
+
+static bool read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
+    const fathom_a16_auto_config_t config = {
+        .line = &channel->line,
+        .stale_us = settings->timeout_us,
+        .gap_us = CHANNEL_STREAM_GAP_US,
+        .window = settings->window,
+    };
+    reader_begin(reader, channel);
+    return fathom_a16_auto_init(driver, &config) == FATHOM_READY &&
+           dyp_begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
+}
+
+/* Triggered by a break of the port, whose TX is the module's RX. */
+static bool read_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
+    const fathom_a16_controlled_config_t config = {
+        .line = &channel->line,
+        .trigger = fathom_output_line_break(&channel->line),
+        .period_us = settings->period_us,
+        .gap_us = CHANNEL_STREAM_GAP_US,
+        .window = settings->window,
+    };
+    reader_begin(reader, channel);
+    if (fathom_a16_controlled_init(driver, &config) != FATHOM_READY) return false;
+    reader->sensor = fathom_a16_controlled_sensor(driver);
+    reader->stream = &driver->stream;
+    reader->values = driver->values;
+    reader->value_count = 1;
+    reader->answer = &driver->answer;
+    reader->sequence = &driver->answer.sequence;
+    reader->is_paced = true;
+    return true;
+}
+
+static bool read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
+    const fathom_a16_modbus_config_t config = {
+        .modbus = reader_config(channel, settings, &channel->modbus),
+        .window = settings->window,
+    };
+    reader_begin(reader, channel);
+    return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
+           dyp_begin_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver), reader_modbus);
+}
+
+/* ---- simulation ---- */
+
+static void simulate(device_t *device, const device_settings_t *settings, uint8_t mode)
+{
+    const uint32_t *const traits = settings->traits;
+    const fathom_sim_a16_config_t config = {.unit = settings->address,
+                                            .unit_zero = settings->address == 0,
+                                            .mode = mode,
+                                            .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
+                                            .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
+                                            .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
+                                            .real_time = traits[DEVICE_REAL_TIME] != 0,
+                                            .seed = settings->seed,
+                                            .scene = settings->scene};
+    fathom_sim_a16_init(&device->simulator.a16, &config);
+    device->base = &device->simulator.a16.device;
+}
+
+static void simulate_auto(device_t *device, const device_settings_t *settings)
+{
+    simulate(device, settings, FATHOM_SIM_A16_AUTO);
+}
+
+static void simulate_controlled(device_t *device, const device_settings_t *settings)
+{
+    simulate(device, settings, FATHOM_SIM_A16_CONTROLLED);
+}
+
+static void simulate_modbus(device_t *device, const device_settings_t *settings)
+{
+    simulate(device, settings, FATHOM_SIM_A16_MODBUS);
+}
+
+/* ---- the model ---- */
+
+const model_t model_a16 = {
+    .name = "a16",
+    .what = "one ultrasonic probe",
+    .id = FATHOM_A16,
+    .line = DYP_LINE,
+    .modes = {{"auto", false, read_auto, simulate_auto},
+              {"modbus", true, read_modbus, simulate_modbus},
+              {"controlled", false, read_controlled, simulate_controlled}},
+    .settings = a16_settings,
+    .max_address = DYP_MAX_ADDRESS,
+    .is_dyp = true,
+    .probes = 1,
+    .max_mm = FATHOM_A16_MAX_MM,
+    .near_mm = 500,
+    .far_mm = 5000,
+    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |
+              1u << DEVICE_ANSWERS_FROM_NEW,
+    /* The last measurement (0x0101), and where that is not there the processed distance (0x0100). */
+    .scan = {.first = DYP_ADDRESS,
+             .count = 1,
+             .frame_length = FATHOM_DYP_A16_LENGTH,
+             .own = 0x0101,
+             .slow_own = 0x0100},
+    .print_finding = dyp_print_finding,
+    .print_finding_json = dyp_print_finding_json,
+    .protocols = DECODE_MODBUS | DECODE_STREAM_ONE,
+    .decode = a16_decode,
+    .decode_sum = a16_decode_sum,
+};

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef A16_H
+#define A16_H
+
+#include "models/model.h"
+
+extern const model_t model_a16;
+
+/* ---- its parts ---- */
+
+extern const setting_t a16_settings[];
+
+void a16_decode(decode_frame_t *frame, const uint8_t *request);
+void a16_decode_sum(decode_frame_t *frame);
+
+#endif

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef DECODING_H
+#define DECODING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* A frame from the wire, and what it says, before that is written as text or JSON. */
+
+/* What may be in the input; sets of them. */
+enum {
+    DECODE_MODBUS = 1,
+    DECODE_DYP = 2,         /* 55 AA */
+    DECODE_STREAM_ONE = 4,  /* FF H L SUM */
+    DECODE_STREAM_FOUR = 8, /* FF, four distances, SUM */
+    DECODE_ALL = 15
+};
+
+enum { DECODE_REQUEST = 1, DECODE_ANSWER = 2, DECODE_BOTH = 3 };
+
+/* A frame, or bytes that belong to none (protocol 0). */
+typedef struct {
+    size_t offset;
+    size_t length;
+    uint8_t protocol;
+    uint8_t direction; /* DECODE_REQUEST, DECODE_ANSWER, or both where the bytes are the same */
+    bool is_damaged;   /* the shape of a frame, but its checksum is wrong */
+} decode_piece_t;
+
+/* Where it stands in a Modbus frame; a read's answer has its size in place of the first register. */
+enum {
+    DECODE_AT_FUNCTION = 1,
+    DECODE_AT_SIZE = 2,
+    DECODE_AT_FIRST = 2,
+    DECODE_AT_COUNT = 4,
+    DECODE_AT_VALUE = 4
+};
+
+enum { DECODE_TEXT = 160, DECODE_VALUE = 64, DECODE_FIELDS = 10, DECODE_MEANINGS = 12, DECODE_NOTES = 6 };
+
+typedef struct {
+    const char *name;
+    const char *unit; /* "": none */
+    const char *note; /* NULL: none */
+    bool is_number;
+    char value[DECODE_VALUE];
+} decode_field_t;
+
+/* What it means if a certain sensor was meant; nothing but the fields where sensor is "". */
+typedef struct {
+    const char *sensor;
+    const char *source; /* section of its datasheet */
+    char what[DECODE_TEXT];
+    uint8_t count;
+    decode_field_t fields[DECODE_FIELDS];
+} decode_meaning_t;
+
+typedef struct {
+    const decode_piece_t *piece;
+    const uint8_t *bytes;
+    bool is_sure;            /* one sensor was named; else only what is likely is guessed */
+    int unit;                /* -1: it has none */
+    int code;                /* function or command; -1: it has none */
+    const char *code_is;     /* "function" or "command" */
+    char what[DECODE_VALUE]; /* "read holding registers"; "": nothing to add */
+    uint8_t checksum_length; /* bytes at the end */
+    uint8_t checksum[2];     /* as they should be */
+    uint8_t meanings;        /* used */
+    uint8_t notes;           /* used */
+    decode_meaning_t meaning[DECODE_MEANINGS];
+    char note[DECODE_NOTES][DECODE_TEXT];
+} decode_frame_t;
+
+/* ---- for a model that fills it in ---- */
+
+uint16_t decode_get16(const uint8_t *at);
+
+/* A meaning with its name as printf makes it; further fields go to it. Full: the last one is overwritten. */
+decode_meaning_t *decode_mean(decode_frame_t *frame, const char *sensor, const char *source,
+                              const char *format, ...);
+void decode_note(decode_frame_t *frame, const char *format, ...);
+
+/* The field, for a note of its own. */
+decode_field_t *decode_number(decode_meaning_t *meaning, const char *name, int64_t value, const char *unit);
+/* As many decimal places. */
+decode_field_t *decode_decimal(decode_meaning_t *meaning, const char *name, int64_t value, uint8_t places,
+                               const char *unit);
+decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const char *format, ...);
+
+#endif

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+#include "models/reader.h"
+
+#include <string.h>
+
+const char reader_modbus[] = "Modbus";
+
+/* A connection has no line settings. */
+static const fathom_line_settings_t *line_of(const channel_t *channel, const reader_settings_t *settings)
+{
+    return channel->tcp == NULL ? settings->line : NULL;
+}
+
+void reader_begin(reader_t *reader, channel_t *channel)
+{
+    memset(reader, 0, sizeof *reader);
+    reader->line = &channel->line;
+}
+
+fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,
+                                     const fathom_modbus_t *transport)
+{
+    return (fathom_modbus_config_t){
+        .transport = transport,
+        .settings = line_of(channel, settings),
+        .period_us = settings->period_us,
+        .timeout_us = settings->timeout_us,
+        .backoff_us = settings->backoff_us,
+        .address = settings->address,
+        .address_zero = settings->address == 0,
+        .retries = settings->retries,
+    };
+}
+
+bool reader_was_answered_wrong(const reader_t *reader)
+{
+    return reader->unit != NULL && reader->unit->request.exchange.status == FATHOM_ERR_MALFORMED;
+}
+
+uint8_t reader_refused_probe(const reader_t *reader)
+{
+    return reader->answer != NULL && !reader_was_answered_wrong(reader) ? reader->answer->refused_probe : 0;
+}
+
+bool reader_has_more(const reader_t *reader) { return reader->answer != NULL && reader->answer->left != 0; }

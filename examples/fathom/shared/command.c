@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+#include "shared/command.h"
+
+#include <stdarg.h>
+
+int usage_error(const char *command, const char *format, ...)
+{
+    const char *const gap = command[0] != '\0' ? " " : "";
+    va_list arguments;
+    (void)fprintf(stderr, "fathom%s%s: ", gap, command);
+    va_start(arguments, format);
+    (void)vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    (void)fprintf(stderr, "; try: fathom%s%s --help\n", gap, command);
+    return STATUS_USAGE;
+}
