@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "fathom/version.h"
+#include "shared/options.h"
 
 static const command_t *const commands[] = {
     &scan_command, &read_command,  &watch_command,  &info_command, &get_command,
@@ -15,8 +16,7 @@ static int no_command(void)
 {
     char names[80] = "";
     for (size_t i = 0; i != COMMANDS; i++) {
-        const size_t length = strlen(names);
-        (void)snprintf(names + length, sizeof names - length, "%s%s", i != 0 ? ", " : "", commands[i]->name);
+        list_add(names, sizeof names, commands[i]->name);
     }
     return usage_error("", "a command is missing: %s", names);
 }

@@ -77,8 +77,7 @@ static bool take_protocol(settings_t *settings, const char *text)
             settings->protocols &= protocols[i].protocols;
             return true;
         }
-        const size_t length = strlen(known);
-        (void)snprintf(known + length, sizeof known - length, "%s%s", i != 0 ? ", " : "", protocols[i].name);
+        list_add(known, sizeof known, protocols[i].name);
     }
     (void)usage_error(command, "there is no protocol '%s', only %s", text, known);
     return false;
@@ -94,16 +93,6 @@ static bool take_model(settings_t *settings, const char *text)
         if (models[i] == named) settings->models = (uint8_t)(1u << i);
     settings->protocols &= named->protocols;
     return true;
-}
-
-static bool take_format(settings_t *settings, const char *text)
-{
-    settings->format = &decode_text;
-    if (text == NULL || strcmp(text, decode_text.name) == 0) return true;
-    settings->format = &decode_json;
-    if (strcmp(text, decode_json.name) == 0) return true;
-    (void)usage_error(command, "there is no format '%s', only text, json", text);
-    return false;
 }
 
 enum { WHY_TEXT = 120 };
@@ -181,18 +170,17 @@ static int decode(const settings_t *settings, const decode_input_t *input)
 static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
+    bool is_json = false;
     settings_t settings = {DECODE_ALL, ALL_MODELS, NULL};
     decode_input_t input;
     (void)host; /* it opens no port */
     const int rest = options_parse(command, argc, argv, table, values);
     if (rest < 0) return STATUS_USAGE;
-    if (values[HELP] != NULL) {
-        help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (values[HELP] != NULL) return command_help(&decode_command);
     if (!take_protocol(&settings, values[PROTOCOL]) || !take_model(&settings, values[SENSOR]) ||
-        !take_format(&settings, values[FORMAT]))
+        !option_json(command, values[FORMAT], &is_json))
         return STATUS_USAGE;
+    settings.format = is_json ? &decode_json : &decode_text;
     if (settings.protocols == 0)
         return usage_error(command, "%s does not speak %s", values[SENSOR], values[PROTOCOL]);
     int status = decode_input_take(&input, command, argc - rest, argv + rest, values[RAW] != NULL);

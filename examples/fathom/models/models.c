@@ -9,6 +9,7 @@
 #include "shared/channel.h"
 #include "shared/command.h"
 #include "shared/line_text.h"
+#include "shared/options.h"
 
 const model_t *const models[MODELS] = {&model_a16, &model_a05, &model_hps167s};
 
@@ -32,19 +33,12 @@ bool model_has_rate(const model_t *model, uint32_t baud)
     return false;
 }
 
-/* Adds ", NAME" to a list. */
-static void add_name(char *list, size_t capacity, const char *name)
-{
-    const size_t length = strlen(list);
-    (void)snprintf(list + length, capacity - length, "%s%s", length != 0 ? ", " : "", name);
-}
-
 const model_t *model_find(const char *command, const char *name)
 {
     char known[80] = "";
     for (size_t i = 0; i != MODELS; i++) {
         if (strcmp(name, models[i]->name) == 0) return models[i];
-        add_name(known, sizeof known, models[i]->name);
+        list_add(known, sizeof known, models[i]->name);
     }
     (void)usage_error(command, "there is no sensor '%s', only %s", name, known);
     return NULL;
@@ -56,7 +50,7 @@ const model_mode_t *model_mode_find(const char *command, const model_t *model, c
     if (name == NULL) return &model->modes[0];
     for (size_t i = 0; i != MODEL_MODES && model->modes[i].name != NULL; i++) {
         if (strcmp(name, model->modes[i].name) == 0) return &model->modes[i];
-        add_name(known, sizeof known, model->modes[i].name);
+        list_add(known, sizeof known, model->modes[i].name);
     }
     (void)usage_error(command, "there is no mode '%s' for %s, only %s", name, model->name, known);
     return NULL;
@@ -74,7 +68,7 @@ void models_print(FILE *to)
         char modes[80] = "";
         char line[LINE_TEXT];
         for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL; m++)
-            add_name(modes, sizeof modes, model->modes[m].name);
+            list_add(modes, sizeof modes, model->modes[m].name);
         (void)fprintf(to, "  %-8s %-24s %-10s address 1..%-4u modes: %s\n", model->name, model->what,
                       line_text(&model->line, line), model->max_address, modes);
     }

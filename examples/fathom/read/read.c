@@ -118,10 +118,7 @@ static int run_read(const host_t *host, int argc, char **argv)
     run.output_error = 0;
     poll_loop_begin(loop, host, &user, &run);
     if (!read_options(&run.options, &loop->options, argc, argv)) return STATUS_USAGE;
-    if (run.options.wants_help) {
-        read_help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (run.options.wants_help) return command_help(&read_command);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
     if (!poll_loop_open(loop)) return loop->is_lost ? finish(&run) : STATUS_FAILED;

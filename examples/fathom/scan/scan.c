@@ -256,10 +256,7 @@ static int run(const host_t *host, int argc, char **argv)
     memset(&scan, 0, sizeof scan);
     scan.host = host;
     if (!scan_options(&scan.options, argc, argv)) return STATUS_USAGE;
-    if (options->wants_help) {
-        scan_help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (options->wants_help) return command_help(&scan_command);
     if (options->estimate) return print_estimate(options);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     if (!channel_open(&scan.channel, host, options->port, &scan_dyp_line)) {

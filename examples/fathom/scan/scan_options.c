@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "shared/channel.h"
+#include "models/models.h"
 #include "shared/command.h"
 #include "shared/line_text.h"
 #include "shared/options.h"
@@ -54,52 +54,44 @@ enum {
     ITEM_TEXT = 16
 };
 
-/* The sensors have all of these but 38400, which `all` leaves out. */
-static const uint32_t rates[SCAN_RATES] = {9600, 19200, 57600, 115200, 230400, 38400};
-enum { SENSOR_RATES = 5 };
-
-/* The part of a list before the next comma; NULL: it was the last one. Too long for any: cut. */
-static const char *next_item(const char *list, char item[ITEM_TEXT])
+/* Each once, in the order in which they come; 0 ends them. */
+static void add_rate(uint32_t bauds[SCAN_RATES + 1], uint32_t baud)
 {
-    const size_t length = strcspn(list, ",");
-    (void)snprintf(item, ITEM_TEXT, "%.*s", (int)length, list);
-    return list[length] == ',' ? list + length + 1 : NULL;
+    uint8_t i = 0;
+    while (bauds[i] != 0 && bauds[i] != baud) i++;
+    bauds[i] = baud;
 }
 
-static bool take_rate(const char *text, uint32_t *baud)
+/* All that a sensor can have. */
+static void add_all_rates(uint32_t bauds[SCAN_RATES + 1])
 {
-    uint32_t number = 0;
-    if (number_parse(text, 1, UINT32_MAX, &number)) {
-        for (uint8_t i = 0; i != SCAN_RATES; i++) {
-            if (number != rates[i]) continue;
-            *baud = number;
-            return true;
-        }
+    for (size_t i = 0; i != MODELS; i++) {
+        add_rate(bauds, models[i]->line.baud);
+        for (const uint32_t *rate = models[i]->rates; rate != NULL && *rate != 0; rate++)
+            add_rate(bauds, *rate);
     }
-    (void)usage_error(command,
-                      "--baud takes all, or some of 9600, 19200, 38400, 57600, 115200 and 230400 with commas "
-                      "between them, not '%s'",
-                      text);
-    return false;
 }
 
-/* In the order of the user; 0 ends them. */
+/* Adds those that the user wants. */
 static bool take_bauds(const char *list, uint32_t bauds[SCAN_RATES + 1])
 {
-    uint8_t count = 0;
     if (strcmp(list, "all") == 0) {
-        memcpy(bauds, rates, SENSOR_RATES * sizeof rates[0]);
+        add_all_rates(bauds);
         return true;
     }
     while (list != NULL) {
         char item[ITEM_TEXT];
         uint32_t baud = 0;
-        bool is_new = true;
-        list = next_item(list, item);
-        if (!take_rate(item, &baud)) return false;
-        for (uint8_t i = 0; i != count; i++)
-            if (bauds[i] == baud) is_new = false;
-        if (is_new) bauds[count++] = baud;
+        list = next_word(list, ',', item, sizeof item);
+        if (!baud_parse(item, &baud)) {
+            (void)usage_error(
+                command,
+                "--baud takes all, or some of 9600, 19200, 38400, 57600, 115200 and 230400 with commas "
+                "between them, not '%s'",
+                item);
+            return false;
+        }
+        add_rate(bauds, baud);
     }
     return true;
 }
@@ -113,18 +105,16 @@ static bool take_parities(const char *list, unsigned *parities)
     }
     while (list != NULL) {
         char item[ITEM_TEXT];
-        unsigned bit = 0;
-        list = next_item(list, item);
-        for (uint8_t i = 0; i != SCAN_PARITIES; i++)
-            if (strcmp(item, parity_name(i)) == 0) bit = 1u << i;
-        if (bit == 0) {
+        uint8_t parity = FATHOM_PARITY_NONE;
+        list = next_word(list, ',', item, sizeof item);
+        if (!parity_parse(item, &parity)) {
             (void)usage_error(command,
                               "--parity takes all, or some of none, even and odd with commas between them, "
                               "not '%s'",
                               item);
             return false;
         }
-        *parities |= bit;
+        *parities |= 1u << parity;
     }
     return true;
 }
@@ -199,14 +189,6 @@ static bool take_numbers(scan_plan_t *plan, const char *const *values)
     return true;
 }
 
-static bool take_format(scan_options_t *options, const char *name)
-{
-    options->is_json = name != NULL && strcmp(name, "json") == 0;
-    if (name == NULL || options->is_json || strcmp(name, "text") == 0) return true;
-    (void)usage_error(command, "there is no format '%s', only text, json", name);
-    return false;
-}
-
 bool scan_options(scan_options_t *options, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
@@ -220,7 +202,7 @@ bool scan_options(scan_options_t *options, int argc, char **argv)
         return false;
     }
     if (!take_settings(options, values) || !take_addresses(&options->plan, values[ADDRESS]) ||
-        !take_numbers(&options->plan, values) || !take_format(options, values[FORMAT]))
+        !take_numbers(&options->plan, values) || !option_json(command, values[FORMAT], &options->is_json))
         return false;
     options->is_default = values[BAUD] == NULL && values[PARITY] == NULL && values[STOP_BITS] == NULL &&
                           values[ADDRESS] == NULL;

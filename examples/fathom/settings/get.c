@@ -133,12 +133,6 @@ static void help(FILE *to, bool is_info)
                 to);
 }
 
-static int help_of(bool is_info)
-{
-    help(stdout, is_info);
-    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-}
-
 /* `fathom get SENSOR` and nothing else. */
 static int list(const char *name)
 {
@@ -167,7 +161,7 @@ static int run_info(const host_t *host, int argc, char **argv)
     bool wants_help = false;
     if (!session_options(&session, "info", argc, argv, session_table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
-    if (wants_help) return help_of(true);
+    if (wants_help) return command_help(&info_command);
     if (count != 0) return usage_error("info", "one sensor at a time; '%s' is too much", words[0]);
     return tell_on_port(host, session_settings(&session), SIZE_MAX);
 }
@@ -181,7 +175,7 @@ static int run_get(const host_t *host, int argc, char **argv)
     if (argc == 2 && argv[1][0] != '-') return list(argv[1]);
     if (!session_options(&session, "get", argc, argv, session_table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
-    if (wants_help) return help_of(false);
+    if (wants_help) return command_help(&get_command);
     if (count != 1)
         return usage_error("get",
                            count == 0 ? "which setting? `fathom get %s` lists them" : "one setting at a time",

@@ -103,10 +103,7 @@ static int run(const host_t *host, int argc, char **argv)
     bool wants_help = false;
     if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
-    if (wants_help) {
-        help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (wants_help) return command_help(&reset_command);
     if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
     if (session.station->model->reset.restore == NULL)
         return usage_error(command, "only an hps167s can be reset; %s has no such command",

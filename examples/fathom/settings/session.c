@@ -97,15 +97,14 @@ bool session_open(session_t *session, const host_t *host)
         return false;
     }
     counters_begin_port(&session->port_counts, &session->channel);
-    if (station->mode->read(&station->reader, &session->channel, &settings)) {
-        if (session->channel.tcp != NULL) return true;
-        if (station->model->listen_unasked != NULL) station->model->listen_unasked(&station->reader);
-        listen(session);
-        return true;
+    if (!station_begin(station, &session->channel, &settings)) {
+        channel_close(&session->channel);
+        return false;
     }
-    (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->model->name);
-    channel_close(&session->channel);
-    return false;
+    if (session->channel.tcp != NULL) return true;
+    if (station->model->listen_unasked != NULL) station->model->listen_unasked(&station->reader);
+    listen(session);
+    return true;
 }
 
 void session_close(session_t *session) { channel_close(&session->channel); }

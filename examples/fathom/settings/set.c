@@ -346,10 +346,7 @@ static int run(const host_t *host, int argc, char **argv)
     bool wants_help = false;
     if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
-    if (wants_help) {
-        help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (wants_help) return command_help(&set_command);
     const char *const model = session.station->model->name;
     if (count != 2)
         return usage_error(command,

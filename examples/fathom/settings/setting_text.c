@@ -6,28 +6,23 @@
 #include <string.h>
 
 #include "shared/command.h"
+#include "shared/options.h"
 
 enum { LIST = 400 };
-
-static void add(char *list, const char *gap, const char *text)
-{
-    const size_t length = strlen(list);
-    (void)snprintf(list + length, LIST - length, "%s%s", length != 0 ? gap : "", text);
-}
 
 /* "on, off": what it may be. */
 static const char *values_text(const setting_t *setting, char text[LIST])
 {
     text[0] = '\0';
     if (setting->words != NULL) {
-        for (const char *const *word = setting->words; *word != NULL; word++) add(text, ", ", *word);
+        for (const char *const *word = setting->words; *word != NULL; word++) list_add(text, LIST, *word);
         return text;
     }
     (void)snprintf(text, LIST, "%" PRId32 " to %" PRId32, setting->least, setting->most);
     if (setting->step > 1) {
         char multiple[LIST / 8];
         (void)snprintf(multiple, sizeof multiple, "a multiple of %" PRId32, setting->step);
-        add(text, ", ", multiple);
+        list_add(text, LIST, multiple);
     }
     return text;
 }
@@ -38,7 +33,7 @@ const setting_t *setting_find(const char *command, const char *model, const sett
     char known[LIST] = "";
     for (const setting_t *setting = settings; setting->name != NULL; setting++) {
         if (strcmp(setting->name, name) == 0) return setting;
-        add(known, ", ", setting->name);
+        list_add(known, LIST, setting->name);
     }
     (void)usage_error(command, "%s has no setting '%s', only %s", model, name, known);
     return NULL;

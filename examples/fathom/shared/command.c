@@ -14,3 +14,9 @@ int usage_error(const char *command, const char *format, ...)
     (void)fprintf(stderr, "; try: fathom%s%s --help\n", gap, command);
     return STATUS_USAGE;
 }
+
+int command_help(const command_t *command)
+{
+    command->help(stdout);
+    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}

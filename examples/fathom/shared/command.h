@@ -22,6 +22,9 @@ enum {
     STATUS_USAGE = 2
 };
 
+/* Prints its help on stdout; returns the exit status. */
+int command_help(const command_t *command);
+
 /* Says on stderr, in one line, what is wrong with the command line and where help is. command: "" before one
  * is known. Returns STATUS_USAGE. */
 int usage_error(const char *command, const char *format, ...);

@@ -2,6 +2,8 @@
 #include "shared/options.h"
 
 #include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "shared/command.h"
 
@@ -56,5 +58,27 @@ bool option_number(const char *command, const char *name, const char *text, uint
     if (text == NULL || number_parse(text, min, max, number)) return true;
     (void)usage_error(command, "--%s takes a whole number from %" PRIu32 " to %" PRIu32 ", not '%s'", name,
                       min, max, text);
+    return false;
+}
+
+void list_add(char *list, size_t capacity, const char *word)
+{
+    const size_t length = strlen(list);
+    (void)snprintf(list + length, capacity - length, "%s%s", length != 0 ? ", " : "", word);
+}
+
+const char *next_word(const char *list, char separator, char *word, size_t capacity)
+{
+    const char *const end = strchr(list, separator);
+    const size_t length = end != NULL ? (size_t)(end - list) : strlen(list);
+    (void)snprintf(word, capacity, "%.*s", (int)length, list);
+    return end != NULL ? end + 1 : NULL;
+}
+
+bool option_json(const char *command, const char *text, bool *is_json)
+{
+    *is_json = text != NULL && strcmp(text, "json") == 0;
+    if (text == NULL || *is_json || strcmp(text, "text") == 0) return true;
+    (void)usage_error(command, "there is no format '%s', only text, json", text);
     return false;
 }

@@ -4,6 +4,7 @@
 
 #include <getopt.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /*
@@ -26,5 +27,14 @@ bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
 /* A number option; text NULL: it was not given, *number stays. False after saying what is wrong. */
 bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
                    uint32_t *number);
+
+/* A --format that is text or json; NULL: text. False after saying what is wrong. */
+bool option_json(const char *command, const char *text, bool *is_json);
+
+/* Adds a word to a list of `capacity` bytes, as in "a16, a05"; what does not fit is left out. */
+void list_add(char *list, size_t capacity, const char *word);
+
+/* The next word of a list, cut to `capacity` bytes. Returns what follows its separator; NULL: it was the last one. */
+const char *next_word(const char *list, char separator, char *word, size_t capacity);
 
 #endif

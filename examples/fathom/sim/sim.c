@@ -107,10 +107,7 @@ static int run(const host_t *host, int argc, char **argv)
     static simulation_t simulation;
     (void)host; /* it runs in real time, on a pseudo terminal */
     if (!sim_options(&simulation.options, argc, argv)) return STATUS_USAGE;
-    if (simulation.options.wants_help) {
-        sim_help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (simulation.options.wants_help) return command_help(&sim_command);
     if (!events_begin() || !open_line(&simulation)) return STATUS_FAILED;
     events_note(SIGUSR1); /* before the path is printed, by which the process can be known */
     const int status = announce(&simulation) ? serve(&simulation) : STATUS_FAILED;

@@ -67,15 +67,6 @@ static bool parse_rest(const char *text, sim_fault_t *fault)
     return text[length] == '\0' || number_parse(text + length + 1, 1, UINT32_MAX, &fault->at_frame);
 }
 
-static void list_kinds(const model_mode_t *mode, char *list, size_t capacity)
-{
-    size_t length = 0;
-    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END && length < capacity; kind++)
-        if (applies(kind, mode))
-            length += (size_t)snprintf(list + length, capacity - length, "%s%s", length != 0 ? ", " : "",
-                                       fathom_sim_fault_name(kind));
-}
-
 static bool parse_one(const char *command, const model_t *model, const model_mode_t *mode, const char *text,
                       sim_fault_t *fault)
 {
@@ -85,7 +76,8 @@ static bool parse_one(const char *command, const model_t *model, const model_mod
     fault->kind = fathom_sim_fault_find(name);
     if (fault->kind == 0 || !applies(fault->kind, mode)) {
         char known[KINDS_TEXT] = "";
-        list_kinds(mode, known, sizeof known);
+        for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
+            if (applies(kind, mode)) list_add(known, sizeof known, fathom_sim_fault_name(kind));
         (void)usage_error(command, "there is no fault '%.*s' for %s in mode %s, only %s", (int)length, text,
                           model->name, mode->name, known);
         return false;

@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "models/sensor_text.h"
 #include "shared/command.h"
 #include "shared/options.h"
 #include "sim/pty.h"
@@ -88,37 +89,18 @@ static const char *given_for(const givens_t *givens, int row, uint32_t device)
 
 /* ---- the devices ---- */
 
-enum { MAX_DEVICE_TEXT = 40 };
-
 /* Apart, so that two devices do not do everything at the same moment. */
 enum { SEED_STEP = 1000003 };
 
-/* SENSOR[:ADDR[:MODE]]; an empty ADDR is the factory's. */
 static bool take_device(sim_device_t *device, const char *text)
 {
-    char parts[MAX_DEVICE_TEXT];
-    uint32_t address = FACTORY_ADDRESS;
-    if (strlen(text) >= sizeof parts) return model_find(command, text) != NULL;
-    memcpy(parts, text, strlen(text) + 1);
-    char *const address_text = strchr(parts, ':');
-    char *const mode_text = address_text != NULL ? strchr(address_text + 1, ':') : NULL;
-    if (address_text != NULL) *address_text = '\0';
-    if (mode_text != NULL) *mode_text = '\0';
-    device->model = model_find(command, parts);
-    if (device->model == NULL) return false;
-    device->mode = model_mode_find(command, device->model, mode_text != NULL ? mode_text + 1 : NULL);
-    if (device->mode == NULL) return false;
-    if (address_text != NULL && address_text[1] != '\0' &&
-        !number_parse(address_text + 1, model_least_address(device->model, device->mode),
-                      device->model->max_address, &address)) {
-        (void)usage_error(command, "the address of %s is a number from %u to %u, not '%s'",
-                          device->model->name, model_least_address(device->model, device->mode),
-                          device->model->max_address, address_text + 1);
-        return false;
-    }
-    device->address = (uint8_t)address;
-    device->line = device->model->line;
-    return true;
+    sensor_text_t sensor;
+    if (!sensor_text_parse(&sensor, command, text)) return false;
+    device->model = sensor.model;
+    device->mode = model_mode_find(command, sensor.model, sensor.mode);
+    device->address = FACTORY_ADDRESS;
+    device->line = sensor.model->line;
+    return device->mode != NULL && sensor_text_address(&sensor, command, device->mode, &device->address);
 }
 
 static bool take_devices(sim_options_t *options, int count, char **texts)

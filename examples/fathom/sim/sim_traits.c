@@ -53,9 +53,7 @@ static bool unknown(const char *command, const model_t *model, const char *text)
 {
     char known[NAMES_TEXT] = "";
     for (size_t i = 0; i != DEVICE_TRAITS; i++) {
-        const size_t used = strlen(known);
-        if (has(model, &traits[i]))
-            (void)snprintf(known + used, sizeof known - used, "%s%s", used != 0 ? ", " : "", traits[i].name);
+        if (has(model, &traits[i])) list_add(known, sizeof known, traits[i].name);
     }
     (void)usage_error(command, "there is no '%.*s' for %s, only %s", (int)strcspn(text, "="), text,
                       model->name, known);

@@ -255,11 +255,7 @@ static bool begin_station(poll_loop_t *loop, station_t *station)
         .retries = options->retries,
     };
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
-    if (!station->mode->read(&station->reader, &loop->channel, &settings)) {
-        (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n",
-                      station->model->name);
-        return false;
-    }
+    if (!station_begin(station, &loop->channel, &settings)) return false;
     /* Goes on after a loss, so that the gap is not taken for a new start. */
     *station->reader.sequence = sequence;
     station->listener = is_shared(loop) ? &station->own_listener : &loop->channel.listener;

@@ -9,7 +9,7 @@
 
 /* Reads the sensors on one port, all of them in one loop, until the user, the count, the time or a loss ends it: what
  * `fathom read` and `fathom watch` share. */
-typedef struct loop poll_loop_t;
+typedef struct poll_loop poll_loop_t;
 
 /* What a command does with it. ctx: poll_loop_t.ctx. */
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
     bool (*is_over)(const void *ctx);
 } poll_loop_user_t;
 
-struct loop {
+struct poll_loop {
     sensor_options_t options;
     const host_t *host;
     const poll_loop_user_t *user;

@@ -9,35 +9,20 @@
 #include "shared/options.h"
 #include "shared/tcp_address.h"
 
-static const uint32_t rates[] = {9600, 19200, 38400, 57600, 115200, 230400};
-enum { RATES = sizeof rates / sizeof rates[0] };
-
 /* The longest ones keep every sum of times below the 32 bits of the library's clock. */
 enum { MAX_WORD = 24 };
 enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
 
 static bool take_baud(const char *command, const char *text, uint32_t *baud)
 {
-    uint32_t number = 0;
-    if (text == NULL) return true;
-    const bool is_number = number_parse(text, 1, UINT32_MAX, &number);
-    for (size_t i = 0; i != RATES && is_number; i++) {
-        if (number != rates[i]) continue;
-        *baud = number;
-        return true;
-    }
+    if (text == NULL || baud_parse(text, baud)) return true;
     (void)usage_error(command, "--baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not '%s'", text);
     return false;
 }
 
 static bool take_parity(const char *command, const char *text, uint8_t *parity)
 {
-    if (text == NULL) return true;
-    for (uint8_t i = FATHOM_PARITY_NONE; i <= FATHOM_PARITY_ODD; i++) {
-        if (strcmp(text, parity_name(i)) != 0) continue;
-        *parity = i;
-        return true;
-    }
+    if (text == NULL || parity_parse(text, parity)) return true;
     (void)usage_error(command, "--parity takes none, even or odd, not '%s'", text);
     return false;
 }
@@ -84,16 +69,6 @@ static bool take_numbers(sensor_options_t *options, const char *command, const c
     return true;
 }
 
-/* The next word of a list, without its separator. Returns what follows it; NULL: the list ends, or the word is too
- * long, when it is empty. */
-static const char *next_word(const char *list, char separator, char word[MAX_WORD])
-{
-    const char *const end = strchr(list, separator);
-    const size_t length = end != NULL ? (size_t)(end - list) : strlen(list);
-    (void)snprintf(word, MAX_WORD, "%.*s", length < MAX_WORD ? (int)length : 0, list);
-    return end != NULL ? end + 1 : NULL;
-}
-
 static bool take_probes(sensor_options_t *options, const char *command, const char *text)
 {
     if (text == NULL) return true;
@@ -107,7 +82,7 @@ static bool take_probes(sensor_options_t *options, const char *command, const ch
     for (const char *at = text; at != NULL;) {
         char word[MAX_WORD];
         uint32_t probe = 0;
-        at = next_word(at, ',', word);
+        at = next_word(at, ',', word, sizeof word);
         if (!number_parse(word, 1, FATHOM_DYP_PROBES, &probe) || (options->probes >> (probe - 1) & 1) != 0) {
             (void)usage_error(command, "--probes takes some of 1,2,3,4, each once, not '%s'", text);
             return false;
@@ -142,7 +117,7 @@ static uint8_t *place_of(fathom_dyp_window_t *window, const char *value)
 static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
 {
     char value[MAX_WORD];
-    const char *const name = next_word(pair, '=', value);
+    const char *const name = next_word(pair, '=', value, sizeof value);
     uint8_t *const place = place_of(window, value);
     for (size_t i = 0; place != NULL && name != NULL && i != sizeof meanings / sizeof meanings[0]; i++) {
         if (strcmp(name, meanings[i].name) != 0) continue;
@@ -164,7 +139,7 @@ static bool take_means(sensor_options_t *options, const char *command, const cha
     }
     for (const char *at = text; at != NULL;) {
         char pair[MAX_WORD];
-        at = next_word(at, ',', pair);
+        at = next_word(at, ',', pair, sizeof pair);
         if (take_meaning(&options->window, pair)) continue;
         (void)usage_error(command,
                           "--means takes 0, fffd, fffe or ffff, each with =unknown, no-target, interference, "

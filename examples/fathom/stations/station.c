@@ -3,10 +3,9 @@
 
 #include <string.h>
 
+#include "models/sensor_text.h"
 #include "shared/command.h"
 #include "shared/options.h"
-
-enum { MAX_TEXT = 40 };
 
 static const model_mode_t *asked_mode(const model_t *model)
 {
@@ -15,45 +14,27 @@ static const model_mode_t *asked_mode(const model_t *model)
     return mode;
 }
 
-/* part: what follows the sensor's name; option: of --address; NULL: there is none. */
-static bool take_address(station_t *station, const char *command, const char *part, const char *option)
-{
-    uint32_t number = FACTORY_ADDRESS;
-    const uint8_t least = model_least_address(station->model, station->mode);
-    const uint8_t max = station->model->max_address;
-    if (!option_number(command, "address", option, least, max, &number)) return false;
-    if (part != NULL && part[0] != '\0' && !number_parse(part, least, max, &number)) {
-        (void)usage_error(command, "the address of %s is a number from %u to %u, not '%s'",
-                          station->model->name, least, max, part);
-        return false;
-    }
-    station->address = (uint8_t)number;
-    return true;
-}
-
 bool station_parse(station_t *station, const char *command, const char *text, const char *address,
                    const char *mode, bool is_shared)
 {
-    char parts[MAX_TEXT];
-    if (strlen(text) >= sizeof parts) return model_find(command, text) != NULL;
-    memcpy(parts, text, strlen(text) + 1);
-    char *const address_part = strchr(parts, ':');
-    char *const mode_part = address_part != NULL ? strchr(address_part + 1, ':') : NULL;
-    if (address_part != NULL) *address_part = '\0';
-    if (mode_part != NULL) *mode_part = '\0';
-    station->model = model_find(command, parts);
-    if (station->model == NULL) return false;
-    if ((address_part != NULL && address != NULL) || (mode_part != NULL && mode != NULL)) {
+    sensor_text_t sensor;
+    uint32_t number = FACTORY_ADDRESS;
+    if (!sensor_text_parse(&sensor, command, text)) return false;
+    if ((sensor.address != NULL && address != NULL) || (sensor.mode != NULL && mode != NULL)) {
         (void)usage_error(command, "'%s' and an option say the same; leave one of them out", text);
         return false;
     }
-    if (mode_part != NULL) mode = mode_part + 1;
-    station->mode = mode == NULL && (is_shared || address_part != NULL)
-                        ? asked_mode(station->model)
-                        : model_mode_find(command, station->model, mode);
+    if (sensor.mode != NULL) mode = sensor.mode;
+    station->model = sensor.model;
+    station->mode = mode == NULL && (is_shared || sensor.address != NULL)
+                        ? asked_mode(sensor.model)
+                        : model_mode_find(command, sensor.model, mode);
     if (station->mode == NULL ||
-        !take_address(station, command, address_part != NULL ? address_part + 1 : NULL, address))
+        !option_number(command, "address", address, model_least_address(sensor.model, station->mode),
+                       sensor.model->max_address, &number))
         return false;
+    station->address = (uint8_t)number;
+    if (!sensor_text_address(&sensor, command, station->mode, &station->address)) return false;
     (void)snprintf(station->name, sizeof station->name, station->mode->is_asked ? "%s:%u" : "%s",
                    station->model->name, station->address);
     return true;
@@ -101,4 +82,11 @@ bool stations_check(const station_t *stations, size_t count, const char *command
             if (!check_two(&stations[j], one, command, has_settings)) return false;
     }
     return true;
+}
+
+bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings)
+{
+    if (station->mode->read(&station->reader, channel, settings)) return true;
+    (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->model->name);
+    return false;
 }

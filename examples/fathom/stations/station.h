@@ -38,4 +38,7 @@ bool station_parse(station_t *station, const char *command, const char *text, co
  * gateway. False after a usage error. */
 bool stations_check(const station_t *stations, size_t count, const char *command, bool has_settings);
 
+/* Begins to read it through an open channel. False, after saying why: its driver did not take the settings. */
+bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings);
+
 #endif

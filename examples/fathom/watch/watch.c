@@ -215,10 +215,7 @@ static int run(const host_t *host, int argc, char **argv)
     memset(&watch, 0, sizeof watch);
     poll_loop_begin(loop, host, &user, &watch);
     if (!take_options(&loop->options, argc, argv, &wants_help)) return STATUS_USAGE;
-    if (wants_help) {
-        help(stdout);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
+    if (wants_help) return command_help(&watch_command);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     lanes_begin(&watch.lanes, &loop->options);
     watch.draws = terminal_can_draw();
