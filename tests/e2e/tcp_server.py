@@ -24,7 +24,7 @@ class Server:
 
     def accept(self):
         if not e2e.is_ready(self.socket, e2e.PATIENCE):
-            raise AssertionError('nobody connects')
+            raise AssertionError('no client connects')
         self.client = self.socket.accept()[0]
         self.client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 

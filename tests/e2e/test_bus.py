@@ -91,7 +91,7 @@ class Dead(e2e.Case):
     """One of three does not answer."""
 
     def answer(self, device, stop, requests):
-        """As an A16 at address 1 and an A05 at 3 do; nobody is at address 2."""
+        """As an A16 at address 1 and an A05 at 3 do; no unit is at address 2."""
         while not stop.is_set():
             if device.is_silent(0.02):
                 continue
@@ -118,7 +118,7 @@ class Dead(e2e.Case):
         for line in done.err.splitlines():
             if 'attempt ' in line:
                 self.assertRegex(line, r'^fathom: a16:2: attempt \d+: no answer from address 2: ')
-        # The first attempt may come before anybody has answered.
+        # The first attempt may come before any unit has answered.
         self.ends(done, 1, 'nothing was heard of it, while others on this line answer; check its supply')
         stats, = done.told
         self.assertEqual([(one['sensor'], one['mode'], one['address']) for one in stats['units']],
@@ -168,7 +168,7 @@ class Dead(e2e.Case):
         self.assertLessEqual(one['alone_us'], 1)
 
     def test_a_late_answer_explains_the_failure_of_its_unit_alone(self):
-        """Address 2 answers when its time is over, while address 3, where nobody is, is being asked."""
+        """Address 2 answers when its time is over, while address 3, where no unit is, is being asked."""
         device, reader = self.beside('read a16:2 a16:3 --timeout 400 --count 2')
         for _ in range(4):
             if device.read(8)[0] == 2:

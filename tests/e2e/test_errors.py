@@ -74,7 +74,7 @@ class Silence(e2e.Case):
         self.fails(words, f'{line} --port {self.device()}', *limits)
 
     @e2e.each(
-        nobody_at_this_address=('hps167s:3 --distance 500', 'hps167s --address 4 --timeout 100',
+        no_unit_at_this_address=('hps167s:3 --distance 500', 'hps167s --address 4 --timeout 100',
                                 'no answer from address 4: nothing was heard at all; check the supply, A '
                                 'and B (or RX and TX) swapped, --address', 2),
         the_wrong_baud_rate_of_a_sensor_that_is_asked=(

@@ -51,7 +51,7 @@ class Sending(e2e.Case):
                  for sensor, values in VALUES.items()})
     def shifted(self, sensor, values):
         """Each write ends a frame and begins the next, so that the pauses are in the middle of frames. (Where
-        a shifted frame that is valid follows a pause, nobody could tell it from a right one.)"""
+        a shifted frame that is valid follows a pause, a receiver could not tell it from a right one.)"""
         frame = e2e.frame(*values)
         for shift in (1, len(frame) // 2, len(frame) - 1):
             done = self.stream(sensor, [frame[shift:] + frame[:shift]], count=1, timeout=300)

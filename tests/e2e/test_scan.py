@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom scan as a program: what it finds and prints, that it harms nobody, and what it advises, also where
+"""fathom scan as a program: what it finds and prints, that it harms no device, and what it advises, also where
 not all is well: sensors that send by themselves, no sensors, two with one address, other protocols, ports
 that fail, an end before it has finished. How it judges what it hears, and how long it takes, is in
 tests/sim/test_scan*.c, in simulated time."""
@@ -240,7 +240,7 @@ class Trouble(Case):
         answers_that_are_no_modbus_are_told_with_the_older_units=(
             lambda request: b'\x55\x80\x04\x71\x99', '--timeout 200', ('not_modbus', None, None),
             'something answers at 19200 8E1, but not Modbus: an HPS-167S made before 2020-09'),
-        whoever_refuses_everything_is_another_modbus_device=(
+        a_device_that_refuses_everything_is_another_modbus_device=(
             lambda request: e2e.adu(request[0], 0x83, 2) if request[0] == 2 else b'', '',
             ('other_modbus', None, 2)))
     def answered(self, answer, options, found, *said):

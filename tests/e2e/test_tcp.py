@@ -182,7 +182,7 @@ class Answers(Case):
         a_byte_count_that_is_not_the_headers=(
             lambda asked: adu(asked, 1, 3, 8, 0x03, 0xE8),
             'attempt 1: the answer of address 1 was damaged; its length is not what it says'),
-        a_function_that_nobody_asked=(
+        a_function_that_was_not_asked=(
             lambda asked: adu(asked, 1, 0x2B, 0x0E, 1, 1, 0, 0, 0),
             'an answer came that does not fit; check that the server is one of Modbus TCP'),
         an_exception_of_the_sensor=(lambda asked: adu(asked, 1, 0x83, 2),
