@@ -6,7 +6,8 @@
 #include "sim/a16.h"
 #include "sim/hps167s.h"
 
-/* What a device may have besides; 0: it has not. sim_traits.c says what each is, model_t.traits which model can have it. */
+/* What a device may have besides; 0: it has not. sim_traits.c says what each is, model_t.traits which model can have
+ * it. */
 typedef enum {
     DEVICE_EXCEPTIONS,
     DEVICE_ANSWERS_BROADCAST,

@@ -31,8 +31,8 @@ typedef struct {
     const char *other_settings;      /* the same as options to try */
     model_mode_t modes[MODEL_MODES]; /* rows without a name end it */
     uint8_t max_address;
-    bool
-        is_dyp; /* an A16 or A05: address 0 is one too, 0xFF is all units, and values can be given a meaning */
+    /* An A16 or A05: address 0 is one too, 0xFF is all units, and values can be given a meaning. */
+    bool is_dyp;
     bool has_optics; /* magnitude, ambient light and precision, and it can report a fault */
     uint8_t probes;
     uint16_t max_mm; /* beyond this a value is no distance */
@@ -64,7 +64,7 @@ typedef struct {
         uint8_t count;
         uint8_t frame_length; /* of what it sends by itself */
         uint16_t own;         /* a register that only it has, of those with the same first read, ... */
-        uint16_t slow_own; /* ... and one to ask for if none of them answers that; it takes INQUIRY_SLOW_US */
+        uint16_t slow_own;    /* ... and one to ask for within INQUIRY_SLOW_US if none of them answers that */
         /* Instead of `own`: decides by the answer to the first read, and what it asks besides. */
         bool (*is_it)(inquiry_t *inquiry);
     } scan;

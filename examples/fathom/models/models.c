@@ -6,7 +6,6 @@
 #include "models/a05/a05.h"
 #include "models/a16/a16.h"
 #include "models/hps167s/hps167s.h"
-#include "shared/channel.h"
 #include "shared/command.h"
 #include "shared/line_text.h"
 #include "shared/options.h"

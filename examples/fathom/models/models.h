@@ -6,7 +6,8 @@
 
 #include "models/model.h"
 
-/* The models: a row each. Where several fit, a later one is tried before an earlier one. */
+/* The models, a row each. Where several fit, a later one is tried before an earlier one. A new one is its folder, its
+ * row, and its place in the two unions: reader_t.driver and device_t.simulator. */
 enum { MODELS = 3 };
 extern const model_t *const models[MODELS];
 

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "shared/command.h"
 #include "shared/options.h"
 
 static const char command[] = "read";

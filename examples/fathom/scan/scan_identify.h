@@ -22,8 +22,8 @@ void scan_first_request(const fathom_line_settings_t *line, uint8_t address, sca
  *   A05       0x0200 is its address, 0x0106 (probe 1) is answered, 0x0101 is not
  *   A16       0x0200 is its address, 0x0101 or 0x0100 (distance) is answered, 0x0106 is not
  *
- * A device that answers all of these, or none, is another Modbus device. timeout_us: of the first request; the others wait
- * at least 300 ms, since an ultrasonic one has to measure.
+ * A device that answers all of these, or none, is another Modbus device. timeout_us: of the first request; the others
+ * wait at least 300 ms, since an ultrasonic one has to measure.
  *
  * FATHOM_READY: *finding is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT: it could not be asked to the end.
  */

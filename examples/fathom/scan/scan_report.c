@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "models/models.h"
-#include "shared/channel.h"
 #include "shared/line_text.h"
 
 enum { NEXT_TEXT = 1024 };

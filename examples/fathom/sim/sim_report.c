@@ -3,7 +3,6 @@
 
 #include <inttypes.h>
 
-#include "shared/channel.h"
 #include "shared/line_text.h"
 
 static void print_device(FILE *to, const sim_device_t *device)

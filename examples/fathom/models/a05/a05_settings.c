@@ -4,7 +4,7 @@
 
 /* A05 2(3)5, 3(3). */
 
-static fathom_status_t address(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_address(reader_t *reader, char text[SETTING_TEXT])
 {
     uint8_t address = 0;
     const fathom_status_t status = fathom_a05_modbus_address(&reader->driver.a05_modbus, &address);
@@ -25,7 +25,7 @@ static fathom_status_t set_every_address(reader_t *reader, int32_t value)
 }
 
 /* All probes, as they are read: the samples of one answer, one after the other. */
-static fathom_status_t distances(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_distances(reader_t *reader, char text[SETTING_TEXT])
 {
     size_t length = 0;
     fathom_sample_t sample;
@@ -52,7 +52,7 @@ const setting_t a05_settings[] = {
      .has_zero = true,
      .moves = true,
      .is_never_blind = true,
-     .get = address,
+     .get = get_address,
      .set = set_address},
     {.name = "every-address",
      .what = "the same by 55 AA 03, which EVERY A05 on the line obeys; with --mode dyp",
@@ -63,6 +63,6 @@ const setting_t a05_settings[] = {
      .moves = true,
      .is_never_blind = true,
      .set = set_every_address},
-    {.name = "distances", .what = "of the four probes", .mode = "modbus", .unit = "mm", .get = distances},
+    {.name = "distances", .what = "of the four probes", .mode = "modbus", .unit = "mm", .get = get_distances},
     {.name = NULL},
 };

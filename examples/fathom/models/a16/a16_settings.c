@@ -17,7 +17,7 @@ static void put_word(char text[SETTING_TEXT], fathom_status_t status, const char
     if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%s", words[number]);
 }
 
-static fathom_status_t address(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_address(reader_t *reader, char text[SETTING_TEXT])
 {
     uint8_t address = 0;
     const fathom_status_t status = fathom_a16_modbus_address(&reader->driver.a16_modbus, &address);
@@ -57,7 +57,7 @@ static fathom_status_t send_again(reader_t *reader, int32_t value)
     return status;
 }
 
-static fathom_status_t polarity(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_polarity(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
     const fathom_status_t status = fathom_a16_modbus_switch_polarity(&reader->driver.a16_modbus, &polarity);
@@ -70,7 +70,7 @@ static fathom_status_t set_polarity(reader_t *reader, int32_t value)
     return fathom_a16_modbus_set_switch_polarity(&reader->driver.a16_modbus, (fathom_a16_polarity_t)value);
 }
 
-static fathom_status_t threshold(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_threshold(reader_t *reader, char text[SETTING_TEXT])
 {
     uint16_t threshold_mm = 0;
     const fathom_status_t status =
@@ -84,7 +84,7 @@ static fathom_status_t set_threshold(reader_t *reader, int32_t value)
     return fathom_a16_modbus_set_switch_threshold_mm(&reader->driver.a16_modbus, (uint16_t)value);
 }
 
-static fathom_status_t value(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_value(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_dyp_value_t value = FATHOM_PROCESSED;
     const fathom_status_t status = fathom_a16_modbus_automatic_value(&reader->driver.a16_modbus, &value);
@@ -97,7 +97,7 @@ static fathom_status_t set_value(reader_t *reader, int32_t value)
     return fathom_a16_modbus_set_automatic_value(&reader->driver.a16_modbus, (fathom_dyp_value_t)value);
 }
 
-static fathom_status_t distance(reader_t *reader, char text[SETTING_TEXT], fathom_dyp_value_t value)
+static fathom_status_t get_distance(reader_t *reader, char text[SETTING_TEXT], fathom_dyp_value_t value)
 {
     fathom_sample_t sample;
     const fathom_status_t status = fathom_a16_modbus_measure(&reader->driver.a16_modbus, value, &sample);
@@ -105,14 +105,14 @@ static fathom_status_t distance(reader_t *reader, char text[SETTING_TEXT], fatho
     return status;
 }
 
-static fathom_status_t processed(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_processed(reader_t *reader, char text[SETTING_TEXT])
 {
-    return distance(reader, text, FATHOM_PROCESSED);
+    return get_distance(reader, text, FATHOM_PROCESSED);
 }
 
-static fathom_status_t real_time(reader_t *reader, char text[SETTING_TEXT])
+static fathom_status_t get_real_time(reader_t *reader, char text[SETTING_TEXT])
 {
-    return distance(reader, text, FATHOM_REAL_TIME);
+    return get_distance(reader, text, FATHOM_REAL_TIME);
 }
 
 const setting_t a16_settings[] = {
@@ -125,7 +125,7 @@ const setting_t a16_settings[] = {
      .has_zero = true,
      .moves = true,
      .is_never_blind = true,
-     .get = address,
+     .get = get_address,
      .set = set_address},
     {.name = "operating-mode",
      .what = "the register by itself (0x0202); to have automatic output back: automatic-output",
@@ -146,7 +146,7 @@ const setting_t a16_settings[] = {
      .mode = "modbus",
      .effect = DYP_KEPT_UNSAID,
      .words = polarities,
-     .get = polarity,
+     .get = get_polarity,
      .set = set_polarity},
     {.name = "switch-threshold",
      .what = "switch variant: the distance at which it switches (0x0206)",
@@ -155,24 +155,24 @@ const setting_t a16_settings[] = {
      .effect = DYP_KEPT_UNSAID,
      .least = 1,
      .most = FATHOM_A16_MAX_MM,
-     .get = threshold,
+     .get = get_threshold,
      .set = set_threshold},
     {.name = "automatic-value",
      .what = "RS232 variant: the distance that automatic output sends (0x0207)",
      .mode = "modbus",
      .effect = DYP_KEPT_UNSAID,
      .words = values,
-     .get = value,
+     .get = get_value,
      .set = set_value},
     {.name = "distance",
      .what = "the processed distance (0x0100)",
      .mode = "modbus",
      .unit = "mm",
-     .get = processed},
+     .get = get_processed},
     {.name = "real-time-distance",
      .what = "the last measurement (0x0101)",
      .mode = "modbus",
      .unit = "mm",
-     .get = real_time},
+     .get = get_real_time},
     {.name = NULL},
 };
