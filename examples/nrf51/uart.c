@@ -60,7 +60,6 @@ void nrf51_uart_interrupt(void)
     }
     if (UART(TXDRDY) == 0) return;
     UART(TXDRDY) = 0;
-    if (!nrf51_serial.leaving) return;
     if (fathom_serial_next(&nrf51_serial, &byte)) {
         UART(TXD) = byte;
         return;
