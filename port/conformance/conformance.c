@@ -5,7 +5,8 @@
 
 #include "internal/kit.h"
 
-enum { READS = 10000000, QUIET = 12 /* characters */ };
+static const uint32_t most_reads = 10000000; /* of a clock that stands */
+enum { QUIET = 12 };                         /* characters */
 
 static const struct {
     const char *name, *clause, *of;
@@ -188,17 +189,17 @@ bool kit_await_sent(kit_t *kit)
 /* A look at it for 20000 steps, or for 200 ms. */
 static bool clock_runs(kit_t *kit)
 {
-    unsigned reads = 0;
+    uint32_t reads = 0;
     const uint32_t begun_us = kit->last_us = raw_now(kit);
-    for (unsigned steps = 0; steps != 20000 && reads != READS; reads++) {
+    for (uint32_t steps = 0; steps != 20000 && reads != most_reads; reads++) {
         const uint32_t before_us = kit->last_us, by_us = fathom_elapsed_us(kit_now(kit), before_us);
         if (by_us == 0) continue;
         if (by_us > kit->step_us && by_us < 1000000) kit->step_us = by_us;
         steps++;
         if (fathom_elapsed_us(kit->last_us, begun_us) > 200000) break;
     }
-    kit_tell(kit, CLOCK_RUNS, kit_kept_if(reads != READS), kit->step_us);
-    return reads != READS;
+    kit_tell(kit, CLOCK_RUNS, kit_kept_if(reads != most_reads), kit->step_us);
+    return reads != most_reads;
 }
 
 /* 2 ms across the wrap, and no figure that a clock with another wrap would give. */
@@ -213,13 +214,14 @@ static void clock_wrap(kit_t *kit)
     bool is_right = true;
     bench->set_clock(bench->ctx, from_us);
     uint32_t now = raw_now(kit);
-    for (unsigned reads = 0; reads != READS && is_right && fathom_elapsed_us(now, from_us) < 2000; reads++) {
+    for (uint32_t reads = 0; reads != most_reads && is_right && fathom_elapsed_us(now, from_us) < 2000;
+         reads++) {
         const uint32_t before = now;
         now = raw_now(kit);
         is_right = fathom_elapsed_us(now, before) < 1000000;
     }
     is_right = is_right && fathom_elapsed_us(now, from_us) < 1000000;
-    for (unsigned reads = 0; reads != 200; reads++) (void)raw_now(kit); /* behind another wrap as well */
+    for (uint32_t reads = 0; reads != 200; reads++) (void)raw_now(kit); /* behind another wrap as well */
     kit->last_us = raw_now(kit);
     kit_tell(kit, CLOCK_WRAP, kit_kept_if(is_right), now);
 }

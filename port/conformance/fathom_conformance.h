@@ -19,7 +19,7 @@ extern "C" {
  * the same parity at both ends, so it cannot show that the rate is the right one, nor what another's wrong parity does:
  * for that, `damage`, a sensor, or an oscilloscope.
  *
- * It waits, for some seconds in all, allocates nothing, writes nothing, and needs 3 KiB of stack. Nothing else may use
+ * It waits, for some seconds in all, allocates nothing, writes nothing, and needs 4 KiB of stack. Nothing else may use
  * the UART meanwhile.
  */
 typedef enum {

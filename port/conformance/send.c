@@ -47,7 +47,7 @@ static bool writes_whole(kit_t *kit, uint8_t length, int *figure)
     (void)kit_await(kit, (uint16_t)(length + taken));
     if (taken == 0) kit_wait(kit, 5 * kit->character_us + kit->bench->late_us);
     kit_read(kit);
-    *figure = poisoned(kit);
+    *figure = (int)poisoned(kit);
     return taken != 0 || *figure == 0;
 }
 
