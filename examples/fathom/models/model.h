@@ -40,6 +40,8 @@ typedef struct {
     void (*listen_unasked)(reader_t *reader);
     bool (*has_unasked)(const reader_t *reader);
 
+    const char *automatic_again; /* what makes it send by itself again after a request, besides power-off */
+
     /* ---- its settings ---- */
 
     const setting_t *settings;

@@ -14,10 +14,10 @@ typedef struct {
     int output_error;  /* errno */
 } reading_run_t;
 
-/* Readers of a pipe see each line at once. */
 static void flush(reading_run_t *run)
 {
-    if (fflush(stdout) != 0 || ferror(stdout)) run->output_error = errno != 0 ? errno : EIO;
+    const int error = output_flush();
+    if (error != 0) run->output_error = error;
 }
 
 static bool is_shared(const reading_run_t *run) { return run->loop.options.station_count > 1; }

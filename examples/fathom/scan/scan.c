@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "models/models.h"
 #include "scan/scan_listen.h"
 #include "scan/scan_options.h"
 #include "scan/scan_progress.h"
@@ -43,8 +44,7 @@ static void tell_found(void *ctx, const scan_finding_t *finding)
         scan_print_json(stdout, finding, options->port);
     else
         scan_print_text(stdout, finding, options->port);
-    /* Readers of a pipe see each line at once. */
-    if (fflush(stdout) != 0 || ferror(stdout)) scan->output_error = errno != 0 ? errno : EIO;
+    scan->output_error = output_flush();
     scan_print_advice(stderr, finding);
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
@@ -147,11 +147,12 @@ static fathom_status_t scan_line(scan_t *scan)
 static void conclude_unasked(scan_t *scan)
 {
     const scan_finding_t *const finding = &scan->unasked.finding;
+    const char *const again = finding->mode == SCAN_AUTO ? model_of(finding->model)->automatic_again : NULL;
     if (scan->awakened == 0) tell_found(scan, finding);
     if (scan->options.wake && scan->awakened != 0 && finding->mode == SCAN_AUTO)
         (void)fprintf(stderr,
                       "fathom: it sent by itself until it was asked, and sends again after power-off%s\n",
-                      finding->model == FATHOM_A16 ? ", or when 1 is written to its register 0x0202" : "");
+                      again != NULL ? again : "");
     else if (!scan->options.wake && finding->kind == SCAN_MASTER)
         (void)fputs(
             "fathom: nothing was sent, because another master asks on this line; disconnect it or stop "

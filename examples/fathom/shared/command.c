@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "shared/command.h"
 
+#include <errno.h>
 #include <stdarg.h>
 
 int usage_error(const char *command, const char *format, ...)
@@ -19,4 +20,10 @@ int command_help(const command_t *command)
 {
     command->help(stdout);
     return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}
+
+int output_flush(void)
+{
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) return 0;
+    return errno != 0 ? errno : EIO;
 }

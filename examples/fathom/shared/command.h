@@ -25,6 +25,10 @@ enum {
 /* Prints its help on stdout; returns the exit status. */
 int command_help(const command_t *command);
 
+/* Hands over what was printed, so that the reader of a pipe sees each line at once. errno is to be 0 before the
+ * printing. Returns 0, or errno of what has failed since then. */
+int output_flush(void);
+
 /* Says on stderr, in one line, what is wrong with the command line and where help is. command: "" before one
  * is known. Returns STATUS_USAGE. */
 int usage_error(const char *command, const char *format, ...);

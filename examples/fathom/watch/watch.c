@@ -114,7 +114,7 @@ static void print_line(watch_t *watch, uint64_t now_us)
         if (lane->lost != 0) (void)printf(" lost %" PRIu64 " of %" PRIu64, lane->lost, lane->outcomes);
     }
     (void)puts("");
-    if (fflush(stdout) != 0 || ferror(stdout)) watch->output_error = errno != 0 ? errno : EIO;
+    watch->output_error = output_flush();
 }
 
 static uint32_t tick(void *ctx)

@@ -97,6 +97,7 @@ const model_t model_a16 = {
     .modes = {{"auto", false, read_auto, simulate_auto},
               {"modbus", true, read_modbus, simulate_modbus},
               {"controlled", false, read_controlled, simulate_controlled}},
+    .automatic_again = ", or when 1 is written to its register 0x0202",
     .settings = a16_settings,
     .max_address = DYP_MAX_ADDRESS,
     .is_dyp = true,
