@@ -66,20 +66,20 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
 
     const fathom_a16_modbus_config_t a16 = {
         .modbus.transport = &bus->modbus,
-        .modbus.settings = &ultrasonic,
+        .modbus.line_settings = &ultrasonic,
         .modbus.address = 1,
         .value = FATHOM_REAL_TIME,
     };
     const fathom_a05_modbus_config_t a05 = {
         .modbus.transport = &bus->modbus,
-        .modbus.settings = &ultrasonic,
+        .modbus.line_settings = &ultrasonic,
         .modbus.address = 2,
         /* When it is silent, it is asked every two seconds; the default is 16 time-outs, 9.6 s. */
         .modbus.backoff_us = 2000000,
     };
     const fathom_hps167s_config_t hps = {
         .modbus.transport = &bus->modbus,
-        .modbus.settings = &infrared,
+        .modbus.line_settings = &infrared,
         .modbus.address = 7,
     };
     if (fathom_a16_modbus_init(&bus->a16, &a16) != FATHOM_READY ||
@@ -136,9 +136,10 @@ static void read_bus(bus_t *bus, uint32_t until_us, fathom_idle_t idle, void *id
 static void tell(const bus_t *bus)
 {
     for (int i = 0; i != SENSORS; i++)
-        (void)printf("%-8s answers %u, failures %u, silences in a row %u, left alone for %.1f s\n", names[i],
-                     fathom_modbus_unit_answers(bus->units[i]), fathom_modbus_unit_failures(bus->units[i]),
-                     bus->units[i]->silences, bus->units[i]->alone_us / 1000000.0);
+        (void)printf("%-8s responses %u, failures %u, silences in a row %u, left alone for %.1f s\n",
+                     names[i], fathom_modbus_unit_responses(bus->units[i]),
+                     fathom_modbus_unit_failures(bus->units[i]), bus->units[i]->timeouts_in_row,
+                     bus->units[i]->backoff_left_us / 1000000.0);
 }
 
 /* ---- where it runs ---- */

@@ -2,8 +2,8 @@
 #ifndef FATHOM_COMMON_H
 #define FATHOM_COMMON_H
 
+#include "fathom/engine/sensor.h"
 #include "fathom/hal.h"
-#include "fathom/sensor.h"
 
 /* What several sources need and no user does. Inline: each is less code than a call of it. */
 

@@ -4,9 +4,10 @@
 const char *fathom_status_name(fathom_status_t status)
 {
     /* From READY down. One array is less than a table of pointers, which would be 4 bytes a name. */
-    static const char names[] = "READY\0PENDING\0ARGUMENT\0PORT\0NO_ANSWER\0CHECKSUM\0EXCEPTION\0MALFORMED\0"
-                                "STALE\0CANCELLED\0BUSY\0CAPACITY\0ECHO\0UNSUPPORTED\0WARMING_UP\0"
-                                "UNCONFIRMED\0IN_USE\0DIFFERS";
+    static const char names[] =
+        "READY\0PENDING\0ARGUMENT\0PORT\0NO_RESPONSE\0CHECKSUM\0EXCEPTION\0MALFORMED\0"
+        "STALE\0CANCELLED\0BUSY\0CAPACITY\0ECHO\0UNSUPPORTED\0WARMING_UP\0"
+        "UNCONFIRMED\0IN_USE\0DIFFERS";
     const char *name = names;
     if (status > FATHOM_READY || status < FATHOM_ERR_DIFFERS) return "?";
     for (int left = FATHOM_READY - (int)status; left != 0; left--)

@@ -134,7 +134,7 @@ run_full() {
     unset FATHOM_LONG
     stage 2400 'mutants: all' mutants all --all --record
     stage 1800 'mutants: a sample of the ports' mutants ports --ports
-    stage 120 'soak: ten million exchanges' soak
+    stage 120 'soak: ten million transactions' soak
 }
 soak() {
     cmake --build build-gcc --target soak >"$logs/soak.txt" 2>&1

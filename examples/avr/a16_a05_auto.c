@@ -19,8 +19,8 @@
 #include <avr/pgmspace.h>
 
 #include "channel.h"
-#include "fathom/a05_auto.h"
-#include "fathom/a16_auto.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a16_auto.h"
 #include "fathom_avr.h"
 #include "text.h"
 

@@ -5,7 +5,7 @@
  *   A16 pin 3 (RX)   PB1, Arduino 9: the trigger. It takes 5 V
  *   A16 pin 4 (TX)   ICP1 = PB0, Arduino 8: the pulse, high for the time of flight. Its 3 V are a high level for an
  *                    ATmega at 5 V, which wants 0.6 VCC, by a hair: with other chips or long wires use a buffer
- *   PD1 (TXD)        text, 115200 8N1: "1234 mm", "nothing in range", "error -3: no answer"
+ *   PD1 (TXD)        text, 115200 8N1: "1234 mm", "nothing in range", "error -3: no response"
  *
  * The width is taken by Timer1's input capture, to half a microsecond whatever else runs: 0.09 mm.
  */
@@ -13,9 +13,9 @@
 #include <avr/io.h>
 #include <avr/pgmspace.h>
 
-#include "fathom/a16_pwm.h"
-#include "fathom/edges.h"
-#include "fathom/wait.h"
+#include "fathom/engine/edges.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a16_pwm.h"
 #include "fathom_avr.h"
 #include "text.h"
 

@@ -17,10 +17,10 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "fathom/debounce.h"
-#include "fathom/hps167s.h"
-#include "fathom/modbus_client.h"
-#include "fathom/wait.h"
+#include "fathom/engine/debounce.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/hps167s.h"
 #include "fathom_avr.h"
 
 #define BAUD 19200ul

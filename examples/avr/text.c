@@ -52,8 +52,8 @@ void text_error(text_t *text, fathom_status_t status)
     case FATHOM_ERR_PORT:
         text_say(text, PSTR(": port broken"));
         break;
-    case FATHOM_ERR_NO_ANSWER:
-        text_say(text, PSTR(": no answer"));
+    case FATHOM_ERR_NO_RESPONSE:
+        text_say(text, PSTR(": no response"));
         break;
     case FATHOM_ERR_MALFORMED:
         text_say(text, PSTR(": not plausible"));

@@ -24,7 +24,7 @@ void text_number(text_t *text, uint16_t number);
 
 /* "1234 mm", "nothing in range", "disturbed" or "sensor fault" */
 void text_sample(text_t *text, const fathom_sample_t *sample);
-/* "error -3: no answer" and so on */
+/* "error -3: no response" and so on */
 void text_error(text_t *text, fathom_status_t status);
 
 /* Hands it over, if the UART is not busy with the one before. True: it has been taken, and the text is empty. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
 #include "dma_uart.h"
-#include "fathom/a16_auto.h"
-#include "fathom/wait.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a16_auto.h"
 #include "fathom_rp2040.h"
 #include "report.h"
 #include "vectors.h"

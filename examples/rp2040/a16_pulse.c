@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
-#include "fathom/a16_pwm.h"
-#include "fathom/wait.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a16_pwm.h"
 #include "fathom_rp2040.h"
 #include "report.h"
 #include "rp2040.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
-#include "fathom/hps167s.h"
-#include "fathom/modbus_client.h"
-#include "fathom/wait.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/hps167s.h"
 #include "fathom_rp2040.h"
 #include "report.h"
 #include "vectors.h"

@@ -9,7 +9,7 @@
  * By semihosting, one line each:
  *   NAME probe 1 754 mm
  *   NAME probe 1 no target        (or: fault)
- *   NAME error NO_ANSWER          (fathom_status_name)
+ *   NAME error NO_RESPONSE          (fathom_status_name)
  */
 void tell_sample(const char *name, const fathom_sample_t *sample);
 void tell_error(const char *name, fathom_status_t status);

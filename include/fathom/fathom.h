@@ -8,36 +8,36 @@
  */
 
 /* A16, one ultrasonic probe */
-#include "fathom/a16_auto.h"       /* UART automatic, and RS232 until its first Modbus request */
-#include "fathom/a16_controlled.h" /* UART controlled: a frame for each trigger */
-#include "fathom/a16_modbus.h"     /* Modbus RTU on RS485 or RS232: distances */
-#include "fathom/a16_pwm.h"        /* PWM: the width of a pulse for each trigger */
-#include "fathom/a16_rs232.h"      /* RS232: from Modbus back to automatic output */
-#include "fathom/a16_settings.h"   /* Modbus RTU: all other registers */
-#include "fathom/a16_switch.h"     /* switch output */
+#include "fathom/sensor/a16_auto.h"       /* UART automatic, and RS232 until its first Modbus request */
+#include "fathom/sensor/a16_controlled.h" /* UART controlled: a frame for each trigger */
+#include "fathom/sensor/a16_modbus.h"     /* Modbus RTU on RS485 or RS232: distances */
+#include "fathom/sensor/a16_pwm.h"        /* PWM: the width of a pulse for each trigger */
+#include "fathom/sensor/a16_rs232.h"      /* RS232: from Modbus back to automatic output */
+#include "fathom/sensor/a16_settings.h"   /* Modbus RTU: all other registers */
+#include "fathom/sensor/a16_switch.h"     /* switch output */
 
 /* A05, four ultrasonic probes */
-#include "fathom/a05_auto.h"       /* UART automatic */
-#include "fathom/a05_dyp.h"        /* RS485 by 55 AA, the "DYP protocol" */
-#include "fathom/a05_modbus.h"     /* Modbus RTU on RS485 or UART; the address */
-#include "fathom/a05_relay.h"      /* relay output */
-#include "fathom/a05_relay_rule.h" /* the relay's rule over distances of any other mode */
+#include "fathom/sensor/a05_auto.h"       /* UART automatic */
+#include "fathom/sensor/a05_dyp.h"        /* RS485 by 55 AA, the "DYP protocol" */
+#include "fathom/sensor/a05_modbus.h"     /* Modbus RTU on RS485 or UART; the address */
+#include "fathom/sensor/a05_relay.h"      /* relay output */
+#include "fathom/sensor/a05_relay_rule.h" /* the relay's rule over distances of any other mode */
 
 /* HPS-167S, infrared time of flight, Modbus RTU on RS485 */
-#include "fathom/hps167s.h"           /* distances */
-#include "fathom/hps167s_auto.h"      /* frames that it sends without a request */
-#include "fathom/hps167s_info.h"      /* what it tells: commands #1 to #4 */
-#include "fathom/hps167s_registers.h" /* where each command is and what its figures mean: a codec */
-#include "fathom/hps167s_settings.h"  /* what can be set: commands #6 to #15 */
+#include "fathom/codec/hps167s_registers.h" /* where each command is and what its figures mean: a codec */
+#include "fathom/sensor/hps167s.h"          /* distances */
+#include "fathom/sensor/hps167s_auto.h"     /* frames that it sends without a request */
+#include "fathom/sensor/hps167s_info.h"     /* what it tells: commands #1 to #4 */
+#include "fathom/sensor/hps167s_settings.h" /* what can be set: commands #6 to #15 */
 
 /* What goes with them */
-#include "fathom/debounce.h"      /* a switch made of distances, by the A16's rule */
-#include "fathom/edges.h"         /* pulses by a pin interrupt, without capture hardware */
-#include "fathom/fair_share.h"    /* sensors of different speed on one line */
-#include "fathom/line_pins.h"     /* a line whose TX triggers or selects, or whose RX is a switch */
-#include "fathom/modbus_client.h" /* the transport of the Modbus drivers over a line (line.h) */
-#include "fathom/sensor.h"        /* fathom_poll, for all of them */
-#include "fathom/version.h"       /* which Fathom this is */
-#include "fathom/wait.h"          /* fathom_wait, which blocks */
+#include "fathom/engine/debounce.h"      /* a switch made of distances, by the A16's rule */
+#include "fathom/engine/edges.h"         /* pulses by a pin interrupt, without capture hardware */
+#include "fathom/engine/fair_share.h"    /* sensors of different speed on one line */
+#include "fathom/engine/line_pins.h"     /* a line whose TX triggers or selects, or whose RX is a switch */
+#include "fathom/engine/modbus_client.h" /* the transport of the Modbus drivers over a line (line.h) */
+#include "fathom/engine/sensor.h"        /* fathom_poll, for all of them */
+#include "fathom/engine/wait.h"          /* fathom_wait, which blocks */
+#include "fathom/version.h"              /* which Fathom this is */
 
 #endif

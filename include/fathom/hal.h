@@ -57,7 +57,7 @@ typedef struct {
  *        drops a frame with a silence of 1.5 characters in it (HPS-167S 2.2.3). The port may not keep the
  *        pointer. On RS-485 the port drives the transceiver.
  * sent   True when the last stop bit of all that was written has left the pin. May turn true late (a USB
- *        adapter cannot know better): bytes that were read before it counts still count as an answer.
+ *        adapter cannot know better): bytes that were read before it counts still count as a response.
  * leaves_in_us  In how many microseconds from now, at most, the last stop bit of all that was written will have left
  *        the pin: by the bytes that are left, their settings and the clock; less than 2^31. fathom_line_due_us is that
  *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is asked then.
@@ -137,7 +137,7 @@ static inline uint32_t fathom_elapsed_us(uint32_t now_us, uint32_t since_us)
 }
 
 /* Moves a count-down on by `by_us`; it stops at 0. True when it stands at 0. */
-static inline bool fathom_run_down(uint32_t *left_us, uint32_t by_us)
+static inline bool fathom_count_down(uint32_t *left_us, uint32_t by_us)
 {
     *left_us = *left_us > by_us ? (uint32_t)(*left_us - by_us) : 0;
     return *left_us == 0;

@@ -27,16 +27,16 @@ typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model
  * for the others.
  */
 typedef struct {
-    uint32_t time_us;     /* the HAL's clock when the last byte of the answer came; wraps */
+    uint32_t time_us;     /* the HAL's clock when the last byte of the response came; wraps */
     uint32_t magnitude;   /* strength of the reflected light * 10000: 7231744 is 723.1744 (HPS-167S #5) */
     uint32_t raw;         /* what the device sent, whatever it means: 16 bits, the width of a pulse in us, the
                              level of a switch */
-    uint16_t sequence;    /* of the answer; wraps; the probes of one A05 answer share it */
+    uint16_t sequence;    /* of the response; wraps; the probes of one A05 response share it */
     uint16_t distance_mm; /* 0 unless kind is FATHOM_TARGET */
     uint16_t precision;   /* the device's accuracy figure: the smaller the better, no unit (HPS-167S #5) */
     uint8_t kind;         /* fathom_sample_kind_t */
     uint8_t model;        /* fathom_model_t */
-    uint8_t unit;         /* Modbus address; 0 from a sensor that sends by itself */
+    uint8_t address;      /* Modbus address; 0 from a sensor that sends by itself */
     uint8_t probe;        /* 1..4; 1 where there is one */
     uint8_t ambient;      /* infrared light of the surroundings, relative (HPS-167S #5) */
     bool interference;    /* with FATHOM_NO_TARGET: another unit of the same frequency disturbs */

@@ -17,18 +17,18 @@ typedef enum {
     FATHOM_READY = 1,   /* finished; the outputs are new */
     FATHOM_PENDING = 0, /* not finished: nothing was written, call again */
 
-    FATHOM_ERR_ARGUMENT = -1,  /* the caller's values are outside what the function's comment allows */
-    FATHOM_ERR_PORT = -2,      /* the HAL said that the port is broken, tore a write, or cannot send */
-    FATHOM_ERR_NO_ANSWER = -3, /* asked, and nothing that could be an answer came in time */
-    FATHOM_ERR_CHECKSUM = -4,  /* an answer began and its CRC was wrong, or it broke off */
-    FATHOM_ERR_EXCEPTION = -5, /* the device answered with a Modbus exception; its number is beside it */
-    FATHOM_ERR_MALFORMED = -6, /* an answer with a right checksum that does not fit the question, or a
+    FATHOM_ERR_ARGUMENT = -1,    /* the caller's values are outside what the function's comment allows */
+    FATHOM_ERR_PORT = -2,        /* the HAL said that the port is broken, tore a write, or cannot send */
+    FATHOM_ERR_NO_RESPONSE = -3, /* asked, and nothing that could be a response came in time */
+    FATHOM_ERR_CHECKSUM = -4,    /* a response began and its CRC was wrong, or it broke off */
+    FATHOM_ERR_EXCEPTION = -5,   /* the device answered with a Modbus exception; its number is beside it */
+    FATHOM_ERR_MALFORMED = -6,   /* a response with a right checksum that does not fit the request, or a
                                   value that this device cannot mean */
-    FATHOM_ERR_STALE = -7,     /* a sensor that sends by itself has sent nothing good for too long */
-    FATHOM_ERR_CANCELLED = -8, /* ended by cancel */
-    FATHOM_ERR_BUSY = -9,      /* this object is already at work; try again when it has finished */
-    FATHOM_ERR_CAPACITY = -10, /* the memory that the caller gave is too small for this request */
-    FATHOM_ERR_ECHO = -11,     /* a write: all that came equals the request, so it may be the device's answer
+    FATHOM_ERR_STALE = -7,       /* a sensor that sends by itself has sent nothing good for too long */
+    FATHOM_ERR_CANCELLED = -8,   /* ended by cancel */
+    FATHOM_ERR_BUSY = -9,        /* this object is already at work; try again when it has finished */
+    FATHOM_ERR_CAPACITY = -10,   /* the memory that the caller gave is too small for this request */
+    FATHOM_ERR_ECHO = -11, /* a write: all that came equals the request, so it may be the device's response
                                   or the line's own echo, and which is not known yet (line.h) */
     FATHOM_ERR_UNSUPPORTED = -12, /* the port, or what carries the request, cannot do this */
     FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (the driver was told of it) */
@@ -38,7 +38,7 @@ typedef enum {
 } fathom_status_t;
 
 /*
- * Its name as it stands above, without FATHOM_ and ERR_: "READY", "NO_ANSWER"; "?" for any other number. For messages
+ * Its name as it stands above, without FATHOM_ and ERR_: "READY", "NO_RESPONSE"; "?" for any other number. For messages
  * and logs; it is never NULL and lies in the program's constants.
  *
  * 202 bytes of flash on a Cortex-M0+. On an AVR constants lie in RAM: 154 bytes of it; print the number there.

@@ -18,7 +18,7 @@
  * those for interrupts say so. Objects are the caller's, may be global, do nothing before begin(), and may not be
  * moved or copied afterwards.
  *
- * What is compiled in: src/crc16_small.c, the CRC with 16 entries. An AVR keeps const tables in RAM, where 256 entries
+ * What is compiled in: src/codec/crc16_small.c, the CRC with 16 entries. An AVR keeps const tables in RAM, where 256 entries
  * take 512 bytes of 2048; 16 take 32. It takes more time a byte, which none of these baud rates shows.
  */
 namespace fathom

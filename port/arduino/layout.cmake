@@ -22,17 +22,15 @@ if(NOT said STREQUAL "version=${version}")
     message(FATAL_ERROR "library.properties says ${said}, include/fathom/version.h says ${version}")
 endif()
 
-file(GLOB core ${root}/src/*.c ${root}/src/*.h)
-list(REMOVE_ITEM core ${root}/src/crc16.c)
-file(GLOB headers ${root}/include/fathom/*.h)
 file(GLOB sketches ${root}/examples/arduino/*)
 
 file(REMOVE_RECURSE ${TO})
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/library.properties ${root}/LICENSE DESTINATION ${TO})
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino.h ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino.cpp
     DESTINATION ${TO}/src)
-file(COPY ${headers} DESTINATION ${TO}/src/fathom)
-file(COPY ${core} DESTINATION ${TO}/src/core)
+file(COPY ${root}/include/fathom DESTINATION ${TO}/src FILES_MATCHING PATTERN *.h)
+file(COPY ${root}/src/ DESTINATION ${TO}/src/core FILES_MATCHING PATTERN *.c PATTERN *.h)
+file(REMOVE ${TO}/src/core/codec/crc16.c)
 file(COPY ${sketches} DESTINATION ${TO}/examples)
 get_filename_component(parent ${TO} DIRECTORY)
 execute_process(COMMAND ${CMAKE_COMMAND} -E tar cf Fathom.zip --format=zip Fathom

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/crc16.h"
+#include "fathom/codec/crc16.h"
 
 #include <avr/pgmspace.h>
 

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 #include "fathom/hal.h"
 
 #ifdef __cplusplus
@@ -22,7 +22,7 @@ extern "C" {
  *   int0.c    INT0 (PD2)                                  edges with the time at which the interrupt ran
  *   idle.c    Timer1's compare match B                    sleep until bytes come or time is up
  *   pin.c                                                 triggers, selects, switch and relay contacts
- *   crc16.c                                               instead of src/crc16.c: without a table, 30 cycles a byte
+ *   crc16.c                                               instead of src/codec/crc16.c: without a table, 30 cycles a byte
  *   crc16_table.c                                         instead of that: 512 bytes of flash, 24 cycles a byte
  *
  * F_CPU is the chip's clock in Hz: 16000000 or 8000000, so that Timer1 divides it by 8 and counts 0.5 or 1 us. Of a

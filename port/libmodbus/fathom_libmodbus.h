@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/line.h"
-#include "fathom/modbus.h"
+#include "fathom/engine/line.h"
+#include "fathom/engine/modbus.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,7 +31,7 @@ extern "C" {
  *  - Units that modbus_set_slave refuses: submit returns FATHOM_ERR_UNSUPPORTED. These are 248..255 on RTU (so
  *    FATHOM_MODBUS_ANY_UNIT is among them) and 248..254 on TCP, where 255 is the server itself. Later versions take
  *    more of them if the program asks for it (modbus_enable_quirks), and then so does this.
- *  - Line settings of a request (fathom_exchange_t.settings): it ends with FATHOM_ERR_UNSUPPORTED, and nothing was
+ *  - Line settings of a request (fathom_transaction_t.settings): it ends with FATHOM_ERR_UNSUPPORTED, and nothing was
  *    sent. What modbus_new_rtu was given holds.
  *  - Listening to unsolicited frames: they are dropped and counted. Sensors that send by themselves, and the protocol
  *    55 AA, need fathom_posix.h.
@@ -50,13 +50,13 @@ extern "C" {
  * What it does, besides what line.h says, which holds here too (queue, time-outs, late and damaged responses, retries,
  * broadcasts, counters):
  *  - On TCP every request has a transaction identifier of its own, and only the response to the last request that
- *    was sent is taken. A response to an earlier one is dropped and counted (late_answers), whatever it contains. A
+ *    was sent is taken. A response to an earlier one is dropped and counted (late_responses), whatever it contains. A
  *    unit that did not respond in time gets no request until twice the time-out has passed, while others do; its
  *    response still counts if it comes in that time and no other unit got a request meanwhile.
  *  - On TCP a response is looked at when all of it is there (MSG_PEEK); until then it is left in the socket, whose
  *    SO_RCVLOWAT keeps poll(2) from seeing it so long.
  *  - On TCP a gateway's exceptions 0x0A (path unavailable) and 0x0B (target silent) are no response of the unit: the
- *    request ends with FATHOM_ERR_NO_ANSWER when its time-out is over. gateway_exception has the last one. Over RTU
+ *    request ends with FATHOM_ERR_NO_RESPONSE when its time-out is over. gateway_exception has the last one. Over RTU
  *    they are exceptions like any other.
  *  - On TCP a response from another unit than the request was for is not taken.
  *
@@ -91,7 +91,7 @@ typedef enum {
     FATHOM_LIBMODBUS_ERR_HUNG_UP = -2,       /* the server has closed it; the adapter has gone */
     FATHOM_LIBMODBUS_ERR_SYSTEM = -3,        /* what else the system said, such as ECONNRESET: system_error */
     FATHOM_LIBMODBUS_ERR_NONSENSE = -4,      /* TCP: no header of Modbus stood where one should */
-    FATHOM_LIBMODBUS_ERR_TORN = -5           /* the system took a part of a request only */
+    FATHOM_LIBMODBUS_ERR_TRUNCATED = -5      /* the system took a part of a request only */
 } fathom_libmodbus_error_t;
 
 /* All but the counters is the port's own. */
@@ -106,7 +106,7 @@ typedef struct {
     int system_error; /* errno, with FATHOM_LIBMODBUS_ERR_SYSTEM */
 
     /* Of TCP. Counters stop at 65535 and may be set to 0. */
-    uint16_t late_answers;        /* to another transaction than the last */
+    uint16_t late_responses;      /* to another transaction than the last */
     uint16_t gateway_refusals;    /* exceptions 0x0A and 0x0B */
     uint8_t gateway_exception;    /* the last of them; 0: none yet */
     uint16_t transaction;         /* of the request that was sent last */

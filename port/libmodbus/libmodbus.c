@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 #include "internal/libmodbus_port.h"
 
 enum {

@@ -48,7 +48,7 @@ int fathom_libmodbus_rtu_write(void *ctx, const uint8_t *bytes, size_t length)
         return n;
     }
     if (n < 0 && errno != EMBBADDATA) return fathom_libmodbus_failed(port);
-    return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_TORN);
+    return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_TRUNCATED);
 }
 
 bool fathom_libmodbus_rtu_sent(void *ctx)

@@ -4,8 +4,8 @@
 #include <string.h>
 #include <sys/socket.h>
 
-#include "fathom/crc16.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "internal/libmodbus_port.h"
 
 /*
@@ -92,11 +92,11 @@ static int take(fathom_libmodbus_t *port)
 }
 
 /* Is what was taken for the line? */
-static bool is_answer(fathom_libmodbus_t *port)
+static bool is_response(fathom_libmodbus_t *port)
 {
     const uint8_t *const adu = port->adu;
     if (word_at(adu + TRANSACTION) != port->transaction) {
-        count(&port->late_answers);
+        count(&port->late_responses);
         return false;
     }
     if (word_at(adu + LENGTH) == EXCEPTION_LENGTH && (adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) != 0 &&
@@ -116,7 +116,7 @@ int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom
         const int taken = left != 0 ? take(port) : 0;
         port->at = port->end;
         if (taken <= 0) return taken;
-        if (!is_answer(port)) continue;
+        if (!is_response(port)) continue;
         const uint16_t crc = fathom_crc16(port->adu + UNIT, (uint8_t)(port->end - UNIT));
         port->adu[port->end++] = (uint8_t)(crc & 0xFF);
         port->adu[port->end++] = (uint8_t)(crc >> 8);
@@ -143,7 +143,7 @@ int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length)
     memcpy(adu + UNIT, bytes, rest);
     const ssize_t n = send(fd, adu, (size_t)UNIT + rest, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (n < 0) return fathom_libmodbus_failed(port);
-    if (n != UNIT + rest) return out_of_step(port, FATHOM_LIBMODBUS_ERR_TORN);
+    if (n != UNIT + rest) return out_of_step(port, FATHOM_LIBMODBUS_ERR_TRUNCATED);
     port->transaction = transaction;
     fathom_libmodbus_works(port);
     return (int)length;

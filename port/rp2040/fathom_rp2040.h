@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 #include "fathom/hal.h"
 
 #ifdef __cplusplus
@@ -143,7 +143,7 @@ bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_ua
  *             the FIFO filled, if the request is longer than its 32 bytes. The driver is high from before that until
  *             BUSY has ended. PL011 has no interrupt for that end, so the alarm is set to when it is due and looks;
  *             if it is not over, it looks again a bit later. So the driver stays one bit longer at most, and what
- *             other interrupts take: no device here answers sooner than that.
+ *             other interrupts take: no device here responses sooner than that.
  * sent        is exact: BUSY.
  * leaves_in_us  is by the clock, and a bit too long at most.
  * set_line    within 2.5 %, from clk_peri / 1048560 to clk_peri / 16 baud. A byte that is coming in just then is

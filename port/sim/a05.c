@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
 #include "internal/switches.h"
 
 enum { PROBES = FATHOM_DYP_PROBES, FIRST_PROBE = 0x0106, FIRST_ALIAS = 0x0010, ADDRESS = 0x0200 };
@@ -66,7 +66,7 @@ static uint32_t command(fathom_sim_device_t *device, uint8_t address, uint8_t co
 {
     const fathom_sim_a05_t *const a05 = a05_of(device);
     const uint32_t spread_us = 10000;
-    switch (fathom_dyp_protocol_values(code)) {
+    switch (fathom_dyp_55aa_values(code)) {
     case PROBES:
         return fathom_sim_device_between_us(device, a05->all_us - spread_us, a05->all_us);
     case 1:
@@ -98,7 +98,7 @@ static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t n
     uint16_t values[PROBES];
     for (uint8_t i = 0; i < PROBES; i++)
         values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(i + 1), processed, now_us);
-    return fathom_dyp_frame_encode(bytes, values, PROBES);
+    return fathom_dyp_stream_encode(bytes, values, PROBES);
 }
 
 /* "The level of the RX input pin will be read and recorded within one second of power-on" (A05 1(1)): here at once. */

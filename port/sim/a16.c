@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "fathom/dyp_frame.h"
+#include "fathom/codec/dyp_stream.h"
 #include "internal/switches.h"
 
 enum { AUTOMATIC = 1, POSITIVE = 1, REAL_TIME = 1 }; /* values of 0x0202, 0x0205, 0x0207 */
@@ -152,7 +152,7 @@ static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t n
     const bool is_selected = a16->mode == FATHOM_SIM_A16_UART && device->rx_held != 0;
     const bool processed = a16->data_type != REAL_TIME && !is_selected;
     const uint16_t value = fathom_sim_device_ultrasonic(device, 1, processed, now_us);
-    return fathom_dyp_frame_encode(bytes, &value, 1);
+    return fathom_dyp_stream_encode(bytes, &value, 1);
 }
 
 /* ---- PWM and controlled: the pins ---- */
@@ -195,7 +195,7 @@ static void alarm(fathom_sim_device_t *device, uint32_t now_us)
     if (a16->mode != FATHOM_SIM_A16_PWM) {
         uint8_t bytes[FATHOM_DYP_MAX_LENGTH];
         const uint16_t value = fathom_sim_device_ultrasonic(device, 1, false, now_us);
-        fathom_sim_device_answer(device, bytes, fathom_dyp_frame_encode(bytes, &value, 1), now_us);
+        fathom_sim_device_response(device, bytes, fathom_dyp_stream_encode(bytes, &value, 1), now_us);
     } else if (!device->tx_high) {
         device->counters.answered++;
         fathom_sim_device_set_alarm(device, FATHOM_SIM_ALARM_PIN, now_us + width_us(a16, now_us));

@@ -7,7 +7,7 @@ enum {
     POWER = FATHOM_SIM_ALARM_POWER,
     START = FATHOM_SIM_ALARM_START,
     SILENCE = FATHOM_SIM_ALARM_SILENCE,
-    ANSWER = FATHOM_SIM_ALARM_ANSWER,
+    RESPONSE = FATHOM_SIM_ALARM_RESPONSE,
     AUTOMATIC = FATHOM_SIM_ALARM_AUTOMATIC,
     PIN = FATHOM_SIM_ALARM_PIN
 };
@@ -180,7 +180,7 @@ static void frame_ended(fathom_sim_device_t *device, uint32_t now_us)
     device->length = 0;
     device->is_invalid = false;
     if (is_invalid) {
-        device->counters.torn++;
+        device->counters.truncated++;
         return;
     }
     if (device->faults != NULL && device->faults->incoming != NULL)
@@ -198,7 +198,7 @@ void fathom_sim_device_reply(fathom_sim_device_t *device, const fathom_sim_proto
     device->protocol = protocol;
     device->busy = true;
     /* A time that is over by now, t3.5 after the request, means at once. */
-    fathom_sim_device_set_alarm(device, ANSWER, device->heard_us + delay_us);
+    fathom_sim_device_set_alarm(device, RESPONSE, device->heard_us + delay_us);
 }
 
 /* False: a hook kept the frame back. */
@@ -228,17 +228,17 @@ static bool rise(fathom_sim_device_t *device, uint32_t now_us)
     if (!device->tx_is_uart || device->tx_high || device->is_raised) return false;
     device->is_raised = true;
     send_break(device, now_us);
-    fathom_sim_device_set_alarm(device, ANSWER, now_us);
+    fathom_sim_device_set_alarm(device, RESPONSE, now_us);
     return true;
 }
 
-static void answer(fathom_sim_device_t *device, uint32_t now_us)
+static void response(fathom_sim_device_t *device, uint32_t now_us)
 {
     if (rise(device, now_us)) return;
     device->is_raised = false;
     uint8_t bytes[FATHOM_SIM_MAX_FRAME];
     fathom_sim_frame_t frame = {.bytes = bytes, .now_us = now_us, .protocol = device->protocol->id};
-    frame.length = device->protocol->answer(device, bytes, now_us);
+    frame.length = device->protocol->response(device, bytes, now_us);
     device->counters.answered++;
     device->busy = send(device, &device->reply_settings, &frame);
 }
@@ -267,13 +267,13 @@ static void automatic(fathom_sim_device_t *device, uint32_t was_due_us, uint32_t
 static void keep_silence(fathom_sim_device_t *device, uint32_t now_us)
 {
     const uint32_t silence_us = fathom_sim_silence_us(&device->sender.settings);
-    for (uint8_t i = ANSWER; i <= AUTOMATIC; i++)
+    for (uint8_t i = RESPONSE; i <= AUTOMATIC; i++)
         if (device->alarms[i].set && fathom_sim_until_us(device->alarms[i].at_us, now_us) < silence_us)
             device->alarms[i].at_us = now_us + silence_us;
 }
 
-void fathom_sim_device_answer(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
-                              uint32_t now_us)
+void fathom_sim_device_response(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
+                                uint32_t now_us)
 {
     uint8_t copy[FATHOM_SIM_MAX_FRAME]; /* a hook may alter it */
     memcpy(copy, bytes, length);
@@ -286,7 +286,7 @@ void fathom_sim_device_answer(fathom_sim_device_t *device, const uint8_t *bytes,
 void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
 {
     const bool idle = fathom_sim_sender_idle(&device->sender);
-    if (idle || device->sender.sent == device->own) device->busy = device->alarms[ANSWER].set;
+    if (idle || device->sender.sent == device->own) device->busy = device->alarms[RESPONSE].set;
     if (idle && device->model->strict_gap) keep_silence(device, now_us);
     const bool falls = !device->in_break && !device->tx_high && device->tx_is_uart;
     if (idle) device->in_break = false;
@@ -300,7 +300,7 @@ void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
 static bool held(const fathom_sim_device_t *device, uint8_t alarm)
 {
     if (alarm == SILENCE) return device->carriers != 0;
-    return (alarm == ANSWER || alarm == AUTOMATIC) && !fathom_sim_sender_idle(&device->sender);
+    return (alarm == RESPONSE || alarm == AUTOMATIC) && !fathom_sim_sender_idle(&device->sender);
 }
 
 uint32_t fathom_sim_device_due_us(const fathom_sim_device_t *device, uint32_t now_us)
@@ -322,7 +322,7 @@ void fathom_sim_device_act(fathom_sim_device_t *device, uint32_t now_us)
         alarm->set = false;
         if (i == POWER) fathom_sim_device_power_on(device, now_us);
         if (i == SILENCE) frame_ended(device, now_us);
-        if (i == ANSWER) answer(device, now_us);
+        if (i == RESPONSE) response(device, now_us);
         if (i == AUTOMATIC) automatic(device, alarm->at_us, now_us);
         if (i == PIN) device->model->alarm(device, now_us);
         return;

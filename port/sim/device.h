@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom/codec/modbus_rtu.h"
 #include "fathom/hal.h"
-#include "fathom/modbus_rtu.h"
 #include "wire.h"
 
 #ifdef __cplusplus
@@ -92,7 +92,7 @@ typedef struct {
     uint32_t unserved;
     uint32_t others;         /* frames with a right CRC or sum for another address */
     uint32_t crc_errors;     /* frames with a wrong CRC or sum, or shorter than any frame */
-    uint32_t torn;           /* frames dropped: a gap over t1.5 (HPS-167S 2.2.3), noise in them, too long */
+    uint32_t truncated;      /* frames dropped: a gap over t1.5 (HPS-167S 2.2.3), noise in them, too long */
     uint32_t unheard;        /* bytes that came while it was busy, sending or starting up */
     uint32_t wrong_settings; /* bytes at a rate or parity that it does not have */
     uint32_t automatic;      /* frames sent by itself */
@@ -112,7 +112,7 @@ enum {
     FATHOM_SIM_ALARM_REST,      /* set: the last measurement has been handed out, the next is under way */
     FATHOM_SIM_ALARM_LOST,      /* set: no data from the sensor inside, and not yet for long */
     FATHOM_SIM_ALARM_SILENCE,   /* t3.5 after the last byte: the request is whole */
-    FATHOM_SIM_ALARM_ANSWER,    /* the response is ready */
+    FATHOM_SIM_ALARM_RESPONSE,  /* the response is ready */
     FATHOM_SIM_ALARM_AUTOMATIC, /* the next automatic frame */
     FATHOM_SIM_ALARM_PIN,       /* the model's own: something is to happen at its pins */
     FATHOM_SIM_ALARMS
@@ -130,7 +130,7 @@ typedef struct {
     /* A whole frame was heard. False: it is none of this protocol, another one may look at it. */
     bool (*hear)(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us);
     /* The response to the last one is due: write it (up to FATHOM_SIM_MAX_FRAME bytes), return its length. */
-    uint8_t (*answer)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
+    uint8_t (*response)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
     /* The same without a request: all that it measures. */
     uint8_t (*unasked)(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us);
     uint8_t id; /* FATHOM_SIM_MODBUS and so on */
@@ -259,8 +259,8 @@ bool fathom_sim_device_level(const fathom_sim_device_t *device, uint32_t now_us)
 uint32_t fathom_sim_device_between_us(fathom_sim_device_t *device, uint32_t least_us, uint32_t most_us);
 
 /* What a trigger has started leaves now, as a response. */
-void fathom_sim_device_answer(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
-                              uint32_t now_us);
+void fathom_sim_device_response(fathom_sim_device_t *device, const uint8_t *bytes, uint8_t length,
+                                uint32_t now_us);
 
 /* What the protocols call: the response to the request is due so long after its end. */
 void fathom_sim_device_reply(fathom_sim_device_t *device, const fathom_sim_protocol_t *protocol,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "device.h"
 
-#include "fathom/dyp_protocol.h"
+#include "fathom/codec/dyp_55aa.h"
 
 enum { START_1 = 0x55, START_2 = 0xAA, ADDRESS = 2, COMMAND = 3 };
 
@@ -10,7 +10,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
 {
     (void)now_us;
     if (length < 2 || frame[0] != START_1 || frame[1] != START_2) return false;
-    if (length < FATHOM_DYP_REQUEST_LENGTH || !fathom_dyp_protocol_valid(frame, length)) {
+    if (length < FATHOM_DYP_REQUEST_LENGTH || !fathom_dyp_55aa_valid(frame, length)) {
         device->counters.crc_errors++;
         return true;
     }
@@ -40,15 +40,15 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
 static uint8_t measure(fathom_sim_device_t *device, uint8_t command, uint8_t *bytes, uint32_t now_us)
 {
     uint16_t values[4];
-    const uint8_t count = fathom_dyp_protocol_values(command);
+    const uint8_t count = fathom_dyp_55aa_values(command);
     const uint8_t first =
         command == FATHOM_DYP_ALL_PROBES ? 1 : (uint8_t)(command - FATHOM_DYP_FIRST_PROBE + 1);
     for (uint8_t i = 0; i < count; i++)
         values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(first + i), false, now_us);
-    return fathom_dyp_protocol_encode_answer(bytes, device->unit, command, values);
+    return fathom_dyp_55aa_encode_response(bytes, device->unit, command, values);
 }
 
-static uint8_t answer(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
+static uint8_t response(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
     return measure(device, device->command, bytes, now_us);
 }
@@ -58,4 +58,4 @@ static uint8_t unasked(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now
     return measure(device, FATHOM_DYP_ALL_PROBES, bytes, now_us);
 }
 
-const fathom_sim_protocol_t fathom_sim_dyp = {hear, answer, unasked, FATHOM_SIM_DYP};
+const fathom_sim_protocol_t fathom_sim_dyp = {hear, response, unasked, FATHOM_SIM_DYP};

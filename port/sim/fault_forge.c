@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "fathom/crc16.h"
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "internal/fault_parts.h"
 
 /*

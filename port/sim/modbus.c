@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "device.h"
 
-#include "fathom/crc16.h"
+#include "fathom/codec/crc16.h"
 
 enum { UNIT = 0, FUNCTION = 1, MIN_LENGTH = 4 };
 
@@ -69,7 +69,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
     return true;
 }
 
-static uint8_t answer(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
+static uint8_t response(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
     fathom_modbus_message_t *const message = &device->message;
     if (message->exception != 0)
@@ -90,4 +90,4 @@ static uint8_t unasked(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now
     return fathom_modbus_rtu_encode_response(&message, bytes);
 }
 
-const fathom_sim_protocol_t fathom_sim_modbus = {hear, answer, unasked, FATHOM_SIM_MODBUS};
+const fathom_sim_protocol_t fathom_sim_modbus = {hear, response, unasked, FATHOM_SIM_MODBUS};

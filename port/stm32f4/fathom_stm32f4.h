@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "../serial/fathom_serial.h"
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 #include "fathom/hal.h"
 
 #ifdef __cplusplus

@@ -19,9 +19,9 @@
  * is that of the timer's four bytes, and FIRST LAST are ranges of code that belong to the user and do not
  * count. All are numbers as nm prints them. Prints for the second transaction, and for the deepest of all:
  *
- *     transaction CYCLES      from filling in the request to the poll that has the answer; three polls
- *     idle CYCLES             a poll that waits for the answer
- *     answer CYCLES           the poll that gets it
+ *     transaction CYCLES      from filling in the request to the poll that has the response; three polls
+ *     idle CYCLES             a poll that waits for the response
+ *     response CYCLES           the poll that gets it
  *     stack BYTES             below the call of fathom_line_poll(), its return address included
  */
 enum { STATUS = 0x4B, DATA = 0x4A, RX_READY = 1, TX_BUSY = 2 }; /* GPIOR2 and GPIOR1 */
@@ -35,8 +35,8 @@ static struct {
 } user[RANGES];
 static int ranges;
 
-static uint8_t request[FRAME], answer[FRAME];
-static int asked, answer_length, answer_at;
+static uint8_t request[FRAME], response[FRAME];
+static int asked, response_length, response_at;
 static int polls; /* since the request left */
 static int transactions;
 
@@ -50,29 +50,29 @@ static uint16_t crc16(const uint8_t *bytes, int length)
     return crc;
 }
 
-/* What an ordinary device says; each seventh answer is damaged and each fifth is an exception, for the stack. */
-static void make_answer(void)
+/* What an ordinary device says; each seventh response is damaged and each fifth is an exception, for the stack. */
+static void make_response(void)
 {
-    memcpy(answer, request, 6);
-    answer_length = 6;
+    memcpy(response, request, 6);
+    response_length = 6;
     if (request[1] == 3) {
-        answer[2] = (uint8_t)(2 * request[5]);
-        answer_length = 3 + answer[2];
-        for (int i = 3; i < answer_length; i++) answer[i] = (uint8_t)(i * 29);
+        response[2] = (uint8_t)(2 * request[5]);
+        response_length = 3 + response[2];
+        for (int i = 3; i < response_length; i++) response[i] = (uint8_t)(i * 29);
     }
     if (transactions % 7 == 5) {
-        answer[1] |= 0x80;
-        answer[2] = 2;
-        answer_length = 3;
+        response[1] |= 0x80;
+        response[2] = 2;
+        response_length = 3;
     }
-    uint16_t crc = crc16(answer, answer_length);
+    uint16_t crc = crc16(response, response_length);
     if (transactions % 7 == 6) crc ^= 1;
-    answer[answer_length++] = (uint8_t)crc;
-    answer[answer_length++] = (uint8_t)(crc >> 8);
-    answer_at = 0;
+    response[response_length++] = (uint8_t)crc;
+    response[response_length++] = (uint8_t)(crc >> 8);
+    response_at = 0;
 }
 
-static bool device_has_byte(void) { return polls == 3 && answer_at < answer_length; }
+static bool device_has_byte(void) { return polls == 3 && response_at < response_length; }
 
 static uint8_t read_status(avr_t *a, avr_io_addr_t address, void *ctx)
 {
@@ -81,7 +81,7 @@ static uint8_t read_status(avr_t *a, avr_io_addr_t address, void *ctx)
 
 static uint8_t read_data(avr_t *a, avr_io_addr_t address, void *ctx)
 {
-    return device_has_byte() ? answer[answer_at++] : 0;
+    return device_has_byte() ? response[response_at++] : 0;
 }
 
 static void write_data(avr_t *a, avr_io_addr_t address, uint8_t byte, void *ctx)
@@ -89,7 +89,7 @@ static void write_data(avr_t *a, avr_io_addr_t address, uint8_t byte, void *ctx)
     if (polls != 0) asked = 0; /* the first of a frame */
     polls = 0;
     if (asked < FRAME) request[asked++] = byte;
-    make_answer();
+    make_response();
 }
 
 static void add_to_timer(uint32_t us)
@@ -174,7 +174,7 @@ int main(int argc, char **argv)
         if (polls == 3) {
             answered = poll;
             if (transactions == MEASURED)
-                printf("transaction %llu\nidle %llu\nanswer %llu\n", (unsigned long long)transaction,
+                printf("transaction %llu\nidle %llu\nresponse %llu\n", (unsigned long long)transaction,
                        (unsigned long long)idle, (unsigned long long)answered);
             transactions++;
         }

@@ -4,7 +4,7 @@
 /*
  * JOB_COUNTERS: the line counts what happens. JOB_ALL: and finds out whether it echoes, heeds what the port says of the
  * bytes, has a listener, changes the line settings, and may read unit 0. Without either it is told that there is no
- * echo; what the library always has are retries, broadcast, break, any unit, and the quarantine of late answers.
+ * echo; what the library always has are retries, broadcast, break, any unit, and the quarantine of late responses.
  */
 
 /* What the job needs of RAM; job.py asks the linker for the sizes of these by name. */
@@ -53,10 +53,10 @@ void job_begin(void)
     listener.receive = job_receive;
     listener.gap_us = 2005;
     fathom_line_listen(&line, &listener);
-    request.exchange.settings = &settings;
+    request.transaction.line_settings = &settings;
 #endif
-    request.exchange.timeout_us = 100000;
-    request.exchange.retries = 1;
+    request.transaction.timeout_us = 100000;
+    request.transaction.retries = 1;
 }
 
 static fathom_status_t job_run(void)
@@ -67,8 +67,8 @@ static fathom_status_t job_run(void)
     const fathom_status_t status = fathom_modbus_client_submit(&line, &request);
 #endif
     if (status != FATHOM_PENDING) return status;
-    while (request.exchange.status == FATHOM_PENDING) fathom_line_poll(&line);
-    return (fathom_status_t)request.exchange.status;
+    while (request.transaction.status == FATHOM_PENDING) fathom_line_poll(&line);
+    return (fathom_status_t)request.transaction.status;
 }
 
 fathom_status_t job_read(void)

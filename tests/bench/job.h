@@ -2,7 +2,7 @@
 #ifndef JOB_H
 #define JOB_H
 
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 
 /*
  * The job whose cost is measured: reading 4 registers, writing one and writing two, over a UART that is as

@@ -9,7 +9,7 @@ import os
 import re
 
 from stack import Image
-from tools import AVR, AVR_TIMER, INCLUDE, M0, ROOT, Failed, here, run, source
+from tools import AVR, AVR_TIMER, INCLUDE, LIBRARY, M0, Failed, here, run, source
 
 # What job.c is compiled with.
 JOBS = {'job': [], 'job_counters': ['-DJOB_COUNTERS'], 'job_all': ['-DJOB_COUNTERS', '-DJOB_ALL']}
@@ -24,7 +24,7 @@ COSTS = [
     ('avr_const', 'ATmega328P RAM for the const structs, apart', 'B'),
     ('avr_stack', 'ATmega328P stack below fathom_line_poll, seen', 'B'),
     ('avr_transaction', 'ATmega328P, a read of 4 registers, library only', 'cycles'),
-    ('avr_answer', 'ATmega328P, the poll that gets the response', 'cycles'),
+    ('avr_response', 'ATmega328P, the poll that gets the response', 'cycles'),
     ('avr_idle', 'ATmega328P, a poll that waits for it', 'cycles'),
     ('x86_transaction', 'x86-64 -O2, a read of 4 registers, library only', 'instr.'),
     ('x86_two_polls', 'the same, answered before the second poll', 'instr.'),
@@ -33,7 +33,7 @@ COSTS = [
 ROWS = {f'{job}.{name}': (what, unit) for job in JOBS for name, what, unit in COSTS}
 # What the user provides: for job_all also what the library writes to, but not the listener, which is the user's own.
 RAM = ('line', 'request', 'frame', 'counters', 'modbus')
-CORE = source(*sorted(name for name in os.listdir(os.path.join(ROOT, 'src'))
+CORE = source(*sorted(name for name in LIBRARY
                       if re.match(r'(line|modbus_client)\w*\.c$|modbus(_rtu)?\.c$', name)))
 JOB = here('job.c', 'job_main.c', 'mcu.c')
 GC = ['-ffunction-sections', '-Wl,--gc-sections']
@@ -82,7 +82,7 @@ def measure_avr(work, figures, functions):
             users += [f'{address:x}', f'{address + size - 1:x}']
         printed = run(simulator, elf, f'{table["fathom_line_poll"][0]:x}',
                       f'{table["fathom_modbus_read_holding_registers"][0]:x}', AVR_TIMER, *users)
-        for name, value in re.findall(r'^(transaction|idle|answer|stack) (\d+)$', printed, re.M):
+        for name, value in re.findall(r'^(transaction|idle|response|stack) (\d+)$', printed, re.M):
             figures[f'{job}.avr_{name}'] = int(value)
 
 

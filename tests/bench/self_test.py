@@ -116,14 +116,14 @@ def stack():
     assert depth('avr-', listing((0, 'f', ['rcall .+0 ; 0x2 <f+0x2>', 'pop r0', 'pop r0', 'ret']))) == 2 + 2
     # Indirect calls: to what the table says of what is linked, to the user, to nowhere that is known.
     there = ['push {r4, lr}', 'SOURCE:1', 'blx r3', 'pop {r4, pc}']
-    target = (0x40, 'poll', [os.path.join(ROOT, 'src', 'modbus.c') + ':16', *leaf[2]])
-    assert depth('arm-', listing((0, 'f', there), target), 'modbus->poll(modbus->ctx);') == 8 + 24
-    assert 'leads to none of' in depth('arm-', listing((0, 'f', there)), 'modbus->poll(modbus->ctx);')
+    target = (0x40, 'poll', [os.path.join(ROOT, 'src', 'engine', 'modbus.c') + ':16', *leaf[2]])
+    assert depth('arm-', listing((0, 'f', there), target), 'transport->poll(transport->ctx);') == 8 + 24
+    assert 'leads to none of' in depth('arm-', listing((0, 'f', there)), 'transport->poll(transport->ctx);')
     assert depth('arm-', listing((0, 'f', there)), 'uart->sent(uart->ctx);') == 8
     assert 'where does this' in depth('arm-', listing((0, 'f', there)), 'x->whatever(x);')
     assert depth('arm-', listing((0, 'f', there)), 'const uint32_t now = clock_us(line->clock);') == 8
     inside = ['push {r4, lr}', 'SOURCE:4', 'blx r3', 'pop {r4, pc}']
-    assert depth('arm-', listing((0, 'f', inside), target), 'int f(void)\n{\nint x;\n{\nmodbus->poll(0);\n}\n') == 8 + 24
+    assert depth('arm-', listing((0, 'f', inside), target), 'int f(void)\n{\nint x;\n{\ntransport->poll(0);\n}\n') == 8 + 24
     for decode, text in ((arm, ('sub', 'sp, r1')), (riscv, ('mv', 'sp,a0'))):
         try:
             decode(*text)

@@ -28,7 +28,7 @@ static void show(const char *name, mix_t mix, bool fair)
     for (int i = 0; i != MIX_SENSORS; i++) {
         if ((mix.absent >> i & 1) != 0) continue;
         (void)printf("%-38s %-11s %-9s %10.1f %9u %9.1f %9.0f ms\n", name, fair ? "fair share" : "first come",
-                     names[i], shares[i].answers / (double)SECONDS, (unsigned)shares[i].failures,
+                     names[i], shares[i].responses / (double)SECONDS, (unsigned)shares[i].failures,
                      shares[i].line_us / (SECONDS * 1e4), shares[i].longest_wait_us / 1e3);
     }
 }

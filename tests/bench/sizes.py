@@ -3,7 +3,7 @@
 
 Flash is text + data less that of an empty main: the library, what it needs of the compiler's, and the user's code.
 Of a codec: all its functions and what they stand on, and no user. RAM is what the user has to provide: driver, line,
-seam and frame, but not the constants, which on AVR stand in RAM too and are counted apart. Stack is the deepest of
+transport and frame, but not the constants, which on AVR stand in RAM too and are counted apart. Stack is the deepest of
 all calls of the library that the program makes, without the user's own functions and those of the HAL.
 """
 import os
@@ -12,9 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 from stack import Image
 from job import JOBS
-from tools import HERE, MACHINES, ROOT, Failed, here, run, source
+from tools import HERE, LIBRARY, MACHINES, Failed, here, run, source
 
-CODECS = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_frame', 'dyp_protocol', 'pulse_width', 'hps167s_registers']
+CODECS = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_stream', 'dyp_55aa', 'pulse_width', 'hps167s_registers']
 FOLDER = os.path.join(HERE, 'sizes')
 HEAD = 'flash', 'ram', 'const', 'stack'
 
@@ -41,8 +41,7 @@ class Builder:
         self.work = os.path.join(work, 'sizes_' + machine.name)
         os.mkdir(self.work)
         self.archive = os.path.join(self.work, 'libfathom.a')
-        self.sources = [*source(*sorted(name for name in os.listdir(os.path.join(ROOT, 'src'))
-                                        if name.endswith('.c') and not name.startswith('crc16'))), machine.crc]
+        self.sources = [*source(*sorted(name for name in LIBRARY if not name.startswith('crc16'))), machine.crc]
         self.programs = [os.path.join(FOLDER, name) for name in sorted(os.listdir(FOLDER))
                          if name.endswith('.c') and name != 'main.c'] + here('mcu.c')
 

@@ -6,20 +6,19 @@ own arithmetic, and calls, on AVR with the return address that they push. It is 
 table of a switch any instruction behind it may come next; and a call through a pointer leads wherever INDIRECT says,
 of what is linked. What it does not know makes it fail. Nothing of the user or the HAL is counted.
 """
-import glob
 import os
 import re
 
-from tools import ROOT, Failed, run
+from tools import LIBRARY, ROOT, Failed, run
 
 # Where the indirect calls of src/ lead, by the text of the call: file:function of the library.
 SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_modbus', 'hps167s', 'hps167s_auto')
 INDIRECT = {
-    'modbus->submit': ('modbus_client.c:seam_submit', 'dyp_client.c:seam_submit'),
-    'modbus->cancel': ('modbus.c:cancel',),
-    'modbus->cancel_unit': ('modbus.c:cancel_unit',),
-    'modbus->poll': ('modbus.c:poll',),
-    'modbus->due_us': ('modbus.c:due_us',),
+    'transport->submit': ('modbus_client.c:transport_submit', 'dyp_client.c:transport_submit'),
+    'transport->cancel': ('modbus.c:cancel',),
+    'transport->cancel_unit': ('modbus.c:cancel_unit',),
+    'transport->poll': ('modbus.c:poll',),
+    'transport->due_us': ('modbus.c:due_us',),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
 PERHAPS = {
@@ -31,10 +30,10 @@ PERHAPS = {
     'plain->due_us': ('line_request.c:due_us',),
     'protocol->encode': ('modbus_client.c:fathom_modbus_client_encode', 'dyp_client.c:encode'),
     'protocol->length': ('modbus_client.c:length', 'modbus_rtu.c:fathom_modbus_rtu_response_length',
-                         'dyp_protocol.c:fathom_dyp_protocol_length'),
+                         'dyp_55aa.c:fathom_dyp_55aa_length'),
     'protocol->check': ('crc16.c:fathom_crc16', 'crc16_small.c:fathom_crc16', 'dyp_client.c:check'),
     'protocol->is_request': ('modbus_client.c:fathom_modbus_client_is_request', 'dyp_client.c:is_request'),
-    'protocol->answer': ('modbus_client.c:fathom_modbus_client_answer', 'dyp_client.c:answer'),
+    'protocol->parse_response': ('modbus_client.c:fathom_modbus_client_parse_response', 'dyp_client.c:parse_response'),
     'kind->scan': ('line_response.c:fathom_line_scan_asking', 'line_listening.c:scan'),
     'kind->go_on': ('line_request.c:go_on', 'line_turns.c:go_on', 'line_listening.c:go_on'),
     'config->find_echo': ('line_find_echo.c:fathom_line_find_echo',),
@@ -229,7 +228,7 @@ class Image:
     def file(where):
         """Sources of the library by their name, all others by their path."""
         folder, name = os.path.split(os.path.normpath(where[0]))
-        return name if folder == os.path.join(ROOT, 'src') else os.path.relpath(where[0], ROOT)
+        return name if folder.startswith(os.path.join(ROOT, 'src')) else os.path.relpath(where[0], ROOT)
 
     def decode(self, address):
         op, args, size = self.instructions[address]
@@ -246,7 +245,7 @@ class Image:
         known = [call for call in CALL.findall(line) if call in INDIRECT or call in PERHAPS]
         if not known:  # avr-objdump 2.26 names the header of an inline function for the file around it
             name = self.names[self.owner[address]].split(':')[-1]
-            for other in glob.glob(os.path.join(ROOT, 'src', '*.c')):
+            for other in LIBRARY.values():
                 if defines(other, name) and CALL.search(statement(other, number)):
                     line = statement(other, number)
             known = [call for call in CALL.findall(line) if call in INDIRECT or call in PERHAPS]

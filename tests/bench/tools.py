@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What all measurements share: folders, compilers, and what the binutils say of a file."""
+import glob
 import os
 import shutil
 import subprocess
@@ -29,8 +30,13 @@ def here(*names):
     return [os.path.join(HERE, name) for name in names]
 
 
+# {name: path} of every source of the library.
+LIBRARY = {os.path.basename(path): path
+           for path in sorted(glob.glob(os.path.join(ROOT, 'src', '**', '*.c'), recursive=True))}
+
+
 def source(*names):
-    return [os.path.join(ROOT, 'src', name) for name in names]
+    return [LIBRARY[name] for name in names]
 
 
 class Machine:

@@ -117,7 +117,7 @@ FAULTS = [
     (PAGE, '| `a05_relay_rule` | `', '| `a05_relay_rule` | `line_pins.c ', 'the linker does not say'),
     (PAGE, '<!-- drivers: ', '<!-- driver: ', 'no table drivers'),
     # A driver that names more than it did: each program with it needs another file.
-    ('src/a05_relay.c', None, 'extern int fathom_line_poll(void *line);\nint new(void *line);\n'
+    ('src/sensor/a05_relay.c', None, 'extern int fathom_line_poll(void *line);\nint new(void *line);\n'
      'int new(void *line) { return fathom_line_poll(line); }\n', 'the linker says | `a05_relay`'),
 ]
 

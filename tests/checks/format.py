@@ -19,8 +19,8 @@ def check(root, only):
 
 
 FAULTS = [
-    ('src/line.c', None, 'int  fathom_x;\n', 'should be clang-formatted'),
-    ('include/fathom/line.h', '#include <stdint.h>', '#include   <stdint.h>', 'should be clang-formatted'),
+    ('src/engine/line.c', None, 'int  fathom_x;\n', 'should be clang-formatted'),
+    ('include/fathom/engine/line.h', '#include <stdint.h>', '#include   <stdint.h>', 'should be clang-formatted'),
 ]
 
 if __name__ == '__main__':

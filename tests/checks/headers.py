@@ -42,12 +42,12 @@ def check(root, only):
 
 
 FAULTS = [
-    ('include/fathom/stream.h', '#include "fathom/line.h"\n', '', 'not alone with gcc'),
-    ('include/fathom/stream.h', None, 'int new;\n', 'not alone with g++'),
-    ('include/fathom/stream.h', None, 'static inline int *f(void *p) { return p; }\n', 'not alone with clang++'),
-    ('include/fathom/stream.h', None, 'static inline int f() { return 1; }\n', 'not alone with clang-14'),
-    ('include/fathom/stream.h', None, 'enum { AGAIN };\n', 'not alone with gcc'),
-    ('include/fathom/stream.h', 'extern "C" {', '', 'without extern "C"'),
+    ('include/fathom/engine/stream.h', '#include "fathom/engine/line.h"\n', '', 'not alone with gcc'),
+    ('include/fathom/engine/stream.h', None, 'int new;\n', 'not alone with g++'),
+    ('include/fathom/engine/stream.h', None, 'static inline int *f(void *p) { return p; }\n', 'not alone with clang++'),
+    ('include/fathom/engine/stream.h', None, 'static inline int f() { return 1; }\n', 'not alone with clang-14'),
+    ('include/fathom/engine/stream.h', None, 'enum { AGAIN };\n', 'not alone with gcc'),
+    ('include/fathom/engine/stream.h', 'extern "C" {', '', 'without extern "C"'),
 ]
 
 if __name__ == '__main__':

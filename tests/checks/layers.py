@@ -1,116 +1,123 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The layers: arrows point down only. Also: a .c for every .h of the same name, and files of a size that one
-sitting reads."""
+"""The layers: the folder is the layer, and arrows point down only. Also: a .c beside every .h of the library, and files
+of a size that one sitting reads."""
 import os
 import re
 
 from common import files, main, read
 
-# From the bottom up. A header, and the source of its name, may include what stands in the layers below, and in
-# its own layer what stands before it. A new header is placed here.
-LAYERS = [
-    ('words', 'status hal version sample'),
-    ('codecs', 'crc16 modbus_rtu dyp_frame dyp_protocol pulse_width hps167s_registers'),
-    ('engines', 'line line_turns output trigger stream pulse edges debounce modbus modbus_client modbus_unit '
-                'modbus_setting fair_share '
-                'dyp_client'),
-    ('sensors', 'sensor wait contact line_pins dyp dyp_auto dyp_modbus a16_auto a16_controlled a16_modbus a16_pwm '
-                'a16_settings a16_rs232 a16_switch a05_auto a05_modbus a05_dyp a05_relay a05_relay_rule '
-                'hps167s hps167s_info hps167s_settings hps167s_auto'),
-    ('all', 'fathom'),
-]
-ORDER = [(name, layer) for layer, names in LAYERS for name in names.split()]
-RANK = {name: rank for rank, (name, _) in enumerate(ORDER)}
-STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
-HEADER_ONLY = {'status', 'hal', 'version', 'sample', 'fathom'}
-SOURCE_ONLY = {'crc16_small': 'crc16', 'status_name': 'status',
-               'line_request': 'line', 'line_listening': 'line', 'line_response': 'line', 'line_send': 'line', 'line_marks': 'line', 'line_find_echo': 'line',
-               'line_count': 'line', 'modbus_client_zero': 'modbus_client'}  # the other source for a header
-INSIDE = {'src/line_inside.h': {'line', 'line_listening', 'line_request', 'line_response', 'line_send', 'line_marks', 'line_find_echo', 'line_count',
-                            'line_turns'},  # what the sources of one header, or of one sensor, share
-          'src/modbus_client_inside.h': {'modbus_client', 'modbus_client_zero'},
-          'src/hps167s_inside.h': {'hps167s', 'hps167s_info', 'hps167s_settings', 'hps167s_auto'},
-          'src/common.h': {'line_inside'} | {name for layer, names in LAYERS if layer not in ('words', 'codecs')
-                                     for name in names.split()}}
+# From the bottom up, in include/fathom/ and in src/ alike. What stands in a folder may include what stands there and in
+# the folders before it; '' is the words that all share. fathom.h is above them all, and nothing includes it.
+LAYERS = ('', 'codec', 'engine', 'sensor')
+MAP = 'include/fathom/fathom.h'
+COMMON = 'src/common.h'  # what the sources of engine/ and sensor/ share
+# The same for the tool. Every other folder of it is a command, which may include these and itself.
+TOOL = ('shared', 'models', 'stations')
+TOOL_FOLDER = 'examples/fathom/'
+ANYWHERE = TOOL_FOLDER + 'commands.h'  # declares the commands
 
+STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
 MAX_LINES = 400
 LONGER = {}  # path: lines, with the reason beside it
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
 
-def check_includes(path, name, text):
-    for bracket, target in INCLUDE.findall(text):
+def room(path):
+    """The folder of a file of the library; None: it stands where none may."""
+    found = re.fullmatch(r'(?:include/fathom|src)/(?:(\w+)/)?\w+\.[ch]', path)
+    return None if found is None or (found[1] or '') not in LAYERS else found[1] or ''
+
+
+def includes(text):
+    return INCLUDE.findall(text)
+
+
+def check_library(path, text, headers):
+    here = room(path)
+    for bracket, target in includes(text):
         if bracket == '<':
             if target not in STANDARD:
                 yield f'{path}: includes <{target}>; only {", ".join(sorted(STANDARD))} are there everywhere'
             continue
-        if os.path.splitext(os.path.basename(path))[0] in INSIDE.get(f'src/{target}', ()):
+        private = os.path.normpath(os.path.join(os.path.dirname(path), target))
+        if path.startswith('src/') and (private.endswith('_internal.h') and room(private) == here
+                                        or private == COMMON and here != 'codec'):
             continue
-        if not target.startswith('fathom/') or target[7:-2] not in RANK:
+        public = 'include/' + target
+        if public not in headers:
             yield f'{path}: includes "{target}", which is no public header of the library'
-            continue
-        other = target[7:-2]
-        if RANK[other] > RANK[name]:
-            yield (f'{path}: an arrow that points up: {name} ({ORDER[RANK[name]][1]}) includes {other} '
-                   f'({ORDER[RANK[other]][1]})')
-        elif other == name and path.endswith('.h'):
+        elif public == path:
             yield f'{path}: includes itself'
+        elif path not in (MAP, COMMON) and (public == MAP or LAYERS.index(room(public)) > LAYERS.index(here)):
+            yield f'{path}: an arrow that points up, to {target}'
+
+
+def check_tool(path, text, tool):
+    folder, _, _ = path[len(TOOL_FOLDER):].rpartition('/')
+    folder = folder.split('/')[0]
+    for _, target in includes(text):
+        public = TOOL_FOLDER + target
+        if public not in tool or public == ANYWHERE or not folder:
+            continue
+        other = target.split('/')[0]
+        if other == folder or other in TOOL and (folder not in TOOL or TOOL.index(other) < TOOL.index(folder)):
+            continue
+        yield f'{path}: {folder}/ may not include {target}'
 
 
 def check(root, only):
     problems = []
-    headers = {os.path.basename(path)[:-2]: path for path in files(root, 'include', ends='.h')}
-    sources = {os.path.basename(path)[:-2]: path for path in files(root, 'src') if path not in INSIDE}
-    for name, path in headers.items():
-        if path != f'include/fathom/{name}.h':
-            problems.append(f'{path}: public headers stand in include/fathom/')
-        if name not in RANK:
-            problems.append(f'{path}: in no layer; place it in the table of tests/checks/layers.py')
-        if (name in sources) == (name in HEADER_ONLY):
-            problems.append(f'{path}: either src/{name}.c or a place in HEADER_ONLY')
-    for name, path in sources.items():
-        if path != f'src/{name}.c':
-            problems.append(f'{path}: src/ holds C files and nothing else')
-        elif name not in headers and name not in SOURCE_ONLY:
-            problems.append(f'{path}: there is no include/fathom/{name}.h')
-    for name in RANK:
-        if name not in headers:
-            problems.append(f'include/fathom/{name}.h: in the table of layers, but it does not exist')
-    for name, path in [*headers.items(), *sources.items()]:
+    headers, sources = files(root, 'include', ends='.h'), files(root, 'src')
+    for path in headers + sources:
+        if room(path) is None or path.endswith('.h') and path.startswith('src/') and \
+                path != COMMON and not path.endswith('_internal.h'):
+            problems.append(f'{path}: stands where no file of the library may')
+            continue
         text = read(root, path)
-        name = SOURCE_ONLY.get(name, name)
-        if name in RANK:
-            problems += check_includes(path, name, text)
-        lines = text.count('\n')
-        if path in sources.values() and name in headers and INCLUDE.findall(text)[:1] != [('"', f'fathom/{name}.h')]:
-            problems.append(f'{path}: its own header comes first, which proves that it is complete')
-        if lines > LONGER.get(path, MAX_LINES):
-            problems.append(f'{path}: {lines} lines, more than {MAX_LINES}: is there a second subject in it?')
+        problems += check_library(path, text, headers)
+        if text.count('\n') > LONGER.get(path, MAX_LINES):
+            problems.append(f'{path}: more than {MAX_LINES} lines: is there a second subject in it?')
+        if path.startswith('src/') and path.endswith('.c'):
+            # Further sources of X.h are X_SOMETHING.c.
+            names = [header for header in headers if header[15:-2] == path[4:-2] or path[4:-2].startswith(header[15:-2] + '_')]
+            if not names:
+                problems.append(f'{path}: there is no header of its name in {os.path.dirname("include/fathom/" + path[4:])}')
+            elif includes(text)[:1] != [('"', max(names, key=len)[8:])]:
+                problems.append(f'{path}: its own header comes first, which proves that it is complete')
+        elif path in headers and room(path) and f'src/{path[15:-2]}.c' not in sources:
+            problems.append(f'{path}: there is no src/{path[15:-2]}.c')
+    tool = files(root, 'examples/fathom')
+    for path in tool:
+        problems += check_tool(path, read(root, path), tool)
     return problems
 
 
+CRC, LINE, STREAM = 'codec/crc16', 'engine/line', 'engine/stream'
+OWN = f'#include "fathom/{LINE}.h"'
 FAULTS = [
-    ('include/fathom/crc16.h', '#include <stdint.h>', '#include <stdint.h>\n#include "fathom/line.h"',
-     'an arrow that points up'),
-    ('src/line.c', '#include "fathom/line.h"', '#include "fathom/line.h"\n#include "fathom/a16_modbus.h"',
-     'an arrow that points up'),
-    ('src/crc16_small.c', '#include "fathom/crc16.h"', '#include "fathom/crc16.h"\n#include "fathom/line.h"',
-     'an arrow that points up'),
-    ('src/line.c', None, '#include "fathom_posix.h"\n', 'no public header'),
-    ('src/line.c', None, '#include "../port/posix/fathom_posix.h"\n', 'no public header'),
-    ('src/line.c', None, '# include <string.h>\n', 'only stdbool.h'),
-    ('include/fathom/line.h', None, '#include <avr/io.h>\n', 'only stdbool.h'),
-    ('include/fathom/lidar.h', None, '/* new */\n', 'in no layer'),
-    ('include/fathom/lidar.h', None, '/* new */\n', 'either src/lidar.c'),
-    ('src/lidar.c', None, '/* new */\n', 'there is no include/fathom/lidar.h'),
-    ('src/stream.c', None, '#include "line_inside.h"\n', 'no public header'),
-    ('src/status.c', None, '#include "fathom/status.h"\n', 'HEADER_ONLY'),
-    ('src/private.h', None, '/* new */\n', 'C files and nothing else'),
-    ('include/secret.h', None, '/* new */\n', 'stand in include/fathom'),
-    ('src/line.c', '#include "fathom/line.h"', '#include "fathom/status.h"', 'its own header comes first'),
-    ('src/stream.c', None, '\n' * MAX_LINES, 'lines, more than'),
+    (f'include/fathom/{CRC}.h', '#include <stdint.h>', f'#include <stdint.h>\n{OWN}', 'an arrow that points up'),
+    (f'src/{LINE}.c', OWN, f'{OWN}\n#include "fathom/sensor/a16_modbus.h"', 'an arrow that points up'),
+    (f'src/{CRC}_small.c', None, f'{OWN}\n', 'an arrow that points up'),
+    ('include/fathom/status.h', None, f'{OWN}\n', 'an arrow that points up'),
+    (f'include/fathom/{LINE}.h', None, '#include "fathom/fathom.h"\n', 'an arrow that points up'),
+    (f'include/fathom/{LINE}.h', None, f'{OWN}\n', 'includes itself'),
+    (f'src/{LINE}.c', None, '#include "fathom_posix.h"\n', 'no public header'),
+    (f'src/{LINE}.c', None, '#include "../../port/posix/fathom_posix.h"\n', 'no public header'),
+    (f'src/{CRC}.c', None, '#include "../common.h"\n', 'no public header'),
+    ('src/sensor/a16_pwm.c', None, '#include "../engine/line_internal.h"\n', 'no public header'),
+    (f'src/{LINE}.c', None, '# include <string.h>\n', 'only stdbool.h'),
+    (f'include/fathom/{LINE}.h', None, '#include <avr/io.h>\n', 'only stdbool.h'),
+    ('include/fathom/sensor/lidar.h', None, '/* new */\n', 'there is no src/sensor/lidar.c'),
+    ('src/sensor/lidar.c', None, '/* new */\n', 'there is no header of its name'),
+    ('src/engine/private.h', None, '/* new */\n', 'stands where no file'),
+    ('include/secret.h', None, '/* new */\n', 'stands where no file'),
+    ('src/other/lidar.c', None, '/* new */\n', 'stands where no file'),
+    (f'src/{LINE}.c', OWN, '#include "fathom/status.h"', 'its own header comes first'),
+    (f'src/{STREAM}.c', None, '\n' * MAX_LINES, 'more than'),
+    ('examples/fathom/shared/options.c', None, '#include "models/models.h"\n', 'shared/ may not include'),
+    ('examples/fathom/read/read.c', None, '#include "scan/scan_ask.h"\n', 'read/ may not include'),
 ]
 
 if __name__ == '__main__':

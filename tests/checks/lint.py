@@ -42,7 +42,7 @@ def check(root, only):
     return problems if good else [*problems, f'cppcheck: {said}']
 
 
-LINE = 'src/line.c'
+LINE = 'src/engine/line.c'
 FAULTS = [
     (LINE, None, 'int fathom_x(const int *p);\nint fathom_x(const int *p) { return p == NULL ? *p : 1; }\n',
      'Dereference of null pointer'),

@@ -31,9 +31,9 @@ TARGETS = [
 ]
 # An AVR keeps const data in RAM: so many bytes, no more and no less. The CRC's, which is why an AVR has one of its own;
 # the functions of a line and of a protocol; what a switch becomes; and the names of statuses.
-AVR_CONST = {'src/crc16.c': 512, 'src/crc16_small.c': 32, 'src/line_request.c': 10, 'src/line_listening.c': 10,
-             'src/modbus_client.c': 12, 'src/modbus_client_zero.c': 12, 'src/dyp_client.c': 12,
-             'src/status_name.c': 154}
+AVR_CONST = {'src/codec/crc16.c': 512, 'src/codec/crc16_small.c': 32, 'src/engine/line_request.c': 10,
+             'src/engine/line_listening.c': 10, 'src/engine/modbus_client.c': 12, 'src/engine/modbus_client_zero.c': 12,
+             'src/engine/dyp_client.c': 12, 'src/status_name.c': 156}
 AVR_ONLY = ['port/avr/crc16.c', 'port/avr/crc16_table.c']
 
 
@@ -120,7 +120,7 @@ def check(root, only):
     return problems + recursion(graphs)
 
 
-LINE = 'src/line.c'
+LINE = 'src/engine/line.c'
 FAULTS = [
     (LINE, None, 'int fathom_x = 1;\n', 'bytes of .data on host'),
     (LINE, None, 'int fathom_x(void);\nint fathom_x(void) { static int n; return ++n; }\n', 'bytes of .bss on Cortex-M0+'),

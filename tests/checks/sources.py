@@ -54,7 +54,7 @@ def check(root, only):
     return problems
 
 
-LINE_C, LINE_H = 'src/line.c', 'include/fathom/line.h'
+LINE_C, LINE_H = 'src/engine/line.c', 'include/fathom/engine/line.h'
 FAULTS = [
     (LINE_C, None, 'void *f(void) { return malloc(3); }\n', 'heap'),
     (LINE_C, None, 'void f(void) { printf("x"); }\n', 'stdio'),

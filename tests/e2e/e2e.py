@@ -198,11 +198,11 @@ class Device:
     def write(self, data):
         os.write(self.master, bytes(data))
 
-    def asked(self, request, answer=b''):
+    def asked(self, request, response=b''):
         """This request comes and is answered so."""
         got = self.read(len(request))
         assert got == request, f'{got.hex(" ")} came, not {request.hex(" ")}'
-        self.write(answer)
+        self.write(response)
 
     def hang_up(self):
         for name in ('master', 'slave'):
@@ -340,7 +340,7 @@ def adu(*data):
 
 
 def registers(unit, *values):
-    """The answer to a read."""
+    """The response to a read."""
     data = [unit, 3, 2 * len(values)]
     for value in values:
         data += divmod(value, 256)
@@ -355,7 +355,7 @@ def frame(*values):
     return bytes([*data, sum(data) & 0xFF])
 
 
-# Measurements: A16 6(4) example 1 and its answer of 754 mm; HPS-167S table 17 and table 18, 2083 mm.
+# Measurements: A16 6(4) example 1 and its response of 754 mm; HPS-167S table 17 and table 18, 2083 mm.
 ASK_A16, SAYS_754 = adu(1, 3, 1, 0, 0, 1), bytes.fromhex('01 03 02 02 F2 38 A1')
 ASK_HPS, SAYS_2083 = adu(1, 3, 0, 8, 0, 4), bytes.fromhex('01 03 08 08 23 DC B2 07 01 00 00 FD 41')
 

@@ -64,5 +64,5 @@ def adu(transaction, unit, *pdu):
 
 
 def registers(transaction, unit, *values):
-    """The answer to a read."""
+    """The response to a read."""
     return adu(transaction, unit, 3, 2 * len(values), *struct.pack(f'>{len(values)}H', *values))

@@ -16,11 +16,11 @@ TO_A05 = e2e.frame(1000, 2000, 1953, 3562)
 
 
 class Asked(e2e.Case):
-    def ask(self, *answers, sensor=A16, code=1):
+    def ask(self, *responses, sensor=A16, code=1):
         """One request is answered with each of these; then it ends."""
         request = e2e.ASK_HPS if sensor.startswith(HPS) else e2e.ASK_A16
         return self.ends(self.play(f'read {sensor} --timeout 400', request,
-                                   *([answer] for answer in answers)), code)
+                                   *([response] for response in responses)), code)
 
     def advised(self, done, attempt, *words, never='no such words'):
         lines = [line for line in done.err.splitlines() if line.startswith(f'fathom: attempt {attempt}: ')]
@@ -32,7 +32,7 @@ class Asked(e2e.Case):
 
     def test_on_a_good_line_no_advice_appears(self):
         done = self.ask(GOOD, GOOD, GOOD, code=0)
-        self.assertEqual(done.err, 'fathom: attempts 3, failed 0, readings 3\nfathom: line: answers 3\n')
+        self.assertEqual(done.err, 'fathom: attempts 3, failed 0, readings 3\nfathom: line: responses 3\n')
         for cause in CAUSES:
             self.assertNotIn(cause, done.err)
 
@@ -58,9 +58,9 @@ class Asked(e2e.Case):
             e2e.ASK_A16, ["only the tool's own request came back", 'wiring behind the adapter'],
             'nothing was heard', A16 + ' --echo off'),
         damaged_from_the_start_may_be_the_settings=(
-            DAMAGED, ['was damaged', '--parity', 'termination', 'no other unit'], 'other answers'))
-    def once(self, answer, words, never, sensor=A16):
-        self.advised(self.ask(answer, sensor=sensor), 1, *words, never=never)
+            DAMAGED, ['was damaged', '--parity', 'termination', 'no other unit'], 'other responses'))
+    def once(self, response, words, never, sensor=A16):
+        self.advised(self.ask(response, sensor=sensor), 1, *words, never=never)
 
     def test_only_the_own_request_is_an_echo_without_a_sensor(self):
         for sensor, request in ((A16, e2e.ASK_A16), (HPS, e2e.ASK_HPS)):
@@ -69,17 +69,17 @@ class Asked(e2e.Case):
                 self.advised(done, attempt, "only the tool's own request came back",
                              'wiring behind the adapter', 'supply', never='nothing was heard')
 
-    def test_an_echo_and_an_answer_are_a_reading_without_advice(self):
+    def test_an_echo_and_a_response_are_a_reading_without_advice(self):
         for echo in ('auto', 'on'):
             both = e2e.ASK_A16 + GOOD
             done = self.ask(both, both, sensor=f'{A16} --echo {echo}', code=0)
             self.assertEqual(done.out.count(' 754 mm'), 2)
-            self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 2\nfathom: line: answers 2\n')
+            self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 2\nfathom: line: responses 2\n')
 
-    def test_a_late_answer_names_a_time_out_that_is_long_enough(self):
+    def test_a_late_response_names_a_time_out_that_is_long_enough(self):
         device, reader = self.beside(f'read {A16} --count 2 --timeout 500')
         device.read(8)
-        reader.expect('attempt 1: no answer from address 1: nothing was heard at all', 'err')
+        reader.expect('attempt 1: no response from address 1: nothing was heard at all', 'err')
         device.write(GOOD)  # some 500 ms after the request: twice that, and more if this machine is slow
         device.read(8)
         done = self.ends(reader, 1, out='')
@@ -91,7 +91,7 @@ class Asked(e2e.Case):
 
     def test_damaged_now_and_then_is_the_line_and_not_the_settings(self):
         done = self.ask(GOOD, DAMAGED, GOOD)
-        self.advised(done, 2, 'was damaged', 'other answers were good', 'cable', 'termination', 'ground',
+        self.advised(done, 2, 'was damaged', 'other responses were good', 'cable', 'termination', 'ground',
                      '(1 of 2 attempts damaged)', never='--parity')
         self.assertEqual(done.out.count(' 754 mm'), 2)
 

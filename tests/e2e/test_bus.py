@@ -39,7 +39,7 @@ class Read(e2e.Case):
         self.assertEqual(done.err.splitlines(), [
             'fathom: attempts 12, failed 0, readings 24', 'fathom: a16:1: attempts 4, failed 0, readings 4',
             'fathom: a05:2: attempts 4, failed 0, readings 16',
-            'fathom: hps167s:7: attempts 4, failed 0, readings 4', 'fathom: line: answers 12'])
+            'fathom: hps167s:7: attempts 4, failed 0, readings 4', 'fathom: line: responses 12'])
 
     def test_each_line_of_text_names_sensor_and_address(self):
         lines = self.ends(f'read {BUS} --port {self.bus()} --count 1', 0).out.splitlines()
@@ -90,7 +90,7 @@ class Read(e2e.Case):
 class Dead(e2e.Case):
     """One of three does not answer."""
 
-    def answer(self, device, stop, requests):
+    def response(self, device, stop, requests):
         """As an A16 at address 1 and an A05 at 3 do; no unit is at address 2."""
         while not stop.is_set():
             if device.is_silent(0.02):
@@ -104,7 +104,7 @@ class Dead(e2e.Case):
         device = self.device()
         requests = []
         stop = threading.Event()
-        thread = threading.Thread(target=self.answer, args=(device, stop, requests))
+        thread = threading.Thread(target=self.response, args=(device, stop, requests))
         thread.start()
         try:
             done = self.run_fathom(f'read a16:1 a16:2 a05:3 --port {device} {options}')
@@ -117,9 +117,9 @@ class Dead(e2e.Case):
         done, requests = self.read('--duration 8 --timeout 500 --stats --format json')
         for line in done.err.splitlines():
             if 'attempt ' in line:
-                self.assertRegex(line, r'^fathom: a16:2: attempt \d+: no answer from address 2: ')
+                self.assertRegex(line, r'^fathom: a16:2: attempt \d+: no response from address 2: ')
         # The first attempt may come before any unit has answered.
-        self.ends(done, 1, 'nothing was heard of it, while others on this line answer; check its supply')
+        self.ends(done, 1, 'nothing was heard of it, while others on this line response; check its supply')
         stats, = done.told
         self.assertEqual([(one['sensor'], one['mode'], one['address']) for one in stats['units']],
                          [('a16', 'modbus', 1), ('a16', 'modbus', 2), ('a05', 'modbus', 3)])
@@ -130,16 +130,16 @@ class Dead(e2e.Case):
         self.assertIn(requests[2], (4, 5, 6))
         dead = units[2]
         self.assertEqual(dead['silences'], dead['failures'])
-        self.assertEqual((dead['answers'], dead['readings'], dead['answer_us']), (0, 0, None))
-        self.assertTrue(0 <= dead['alone_us'] <= 4000000)
+        self.assertEqual((dead['responses'], dead['readings'], dead['response_us']), (0, 0, None))
+        self.assertTrue(0 <= dead['backoff_left_us'] <= 4000000)
         for address in (1, 3):
             one = units[address]
-            self.assertEqual((one['silences'], one['alone_us'], one['failed']), (0, 0, 0))
-            self.assertGreater(one['answer_us']['min'], 0)
+            self.assertEqual((one['silences'], one['backoff_left_us'], one['failed']), (0, 0, 0))
+            self.assertGreater(one['response_us']['min'], 0)
         # 120 ms and 400 ms are their periods; of eight seconds the dead one took 3 s at most.
         self.assertGreaterEqual(requests[1], 10)
         self.assertGreaterEqual(requests[3], 6)
-        self.assertEqual(stats['unit'], {'answers': units[1]['answers'] + units[3]['answers'],
+        self.assertEqual(stats['unit'], {'responses': units[1]['responses'] + units[3]['responses'],
                                          'failures': dead['failures']})
         self.assertEqual(stats['attempts'], sum(one['attempts'] for one in stats['units']))
         self.assertEqual(stats['requests'], sum(requests.values()))
@@ -147,11 +147,11 @@ class Dead(e2e.Case):
     def test_text_tells_the_same_of_each(self):
         done, requests = self.read('--count 4 --timeout 400 --stats')
         self.assertEqual(requests, {1: 4, 2: 4, 3: 4})
-        self.assertRegex(done.err, r'(?m)^fathom: a16:1: attempts 4, failed 0, readings 4, answers 4, '
+        self.assertRegex(done.err, r'(?m)^fathom: a16:1: attempts 4, failed 0, readings 4, responses 4, '
                                    r'failures 0, '
                                    r'silences in a row 0, left alone for 0\.0 s, time to answer: shortest '
                                    r'[\d.]+ ms')
-        self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, answers 0, '
+        self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, responses 0, '
                                    r'failures 4, silences in a row 4, left alone for 0\.[78] s$')
         self.assertRegex(done.err, '(?m)^fathom: a05:3: attempts 4, failed 0, readings 16, ')
 
@@ -164,19 +164,19 @@ class Dead(e2e.Case):
     def test_the_only_one_on_a_line_is_asked_again_and_again(self):
         _, reader = self.beside('read a16:2 --timeout 60 --count 8 --stats --format json')
         one, = reader.finish().told[0]['units']
-        self.assertEqual((one['failed'], one['answers']), (8, 0))
-        self.assertLessEqual(one['alone_us'], 1)
+        self.assertEqual((one['failed'], one['responses']), (8, 0))
+        self.assertLessEqual(one['backoff_left_us'], 1)
 
-    def test_a_late_answer_explains_the_failure_of_its_unit_alone(self):
-        """Address 2 answers when its time is over, while address 3, where no unit is, is being asked."""
+    def test_a_late_response_explains_the_failure_of_its_unit_alone(self):
+        """Address 2 responses when its time is over, while address 3, where no unit is, is being asked."""
         device, reader = self.beside('read a16:2 a16:3 --timeout 400 --count 2')
         for _ in range(4):
             if device.read(8)[0] == 2:
                 reader.expect('a16:2: attempt', 'err')
                 device.write(e2e.registers(2, 754))
         err = reader.finish().err
-        self.assertIn('a16:2: attempt 2: no answer from address 2: it answers, but too late', err)
-        self.assertRegex(err, 'a16:3: attempt 2: no answer from address 3: (?!it answers)')
+        self.assertIn('a16:2: attempt 2: no response from address 2: it answers, but too late', err)
+        self.assertRegex(err, 'a16:3: attempt 2: no response from address 3: (?!it answers)')
         self.assertNotIn('address 2 that was heard', err)
 
 
@@ -235,15 +235,15 @@ class Example(e2e.Case):
             self.assertEqual(got, expected)
         # A third of 3 s, 18.5 ms from one request to the next.
         self.assertGreaterEqual(before.count('HPS-167S probe'), 45)
-        # 600 ms of time-out, once more until its late answer can no longer come; left alone after the third,
+        # 600 ms of time-out, once more until its late response can no longer come; left alone after the third,
         # for 0.6 s
-        failures = re.search(r'A05 +answers \d+, failures (\d+), silences in a row (\d+), left alone for '
+        failures = re.search(r'A05 +responses \d+, failures (\d+), silences in a row (\d+), left alone for '
                              r'([\d.]+) s', between)
         self.assertEqual(failures[1], failures[2])
         self.assertGreaterEqual(int(failures[1]), 3)
-        self.assertRegex(after, r'A05 +answers \d+, failures \d+, silences in a row 0, left alone for 0\.0 s')
-        self.assertRegex(after, r'A16 +answers \d+, failures 0, ')
-        self.assertRegex(after, r'HPS-167S answers \d+, failures 0, ')
+        self.assertRegex(after, r'A05 +responses \d+, failures \d+, silences in a row 0, left alone for 0\.0 s')
+        self.assertRegex(after, r'A16 +responses \d+, failures 0, ')
+        self.assertRegex(after, r'HPS-167S responses \d+, failures 0, ')
 
     def test_it_reads_a_port_too(self):
         done = self.run_example(self.sim(BUS, SEEN), 2)

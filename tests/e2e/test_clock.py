@@ -23,7 +23,7 @@ class Clock(e2e.Case):
                          for i in range(count - 1)]
 
     @e2e.each(frames_on_both_sides_of_the_wrap=('a16', 'auto', 15, '700000'),
-              answers_on_both_sides_of_the_wrap=('hps167s', 'modbus', 60, '300000'))
+              responses_on_both_sides_of_the_wrap=('hps167s', 'modbus', 60, '300000'))
     def steady(self, sensor, mode, count, wrap_in_us):
         objects, passed = self.read(sensor, mode, count, WRAP_IN_US=wrap_in_us)
         self.assertLess(objects[0]['time_us'], 10e6)

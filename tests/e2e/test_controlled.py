@@ -9,12 +9,12 @@ SENSOR = 'a16 --mode controlled'
 
 class Controlled(e2e.Case):
     def read(self, distance, count, options=''):
-        """The readings, and how long it took. On a busy machine the simulated answer may come later than 130
+        """The readings, and how long it took. On a busy machine the simulated response may come later than 130
         ms after the trigger, and is none then."""
         sim = self.sim(f'a16:1:controlled --distance {distance}')
         for _ in range(5):  # and not every time
             done = self.run_fathom(f'read {SENSOR} --port {sim} --count {count} --format json {options}')
-            failed = done.err.count('no answer to the trigger')
+            failed = done.err.count('no response to the trigger')
             self.assertEqual(len(done.json) + failed, count, done)
             self.assertEqual(done.code, 1 if failed else 0)
             if len(done.json) > count // 2:
@@ -31,18 +31,18 @@ class Controlled(e2e.Case):
     def test_nothing_in_range_is_a_reading(self):
         self.assertEqual({one['status'] for one in self.read('no-target', 5)[0]}, {'no_target'})
 
-    def test_without_an_answer_it_says_what_to_check(self):
+    def test_without_a_response_it_says_what_to_check(self):
         device, reader = self.beside(f'read {SENSOR} --count 2')
         done = self.ends(reader, 1, out='')
-        self.assertEqual(done.err.count('no answer to the trigger; check the supply'), 2, done.err)
+        self.assertEqual(done.err.count('no response to the trigger; check the supply'), 2, done.err)
         self.assertEqual(device.read(2), b'\0\0')
 
-    def test_an_answer_that_comes_at_once_is_none(self):
+    def test_a_response_that_comes_at_once_is_none(self):
         """The example of the datasheet (A16 3(5)), but not 90 to 110 ms after the trigger, unless this
         machine is that busy; and not every time."""
-        answer = [bytes.fromhex('FF 07 A1 A7')]
+        response = [bytes.fromhex('FF 07 A1 A7')]
         for _ in range(5):
-            done = self.play(f'read {SENSOR}', b'\0', answer, answer)
+            done = self.play(f'read {SENSOR}', b'\0', response, response)
             if not done.out:
                 break
         self.ends(done, 1, out='')

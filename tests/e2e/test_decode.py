@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """fathom decode: every frame of the datasheets, their misprints, what is no hex; what a request makes of its
-answer, the commands of the HPS-167S, and bytes that are damaged."""
+response, the commands of the HPS-167S, and bytes that are damaged."""
 import json
 import random
 import re
@@ -18,14 +18,14 @@ ADDRESSES = ['a16 set 0x0200 slave address', 'a05 set 0x0200 slave address']
 DETAILS, MEASURE, RESET = ('hps167s #3 sensor details', 'hps167s #5 single measurement',
                            'hps167s #6 factory reset of the interface')
 
-# Every frame that the datasheets print (misprints corrected), in their order, so that an answer follows its
+# Every frame that the datasheets print (misprints corrected), in their order, so that a response follows its
 # request: bytes, protocol, direction, what each sensor takes it for, fields of the last of these.
 FRAMES = [
-    ('FF 07 A1 A7', 'stream', 'answer', 'a16 automatic or controlled output', {'distance_mm': 1953}),
+    ('FF 07 A1 A7', 'stream', 'response', 'a16 automatic or controlled output', {'distance_mm': 1953}),
     ('01 03 01 00 00 01 85 F6', READ, 'request', FIRST, {}),
-    ('01 03 02 02 F2 38 A1', READ, 'answer', FIRST, {'distance_mm': 754}),
+    ('01 03 02 02 F2 38 A1', READ, 'response', FIRST, {'distance_mm': 754}),
     ('01 03 01 01 00 01 D4 36', READ, 'request', SECOND, {}),
-    ('01 03 02 02 EF F8 A8', READ, 'answer', SECOND, {'distance_mm': 751}),
+    ('01 03 02 02 EF F8 A8', READ, 'response', SECOND, {'distance_mm': 751}),
     ('01 06 02 00 00 05 48 71', WRITE, 'both', ADDRESSES, {'address': 5}),
     ('01 06 02 02 00 01 E8 72', WRITE, 'both', 'a16 set 0x0202 operating mode', {'mode': 'automatic'}),
     ('01 06 02 07 00 01 F8 73', WRITE, 'both', 'a16 set 0x0207 data type of the automatic output',
@@ -33,39 +33,39 @@ FRAMES = [
     ('01 06 02 05 00 00 98 73', WRITE, 'both', 'a16 set 0x0205 switch output polarity',
      {'polarity': 'negative'}),
     ('01 06 02 06 07 D0 6B DF', WRITE, 'both', 'a16 set 0x0206 switch threshold', {'threshold_mm': 2000}),
-    ('FF 03 E8 07 D0 07 A1 0D EA 60', 'stream', 'answer', 'a05 automatic output', FOUR),
+    ('FF 03 E8 07 D0 07 A1 0D EA 60', 'stream', 'response', 'a05 automatic output', FOUR),
     ('55 AA 01 01 01', 'dyp', 'request', 'a05 measure with all probes', {}),
-    ('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62', 'dyp', 'answer', 'a05 all probes have measured', FOUR),
+    ('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62', 'dyp', 'response', 'a05 all probes have measured', FOUR),
     ('55 AA 01 10 10', 'dyp', 'request', 'a05 measure with probe 1', {}),
-    ('55 AA 01 10 07 A1 B8', 'dyp', 'answer', 'a05 one probe has measured', {'probe_1_mm': 1953}),
+    ('55 AA 01 10 07 A1 B8', 'dyp', 'response', 'a05 one probe has measured', {'probe_1_mm': 1953}),
     ('55 AA 05 03 07', 'dyp', 'both', 'a05 set the address', {'new_address': 5}),
     ('01 03 01 06 00 01 65 F7', READ, 'request', 'a05 0x0106 distance of probe 1', {}),
-    ('01 03 02 01 3C B9 C5', READ, 'answer', 'a05 0x0106 distance of probe 1', {'probe_1_mm': 316}),
+    ('01 03 02 01 3C B9 C5', READ, 'response', 'a05 0x0106 distance of probe 1', {'probe_1_mm': 316}),
     ('01 03 01 07 00 01 34 37', READ, 'request', 'a05 0x0107 distance of probe 2', {}),
-    ('01 03 02 09 1B FE 1F', READ, 'answer', 'a05 0x0107 distance of probe 2', {'probe_2_mm': 2331}),
+    ('01 03 02 09 1B FE 1F', READ, 'response', 'a05 0x0107 distance of probe 2', {'probe_2_mm': 2331}),
     ('01 03 01 07 00 03 B5 F6', READ, 'request', 'a05 0x0107 distances of probes 2 to 4', {}),
-    ('01 03 06 00 FA 02 93 09 7A 8F 47', READ, 'answer', 'a05 0x0107 distances of probes 2 to 4',
+    ('01 03 06 00 FA 02 93 09 7A 8F 47', READ, 'response', 'a05 0x0107 distances of probes 2 to 4',
      {'probe_2_mm': 250, 'probe_3_mm': 659, 'probe_4_mm': 2426}),
     ('01 06 02 00 00 05 48 71', WRITE, 'both', ADDRESSES, {'address': 5}),
     ('01 03 00 01 00 03 54 0B', READ, 'request', 'hps167s #1 interface version', {}),
     ('01 03 00 02 00 04 E5 C9', READ, 'request', 'hps167s #2 interface configuration', {}),
     ('01 03 00 03 00 0B F4 0D', READ, 'request', DETAILS, {}),
-    ('01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC', READ, 'answer',
+    ('01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC', READ, 'response',
      DETAILS,
      {'ack': 'B0', 'uuid': '00390025423457142034383501060705', 'date': '2019-09-23', 'version': '3.9'}),
     ('01 03 00 04 00 01 C5 CB', READ, 'request', 'hps167s #4 AFE temperature', {}),
     ('01 03 00 08 00 04 C5 CB', READ, 'request', MEASURE, {}),
-    ('01 03 08 08 23 DC B2 07 01 00 00 FD 41', READ, 'answer', MEASURE,
+    ('01 03 08 08 23 DC B2 07 01 00 00 FD 41', READ, 'response', MEASURE,
      {'distance_mm': 2083, 'magnitude': 723.1744, 'ambient': 1, 'precision': 0}),
     ('01 03 00 09 00 01 54 08', READ, 'request', RESET, {}),
-    ('01 03 02 00 01 79 84', READ, 'answer', RESET, {'result': 'success'}),
+    ('01 03 02 00 01 79 84', READ, 'response', RESET, {'result': 'success'}),
     ('01 06 00 0A 00 05 69 CB', WRITE, 'both', 'hps167s #7 warm-up time', {'warm_up_s': 5}),
     ('01 06 00 11 00 01 18 0F', WRITE, 'both', 'hps167s #9 baud rate', {'baud_code': 1, 'baud_rate': 19200}),
     ('01 06 00 12 00 00 29 CF', WRITE, 'both', 'hps167s #10 measurement after power-on',
      {'continuous_measurement': 'off'}),
     ('01 06 00 13 00 FF 38 4F', WRITE, 'both', 'hps167s #11 termination resistor', {'termination': 'on'}),
-    ('01 10 00 20 00 02 40 02', WRITE_MANY, 'answer', 'hps167s #15 reconnect time', {}),
-    ('01 83 02 C0 F1', 'refuses to ' + READ, 'answer',
+    ('01 10 00 20 00 02 40 02', WRITE_MANY, 'response', 'hps167s #15 reconnect time', {}),
+    ('01 83 02 C0 F1', 'refuses to ' + READ, 'response',
      [' the request is refused', 'hps167s illegal start address or register address'], {}),
 ]
 
@@ -141,7 +141,7 @@ class Datasheets(Case):
             '        hps167s  #5 single measurement',
             '        CRC C5 CB right',
             '000008  01 03 08 08 23 DC B2 07 01 00 00 FD 41',
-            '        Modbus RTU, answer, address 1, function 03 read holding registers',
+            '        Modbus RTU, response, address 1, function 03 read holding registers',
             '        hps167s  #5 single measurement',
             '            distance          2083 mm',
             '            magnitude         723.1744',
@@ -258,17 +258,17 @@ class Meaning(Case):
             (['01 03 00 01 00 03 0B 54'],
              {'note': 'the two bytes of the CRC are swapped: the low one goes first', 'code': 1})],
         **{'0109_is_probe_4': [(answered(0x0109, 250), {'fields': {'probe_4_mm': 250}})]},
-        one_answer_is_explained_by_each_request=[
-            (answered(address, 1), {'fields': fields, 'directions': ['request', 'answer']})
+        one_response_is_explained_by_each_request=[
+            (answered(address, 1), {'fields': fields, 'directions': ['request', 'response']})
             for address, fields in (
             (0x0100, {'distance_mm': 1}), (0x0205, {'polarity': 'positive'}), (0x0206, {'threshold_mm': 1}),
             (0x0207, {'output': 'real-time'}), (0x0108, {'probe_3_mm': 1}), (0x0010, {'probe_1_mm': 1}),
             (0x0013, {'probe_4_mm': 1}), (0x0009, {'result': 'success'}), (0x0200, {'address': 1}),
             (0x0004, {'temperature_f': 1, 'temperature_c': -17.2}))],  # (1 - 32) * 5 / 9 = -17.22
-        an_answer_of_another_length_is_not_the_one=[([ASK_A16, registers(1, 700, 800)], {'note': UNKNOWN})],
+        a_response_of_another_length_is_not_the_one=[([ASK_A16, registers(1, 700, 800)], {'note': UNKNOWN})],
         a_damaged_request_explains_nothing=[
             (['01 03 01 00 00 01 85 F7', registers(1, 754)], {'note': UNKNOWN, 'code': 1})],
-        an_answer_from_another_unit_is_not_the_one=[
+        a_response_from_another_unit_is_not_the_one=[
             ([ASK_A16, registers(2, 700)], {'note': UNKNOWN}),
             ([ASK_A16, registers(2, 700), registers(1, 754)],
              {'what': '0x0100 processed distance', 'note': ''})],
@@ -276,7 +276,7 @@ class Meaning(Case):
                                     ([ASK_A16, registers(1, 700), registers(1, 701)], {'note': UNKNOWN})],
         broadcast_to_a16_is_answered_from_another_address=[
             ([asks(255, 0x0200), registers(9, 9)],
-             {'fields': {'address': 9}, 'directions': ['request', 'answer']})],
+             {'fields': {'address': 9}, 'directions': ['request', 'response']})],
         a_write_that_comes_twice_is_acknowledged=[
             (['01 06 02 00 00 05 48 71'], {'note': ''}),
             (['01 06 02 00 00 05 48 71'] * 2, {'note': 'acknowledges the request before, or is its echo'})],
@@ -364,7 +364,7 @@ class Meaning(Case):
         self.assertRegex(text, r'magnitude +429490\.1760\n')
         self.tells([HPS, *answered(8, 1000, 1, 0x1100, 0)], notes={'magnitude': 'the exponent is over 16'})
 
-    def test_the_sum_of_the_13_byte_answer_is_62(self):
+    def test_the_sum_of_the_13_byte_response_is_62(self):
         found = self.one('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60', code=1)
         self.assertEqual(found['checksum'], {'right': False, 'found': '60', 'expected': '62'})
         self.assertIn('sum 60 WRONG, it should be 62', self.run_fathom('decode', found['bytes']).out)
@@ -441,10 +441,10 @@ class Damage(Case):
         self.assertEqual([one['meanings'][0]['fields']['distance_mm'] for one in rest], list(range(701, 760)))
 
     def test_a_sum_does_not_win_over_a_crc(self):
-        # The answer with 65535, 65277 and 64511 in it has FF FF FE FD and FF FF FE FC within: good sums.
-        answer = registers(1, 0xFFFF, 0xFEFC, 0xFBFF)
-        self.one(answer)
-        self.one(answer[:-1] + bytes([answer[-1] ^ 1]), code=1)
+        # The response with 65535, 65277 and 64511 in it has FF FF FE FD and FF FF FE FC within: good sums.
+        response = registers(1, 0xFFFF, 0xFEFC, 0xFBFF)
+        self.one(response)
+        self.one(response[:-1] + bytes([response[-1] ^ 1]), code=1)
 
     def test_noise_is_not_taken_for_frames_that_no_sensor_sends(self):
         for noise in ('01 03 18' + ' 00' * 26, '01 83 0C 00 00', '01 03 01 00 00 0C 85 F6'):
@@ -452,9 +452,9 @@ class Damage(Case):
                 self.assertEqual(self.one(noise, code=1)['protocol'], None)
 
     def test_what_ends_early_is_told(self):
-        for text, why in (('01 03 02 02', 'request of 8 or an answer of 7 bytes, but ends early'),
+        for text, why in (('01 03 02 02', 'request of 8 or a response of 7 bytes, but ends early'),
                           ('01 03 16 B0 00 39 00 25 42 34',
-                           'begins like a Modbus answer of 27 bytes, but ends early'),
+                           'begins like a Modbus response of 27 bytes, but ends early'),
                           ('55 AA 01', 'begins like a 55 AA frame, but is none')):
             with self.subTest(text):
                 found = self.one(text, code=1)

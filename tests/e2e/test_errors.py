@@ -67,7 +67,7 @@ class Silence(e2e.Case):
         the_same_for_an_a05=('a05 --timeout 200', 'nothing was heard at all', 1, 0.2, 2),
         without_a_time_out_a_stream_is_stale_after_ten_seconds=('a05', 'nothing was heard at all', 1, 10, 12),
         **{f'a_dead_line_in_every_mode_that_asks_{sensor}': (
-            f'{sensor} --mode modbus --timeout 100', 'no answer from address 1: nothing was heard at all', 5,
+            f'{sensor} --mode modbus --timeout 100', 'no response from address 1: nothing was heard at all', 5,
             0.5, 2.5)
            for sensor in ('a16', 'a05', 'hps167s')})
     def dead(self, line, words, *limits):
@@ -75,7 +75,7 @@ class Silence(e2e.Case):
 
     @e2e.each(
         no_unit_at_this_address=('hps167s:3 --distance 500', 'hps167s --address 4 --timeout 100',
-                                'no answer from address 4: nothing was heard at all; check the supply, A '
+                                'no response from address 4: nothing was heard at all; check the supply, A '
                                 'and B (or RX and TX) swapped, --address', 2),
         the_wrong_baud_rate_of_a_sensor_that_is_asked=(
             'hps167s --distance 754', 'hps167s --baud 9600 --timeout 200', '(now 9600 8E1)'),
@@ -91,10 +91,10 @@ class Silence(e2e.Case):
 
     def test_retries_are_requests_of_one_attempt(self):
         device = self.device()
-        done = self.fails('no answer', f'a16 --mode modbus --port {device} --timeout 50 --retries 2')
+        done = self.fails('no response', f'a16 --mode modbus --port {device} --timeout 50 --retries 2')
         self.assertEqual(device.read(24), e2e.ASK_A16 * 3)
         self.assertTrue(device.is_silent())
-        self.assertIn('requests without an answer 3', done.err)
+        self.assertIn('requests without a response 3', done.err)
 
     def test_the_wrong_baud_rate_of_a_sensor_that_sends(self):
         reader = self.fathom(f'read a16 --port {self.sim("a16 --distance 754")} --baud 19200 --timeout 500')
@@ -117,7 +117,7 @@ class Silence(e2e.Case):
     def test_the_next_attempt_follows_a_failed_one(self):
         device, reader = self.beside('read a16 --mode modbus --timeout 1000 --count 2')
         device.asked(e2e.ASK_A16)
-        reader.expect('attempt 1: no answer', 'err')
+        reader.expect('attempt 1: no response', 'err')
         device.asked(e2e.ASK_A16, e2e.SAYS_754)
         done = self.ends(reader, 1, 'attempts 2, failed 1, readings 1\n')
         self.assertEqual(done.out.count('754 mm'), 1)
@@ -172,20 +172,20 @@ class Noise(e2e.Case):
 
     @e2e.each(
         bytes_that_are_no_frame=(b'\x55\xAA\x55',
-                                 'no answer from address 1: bytes were heard, but no Modbus frame'),
-        a_damaged_answer=(bytes((*e2e.SAYS_754[:4], 0xE2, *e2e.SAYS_754[5:])),
-                          'the answer of address 1 was damaged'),
-        an_answer_that_breaks_off=(e2e.SAYS_754[:5], 'the answer of address 1 was damaged'),
-        an_answer_of_another_unit=(e2e.registers(2, 754),
-                                   'no answer from address 1: the line works, but it was '
+                                 'no response from address 1: bytes were heard, but no Modbus frame'),
+        a_damaged_response=(bytes((*e2e.SAYS_754[:4], 0xE2, *e2e.SAYS_754[5:])),
+                          'the response of address 1 was damaged'),
+        a_response_that_breaks_off=(e2e.SAYS_754[:5], 'the response of address 1 was damaged'),
+        a_response_of_another_unit=(e2e.registers(2, 754),
+                                   'no response from address 1: the line works, but it was '
                                    'address 2 that was heard; try --address 2'),
-        an_answer_of_another_length=(e2e.registers(1, 754, 755),
+        a_response_of_another_length=(e2e.registers(1, 754, 755),
                                      'address 1 answered something else than was asked'),
         an_exception_without_a_name=(e2e.adu(1, 0x83, 0x63), 'address 1 refused: exception 99 (unknown)'))
-    def asked(self, answer, words):
+    def asked(self, response, words):
         """One request, answered so."""
         device, reader = self.beside('read a16 --mode modbus --count 1 --timeout 500')
-        device.asked(e2e.ASK_A16, answer)
+        device.asked(e2e.ASK_A16, response)
         done = self.ends(reader, 1, f'attempt 1: {words}', out='')
         self.assertEqual(done.err.count('attempt 1: '), 1)
 
@@ -196,8 +196,8 @@ class Noise(e2e.Case):
         device, reader = self.beside('read a16 --mode modbus --count 2 --timeout 500')
         device.asked(e2e.ASK_A16, b'\x55\xAA\x55')
         device.asked(e2e.ASK_A16)
-        self.ends(reader, 1, 'attempt 1: no answer from address 1: bytes were heard, but no Modbus frame',
-                  'attempt 2: no answer from address 1: nothing was heard at all')
+        self.ends(reader, 1, 'attempt 1: no response from address 1: bytes were heard, but no Modbus frame',
+                  'attempt 2: no response from address 1: nothing was heard at all')
 
 
 class HangUp(e2e.Case):
@@ -217,7 +217,7 @@ class HangUp(e2e.Case):
             rf'connect it again'), re.compile(r'attempts \d+, failed 1, '))
         self.assertLess(done.cpu, LITTLE)
 
-    def test_a_port_that_hangs_up_before_the_first_answer(self):
+    def test_a_port_that_hangs_up_before_the_first_response(self):
         device, reader = self.beside('read a05 --mode modbus')
         device.read(8)
         device.hang_up()
@@ -230,7 +230,7 @@ class Signals(e2e.Case):
         terminate_too=(signal.SIGTERM, 0, ''),
         hang_up_too=(signal.SIGHUP, 0, ''),
         in_a_long_pause=(signal.SIGINT, 0, '--interval 600000'),
-        after_a_failure_it_stays_a_failure=(signal.SIGINT, 1, '--address 3 --timeout 100', 'no answer',
+        after_a_failure_it_stays_a_failure=(signal.SIGINT, 1, '--address 3 --timeout 100', 'no response',
                                             'err'))
     def ended(self, number, code, options, expect='754 mm', stream='out'):
         reader = self.fathom(f'read hps167s --address 2 --port {self.sim("hps167s:2 --distance 754")} '

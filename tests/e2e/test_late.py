@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Late answers: one of the right shape that comes in the next request of the same unit is never shown as that
+"""Late responses: one of the right shape that comes in the next request of the same unit is never shown as that
 request's reading."""
 import re
 
@@ -14,55 +14,55 @@ class Late(e2e.Case):
                                      'csv', options)
         return device, lambda mm: device.write(e2e.registers(1, mm)), reader
 
-    def test_an_answer_during_the_next_attempt_is_not_its_reading(self):
+    def test_a_response_during_the_next_attempt_is_not_its_reading(self):
         device, say, reader = self.begin(2, 1000)
         device.asked(e2e.ASK_A16)
-        reader.expect('attempt 1: no answer from address 1', 'err')
+        reader.expect('attempt 1: no response from address 1', 'err')
         say(1111)  # to the first request; the second attempt has begun
         device.asked(e2e.ASK_A16)  # only when the late one has come
         say(2222)
         done = self.ends(reader, 1, 'attempts 2, failed 1, readings 1\n',
-                         re.compile(r'line: answers 1, .*requests without an answer 1, late answers 1\n'))
+                         re.compile(r'line: responses 1, .*requests without a response 1, late responses 1\n'))
         self.assertEqual(done.mm, ['2222'])
 
-    def test_the_next_request_waits_for_the_late_answer_at_least_another_time_out(self):
+    def test_the_next_request_waits_for_the_late_response_at_least_another_time_out(self):
         device, say, reader = self.begin(2, 1000)
         device.asked(e2e.ASK_A16)
-        reader.expect('attempt 1: no answer', 'err')
+        reader.expect('attempt 1: no response', 'err')
         self.assertTrue(device.is_silent(0.7))
         say(1111)
         device.asked(e2e.ASK_A16)
         say(2222)
         self.assertEqual(reader.finish().mm, ['2222'])
 
-    def test_each_answer_one_request_too_late(self):
+    def test_each_response_one_request_too_late(self):
         device, say, reader = self.begin(5, 500)
         for number in range(1, 6):
             device.asked(e2e.ASK_A16)
-            reader.expect(f'attempt {number}: no answer', 'err')
+            reader.expect(f'attempt {number}: no response', 'err')
             if number != 5:
                 say(1000 + number)
-        done = self.ends(reader, 1, 'late answers 4')
+        done = self.ends(reader, 1, 'late responses 4')
         self.assertEqual(done.mm, [])
-        self.assertEqual(re.findall(r'attempt (\d): no answer from address 1: it answers, but too late',
+        self.assertEqual(re.findall(r'attempt (\d): no response from address 1: it answers, but too late',
                                     done.err),
                          ['2', '3', '4', '5'])
 
-    def test_a_late_answer_serves_a_retry_of_its_own_request(self):
+    def test_a_late_response_serves_a_retry_of_its_own_request(self):
         device, say, reader = self.begin(1, 500, '--retries 1')
         device.asked(e2e.ASK_A16)
         self.assertTrue(device.is_silent(0.6))  # the time-out has passed, the retry waits
         say(1111)
-        self.assertEqual(self.ends(reader, 0, 'late answers 1').mm, ['1111'])
+        self.assertEqual(self.ends(reader, 0, 'late responses 1').mm, ['1111'])
 
     def test_a_unit_that_never_answers_is_asked_again(self):
         device, _, reader = self.begin(3, 150)
         for number in range(1, 4):
             device.asked(e2e.ASK_A16)
-            reader.expect(f'attempt {number}: no answer', 'err')
+            reader.expect(f'attempt {number}: no response', 'err')
         self.ends(reader, 1)
 
-    def test_an_unasked_answer_in_a_pause_is_not_the_next_reading(self):
+    def test_an_unasked_response_in_a_pause_is_not_the_next_reading(self):
         device, say, reader = self.begin(2, 1000, '--interval 1500')
         device.asked(e2e.ASK_A16)
         say(1111)

@@ -106,7 +106,7 @@ class Json(e2e.Case):
         a16_auto_has_no_address=('a16', 'auto', None),
         a16_modbus_has_the_address=('a16', 'modbus', 254),
         the_four_probes_of_an_a05_share_sequence_and_time=('a05', 'auto', None),
-        the_four_probes_of_an_a05_answer_share_sequence_and_time=('a05', 'modbus', 9),
+        the_four_probes_of_an_a05_response_share_sequence_and_time=('a05', 'modbus', 9),
         an_hps167s_has_its_optics_too_and_the_magnitude_exactly=('hps167s', 'modbus', 32))
     def members(self, sensor, mode, address):
         sim = self.sim(f'{sensor}:{address or ""}:{mode} --distance 1234')
@@ -217,7 +217,7 @@ class Pace(e2e.Case):
     def test_counters_are_told_on_stderr_at_the_end(self):
         sim = self.sim('a05::modbus --distance 1000')
         done = self.run_fathom(f'read a05 --mode modbus --port {sim} --count 2')
-        self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 8\nfathom: line: answers 2\n')
+        self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 8\nfathom: line: responses 2\n')
 
 
 class Clients(e2e.Case):

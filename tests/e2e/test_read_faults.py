@@ -10,7 +10,7 @@ import re
 
 import e2e
 
-# What is simulated, how it is read, what stands before the probes, how long an answer is waited for.
+# What is simulated, how it is read, what stands before the probes, how long a response is waited for.
 SUBJECTS = {
     'a16': ('a16', [1234], 700),
     'a16::modbus': ('a16 --mode modbus', [1234], 700),
@@ -20,7 +20,7 @@ SUBJECTS = {
     'hps167s': ('hps167s', [1234], 300),
 }
 FRAMES = 4
-# Longest: every attempt waits for its time-out and for what is owed, twice that; late answers and a power
+# Longest: every attempt waits for its time-out and for what is owed, twice that; late responses and a power
 # cycle 2 s.
 SECONDS = 12
 

@@ -41,7 +41,7 @@ class Gate(e2e.Case):
     def test_after_a_silence_it_goes_on(self):
         gate = self.gate(self.sim('hps167s --distance 2083 --fault silence=1@2'))
         gate.expect('^2083 mm$')
-        gate.expect('^no reading: NO_ANSWER$')
+        gate.expect('^no reading: NO_RESPONSE$')
         gate.expect('^2083 mm$')
 
     def test_it_ends_when_the_port_is_lost(self):

@@ -237,20 +237,20 @@ class Trouble(Case):
         self.expect_unharmed(sim)
 
     @e2e.each(
-        answers_that_are_no_modbus_are_told_with_the_older_units=(
+        responses_that_are_no_modbus_are_told_with_the_older_units=(
             lambda request: b'\x55\x80\x04\x71\x99', '--timeout 200', ('not_modbus', None, None),
             'something answers at 19200 8E1, but not Modbus: an HPS-167S made before 2020-09'),
         a_device_that_refuses_everything_is_another_modbus_device=(
             lambda request: e2e.adu(request[0], 0x83, 2) if request[0] == 2 else b'', '',
             ('other_modbus', None, 2)))
-    def answered(self, answer, options, found, *said):
+    def answered(self, response, options, found, *said):
         """Every request is answered so until the scan ends."""
         device = self.device()
         program = self.fathom(f'scan --port {device} --format json {PATIENT} --address 1-3 --baud 19200 '
                               f'{options}')
         while not program.has_ended():
             if not device.is_silent(0.02):
-                device.write(answer(device.read(8)))
+                device.write(response(device.read(8)))
         done = self.ends(program, 1, *said)
         self.assertEqual([(one['kind'], one['model'], one['address']) for one in done.json], [found])
         self.assertIsNone(done.json[0]['next'])

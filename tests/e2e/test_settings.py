@@ -120,10 +120,10 @@ class Change(Settings):
         self.assertIn('baud is 115200 (was 19200)', out)
         self.assertIn(f'fathom read hps167s:1:modbus --port {sim} --baud 115200', out)
         self.assertEqual(self.json(f'get hps167s --port {sim} --baud 115200 baud')['baud'], 115200)
-        self.ends(f'get hps167s --port {sim} baud', 1, 'no answer')
+        self.ends(f'get hps167s --port {sim} baud', 1, 'no response')
 
     def test_without_confirmation_both_baud_rates_are_named(self):
-        # frames 1 and 2 answer #2 for the user, 3 and 4 the driver; nothing is at 115200 yet; 5 acknowledges
+        # frames 1 and 2 response #2 for the user, 3 and 4 the driver; nothing is at 115200 yet; 5 acknowledges
         # the writing, and from then on all is lost
         sim = self.sim(f'hps167s --counters {lost(5, 30)}')
         self.told(f'set hps167s --port {sim} baud 115200',
@@ -270,7 +270,7 @@ class Reset(Settings):
         self.assertEqual(self.counters(sim, 'resets'), [(0,), (0,)])
 
     def test_without_confirmation_both_places_are_named(self):
-        # frames 1 to 4 at most answer #2 before; what follows is lost
+        # frames 1 to 4 at most response #2 before; what follows is lost
         sim = self.sim(f'hps167s:7 --counters {lost(3, 30)}')
         self.told(f'reset hps167s:7 --port {sim} {self.RESTORE}',
                   'it is at address 1, 19200 8E1, or still at address 7, 19200 8E1', code=1)

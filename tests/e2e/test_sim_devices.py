@@ -22,7 +22,7 @@ KINDS = ('stuck interference fault no-target unit function count exception flip-
          ).split()
 FRAME = bytes.fromhex('FF 02 EF F0')  # 751 mm: FF + 02 + EF = 1F0
 ASK_ALL = bytes.fromhex('55 AA 01 01 01')  # A05 2(3)3
-ANSWER_ALL = bytes.fromhex('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62')
+RESPONSE_ALL = bytes.fromhex('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62')
 
 
 class Case(e2e.Case):
@@ -126,10 +126,10 @@ class Port(Case):
                                                 '01 03 08 08 23 DC B2 07 01 00 00 FD 41'),
         an_hps167s_refuses_a_wrong_length_as_in_the_datasheet=('hps167s', '2083', '01 03 00 08 00 03 84 09',
                                                                '01 83 02 C0 F1'))
-    def asked(self, device, distance, request, answer):
+    def asked(self, device, distance, request, response):
         port = self.open(self.sim(f'{device} --distance {distance}'))
         port.write(bytes.fromhex(request))
-        self.assertEqual(port.read(len(bytes.fromhex(answer))).hex(' ').upper(), answer)
+        self.assertEqual(port.read(len(bytes.fromhex(response))).hex(' ').upper(), response)
 
     def test_it_moves_by_itself_and_starts_where_the_seed_says(self):
         seen = []
@@ -165,7 +165,7 @@ class Bus(Case):
 
 
 class Several(Bus):
-    def test_three_models_answer_each_at_its_own_address_and_rate(self):
+    def test_three_models_response_each_at_its_own_address_and_rate(self):
         sim = self.sim(f'{BUS} --distance 1@754 --distance 2@316 --distance 3@2083 --counters')
         self.assertEqual([self.mm(sim, sensor) for sensor in (HPS, A16, A05)], [2083, 754, 316])
         told = self.counters(sim, 'device', 'sensor', 'mode', 'address', 'baud', 'requests', 'answered',
@@ -173,7 +173,7 @@ class Several(Bus):
         self.assertEqual([one[:9] for one in told], [(1, 'a16', 'modbus', 1, 9600, 1, 1, 0, 0),
                                                      (2, 'a05', 'modbus', 2, 9600, 1, 1, 0, 0),
                                                      (3, 'hps167s', 'modbus', 7, 19200, 1, 1, 0, 0)])
-        # The answer of the A16 is not for the A05 either; neither understands a byte of the 8 + 13 of the
+        # The response of the A16 is not for the A05 either; neither understands a byte of the 8 + 13 of the
         # HPS-167S.
         self.assertEqual([one[9] for one in told[:2]], [21, 21])
         self.assertGreaterEqual(told[0][10], 1)
@@ -189,7 +189,7 @@ class Several(Bus):
         self.fails(sim, HPS)
         self.assertEqual(self.counters(sim, 'requests', 'answered'), [(1, 1)] * 2)
 
-    def test_two_units_with_one_address_answer_into_each_other(self):
+    def test_two_units_with_one_address_response_into_each_other(self):
         sim = self.sim('hps167s hps167s --distance 1@2083 --distance 2@1000 --counters')
         sim.expect('devices 1 and 2 have the address 1 both', 'err')
         garbled = self.ask(self.open(sim), ASK_HPS, 13)
@@ -272,7 +272,7 @@ class Power(Bus):
             self.assertLess(time.monotonic() - began, e2e.PATIENCE)
         port.timeout = e2e.PATIENCE
 
-    def test_nothing_answers_without_power_and_what_is_kept_is_there_afterwards(self):
+    def test_nothing_responses_without_power_and_what_is_kept_is_there_afterwards(self):
         sim = self.sim('a16:1:modbus hps167s:7 --distance 754 --counters')
         port = self.open(sim)
         for request, baud in ((e2e.adu(1, 6, 2, 0, 0, 5), 9600), (e2e.adu(7, 6, 0, 0x10, 0, 9), 19200)):
@@ -346,11 +346,11 @@ class With(Case):
         a_wrong_length_is_refused_by_02_or_03=(WRONG_LENGTH, ('hps167s', e2e.adu(1, 0x83, 2)),
                                                ('hps167s --with count-03', e2e.adu(1, 0x83, 3))))
     def said(self, request, *rows):
-        for device, answer in rows:
+        for device, response in rows:
             port = self.open(self.sim(f'{device} --distance 754'))
-            if not answer:
+            if not response:
                 port.timeout = 0.5  # far more than the sensors need
-            self.assertEqual(self.ask(port, request, len(answer) or 1), answer, device)
+            self.assertEqual(self.ask(port, request, len(response) or 1), response, device)
 
     @e2e.each(an_offset_replaces=('', 764), an_offset_replaces_or_adds=('--with offset-adds', 774))
     def offset(self, options, distance):
@@ -414,11 +414,11 @@ class FaultSeen(Case):
     def port(self, line):
         return self.open(self.sim(line))
 
-    def asked(self, port, request, answer):
+    def asked(self, port, request, response):
         port.write(request)
-        self.assertEqual(port.read(len(answer)), answer)
+        self.assertEqual(port.read(len(response)), response)
 
-    def test_the_second_of_three_answers_is_damaged(self):
+    def test_the_second_of_three_responses_is_damaged(self):
         port = self.port('a16::modbus --distance 754 --fault trailing=1@2')
         self.asked(port, ASK_A16, SAYS_754)
         self.asked(port, ASK_A16, SAYS_754)
@@ -434,14 +434,14 @@ class FaultSeen(Case):
 
     def test_an_a05_speaks_55_aa_and_modbus(self):
         port = self.port('a05::dyp --distance 1000,2000,1953,3562')
-        self.asked(port, ASK_ALL, ANSWER_ALL)
+        self.asked(port, ASK_ALL, RESPONSE_ALL)
         self.asked(port, bytes.fromhex('55 AA 01 12 12'), bytes.fromhex('55 AA 01 12 07 A1 BA'))
         self.asked(port, e2e.adu(1, 3, 2, 0, 0, 1), e2e.adu(1, 3, 2, 0, 1))
 
-    def test_a_damaged_55_aa_answer(self):
+    def test_a_damaged_55_aa_response(self):
         port = self.port('a05::dyp --distance 1000,2000,1953,3562 --fault count=1@1')
         self.asked(port, ASK_ALL, bytes.fromhex('55 AA 01 01 03 E8 07 D0 07 A1 6B'))
-        self.asked(port, ASK_ALL, ANSWER_ALL)
+        self.asked(port, ASK_ALL, RESPONSE_ALL)
 
     def test_one_bit_is_wrong_in_half_of_the_frames(self):
         """Of the frames that a client reads as they come, four bytes each; 40 of them, at 10 Hz."""
@@ -457,7 +457,7 @@ class FaultSeen(Case):
                       [FRAME[:n] + FRAME[n + 1:] for n in range(4)])
 
     def test_a_pause_inside_a_frame_is_a_pause_for_the_client(self):
-        """An answer comes in two parts. A busy machine may hand over both at once, but not every time."""
+        """A response comes in two parts. A busy machine may hand over both at once, but not every time."""
         port = self.port('a16::modbus --distance 754 --fault split')
         for _ in range(50):
             port.write(ASK_A16)
@@ -466,7 +466,7 @@ class FaultSeen(Case):
             self.assertEqual(head + port.read(7 - len(head)), SAYS_754)
             if len(head) < 7:
                 return
-        self.fail('50 answers came in one part')
+        self.fail('50 responses came in one part')
 
     def test_the_tool_tells_what_was_wrong(self):
         sim = self.sim('a16::modbus --distance 754 --fault exception=1@1 --fault flip-byte=1@2')

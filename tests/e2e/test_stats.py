@@ -5,22 +5,22 @@ import json
 
 import e2e
 
-LINE = ['answers', 'bytes_of_no_frame', 'port_errors', 'requests_without_an_answer', 'damaged_answers',
+LINE = ['responses', 'bytes_of_no_frame', 'port_errors', 'requests_without_a_response', 'damaged_responses',
         'exceptions',
-        'answers_that_do_not_fit', 'late_answers', 'unasked_frames', 'bad_bytes']
+        'responses_that_do_not_fit', 'late_responses', 'unasked_frames', 'bad_bytes']
 STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'stale', 'bytes']
-FAILURES = ['impossible_values', 'port', 'no_answer', 'damaged', 'exception', 'other_answer', 'stale',
+FAILURES = ['impossible_values', 'port', 'no_response', 'damaged', 'exception', 'other_response', 'stale',
             'other']
 JSON = '--stats --format json'
 GOOD = e2e.SAYS_754
 
 
 class Stats(e2e.Case):
-    def ask(self, answers, options, **more):
-        device, reader = self.beside(f'read a16 --mode modbus --count {len(answers)} --timeout 400 {options}',
+    def ask(self, responses, options, **more):
+        device, reader = self.beside(f'read a16 --mode modbus --count {len(responses)} --timeout 400 {options}',
                                      **more)
-        for answer in answers:
-            device.asked(e2e.ASK_A16, answer)
+        for response in responses:
+            device.asked(e2e.ASK_A16, response)
         return reader.finish()
 
     def told(self, done):
@@ -38,34 +38,34 @@ class Stats(e2e.Case):
         one = self.told(done)
         self.assertEqual(list(one), ['time_us', 'attempts', 'failed', 'readings', 'requests',
                                      'skipped_frames',
-                                     'reconnects', 'failures', 'line', 'stream', 'unit', 'port', 'answer_us',
+                                     'reconnects', 'failures', 'line', 'stream', 'unit', 'port', 'response_us',
                                      'units'])
         self.assertEqual((list(one['failures']), list(one['line']), list(one['unit'])),
-                         (FAILURES, LINE, ['answers', 'failures']))
+                         (FAILURES, LINE, ['responses', 'failures']))
         self.assertEqual([one[name] for name in ('attempts', 'failed', 'readings', 'requests', 'reconnects')],
                          [8, 6, 2, 8, 0])
         self.assertEqual(one['failures'], dict(zip(FAILURES, (1, 0, 2, 1, 1, 1, 0, 0))))
-        # 754, 754 and 40000 were answers; the foreign frame was dropped: 7 bytes, and the damaged and the
+        # 754, 754 and 40000 were responses; the foreign frame was dropped: 7 bytes, and the damaged and the
         # long one
         self.assertEqual(one['line'], dict(zip(LINE, (3, 7 + 9 + 7, 0, 2, 1, 1, 1, 0, 1, 0))))
-        self.assertEqual(one['unit'], {'answers': 3, 'failures': 5})
+        self.assertEqual(one['unit'], {'responses': 3, 'failures': 5})
         self.assertEqual((one['stream'], one['port']), (None, None))
-        times = one['answer_us']
-        self.assertEqual(times['answers'], 2)
-        # eight characters of ten bits at 9600 baud leave before an answer is looked for
+        times = one['response_us']
+        self.assertEqual(times['responses'], 2)
+        # eight characters of ten bits at 9600 baud leave before a response is looked for
         self.assertTrue(0 < times['min'] <= times['mean'] <= times['max'] < 400000 + 60000, times)
 
     def test_text_has_every_counter_too(self):
         lines = self.ask([GOOD, b''], '--stats').err.splitlines()[1:]
         self.assertEqual(lines[:5], [
             'fathom: attempts 2, failed 1, readings 1', 'fathom: requests 2, skipped frames 0, reconnects 0',
-            'fathom: failures: impossible values 0, port 0, no answer 1, damaged 0, exception 0, other '
-            'answer 0, stale 0, other 0',
-            'fathom: line: answers 1, bytes of no frame 0, port errors 0, requests without an answer 1, '
+            'fathom: failures: impossible values 0, port 0, no response 1, damaged 0, exception 0, other '
+            'response 0, stale 0, other 0',
+            'fathom: line: responses 1, bytes of no frame 0, port errors 0, requests without a response 1, '
             'damaged '
-            'answers 0, exceptions 0, answers that do not fit 0, late answers 0, unasked frames 0, '
-            'bad bytes 0', 'fathom: unit: answers 1, failures 1'])
-        self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, answers 1, failures '
+            'responses 0, exceptions 0, responses that do not fit 0, late responses 0, unasked frames 0, '
+            'bad bytes 0', 'fathom: unit: responses 1, failures 1'])
+        self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, responses 1, failures '
                                    r'1, silences in a row 1, left alone for 0\.0 s, '
                                    r'time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')
         self.assertEqual(len(lines), 6)
@@ -73,8 +73,8 @@ class Stats(e2e.Case):
     def test_retries_are_requests(self):
         _, reader = self.beside(f'read a16 --mode modbus --count 1 --timeout 60 --retries 2 {JSON}')
         one = self.told(reader.finish())
-        self.assertEqual((one['attempts'], one['requests'], one['failures']['no_answer']), (1, 3, 1))
-        self.assertIsNone(one['answer_us'])
+        self.assertEqual((one['attempts'], one['requests'], one['failures']['no_response']), (1, 3, 1))
+        self.assertIsNone(one['response_us'])
 
     def test_every_frame_of_a_stream_is_accounted_for(self):
         device, reader = self.beside(f'read a16 --count 4 --interval 800 {JSON}')
@@ -114,7 +114,7 @@ class Stats(e2e.Case):
 
     def test_without_it_the_summary_is_short(self):
         done = self.ask([GOOD], '--format json')
-        self.assertEqual(done.err, 'fathom: attempts 1, failed 0, readings 1\nfathom: line: answers 1\n')
+        self.assertEqual(done.err, 'fathom: attempts 1, failed 0, readings 1\nfathom: line: responses 1\n')
 
     @e2e.each(**{f'line_errors_that_the_port_counts_are_told_and_explain_a_failure_{name}': (name, option)
                  for name, option in (('parity', '--parity'), ('framing', '--baud'))})

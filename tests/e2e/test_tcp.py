@@ -66,7 +66,7 @@ class NoConnection(Case):
             waiting.connect_ex(('127.0.0.1', server.number))
         return str(server)
 
-    def test_no_answer_to_the_connection_is_given_up_after_5_seconds(self):
+    def test_no_response_to_the_connection_is_given_up_after_5_seconds(self):
         done = self.fails(self.full(), ': Connection timed out: nothing answers at this address')
         self.assertTrue(5 <= done.elapsed < 15, done.elapsed)
         self.assertLess(done.cpu, e2e.LITTLE)
@@ -104,7 +104,7 @@ class NoConnection(Case):
                   'tcp: a sensor is asked by Modbus: --mode modbus', out='')
 
 
-class Answers(Case):
+class Responses(Case):
     def test_a_reading(self):
         server, reader = self.reader('--address 7 --count 1')
         server.say(registers(self.asked(server, 7), 7, *SAID))
@@ -130,26 +130,26 @@ class Answers(Case):
             server.say((byte,))
         self.reads(reader, 0, [2083])
 
-    def test_after_an_answer_in_pieces_a_short_one_is_seen_at_once(self):
-        """Meanwhile the system woke the tool for a whole answer only."""
+    def test_after_a_response_in_pieces_a_short_one_is_seen_at_once(self):
+        """Meanwhile the system woke the tool for a whole response only."""
         server, reader = self.reader('--count 2 --timeout 60000')
-        answer = registers(self.asked(server), 1, *SAID)
-        server.say(answer[:10])
+        response = registers(self.asked(server), 1, *SAID)
+        server.say(response[:10])
         time.sleep(0.2)  # until the tool has seen the half; if it has not, this test shows less
-        server.say(answer[10:])
+        server.say(response[10:])
         transaction = self.asked(server)
         time.sleep(0.2)  # until it sleeps
         server.say(adu(transaction, 1, 0x83, 2))
         self.reads(reader, 1, [2083], 'attempt 2: address 1 refused: exception 02')
 
-    def test_half_an_answer_is_none_and_costs_no_time_of_the_processor(self):
+    def test_half_a_response_is_none_and_costs_no_time_of_the_processor(self):
         server, reader = self.reader('--count 1 --timeout 1500')
         server.say(registers(self.asked(server), 1, *SAID)[:11])
         self.reads(reader, 1, [],
-                   'attempt 1: no answer from address 1: the connection stands, but nothing came back; ')
+                   'attempt 1: no response from address 1: the connection stands, but nothing came back; ')
         self.assertLess(reader.done.cpu, e2e.LITTLE)
 
-    def test_the_rest_of_an_answer_that_came_too_late_does_not_disturb(self):
+    def test_the_rest_of_a_response_that_came_too_late_does_not_disturb(self):
         server, reader = self.reader('--count 2 --timeout 700')
         late = registers(self.asked(server), 1, *OTHER)
         server.say(late[:10])
@@ -157,7 +157,7 @@ class Answers(Case):
         server.say(late[10:], registers(transaction, 1, *SAID))
         self.reads(reader, 1, [2083])
 
-    def test_a_late_answer_is_not_taken_for_the_next(self):
+    def test_a_late_response_is_not_taken_for_the_next(self):
         server, reader = self.reader('--count 2 --timeout 700')
         first, second = self.asked(server), self.asked(server)
         self.assertNotEqual(first, second)
@@ -165,7 +165,7 @@ class Answers(Case):
         server.say(registers(second, 1, *SAID))
         self.reads(reader, 1, [2083])
 
-    def test_answers_glued_together(self):
+    def test_responses_glued_together(self):
         server, reader = self.reader('--count 2')
         first = self.asked(server)
         server.say(registers(first - 1, 1, *OTHER), registers(first, 1, *SAID), registers(first, 1, *OTHER))
@@ -173,28 +173,28 @@ class Answers(Case):
         self.reads(reader, 0, [2083] * 2)
 
     @e2e.each(
-        a_wrong_transaction_is_no_answer=(lambda asked: registers(asked ^ 1, 1, *OTHER),
-                                          'attempt 1: no answer'),
+        a_wrong_transaction_is_no_response=(lambda asked: registers(asked ^ 1, 1, *OTHER),
+                                          'attempt 1: no response'),
         another_unit=(lambda asked: registers(asked, 9, *OTHER),
                       'the line works, but it was address 9 that was heard; try --address 9'),
         fewer_registers_than_were_asked_for=(lambda asked: registers(asked, 1, *OTHER[:3]),
                                              'address 1 answered something else than was asked'),
         a_byte_count_that_is_not_the_headers=(
             lambda asked: adu(asked, 1, 3, 8, 0x03, 0xE8),
-            'attempt 1: the answer of address 1 was damaged; its length is not what it says'),
+            'attempt 1: the response of address 1 was damaged; its length is not what it says'),
         a_function_that_was_not_asked=(
             lambda asked: adu(asked, 1, 0x2B, 0x0E, 1, 1, 0, 0, 0),
-            'an answer came that does not fit; check that the server is one of Modbus TCP'),
+            'a response came that does not fit; check that the server is one of Modbus TCP'),
         an_exception_of_the_sensor=(lambda asked: adu(asked, 1, 0x83, 2),
                                     'attempt 1: address 1 refused: exception 02 (illegal data address): '))
-    def wrong(self, answer, words):
-        """The next right answer is read."""
+    def wrong(self, response, words):
+        """The next right response is read."""
         server, reader = self.reader('--count 2 --timeout 1000')
-        server.say(answer(self.asked(server)))
+        server.say(response(self.asked(server)))
         server.say(registers(self.asked(server), 1, *SAID))
         self.reads(reader, 1, [2083], words)
 
-    @e2e.each(**{f'exceptions_of_a_gateway_are_no_answer_and_said_{number}': (number, name) for number,
+    @e2e.each(**{f'exceptions_of_a_gateway_are_no_response_and_said_{number}': (number, name) for number,
                  name in
                  ((10, 'path unavailable'), (11, 'target silent'))})
     def gateway(self, number, name):
@@ -203,7 +203,7 @@ class Answers(Case):
         self.asked(server)  # about which the gateway says nothing
         self.reads(reader, 1, [])
         first, second = re.findall(r'attempt \d: .*', reader.done.err)
-        self.assertIn(f'no answer from address 1: the gateway says exception {number} (gateway {name}); '
+        self.assertIn(f'no response from address 1: the gateway says exception {number} (gateway {name}); '
                       'check ', first)
         self.assertIn('the connection stands, but nothing came back', second)
 
@@ -212,7 +212,7 @@ class Answers(Case):
         for _ in range(3):
             self.asked(server)
         self.reads(reader, 1, [])
-        words = 'no answer from address 1: the connection stands, but nothing came back; check --address, '
+        words = 'no response from address 1: the connection stands, but nothing came back; check --address, '
         self.assertEqual(reader.done.err.count(words), 3, reader.done.err)
         self.assertLess(reader.done.cpu, e2e.LITTLE)
 
@@ -239,7 +239,7 @@ class Answers(Case):
             elif unit == 250:
                 self.assertEqual(request, bytes((3, 1, 0, 0, 1)))  # A16: the processed distance
                 server.say(registers(transaction, 250, 754))
-        done = self.ends(reader, 1, 'no answer from address 2: the connection stands, but nothing came back')
+        done = self.ends(reader, 1, 'no response from address 2: the connection stands, but nothing came back')
         self.assertEqual(sorted(done.mm), ['2083', '2083', '754', '754'])
         self.assertEqual(done.err.count('hps167s:2: attempt '), 2, done.err)
 
@@ -247,9 +247,9 @@ class Answers(Case):
 class Broken(Case):
     CLOSED = 'the server closed the connection; some serve one program at a time'
 
-    def breaks(self, words, answer=lambda asked: b'', end=lambda server: None):
+    def breaks(self, words, response=lambda asked: b'', end=lambda server: None):
         server, reader = self.reader()
-        server.say(answer(self.asked(server)))
+        server.say(response(self.asked(server)))
         end(server)
         self.reads(reader, 1, [], f'fathom: attempt 1: {server}: {words}',
                    '; start again (with --reconnect it is connected again)')
@@ -262,7 +262,7 @@ class Broken(Case):
     def test_closed_by_the_server(self):
         self.breaks(self.CLOSED, end=tcp_server.Server.hang_up)
 
-    def test_closed_in_the_middle_of_an_answer(self):
+    def test_closed_in_the_middle_of_a_response(self):
         self.breaks(self.CLOSED, lambda asked: registers(asked, 1, *SAID)[:10], tcp_server.Server.hang_up)
 
     def test_nonsense(self):

@@ -68,7 +68,7 @@ WRONG = [
         ('a16:1:modbus a16:1:modbus', 'a16:1 and a16:1 have the same address, so both would answer at once'),
         ('a16:1 a05:1', 'a16:1 and a05:1 have the same address'),
         ('a05:1:modbus a05:2:dyp',
-         'a damaged answer in mode dyp can change the address of another a05 on the line; '
+         'a damaged response in mode dyp can change the address of another a05 on the line; '
                                    'ask them all by Modbus, such as a05:2:modbus'),
         ('a16:1 a05:2 --address 5', 'with several sensors --address and --mode stand behind each name'),
         ('a16:1 a05:2 --mode modbus', 'with several sensors --address and --mode stand behind each name'),
@@ -249,7 +249,7 @@ class Help(e2e.Case):
                     '--retries '
             '--format --reconnect --echo --stats[=SECONDS] examples:', '19200 8E1'),
         help_names_what_is_to_be_seen=(
-            'watch', '--port --interval --duration --reconnect NO_COLOR examples:', 'x no answer'),
+            'watch', '--port --interval --duration --reconnect NO_COLOR examples:', 'x no response'),
         the_help_names_every_option_and_its_examples_are_right_usage=(
             'scan', '--port --address --baud --parity --stop-bits --timeout --retries --listen --wake --estimate '
                     '--format '

@@ -62,9 +62,9 @@ class Picture(Case):
     def test_three_models_fit_80x24_with_a_lane_for_each_probe(self):
         sim = self.sim(f'{BUS} --distance 1@1953 --distance 2@1000,no-target,1500,4500 --distance 3@fault')
         it = self.watch(f'{BUS} a16:9 --port {sim} --timeout 800')
-        it.wait(lambda screen: re.search(r'(?m)^a16:9 +no answer', screen.text())
+        it.wait(lambda screen: re.search(r'(?m)^a16:9 +no response', screen.text())
                 and 'fault  ' in screen.text() and
-                'x' in ''.join(plot_of(screen, 'a16:9')) and 'a16:9: no answer' in screen.text())
+                'x' in ''.join(plot_of(screen, 'a16:9')) and 'a16:9: no response' in screen.text())
         screen = it.screen
         self.assertEqual((screen.is_other, screen.has_cursor), (True, False))
         lines = screen.text().split('\n')
@@ -72,14 +72,14 @@ class Picture(Case):
         for words in (r'a16:1 +1\.953 m +\d+\.\d/s +lost 0 of \d+$',
                       r'a05:2 probe 1 +1\.000 m +\d+\.\d/s +lost 0 of \d+$',
                       r'a05:2 probe 2 +no target ', r'a05:2 probe 3 +1\.500 m ', r'a05:2 probe 4 +4\.500 m ',
-                      r'hps167s:7 +fault ', r'a16:9 +no answer +0\.0/s +lost (\d+) of \1'):
+                      r'hps167s:7 +fault ', r'a16:9 +no response +0\.0/s +lost (\d+) of \1'):
             self.assertRegex(screen.text(), f'(?m)^{words}')
         # Each has a scale in metres that its distances fit in.
         for name, scale in (('a16:1', '   2.0 m'), ('a05:2 probe 1', '   1.0 m'),
                             ('a05:2 probe 4', '   5.0 m')):
             self.assertTrue(rows_of(screen, name)[1].startswith(scale))
         self.assertIn('s ago', screen.text())
-        self.assertIn('- no target ~ interference s stale x no answer ! bad answer F fault P port lost',
+        self.assertIn('- no target ~ interference s stale x no response ! bad data F fault P port lost',
                       lines)
         # What is no distance is to be seen in the plot, over its whole height.
         for name, mark in (('a05:2 probe 2', '-'), ('hps167s:7', 'F'), ('a16:9', 'x')):
@@ -93,7 +93,7 @@ class Picture(Case):
             self.assertTrue(columns, name)
             self.assertTrue(all(column[0] == FULL for column in columns), columns)
         # The advice of fathom read stands at the bottom.
-        self.assertTrue(any(line.startswith('a16:9: no answer from address 9: ') for line in lines),
+        self.assertTrue(any(line.startswith('a16:9: no response from address 9: ') for line in lines),
                         screen.text())
 
     def test_a_bar_is_as_high_as_the_distance_on_its_scale(self):
@@ -107,7 +107,7 @@ class Picture(Case):
         self.assertTrue(rows_of(it.screen, 'hps167s:1')[1].startswith('   5.0 m'))
         self.assertTrue(rows_of(it.screen, 'hps167s:1')[-1].startswith('     0 m'))
 
-    def test_lost_answers_are_gaps_and_marks_between_the_bars(self):
+    def test_lost_responses_are_gaps_and_marks_between_the_bars(self):
         """Every third request is let pass."""
         device = self.device()
         it = self.watch(f'a16:1 --port {device} --timeout 500 --interval 300')
@@ -149,7 +149,7 @@ class Picture(Case):
         it.wait(lambda screen: '3.000 m' in screen.text())
         device.write(e2e.frame(1000, 2000, 40000, 4000))
         for probe in range(1, 5):
-            it.wait(lambda screen, which=probe: re.search(rf'(?m)^a05 probe {which} +bad answer .* lost 1 of \d$',
+            it.wait(lambda screen, which=probe: re.search(rf'(?m)^a05 probe {which} +bad data .* lost 1 of \d$',
                                                           screen.text()))
 
     def test_a_refused_value_is_its_probes_alone(self):
@@ -157,8 +157,8 @@ class Picture(Case):
         it = self.watch(f'a05:1 --port {device}')
         device.read(8)
         device.write(e2e.registers(1, 1000, 40000, 3000, 4000))
-        it.wait(lambda screen: 'bad answer  ' in screen.text())
-        for words in ('probe 1 +1.000 m ', 'probe 2 +bad answer ', 'probe 3 +3.000 m ', 'probe 4 +4.000 m ',
+        it.wait(lambda screen: 'bad data  ' in screen.text())
+        for words in ('probe 1 +1.000 m ', 'probe 2 +bad data ', 'probe 3 +3.000 m ', 'probe 4 +4.000 m ',
                       'probe 2 .* lost 1 of 1$'):
             self.assertRegex(it.screen.text(), f'(?m)^a05:1 {words}')
 
@@ -299,8 +299,8 @@ class Lines(Case):
 
     def test_losses_are_in_the_lines_and_advice_is_given_once(self):
         done = self.ends(f'watch a16:1 --port {self.device()} --timeout 200 --duration 3', 1)
-        self.assertRegex(done.out.splitlines()[-1], r'  a16:1 no answer 0\.0/s lost (\d+) of \1$')
-        self.assertEqual(done.err.count('no answer from address 1'), 1, done.err)
+        self.assertRegex(done.out.splitlines()[-1], r'  a16:1 no response 0\.0/s lost (\d+) of \1$')
+        self.assertEqual(done.err.count('no response from address 1'), 1, done.err)
 
     @e2e.each(a_terminal_that_can_do_nothing_gets_lines_too='dumb',
               a_terminal_that_is_not_told_gets_lines_too='')

@@ -52,7 +52,7 @@ IN_PAGE = [
     ('rp2040_uart_interrupt', 'RP2040: UART interrupt, a FIFO of bytes'),
     ('rp2040_edge_interrupt', 'edge interrupt'),
     ('rp2040_poll_idle', '`fathom_line_poll` that finds nothing'),
-    ('rp2040_poll_with_answer', 'the one that gets the response'),
+    ('rp2040_poll_with_response', 'the one that gets the response'),
     ('rp2040_hps167s_cpu_share', 'of the processor in `hps167s_rs485`, asleep in between'),
     ('rp2040_poll_bus_time', 'bus time of an HPS-167S poll over what line and sensor allow, 19200 baud'),
 ]

@@ -4,8 +4,8 @@
 
 #include "suite.h"
 
-#include "fathom/crc16.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "vectors.h"
 
 /* What a wrong byte on the wire does to the Modbus frames of vectors.c; test_corruption_sums.c has the others. */
@@ -25,7 +25,7 @@ static unsigned accepted(const vector_t *row, const uint8_t *bytes, uint8_t have
     unsigned n = 0;
     if ((row->direction & VECTOR_REQUEST) != 0)
         n += is_accepted(fathom_modbus_rtu_request_length, bytes, have);
-    if ((row->direction & VECTOR_ANSWER) != 0)
+    if ((row->direction & VECTOR_RESPONSE) != 0)
         n += is_accepted(fathom_modbus_rtu_response_length, bytes, have);
     return n;
 }
@@ -77,7 +77,7 @@ TEST(every_single_byte_error_in_a_modbus_frame_is_refused)
     assert_int_equal(for_each_error(false, refuse), (uint32_t)255 * ALL_BYTES);
 }
 
-/* Whoever looks for requests on the line sees answers too, and one of their damaged beginnings in 65536 has a
+/* Whoever looks for requests on the line sees responses too, and one of their damaged beginnings in 65536 has a
  * right CRC by chance. In this table it is this one. */
 static unsigned found;
 
@@ -90,7 +90,7 @@ static void take_for_a_request(const vector_t *row, const uint8_t *bytes)
     found++;
 }
 
-TEST(one_damaged_answer_looks_like_a_request_by_chance)
+TEST(one_damaged_response_looks_like_a_request_by_chance)
 {
     found = 0;
     assert_int_equal(for_each_error(false, take_for_a_request), (uint32_t)255 * ALL_BYTES);
@@ -148,11 +148,11 @@ static void assert_lengths(length_of_t *length_of, const uint8_t *bytes, uint8_t
         assert_int_equal(length_of_prefix(length_of, bytes, have), have < least ? least : length);
 }
 
-TEST(the_length_of_an_answer_is_known_from_its_third_byte)
+TEST(the_length_of_a_response_is_known_from_its_third_byte)
 {
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         const vector_t *const row = &modbus_vectors[i].frame;
-        if ((row->direction & VECTOR_ANSWER) != 0)
+        if ((row->direction & VECTOR_RESPONSE) != 0)
             assert_lengths(fathom_modbus_rtu_response_length, row->bytes, row->length, 3);
     }
 }

@@ -3,14 +3,14 @@
 
 #include "suite.h"
 
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
 #include "vectors.h"
 
 /*
  * What wrong bytes on the wire do to the frames of vectors.c that have a sum of 8 bits; test_corruption.c has those
  * with a CRC. One wrong byte always changes the sum of its frame. What can still be taken is another frame: a
- * shorter one at the front, if the command became another, or a request, which a unit hears in an answer.
+ * shorter one at the front, if the command became another, or a request, which a unit hears in a response.
  *
  * So there are three receivers of 55 AA frames. Each looks at every byte of what came as a beginning, which is the
  * most that a receiver can do to find a frame.
@@ -19,12 +19,12 @@ typedef bool receiver_t(const vector_t *sent, const uint8_t *bytes, uint8_t have
 
 static bool takes_any(const uint8_t *bytes, uint8_t have)
 {
-    const uint8_t length = fathom_dyp_protocol_length(bytes, have);
-    return length != 0 && length <= have && fathom_dyp_protocol_valid(bytes, length);
+    const uint8_t length = fathom_dyp_55aa_length(bytes, have);
+    return length != 0 && length <= have && fathom_dyp_55aa_valid(bytes, length);
 }
 
-/* Takes any answer: who only listens, or sets an address and does not look at which. */
-static bool takes_any_answer(const vector_t *sent, const uint8_t *bytes, uint8_t have)
+/* Takes any response: who only listens, or sets an address and does not look at which. */
+static bool takes_any_response(const vector_t *sent, const uint8_t *bytes, uint8_t have)
 {
     (void)sent;
     for (; have != 0; have--, bytes++)
@@ -32,8 +32,8 @@ static bool takes_any_answer(const vector_t *sent, const uint8_t *bytes, uint8_t
     return false;
 }
 
-/* Takes the answer to what it asked: the address and the command of the frame that was sent, and so its length. */
-static bool takes_its_answer(const vector_t *sent, const uint8_t *bytes, uint8_t have)
+/* Takes the response to what it asked: the address and the command of the frame that was sent, and so its length. */
+static bool takes_its_response(const vector_t *sent, const uint8_t *bytes, uint8_t have)
 {
     for (; have != 0; have--, bytes++)
         if (takes_any(bytes, have) && bytes[2] == sent->bytes[2] && bytes[3] == sent->bytes[3]) return true;
@@ -61,7 +61,7 @@ static bool hears_a_request(const vector_t *sent, const uint8_t *bytes, uint8_t 
 static bool takes_its_frame(const vector_t *sent, const uint8_t *bytes, uint8_t have)
 {
     (void)sent;
-    return fathom_dyp_frame_valid(bytes, have);
+    return fathom_dyp_stream_valid(bytes, have);
 }
 
 /* A wrong byte that leaves something to be taken. A list of them ends with END. */
@@ -126,11 +126,11 @@ static void expect_taken(unsigned of_bits, unsigned of_bytes, uint8_t direction,
     assert_int_equal(tried, 255 * bytes);
 }
 
-/* Bytes of the tables: FF frames 4 + 10; 55 AA requests 5 + 5 + 5, answers 13 + 7 + 5. The last of each is one
+/* Bytes of the tables: FF frames 4 + 10; 55 AA requests 5 + 5 + 5, responses 13 + 7 + 5. The last of each is one
  * frame. */
-enum { FF_BYTES = 14, REQUEST_BYTES = 15, ANSWER_BYTES = 25, DYP_BYTES = 35 };
+enum { FF_BYTES = 14, REQUEST_BYTES = 15, RESPONSE_BYTES = 25, DYP_BYTES = 35 };
 
-enum { REQUEST_ALL = 0, ANSWER_ALL = 1, REQUEST_ONE = 2, ANSWER_ONE = 3, ADDRESS_5 = 4 }; /* rows */
+enum { REQUEST_ALL = 0, RESPONSE_ALL = 1, REQUEST_ONE = 2, RESPONSE_ONE = 3, ADDRESS_5 = 4 }; /* rows */
 
 TEST(every_frame_without_an_error_is_taken_by_whom_it_is_meant_for)
 {
@@ -144,16 +144,16 @@ TEST(every_frame_without_an_error_is_taken_by_whom_it_is_meant_for)
     bytes = 0;
     for (unsigned i = 0; i != DYP_ROWS; i++) {
         const vector_t *const frame = &dyp_vectors[i].frame;
-        const bool is_answer = (frame->direction & VECTOR_ANSWER) != 0;
-        assert_int_equal(takes_its_answer(frame, frame->bytes, frame->length), is_answer);
-        assert_int_equal(takes_any_answer(frame, frame->bytes, frame->length), is_answer);
+        const bool is_response = (frame->direction & VECTOR_RESPONSE) != 0;
+        assert_int_equal(takes_its_response(frame, frame->bytes, frame->length), is_response);
+        assert_int_equal(takes_any_response(frame, frame->bytes, frame->length), is_response);
         assert_int_equal(hears_a_request(frame, frame->bytes, frame->length),
                          (frame->direction & VECTOR_REQUEST) != 0);
         bytes += frame->length;
     }
     assert_int_equal(bytes, DYP_BYTES);
-    assert_int_equal(dyp_vectors[ANSWER_ALL].frame.length, 13);
-    assert_int_equal(dyp_vectors[ANSWER_ONE].frame.length, 7);
+    assert_int_equal(dyp_vectors[RESPONSE_ALL].frame.length, 13);
+    assert_int_equal(dyp_vectors[RESPONSE_ONE].frame.length, 7);
 }
 
 TEST(every_single_bit_and_byte_error_in_a_frame_of_its_own_accord_is_refused)
@@ -171,29 +171,29 @@ TEST(every_single_bit_and_byte_error_in_a_55_AA_request_is_refused_by_all_units)
     expect_taken(0, 0, VECTOR_REQUEST, REQUEST_BYTES, hears_a_request, nothing);
 }
 
-TEST(no_single_bit_or_byte_error_makes_a_55_AA_frame_an_answer_to_what_was_asked)
+TEST(no_single_bit_or_byte_error_makes_a_55_AA_frame_a_response_to_what_was_asked)
 {
-    expect_taken(0, 0, VECTOR_ANSWER, ANSWER_BYTES, takes_its_answer, nothing);
+    expect_taken(0, 0, VECTOR_RESPONSE, RESPONSE_BYTES, takes_its_response, nothing);
     /* Nor a request that comes back as an echo. */
-    expect_taken(0, 0, VECTOR_REQUEST, REQUEST_BYTES, takes_its_answer, nothing);
+    expect_taken(0, 0, VECTOR_REQUEST, REQUEST_BYTES, takes_its_response, nothing);
 }
 
 /*
- * One does leave an answer to something else, and it takes no more than one bit:
+ * One does leave a response to something else, and it takes no more than one bit:
  *   55 AA 01 01 03 ..   command 01 -> 03 leaves 55 AA 01 03 03, and 55 + AA + 01 + 03 = 103
- * No other: by the command alone another length can come. In the answer with four distances 10 to 13 would need
+ * No other: by the command alone another length can come. In the response with four distances 10 to 13 would need
  * 55 + AA + 01 + 1n + 03 + E8 = 1FB to 1FE to end in the seventh byte, 07. In that of probe 1 command 03 would need
  * a fifth byte of 03, which is 07; 11 to 13 leave the length, and the sum wrong by 1 to 3; 01 needs 13 bytes. In a
  * frame of 5 bytes, 03 leaves the length and the others need more bytes.
  */
-TEST(one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address)
+TEST(one_bit_of_a_55_AA_response_makes_it_a_response_to_set_address)
 {
-    static const unrefused_t list[] = {{ANSWER_ALL, 3, 0x03}, END};
-    expect_taken(1, 1, VECTOR_BOTH, DYP_BYTES, takes_any_answer, list);
+    static const unrefused_t list[] = {{RESPONSE_ALL, 3, 0x03}, END};
+    expect_taken(1, 1, VECTOR_BOTH, DYP_BYTES, takes_any_response, list);
 }
 
 /*
- * What the other units on the line can take a damaged answer for, by its first five bytes:
+ * What the other units on the line can take a damaged response for, by its first five bytes:
  *   55 AA 01 01 03 ..   55 + AA + a + 01 = 100 + a: address 01 -> 03 asks unit 3 for all probes      one bit
  *                       command 01 -> 03 is the one above, and sets the address of all units to 1     one bit
  *                       03 -> 01 asks unit 1 for all probes again                                     one bit
@@ -201,13 +201,13 @@ TEST(one_bit_of_a_55_AA_answer_makes_it_an_answer_to_set_address)
  *                       07 -> 10 asks unit 1 for probe 1 again
  * Any other command but 07, which there is not, has another sum.
  */
-TEST(five_wrong_bytes_make_an_answer_a_request_and_three_of_them_are_one_bit)
+TEST(five_wrong_bytes_make_a_response_a_request_and_three_of_them_are_one_bit)
 {
     static const unrefused_t list[] = {
-        {ANSWER_ALL, 2, 0x03}, {ANSWER_ALL, 3, 0x03}, {ANSWER_ALL, 4, 0x01},
-        {ANSWER_ONE, 2, 0xF8}, {ANSWER_ONE, 4, 0x10}, END,
+        {RESPONSE_ALL, 2, 0x03}, {RESPONSE_ALL, 3, 0x03}, {RESPONSE_ALL, 4, 0x01},
+        {RESPONSE_ONE, 2, 0xF8}, {RESPONSE_ONE, 4, 0x10}, END,
     };
-    expect_taken(3, 5, VECTOR_ANSWER, ANSWER_BYTES, hears_a_request, list);
+    expect_taken(3, 5, VECTOR_RESPONSE, RESPONSE_BYTES, hears_a_request, list);
 }
 
 /* ---- two wrong bytes ---- */
@@ -249,19 +249,19 @@ TEST(of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes)
 }
 
 /*
- * Whoever asked knows four bytes of the answer. The others, data and sum, are 9 of the 13 bytes with four distances
- * and 3 of the 7 with one: 9 * 8 / 2 and 3 * 2 / 2 pairs. An answer to set-address has one that is not known, and
+ * Whoever asked knows four bytes of the response. The others, data and sum, are 9 of the 13 bytes with four distances
+ * and 3 of the 7 with one: 9 * 8 / 2 and 3 * 2 / 2 pairs. A response to set-address has one that is not known, and
  * no two wrong bytes pass.
  */
-TEST(of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes)
+TEST(of_two_wrong_bytes_in_the_data_of_a_55_AA_response_one_in_255_passes)
 {
-    expect_pairs(36 * 255, 78, &dyp_vectors[ANSWER_ALL].frame, takes_its_answer);
-    expect_pairs(3 * 255, 21, &dyp_vectors[ANSWER_ONE].frame, takes_its_answer);
-    expect_pairs(0, 10, &dyp_vectors[ADDRESS_5].frame, takes_its_answer);
+    expect_pairs(36 * 255, 78, &dyp_vectors[RESPONSE_ALL].frame, takes_its_response);
+    expect_pairs(3 * 255, 21, &dyp_vectors[RESPONSE_ONE].frame, takes_its_response);
+    expect_pairs(0, 10, &dyp_vectors[ADDRESS_5].frame, takes_its_response);
 }
 
 /*
- * Who takes any answer gets in addition, of 55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62:
+ * Who takes any response gets in addition, of 55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62:
  *   the address and one of the 9 bytes of data and sum                                              9 * 255
  *   command 03, whose 5 bytes are right as they are, with one of the 8 bytes behind them             8 * 255
  *   command 1n and the address a: FF + a + 1n + 03 + E8 = 07 for a = 1D - 1n, 0D to 0A                     4
@@ -272,15 +272,16 @@ TEST(of_two_wrong_bytes_in_the_data_of_a_55_AA_answer_one_in_255_passes)
  *   command 03 and the address a: FF + a + 03 = 07 for a = 05; or the fifth byte, 03                       2
  * and of 55 AA 05 03 07 the address and the sum                                                        255
  */
-TEST(who_takes_any_55_AA_answer_takes_these_too)
+TEST(who_takes_any_55_AA_response_takes_these_too)
 {
-    expect_pairs(36 * 255 + 9 * 255 + 8 * 255 + 4 + 12, 78, &dyp_vectors[ANSWER_ALL].frame, takes_any_answer);
-    expect_pairs(3 * 255 + 3 * 255 + 12 + 2, 21, &dyp_vectors[ANSWER_ONE].frame, takes_any_answer);
-    expect_pairs(255, 10, &dyp_vectors[ADDRESS_5].frame, takes_any_answer);
+    expect_pairs(36 * 255 + 9 * 255 + 8 * 255 + 4 + 12, 78, &dyp_vectors[RESPONSE_ALL].frame,
+                 takes_any_response);
+    expect_pairs(3 * 255 + 3 * 255 + 12 + 2, 21, &dyp_vectors[RESPONSE_ONE].frame, takes_any_response);
+    expect_pairs(255, 10, &dyp_vectors[ADDRESS_5].frame, takes_any_response);
 }
 
 /* A request has three bytes that may differ: the address with the sum in 255 ways, and each of the 5 other
- * commands with the address or with the sum. So two ways make a question for a distance set an address:
+ * commands with the address or with the sum. So two ways make a request for a distance set an address:
  * 55 AA FF 03 01 and 55 AA 01 03 03; 55 AA 0E 03 10 and 55 AA 01 03 03. */
 TEST(of_two_wrong_bytes_in_a_55_AA_request_265_pass)
 {
@@ -297,5 +298,5 @@ TEST(what_an_8_bit_sum_cannot_see_is_this_list)
         {0xFF, 0x08, 0xA0, 0xA7}, /* one more and one less: 2208 mm */
         {0xFF, 0x87, 0x21, 0xA7}, /* bit 7 of both: 34593 mm */
     };
-    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_frame_valid(unseen[i], 4));
+    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_stream_valid(unseen[i], 4));
 }

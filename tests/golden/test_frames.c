@@ -3,10 +3,10 @@
 
 #include "suite.h"
 
-#include "fathom/crc16.h"
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "vectors.h"
 
 /* One test a row of vectors.c, named by its section, and one for each mistake of the datasheets that concerns
@@ -63,7 +63,7 @@ static void request_row(const modbus_vector_t *row)
     assert_int_equal(message.exception, 0);
 }
 
-static void answer_row(const modbus_vector_t *row)
+static void response_row(const modbus_vector_t *row)
 {
     const modbus_meaning_t *const meaning = &row->meaning;
     uint8_t frame[FRAME];
@@ -92,7 +92,7 @@ static void modbus_row(void **state)
     const modbus_vector_t *const row = *state;
     assert_true(row->frame.direction != 0);
     if ((row->frame.direction & VECTOR_REQUEST) != 0) request_row(row);
-    if ((row->frame.direction & VECTOR_ANSWER) != 0) answer_row(row);
+    if ((row->frame.direction & VECTOR_RESPONSE) != 0) response_row(row);
 }
 
 static void auto_row(void **state)
@@ -101,12 +101,12 @@ static void auto_row(void **state)
     uint8_t frame[FATHOM_DYP_MAX_LENGTH + 1];
     uint16_t values[FATHOM_DYP_PROBES] = {0};
 
-    assert_true(fathom_dyp_frame_valid(row->frame.bytes, row->frame.length));
-    fathom_dyp_frame_decode(row->frame.bytes, values, row->probes);
+    assert_true(fathom_dyp_stream_valid(row->frame.bytes, row->frame.length));
+    fathom_dyp_stream_decode(row->frame.bytes, values, row->probes);
     assert_memory_equal(values, row->values, sizeof values);
 
     memset(frame, GUARD, sizeof frame);
-    assert_int_equal(fathom_dyp_frame_encode(frame, row->values, row->probes), row->frame.length);
+    assert_int_equal(fathom_dyp_stream_encode(frame, row->values, row->probes), row->frame.length);
     assert_memory_equal(frame, row->frame.bytes, row->frame.length);
     assert_int_equal(frame[row->frame.length], GUARD);
 }
@@ -126,15 +126,15 @@ static void crc_row(void **state)
 TEST(the_tables_carry_every_printed_frame)
 {
     unsigned requests = 0;
-    unsigned answers = 0;
+    unsigned responses = 0;
     for (unsigned i = 0; i != MODBUS_ROWS; i++) {
         assert_true(modbus_vectors[i].frame.length >= 5);
         requests += (modbus_vectors[i].frame.direction & VECTOR_REQUEST) != 0;
-        answers += (modbus_vectors[i].frame.direction & VECTOR_ANSWER) != 0;
+        responses += (modbus_vectors[i].frame.direction & VECTOR_RESPONSE) != 0;
     }
     assert_int_equal(AUTO_ROWS + MODBUS_ROWS + DYP_ROWS, 38);
     assert_int_equal(requests, 21);
-    assert_int_equal(answers, 20);
+    assert_int_equal(responses, 20);
 }
 
 TEST(every_55_AA_frame_goes_both_ways)
@@ -144,20 +144,20 @@ TEST(every_55_AA_frame_goes_both_ways)
         uint8_t frame[FRAME];
         memset(frame, GUARD, sizeof frame);
         if ((row->frame.direction & VECTOR_REQUEST) != 0) {
-            assert_int_equal(fathom_dyp_protocol_encode_request(frame, row->address, row->command), 5);
+            assert_int_equal(fathom_dyp_55aa_encode_request(frame, row->address, row->command), 5);
             assert_memory_equal(frame, row->frame.bytes, 5);
             assert_int_equal(frame[5], GUARD);
         }
-        if ((row->frame.direction & VECTOR_ANSWER) == 0) continue;
+        if ((row->frame.direction & VECTOR_RESPONSE) == 0) continue;
         uint16_t values[5] = {GUARD, GUARD, GUARD, GUARD, GUARD};
-        const uint8_t count = fathom_dyp_protocol_values(row->command);
-        assert_int_equal(fathom_dyp_protocol_answer_length(row->command), row->frame.length);
-        assert_int_equal(fathom_dyp_protocol_length(row->frame.bytes, row->frame.length), row->frame.length);
-        assert_true(fathom_dyp_protocol_valid(row->frame.bytes, row->frame.length));
-        fathom_dyp_protocol_decode(row->frame.bytes, values);
+        const uint8_t count = fathom_dyp_55aa_values(row->command);
+        assert_int_equal(fathom_dyp_55aa_response_length(row->command), row->frame.length);
+        assert_int_equal(fathom_dyp_55aa_length(row->frame.bytes, row->frame.length), row->frame.length);
+        assert_true(fathom_dyp_55aa_valid(row->frame.bytes, row->frame.length));
+        fathom_dyp_55aa_decode(row->frame.bytes, values);
         assert_memory_equal(values, row->values, count * sizeof *values);
         assert_int_equal(values[count], GUARD);
-        assert_int_equal(fathom_dyp_protocol_encode_answer(frame, row->address, row->command, row->values),
+        assert_int_equal(fathom_dyp_55aa_encode_response(frame, row->address, row->command, row->values),
                          row->frame.length);
         assert_memory_equal(frame, row->frame.bytes, row->frame.length);
         assert_int_equal(frame[row->frame.length], GUARD);
@@ -220,14 +220,14 @@ TEST(hps_a_write_of_many_takes_123_registers_not_120)
 {
     fathom_modbus_message_t message;
     fathom_modbus_write_multiple_registers(&message, 1, 0, 123, NULL);
-    assert_int_equal(fathom_modbus_rtu_room(&message), 255);
+    assert_int_equal(fathom_modbus_rtu_frame_size(&message), 255);
     fathom_modbus_write_multiple_registers(&message, 1, 0, 124, NULL);
-    assert_int_equal(fathom_modbus_rtu_room(&message), 0);
+    assert_int_equal(fathom_modbus_rtu_frame_size(&message), 0);
 }
 
-/* HPS-167S tables 4 and 7: 0 to 252 bytes of data, 0 to 256. The longest answer that Modbus knows carries 250
+/* HPS-167S tables 4 and 7: 0 to 252 bytes of data, 0 to 256. The longest response that Modbus knows carries 250
  * bytes of registers and their count. */
-TEST(hps_an_answer_carries_at_most_251_bytes_of_data)
+TEST(hps_a_response_carries_at_most_251_bytes_of_data)
 {
     static const uint8_t longest[] = {0x01, 0x03, 250};
     static const uint8_t longer[] = {0x01, 0x03, 252};
@@ -263,8 +263,8 @@ TEST(a16_a_frame_begins_with_one_FF)
 {
     static const uint8_t example[] = {0xFF, 0x07, 0xA1, 0xA7};
     static const uint8_t as_printed[] = {0xFF, 0xFF, 0x07, 0xA1, 0xA7};
-    assert_true(fathom_dyp_frame_valid(example, 4));
-    assert_false(fathom_dyp_frame_valid(as_printed, 4));
+    assert_true(fathom_dyp_stream_valid(example, 4));
+    assert_false(fathom_dyp_stream_valid(as_printed, 4));
 }
 
 /* ---- all of them ---- */

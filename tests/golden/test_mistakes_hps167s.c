@@ -3,9 +3,9 @@
 
 #include "suite.h"
 
-#include "fathom/crc16.h"
-#include "fathom/hps167s_info.h"
-#include "fathom/modbus_client.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/hps167s_info.h"
 #include "vectors.h"
 
 /* The mistakes in the datasheet of the HPS-167S, one test each: what is printed is refused or not followed, what is
@@ -38,8 +38,8 @@ static fathom_modbus_request_t *pending;
 static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
 {
     (void)ctx;
-    request->exchange.status = FATHOM_PENDING;
-    request->exchange.attempts = 1;
+    request->transaction.status = FATHOM_PENDING;
+    request->transaction.attempts = 1;
     pending = request;
     return FATHOM_PENDING;
 }
@@ -50,7 +50,7 @@ static uint32_t now_us(void *ctx) { return (void)ctx, (uint32_t)0; }
 
 static void end_with(const uint8_t *frame)
 {
-    pending->exchange.status = (int8_t)fathom_modbus_rtu_parse_response(&pending->message, frame);
+    pending->transaction.status = (int8_t)fathom_modbus_rtu_parse_response(&pending->message, frame);
 }
 
 static const fathom_clock_t clock = {.now_us = now_us};
@@ -139,7 +139,7 @@ TEST(note_2_says_20_meters_where_the_range_ends_at_18)
     assert_int_equal(fathom_hps167s_decode(beyond, &sample), FATHOM_ERR_MALFORMED);
 }
 
-/* Table 28 is the answer to #10 and is called that of the baud rate: its register is 0012, the baud rate's 0011. */
+/* Table 28 is the response to #10 and is called that of the baud rate: its register is 0012, the baud rate's 0011. */
 TEST(table_28_is_titled_baud_rate_and_is_the_measurement_mode)
 {
     assert_int_equal(frame_of("HPS tables 27 28")->bytes[3], 0x12);

@@ -10,7 +10,7 @@
  * corrected and the name says so. The bytes and what they mean are copied from the datasheets, nothing here was
  * computed by Fathom. Sections: A16 6(4) ex 1 is section 6, subsection (4), example 1.
  */
-enum { VECTOR_REQUEST = 1, VECTOR_ANSWER = 2, VECTOR_BOTH = VECTOR_REQUEST | VECTOR_ANSWER };
+enum { VECTOR_REQUEST = 1, VECTOR_RESPONSE = 2, VECTOR_BOTH = VECTOR_REQUEST | VECTOR_RESPONSE };
 
 enum { VECTOR_BYTES = 27, VECTOR_VALUES = 11 };
 
@@ -41,13 +41,13 @@ typedef struct {
     uint16_t values[4];
 } dyp_vector_t;
 
-/* A Modbus frame and its meaning; with an answer stands the request that it answers. */
+/* A Modbus frame and its meaning; with a response stands the request that it answers. */
 typedef struct {
     uint8_t unit;
     uint8_t function;
     uint16_t address;
     uint16_t operand;               /* the count of registers, or the value of a write to one */
-    uint16_t values[VECTOR_VALUES]; /* registers of a read's answer */
+    uint16_t values[VECTOR_VALUES]; /* registers of a read's response */
     uint8_t exception;
 } modbus_meaning_t;
 

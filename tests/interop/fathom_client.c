@@ -10,9 +10,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 #include "fathom_posix.h"
-#include "seam.h"
+#include "transport.h"
 
 enum { BITS_OF_8N1 = 10, BITS_OF_8E1 = 11, BEHIND_AN_OS_US = 25000 };
 
@@ -43,8 +43,9 @@ int main(int argc, char **argv)
     fathom_line_t line;
     bool is_usage = fathom_line_init(&line, &config) == FATHOM_READY;
     const fathom_modbus_t modbus = fathom_modbus_client_with_zero(&line);
-    const seam_t seam = {&modbus, fathom_posix_wait, &port, (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
-    is_usage = is_usage && seam_run(&seam, argv + 5);
+    const transport_t transport = {&modbus, fathom_posix_wait, &port,
+                                   (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
+    is_usage = is_usage && transport_run(&transport, argv + 5);
     fathom_posix_close(&port);
     return is_usage ? 0 : 2;
 }

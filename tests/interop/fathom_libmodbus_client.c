@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The library's Modbus seam over libmodbus, as fathom_client is over the termios port:
+ * The library's Modbus transport over libmodbus, as fathom_client is over the termios port:
  *
  *     fathom_libmodbus_client PORT BAUD none|even TIMEOUT_MS STEP ...
  *
@@ -14,7 +14,7 @@
 
 #include "fathom_libmodbus.h"
 #include "fathom_posix.h"
-#include "seam.h"
+#include "transport.h"
 
 enum { BITS_OF_8N1 = 10, BITS_OF_8E1 = 11 };
 
@@ -45,10 +45,10 @@ int main(int argc, char **argv)
     };
     static fathom_libmodbus_t port;
     bool is_usage = fathom_libmodbus_init(&port, modbus, &config) == FATHOM_READY;
-    const fathom_modbus_t carrier = fathom_libmodbus(&port);
-    const seam_t seam = {&carrier, fathom_libmodbus_wait, &port,
-                         (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
-    is_usage = is_usage && seam_run(&seam, argv + 5);
+    const fathom_modbus_t libmodbus = fathom_libmodbus(&port);
+    const transport_t transport = {&libmodbus, fathom_libmodbus_wait, &port,
+                                   (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
+    is_usage = is_usage && transport_run(&transport, argv + 5);
     modbus_close(modbus);
     modbus_free(modbus);
     return is_usage ? 0 : 2;

@@ -4,7 +4,7 @@ words.
 
 A client does steps (see steps.h): 'read:0x0100:1', 'write:0x0200:9', 'many:0x20:0,180', 'input:8:4',
 'coils:0:1', 'identify' (a function that no sensor has: 0x2B, or 0x11 where that is what the client can send).
-Each has an outcome in words: the values read, four hex digits each, 'done', 'exception 2', 'no answer', or
+Each has an outcome in words: the values read, four hex digits each, 'done', 'exception 2', 'no response', or
 what else the client says."""
 import asyncio
 import logging
@@ -30,7 +30,7 @@ import e2e  # noqa: E402
 PROGRAMS = os.environ.get('FATHOM_INTEROP') or os.path.join(e2e.ROOT, 'build', 'tests', 'interop')
 LINES = {'a16': (9600, 'none'), 'a05': (9600, 'none'),
          'hps167s': (19200, 'even')}  # the sensors' own settings
-SOON = 5  # seconds for an answer that comes; the slowest takes 0.52
+SOON = 5  # seconds for a response that comes; the slowest takes 0.52
 QUIET = 0.5  # seconds; what must not be answered would take the simulator 20 ms, or 200 for two measurements
 
 logging.getLogger('pymodbus').setLevel(logging.CRITICAL)  # what went wrong is in the outcome
@@ -106,7 +106,7 @@ class Mbpoll(AtRates):
     types = {'read': '4:hex', 'input': '3:hex', 'coils': '0', 'write': '4', 'many': '4'}
     failures = (('Illegal function', 'exception 1'), ('Illegal data address', 'exception 2'),
                 ('Illegal data value', 'exception 3'), ('Slave device or server failure', 'exception 4'),
-                ('Connection timed out', 'no answer'))
+                ('Connection timed out', 'no response'))
 
     def ask(self, sim, unit, *steps, seconds=SOON):
         return [self.poll(sim, unit, seconds, *step.split(':')) for step in steps]
@@ -173,7 +173,7 @@ class Pymodbus(AtRates):
 
     def stop(self, sim):
         """Ends automatic output, of which a frame may still come; the port."""
-        self.ask(sim, 5, 'read:0x0200:1')  # whatever comes: frames and the answer may be side by side
+        self.ask(sim, 5, 'read:0x0200:1')  # whatever comes: frames and the response may be side by side
         port = self.connect(sim).socket
         port.timeout = 0.4  # more than the period of either sensor
         self.assertIn(b'', (port.read(64) for _ in range(4)), 'it does not stop')
@@ -194,7 +194,7 @@ class Pymodbus(AtRates):
                     'coils': client.read_coils}[kind]
             result = read(first, numbers[0], slave=unit)
         if isinstance(result, ModbusIOException):
-            return 'no answer' if re.search('No [Rr]esponse', str(result)) else str(result)
+            return 'no response' if re.search('No [Rr]esponse', str(result)) else str(result)
         if result.isError():
             return f'exception {result.exception_code}'
         if kind in ('write', 'many'):

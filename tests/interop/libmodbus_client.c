@@ -21,7 +21,7 @@ static void print_failure(void)
     if (exception > 0 && exception < MODBUS_EXCEPTION_MAX)
         (void)printf("exception %d\n", exception);
     else if (errno == ETIMEDOUT)
-        (void)puts("no answer");
+        (void)puts("no response");
     else if (errno == EMBBADCRC)
         (void)puts("damaged");
     else if (errno == EMBBADDATA)
@@ -55,21 +55,21 @@ static void coils(modbus_t *client, const step_t *step)
     print_outcome(result, values, step->count);
 }
 
-/* libmodbus adds the CRC, checks that of the answer, and leaves the rest to its caller. */
+/* libmodbus adds the CRC, checks that of the response, and leaves the rest to its caller. */
 static void raw(modbus_t *client, const step_t *step)
 {
-    uint8_t request[STEP_VALUES + 1], answer[MODBUS_RTU_MAX_ADU_LENGTH];
+    uint8_t request[STEP_VALUES + 1], response[MODBUS_RTU_MAX_ADU_LENGTH];
     uint16_t bytes[MODBUS_RTU_MAX_ADU_LENGTH];
     request[0] = (uint8_t)modbus_get_slave(client);
     for (int i = 0; i != step->count; i++) request[i + 1] = (uint8_t)step->values[i];
     int length = modbus_send_raw_request(client, request, step->count + 1);
-    if (length >= 0) length = modbus_receive_confirmation(client, answer);
-    if (length >= 0 && (answer[FUNCTION] & EXCEPTION) != 0) {
-        (void)printf("exception %d\n", answer[FUNCTION + 1]);
+    if (length >= 0) length = modbus_receive_confirmation(client, response);
+    if (length >= 0 && (response[FUNCTION] & EXCEPTION) != 0) {
+        (void)printf("exception %d\n", response[FUNCTION + 1]);
     } else if (length < 0) {
         print_failure();
     } else {
-        for (int i = 0; i != length; i++) bytes[i] = answer[i];
+        for (int i = 0; i != length; i++) bytes[i] = response[i];
         step_print(bytes, (uint16_t)(length - CRC_LENGTH), 2);
     }
 }

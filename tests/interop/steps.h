@@ -13,8 +13,8 @@
  *   write:ADDRESS:VALUE    function 06          unit:UNIT            whom the steps after it ask
  *   many:FIRST:VALUE,...   function 16
  *
- * Numbers as in C. For each step but unit they print a line: the values read (or the answer's bytes) in hex,
- * "done", "exception N", "no answer", "damaged", "unfit", or other words for what else went wrong.
+ * Numbers as in C. For each step but unit they print a line: the values read (or the response's bytes) in hex,
+ * "done", "exception N", "no response", "damaged", "unfit", or other words for what else went wrong.
  */
 typedef enum {
     STEP_READ = 1,

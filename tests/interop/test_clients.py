@@ -96,7 +96,7 @@ class Refusals:
     def silent(self, device, steps):
         sim = self.sensor(f'{device}:5:modbus --distance 754')
         for step in steps.split():
-            self.assertEqual(self.ask(sim, 5, step, seconds=QUIET), ['no answer'], step)
+            self.assertEqual(self.ask(sim, 5, step, seconds=QUIET), ['no response'], step)
             self.assertEqual(self.ask(sim, 5, 'read:0x0200:1'), ['0005'], f'after {step}')
 
     def test_another_unit_is_not_there(self):
@@ -105,7 +105,7 @@ class Refusals:
                                           ('hps167s:3', (2, 131), 'read:4:1', '004D')):  # 131 is 128 + 3
             sim = self.sensor(f'{device} --distance 754')
             for unit in units:
-                self.assertEqual(self.ask(sim, unit, step, seconds=QUIET), ['no answer'],
+                self.assertEqual(self.ask(sim, unit, step, seconds=QUIET), ['no response'],
                                  f'{device} at {unit}')
             self.assertEqual(self.ask(sim, 3, step), [said], device)
 
@@ -113,10 +113,10 @@ class Refusals:
 class Writes:
     @e2e.each(the_address_of_an_a16=('a16', 0x0101), the_address_of_an_a05=('a05', 0x0109))
     def moves(self, device, register):
-        """A new address counts at once, and the answer comes from the old one."""
+        """A new address counts at once, and the response comes from the old one."""
         sim = self.sensor(f'{device}::modbus --distance 754')
         self.assertEqual(self.ask(sim, 1, 'read:0x0200:1', 'write:0x0200:9'), ['0001', 'done'])
-        self.assertEqual(self.ask(sim, 1, 'read:0x0200:1', seconds=QUIET), ['no answer'])
+        self.assertEqual(self.ask(sim, 1, 'read:0x0200:1', seconds=QUIET), ['no response'])
         self.assertEqual(self.ask(sim, 9, 'read:0x0200:1', f'read:{register}:1'), ['0009', '02F2'])
         self.assertEqual(self.ask(sim, 9, f'write:0x0200:{self.most_unit}'), ['done'])
         self.assertEqual(self.ask(sim, self.most_unit, 'read:0x0200:1'), [f'{self.most_unit:04X}'])
@@ -134,7 +134,7 @@ class Writes:
         """No exceptions are documented: what is not obeyed is not answered."""
         sim = self.sensor(f'{device}:5:modbus --distance 754')
         for step in steps:
-            self.assertEqual(self.ask(sim, 5, step, seconds=QUIET), ['no answer'], step)
+            self.assertEqual(self.ask(sim, 5, step, seconds=QUIET), ['no response'], step)
         self.assertEqual(self.ask(sim, 5, 'read:0x0200:1'), ['0005'])
 
     def test_the_reset_of_an_hps167s_is_for_its_own_length_alone(self):
@@ -143,7 +143,7 @@ class Writes:
         self.assertEqual(self.ask(sim, 7, 'read:9:2', 'read:9:4', 'read:8:4'),
                          ['exception 2', 'exception 2', '0823 DCB2 0701 0000'])
         self.assertEqual(self.ask(sim, 7, 'read:9:1'), ['0001'])  # 00, then 01 on success
-        self.assertEqual(self.ask(sim, 7, 'read:2:4', seconds=QUIET), ['no answer'])
+        self.assertEqual(self.ask(sim, 7, 'read:2:4', seconds=QUIET), ['no response'])
         self.assertEqual(self.ask(sim, 1, 'read:2:4'), ['FFFF 0500 0000 B401'])
 
 
@@ -168,7 +168,7 @@ class Settings:
     def test_the_address_of_an_hps167s(self):
         sim = self.hps()
         self.assertEqual(self.ask(sim, 1, 'write:0x10:32'), ['done'])
-        self.assertEqual(self.ask(sim, 1, 'read:2:4', seconds=QUIET), ['no answer'])
+        self.assertEqual(self.ask(sim, 1, 'read:2:4', seconds=QUIET), ['no response'])
         self.assertEqual(self.ask(sim, 32, 'read:2:4', 'write:0x10:1'), [FACTORY, 'done'])
         self.assertEqual(self.ask(sim, 1, 'read:2:4'), [FACTORY])
 
@@ -177,7 +177,7 @@ class Settings:
         sim = self.hps()
         for code, baud in ((3, 115200), (2, 57600), (4, 230400), (1, 19200)):
             self.assertEqual(self.ask(sim, 1, f'write:0x11:{code}'), ['done'], baud)
-            self.assertEqual(self.ask(sim, 1, 'read:2:4', seconds=QUIET), ['no answer'], baud)
+            self.assertEqual(self.ask(sim, 1, 'read:2:4', seconds=QUIET), ['no response'], baud)
             self.at_rate(sim, baud)
             self.assertEqual(self.ask(sim, 1, 'read:2:4'), [f'FFFF 0000 0000 B40{code}'], baud)
 
@@ -227,13 +227,13 @@ class Settings:
     def test_the_operating_mode_of_an_a16_is_not_to_be_read(self):
         sim = self.sensor('a16:9:modbus --distance 754')
         self.assertEqual(self.ask(sim, 9, 'write:0x0202:1', 'write:0x0202:0'), ['done', 'done'])
-        self.assertEqual(self.ask(sim, 9, 'read:0x0202:1', seconds=QUIET), ['no answer'])
+        self.assertEqual(self.ask(sim, 9, 'read:0x0202:1', seconds=QUIET), ['no response'])
         self.assertEqual(self.ask(sim, 9, 'read:0x0101:1'), ['02F2'])  # 754: RS-485 stays with Modbus
 
     def test_an_a16_is_silent_about_values_that_its_settings_do_not_have(self):
         sim = self.sensor('a16:9:modbus')
         for step in ('write:0x0202:2', 'write:0x0205:2', 'write:0x0207:0x0100'):
-            self.assertEqual(self.ask(sim, 9, step, seconds=QUIET), ['no answer'], step)
+            self.assertEqual(self.ask(sim, 9, step, seconds=QUIET), ['no response'], step)
         self.assertEqual(self.ask(sim, 9, 'read:0x0205:1', 'read:0x0206:1', 'read:0x0207:1'),
                          ['0001', '03E8', '0000'])
 
@@ -271,13 +271,13 @@ class Damage(interop.Pymodbus, interop.Case):
                 ('a byte too many, with its CRC', e2e.adu(*head, 0)),
                 ('nothing behind the function', e2e.adu(*head[:2])),
                 ('the unit alone', request[:1]),
-                ('an answer', e2e.registers(1, 754)),
+                ('a response', e2e.registers(1, 754)),
                 ('two requests as one', request + request)):
             self.assertTrue(self.is_silent(sim, data), what)
             self.assertEqual(self.ask(sim, 1, good), [said], f'after {what}')
 
     def test_what_is_for_all_is_not_answered_by_an_hps167s(self):
-        """"0x00 broadcast (no answer)" (HPS-167S 2.2.1)."""
+        """"0x00 broadcast (no response)" (HPS-167S 2.2.1)."""
         sim = self.sensor('hps167s --distance 2083')
         self.assertTrue(self.is_silent(sim, e2e.adu(0, 3, 0, 8, 0, 4)))
         self.assertEqual(self.ask(sim, 1, 'read:8:4'), [MEASUREMENT])
@@ -288,7 +288,7 @@ class Alone(interop.Pymodbus, interop.Case):
     def all_obey(self, device):
         """0xFF is for all, and answered by none."""
         sim = self.sensor(f'{device}:5:modbus')
-        self.assertEqual(self.ask(sim, 255, 'write:0x0200:6', seconds=QUIET), ['no answer'])
+        self.assertEqual(self.ask(sim, 255, 'write:0x0200:6', seconds=QUIET), ['no response'])
         self.assertEqual(self.ask(sim, 6, 'read:0x0200:1'), ['0006'])
 
     @e2e.each(the_first_command_ends_the_automatic_output_of_an_a16=('a16', e2e.frame(754)),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """fathom read against a server that answers wrongly: byte for byte by hand, which no Modbus library does. No
-wrong answer becomes a reading, the next right one does, the run ends in its time, and exit status, message
+wrong response becomes a reading, the next right one does, the run ends in its time, and exit status, message
 and counters say what it was."""
 import random
 
@@ -12,20 +12,20 @@ from interop import e2e
 REQUEST = {'a16': (1, 0, 0, 1), 'a05': (1, 6, 0, 4), 'hps167s': (0, 8, 0, 4)}
 SAID = {'a16': (754,), 'a05': (1000, 2000, 1953, 3562), 'hps167s': (0x0823, 0xDCB2, 0x0701, 0)}
 READ = {'a16': ['754'], 'a05': ['1000', '2000', '1953', '3562'], 'hps167s': ['2083']}
-TIMEOUT = 1  # seconds; a script on a busy machine answers well within
+TIMEOUT = 1  # seconds; a script on a busy machine responses well within
 
 UNFIT = 'address 1 answered something else than was asked; check that it is '
-DAMAGED = 'the answer of address 1 was damaged; '
-SILENT = 'no answer from address 1: '
+DAMAGED = 'the response of address 1 was damaged; '
+SILENT = 'no response from address 1: '
 OTHERS = SILENT + 'the line works, but it was address 2 that was heard; try --address 2'
 NOBODYS = SILENT + 'the line works, but it was address 255 that was heard, which no '
 NO_FRAME = SILENT + 'bytes were heard, but no Modbus frame'
 NOTHING = SILENT + 'nothing was heard at all'
 
 
-def resized(answer, size, data):
+def resized(response, size, data):
     """Another byte count and other data, under a right CRC."""
-    return e2e.adu(*answer[:2], size, *data)
+    return e2e.adu(*response[:2], size, *data)
 
 
 def flipped(data, at, bit=1):
@@ -33,7 +33,7 @@ def flipped(data, at, bit=1):
 
 
 def noise():
-    """Garbage of every kind, of which none is an answer by chance: no part of it has a right CRC."""
+    """Garbage of every kind, of which none is a response by chance: no part of it has a right CRC."""
     source = random.Random(5)
     blocks = [source.randbytes(source.randrange(1, 40)) for _ in range(6)]
     for block in blocks:
@@ -64,27 +64,27 @@ class Raw(e2e.Case):
         return e2e.registers(1, *SAID[self.sensor])
 
     @e2e.each(
-        garbage_before_the_answer=lambda right: [b'\x00\x55\xFE\x80' + right],
-        garbage_that_looks_like_the_beginning_of_an_answer=lambda right: [b'\x01\x03' + right],
-        an_answer_of_another_unit_before_the_own=lambda right: [e2e.registers(2, 1, 2, 3, 4) + right],
+        garbage_before_the_response=lambda right: [b'\x00\x55\xFE\x80' + right],
+        garbage_that_looks_like_the_beginning_of_a_response=lambda right: [b'\x01\x03' + right],
+        a_response_of_another_unit_before_the_own=lambda right: [e2e.registers(2, 1, 2, 3, 4) + right],
         trailing_bytes=lambda right: [right + b'\x00\xFE\x55'],
         # The second copy comes before the next request and belongs to nobody.
-        an_answer_twice=lambda right: [right * 2])
+        a_response_twice=lambda right: [right * 2])
     def good(self, make):
         done = self.plays([make(self.right()), make(self.right()), [self.right()]], 3, 0)
-        self.assertIn('answers 3', done.err)
+        self.assertIn('responses 3', done.err)
 
     @e2e.each(
         more_registers_than_were_asked_for=(lambda right: resized(right, right[2] + 2, (*right[3:-2], 2, 1)),
                                             UNFIT),
         the_input_registers_of_function_04=(lambda right: e2e.adu(1, 4, *right[2:-2]), NO_FRAME),
         another_function_with_a_right_crc=(lambda right: e2e.adu(1, 6, 1, 0, 8, 0xAE), UNFIT),
-        another_units_answer=(lambda right: e2e.adu(2, *right[1:-2]), OTHERS),
+        another_units_response=(lambda right: e2e.adu(2, *right[1:-2]), OTHERS),
         an_exception_to_this_request=(lambda right: e2e.adu(1, 0x83, 3),
                                       'address 1 refused: exception 03 (illegal data value)'),
         an_exception=(lambda right: e2e.adu(1, 0x83, 4), 'address 1 refused: exception 04 (device failure)'),
         a_wrong_crc=(lambda right: flipped(right, len(right) - 1), DAMAGED),
-        what_follows_a_truncated_answer_is_not_joined_to_it=(lambda right: right[:5], DAMAGED),
+        what_follows_a_truncated_response_is_not_joined_to_it=(lambda right: right[:5], DAMAGED),
         silence=(lambda right: b'', NOTHING))
     def wrong(self, make, words):
         self.plays([[make(self.right())], [self.right()]], 1, 1, f'attempt 1: {words}')
@@ -101,8 +101,8 @@ class Raw(e2e.Case):
         for count in (2, 3, 5):
             self.wrong(lambda right: e2e.registers(1, *[2222] * count), UNFIT)
 
-    @e2e.each(an_answer_byte_by_byte=range(1, 99),
-              **{f'the_answer_in_two_writes_with_a_pause_{cut}': [cut] for cut in (1, 3, 5)})
+    @e2e.each(a_response_byte_by_byte=range(1, 99),
+              **{f'the_response_in_two_writes_with_a_pause_{cut}': [cut] for cut in (1, 3, 5)})
     def in_pieces(self, cuts):
         """A pause of 25 ms ends a frame. A busy machine may make as much of 10 ms, but not every time."""
         right = self.right()
@@ -114,41 +114,41 @@ class Raw(e2e.Case):
         self.assertIn(done.mm, [READ[self.sensor] * good for good in range(1, 7)], done)
         return done
 
-    def all_fail(self, *answers):
-        """Each of these is no answer, and told as that."""
-        done = self.plays([[answer] for answer in answers], 0, 1, timeout=0.3)
-        self.assertEqual(done.err.count(DAMAGED) + done.err.count(SILENT), len(answers), done)
+    def all_fail(self, *responses):
+        """Each of these is no response, and told as that."""
+        done = self.plays([[response] for response in responses], 0, 1, timeout=0.3)
+        self.assertEqual(done.err.count(DAMAGED) + done.err.count(SILENT), len(responses), done)
 
-    def test_a_truncated_answer_at_every_length(self):
+    def test_a_truncated_response_at_every_length(self):
         self.all_fail(*(self.right()[:length] for length in range(1, len(self.right()))))
 
     def test_a_flipped_bit_in_every_byte(self):
         self.all_fail(*(flipped(self.right(), at, 1 << 3 * at % 8) for at in range(len(self.right()))))
 
-    def test_a_late_answer_is_told_and_not_shown(self):
-        """As late as two time-outs, the last moment in which it can be told from the next one's answer."""
+    def test_a_late_response_is_told_and_not_shown(self):
+        """As late as two time-outs, the last moment in which it can be told from the next one's response."""
         late = e2e.registers(1, *[2222] * len(SAID[self.sensor]))
-        self.plays([[1.5 * TIMEOUT, late], [self.right()]], 1, 1, 'late answers 1')
+        self.plays([[1.5 * TIMEOUT, late], [self.right()]], 1, 1, 'late responses 1')
 
-    def test_the_echo_of_the_request_before_the_answer(self):
+    def test_the_echo_of_the_request_before_the_response(self):
         echo, right = self.request(), self.right()
         for options in ('', '--echo on'):
             self.plays([[echo, right], [echo, 0.05, right], [echo + right]], 3, 0,
-                       'fathom: line: answers 3\n',
+                       'fathom: line: responses 3\n',
                        options=options)
 
-    def test_an_echo_and_a_damaged_answer(self):
+    def test_an_echo_and_a_damaged_response(self):
         echo, right = self.request(), self.right()
         self.plays([[echo + flipped(right, 3, 2)], [echo + right]], 1, 1, f'attempt 1: {DAMAGED}')
 
     def test_the_request_itself_is_no_reading(self):
         self.plays([[self.request()]], 0, 1)
 
-    def test_an_answer_behind_another_units_is_read(self):
+    def test_a_response_behind_another_units_is_read(self):
         self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unasked frames 1\n')
 
     def test_random_bytes(self):
-        """A good answer between."""
+        """A good response between."""
         scripts = [script for block in noise() for script in ([block], [0.03, self.right()])]
         self.plays(scripts, 6, 1, timeout=0.7)
 
@@ -191,15 +191,15 @@ class Hps167s(OneDistance, Raw):
         an_exception_to_another_function=(lambda right: e2e.adu(1, 0x86, 2), UNFIT),
         an_exception_to_a_function_that_was_never_used=(lambda right: e2e.adu(1, 0x84, 2), NO_FRAME),
         a_crc_in_the_other_order=(lambda right: right[:-2] + right[:-3:-1], DAMAGED),
-        an_answer_without_its_end=(lambda right: right[:-1], DAMAGED),
-        an_answer_without_its_beginning=(lambda right: right[1:], NO_FRAME),
+        a_response_without_its_end=(lambda right: right[:-1], DAMAGED),
+        a_response_without_its_beginning=(lambda right: right[1:], NO_FRAME),
         # Unit 0 asks, and never answers.
-        a_broadcast_answer=(lambda right: e2e.registers(0, *SAID['hps167s']), NO_FRAME),
-        an_answer_to_everybody=(lambda right: e2e.registers(255, *SAID['hps167s']), NOBODYS))
+        a_broadcast_response=(lambda right: e2e.registers(0, *SAID['hps167s']), NO_FRAME),
+        a_response_to_everybody=(lambda right: e2e.registers(255, *SAID['hps167s']), NOBODYS))
     def only_here(self, make, words):
         self.wrong(make, words)
 
-    def test_an_answer_in_pieces_is_read(self):
+    def test_a_response_in_pieces_is_read(self):
         self.assertIn(',target,false,2083,2083,723.1744,1,0\n', self.in_pieces(range(1, 99)).out)
 
 

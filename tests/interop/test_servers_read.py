@@ -37,7 +37,7 @@ class Servers:
         done = self.read(sensor, first, values, f'--address {unit}', unit)
         self.assertEqual([' '.join(row[name] for name in names.split()) for row in done.rows], expected * 3)
         self.assertEqual([int(row['sequence']) for row in done.rows], sorted([1, 2, 3] * len(expected)))
-        self.assertIn(f'attempts 3, failed 0, readings {len(done.rows)}\nfathom: line: answers 3\n', done.err)
+        self.assertIn(f'attempts 3, failed 0, readings {len(done.rows)}\nfathom: line: responses 3\n', done.err)
 
     @e2e.each(
         a_register_that_is_not_there_is_exception_02=('a16', 0x0300, ['1'], 2),
@@ -57,7 +57,7 @@ class Servers:
                                       ('hps167s', 8, DATASHEET)):
             done = self.read(sensor, first, values, '--address 2 --timeout 100', code=1, count=1)
             self.assertEqual(done.rows, [])
-            self.assertIn(f'attempt 1: no answer from address 2: {self.SILENCE}', done.err)
+            self.assertIn(f'attempt 1: no response from address 2: {self.SILENCE}', done.err)
 
 
 class Pymodbus(interop.PymodbusServer, Servers, interop.Case):

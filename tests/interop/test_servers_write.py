@@ -50,13 +50,13 @@ class Servers:
         self.assertEqual(self.run_steps(values, *steps.split(), first=first), [*said])
 
     def test_the_same_value_is_written_again_and_again(self):
-        """Each request and each answer are alike; none may be taken for another's."""
+        """Each request and each response are alike; none may be taken for another's."""
         steps = [step for value in (5, 5, 5, 6, 6, 5) for step in (f'write:0:{value}', 'read:0:1')]
         self.assertEqual(self.run_steps([1], 'read:0:1', *steps),
                          ['0001', *(said for value in (5, 5, 5, 6, 6, 5)
                                     for said in ('done', f'{value:04X}'))])
 
-    unit_0 = 'no answer'  # libmodbus' TCP server is any unit
+    unit_0 = 'no response'  # libmodbus' TCP server is any unit
 
     def test_a_read_from_unit_0_is_answered_by_that_unit_or_not_at_all(self):
         self.assertEqual(self.run_steps([1], 'unit:0', 'read:0:1', 'unit:1', 'read:0:1'), [self.unit_0, '0001'])
@@ -67,9 +67,9 @@ class Servers:
         outcomes = self.run_steps([1], 'unit:7', 'read:0:1', 'unit:8', *self.others, 'unit:7', 'read:0:1',
                                   unit=7,
                                   seconds=1)
-        self.assertEqual(outcomes, ['0001', *['no answer'] * len(self.others), '0001'])
+        self.assertEqual(outcomes, ['0001', *['no response'] * len(self.others), '0001'])
 
-    def test_a_write_to_all_is_obeyed_and_needs_no_answer(self):
+    def test_a_write_to_all_is_obeyed_and_needs_no_response(self):
         outcomes = self.run_steps([1, 2, 3], 'unit:9', 'read:0:3', 'unit:0', 'write:0:0x0A0B', 'unit:9',
                                   'read:0:3',
                                   'unit:0', 'many:1:0x0C0D,0x0E0F', 'unit:9', 'read:0:3', unit=9, seconds=2)
@@ -77,8 +77,8 @@ class Servers:
 
 
 class NoMany:
-    """What follows another unit's request is that unit's answer to libmodbus, whatever it is and whenever it
-    comes. So there are two, and the second is one whose answer would have its length."""
+    """What follows another unit's request is that unit's response to libmodbus, whatever it is and whenever it
+    comes. So there are two, and the second is one whose response would have its length."""
     others = ('read:0:1', 'write:0:2')
 
 

@@ -18,7 +18,7 @@ class Tcp(interop.Tcp, Servers):
     def test_many_readings_through_one_connection(self):
         done = self.read('hps167s', 8, DATASHEET, count=200)
         self.assertEqual(done.mm, ['2083'] * 200)
-        self.assertIn('attempts 200, failed 0, readings 200\nfathom: line: answers 200\n', done.err)
+        self.assertIn('attempts 200, failed 0, readings 200\nfathom: line: responses 200\n', done.err)
 
 
 class Pymodbus(interop.PymodbusServer, Tcp, interop.Case):
@@ -29,7 +29,7 @@ class Pymodbus(interop.PymodbusServer, Tcp, interop.Case):
 
 class Libmodbus(interop.LibmodbusServer, Tcp, interop.Case):
     def test_a_unit_that_is_not_there_is_silent(self):
-        """Over TCP libmodbus answers for every unit, with the unit that was asked."""
+        """Over TCP libmodbus responses for every unit, with the unit that was asked."""
         row, = self.read('hps167s', 8, DATASHEET, '--address 2', count=1).rows
         self.assertEqual((row['address'], row['distance_mm']), ('2', '2083'))
 
@@ -39,13 +39,13 @@ class Libmodbus(interop.LibmodbusServer, Tcp, interop.Case):
     def numbered(self, number):
         self.refused('hps167s', 8, [f'!{number}', '0', '0', '0'], number)
 
-    @e2e.each(a_gateways_exceptions_are_no_answer_10=10, a_gateways_exceptions_are_no_answer_11=11)
+    @e2e.each(a_gateways_exceptions_are_no_response_10=10, a_gateways_exceptions_are_no_response_11=11)
     def gateway(self, number):
         done = self.read('hps167s', 8, [f'!{number}', '0', '0', '0'], '--timeout 100', code=1)
         self.assertEqual(done.rows, [])
-        words = f'no answer from address 1: the gateway says exception {number} ({NAMES[number]}); check '
+        words = f'no response from address 1: the gateway says exception {number} ({NAMES[number]}); check '
         self.assertEqual(done.err.count(words), 3, done.err)
-        self.assertIn('line: requests without an answer 3\n', done.err)
+        self.assertIn('line: requests without a response 3\n', done.err)
 
 
 if __name__ == '__main__':

@@ -31,7 +31,7 @@ static int set_up(modbus_t *modbus)
     rig_connect();
     memset(&rig.port, 0xA5, sizeof rig.port); /* any content will do */
     assert_int_equal(fathom_libmodbus_init(&rig.port, modbus, &config), FATHOM_READY);
-    rig.seam = fathom_libmodbus(&rig.port);
+    rig.transport = fathom_libmodbus(&rig.port);
     return 0;
 }
 
@@ -67,15 +67,15 @@ void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retri
 {
     for (size_t i = 0; i != sizeof rig.values / sizeof rig.values[0]; i++) rig.values[i] = UNTOUCHED;
     memset(request, 0, sizeof *request);
-    request->exchange.timeout_us = RIG_TIMEOUT_US;
-    request->exchange.retries = retries;
+    request->transaction.timeout_us = RIG_TIMEOUT_US;
+    request->transaction.retries = retries;
     fathom_modbus_read_holding_registers(&request->message, unit, 0x0107, 3, rig.values);
-    assert_int_equal(rig.seam.submit(rig.seam.ctx, request), FATHOM_PENDING);
+    assert_int_equal(rig.transport.submit(rig.transport.ctx, request), FATHOM_PENDING);
 }
 
 void rig_expect_three(void)
 {
-    assert_int_equal(rig.request.exchange.status, FATHOM_READY);
+    assert_int_equal(rig.request.transaction.status, FATHOM_READY);
     assert_int_equal(rig.values[0], 250);
     assert_int_equal(rig.values[1], 659);
     assert_int_equal(rig.values[2], 2426);
@@ -92,14 +92,14 @@ void rig_run(uint32_t in_us, uint32_t step_us)
 {
     for (uint32_t us = 0; us < in_us; us += step_us) {
         rig.fake.now_us += step_us;
-        (void)rig.seam.poll(rig.seam.ctx);
+        (void)rig.transport.poll(rig.transport.ctx);
     }
 }
 
 fathom_status_t rig_poll(void)
 {
     rig.fake.now_us += FINE_US;
-    return rig.seam.poll(rig.seam.ctx);
+    return rig.transport.poll(rig.transport.ctx);
 }
 
 void rig_hang_up(void)
@@ -139,7 +139,7 @@ void rig_expect_no_settings(uint32_t in_us)
 {
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
     rig_ask_three(&rig.request, 1, 0);
-    rig.request.exchange.settings = &settings;
+    rig.request.transaction.line_settings = &settings;
     rig_run_fine(in_us);
     assert_int_equal(status(), FATHOM_ERR_UNSUPPORTED);
     rig_expect_sent(NULL, 0);
@@ -150,9 +150,9 @@ void rig_expect_units_refused(unsigned first, unsigned last)
     assert_int_equal(modbus_set_slave(rig.modbus, 42), 0);
     for (unsigned unit = 0; unit != 256; unit++) {
         fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
-        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request),
+        assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request),
                          unit >= first && unit <= last ? FATHOM_ERR_UNSUPPORTED : FATHOM_PENDING);
-        rig.seam.cancel(rig.seam.ctx, &rig.request);
+        rig.transport.cancel(rig.transport.ctx, &rig.request);
         assert_int_equal(modbus_get_slave(rig.modbus), 42); /* the program's own */
     }
 }
@@ -176,11 +176,11 @@ void rig_expect_sent(const void *bytes, size_t length)
 
 void rig_expect_request(uint8_t transaction) { rig_expect_sent((const uint8_t[]){REQUEST(transaction)}, 12); }
 
-void rig_say_answer(uint8_t transaction) { rig_say((const uint8_t[]){ANSWER(transaction)}, 15); }
+void rig_say_response(uint8_t transaction) { rig_say((const uint8_t[]){RESPONSE(transaction)}, 15); }
 
 void rig_answered(uint8_t transaction)
 {
-    rig_say_answer(transaction);
+    rig_say_response(transaction);
     rig_run_fine(FINE_US);
     rig_expect_three();
 }

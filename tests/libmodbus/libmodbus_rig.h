@@ -17,7 +17,7 @@ typedef struct {
     int far;
     modbus_t *modbus;
     fathom_libmodbus_t port;
-    fathom_modbus_t seam;
+    fathom_modbus_t transport;
     fathom_modbus_request_t request; /* of rig_ask_three */
     uint16_t values[125];
 } rig_t;
@@ -29,7 +29,7 @@ extern rig_t rig;
  * The PDUs are A05 3(4)1 example 3: 250, 659 and 2426 mm.
  */
 #define REQUEST(transaction)            0xF0, (transaction), 0, 0, 0, 6, 1, 0x03, 0x01, 0x07, 0x00, 0x03
-#define ANSWER(transaction)             0xF0, (transaction), 0, 0, 0, 9, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A
+#define RESPONSE(transaction)           0xF0, (transaction), 0, 0, 0, 9, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A
 #define OTHER(transaction)              0xF0, (transaction), 0, 0, 0, 9, 1, 0x03, 6, 0, 1, 0, 2, 0, 3 /* other values */
 #define REFUSAL(transaction, exception) 0xF0, (transaction), 0, 0, 0, 3, 1, 0x83, (exception)
 
@@ -43,7 +43,7 @@ int rig_tear_down(void **state);
 /* A new socket pair, as a program connects again. The old one, if it is there, is closed. */
 void rig_connect(void);
 
-/* The datasheet's question (A05 3(4)1, example 3): three registers from 0x0107 of unit 1. */
+/* The datasheet's request (A05 3(4)1, example 3): three registers from 0x0107 of unit 1. */
 void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retries);
 
 /* Were its values delivered (250, 659, 2426), or is `values` untouched? */
@@ -53,9 +53,9 @@ void rig_expect_none(void);
 /* The same, as a new test has it, but for the first of many. */
 void rig_again(bool is_first);
 
-/* Once over TCP: that request has left with its transaction; its answer comes, and then its values were delivered. */
+/* Once over TCP: that request has left with its transaction; its response comes, and then its values were delivered. */
 void rig_expect_request(uint8_t transaction);
-void rig_say_answer(uint8_t transaction);
+void rig_say_response(uint8_t transaction);
 void rig_answered(uint8_t transaction);
 
 /* rig_ask_three of unit 1 over TCP, whose first request has left. */
@@ -77,7 +77,7 @@ void rig_expect_units_refused(unsigned first, unsigned last);
 fathom_status_t rig_poll(void);
 
 /* Of rig.request. */
-static inline int status(void) { return rig.request.exchange.status; }
+static inline int status(void) { return rig.request.transaction.status; }
 
 /* Moves the clock on by step_us and polls, until that makes in_us. */
 void rig_run(uint32_t in_us, uint32_t step_us);

@@ -9,7 +9,7 @@
 /* What the port does when the connection is broken, full or not there, and how it begins. */
 
 static const uint8_t request_1[] = {REQUEST(1)};
-static const uint8_t answer_1[] = {ANSWER(1)};
+static const uint8_t response_1[] = {RESPONSE(1)};
 
 static void ask(void)
 {
@@ -27,7 +27,7 @@ static void expect_broken(fathom_libmodbus_error_t error)
     rig_expect_none();
 }
 
-/* After a new connection requests are answered; the unit may still owe an answer. */
+/* After a new connection requests are answered; the unit may still owe a response. */
 static void expect_to_go_on(void)
 {
     rig_connect();
@@ -48,21 +48,21 @@ TEST(a_server_that_closes_breaks_it_until_there_is_a_new_connection)
     expect_to_go_on();
 }
 
-TEST(an_answer_before_the_end_of_the_connection_is_read)
+TEST(a_response_before_the_end_of_the_connection_is_read)
 {
     ask();
-    rig_say_answer(1);
+    rig_say_response(1);
     rig_hang_up();
     (void)rig_poll();
     rig_expect_three();
 }
 
-TEST(half_an_answer_and_the_end_break_it)
+TEST(half_a_response_and_the_end_break_it)
 {
-    for (size_t cut = 1; cut != sizeof answer_1; cut++) {
+    for (size_t cut = 1; cut != sizeof response_1; cut++) {
         rig_again(cut == 1);
         ask();
-        rig_say(answer_1, cut);
+        rig_say(response_1, cut);
         assert_int_equal(rig_poll(), FATHOM_PENDING);
         rig_hang_up();
         expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
@@ -118,7 +118,7 @@ TEST(a_full_connection_is_busy_and_nothing_waits)
     const size_t filled = rig_fill();
     rig_ask_three(&rig.request, 1, 0);
     for (int i = 0; i != 10; i++) assert_int_equal(rig_poll(), FATHOM_PENDING);
-    assert_int_equal(rig.request.exchange.attempts, 0);
+    assert_int_equal(rig.request.transaction.attempts, 0);
     rig_drain(filled);
     assert_int_equal(rig_poll(), FATHOM_PENDING);
     rig_expect_request(1);
@@ -142,9 +142,9 @@ TEST(line_settings_are_unsupported_and_nothing_is_sent) { rig_expect_no_settings
 TEST(counts_out_of_range_are_refused)
 {
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 126, rig.values);
-    assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_ERR_ARGUMENT);
     rig_ask_three(&rig.request, 1, 0);
-    assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_ERR_BUSY);
+    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_ERR_BUSY);
 }
 
 TEST(init_wants_all_that_it_needs)
@@ -171,9 +171,9 @@ TEST(libmodbus_does_not_recover_by_itself)
 TEST(a_wait_ends_when_a_byte_is_there_or_the_far_end_has_gone)
 {
     ask();
-    rig_say(answer_1, 1);
+    rig_say(response_1, 1);
     fathom_libmodbus_wait(&rig.port, FATHOM_NO_DEADLINE);
-    rig_say(answer_1 + 1, sizeof answer_1 - 1);
+    rig_say(response_1 + 1, sizeof response_1 - 1);
     (void)rig_poll();
     rig_expect_three();
     fathom_libmodbus_wait(&rig.port, 1000);

@@ -9,11 +9,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* Half an answer stands in the socket until the rest has come. A program that sleeps in poll(2) is not to be woken by
+/* Half a response stands in the socket until the rest has come. A program that sleeps in poll(2) is not to be woken by
  * that half again and again. Over TCP itself: other sockets know nothing of it. */
 
-static const uint8_t first[] = {ANSWER(1)};
-static const uint8_t second[] = {ANSWER(2)};
+static const uint8_t first[] = {RESPONSE(1)};
+static const uint8_t second[] = {RESPONSE(2)};
 
 static int set_up(void **state)
 {
@@ -39,7 +39,7 @@ static const suite_t suite = {.set_up = set_up, .tear_down = rig_tear_down};
 static fathom_status_t poll_once(void)
 {
     rig.fake.now_us += 1000;
-    (void)rig.seam.poll(rig.seam.ctx);
+    (void)rig.transport.poll(rig.transport.ctx);
     return (fathom_status_t)status();
 }
 
@@ -66,7 +66,7 @@ static bool wakes(void)
     return n != 0;
 }
 
-TEST(half_an_answer_wakes_nobody_a_second_time_and_the_rest_does)
+TEST(half_a_response_wakes_nobody_a_second_time_and_the_rest_does)
 {
     for (size_t cut = 1; cut != sizeof first; cut++) {
         if (cut != 1) assert_int_equal(rig_tear_down(NULL) + set_up(NULL), 0);
@@ -103,7 +103,7 @@ TEST(after_a_header_alone_it_waits_for_all_that_the_header_tells)
     rig_expect_three();
 }
 
-TEST(the_first_byte_of_the_next_answer_wakes_again)
+TEST(the_first_byte_of_the_next_response_wakes_again)
 {
     ask();
     say_and_arrive(first, 8, 8);

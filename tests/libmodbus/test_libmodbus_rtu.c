@@ -9,7 +9,7 @@
 
 /* RTU frames through a modbus_t: A05 3(4)1 example 3, and what its neighbours say. Other CRCs by the definition. */
 static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
-static const uint8_t answer[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
+static const uint8_t response[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
 
 enum { SILENCE_US = 4011, GAP_US = 25000 };
 
@@ -22,14 +22,14 @@ static void ask(uint8_t retries)
 
 static void answered(void)
 {
-    rig_say(answer, sizeof answer);
+    rig_say(response, sizeof response);
     rig_run_fine(FINE_US);
     rig_expect_three();
 }
 
 static const suite_t suite = {.set_up = rig_rtu_set_up, .tear_down = rig_tear_down};
 
-TEST(a_request_has_its_crc_once_and_its_answer_is_read)
+TEST(a_request_has_its_crc_once_and_its_response_is_read)
 {
     ask(0);
     answered();
@@ -44,24 +44,24 @@ TEST(the_silence_before_a_request_is_kept)
     rig_expect_sent(request, sizeof request);
 }
 
-TEST(an_answer_a_byte_at_a_time_is_read)
+TEST(a_response_a_byte_at_a_time_is_read)
 {
     ask(0);
-    for (size_t i = 0; i != sizeof answer; i++) {
+    for (size_t i = 0; i != sizeof response; i++) {
         rig_expect_none();
-        rig_say(answer + i, 1);
+        rig_say(response + i, 1);
         rig_run_fine(1000);
     }
     rig_expect_three();
 }
 
-TEST(an_answer_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it)
+TEST(a_response_in_a_loop_of_20_ms_is_read_by_the_poll_that_finds_it)
 {
     rig_ask_three(&rig.request, 1, 0);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_sent(request, sizeof request);
     rig_run(2 * SLOW_US, SLOW_US);
-    rig_say(answer, sizeof answer);
+    rig_say(response, sizeof response);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_three();
 }
@@ -76,25 +76,25 @@ TEST(an_exception_is_complete_by_its_length)
     assert_int_equal(rig.request.message.exception, 2);
 }
 
-TEST(noise_before_an_answer_is_dropped)
+TEST(noise_before_a_response_is_dropped)
 {
     ask(0);
     rig_say("\xFF\x00\x55", 3);
     answered();
 }
 
-TEST(a_damaged_answer_is_a_checksum_error)
+TEST(a_damaged_response_is_a_checksum_error)
 {
-    for (size_t i = 1; i != sizeof answer; i++) {
-        uint8_t damaged[sizeof answer];
+    for (size_t i = 1; i != sizeof response; i++) {
+        uint8_t damaged[sizeof response];
         rig_again(i == 1);
-        memcpy(damaged, answer, sizeof answer);
+        memcpy(damaged, response, sizeof response);
         damaged[i] ^= 0x10;
         ask(0);
         rig_say(damaged, sizeof damaged);
         rig_run_fine(RIG_TIMEOUT_US + GAP_US);
-        assert_true(status() == FATHOM_ERR_CHECKSUM || status() == FATHOM_ERR_NO_ANSWER);
-        if (i > 2) assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* its beginning was an answer's */
+        assert_true(status() == FATHOM_ERR_CHECKSUM || status() == FATHOM_ERR_NO_RESPONSE);
+        if (i > 2) assert_int_equal(status(), FATHOM_ERR_CHECKSUM); /* its beginning was a response's */
         rig_expect_none();
     }
 }
@@ -110,14 +110,14 @@ TEST(another_units_answer_is_not_taken)
     answered();
 }
 
-TEST(a_late_answer_serves_the_retry_that_waits)
+TEST(a_late_response_serves_the_retry_that_waits)
 {
     ask(1);
     rig_run_fine(RIG_TIMEOUT_US + SILENCE_US);
-    rig_expect_sent(NULL, 0); /* it owes an answer */
+    rig_expect_sent(NULL, 0); /* it owes a response */
     answered();
-    assert_int_equal(rig.request.exchange.attempts, 1);
-    assert_int_equal(rig.port.counters[FATHOM_LINE_LATE_ANSWERS], 1);
+    assert_int_equal(rig.request.transaction.attempts, 1);
+    assert_int_equal(rig.port.counters[FATHOM_LINE_LATE_RESPONSES], 1);
 }
 
 TEST(a_unit_that_owes_is_asked_after_twice_the_time_out)
@@ -134,15 +134,15 @@ TEST(the_config_says_whether_there_is_an_echo)
 {
     static const uint8_t write[] = {0x01, 0x06, 0x00, 0x10, 0x00, 0x07};
     static const uint8_t outcomes[] = {FATHOM_LINE_ECHO_AUTO, FATHOM_LINE_ECHO_OFF, FATHOM_LINE_ECHO_ON};
-    static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_READY, FATHOM_ERR_NO_ANSWER};
+    static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_READY, FATHOM_ERR_NO_RESPONSE};
     for (size_t i = 0; i != sizeof outcomes; i++) {
         rig_again(i == 0);
         const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .echo = outcomes[i]};
         uint8_t sent[16];
         assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
-        rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
+        rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
         fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
-        assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
+        assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_PENDING);
         rig_run_fine(SILENCE_US + FINE_US);
         assert_int_equal(recv(rig.far, sent, sizeof sent, MSG_DONTWAIT), 8);
         assert_memory_equal(sent, write, sizeof write);
@@ -160,7 +160,7 @@ TEST(the_config_has_the_silence_and_the_gap)
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(1800);
     rig_expect_sent(request, sizeof request);
-    rig_say(answer, 5);
+    rig_say(response, 5);
     rig_run_fine(FINE_US + 2800);
     assert_int_equal(status(), FATHOM_PENDING);
     rig_run_fine(300);
@@ -203,10 +203,10 @@ TEST(a_terminal_that_hangs_up_is_broken)
     (void)alarm(RIG_ALARM_S);
     assert_int_equal(modbus_connect(rig.modbus), 0);
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
-    rig.seam = fathom_libmodbus(&rig.port);
+    rig.transport = fathom_libmodbus(&rig.port);
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(SILENCE_US + FINE_US);
-    assert_int_equal(rig.request.exchange.attempts, 1);
+    assert_int_equal(rig.request.transaction.attempts, 1);
     assert_int_equal(close(far), 0);
     rig_expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
 }
@@ -226,7 +226,7 @@ TEST(a_full_port_is_busy_and_nothing_waits)
     const size_t filled = rig_fill();
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(2 * SILENCE_US);
-    assert_int_equal(rig.request.exchange.attempts, 0);
+    assert_int_equal(rig.request.transaction.attempts, 0);
     assert_false(rig.port.uart.sent(rig.port.uart.ctx));
     rig_drain(filled);
     assert_true(rig.port.uart.sent(rig.port.uart.ctx));

@@ -10,9 +10,9 @@ static const uint8_t *write_7(uint8_t unit)
 {
     static uint8_t write[] = {0xF0, 1, 0, 0, 0, 6, 1, 0x06, 0x00, 0x10, 0x00, 0x07};
     write[6] = unit;
-    rig.request.exchange.timeout_us = RIG_TIMEOUT_US;
+    rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_write_single_register(&rig.request.message, unit, 0x0010, 7);
-    assert_int_equal(rig.seam.submit(rig.seam.ctx, &rig.request), FATHOM_PENDING);
+    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_PENDING);
     rig_run_fine(FINE_US);
     rig_expect_sent(write, sizeof write);
     return write;
@@ -25,7 +25,7 @@ TEST(a_write_is_acknowledged_by_its_own_words_at_once)
     assert_int_equal(status(), FATHOM_READY); /* TCP has no echo */
 }
 
-TEST(a_broadcast_needs_no_answer)
+TEST(a_broadcast_needs_no_response)
 {
     (void)write_7(0);
     rig_run_fine(RIG_TIMEOUT_US - 1000);
@@ -34,13 +34,13 @@ TEST(a_broadcast_needs_no_answer)
     assert_int_equal(status(), FATHOM_READY);
 }
 
-TEST(a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it)
+TEST(a_loop_of_20_ms_has_the_response_in_the_poll_that_finds_it)
 {
     rig_ask_three(&rig.request, 1, 0);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_request(1);
     rig_run(3 * SLOW_US, SLOW_US);
-    rig_say_answer(1);
+    rig_say_response(1);
     rig_run(SLOW_US, SLOW_US);
     rig_expect_three();
 }
@@ -48,13 +48,14 @@ TEST(a_loop_of_20_ms_has_the_answer_in_the_poll_that_finds_it)
 TEST(the_wrap_of_the_clock_changes_nothing)
 {
     rig.fake.now_us = UINT32_MAX - RIG_TIMEOUT_US / 2;
-    (void)rig.seam.poll(rig.seam.ctx);
+    (void)rig.transport.poll(rig.transport.ctx);
     rig_ask(0);
     rig_run_fine(RIG_TIMEOUT_US - 1000);
     assert_int_equal(status(), FATHOM_PENDING);
-    assert_int_equal(rig.seam.due_us(rig.seam.ctx), 1100); /* that it has left is seen by the poll after */
+    assert_int_equal(rig.transport.due_us(rig.transport.ctx),
+                     1100); /* that it has left is seen by the poll after */
     rig_run_fine(1100);
-    assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status(), FATHOM_ERR_NO_RESPONSE);
 }
 
 TEST(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_the_others)
@@ -71,16 +72,16 @@ TEST(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_t
     rig_expect_sent(to_2, sizeof to_2);
     rig_say(from_2, sizeof from_2);
     rig_run_fine(FINE_US);
-    assert_int_equal(second.exchange.status, FATHOM_READY);
+    assert_int_equal(second.transaction.status, FATHOM_READY);
     assert_int_equal(status(), FATHOM_PENDING);
     rig_run_fine(RIG_TIMEOUT_US);
     rig_expect_sent(to_1, sizeof to_1);
 }
 
-TEST(a_cancelled_request_is_nobodys_and_its_answer_too)
+TEST(a_cancelled_request_is_nobodys_and_its_response_too)
 {
     rig_ask(0);
-    rig.seam.cancel(rig.seam.ctx, &rig.request);
+    rig.transport.cancel(rig.transport.ctx, &rig.request);
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
     rig_ask_three(&rig.request, 1, 0);
     rig_say(other_1, sizeof other_1);
@@ -97,8 +98,8 @@ TEST(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not)
     rig_ask(0);
     rig_ask_three(&second, 2, 0);
     rig_ask_three(&third, 1, 0);
-    rig.seam.cancel_unit(rig.seam.ctx, 1);
+    rig.transport.cancel_unit(rig.transport.ctx, 1);
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
-    assert_int_equal(third.exchange.status, FATHOM_ERR_CANCELLED);
-    assert_int_equal(second.exchange.status, FATHOM_PENDING);
+    assert_int_equal(third.transaction.status, FATHOM_ERR_CANCELLED);
+    assert_int_equal(second.transaction.status, FATHOM_PENDING);
 }

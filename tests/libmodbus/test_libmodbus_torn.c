@@ -59,7 +59,7 @@ TEST(a_part_of_a_request_ends_the_connection)
     sending.most = 5;
     ask(0);
     sending.most = 0;
-    expect_port(FATHOM_LIBMODBUS_ERR_TORN);
+    expect_port(FATHOM_LIBMODBUS_ERR_TRUNCATED);
     for (int i = 0; i != 5; i++) assert_int_equal(recv(rig.far, &byte, 1, MSG_DONTWAIT), 1);
     assert_int_equal(recv(rig.far, &byte, 1, MSG_DONTWAIT), 0); /* nothing can follow it */
 }
@@ -86,16 +86,16 @@ TEST(what_the_system_says_else_is_kept)
 TEST_IN(with_rig_rtu_set_up, a_part_of_a_request_of_rtu_is_told_too)
 {
     ask(EMBBADDATA);
-    expect_port(FATHOM_LIBMODBUS_ERR_TORN);
+    expect_port(FATHOM_LIBMODBUS_ERR_TRUNCATED);
 }
 
 TEST_IN(with_rig_rtu_set_up, what_rtu_is_refused_for_a_while_is_sent_later)
 {
     ask(EAGAIN);
     assert_int_equal(status(), FATHOM_PENDING);
-    assert_int_equal(rig.request.exchange.attempts, 0);
+    assert_int_equal(rig.request.transaction.attempts, 0);
     rig_run_fine(FINE_US);
-    assert_int_equal(rig.request.exchange.attempts, 1);
+    assert_int_equal(rig.request.transaction.attempts, 1);
 }
 
 TEST_IN(with_rig_rtu_set_up, an_adapter_that_was_unplugged_has_hung_up)

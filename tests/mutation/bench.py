@@ -14,10 +14,12 @@ import signal
 import subprocess
 import time
 
+from syntax import LAYERS, library
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 KINDS = ('unit', 'golden', 'property', 'sim', 'soak', 'port', 'libmodbus')
 IN_REAL_TIME = ('port', 'libmodbus')  # what they see may depend on how busy the machine is
-TWINS = {'src/crc16_small.c': 'src/crc16.c'}  # linked in the place of
+TWINS = {'src/codec/crc16_small.c': 'src/codec/crc16.c'}  # linked in the place of
 CONFIGURE = ['-DCMAKE_BUILD_TYPE=Release', '-DBUILD_SHARED_LIBS=ON', '-DFATHOM_EXAMPLES=OFF', '-DFATHOM_STRICT=OFF',
              '-DFATHOM_CHECKS=OFF', '-DFATHOM_INSTALL=OFF', '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON']
 COMPILER = os.environ.get('CC', 'gcc')
@@ -147,15 +149,14 @@ class Bench:
         root = os.path.join(self.folder, 'coverage')
         shutil.rmtree(root, ignore_errors=True)
         os.makedirs(root)
-        sources = [path for path in sorted(glob.glob(os.path.join(ROOT, 'src', '*.c')))
-                   if os.path.relpath(path, ROOT) not in TWINS]
+        sources = [os.path.join(ROOT, path) for path in library(ends='.c') if path not in TWINS]
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             list(pool.map(lambda path: command(
                 [COMPILER, *FLAGS, '-O0', '--coverage', f'-I{ROOT}/include', '-c', path,
                  '-o', os.path.join(root, os.path.basename(path)[:-2] + '.o')], cwd=root), sources))
-            library = os.path.join(root, 'covered.so')
-            command([COMPILER, '-shared', '--coverage', '-o', library, *glob.glob(os.path.join(root, '*.o'))])
-        return self.cover(root, Planted(library))
+            covered = os.path.join(root, 'covered.so')
+            command([COMPILER, '-shared', '--coverage', '-o', covered, *glob.glob(os.path.join(root, '*.o'))])
+        return self.cover(root, Planted(covered))
 
     def cover(self, root, planted):
         """What the tests execute of what was built for coverage, with objects in root."""
@@ -202,33 +203,34 @@ class Bench:
     @staticmethod
     def users(header):
         """The sources of the library that include a header of its own, through others too."""
-        names, files = {os.path.basename(header)}, {}
-        for path in glob.glob(os.path.join(ROOT, 'src', '*.[ch]')):
-            with open(path, encoding='utf-8') as file:
-                files[os.path.basename(path)] = set(re.findall(r'^#include "(\w+\.h)"', file.read(), re.M))
+        found, files = {header}, {}
+        for path in library():
+            with open(os.path.join(ROOT, path), encoding='utf-8') as file:
+                files[path] = {os.path.normpath(os.path.join(os.path.dirname(path), name))
+                               for name in re.findall(r'^#include "((?:\.\./)?\w+\.h)"', file.read(), re.M)}
         while True:
-            more = {name for name, included in files.items() if included & names} - names
+            more = {path for path, included in files.items() if included & found} - found
             if not more:
-                return sorted(f'src/{name}' for name in names if name.endswith('.c'))
-            names |= more
+                return sorted(path for path in found if path.endswith('.c'))
+            found |= more
 
     def compile(self, mutant, text, scratch, options):
         """The objects of a file with this text in the place of its own; None when it is not C."""
-        folder = os.path.join(scratch, 'src')
-        os.makedirs(folder, exist_ok=True)
-        for name in os.listdir(folder):
-            os.remove(os.path.join(folder, name))
+        shutil.rmtree(os.path.join(scratch, 'src'), ignore_errors=True)
+        for folder in ('src', *LAYERS):
+            os.makedirs(os.path.join(scratch, folder))
         sources = self.users(mutant.file) if mutant.file.endswith('.h') else [mutant.file]
         for name in sources:
             if name != mutant.file:
-                shutil.copy(os.path.join(ROOT, name), folder)
-        with open(os.path.join(folder, os.path.basename(mutant.file)), 'w', encoding='ascii') as file:
+                shutil.copy(os.path.join(ROOT, name), os.path.join(scratch, name))
+        with open(os.path.join(scratch, mutant.file), 'w', encoding='ascii') as file:
             file.write(text)
         objects = []
         for name in sources:
-            target = os.path.join(folder, os.path.basename(name)[:-2] + '.o')
-            words = [COMPILER, *FLAGS, *options, f'-I{ROOT}/include', f'-I{ROOT}/src', '-c', os.path.basename(name)]
-            done = subprocess.run([*words, '-o', target], cwd=folder, stderr=subprocess.DEVNULL, check=False)
+            target = os.path.join(scratch, name[:-2] + '.o')
+            words = [COMPILER, *FLAGS, *options, f'-I{ROOT}/include', *(f'-I{ROOT}/{layer}' for layer in LAYERS),
+                     '-c', name]
+            done = subprocess.run([*words, '-o', target], cwd=scratch, stderr=subprocess.DEVNULL, check=False)
             if done.returncode != 0:
                 return None
             objects.append(target)

@@ -6,12 +6,11 @@
 """
 import collections
 import dataclasses
-import glob
 import os
 import re
 import sys
 
-from syntax import ROOT, Source
+from syntax import ROOT, Source, library
 
 TOKEN = re.compile(r'[A-Za-z_]\w*|\d[\w.]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|'
                    r'<<=|>>=|->|\+\+|--|<<|>>|[-+*/%&|^=!<>]=|&&|\|\||\S')
@@ -82,8 +81,8 @@ def main():
             print(f'{mutant.line}: {mutant.identity}')
     if not sys.argv[1:]:
         total = collections.Counter()
-        for path in sorted(glob.glob(os.path.join(ROOT, 'src', '*.[ch]'))):
-            of_file = collections.Counter(mutant.operator for mutant in mutants_of(os.path.relpath(path, ROOT)))
+        for path in library():
+            of_file = collections.Counter(mutant.operator for mutant in mutants_of(path))
             print(f'{os.path.basename(path):24} {sum(of_file.values()):5}')
             total += of_file
         for operator, count in sorted(total.items()):

@@ -13,7 +13,7 @@ rows/MODULE.py has a row for each fault: its name (MODULE.NAME to the commands),
 tests that are expected to see it (KIND/NAME), and edits: a file, a function (none: outside of all functions),
 the old text and the new one. The old text is matched by the tokens of C, so white space, comments, line numbers
 and the names of local variables may change; it has to be there exactly once. Of --rename an OLD with a slash is a
-path (src/line.c, unit/test_line) or the beginning of one, any other an identifier.
+path (src/engine/line.c, unit/test_line) or the beginning of one, any other an identifier.
 
 --build: a folder in which the project is built by Unix Makefiles; else one is built in a temporary folder.
 --as-built: it is up to date and its tests pass, which is otherwise seen to first."""

@@ -5,7 +5,7 @@
     run.py --all                     all of src/; --record also keeps the figures, in figures.csv
     run.py --changed --sample 400    those of the files that changed since the figures were kept, and some of the others
     run.py FILE ...                  all of these
-    run.py --only src/line.c:220     those of one line, or the one of an identity, with what sees them
+    run.py --only src/engine/line.c:220     those of one line, or the one of an identity, with what sees them
     run.py --ports [N]               some of each port, of which only the figures are told
     run.py --list [FILE ...]         only lists them
     run.py --self-test               shows that it can fail
@@ -19,7 +19,6 @@ import collections
 import concurrent.futures
 import csv
 import difflib
-import glob
 import hashlib
 import os
 import random
@@ -34,16 +33,13 @@ from bench import ROOT, Bench, Broken
 from listed import Listed
 from mutants import mutants_of
 from ports import HOST, PortBench
+from syntax import library
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 FIGURES = os.path.join(HERE, 'figures.csv')
 COLUMNS = ['commit', 'date', 'module', 'source', 'made', 'same_code', 'killed', 'survived', 'listed', 'seconds']
 SHARE = 95  # percent of what can be killed in src/
-
-
-def sources():
-    return [os.path.relpath(path, ROOT) for path in sorted(glob.glob(os.path.join(ROOT, 'src', '*.[ch]')))]
 
 
 def processor_s():
@@ -158,10 +154,10 @@ def chosen(options, mutants, listed):
     """What the options say is to be tried."""
     files = set(options.files)
     if options.all:
-        files = set(sources())
+        files = set(library())
     if options.changed:
         before = {row['module']: row['source'] for row in kept()}
-        files |= {path for path in sources() if before.get(path) != digest(path)}
+        files |= {path for path in library() if before.get(path) != digest(path)}
         print('changed since the figures were kept:', *(sorted(files) or ['nothing']))
     if options.only:
         place = options.only.rpartition(':')
@@ -207,7 +203,7 @@ def try_ports(options):
 
 
 def try_them(options):
-    paths = sorted(set(sources()) | set(options.files))
+    paths = sorted(set(library()) | set(options.files))
     all_of_them = [mutant for path in paths for mutant in mutants_of(path)]
     report = Report(Listed(all_of_them))
     mutants = chosen(options, all_of_them, report.listed)

@@ -5,251 +5,251 @@ COUNT = 121  # of the identities; a row that is added changes it
 
 ROWS = [
     ('it costs time alone',
-     'src/modbus_unit.c | fathom_modbus_unit_poll | condition: (unit->alone_us | unit->warm_us) != 0 -> 1 | if '
-     '((unit->alone_us | unit->warm_us) != 0)',
-     'src/line.c | look | logical: line->owing != 0 && fathom_run_down(& line->owed_us, passed_us) -> '
-     'fathom_run_down(& line->owed_us, passed_us) | if (line->owing != 0 && fathom_run_down(& line->owed_us, '
+     'src/engine/modbus_unit.c | fathom_modbus_unit_poll | condition: (unit->backoff_left_us | unit->warm_us) != 0 -> 1 | if '
+     '((unit->backoff_left_us | unit->warm_us) != 0)',
+     'src/engine/line.c | look | logical: line->quarantined != 0 && fathom_count_down(& line->quarantine_left_us, passed_us) -> '
+     'fathom_count_down(& line->quarantine_left_us, passed_us) | if (line->quarantined != 0 && fathom_count_down(& line->quarantine_left_us, '
      'passed_us))',
-     'src/line.c | fathom_line_poll | condition: line->have >= line->need -> 1 | if (line->have >= line->need)',
-     'src/line_response.c | fathom_line_scan_asking | statement dropped: it -> nothing | line->need = (uint8_t) - '
+     'src/engine/line.c | fathom_line_poll | condition: line->have >= line->need -> 1 | if (line->have >= line->need)',
+     'src/engine/line_response.c | fathom_line_scan_asking | statement dropped: it -> nothing | line->need = (uint8_t) - '
      'judged'),
     ("a byte's difference, and never negative",
-     'src/line.c | fathom_line_poll | type: size_t -> uint8_t | const int n = uart->read(uart->ctx, config->frame + '
+     'src/engine/line.c | fathom_line_poll | type: size_t -> uint8_t | const int n = uart->read(uart->ctx, config->frame + '
      'had, (size_t) (config->frame_size - had), & rx)'),
     ('assigns what is there already',
-     'src/line_request.c | owe | relational: < -> <= | if (line->owing == 0 || line->owed_us < longest_us)',
-     'src/fair_share.c | count | relational: > -> >= | if (fathom_elapsed_us(now_us, share->since_us) > silence_us)',
-     'src/trigger.c | fathom_trigger_drive | relational: < -> <= | if (trigger->left_us < trigger->low_us)'),
+     'src/engine/line_request.c | quarantine | relational: < -> <= | if (line->quarantined == 0 || line->quarantine_left_us < longest_us)',
+     'src/engine/fair_share.c | count | relational: > -> >= | if (fathom_elapsed_us(now_us, share->since_us) > silence_us)',
+     'src/engine/trigger.c | fathom_trigger_drive | relational: < -> <= | if (trigger->left_us < trigger->low_us)'),
     ('a scan of no bytes does nothing; the question is there for speed',
-     'src/line.c | fathom_line_poll | logical: line->have != 0 && line->silent_us >= gap_us(line) -> '
+     'src/engine/line.c | fathom_line_poll | logical: line->have != 0 && line->silent_us >= gap_us(line) -> '
      'line->silent_us >= gap_us(line) | if (line->have != 0 && line->silent_us >= gap_us(line))',
-     'src/line.c | fathom_line_drop | constant: 0 -> 1 | line->need = 0',
-     'src/line.c | fathom_line_broken | constant: 0 -> 1 | line->need = 0'),
+     'src/engine/line.c | fathom_line_drop | constant: 0 -> 1 | line->need = 0',
+     'src/engine/line.c | fathom_line_broken | constant: 0 -> 1 | line->need = 0'),
     ('0 either way',
      'src/common.h | rest_us | relational: > -> >= | return us > passed_us ? us - passed_us : 0'),
     ('a number that no other state has; they are compared for equality alone',
-     'src/modbus_unit.c |  | constant: 2 -> 3 | ANSWERED = 2',
-     'src/stream.c |  | constant: 2 -> 3 | STEP = 2'),
+     'src/engine/modbus_unit.c |  | constant: 2 -> 3 | ANSWERED = 2',
+     'src/engine/stream.c |  | constant: 2 -> 3 | STEP = 2'),
     ('writes the byte behind the head, which is set right after; the bounds check of the sanitizer builds ends '
      'there',
-     'src/modbus_rtu.c | fathom_modbus_rtu_parse_request | name: HEAD -> DATA | for (uint8_t i = 0; i != HEAD; i '
+     'src/codec/modbus_rtu.c | fathom_modbus_rtu_parse_request | name: HEAD -> DATA | for (uint8_t i = 0; i != HEAD; i '
      '++)'),
     ('any error while a setting is confirmed is told as UNCONFIRMED',
-     'src/hps167s_settings.c | look_for_reset | name: FATHOM_ERR_UNCONFIRMED -> FATHOM_ERR_WARMING_UP | return '
+     'src/sensor/hps167s_settings.c | look_for_reset | name: FATHOM_ERR_UNCONFIRMED -> FATHOM_ERR_WARMING_UP | return '
      'FATHOM_ERR_UNCONFIRMED',
-     'src/hps167s_settings.c | look | name: FATHOM_ERR_EXCEPTION -> FATHOM_ERR_CHECKSUM | return '
+     'src/sensor/hps167s_settings.c | look | name: FATHOM_ERR_EXCEPTION -> FATHOM_ERR_CHECKSUM | return '
      'FATHOM_ERR_EXCEPTION'),
     ('the call that hears the refusal is the one that ends',
-     'src/hps167s_settings.c | fathom_hps167s_restore_factory_settings | logical: status == FATHOM_ERR_UNCONFIRMED '
+     'src/sensor/hps167s_settings.c | fathom_hps167s_restore_factory_settings | logical: status == FATHOM_ERR_UNCONFIRMED '
      '&& is_reset_refused(sensor) -> is_reset_refused(sensor) | return status == FATHOM_ERR_UNCONFIRMED && '
      'is_reset_refused(sensor) ? FATHOM_ERR_EXCEPTION : status'),
     ('it is READY, 1, or negative',
-     'src/line_request.c | fathom_line_deliver | relational: > -> >= | count(line, status > 0 ? FATHOM_LINE_ANSWERS '
+     'src/engine/line_request.c | fathom_line_deliver | relational: > -> >= | count(line, status > 0 ? FATHOM_LINE_RESPONSES '
      ': FATHOM_LINE_EXCEPTIONS, 1)',
-     'src/modbus_setting.c | looked | relational: < -> <= | if (status < 0 || (is_so && is_told(unit, setting)))',
-     'src/modbus_setting.c | looked | constant: 0 -> 1 | if (status < 0 || (is_so && is_told(unit, setting)))',
-     'src/modbus_setting.c | written | relational: < -> <= | const bool is_lost = unit->step == WRITE_UNSEEN && '
+     'src/engine/modbus_setting.c | old_was_read | relational: < -> <= | if (status < 0 || (is_so && is_certain(unit, setting)))',
+     'src/engine/modbus_setting.c | old_was_read | constant: 0 -> 1 | if (status < 0 || (is_so && is_certain(unit, setting)))',
+     'src/engine/modbus_setting.c | written | relational: < -> <= | const bool is_lost = unit->step == WRITE_UNREAD && '
      'status < 0',
-     'src/modbus_setting.c | written | constant: 0 -> 1 | const bool is_lost = unit->step == WRITE_UNSEEN && status '
+     'src/engine/modbus_setting.c | written | constant: 0 -> 1 | const bool is_lost = unit->step == WRITE_UNREAD && status '
      '< 0',
-     'src/modbus_setting.c | confirmed | relational: < -> <= | if (status < 0)',
-     'src/modbus_setting.c | confirmed | constant: 0 -> 1 | if (status < 0)',
-     'src/modbus_setting.c | confirmed | relational: < -> <= | return unit->outcome < 0 ? (fathom_status_t) '
+     'src/engine/modbus_setting.c | confirmed | relational: < -> <= | if (status < 0)',
+     'src/engine/modbus_setting.c | confirmed | constant: 0 -> 1 | if (status < 0)',
+     'src/engine/modbus_setting.c | confirmed | relational: < -> <= | return unit->outcome < 0 ? (fathom_status_t) '
      'unit->outcome : FATHOM_ERR_DIFFERS',
-     'src/modbus_setting.c | confirmed | constant: 0 -> 1 | return unit->outcome < 0 ? (fathom_status_t) '
+     'src/engine/modbus_setting.c | confirmed | constant: 0 -> 1 | return unit->outcome < 0 ? (fathom_status_t) '
      'unit->outcome : FATHOM_ERR_DIFFERS',
-     'src/dyp_modbus.c | fathom_dyp_modbus_init | relational: < -> <= | return status < 0 ? status : '
+     'src/sensor/dyp_modbus.c | fathom_dyp_modbus_init | relational: < -> <= | return status < 0 ? status : '
      'fathom_modbus_unit_init(& sensor->unit, modbus, clock, address)',
-     'src/dyp_modbus.c | fathom_dyp_modbus_init | constant: 0 -> 1 | return status < 0 ? status : '
+     'src/sensor/dyp_modbus.c | fathom_dyp_modbus_init | constant: 0 -> 1 | return status < 0 ? status : '
      'fathom_modbus_unit_init(& sensor->unit, modbus, clock, address)',
-     'src/a16_auto.c | fathom_a16_auto_init | constant: 0 -> 1 | if (status < 0)',
-     'src/a16_auto.c | fathom_a16_auto_init | relational: < -> <= | if (status < 0)',
-     'src/a16_controlled.c | fathom_a16_controlled_init | relational: < -> <= | if (fathom_dyp_answer_init(answer, '
+     'src/sensor/a16_auto.c | fathom_a16_auto_init | constant: 0 -> 1 | if (status < 0)',
+     'src/sensor/a16_auto.c | fathom_a16_auto_init | relational: < -> <= | if (status < 0)',
+     'src/sensor/a16_controlled.c | fathom_a16_controlled_init | relational: < -> <= | if (fathom_dyp_measurement_init(response, '
      'FATHOM_A16_MAX_MM) < 0 || line == NULL || sensor->earliest_us > sensor->latest_us)',
-     'src/a16_controlled.c | fathom_a16_controlled_init | constant: 0 -> 1 | if (fathom_dyp_answer_init(answer, '
+     'src/sensor/a16_controlled.c | fathom_a16_controlled_init | constant: 0 -> 1 | if (fathom_dyp_measurement_init(response, '
      'FATHOM_A16_MAX_MM) < 0 || line == NULL || sensor->earliest_us > sensor->latest_us)',
-     'src/a16_controlled.c | fathom_a16_controlled_init | relational: < -> <= | if (status < 0)',
-     'src/a16_controlled.c | fathom_a16_controlled_init | constant: 0 -> 1 | if (status < 0)',
-     'src/hps167s.c | poll | constant: 0 -> 1 | if ((sensor->is_new != NULL && !sensor->is_new(sensor)) || '
-     'fathom_hps167s_decode_within(sensor->limits, answer, sample) < 0)',
-     'src/hps167s.c | poll | relational: < -> <= | if ((sensor->is_new != NULL && !sensor->is_new(sensor)) || '
-     'fathom_hps167s_decode_within(sensor->limits, answer, sample) < 0)'),
+     'src/sensor/a16_controlled.c | fathom_a16_controlled_init | relational: < -> <= | if (status < 0)',
+     'src/sensor/a16_controlled.c | fathom_a16_controlled_init | constant: 0 -> 1 | if (status < 0)',
+     'src/sensor/hps167s.c | poll | constant: 0 -> 1 | if ((sensor->is_new != NULL && !sensor->is_new(sensor)) || '
+     'fathom_hps167s_decode_within(sensor->limits, response, sample) < 0)',
+     'src/sensor/hps167s.c | poll | relational: < -> <= | if ((sensor->is_new != NULL && !sensor->is_new(sensor)) || '
+     'fathom_hps167s_decode_within(sensor->limits, response, sample) < 0)'),
     ('no pair of switches either',
-     'src/hps167s_info.c | be_wary | constant: NOTHING -> (NOTHING + 1) | sensor->measured[0] = NOTHING',
-     'src/hps167s_info.c | be_wary | constant: NOTHING -> (NOTHING - 1) | sensor->measured[0] = NOTHING'),
+     'src/sensor/hps167s_info.c | be_wary | constant: NOTHING -> (NOTHING + 1) | sensor->last_measurement[0] = NOTHING',
+     'src/sensor/hps167s_info.c | be_wary | constant: NOTHING -> (NOTHING - 1) | sensor->last_measurement[0] = NOTHING'),
     ('symmetric',
-     'src/modbus_rtu.c | fathom_modbus_rtu_is_request | arguments: bytes, message->head -> message->head, bytes | '
+     'src/codec/modbus_rtu.c | fathom_modbus_rtu_is_request | arguments: bytes, message->head -> message->head, bytes | '
      'return is_alike(bytes, message->head, have < HEAD ? have : HEAD)',
-     'src/modbus_rtu.c | fathom_modbus_rtu_parse_response | arguments: frame + FIRST, head + FIRST -> head + FIRST, '
+     'src/codec/modbus_rtu.c | fathom_modbus_rtu_parse_response | arguments: frame + FIRST, head + FIRST -> head + FIRST, '
      'frame + FIRST | if (!is_alike(frame + FIRST, head + FIRST, HEAD - FIRST))',
-     'src/hps167s_info.c | is_believed | arguments: values, sensor->measured -> sensor->measured, values | if '
-     '(!fathom_hps167s_may_be_configuration(values) || same_4(values, sensor->measured))',
-     'src/hps167s_info.c | is_believed | arguments: values, sensor->told -> sensor->told, values | if '
-     '(!same_4(values, sensor->told))',
-     'src/a16_controlled.c | due_us | arguments: fathom_trigger_due_us(trigger, until_us), '
+     'src/sensor/hps167s_info.c | is_believed | arguments: values, sensor->last_measurement -> sensor->last_measurement, values | if '
+     '(!fathom_hps167s_may_be_configuration(values) || same_4(values, sensor->last_measurement))',
+     'src/sensor/hps167s_info.c | is_believed | arguments: values, sensor->last_configuration -> sensor->last_configuration, values | if '
+     '(!same_4(values, sensor->last_configuration))',
+     'src/sensor/a16_controlled.c | due_us | arguments: fathom_trigger_due_us(trigger, until_us), '
      'fathom_line_due_us(sensor->line) -> fathom_line_due_us(sensor->line), fathom_trigger_due_us(trigger, '
      'until_us) | return least_us(fathom_trigger_due_us(trigger, until_us), fathom_line_due_us(sensor->line))',
-     'src/dyp_auto.c | fathom_dyp_auto_due_us | arguments: fathom_line_due_us(line), rest_us(stream->stale_us, '
+     'src/sensor/dyp_auto.c | fathom_dyp_auto_due_us | arguments: fathom_line_due_us(line), rest_us(stream->stale_us, '
      'passed_us) -> rest_us(stream->stale_us, passed_us), fathom_line_due_us(line) | return '
      'least_us(fathom_line_due_us(line), rest_us(stream->stale_us, passed_us))',
-     'src/hps167s_info.c | is_new | arguments: sensor->answer, sensor->told -> sensor->told, sensor->answer | if '
-     '(same_4(sensor->answer, sensor->told))'),
+     'src/sensor/hps167s_info.c | is_new | arguments: sensor->measurement, sensor->last_configuration -> sensor->last_configuration, sensor->measurement | if '
+     '(same_4(sensor->measurement, sensor->last_configuration))'),
     ('at most 9 * 255',
-     'src/hps167s_registers.c | fathom_hps167s_temperature_dc | type: int32_t -> int16_t | const int32_t divisor = '
+     'src/codec/hps167s_registers.c | fathom_hps167s_temperature_dc | type: int32_t -> int16_t | const int32_t divisor = '
      '9 * (int32_t) steps_per_degree'),
     ('a dividend of 0 gives 0 either way',
-     'src/hps167s_registers.c | fathom_hps167s_temperature_dc | relational: >= -> > | return (dividend >= 0 ? '
+     'src/codec/hps167s_registers.c | fathom_hps167s_temperature_dc | relational: >= -> > | return (dividend >= 0 ? '
      'dividend + divisor / 2 : dividend - divisor / 2) / divisor',
-     'src/hps167s_registers.c | fathom_hps167s_temperature_dc | constant: 0 -> 1 | return (dividend >= 0 ? dividend '
+     'src/codec/hps167s_registers.c | fathom_hps167s_temperature_dc | constant: 0 -> 1 | return (dividend >= 0 ? dividend '
      '+ divisor / 2 : dividend - divisor / 2) / divisor'),
     ('looks at the byte when the next one has come; what is taken is the same',
-     'src/hps167s_auto.c | fits | name: FUNCTION -> SIZE | if (sensor->have > FUNCTION && bytes[FUNCTION] != '
+     'src/sensor/hps167s_auto.c | fits | name: FUNCTION -> SIZE | if (sensor->have > FUNCTION && bytes[FUNCTION] != '
      'FATHOM_MODBUS_READ_HOLDING_REGISTERS)',
-     'src/hps167s_auto.c | fits | name: SIZE -> DATA | if (sensor->have > SIZE && bytes[SIZE] != DATA_SIZE)'),
+     'src/sensor/hps167s_auto.c | fits | name: SIZE -> DATA | if (sensor->have > SIZE && bytes[SIZE] != DATA_SIZE)'),
     ('a number that no other step has; they are compared for equality alone',
-     'src/modbus_setting.c |  | constant: 5 -> 6 | WRITE_UNSEEN = 5'),
+     'src/engine/modbus_setting.c |  | constant: 5 -> 6 | WRITE_UNREAD = 5'),
     ("no write's name: they have the highest bit",
-     'src/modbus_setting.c | written | constant: 0 -> 1 | unit->given = is_lost ? 0 : unit->setting',
-     'src/hps167s_settings.c | set_all | constant: 0 -> 1 | unit->given = 0'),
+     'src/engine/modbus_setting.c | written | constant: 0 -> 1 | unit->last_written = is_lost ? 0 : unit->setting',
+     'src/sensor/hps167s_settings.c | set_all | constant: 0 -> 1 | unit->last_written = 0'),
     ('an int of 32 bits holds what is shifted; the tests on an int of 16 bits see it',
-     'src/hps167s_registers.c | fathom_hps167s_reconnect_time_ms | type: uint32_t -> uint16_t | return '
+     'src/codec/hps167s_registers.c | fathom_hps167s_reconnect_time_ms | type: uint32_t -> uint16_t | return '
      'low_word_first ? (uint32_t) second << 16 | first : (uint32_t) first << 16 | second',
-     'src/hps167s_registers.c | fathom_hps167s_reconnect_time_ms | type: uint32_t -> uint16_t | return '
+     'src/codec/hps167s_registers.c | fathom_hps167s_reconnect_time_ms | type: uint32_t -> uint16_t | return '
      'low_word_first ? (uint32_t) second << 16 | first : (uint32_t) first << 16 | second | 2'),
     ('set by the read, and not looked at after a write',
-     'src/modbus_setting.c | fathom_modbus_set | constant: 0 -> 1 | uint32_t value = 0'),
+     'src/engine/modbus_setting.c | fathom_modbus_set | constant: 0 -> 1 | uint32_t value = 0'),
     ('the register is not sent; the function alone is looked at',
-     'src/dyp_client.c |  | constant: 0x0200 -> 0x0000 | ADDRESS_REGISTER = 0x0200',
-     'src/dyp_client.c |  | constant: 0x0200 -> 0x01FF | ADDRESS_REGISTER = 0x0200',
-     'src/dyp_client.c |  | constant: 0x0200 -> 0x0201 | ADDRESS_REGISTER = 0x0200',
-     'src/dyp_client.c | fathom_dyp_client_set_every_address | arguments: ADDRESS_REGISTER, address -> address, '
+     'src/engine/dyp_client.c |  | constant: 0x0200 -> 0x0000 | ADDRESS_REGISTER = 0x0200',
+     'src/engine/dyp_client.c |  | constant: 0x0200 -> 0x01FF | ADDRESS_REGISTER = 0x0200',
+     'src/engine/dyp_client.c |  | constant: 0x0200 -> 0x0201 | ADDRESS_REGISTER = 0x0200',
+     'src/engine/dyp_client.c | fathom_dyp_client_set_every_address | arguments: ADDRESS_REGISTER, address -> address, '
      'ADDRESS_REGISTER | fathom_modbus_write_single_register(& request->message, address, ADDRESS_REGISTER, '
      'address)'),
     ('AA alone is a second probe at 43520 mm or more too, which no A05 measures',
-     'src/dyp_client.c | check | logical: length == FATHOM_DYP_MAX_ANSWER && frame[NEXT] == frame[0] -> length == '
-     'FATHOM_DYP_MAX_ANSWER | if (length == FATHOM_DYP_MAX_ANSWER && frame[NEXT] == frame[0] && frame[NEXT + 1] == '
-     'frame[1] && fathom_dyp_protocol_valid(frame, NEXT))'),
+     'src/engine/dyp_client.c | check | logical: length == FATHOM_DYP_MAX_RESPONSE && frame[NEXT] == frame[0] -> length == '
+     'FATHOM_DYP_MAX_RESPONSE | if (length == FATHOM_DYP_MAX_RESPONSE && frame[NEXT] == frame[0] && frame[NEXT + 1] == '
+     'frame[1] && fathom_dyp_55aa_valid(frame, NEXT))'),
     ('nothing but init may follow',
-     'src/pulse.c | fathom_pulse_deinit | statement dropped: it -> nothing | meter->waiting = false',
-     'src/pulse.c | fathom_pulse_deinit | constant: false -> true | meter->waiting = false'),
+     'src/engine/pulse.c | fathom_pulse_deinit | statement dropped: it -> nothing | meter->waiting = false',
+     'src/engine/pulse.c | fathom_pulse_deinit | constant: false -> true | meter->waiting = false'),
     ('writes a value behind the last, which nobody reads; the bounds check of the sanitizer builds ends there',
-     'src/a16_controlled.c | judge | constant: 1 -> 2 | fathom_dyp_frame_decode(fathom_stream_frame(& '
-     'sensor->stream), answer->values, 1)'),
+     'src/sensor/a16_controlled.c | judge | constant: 1 -> 2 | fathom_dyp_stream_decode(fathom_stream_frame(& '
+     'sensor->stream), response->values, 1)'),
     ('the end of these 71 minutes is not told; it is due 1 us earlier',
-     'src/a16_controlled.c | fathom_a16_controlled_init | constant: UINT32_MAX -> (UINT32_MAX - 1) | '
+     'src/sensor/a16_controlled.c | fathom_a16_controlled_init | constant: UINT32_MAX -> (UINT32_MAX - 1) | '
      'stream->stale_us = UINT32_MAX'),
     ('the one fitted probe, which is told either way',
-     'src/a05_auto.c | odd_probe | relational: <= -> < | for (uint8_t bit = 1; bit <= sensor->probes; bit = '
+     'src/sensor/a05_auto.c | odd_probe | relational: <= -> < | for (uint8_t bit = 1; bit <= sensor->probes; bit = '
      '(uint8_t) (bit << 1), value ++)'),
     ('looked at only after the first word, which sets it',
-     'src/contact.c | fathom_contact_init | statement dropped: it -> nothing | contact->period_us = own->period_us'),
+     'src/engine/contact.c | fathom_contact_init | statement dropped: it -> nothing | contact->period_us = own->period_us'),
     ('neither NEAR nor FAR',
-     'src/contact.c | fathom_contact_init | constant: 0 -> 1 | contact->said = 0'),
+     'src/engine/contact.c | fathom_contact_init | constant: 0 -> 1 | contact->last_kind = 0'),
     ('set before it is looked at',
-     'src/dyp_modbus.c | fathom_dyp_modbus_address | constant: 0 -> 1 | uint16_t value = 0',
-     'src/dyp_modbus.c | read | constant: 0 -> 1 | uint16_t found = 0',
-     'src/a16_settings.c | get_choice | constant: 0 -> 1 | uint16_t found = 0'),
+     'src/sensor/dyp_modbus.c | fathom_dyp_modbus_address | constant: 0 -> 1 | uint16_t value = 0',
+     'src/sensor/dyp_modbus.c | read | constant: 0 -> 1 | uint16_t found = 0',
+     'src/sensor/a16_settings.c | get_choice | constant: 0 -> 1 | uint16_t found = 0'),
     ('the distance is not looked at',
-     'src/a05_dyp.c | read_address | type: uint16_t -> uint8_t | uint16_t distance = 0',
-     'src/a05_dyp.c | read_address | constant: 0 -> 1 | uint16_t distance = 0'),
+     'src/sensor/a05_dyp.c | read_address | type: uint16_t -> uint8_t | uint16_t distance = 0',
+     'src/sensor/a05_dyp.c | read_address | constant: 0 -> 1 | uint16_t distance = 0'),
     ('init has already set what a new sequence sets',
-     'src/a05_relay_rule.c | fathom_a05_relay_rule_init | statement dropped: it -> nothing | rule->sequence = 0',
-     'src/a05_relay_rule.c | fathom_a05_relay_rule_init | constant: 0 -> 1 | rule->sequence = 0'),
+     'src/sensor/a05_relay_rule.c | fathom_a05_relay_rule_init | statement dropped: it -> nothing | rule->sequence = 0',
+     'src/sensor/a05_relay_rule.c | fathom_a05_relay_rule_init | constant: 0 -> 1 | rule->sequence = 0'),
     ('nothing is left of a hold then',
-     'src/debounce.c | fathom_debounce_init | statement dropped: it -> nothing | debounce->fed_us = 0',
-     'src/debounce.c | fathom_debounce_init | constant: 0 -> 1 | debounce->fed_us = 0'),
+     'src/engine/debounce.c | fathom_debounce_init | statement dropped: it -> nothing | debounce->fed_us = 0',
+     'src/engine/debounce.c | fathom_debounce_init | constant: 0 -> 1 | debounce->fed_us = 0'),
     ('the first verdict differs from NEITHER and sets the row to 0',
-     'src/debounce.c | fathom_debounce_init | statement dropped: it -> nothing | debounce->verdict = NEITHER',
-     'src/debounce.c | fathom_debounce_init | statement dropped: it -> nothing | debounce->row = 0',
-     'src/debounce.c | fathom_debounce_init | constant: 0 -> 1 | debounce->row = 0'),
+     'src/engine/debounce.c | fathom_debounce_init | statement dropped: it -> nothing | debounce->verdict = NEITHER',
+     'src/engine/debounce.c | fathom_debounce_init | statement dropped: it -> nothing | debounce->row = 0',
+     'src/engine/debounce.c | fathom_debounce_init | constant: 0 -> 1 | debounce->row = 0'),
     ('a pulse that is not new is not returned',
-     'src/edges.c | take | condition: is_new -> 1 | if (is_new)'),
+     'src/engine/edges.c | take | condition: is_new -> 1 | if (is_new)'),
     ('looked at only after a rising edge, which sets it',
-     'src/edges.c | fathom_edges_init | statement dropped: it -> nothing | edges->rise_us = 0',
-     'src/edges.c | fathom_edges_init | constant: 0 -> 1 | edges->rise_us = 0'),
+     'src/engine/edges.c | fathom_edges_init | statement dropped: it -> nothing | edges->rise_us = 0',
+     'src/engine/edges.c | fathom_edges_init | constant: 0 -> 1 | edges->rise_us = 0'),
     ('looked at only while it listens, and is set when that begins',
-     'src/a16_rs232.c | fathom_a16_rs232_init | statement dropped: it -> nothing | rs232->since_us = 0',
-     'src/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->since_us = 0'),
+     'src/sensor/a16_rs232.c | fathom_a16_rs232_init | statement dropped: it -> nothing | rs232->since_us = 0',
+     'src/sensor/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->since_us = 0'),
     ('half the range of the clock is 35 minutes, and nobody waits so long',
-     'src/a16_rs232.c | is_since | relational: <= -> < | return fathom_elapsed_us(time_us, rs232->since_us) <= '
+     'src/sensor/a16_rs232.c | is_since | relational: <= -> < | return fathom_elapsed_us(time_us, rs232->since_us) <= '
      'INT32_MAX',
-     'src/a16_rs232.c | is_since | constant: INT32_MAX -> (INT32_MAX + 1) | return fathom_elapsed_us(time_us, '
+     'src/sensor/a16_rs232.c | is_since | constant: INT32_MAX -> (INT32_MAX + 1) | return fathom_elapsed_us(time_us, '
      'rs232->since_us) <= INT32_MAX',
-     'src/a16_rs232.c | is_since | constant: INT32_MAX -> (INT32_MAX - 1) | return fathom_elapsed_us(time_us, '
+     'src/sensor/a16_rs232.c | is_since | constant: INT32_MAX -> (INT32_MAX - 1) | return fathom_elapsed_us(time_us, '
      'rs232->since_us) <= INT32_MAX'),
     ('the callers give a variable of their own, and copy it where the status, which is told either way, is READY',
-     'src/a16_settings.c | get_choice | condition: status != FATHOM_READY -> 0 | if (status != FATHOM_READY)',
-     'src/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_READY) return status'),
+     'src/sensor/a16_settings.c | get_choice | condition: status != FATHOM_READY -> 0 | if (status != FATHOM_READY)',
+     'src/sensor/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_READY) return status'),
     ('more than 65535 mm either way, which is what is said',
-     'src/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return width_us < LONGEST_US ? '
+     'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return width_us < LONGEST_US ? '
      'width_us : LONGEST_US',
-     'src/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US + 1) | return width_us < LONGEST_US ? '
+     'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US + 1) | return width_us < LONGEST_US ? '
      'width_us : LONGEST_US | 2',
-     'src/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return width_us < LONGEST_US ? '
+     'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return width_us < LONGEST_US ? '
      'width_us : LONGEST_US | 2'),
     ('what is not in mm is in the rest',
-     'src/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 20000 -> 20001 | const uint32_t mm = high / '
+     'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 20000 -> 20001 | const uint32_t mm = high / '
      '20000'),
     ('the speed is even, so that no product ends in 9999999',
-     'src/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 10000000 -> 10000001 | return bounded_mm(mm + '
+     'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 10000000 -> 10000001 | return bounded_mm(mm + '
      '(rest + 10000000) / 20000000)'),
     ('looked at only while there is a candidate, which sets it',
-     'src/stream.c | fathom_stream_begin | statement dropped: it -> nothing | stream->candidate_us = now_us'),
-    ("a setting without a read begins at WRITE_UNSEEN; it is asked where clang's analyzer sees that no null is "
+     'src/engine/stream.c | fathom_stream_begin | statement dropped: it -> nothing | stream->candidate_us = now_us'),
+    ("a setting without a read begins at WRITE_UNREAD; it is asked where clang's analyzer sees that no null is "
      'called',
-     'src/modbus_setting.c | fathom_modbus_set | logical: setting->read == NULL || unit->step == WRITE -> '
+     'src/engine/modbus_setting.c | fathom_modbus_set | logical: setting->read == NULL || unit->step == WRITE -> '
      'unit->step == WRITE | const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == '
-     'WRITE_UNSEEN'),
+     'WRITE_UNREAD'),
     ('compared with 0 alone',
-     'src/line_request.c | fathom_line_deliver | name: NOISY -> ECHOED | uint8_t before = NOISY',
-     'src/dyp_client.c | check | constant: 1 -> 2 | return 1'),
+     'src/engine/line_request.c | fathom_line_deliver | name: NOISY -> ECHOED | uint8_t before = NOISY',
+     'src/engine/dyp_client.c | check | constant: 1 -> 2 | return 1'),
     ('once others are known to send, the count of their bytes is not looked at until both are forgotten',
-     'src/line_response.c | leave | relational: < -> <= | line->known = (uint8_t) (known < COMPANY ? known : '
-     'line->known | COMPANY)'),
+     'src/engine/line_response.c | leave | relational: < -> <= | line->known = (uint8_t) (known < OTHERS_SEND ? known : '
+     'line->known | OTHERS_SEND)'),
     ('no frame is two bytes shorter than a request that begins with it',
-     'src/line_response.c | begun_echo | constant: 1 -> 2 | if (sent == 0 || (frame_length != 0 && ((line->state & '
+     'src/engine/line_response.c | match_echo | constant: 1 -> 2 | if (sent == 0 || (frame_length != 0 && ((line->state & '
      'ECHOED) != 0 || (uint8_t) (sent - frame_length) > 1)))'),
     ('unit 0 has not been asked there, and the CRC of one byte 0 is not 0',
-     'src/modbus_client.c | length | constant: 0 -> 1 | return frame[0] != FATHOM_MODBUS_BROADCAST ? '
+     'src/engine/modbus_client.c | length | constant: 0 -> 1 | return frame[0] != FATHOM_MODBUS_BROADCAST ? '
      'fathom_modbus_rtu_response_length(frame, have) : 0 | 2'),
     ('what begins like no frame is dropped when its fifth byte has come, or at the gap, or earlier',
-     'src/dyp_client.c | is_request | logical: have < NEXT || (frame[ADDRESS] == head[0] && frame[COMMAND] == '
+     'src/engine/dyp_client.c | is_request | logical: have < NEXT || (frame[ADDRESS] == head[0] && frame[COMMAND] == '
      'command_of(head)) -> (frame[ADDRESS] == head[0] && frame[COMMAND] == command_of(head)) | return have < NEXT '
      '|| (frame[ADDRESS] == head[0] && frame[COMMAND] == command_of(head))',
-     'src/dyp_client.c | is_request | name: NEXT -> ADDRESS | return have < NEXT || (frame[ADDRESS] == head[0] && '
+     'src/engine/dyp_client.c | is_request | name: NEXT -> ADDRESS | return have < NEXT || (frame[ADDRESS] == head[0] && '
      'frame[COMMAND] == command_of(head))'),
     ('no request of this protocol is to unit 0',
-     'src/dyp_client.c |  | constant: false -> true | protocol[6]'),
+     'src/engine/dyp_client.c |  | constant: false -> true | protocol[6]'),
     ('the size is even',
-     'src/modbus_rtu.c | fathom_modbus_rtu_response_length | constant: 1 -> 2 | const bool is_size = (size & 1) == '
+     'src/codec/modbus_rtu.c | fathom_modbus_rtu_response_length | constant: 1 -> 2 | const bool is_size = (size & 1) == '
      '0 && (uint8_t) (size - 1) < 2 * FATHOM_MODBUS_MAX_READ | 2',
-     'src/modbus_rtu.c | fathom_modbus_rtu_response_length | relational: < -> <= | const bool is_size = (size & 1) '
+     'src/codec/modbus_rtu.c | fathom_modbus_rtu_response_length | relational: < -> <= | const bool is_size = (size & 1) '
      '== 0 && (uint8_t) (size - 1) < 2 * FATHOM_MODBUS_MAX_READ'),
     ('a number that no other phase has',
-     'src/line_inside.h |  | constant: 5 -> 6 | LISTENING = 5'),
-    ('nothing is owed where nothing is on the wire: `sent` is 0 then, which owe() looks at',
-     'src/line_request.c | give_up | condition: is_busy(line) -> 1 | if (is_busy(line))'),
+     'src/engine/line_internal.h |  | constant: 5 -> 6 | LISTENING = 5'),
+    ('nothing is owed where nothing is on the wire: `sent` is 0 then, which quarantine() looks at',
+     'src/engine/line_request.c | give_up | condition: is_busy(line) -> 1 | if (is_busy(line))'),
     ('counted down by the next byte, before it is looked at',
-     'src/stream.c | fathom_stream_receive | constant: 0 -> 1 | stream->to_step = 0',
-     'src/stream.c | fathom_stream_begin | constant: 0 -> 1 | stream->to_step = 0'),
-    ('a number that no other question has; they are compared for equality alone',
-     'src/dyp_modbus.c |  | constant: 1 -> 2 | MEASURE = 1',
-     'src/dyp_modbus.c |  | constant: 1 -> 0 | MEASURE = 1',
-     'src/dyp_modbus.c | fathom_dyp_modbus_init | name: MEASURE -> WRITES | sensor->question.id = MEASURE'),
+     'src/engine/stream.c | fathom_stream_receive | constant: 0 -> 1 | stream->to_step = 0',
+     'src/engine/stream.c | fathom_stream_begin | constant: 0 -> 1 | stream->to_step = 0'),
+    ('a number that no other request has; they are compared for equality alone',
+     'src/sensor/dyp_modbus.c |  | constant: 1 -> 2 | MEASURE = 1',
+     'src/sensor/dyp_modbus.c |  | constant: 1 -> 0 | MEASURE = 1',
+     'src/sensor/dyp_modbus.c | fathom_dyp_modbus_init | name: MEASURE -> WRITES | sensor->request.id = MEASURE'),
     ('nothing counts from it before the first poll, which sets it',
-     'src/modbus_unit.c | fathom_modbus_unit_init | statement dropped: it -> nothing | unit->polled_us = '
+     'src/engine/modbus_unit.c | fathom_modbus_unit_init | statement dropped: it -> nothing | unit->polled_us = '
      'clock_us(modbus->clock)'),
     ('no command has the address 0',
-     'src/hps167s.c | fathom_hps167s_ask | relational: < -> <= | question->values = id < FATHOM_MODBUS_COMMAND ? '
-     'sensor->answer : sensor->values'),
+     'src/sensor/hps167s.c | fathom_hps167s_ask | relational: < -> <= | request->values = id < FATHOM_MODBUS_COMMAND ? '
+     'sensor->measurement : sensor->values'),
     ('writes the two bytes behind the UUID, the year, which is set right after; the bounds check of the sanitizer '
      'builds ends there',
-     'src/hps167s_registers.c | fathom_hps167s_decode_details | name: FATHOM_HPS167S_UUID_LENGTH -> '
+     'src/codec/hps167s_registers.c | fathom_hps167s_decode_details | name: FATHOM_HPS167S_UUID_LENGTH -> '
      'FATHOM_HPS167S_RECONNECT_STEP_MS | for (uint8_t i = 0; i != FATHOM_HPS167S_UUID_LENGTH; i ++)'),
     ('it is never 0: a byte at least leaves, or one more is needed',
-     'src/line_response.c | fathom_line_scan_asking | relational: < -> <= | if (judged < 0)',
-     'src/line_response.c | fathom_line_scan_asking | constant: 0 -> 1 | if (judged < 0)',
-     'src/line_response.c | fathom_line_scan_asking | relational: >= -> > | if (judged >= TAKEN)'),
+     'src/engine/line_response.c | fathom_line_scan_asking | relational: < -> <= | if (judged < 0)',
+     'src/engine/line_response.c | fathom_line_scan_asking | constant: 0 -> 1 | if (judged < 0)',
+     'src/engine/line_response.c | fathom_line_scan_asking | relational: >= -> > | if (judged >= TAKEN)'),
 ]
 
 assert sum(len(row) - 1 for row in ROWS) == COUNT

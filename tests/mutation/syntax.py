@@ -9,7 +9,8 @@ from clang.cindex import CursorKind as Kind, Index, TranslationUnit, TypeKind
 from expressions import NARROWER, Expressions
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-INCLUDE = ['include', 'src', 'port', 'port/posix', 'port/libmodbus', '/usr/include/modbus']
+LAYERS = ['src/codec', 'src/engine', 'src/sensor']  # what stands there includes headers beside it
+INCLUDE = ['include', 'src', *LAYERS, 'port', 'port/posix', 'port/libmodbus', '/usr/include/modbus']
 
 JUMPS = (Kind.RETURN_STMT, Kind.BREAK_STMT, Kind.CONTINUE_STMT)
 
@@ -18,6 +19,12 @@ def blanked(text):
     """The text without its comments; offsets stay."""
     return re.sub(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', lambda found: found[0] if found[0][0] == '"' else
                   re.sub(r'[^\n]', ' ', found[0]), text, flags=re.S)
+
+
+def library(ends=('.c', '.h')):
+    """The files of src/."""
+    return sorted(os.path.relpath(os.path.join(where, name), ROOT)
+                  for where, _, names in os.walk(os.path.join(ROOT, 'src')) for name in names if name.endswith(ends))
 
 
 class Source(Expressions):

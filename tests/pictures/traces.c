@@ -127,7 +127,7 @@ static void poll_unit(uint8_t i)
         snprintf(text, sizeof text, "unit %u reading %u mm", i + 1U, sample.distance_mm);
     else
         snprintf(text, sizeof text, "unit %u %s", i + 1U,
-                 status == FATHOM_ERR_NO_ANSWER ? "time-out" : "error");
+                 status == FATHOM_ERR_NO_RESPONSE ? "time-out" : "error");
     tell_now("outcome", text);
 }
 
@@ -138,11 +138,11 @@ static void quarantine(void)
     begin_quarantine();
     while (now.now_us < QUARANTINE_END_US) {
         for (uint8_t i = 0; i < UNITS; i++) poll_unit(i);
-        if (counters[FATHOM_LINE_LATE_ANSWERS] != late) {
-            late = counters[FATHOM_LINE_LATE_ANSWERS];
+        if (counters[FATHOM_LINE_LATE_RESPONSES] != late) {
+            late = counters[FATHOM_LINE_LATE_RESPONSES];
             tell_now("late", "counted and dropped");
         }
-        const bool is_in = fathom_line_owes(&line, 1);
+        const bool is_in = fathom_line_is_quarantined(&line, 1);
         if (is_in != was_in) tell_now("quarantine", is_in ? "begins" : "ends");
         was_in = is_in;
         fathom_sim_clock_idle(&now, fathom_due_us(sensors, UNITS));

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "suite.h"
 
-#include "fathom/a16_modbus.h"
-#include "fathom/modbus_client.h"
-#include "fathom/wait.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a16_modbus.h"
 
 /* What port/README.md shows, and its interrupts. */
 void timer_interrupt(void);
@@ -30,8 +30,8 @@ static const fathom_uart_t event_uart = {.read = port_read,
 enum { BIT_US = 104, CHARACTER_US = 1040, DEVICE_US = 50000, OUT = 32 };
 
 /* A16 6(4), example 2: real-time value, 0x02EF = 751 mm. */
-static const uint8_t question[8] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36};
-static const uint8_t answer[7] = {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8};
+static const uint8_t request_frame[8] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36};
+static const uint8_t response_frame[7] = {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8};
 
 static struct {
     uint32_t us;
@@ -55,7 +55,7 @@ static struct {
     uint8_t byte, flags; /* that have come */
     uint32_t alarm_left_us;
     unsigned sleeps;
-    uint32_t answer_left_us;
+    uint32_t response_left_us;
     uint8_t answered;
 
     bool pin;
@@ -169,7 +169,7 @@ static void shift(void)
         chip.last_us = chip.us;
         chip.has_left = chip.is_event;
         chip.out[chip.sent++ % OUT] = chip.in_shifter;
-        if (chip.sent == sizeof question) chip.answer_left_us = DEVICE_US;
+        if (chip.sent == sizeof request_frame) chip.response_left_us = DEVICE_US;
     }
     if (!chip.is_register_full) return;
     if (chip.sent == 0) chip.first_start_us = chip.us;
@@ -182,12 +182,12 @@ static void shift(void)
 /* The A16 answers what it has been asked, if it was that. */
 static void device(void)
 {
-    if (chip.answer_left_us == 0 || --chip.answer_left_us != 0) return;
-    if (memcmp(chip.out, question, sizeof question) != 0) return;
+    if (chip.response_left_us == 0 || --chip.response_left_us != 0) return;
+    if (memcmp(chip.out, request_frame, sizeof request_frame) != 0) return;
     assert_false(chip.has_byte); /* or it would be lost */
-    chip.byte = answer[chip.answered++];
+    chip.byte = response_frame[chip.answered++];
     chip.has_byte = true;
-    if (chip.answered < sizeof answer) chip.answer_left_us = CHARACTER_US;
+    if (chip.answered < sizeof response_frame) chip.response_left_us = CHARACTER_US;
 }
 
 static void step(void)
@@ -335,25 +335,25 @@ static void send_whole(const fathom_uart_t *uart, uint32_t late_us)
 {
     assert_false(chip.driver);
     run(1000);
-    assert_int_equal(uart->write(uart->ctx, question, sizeof question), sizeof question);
+    assert_int_equal(uart->write(uart->ctx, request_frame, sizeof request_frame), sizeof request_frame);
     assert_int_equal(uart->leaves_in_us(uart->ctx),
                      8334); /* 8 characters of 10 bits at 9600 baud, rounded up */
-    assert_int_equal(uart->write(uart->ctx, answer, sizeof answer), 0); /* busy */
-    for (unsigned left = 2 * sizeof question * CHARACTER_US; !uart->sent(uart->ctx); left--) {
+    assert_int_equal(uart->write(uart->ctx, response_frame, sizeof response_frame), 0); /* busy */
+    for (unsigned left = 2 * sizeof request_frame * CHARACTER_US; !uart->sent(uart->ctx); left--) {
         assert_int_not_equal(left, 0);
         run(1);
     }
     assert_int_equal(uart->leaves_in_us(uart->ctx), 0);
-    assert_int_equal(chip.sent, sizeof question);
-    assert_memory_equal(chip.out, question, sizeof question);
+    assert_int_equal(chip.sent, sizeof request_frame);
+    assert_memory_equal(chip.out, request_frame, sizeof request_frame);
     assert_int_equal(chip.undriven, 0);
     assert_true(chip.driver_on_us <= chip.first_start_us);
     assert_false(chip.driver);
     assert_in_range(chip.driver_off_us - chip.last_us, 0, BIT_US);
     assert_int_equal(chip.last_us - chip.first_start_us,
-                     sizeof question * CHARACTER_US + (sizeof question - 1) * late_us);
+                     sizeof request_frame * CHARACTER_US + (sizeof request_frame - 1) * late_us);
     chip.sent = 0;
-    assert_int_equal(uart->write(uart->ctx, answer, sizeof answer), sizeof answer);
+    assert_int_equal(uart->write(uart->ctx, response_frame, sizeof response_frame), sizeof response_frame);
 }
 
 TEST(a_request_leaves_whole_with_the_driver_on_until_its_last_stop_bit) { send_whole(&port_uart, 0); }
@@ -366,7 +366,8 @@ TEST(so_it_does_where_the_interrupt_is_an_event)
 
 TEST(where_the_interrupt_is_an_event_nothing_leaves_by_the_code_for_a_level)
 {
-    assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
+    assert_int_equal(port_uart.write(port_uart.ctx, request_frame, sizeof request_frame),
+                     sizeof request_frame);
     chip.on_room = false; /* there is no such interrupt */
     chip.is_event = true;
     run(1000000);
@@ -416,11 +417,12 @@ TEST(settings_hold_at_once_or_when_the_bytes_have_left_or_are_refused)
     assert_true(set_line(1000001, FATHOM_PARITY_NONE) < 0);
     assert_int_equal(chip.divider, 833);
     come(7, 0);
-    assert_int_equal(port_uart.write(port_uart.ctx, question, sizeof question), sizeof question);
+    assert_int_equal(port_uart.write(port_uart.ctx, request_frame, sizeof request_frame),
+                     sizeof request_frame);
     assert_int_equal(set_line(19200, FATHOM_PARITY_EVEN), 1);
     assert_int_equal(set_line(9600, FATHOM_PARITY_NONE), 0);
     assert_int_equal(chip.divider, 833);
-    run(2 * sizeof question * CHARACTER_US);
+    run(2 * sizeof request_frame * CHARACTER_US);
     assert_int_equal(set_line(9600, FATHOM_PARITY_NONE), 1);
     assert_int_equal(chip.divider, 1667);
     uint8_t byte = 0, flags;
@@ -472,7 +474,8 @@ TEST_IN(plain, a_sensor_is_read_through_it_in_any_loop_and_across_the_wrap)
             read_sensor(uart, from_us[i], 20000);
             read_sensor(uart, from_us[i], 0);
             /* An interrupt a byte each way, and few alarms. */
-            assert_in_range(chip.sleeps, sizeof answer, 2 * (sizeof question + sizeof answer));
+            assert_in_range(chip.sleeps, sizeof response_frame,
+                            2 * (sizeof request_frame + sizeof response_frame));
         }
 }
 

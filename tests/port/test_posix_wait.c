@@ -7,7 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 #include "posix_rig.h"
 
 /*
@@ -227,19 +227,19 @@ TEST_IN(plain, the_short_clock_is_the_low_half_of_the_long_one)
 /* ---- a program that sleeps as long as fathom_line_due_us says ---- */
 
 /* A16 6(4) example 1. */
-static const uint8_t answer[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
+static const uint8_t response[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
 
-static void *answer_once(void *arg)
+static void *response_once(void *arg)
 {
-    uint8_t question[8];
+    uint8_t request[8];
     struct pollfd entry = {rig.pty.master, POLLIN, 0};
     if (poll(&entry, 1, POSIX_LIMIT_MS) != 1) return arg;
-    if (read(rig.pty.master, question, sizeof question) != sizeof question) return arg;
+    if (read(rig.pty.master, request, sizeof request) != sizeof request) return arg;
     pass_a_while();
-    return write(rig.pty.master, answer, sizeof answer) == sizeof answer ? NULL : arg;
+    return write(rig.pty.master, response, sizeof response) == sizeof response ? NULL : arg;
 }
 
-/* Once for the silence before the request, once for its last stop bit, once for the answer, which may come in two
+/* Once for the silence before the request, once for its last stop bit, once for the response, which may come in two
  * parts. At 9600 baud the request leaves for 8.3 ms; hal.h: leaves_in_us. */
 TEST(a_transaction_wakes_the_program_four_times_at_most)
 {
@@ -251,7 +251,7 @@ TEST(a_transaction_wakes_the_program_four_times_at_most)
                                          .frame_size = sizeof frame,
                                          .echo = FATHOM_LINE_ECHO_OFF};
     fathom_line_t line;
-    fathom_modbus_request_t request = {.exchange = {.timeout_us = LONG_US}};
+    fathom_modbus_request_t request = {.transaction = {.timeout_us = LONG_US}};
     uint16_t mm = 0;
     unsigned wakes = 0;
     pthread_t thread;
@@ -259,15 +259,15 @@ TEST(a_transaction_wakes_the_program_four_times_at_most)
     assert_int_equal(fathom_line_init(&line, &config), FATHOM_READY);
     fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &mm);
     assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
-    assert_int_equal(pthread_create(&thread, NULL, answer_once, &line), 0);
-    while (request.exchange.status == FATHOM_PENDING) {
+    assert_int_equal(pthread_create(&thread, NULL, response_once, &line), 0);
+    while (request.transaction.status == FATHOM_PENDING) {
         (void)fathom_line_poll(&line);
-        if (request.exchange.status != FATHOM_PENDING) break;
+        if (request.transaction.status != FATHOM_PENDING) break;
         fathom_posix_wait(&rig.port, fathom_line_due_us(&line));
         wakes++;
     }
     assert_int_equal(pthread_join(thread, NULL), 0);
-    assert_int_equal(request.exchange.status, FATHOM_READY);
+    assert_int_equal(request.transaction.status, FATHOM_READY);
     assert_int_equal(mm, 754);
     assert_in_range(wakes, 1, 4);
 }

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/stream.h"
+#include "fathom/engine/stream.h"
 
 /* Frames that a sensor sends by itself, made and judged by the datasheets' formula alone, and a stream that reads
  * them from any byte on, in portions. */

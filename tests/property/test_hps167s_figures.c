@@ -4,17 +4,17 @@
 
 #include "suite.h"
 
-#include "fathom/hps167s_info.h"
+#include "fathom/sensor/hps167s_info.h"
 
-/* Every figure that an HPS-167S can send where two answers have one shape, and every temperature. */
+/* Every figure that an HPS-167S can send where two responses have one shape, and every temperature. */
 
 static fathom_modbus_request_t *pending;
 
 static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
 {
     (void)ctx;
-    request->exchange.status = FATHOM_PENDING;
-    request->exchange.attempts = 1;
+    request->transaction.status = FATHOM_PENDING;
+    request->transaction.attempts = 1;
     pending = request;
     return FATHOM_PENDING;
 }
@@ -84,7 +84,7 @@ static fathom_status_t ask(uint16_t raw, fathom_hps167s_temperature_t *out)
     clock_us += 20000;
     assert_int_equal(fathom_hps167s_temperature(&hps, out), FATHOM_PENDING);
     *pending->message.values = raw;
-    pending->exchange.status = FATHOM_READY;
+    pending->transaction.status = FATHOM_READY;
     return fathom_hps167s_temperature(&hps, out);
 }
 

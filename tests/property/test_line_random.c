@@ -5,13 +5,13 @@
 
 #include "suite.h"
 
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 #include "stream_rig.h"
 
 /*
- * Five units on a bad line, in simulated time: answers that come late (up to twice the time-out, which is as
- * late as can be told apart), that are damaged, torn, or lost, and noise at any time. Every answer carries the
- * number of the request that it answers, so an answer that is taken for another request's is seen. The loop
+ * Five units on a bad line, in simulated time: responses that come late (up to twice the time-out, which is as
+ * late as can be told apart), that are damaged, torn, or lost, and noise at any time. Every response carries the
+ * number of the request that it answers, so a response that is taken for another request's is seen. The loop
  * comes round at random, up to 25 ms apart, and the port hands bytes over in random pieces.
  */
 enum {
@@ -20,7 +20,7 @@ enum {
     TIMEOUT_US = 40000,
     BYTE_US = 573, /* 11 bits at 19200 baud */
     REQUEST = 8,
-    ANSWER = 7,
+    RESPONSE = 7,
     WIRE = 4096
 };
 
@@ -33,7 +33,7 @@ typedef struct {
 
 typedef struct {
     uint32_t due_us;
-    uint8_t bytes[ANSWER];
+    uint8_t bytes[RESPONSE];
     uint8_t length;
     bool busy;
 } unit_t;
@@ -79,14 +79,15 @@ static void hear_request(const uint8_t *request)
     const uint8_t head[] = {id, 3, 2, (uint8_t)(number >> 8), (uint8_t)number};
     memcpy(unit->bytes, head, sizeof head);
     crc_to(unit->bytes, sizeof head);
-    unit->length = ANSWER;
+    unit->length = RESPONSE;
     /* The last byte of a late one comes just before twice the time-out. */
     const uint32_t latest_us =
-        one_in(weather->late) ? 2 * TIMEOUT_US - (ANSWER + 2) * BYTE_US : TIMEOUT_US / 2;
-    unit->due_us = world.sent_us + rig_random_below(latest_us) + ANSWER * BYTE_US;
+        one_in(weather->late) ? 2 * TIMEOUT_US - (RESPONSE + 2) * BYTE_US : TIMEOUT_US / 2;
+    unit->due_us = world.sent_us + rig_random_below(latest_us) + RESPONSE * BYTE_US;
     unit->busy = !one_in(weather->lose);
-    if (one_in(weather->flip)) unit->bytes[rig_random_below(ANSWER)] ^= (uint8_t)(1u << rig_random_below(8));
-    if (one_in(weather->tear)) unit->length = (uint8_t)rig_random_below(ANSWER);
+    if (one_in(weather->flip))
+        unit->bytes[rig_random_below(RESPONSE)] ^= (uint8_t)(1u << rig_random_below(8));
+    if (one_in(weather->tear)) unit->length = (uint8_t)rig_random_below(RESPONSE);
 }
 
 static bool is_due(uint32_t at_us, uint32_t until_us) { return (int32_t)(until_us - at_us) >= 0; }
@@ -168,12 +169,12 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
 
     while (outcome.ready + outcome.failed < transactions) {
         for (uint8_t id = 1; id <= UNITS; id++) {
-            fathom_exchange_t *const exchange = &requests[id].exchange;
-            if (asked[id] && exchange->status != FATHOM_PENDING) {
+            fathom_transaction_t *const transaction = &requests[id].transaction;
+            if (asked[id] && transaction->status != FATHOM_PENDING) {
                 asked[id] = false;
                 const uint32_t took_us = world.now_us - since_us[id];
                 if (took_us > outcome.longest_us) outcome.longest_us = took_us;
-                if (exchange->status != FATHOM_READY)
+                if (transaction->status != FATHOM_READY)
                     outcome.failed++, assert_int_equal(values[id], 0xDEAD);
                 else
                     outcome.ready++, outcome.wrong += values[id] != world.numbers[id];
@@ -183,8 +184,8 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
             since_us[id] = world.now_us;
             values[id] = 0xDEAD;
             if (world.numbers[id] == 0xDEAC) world.numbers[id]++;
-            exchange->timeout_us = TIMEOUT_US;
-            exchange->retries = retries;
+            transaction->timeout_us = TIMEOUT_US;
+            transaction->retries = retries;
             fathom_modbus_read_holding_registers(&requests[id].message, id, 0x0100, 1, &values[id]);
             assert_int_equal(fathom_modbus_client_submit(&line, &requests[id]), FATHOM_PENDING);
         }
@@ -203,7 +204,7 @@ TEST(on_a_clean_line_every_request_is_answered)
     assert_int_equal(world.overlaps, 0);
 }
 
-TEST(on_a_bad_line_no_answer_is_taken_for_another_requests)
+TEST(on_a_bad_line_no_response_is_taken_for_another_requests)
 {
     const weather_t bad = {.late = 5, .flip = 10, .tear = 15, .lose = 20, .noise = 20000};
     const outcome_t outcome = run(&bad, TRANSACTIONS, 0, 2);
@@ -211,13 +212,13 @@ TEST(on_a_bad_line_no_answer_is_taken_for_another_requests)
     assert_int_equal(world.overlaps, 0);
     assert_in_range(outcome.ready, TRANSACTIONS / 2, TRANSACTIONS);
     assert_true(outcome.failed > TRANSACTIONS / 20); /* the weather was bad */
-    /* Every exchange ends. One deadline serves all units that owe, so in such weather the failures of some put
+    /* Every transaction ends. One deadline serves all units that owe, so in such weather the failures of some put
      * off the turn of others; never for long. */
     assert_in_range(outcome.longest_us, 0, 5000000);
 }
 
 /*
- * Noise that begins like an answer and goes on otherwise is a damaged answer: the unit owes for what is left of the
+ * Noise that begins like a response and goes on otherwise is a damaged response: the unit owes for what is left of the
  * time-out alone (line.h), and one that is late beyond that is asked while it is busy. Forty seeds had 15 of those in
  * 10^6 requests, this one has 2, and none made a reading wrong.
  */

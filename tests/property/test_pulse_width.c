@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/pulse_width.h"
+#include "fathom/codec/pulse_width.h"
 
 /* Exact: twice what n / d is more than mm, times d. */
 static int64_t twice_off(uint16_t mm, uint64_t n, uint64_t d)

@@ -3,12 +3,12 @@
 
 #include "suite.h"
 
-#include "fathom/a05_auto.h"
+#include "fathom/sensor/a05_auto.h"
 #include "stream_rig.h"
 
 /*
  * An A05 that sends by itself, its probes moving at random among few values so that frames often hold an FF and
- * look like each other, read by its driver through a line in simulated time. The four samples of an answer must
+ * look like each other, read by its driver through a line in simulated time. The four samples of a response must
  * be the four of one of the last frames, each in its place. Of some frames one byte is lost or one bit flipped.
  * 5000 frames, or 500 where the loop comes round a thousand times in each; with FATHOM_LONG always 20000.
  */

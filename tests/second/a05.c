@@ -124,7 +124,7 @@ static void on_level(second_device_t *d, bool low)
 }
 
 /* 55 AA frames. */
-static size_t dyp_frame(uint8_t *frame, uint8_t address, uint8_t command, const second_event_t *seen)
+static size_t dyp_stream(uint8_t *frame, uint8_t address, uint8_t command, const second_event_t *seen)
 {
     size_t len = 4;
     frame[0] = 0x55;
@@ -164,24 +164,24 @@ static void dyp_measure(second_device_t *d, const job_t *job)
     uint8_t command = job->bytes[3], frame[16];
     uint8_t probes = (uint8_t)(command == ALL_PROBES ? 0x0FU : 1U << (command - ONE_PROBE));
     second_event_t seen = {0};
-    if ((probes & d->config.fitted) == 0 && chosen(d, CHOICE_a05_unfitted_alone) != ANSWER_TAKEN) {
-        second_slave_refuse(d, job, ANSWER_SILENCE);
+    if ((probes & d->config.fitted) == 0 && chosen(d, CHOICE_a05_unfitted_alone) != RESPONSE_TAKEN) {
+        second_slave_refuse(d, job, RESPONSE_SILENCE);
         return;
     }
     see_for(d, job, &seen, probes);
-    size_t len = dyp_frame(frame, job->reply_address, command, &seen);
+    size_t len = dyp_stream(frame, job->reply_address, command, &seen);
     if (command == ALL_PROBES && chosen(d, CHOICE_a05_all_sum) != 0)
         frame[len - 1] = (uint8_t)(second_wire_sum8(frame, 2) + second_wire_sum8(frame + 4, len - 5));
-    copy_seen(second_slave_answer(d, job, frame, len, SECOND_EVENT_MEASUREMENT), &seen);
+    copy_seen(second_slave_response(d, job, frame, len, SECOND_EVENT_MEASUREMENT), &seen);
 }
 
 static void dyp_set_address(second_device_t *d, const job_t *job)
 {
     uint8_t address = job->bytes[2], frame[16];
     bool taken = address != 0xFF;
-    if (address == 0) taken = chosen(d, CHOICE_a05_dyp_address_zero) == ANSWER_TAKEN;
-    if (!taken && (address == 0 || chosen(d, CHOICE_a05_dyp_address_ff) == ANSWER_SILENCE)) {
-        second_slave_refuse(d, job, ANSWER_SILENCE);
+    if (address == 0) taken = chosen(d, CHOICE_a05_dyp_address_zero) == RESPONSE_TAKEN;
+    if (!taken && (address == 0 || chosen(d, CHOICE_a05_dyp_address_ff) == RESPONSE_SILENCE)) {
+        second_slave_refuse(d, job, RESPONSE_SILENCE);
         return;
     }
     if (taken) {
@@ -193,13 +193,13 @@ static void dyp_set_address(second_device_t *d, const job_t *job)
         second_slave_setting(d, 0xAA00 + SET_ADDRESS, old_value, address, kept);
         if (at_once) second_slave_effect(d);
     }
-    size_t len = dyp_frame(frame, address, SET_ADDRESS, NULL);
-    if (chosen(d, CHOICE_a05_dyp_address_answer) != 0) {
+    size_t len = dyp_stream(frame, address, SET_ADDRESS, NULL);
+    if (chosen(d, CHOICE_a05_dyp_address_response) != 0) {
         const second_event_t zero = {.probes = 0x01};
-        len = dyp_frame(frame, address, ONE_PROBE, &zero);
+        len = dyp_stream(frame, address, ONE_PROBE, &zero);
     }
-    if (!taken) second_truth_log(d, SECOND_EVENT_REFUSED)->exception = ANSWER_ECHOED;
-    second_slave_answer(d, job, frame, len, SECOND_EVENT_ANSWER);
+    if (!taken) second_truth_log(d, SECOND_EVENT_REFUSED)->exception = RESPONSE_ECHOED;
+    second_slave_response(d, job, frame, len, SECOND_EVENT_RESPONSE);
 }
 
 static void dyp_request(second_device_t *d, const uint8_t *bytes)
@@ -216,15 +216,15 @@ static void dyp_request(second_device_t *d, const uint8_t *bytes)
     job.answered = true;
     job.reply_address = d->address;
     if (command == SET_ADDRESS) { /* names only the new address: every sensor on the pair takes it */
-        /* The answer looks like the request: another sensor's answer must not be answered again. */
+        /* The response looks like the request: another sensor's response must not be answered again. */
         bool again = d->us.set_address_us != 0 && job.begin_us < d->us.set_address_us + 250000;
         if (again) {
-            second_slave_refuse(d, &job, ANSWER_SILENCE);
+            second_slave_refuse(d, &job, RESPONSE_SILENCE);
             return;
         }
         d->us.set_address_us = job.end_us;
-        job.due_us =
-            job.end_us + second_truth_span(d, 1000, CHOICE_a05_answer_us) + chosen_us(d, CHOICE_mb_flash_us);
+        job.due_us = job.end_us + second_truth_span(d, 1000, CHOICE_a05_response_us) +
+                     chosen_us(d, CHOICE_mb_flash_us);
         second_job_add(d, &job, true);
         return;
     }
@@ -233,17 +233,17 @@ static void dyp_request(second_device_t *d, const uint8_t *bytes)
         job.answered = chosen(d, CHOICE_a05_dyp_ff) != 0;
         if (chosen(d, CHOICE_a05_dyp_ff) == 2) job.reply_address = 0xFF;
     } else if (to == 0) {
-        job.answered = chosen(d, CHOICE_a05_address_zero) != ANSWER_OTHER;
+        job.answered = chosen(d, CHOICE_a05_address_zero) != RESPONSE_OTHER;
     }
     if (!known) {
-        second_slave_refuse(d, &job, ANSWER_SILENCE);
+        second_slave_refuse(d, &job, RESPONSE_SILENCE);
         return;
     }
     int64_t early = chosen(d, CHOICE_a05_early);
     uint64_t wait_us = 0;
     if (job.begin_us < d->us.dyp_free_us && early != 1) {
         if (early == 0) {
-            second_slave_refuse(d, &job, ANSWER_SILENCE);
+            second_slave_refuse(d, &job, RESPONSE_SILENCE);
             return;
         }
         wait_us = d->us.dyp_free_us - job.begin_us;
@@ -307,7 +307,7 @@ static void on_frame(second_device_t *d)
         job.due_us += second_truth_span(d, 65000, CHOICE_a05_modbus_one_us);
         for (; probes > 1; probes--) job.due_us += second_truth_span(d, 1000, CHOICE_a05_modbus_more_us);
     } else {
-        job.due_us += second_truth_span(d, 1000, CHOICE_a05_answer_us);
+        job.due_us += second_truth_span(d, 1000, CHOICE_a05_response_us);
         if (job.bytes[1] == 0x06) job.due_us += chosen_us(d, CHOICE_mb_flash_us);
     }
     d->timer_us[TIMER_BACK] = SECOND_NEVER;
@@ -320,13 +320,13 @@ static int64_t read_rule(const second_device_t *d, uint16_t reg, uint16_t count)
     bool alias = reg < DISTANCE;
     size_t end = alias && chosen(d, CHOICE_a05_alias_end) == 0 ? SECOND_PROBES - 1 : SECOND_PROBES;
     if (count == 0 || count > 125) return chosen(d, CHOICE_mb_bad_count);
-    if (reg == ADDRESS && count == 1) return ANSWER_TAKEN;
+    if (reg == ADDRESS && count == 1) return RESPONSE_TAKEN;
     if (probe == SECOND_PROBES) return chosen(d, CHOICE_mb_unknown_register);
-    if (alias && count > 1 && chosen(d, CHOICE_a05_alias_many) != ANSWER_TAKEN)
+    if (alias && count > 1 && chosen(d, CHOICE_a05_alias_many) != RESPONSE_TAKEN)
         return chosen(d, CHOICE_a05_alias_many);
     if (probe + count > end) return chosen(d, CHOICE_a05_past_end);
     if (count == 1 && !fitted(d, probe)) return chosen(d, CHOICE_a05_unfitted_alone);
-    return ANSWER_TAKEN;
+    return RESPONSE_TAKEN;
 }
 
 static void read_registers(second_device_t *d, const job_t *job)
@@ -334,13 +334,13 @@ static void read_registers(second_device_t *d, const job_t *job)
     uint16_t reg = word_at(job->bytes + 2), count = word_at(job->bytes + 4);
     int64_t rule = read_rule(d, reg, count);
     uint8_t frame[16] = {job->reply_address, 0x03, 2};
-    if (rule < ANSWER_OTHER) {
+    if (rule < RESPONSE_OTHER) {
         second_slave_refuse(d, job, rule);
         return;
     }
     if (reg == ADDRESS) {
         put_word(frame + 3, d->address);
-        second_slave_answer(d, job, frame, 5, SECOND_EVENT_ANSWER);
+        second_slave_response(d, job, frame, 5, SECOND_EVENT_RESPONSE);
         return;
     }
     size_t first = first_probe(d, reg), end = first + count, len = 3;
@@ -352,7 +352,7 @@ static void read_registers(second_device_t *d, const job_t *job)
     see_for(d, job, &seen, probes);
     for (size_t probe = first; probe < end; probe++, len += 2) put_word(frame + len, seen.sent[probe]);
     frame[2] = (uint8_t)(len - 3);
-    copy_seen(second_slave_answer(d, job, frame, len, SECOND_EVENT_MEASUREMENT), &seen);
+    copy_seen(second_slave_response(d, job, frame, len, SECOND_EVENT_MEASUREMENT), &seen);
 }
 
 static void on_job(second_device_t *d, const job_t *job)

@@ -200,7 +200,7 @@ static void on_frame(second_device_t *d)
 {
     job_t job;
     if (!second_slave_frame(d, &job)) return;
-    job.due_us = job.end_us + second_truth_span(d, 1000, CHOICE_a16_answer_us);
+    job.due_us = job.end_us + second_truth_span(d, 1000, CHOICE_a16_response_us);
     if (job.bytes[1] == 0x06) job.due_us += chosen_us(d, CHOICE_mb_flash_us);
     second_job_add(d, &job, chosen(d, CHOICE_mb_busy) != 0);
 }
@@ -212,7 +212,7 @@ static void on_byte(second_device_t *d)
     second_wire_drop_rx(d);
 }
 
-/* ANSWER_TAKEN: the register can be read, value is set; ANSWER_ECHOED: the same. Else how it is refused. */
+/* RESPONSE_TAKEN: the register can be read, value is set; RESPONSE_ECHOED: the same. Else how it is refused. */
 static int64_t read_one(second_device_t *d, uint16_t reg, reading_t *reading, uint16_t *value)
 {
     int64_t for_switch = chosen(d, CHOICE_a16_switch_registers);
@@ -221,10 +221,10 @@ static int64_t read_one(second_device_t *d, uint16_t reg, reading_t *reading, ui
     case REAL_TIME:
         *reading = settled(d, reg == REAL_TIME);
         *value = reading->value;
-        return ANSWER_TAKEN;
+        return RESPONSE_TAKEN;
     case ADDRESS:
         *value = d->address;
-        return ANSWER_TAKEN;
+        return RESPONSE_TAKEN;
     case MODE:
         *value = d->automatic;
         return chosen(d, CHOICE_a16_mode_read);
@@ -236,10 +236,10 @@ static int64_t read_one(second_device_t *d, uint16_t reg, reading_t *reading, ui
         return for_switch;
     case DATA_TYPE:
         *value = d->us.type;
-        return d->config.kind == SECOND_A16_RS485 ? chosen(d, CHOICE_a16_type_rs485) : ANSWER_TAKEN;
+        return d->config.kind == SECOND_A16_RS485 ? chosen(d, CHOICE_a16_type_rs485) : RESPONSE_TAKEN;
     default:
         *value = 0;
-        return ANSWER_SILENCE;
+        return RESPONSE_SILENCE;
     }
 }
 
@@ -256,7 +256,7 @@ static int64_t read_rule(const second_device_t *d, uint16_t first, uint16_t coun
     if (count == 0 || count > 125) return chosen(d, CHOICE_mb_bad_count);
     if (known == 0) return chosen(d, CHOICE_mb_unknown_register);
     if (known < count) return chosen(d, CHOICE_a16_holes);
-    return count > 1 ? chosen(d, CHOICE_a16_two_values) : ANSWER_TAKEN;
+    return count > 1 ? chosen(d, CHOICE_a16_two_values) : RESPONSE_TAKEN;
 }
 
 static void read_registers(second_device_t *d, const job_t *job)
@@ -266,22 +266,22 @@ static void read_registers(second_device_t *d, const job_t *job)
     reading_t readings[2] = {{0}};
     uint8_t measured = 0;
     int64_t rule = read_rule(d, first, count);
-    if (rule == ANSWER_TAKEN && count > (SECOND_FRAME_MAX - 5) / 2) rule = chosen(d, CHOICE_mb_bad_count);
-    for (uint16_t i = 0; i < count && rule >= ANSWER_TAKEN; i++) {
+    if (rule == RESPONSE_TAKEN && count > (SECOND_FRAME_MAX - 5) / 2) rule = chosen(d, CHOICE_mb_bad_count);
+    for (uint16_t i = 0; i < count && rule >= RESPONSE_TAKEN; i++) {
         uint16_t reg = (uint16_t)(first + i), value = 0;
         bool real = reg == REAL_TIME;
-        int64_t how = in_table(reg) ? read_one(d, reg, &readings[real ? 1 : 0], &value) : ANSWER_TAKEN;
-        if (how < ANSWER_TAKEN) rule = how;
+        int64_t how = in_table(reg) ? read_one(d, reg, &readings[real ? 1 : 0], &value) : RESPONSE_TAKEN;
+        if (how < RESPONSE_TAKEN) rule = how;
         if (reg == PROCESSED || real) measured |= real ? 2 : 1;
         put_word(frame + 3 + 2 * i, value);
     }
-    if (rule < ANSWER_TAKEN) {
+    if (rule < RESPONSE_TAKEN) {
         second_slave_refuse(d, job, rule);
         return;
     }
     size_t len = 3U + 2U * count;
-    second_event_t *event = second_slave_answer(
-        d, job, frame, len, measured != 0 ? SECOND_EVENT_MEASUREMENT : SECOND_EVENT_ANSWER);
+    second_event_t *event = second_slave_response(
+        d, job, frame, len, measured != 0 ? SECOND_EVENT_MEASUREMENT : SECOND_EVENT_RESPONSE);
     if (measured == 0 || event == &d->unsent) return;
     second_event_t sent = *event;
     bool real = (measured & 1) == 0;
@@ -298,10 +298,10 @@ static void read_registers(second_device_t *d, const job_t *job)
 
 static void write_mode(second_device_t *d, const job_t *job, uint16_t value)
 {
-    int64_t how = ANSWER_TAKEN;
+    int64_t how = RESPONSE_TAKEN;
     if (value > 1) how = chosen(d, CHOICE_a16_mode_value);
     if (d->config.kind == SECOND_A16_RS485) how = chosen(d, CHOICE_a16_mode_rs485);
-    if (how != ANSWER_TAKEN) {
+    if (how != RESPONSE_TAKEN) {
         second_slave_refuse(d, job, how);
         return;
     }
@@ -320,7 +320,7 @@ static void write_register(second_device_t *d, const job_t *job)
     uint16_t reg = word_at(job->bytes + 2), value = word_at(job->bytes + 4);
     bool flag = reg == POLARITY || reg == DATA_TYPE;
     uint16_t *target = reg == POLARITY ? &d->us.polarity : reg == THRESHOLD ? &d->us.threshold : &d->us.type;
-    int64_t how = ANSWER_TAKEN;
+    int64_t how = RESPONSE_TAKEN;
     if (reg == ADDRESS) {
         second_slave_write_address(d, job, value, chosen(d, CHOICE_a16_address_zero));
         return;
@@ -331,10 +331,10 @@ static void write_register(second_device_t *d, const job_t *job)
     }
     if (reg == DATA_TYPE && d->config.kind == SECOND_A16_RS485) how = chosen(d, CHOICE_a16_type_rs485);
     if (reg == POLARITY || reg == THRESHOLD) how = chosen(d, CHOICE_a16_switch_registers);
-    if (how == ANSWER_TAKEN && flag && value > 1) how = chosen(d, CHOICE_a16_flag_value);
+    if (how == RESPONSE_TAKEN && flag && value > 1) how = chosen(d, CHOICE_a16_flag_value);
     if (reg == PROCESSED || reg == REAL_TIME) how = chosen(d, CHOICE_mb_read_only_write);
     if (!in_table(reg)) how = chosen(d, CHOICE_mb_unknown_register);
-    if (how != ANSWER_TAKEN) {
+    if (how != RESPONSE_TAKEN) {
         second_slave_refuse(d, job, how);
         return;
     }

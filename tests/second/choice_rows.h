@@ -21,8 +21,8 @@ LIST(any_break_as, K_HEARS, "all", "a break on the line is not printed", {0, 1, 
      {1, 1, "a noise byte 00"})
 LIST(any_heard_while_sending, K_PAIR, "A05 2(1), HPS 2.2.1", "half duplex; nothing more is printed",
      {0, 1, "deaf while sending"}, {1, 1, "a noise byte"})
-LIST(any_answer_jitter, K_ANSWERS, "A05 2(3)1", "times are printed as spans", {0, 1, "always the drawn time"},
-     {1, 1, "each time anew, from the shortest to the drawn one"})
+LIST(any_response_jitter, K_RESPONSES, "A05 2(3)1", "times are printed as spans",
+     {0, 1, "always the drawn time"}, {1, 1, "each time anew, from the shortest to the drawn one"})
 
 /* A16 and A05: Modbus. */
 LIST(mb_frame_end, K_MODBUS, "A16 6(1), A05 3(1)", "Modbus-RTU; no gap is printed",
@@ -32,15 +32,16 @@ LIST(mb_busy, K_MODBUS, "A16 6(2), A05 3(2)", "a request while one is being serv
 LIST(mb_zero_broadcast, K_MODBUS, "A16 6(3), A05 3(3)", "broadcast is 0xFF; address 0 is in the range",
      {0, 1, "request to 0 ignored"}, {1, 1, "write to 0 done, not answered"})
 LIST(mb_ff_read, K_MODBUS, "A16 6(3), A05 3(3)", "0xFF is broadcast; whether answered is not printed",
-     {0, 1, "no answer"}, {1, 1, "answer from the own address"}, {2, 1, "answer from FF"})
+     {0, 1, "no response"}, {1, 1, "response from the own address"}, {2, 1, "response from FF"})
 LIST(mb_ff_write, K_MODBUS, "A16 6(3), A05 3(3)", "0xFF is broadcast; whether answered is not printed",
-     {0, 1, "done, no answer"}, {1, 1, "done, answer from the own address"}, {2, 1, "done, answer from FF"})
+     {0, 1, "done, no response"}, {1, 1, "done, response from the own address"},
+     {2, 1, "done, response from FF"})
 LIST(mb_address_ff, K_MODBUS, "A16 6(3), A05 3(3)", "setting FF is out of the range 00..FE", V_EXCEPTION(3),
      V_SILENCE, V_ECHOED)
 LIST(mb_address_high, K_MODBUS, "A16 6(3), A05 3(3)", "setting 0100 and more is out of the range",
      V_EXCEPTION(3), V_SILENCE, V_ECHOED, {8, 1, "the low byte is taken"})
 LIST(mb_address_effect, K_MODBUS, "A16 6(4)3, A05 3(4)2",
-     "the printed answer is from the old address; then silent", {0, 2, "after the answer"},
+     "the printed response is from the old address; then silent", {0, 2, "after the response"},
      {1, 1, "at the next power-on"})
 LIST(mb_address_kept, K_MODBUS, "A16 6(3), A05 3(3)", "only 0202 is said not to be kept", {1, 3, "kept"},
      {0, 1, "lost at power-off"})
@@ -88,9 +89,9 @@ LIST(a16_early_trigger, K_TRIGGERED, "A16 1(2), 3(2)", "a trigger that comes too
 LIST(a16_trigger_at_power_on, K_TRIGGERED, "A16 1(2), 3(2)", "what power-on does is not printed",
      {0, 2, "nothing"}, {1, 1, "RX low counts as a falling edge"}, {2, 1, "always one measurement"})
 LIST(a16_sample_at, K_A16_CONTROLLED, "A16 3(2)", "measures after the edge, sends when done",
-     {0, 1, "value of the trigger's time"}, {1, 1, "value of the answer's time"})
-RANGE(a16_answer_us, K_A16_MODBUS, "A16 3(3), 6", "Modbus answer time is not printed; a measurement 110 ms",
-      1000, 110000, 10000)
+     {0, 1, "value of the trigger's time"}, {1, 1, "value of the response's time"})
+RANGE(a16_response_us, K_A16_MODBUS, "A16 3(3), 6",
+      "Modbus response time is not printed; a measurement 110 ms", 1000, 110000, 10000)
 LIST(a16_address_zero, K_A16_MODBUS, "A16 6(3)", "range 0x00~0xFE", {8, 1, "settable, answers at 0"},
      {7, 1, "settable, does not answer at 0"})
 LIST(a16_first_command, K_A16_RS232, "A16 5", "send a command to switch to Modbus", {0, 1, "it is served"},
@@ -99,8 +100,8 @@ LIST(a16_switch_by, K_A16_RS232, "A16 5", "send a command to switch to Modbus",
      {0, 1, "a request to this sensor"}, {1, 1, "any frame with a right CRC"})
 LIST(a16_linger, K_A16_RS232, "A16 5", "automatic frames after the switch: not printed", {0, 1, "none"},
      {1, 1, "one"}, {2, 1, "two"})
-LIST(a16_linger_when, K_A16_RS232, "A16 5", "as above", {0, 1, "before the answer"},
-     {1, 1, "right behind the answer"}, {2, 1, "at the next periods"})
+LIST(a16_linger_when, K_A16_RS232, "A16 5", "as above", {0, 1, "before the response"},
+     {1, 1, "right behind the response"}, {2, 1, "at the next periods"})
 LIST(a16_mode_read, K_A16_MODBUS, "A16 6(3)", "0202 is write-only", V_EXCEPTION(2), V_SILENCE,
      {8, 1, "reads as the mode"})
 LIST(a16_mode_value, K_A16_RS232, "A16 6(3)", "0202: values other than 0 and 1 not printed", V_EXCEPTION(3),
@@ -175,27 +176,27 @@ LIST(a05_switch_by, K_A05_UART, "A05 1(1)", "after receiving the Modbus command"
      {0, 1, "a request to this sensor"}, {1, 1, "any frame with a right CRC"})
 LIST(a05_linger, K_A05_UART, "A05 1(1)", "automatic frames after the switch: not printed", {0, 1, "none"},
      {1, 1, "one"}, {2, 1, "two"})
-LIST(a05_linger_when, K_A05_UART, "A05 1(1)", "as above", {0, 1, "before the answer"},
-     {1, 1, "right behind the answer"}, {2, 1, "at the next periods"})
+LIST(a05_linger_when, K_A05_UART, "A05 1(1)", "as above", {0, 1, "before the response"},
+     {1, 1, "right behind the response"}, {2, 1, "at the next periods"})
 LIST(a05_back_us, K_A05_UART, "A05 1(1)", "the way back to automatic output is not printed",
      {0, 2, "only power-off"}, {1000000, 1, "1 s without a command"}, {10000000, 1, "10 s without a command"})
 RANGE(a05_all_us, K_A05_RS485, "A05 2(3)1", "t2 = 200~210 ms, all probes", 200000, 210000, 205000)
 RANGE(a05_one_us, K_A05_RS485, "A05 2(3)1", "t2 = 65~75 ms, one probe", 65000, 75000, 70000)
 LIST(a05_t2_from, K_A05_RS485, "A05 2(3)1", "where t2 begins is not in the text", {0, 1, "the request's end"},
      {1, 1, "the request's start"})
-LIST(a05_t2_to, K_A05_RS485, "A05 2(3)1", "where t2 ends is not in the text", {0, 1, "the answer's start"},
-     {1, 1, "the answer's end"})
+LIST(a05_t2_to, K_A05_RS485, "A05 2(3)1", "where t2 ends is not in the text", {0, 1, "the response's start"},
+     {1, 1, "the response's end"})
 LIST(a05_early, K_A05_RS485, "A05 2(3)1", "t1 >= 250 ms and >= 100 ms required; earlier: not printed",
      {0, 1, "ignored"}, {1, 1, "served"}, {2, 1, "served when t1 is over"})
 LIST(a05_dyp_ff, K_A05_RS485, "A05 2(3)2", "0xFF is broadcast; whether answered is not printed",
-     {0, 1, "no answer"}, {1, 1, "answer from the own address"}, {2, 1, "answer from FF"})
+     {0, 1, "no response"}, {1, 1, "response from the own address"}, {2, 1, "response from FF"})
 LIST(a05_dyp_address_zero, K_A05_RS485, "A05 2(3)2, 3(3)", "range 01~FE with DYP, 00~FE with Modbus",
      {0, 1, "not taken, silence"}, {8, 1, "taken"})
 LIST(a05_dyp_address_ff, K_A05_RS485, "A05 2(3)2", "address FF is out of the range", {0, 1, "silence"},
      {9, 1, "answered, not taken"})
 LIST(a05_dyp_address_effect, K_A05_RS485, "A05 2(3)5", "when the new address counts is not printed",
      {0, 2, "at once"}, {1, 1, "at the next power-on"})
-MISPRINT(a05_dyp_address_answer, K_A05_RS485, "A05 2(3)5",
+MISPRINT(a05_dyp_address_response, K_A05_RS485, "A05 2(3)5",
          "example: the request again; table: 10, Data_H, Data_L", {0, 5, "as the example"},
          {1, 1, "as the table, data 0"})
 MISPRINT(a05_all_sum, K_A05_RS485, "A05 2(3)3", "formula gives 62 in the example, 60 is printed",
@@ -205,7 +206,7 @@ LIST(a05_dyp_search, K_A05_RS485, "A05 2(3)2", "bytes before 55 AA: not printed"
 RANGE(a05_modbus_one_us, K_A05, "A05 3(3)", "response time about 100 ms", 65000, 120000, 100000)
 RANGE(a05_modbus_more_us, K_A05, "A05 3(3)(1)", "several probes: longer response time, each more", 1000,
       120000, 100000)
-RANGE(a05_answer_us, K_A05, "A05 3(3)", "answer time of 0200 and refusals is not printed", 1000, 110000,
+RANGE(a05_response_us, K_A05, "A05 3(3)", "response time of 0200 and refusals is not printed", 1000, 110000,
       10000)
 LIST(a05_address_zero, K_A05, "A05 2(3)2, 3(3)", "range 01~FE with DYP, 00~FE with Modbus",
      {8, 1, "settable, answers at 0"}, {7, 1, "settable, does not answer at 0"}, V_SILENCE, V_EXCEPTION(3))
@@ -216,7 +217,7 @@ LIST(a05_alias_end, K_A05, "A05 3(3)(2)", "table: 0010..0013; remark: same funct
 LIST(a05_alias_many, K_A05, "A05 3(3)(1)(2)", "several from 0106~0108; 0010.. have the same function",
      {8, 1, "several from 0010 too"}, V_SILENCE, V_EXCEPTION(2), V_EXCEPTION(3))
 LIST(a05_sample_at, K_A05, "A05 3(3)", "measures after the command", {0, 1, "value of the request's time"},
-     {1, 1, "value of the answer's time"})
+     {1, 1, "value of the response's time"})
 
 /* HPS-167S: the wire and the requests. */
 LIST(hps_gap_inside, K_HPS, "HPS 2.2.3", "more than 1.5 characters of silence in a frame: discard it",
@@ -227,7 +228,7 @@ LIST(hps_other_parity, K_HPS, "HPS 2.2.2", "even is required and default; odd an
      {0, 2, "only even is heard"}, {1, 1, "heard, answered with even"}, {2, 1, "heard, answered alike"})
 LIST(hps_busy, K_HPS, "HPS 2.2.1", "a request while one is being served: not printed", {0, 1, "ignored"},
      {1, 1, "served afterwards"})
-RANGE(hps_answer_us, K_HPS, "HPS 2.2.3", "3.5 characters at least; the longest is not printed (6 Hz)", 2006,
+RANGE(hps_response_us, K_HPS, "HPS 2.2.3", "3.5 characters at least; the longest is not printed (6 Hz)", 2006,
       166667, 5000)
 RANGE(hps_measure_us, K_HPS, "HPS table 1, #5", "6~54 Hz", 18519, 166667, 18519)
 RANGE(hps_flash_us, K_HPS, "HPS #7", "time of a write to FLASH is not printed", 0, 100000, 5000)
@@ -239,7 +240,7 @@ LIST(hps_wrong_count, K_HPS, "HPS table 39", "02: combination of address and len
      V_EXCEPTION(3), V_EXCEPTION(2), V_SILENCE, {8, 1, "served as with the right count"})
 LIST(hps_wrong_length, K_HPS, "HPS table 39", "03: the implied length is incorrect", V_EXCEPTION(3),
      V_SILENCE)
-LIST(hps_bad_crc, K_HPS, "HPS 2.2.4.1, abnormal", "2.2.4.1: function | 0x80; abnormal response: no answer",
+LIST(hps_bad_crc, K_HPS, "HPS 2.2.4.1, abnormal", "2.2.4.1: function | 0x80; abnormal response: no response",
      {0, 4, "silence"}, V_EXCEPTION(3), V_EXCEPTION(4))
 
 /* HPS-167S: warm-up and unasked output. */
@@ -283,13 +284,13 @@ LIST(hps_reconnect_kept, K_HPS, "HPS #15", "FLASH is not mentioned", {1, 1, "kep
 LIST(hps_baud_code, K_HPS, "HPS #2, #9", "one byte; 01 or any other code is 19200", {1, 2, "19200"},
      {0, 1, "19200"}, {5, 1, "19200"}, {255, 1, "19200"}, {2, 0, "57600"}, {3, 0, "115200"}, {4, 0, "230400"})
 LIST(hps_baud_effect, K_HPS, "HPS #9", "when it counts is not printed",
-     {0, 2, "after the answer at the old rate"}, {1, 1, "at once, answer at the new rate"},
+     {0, 2, "after the response at the old rate"}, {1, 1, "at once, response at the new rate"},
      {2, 1, "at the next power-on"})
 LIST(hps_baud_kept, K_HPS, "HPS #9", "FLASH is not mentioned", {1, 2, "kept"}, {0, 1, "lost at power-off"})
 LIST(hps_baud_other, K_HPS, "HPS #9", "all other codes are 19200; what #2 then tells is not printed",
      {0, 1, "the code as set"}, {1, 1, "01"})
-LIST(hps_id_answer, K_HPS, "HPS #8", "takes effect immediately; Device ID of the answer: 0x01",
-     {0, 1, "answer from the old ID"}, {1, 1, "answer from the new ID"})
+LIST(hps_id_response, K_HPS, "HPS #8", "takes effect immediately; Device ID of the response: 0x01",
+     {0, 1, "response from the old ID"}, {1, 1, "response from the new ID"})
 LIST(hps_id_range, K_HPS, "HPS 2.2.1, table 39", "1 to 32; others: not printed", V_EXCEPTION(3), V_SILENCE,
      V_EXCEPTION(4), V_ECHOED, {8, 1, "33..247 are taken, others exception 03"})
 LIST(hps_broadcast_reset, K_HPS, "HPS 2.2.1, #6", "broadcast for writes; the reset is a read",
@@ -297,7 +298,7 @@ LIST(hps_broadcast_reset, K_HPS, "HPS 2.2.1, #6", "broadcast for writes; the res
 
 /* HPS-167S: values. */
 LIST(hps_sample_at, K_HPS, "HPS #5", "starts a measurement", {0, 1, "value of the request's time"},
-     {1, 1, "value of the answer's time"})
+     {1, 1, "value of the response's time"})
 RANGE(hps_over_range, K_HPS, "HPS #5", "over-range indication of 65.53 meters", 65530, 65535, 65530)
 LIST(hps_over_magnitude, K_HPS, "HPS #5", "signal too low; no magnitude printed", {0, 1, "0"},
      {16, 1, "0010, exponent 0"}, {-1, 1, "as with a target"})
@@ -349,9 +350,9 @@ LIST(hps_filter_range, K_HPS, "HPS #14", "recommended within +-100; beyond: not 
      V_EXCEPTION(3), V_SILENCE, {7, 1, "held at +-100, echoed as sent"})
 LIST(hps_filter_kept, K_HPS, "HPS #14", "FLASH is not mentioned", {1, 1, "kept"}, {0, 1, "lost at power-off"})
 RANGE(hps_filter_lag_us, K_HPS, "HPS #14", "a larger value sacrifices sensitivity; delay a step", 0, 5000, 0)
-LIST(hps_reset_order, K_HPS, "HPS #6", "after executing it the ID is 0x01; printed answer from 0x01",
-     {0, 1, "answer first, from the old ID at the old rate"},
-     {1, 1, "ID and rate first, answer from 01 at 19200"}, {2, 1, "ID first, rate at the next power-on"})
+LIST(hps_reset_order, K_HPS, "HPS #6", "after executing it the ID is 0x01; printed response from 0x01",
+     {0, 1, "response first, from the old ID at the old rate"},
+     {1, 1, "ID and rate first, response from 01 at 19200"}, {2, 1, "ID first, rate at the next power-on"})
 LIST(hps_reset_scope, K_HPS, "HPS #6", "all settings of the RS485 interface firmware",
      {0, 1, "not offset and filter"}, {1, 1, "offset and filter too"})
 LIST(hps_reset_restart, K_HPS, "HPS #6", "what follows is not printed", {0, 1, "goes on"},

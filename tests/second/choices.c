@@ -20,7 +20,7 @@
 #define K_MODBUS         (K_A16_MODBUS | K_A05)
 #define K_HPS            KIND(HPS167S)
 #define K_HEARS          (K_MODBUS | K_HPS)
-#define K_ANSWERS        (K_HEARS | K_A16_CONTROLLED)
+#define K_RESPONSES      (K_HEARS | K_A16_CONTROLLED)
 #define K_PAIR           (K_A16_RS485 | K_A05_RS485 | K_HPS)
 #define K_ALL            (K_A16 | K_A05 | K_HPS)
 #define K_PWM            KIND(A16_PWM)
@@ -29,10 +29,10 @@
 #define K_RELAY          KIND(A05_RELAY)
 
 /* clang-format off */
-#define V_SILENCE      {ANSWER_SILENCE, 1, "silence"}
+#define V_SILENCE      {RESPONSE_SILENCE, 1, "silence"}
 #define V_EXCEPTION(n) {n, 1, "exception 0" #n}
-#define V_TAKEN        {ANSWER_TAKEN, 1, "taken"}
-#define V_ECHOED       {ANSWER_ECHOED, 1, "echoed, not taken"}
+#define V_TAKEN        {RESPONSE_TAKEN, 1, "taken"}
+#define V_ECHOED       {RESPONSE_ECHOED, 1, "echoed, not taken"}
 /* clang-format on */
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))

@@ -135,7 +135,7 @@ void second_hps_send(second_device_t *d, const job_t *job, bool failed)
         abnormal(d, frame + 3, &seen);
     else
         measure(d, at_request ? job->end_us : d->now_us, frame + 3, &seen);
-    second_event_t *event = second_slave_answer(d, job, frame, 11, SECOND_EVENT_MEASUREMENT);
+    second_event_t *event = second_slave_response(d, job, frame, 11, SECOND_EVENT_MEASUREMENT);
     event->asked = job->end_us != 0;
     event->probes = seen.probes;
     event->fault = seen.fault;
@@ -201,7 +201,7 @@ static void on_frame(second_device_t *d)
     memcpy(job.bytes, d->rx, d->rx_len);
     job.bad_crc = job.len < 4 || second_wire_crc16(job.bytes, job.len) != 0;
     bool mine = job.bytes[0] == d->address;
-    if (job.bad_crc && (!mine || job.len < 4 || chosen(d, CHOICE_hps_bad_crc) == ANSWER_SILENCE)) {
+    if (job.bad_crc && (!mine || job.len < 4 || chosen(d, CHOICE_hps_bad_crc) == RESPONSE_SILENCE)) {
         second_slave_discard(d);
         return;
     }
@@ -213,8 +213,8 @@ static void on_frame(second_device_t *d)
         job.line.stop_bits = d->rx_line.stop_bits;
     }
     bool measurement = job.bytes[1] == READ && word_at(job.bytes + 2) == MEASURE;
-    if (second_hps_warming_up(d) && !measurement && chosen(d, CHOICE_hps_warm_other) == ANSWER_SILENCE) {
-        second_slave_refuse(d, &job, ANSWER_SILENCE);
+    if (second_hps_warming_up(d) && !measurement && chosen(d, CHOICE_hps_warm_other) == RESPONSE_SILENCE) {
+        second_slave_refuse(d, &job, RESPONSE_SILENCE);
         return;
     }
     int64_t unasked_then = chosen(d, CHOICE_hps_unasked_request);
@@ -224,7 +224,7 @@ static void on_frame(second_device_t *d)
     if (measurement)
         job.due_us += second_truth_span(d, 18519, CHOICE_hps_measure_us);
     else
-        job.due_us += second_truth_span(d, 2006, CHOICE_hps_answer_us);
+        job.due_us += second_truth_span(d, 2006, CHOICE_hps_response_us);
     if (job.bytes[1] != READ || word_at(job.bytes + 2) == FACTORY_RESET)
         job.due_us += chosen_us(d, CHOICE_hps_flash_us);
     second_job_add(d, &job, chosen(d, CHOICE_hps_busy) != 0);

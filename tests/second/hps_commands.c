@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* HPS-167S: what each of the commands #1 to #15 does and answers. */
+/* HPS-167S: what each of the commands #1 to #15 does and responses. */
 #include "second_device.h"
 
 #include <string.h>
@@ -38,14 +38,14 @@ static uint32_t get_reconnect(const second_device_t *d, const uint8_t *bytes)
     }
 }
 
-/* What follows the answer: a new ID, a new rate. */
-static void after_answer(second_device_t *d, const job_t *job)
+/* What follows the response: a new ID, a new rate. */
+static void after_response(second_device_t *d, const job_t *job)
 {
     if (d->next_address < 0 && d->next_line.baud == 0) return;
     d->timer_us[TIMER_AFTER] = job->answered ? d->out_free_us : d->now_us;
 }
 
-static void use_line_of_answer(const second_device_t *d, job_t *job)
+static void use_line_of_response(const second_device_t *d, job_t *job)
 {
     job->line.baud = d->line.baud;
     job->reply_address = d->address;
@@ -74,11 +74,11 @@ static void factory_reset(second_device_t *d, job_t job)
     }
     if (order != 0) {
         second_slave_effect(d);
-        use_line_of_answer(d, &job);
+        use_line_of_response(d, &job);
     }
     uint8_t frame[8] = {job.reply_address, READ, 2, 0x00, 0x01};
-    second_slave_answer(d, &job, frame, 5, SECOND_EVENT_ANSWER);
-    after_answer(d, &job);
+    second_slave_response(d, &job, frame, 5, SECOND_EVENT_RESPONSE);
+    after_response(d, &job);
     uint64_t out_us = job.answered ? d->out_free_us : d->now_us;
     if (chosen(d, CHOICE_hps_reset_restart) != 0) d->timer_us[TIMER_BACK] = out_us + 1;
 }
@@ -86,13 +86,13 @@ static void factory_reset(second_device_t *d, job_t job)
 static void single_measurement(second_device_t *d, const job_t *job)
 {
     bool failed = d->hps.failed || second_hps_fails(d);
-    int64_t how = ANSWER_TAKEN;
+    int64_t how = RESPONSE_TAKEN;
     if (failed) how = chosen(d, CHOICE_hps_fault_single);
     if (second_hps_warming_up(d)) how = chosen(d, CHOICE_hps_warm_measure);
-    if (how < ANSWER_OTHER)
+    if (how < RESPONSE_OTHER)
         second_slave_refuse(d, job, how);
     else
-        second_hps_send(d, job, how == ANSWER_OTHER);
+        second_hps_send(d, job, how == RESPONSE_OTHER);
 }
 
 static void read_registers(second_device_t *d, const job_t *job)
@@ -103,7 +103,7 @@ static void read_registers(second_device_t *d, const job_t *job)
     uint8_t expected = reg < sizeof counts ? counts[reg] : 0;
     uint8_t frame[32] = {job->reply_address, READ, (uint8_t)(2 * expected)}, *data = frame + 3;
     const hps_settings_t *told = chosen(d, CHOICE_hps_reported) == 0 ? &d->hps.set : &d->hps.used;
-    int64_t how = ANSWER_TAKEN;
+    int64_t how = RESPONSE_TAKEN;
     if (expected == 0)
         how = chosen(d, CHOICE_hps_unknown_register);
     else if (count != expected)
@@ -111,8 +111,8 @@ static void read_registers(second_device_t *d, const job_t *job)
     else if (d->hps.failed && (reg == DETAILS || reg == TEMPERATURE))
         how = chosen(d, CHOICE_hps_core_in_fault);
     if (!job->answered && (reg != FACTORY_RESET || chosen(d, CHOICE_hps_broadcast_reset) == 0))
-        how = ANSWER_SILENCE;
-    if (how != ANSWER_TAKEN) {
+        how = RESPONSE_SILENCE;
+    if (how != RESPONSE_TAKEN) {
         second_slave_refuse(d, job, how);
         return;
     }
@@ -140,7 +140,7 @@ static void read_registers(second_device_t *d, const job_t *job)
         factory_reset(d, *job);
         return;
     }
-    second_slave_answer(d, job, frame, 3U + 2U * expected, SECOND_EVENT_ANSWER);
+    second_slave_response(d, job, frame, 3U + 2U * expected, SECOND_EVENT_RESPONSE);
 }
 
 /* Loads all that #13 covers. */
@@ -167,7 +167,7 @@ static void load(second_device_t *d, const hps_settings_t *source)
 /* A value that a choice may refuse; true: go on with the value. */
 static bool passes(second_device_t *d, const job_t *job, int64_t how)
 {
-    if (how == ANSWER_TAKEN || how == ANSWER_OTHER) return true;
+    if (how == RESPONSE_TAKEN || how == RESPONSE_OTHER) return true;
     second_slave_refuse(d, job, how);
     return false;
 }
@@ -177,20 +177,20 @@ static void write_register(second_device_t *d, job_t job)
     hps_t *s = &d->hps;
     uint16_t reg = word_at(job.bytes + 2), value = word_at(job.bytes + 4);
     int16_t number = (int16_t)value;
-    int64_t old_value = 0, new_value = value, how = ANSWER_TAKEN;
+    int64_t old_value = 0, new_value = value, how = RESPONSE_TAKEN;
     bool flash = true;
     switch (reg) {
     case WARM_UP:
         if (value > 0xFF) how = chosen(d, CHOICE_hps_warm_large);
         if (!passes(d, &job, how)) return;
         old_value = s->set.warm_s;
-        new_value = how == ANSWER_OTHER ? 0xFF : value & 0xFF;
+        new_value = how == RESPONSE_OTHER ? 0xFF : value & 0xFF;
         s->set.warm_s = s->flash.warm_s = (uint8_t)new_value;
         if (chosen(d, CHOICE_hps_warm_effect) != 0) s->used.warm_s = (uint8_t)new_value;
         break;
     case SET_ID:
         if (value < 1 || value > 32) how = chosen(d, CHOICE_hps_id_range);
-        if (how == ANSWER_TAKEN && (value < 1 || value > 247)) how = 3;
+        if (how == RESPONSE_TAKEN && (value < 1 || value > 247)) how = 3;
         if (!passes(d, &job, how)) return;
         old_value = s->set.id;
         d->next_address = s->used.id = s->set.id = s->flash.id = (uint8_t)value;
@@ -250,7 +250,7 @@ static void write_register(second_device_t *d, job_t job)
         if (number > 100 || number < -100) how = chosen(d, CHOICE_hps_filter_range);
         if (!passes(d, &job, how)) return;
         old_value = s->set.filter;
-        new_value = how == ANSWER_OTHER ? (number > 0 ? 100 : -100) : number;
+        new_value = how == RESPONSE_OTHER ? (number > 0 ? 100 : -100) : number;
         s->set.filter = s->used.filter = (int16_t)new_value;
         flash = chosen(d, CHOICE_hps_filter_kept) != 0;
         if (flash) s->flash.filter = (int16_t)new_value;
@@ -260,14 +260,14 @@ static void write_register(second_device_t *d, job_t job)
         return;
     }
     second_slave_setting(d, reg, old_value, new_value, flash);
-    bool first = (reg == SET_ID && chosen(d, CHOICE_hps_id_answer) != 0) ||
+    bool first = (reg == SET_ID && chosen(d, CHOICE_hps_id_response) != 0) ||
                  (reg == BAUD && chosen(d, CHOICE_hps_baud_effect) == 1);
     if (first) {
         second_slave_effect(d);
-        use_line_of_answer(d, &job);
+        use_line_of_response(d, &job);
     }
     second_slave_echo(d, &job);
-    after_answer(d, &job);
+    after_response(d, &job);
 }
 
 static void write_reconnect(second_device_t *d, const job_t *job)
@@ -280,13 +280,13 @@ static void write_reconnect(second_device_t *d, const job_t *job)
     }
     if (count != 2 || job->bytes[6] != 4) {
         int64_t how = chosen(d, CHOICE_hps_wrong_count);
-        second_slave_refuse(d, job, how == ANSWER_TAKEN ? 3 : how);
+        second_slave_refuse(d, job, how == RESPONSE_TAKEN ? 3 : how);
         return;
     }
     uint32_t ms = get_reconnect(d, job->bytes + 7);
-    int64_t how = ms % 18 != 0 ? chosen(d, CHOICE_hps_reconnect_odd) : ANSWER_TAKEN;
+    int64_t how = ms % 18 != 0 ? chosen(d, CHOICE_hps_reconnect_odd) : RESPONSE_TAKEN;
     if (!passes(d, job, how)) return;
-    if (how == ANSWER_OTHER) ms -= ms % 18;
+    if (how == RESPONSE_OTHER) ms -= ms % 18;
     bool at_power_on = chosen(d, CHOICE_hps_reconnect_effect) != 0;
     bool kept = at_power_on || chosen(d, CHOICE_hps_reconnect_kept) != 0;
     int64_t old_value = s->set.reconnect_ms;

@@ -80,7 +80,7 @@ typedef void (*second_sink_t)(void *context, const second_byte_t *byte);
 typedef enum {
     SECOND_EVENT_POWER, /* new_value: 1 on, 0 off; off: old_value counts the sent bytes that were cut off */
     SECOND_EVENT_MEASUREMENT, /* a measurement was sent: raw, sent, true_mm */
-    SECOND_EVENT_ANSWER,      /* another answer was sent: raw */
+    SECOND_EVENT_RESPONSE,    /* another response was sent: raw */
     SECOND_EVENT_SETTING,     /* a setting was taken: reg, old_value, new_value, flash_writes */
     SECOND_EVENT_EFFECT, /* address, line, mode or data type changed: see the fields of every event; of a level
                                  new_value: 1 high or closed */

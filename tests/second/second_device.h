@@ -5,7 +5,12 @@
 
 #include "second.h"
 
-enum { ANSWER_SILENCE = 0, ANSWER_OTHER = 7, ANSWER_TAKEN = 8, ANSWER_ECHOED = 9 }; /* 1..4: an exception */
+enum {
+    RESPONSE_SILENCE = 0,
+    RESPONSE_OTHER = 7,
+    RESPONSE_TAKEN = 8,
+    RESPONSE_ECHOED = 9
+}; /* 1..4: an exception */
 
 typedef enum { INPUT_POWER, INPUT_START, INPUT_BYTE, INPUT_LEVEL, INPUT_SCENE, INPUT_FAULT } input_kind_t;
 
@@ -22,7 +27,7 @@ typedef enum {
     TIMER_ALIVE,
     TIMER_FRAME_END,
     TIMER_JOB,
-    TIMER_AFTER, /* what changes when an answer is out */
+    TIMER_AFTER, /* what changes when a response is out */
     TIMER_TICK,  /* next unasked frame */
     TIMER_LEVEL,
     TIMER_TRIGGER,
@@ -35,11 +40,11 @@ typedef struct {
     uint8_t bytes[SECOND_FRAME_MAX];
     size_t len;
     uint64_t begin_us, end_us; /* of the request on the wire */
-    uint64_t due_us;           /* the answer begins */
+    uint64_t due_us;           /* the response begins */
     bool answered;             /* false: broadcast */
     uint8_t reply_address;
     uint8_t protocol;   /* PROTOCOL_... */
-    second_line_t line; /* settings of the answer */
+    second_line_t line; /* settings of the response */
     bool bad_crc;       /* HPS-167S: to be refused */
 } job_t;
 enum { PROTOCOL_MODBUS, PROTOCOL_DYP, PROTOCOL_TRIGGER };
@@ -50,7 +55,7 @@ typedef struct {
     uint64_t fall_us, trigger_free_us;        /* A16: last falling edge of RX; T1 is over */
     uint16_t type, polarity, threshold;       /* A16: 0207, 0205, 0206 */
     uint8_t stored_address, stored_type;      /* loaded at power-on */
-    uint8_t linger, linger_behind;            /* automatic frames still to come; right behind the answer */
+    uint8_t linger, linger_behind;            /* automatic frames still to come; right behind the response */
     bool level_recorded, low_seen, high_seen; /* A05 */
     uint64_t set_address_us;                  /* A05: the last 55 AA request for an address */
     uint64_t dyp_free_us;                     /* A05: t1 is over */
@@ -135,7 +140,7 @@ struct second_device {
     hps_t hps;
     levels_t levels;
 
-    second_event_t unsent; /* stands in for the event of an answer that is not sent */
+    second_event_t unsent; /* stands in for the event of a response that is not sent */
     second_event_t log[SECOND_LOG_EVENTS];
     uint64_t log_count;
 };
@@ -161,14 +166,14 @@ second_event_t *second_truth_log(second_device_t *d, second_event_kind_t kind);
 int32_t second_truth_seen(const second_device_t *d, size_t probe, uint64_t from_us, uint64_t to_us,
                           bool mean);
 uint32_t second_truth_random(second_device_t *d, uint32_t below);
-/* A span of time between the shortest and the drawn end, as any_answer_jitter tells. */
+/* A span of time between the shortest and the drawn end, as any_response_jitter tells. */
 uint64_t second_truth_span(second_device_t *d, uint64_t shortest_us, second_choice_t longest);
 
 /* slave.c: jobs, and what the A16 and the A05 have in common. */
 void second_job_add(second_device_t *d, const job_t *job, bool queue);
-/* Adds the CRC, sends at once and logs; the caller fills the event. A broadcast's answer is neither. */
-second_event_t *second_slave_answer(second_device_t *d, const job_t *job, uint8_t *frame, size_t len,
-                                    second_event_kind_t kind);
+/* Adds the CRC, sends at once and logs; the caller fills the event. A broadcast's response is neither. */
+second_event_t *second_slave_response(second_device_t *d, const job_t *job, uint8_t *frame, size_t len,
+                                      second_event_kind_t kind);
 second_event_t *second_slave_echo(second_device_t *d, const job_t *job);
 void second_slave_refuse(second_device_t *d, const job_t *job, int64_t how); /* silence, exception or echo */
 void second_slave_setting(second_device_t *d, uint16_t reg, int64_t old_value, int64_t new_value, bool flash);

@@ -117,7 +117,7 @@ static inline void host_request(host_t *h, const char *hex)
 }
 
 /* What came since the last request, as hex; waits first. */
-static inline const char *host_answer(host_t *h, uint64_t wait_us)
+static inline const char *host_response(host_t *h, uint64_t wait_us)
 {
     static char hex[3 * 256];
     host_run(h, h->now_us + wait_us);
@@ -169,7 +169,7 @@ static inline void open_device(second_kind_t kind, int32_t mm, const second_over
 static inline const char *ask(const char *request)
 {
     host_request(&host, request);
-    return host_answer(&host, 450000);
+    return host_response(&host, 450000);
 }
 
 static inline second_state_t now(void) { return second_state(&host.device[0]); }

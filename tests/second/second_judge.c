@@ -143,7 +143,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
     case FATHOM_ERR_DIFFERS:
         if (writes == 0) judge_finding("'it reads otherwise', and nothing was written", status);
         reason = why_different(&f, wanted);
-        if (reason == BECAUSE_NOTHING && f.settings == 0) reason = judge_why(FATHOM_ERR_NO_ANSWER);
+        if (reason == BECAUSE_NOTHING && f.settings == 0) reason = judge_why(FATHOM_ERR_NO_RESPONSE);
         break;
     case FATHOM_ERR_UNCONFIRMED:
         if (writes == 0) judge_finding("'not confirmed', and nothing was written", status);
@@ -152,7 +152,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
             return;
         }
         reason = why_different(&f, wanted);
-        if (reason == BECAUSE_NOTHING) reason = judge_why(FATHOM_ERR_NO_ANSWER);
+        if (reason == BECAUSE_NOTHING) reason = judge_why(FATHOM_ERR_NO_RESPONSE);
         if (reason == BECAUSE_NOTHING && !wanted.acknowledged) reason = judge_why(FATHOM_ERR_MALFORMED);
         break;
     case FATHOM_ERR_EXCEPTION:
@@ -172,13 +172,13 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
 /* The status that explains what happened. */
 static fathom_status_t explained(void)
 {
-    static const fathom_status_t statuses[] = {FATHOM_ERR_EXCEPTION, FATHOM_ERR_NO_ANSWER,
+    static const fathom_status_t statuses[] = {FATHOM_ERR_EXCEPTION, FATHOM_ERR_NO_RESPONSE,
                                                FATHOM_ERR_CHECKSUM,  FATHOM_ERR_MALFORMED,
                                                FATHOM_ERR_STALE,     FATHOM_PENDING};
     for (size_t i = 0; i < sizeof statuses / sizeof statuses[0]; i++) {
         if (judge_why(statuses[i]) != BECAUSE_NOTHING) return statuses[i];
     }
-    return FATHOM_ERR_NO_ANSWER;
+    return FATHOM_ERR_NO_RESPONSE;
 }
 
 void judge_told(told_t told, wanted_t wanted)

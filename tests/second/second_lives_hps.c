@@ -20,7 +20,7 @@ static void begin(rig_t *rig)
 {
     h.settings = (fathom_line_settings_t){rig->device.line.baud, FATHOM_PARITY_EVEN, 1};
     fathom_hps167s_config_t config = {.modbus.transport = &rig->modbus,
-                                      .modbus.settings = &h.settings,
+                                      .modbus.line_settings = &h.settings,
                                       .modbus.address = rig->device.address,
                                       .modbus.retries = 2,
                                       .warm_up_s = rig->device.hps.flash.warm_s};

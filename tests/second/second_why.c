@@ -11,7 +11,7 @@ const char *const judge_wording[REASONS] = {
     [BECAUSE_ECHOED] = "it acknowledges a value and does not take it",
     [BECAUSE_OTHER_VALUE] = "it takes another value than the one that was sent",
     [BECAUSE_OLD_TOLD] = "it tells the value in use and not the one that was set",
-    [BECAUSE_HIT] = "a frame that nobody asked for ran into the request, or came for the answer",
+    [BECAUSE_HIT] = "a frame that nobody asked for ran into the request, or came for the response",
     [BECAUSE_NO_DISTANCE] = "its value is no distance, or no temperature",
     [BECAUSE_RARE] = "its frames are farther apart than the deadline",
     [BECAUSE_FAILED] = "it has failed",
@@ -72,7 +72,7 @@ facts_t judge_facts(void)
             f.effect |= since;
             break;
         case SECOND_EVENT_POWER:
-        case SECOND_EVENT_ANSWER:
+        case SECOND_EVENT_RESPONSE:
             break;
         }
     }
@@ -82,11 +82,11 @@ facts_t judge_facts(void)
 static bool is_misprint(fathom_status_t status)
 {
     bool is_frame = status == FATHOM_ERR_STALE || status == FATHOM_ERR_MALFORMED ||
-                    status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_NO_ANSWER;
+                    status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_NO_RESPONSE;
     if (kind() == SECOND_A05_UART)
         return chose(CHOICE_a05_uart_parity) != 'N' && status != FATHOM_ERR_EXCEPTION;
     if (kind() == SECOND_A05_RS485 && judge.rig->last[0] == 0x55)
-        return chose(CHOICE_a05_all_sum) != 0 || chose(CHOICE_a05_dyp_address_answer) != 0;
+        return chose(CHOICE_a05_all_sum) != 0 || chose(CHOICE_a05_dyp_address_response) != 0;
     return kind() < SECOND_A16_RS485 && chose(CHOICE_a16_start_bytes) != 1 && is_frame;
 }
 
@@ -156,7 +156,7 @@ reason_t judge_why(fathom_status_t status)
     if (status == FATHOM_ERR_STALE && (d->automatic || is_hps()) &&
         judge.rig->now_us >= f.unasked_us + 1900000)
         return early ? BECAUSE_STARTING : BECAUSE_RARE;
-    if (status == FATHOM_ERR_NO_ANSWER && (f.silent || is_unanswered())) {
+    if (status == FATHOM_ERR_NO_RESPONSE && (f.silent || is_unanswered())) {
         if (is_warming_up()) return BECAUSE_WARM_UP;
         if (is_hps() && d->hps.failed) return BECAUSE_FAILED;
         return first_only_switches() && f.effect ? BECAUSE_SWITCHED : BECAUSE_SILENT;

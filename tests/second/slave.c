@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Requests, answers and refusals; and the automatic output and the Modbus that the A16 and the A05 share. */
+/* Requests, responses and refusals; and the automatic output and the Modbus that the A16 and the A05 share. */
 #include "second_device.h"
 
 #include <string.h>
@@ -39,8 +39,8 @@ void second_job_add(second_device_t *d, const job_t *job, bool queue)
     d->timer_us[TIMER_JOB] = d->jobs[0].due_us;
 }
 
-second_event_t *second_slave_answer(second_device_t *d, const job_t *job, uint8_t *frame, size_t len,
-                                    second_event_kind_t kind)
+second_event_t *second_slave_response(second_device_t *d, const job_t *job, uint8_t *frame, size_t len,
+                                      second_event_kind_t kind)
 {
     if (job->protocol == PROTOCOL_MODBUS) {
         uint16_t crc = second_wire_crc16(frame, len);
@@ -65,20 +65,20 @@ second_event_t *second_slave_echo(second_device_t *d, const job_t *job)
     uint8_t frame[SECOND_FRAME_MAX];
     memcpy(frame, job->bytes, 6);
     frame[0] = job->reply_address;
-    return second_slave_answer(d, job, frame, 6, SECOND_EVENT_ANSWER);
+    return second_slave_response(d, job, frame, 6, SECOND_EVENT_RESPONSE);
 }
 
 void second_slave_refuse(second_device_t *d, const job_t *job, int64_t how)
 {
     second_event_t *event = log_request(d, job, SECOND_EVENT_REFUSED);
-    if (how == ANSWER_SILENCE || !job->answered) return;
+    if (how == RESPONSE_SILENCE || !job->answered) return;
     event->exception = (uint8_t)how;
-    if (how == ANSWER_ECHOED) {
+    if (how == RESPONSE_ECHOED) {
         second_slave_echo(d, job);
         return;
     }
     uint8_t frame[5] = {job->reply_address, job->bytes[1] | 0x80, (uint8_t)how};
-    second_slave_answer(d, job, frame, 3, SECOND_EVENT_ANSWER);
+    second_slave_response(d, job, frame, 3, SECOND_EVENT_RESPONSE);
 }
 
 void second_slave_setting(second_device_t *d, uint16_t reg, int64_t old_value, int64_t new_value, bool flash)
@@ -118,7 +118,7 @@ static bool for_me(const second_device_t *d, job_t *job)
     job->reply_address = d->address;
     if (to == d->address) {
         job->answered =
-            to != 0 || either(d, CHOICE_a16_address_zero, CHOICE_a05_address_zero) != ANSWER_OTHER;
+            to != 0 || either(d, CHOICE_a16_address_zero, CHOICE_a05_address_zero) != RESPONSE_OTHER;
         return true;
     }
     if (to == 0xFF) {
@@ -187,13 +187,13 @@ void second_slave_write_address(second_device_t *d, const job_t *job, uint16_t v
 {
     if (value > 0xFF) {
         int64_t how = chosen(d, CHOICE_mb_address_high);
-        if (how != ANSWER_TAKEN) {
+        if (how != RESPONSE_TAKEN) {
             second_slave_refuse(d, job, how);
             return;
         }
         value &= 0xFF;
     }
-    if (value == 0xFF || (value == 0 && zero < ANSWER_OTHER)) {
+    if (value == 0xFF || (value == 0 && zero < RESPONSE_OTHER)) {
         second_slave_refuse(d, job, value == 0xFF ? chosen(d, CHOICE_mb_address_ff) : zero);
         return;
     }

@@ -58,9 +58,9 @@ TEST(a16_byte_as_trigger)
 {
     open_device(SECOND_A16_CONTROLLED, 1953, OVERRIDES({"a16_trigger_width_us", 900}));
     host_send_hex(&host, "FF");
-    assert_string_equal(host_answer(&host, 200000), "");
+    assert_string_equal(host_response(&host, 200000), "");
     host_send_hex(&host, "00");
-    assert_string_equal(host_answer(&host, 200000), "FF 07 A1 A7");
+    assert_string_equal(host_response(&host, 200000), "FF 07 A1 A7");
 }
 
 TEST(a16_modes)
@@ -125,7 +125,7 @@ TEST(a05_probes_not_fitted)
     host_power(&host, true);
     host_run(&host, 3000000);
     host_send_hex(&host, "55 AA 01 01 01");
-    assert_string_equal(host_answer(&host, 300000), "55 AA 01 01 03 E8 12 34 07 A1 12 34 20");
+    assert_string_equal(host_response(&host, 300000), "55 AA 01 01 03 E8 12 34 07 A1 12 34 20");
     const second_event_t *event = last_event(&host.device[0], SECOND_EVENT_MEASUREMENT);
     assert_int_equal(event->fitted, 0x05);
     assert_int_equal(event->probes, 0x0F);
@@ -134,7 +134,7 @@ TEST(a05_probes_not_fitted)
     assert_true(strncmp(ask("01 03 01 07 00 01"), "01 03 02 12 34", 14) == 0);
 }
 
-TEST(a05_answer_times)
+TEST(a05_response_times)
 {
     for (uint64_t seed = 1; seed <= 100; seed++) {
         second_config_t config = {.kind = SECOND_A05_RS485, .seed = seed, .scene = {{500, 500, 500, 500}}};
@@ -145,7 +145,7 @@ TEST(a05_answer_times)
             uint64_t begin_us = host.now_us + 1;
             host_send_hex(&host, one != 0 ? "55 AA 01 12 12" : "55 AA 01 01 01");
             uint64_t end_us = host.now_us;
-            host_answer(&host, 500000);
+            host_response(&host, 500000);
             assert_int_equal(host.got_len - host.read_len, one != 0 ? 7 : 13);
             bool from_end = second_choice(&host.device[0], CHOICE_a05_t2_from) == 0;
             bool to_start = second_choice(&host.device[0], CHOICE_a05_t2_to) == 0;
@@ -209,11 +209,11 @@ TEST(a05_request_behind_noise)
     for (int64_t search = 0; search < 2; search++) {
         open_device(SECOND_A05_RS485, 1953, OVERRIDES({"a05_dyp_search", search}));
         host_send_hex(&host, "00 55 AA 01 10 10");
-        assert_string_equal(host_answer(&host, 300000), search != 0 ? "55 AA 01 10 07 A1 B8" : "");
+        assert_string_equal(host_response(&host, 300000), search != 0 ? "55 AA 01 10 07 A1 B8" : "");
     }
 }
 
-/* Three sensors on one pair: each answers its own address, and all take a 55 AA address. */
+/* Three sensors on one pair: each responses its own address, and all take a 55 AA address. */
 TEST(three_on_a_pair)
 {
     for (uint64_t seed = 0; seed <= 100; seed++) {
@@ -240,7 +240,7 @@ TEST(three_on_a_pair)
             assert_int_equal(host.got_len - host.read_len, 7);
         }
         host_send_hex(&host, "55 AA 09 03 0B");
-        host_answer(&host, 500000);
+        host_response(&host, 500000);
         assert_int_equal(host.got_len - host.read_len, 15);
         for (unsigned i = 0; i < 3; i++) {
             bool at_once = second_choice(&host.device[i], CHOICE_a05_dyp_address_effect) == 0;

@@ -50,8 +50,8 @@ TEST(the_judge_sees_a_wrong_reading_and_false_statements)
     IS_SEEN(judge_read(FATHOM_READY, false));
     rig_power(&rig, true);
     rig_wait(&rig, 5000000);
-    IS_SEEN(judge_read(FATHOM_ERR_EXCEPTION, true)); /* it has refused nothing, ... */
-    IS_SEEN(judge_read(FATHOM_ERR_NO_ANSWER, true)); /* ... and was asked nothing */
+    IS_SEEN(judge_read(FATHOM_ERR_EXCEPTION, true));   /* it has refused nothing, ... */
+    IS_SEEN(judge_read(FATHOM_ERR_NO_RESPONSE, true)); /* ... and was asked nothing */
 }
 
 TEST(a16_auto) { live(SECOND_A16_AUTO, life_a16_auto, 85); }

@@ -8,7 +8,7 @@ typedef struct {
     const char *name;
     second_kind_t kind;
     second_scene_t scene;
-    const char *request, *answer; /* answer ending in "..": only its first bytes are printed */
+    const char *request, *response; /* response ending in "..": only its first bytes are printed */
 } printed_t;
 
 #define NONE SECOND_NOTHING
@@ -69,17 +69,17 @@ static const printed_t printed[] = {
     {"HPS abnormal", HPS, ONE(2083), "01 03 00 07 00 04", "01 83 02 C0 F1"},
 };
 
-/* The answer's length and CRC; the data in between is not printed. */
-static void check_unprinted(const char *answer, const char *start)
+/* The response's length and CRC; the data in between is not printed. */
+static void check_unprinted(const char *response, const char *start)
 {
     uint8_t bytes[64];
-    size_t len = from_hex(answer, bytes), head = strlen(start) - 2;
-    assert_true(strncmp(answer, start, head) == 0);
+    size_t len = from_hex(response, bytes), head = strlen(start) - 2;
+    assert_true(strncmp(response, start, head) == 0);
     assert_int_equal(len, 5U + bytes[2]);
     assert_int_equal(second_wire_crc16(bytes, len), 0);
 }
 
-TEST(requests_get_the_printed_answers)
+TEST(requests_get_the_printed_responses)
 {
     for (size_t i = 0; i < sizeof printed / sizeof printed[0]; i++) {
         const printed_t *row = &printed[i];
@@ -96,11 +96,11 @@ TEST(requests_get_the_printed_answers)
             host_request(&host, row->request);
         else
             host_send_hex(&host, row->request);
-        const char *answer = host_answer(&host, 450000);
-        if (strstr(row->answer, "..") != NULL)
-            check_unprinted(answer, row->answer);
+        const char *response = host_response(&host, 450000);
+        if (strstr(row->response, "..") != NULL)
+            check_unprinted(response, row->response);
         else
-            assert_string_equal(answer, row->answer);
+            assert_string_equal(response, row->response);
     }
 }
 
@@ -130,7 +130,7 @@ TEST(frames_without_a_request)
             assert_true(host.got_len > strlen(rows[i].frame) / 3 + 1);
             host.read_len = host.got_len - (strlen(rows[i].frame) + 1) / 3;
         }
-        assert_string_equal(host_answer(&host, 0), rows[i].frame);
+        assert_string_equal(host_response(&host, 0), rows[i].frame);
     }
 }
 
@@ -143,7 +143,7 @@ TEST(the_misprinted_sum)
     host_power(&host, true);
     host_run(&host, 3000000);
     host_send_hex(&host, "55 AA 01 01 01");
-    assert_string_equal(host_answer(&host, 300000), "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60");
+    assert_string_equal(host_response(&host, 300000), "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60");
 }
 
 TEST(printed_check_codes)

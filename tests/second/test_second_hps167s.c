@@ -5,13 +5,13 @@
 /* HPS-167S: the ID. */
 TEST(hps_new_id_from_old_or_new)
 {
-    open_device(SECOND_HPS167S, 2083, OVERRIDES({"hps_id_answer", 0}));
+    open_device(SECOND_HPS167S, 2083, OVERRIDES({"hps_id_response", 0}));
     assert_true(strncmp(ask("01 06 00 10 00 07"), "01 06 00 10 00 07", 17) == 0);
     assert_int_equal(now().address, 7);
     assert_string_equal(ask("01 03 00 01 00 03"), "");
     assert_true(strncmp(ask("07 03 00 01 00 03"), "07 03 06", 8) == 0);
 
-    open_device(SECOND_HPS167S, 2083, OVERRIDES({"hps_id_answer", 1}));
+    open_device(SECOND_HPS167S, 2083, OVERRIDES({"hps_id_response", 1}));
     assert_true(strncmp(ask("01 06 00 10 00 07"), "07 06 00 10 00 07", 17) == 0);
     cycle_power();
     assert_int_equal(now().address, 7);
@@ -62,18 +62,19 @@ TEST(hps_factory_reset_in_three_orders)
 {
     static const struct {
         int64_t order;
-        uint8_t answer_id;
-        uint32_t answer_baud, baud;
+        uint8_t response_id;
+        uint32_t response_baud, baud;
     } rows[] = {{0, 5, 57600, 19200}, {1, 1, 19200, 19200}, {2, 1, 57600, 57600}};
     for (size_t i = 0; i < 3; i++) {
         open_device(SECOND_HPS167S, 2083,
                     OVERRIDES({"hps_reset_order", rows[i].order}, {"hps_baud_code", 2}));
         host.line.baud = 57600;
         ask("01 06 00 10 00 05");
-        const char *answer = ask("05 03 00 09 00 01");
-        assert_string_equal(answer + 2, rows[i].answer_id == 1 ? " 03 02 00 01 79 84" : " 03 02 00 01 88 44");
-        assert_int_equal(host.got[host.got_len - 7].value, rows[i].answer_id);
-        assert_int_equal(host.got[host.got_len - 1].line.baud, rows[i].answer_baud);
+        const char *response = ask("05 03 00 09 00 01");
+        assert_string_equal(response + 2,
+                            rows[i].response_id == 1 ? " 03 02 00 01 79 84" : " 03 02 00 01 88 44");
+        assert_int_equal(host.got[host.got_len - 7].value, rows[i].response_id);
+        assert_int_equal(host.got[host.got_len - 1].line.baud, rows[i].response_baud);
         assert_int_equal(now().address, 1);
         assert_int_equal(now().line.baud, rows[i].baud);
         assert_int_equal(count_events(&host.device[0], SECOND_EVENT_RESET), 1);
@@ -138,7 +139,7 @@ TEST(hps_warm_up)
 {
     static const struct {
         int64_t how;
-        const char *answer;
+        const char *response;
     } rows[] = {{0, ""}, {4, "01 83 04 40 F3"}, {7, "01 03 08 FF FF 00 00 00 FF FF FF"}};
     for (size_t i = 0; i < 3; i++) {
         open_device(SECOND_HPS167S, 2083, OVERRIDES({"hps_warm_measure", rows[i].how}));
@@ -146,9 +147,9 @@ TEST(hps_warm_up)
         host_power(&host, true);
         uint64_t power_on_us = host.now_us;
         host_run(&host, power_on_us + 4000000);
-        const char *answer = ask("01 03 00 08 00 04");
-        assert_true(strncmp(answer, rows[i].answer, strlen(rows[i].answer)) == 0);
-        assert_true(rows[i].how != 0 || answer[0] == '\0');
+        const char *response = ask("01 03 00 08 00 04");
+        assert_true(strncmp(response, rows[i].response, strlen(rows[i].response)) == 0);
+        assert_true(rows[i].how != 0 || response[0] == '\0');
         host_run(&host, power_on_us + 5000001);
         assert_true(strncmp(ask("01 03 00 08 00 04"), "01 03 08 08 23", 14) == 0);
     }
@@ -187,11 +188,11 @@ TEST(hps_refusals)
     assert_string_equal(ask("01 03 00 08 00 05"), "01 83 02 C0 F1");
     assert_true(strncmp(ask("01 04 00 08 00 04"), "01 84 01", 8) == 0);
     host_send_hex(&host, "01 03 00 08 00 04 C5 C8"); /* as the text misprints it */
-    assert_string_equal(host_answer(&host, 450000), "");
+    assert_string_equal(host_response(&host, 450000), "");
     open_device(SECOND_HPS167S, 2083, OVERRIDES({"hps_wrong_count", 8}, {"hps_bad_crc", 3}));
     assert_true(strncmp(ask("01 03 00 08 00 05"), "01 03 08 08 23", 14) == 0);
     host_send_hex(&host, "01 03 00 08 00 04 C5 C8");
-    assert_true(strncmp(host_answer(&host, 450000), "01 83 03", 8) == 0);
+    assert_true(strncmp(host_response(&host, 450000), "01 83 03", 8) == 0);
 }
 
 /* 3 characters of silence inside a request. */

@@ -113,7 +113,7 @@ static void a16_life(void)
     wait_us(9000000);
 }
 
-/* The scene changes while a request is served, another request comes, and bytes come over the answer. */
+/* The scene changes while a request is served, another request comes, and bytes come over the response. */
 static void crowd(const char *request, const char *next)
 {
     for (int32_t i = 0; i < 6; i++) {
@@ -173,7 +173,7 @@ static void hps_life(void)
     wait_us(1400);
     host_send_hex(&host, "00 03 54 0B");
     wait_us(300000);
-    host_request(&host, "01 03 00 01 00 03"); /* right behind the end of an answer */
+    host_request(&host, "01 03 00 01 00 03"); /* right behind the end of a response */
     for (uint64_t was = host.got_len; host.got_len < was + 11 && host.now_us < 200000000;) wait_us(100);
     ask_all(hps_requests, 1);
     restart(false);

@@ -68,7 +68,7 @@ TEST(all_seeds_keep_the_wire_in_order)
             bool odd_sum = second_choice(d, CHOICE_a05_all_sum) != 0;
             for (uint64_t i = 0; i < second_log_count(d); i++) {
                 const second_event_t *event = second_log_at(d, i);
-                bool sent = event->kind == SECOND_EVENT_MEASUREMENT || event->kind == SECOND_EVENT_ANSWER;
+                bool sent = event->kind == SECOND_EVENT_MEASUREMENT || event->kind == SECOND_EVENT_RESPONSE;
                 if (!sent || event->end_us > second_log_at(d, second_log_count(d) - 1)->time_us) continue;
                 assert_true(checked_frame(event, odd_sum));
                 while (at < host.got_len && host.got[at].start_us < event->start_us) at++;
@@ -83,7 +83,7 @@ TEST(all_seeds_keep_the_wire_in_order)
 }
 
 /* A request for a measurement is answered, whatever the seed, when the text says so. */
-TEST(all_seeds_answer_a_plain_request)
+TEST(all_seeds_response_a_plain_request)
 {
     for (int kind = SECOND_A16_CONTROLLED; kind < SECOND_TALKERS; kind++) {
         for (uint64_t seed = 1; seed <= 300; seed++) {
@@ -94,7 +94,7 @@ TEST(all_seeds_answer_a_plain_request)
                 const second_event_t *event = second_log_at(d, i);
                 if (event->kind == SECOND_EVENT_MEASUREMENT && event->asked && !event->fault) asked++;
             }
-            /* What may cost an answer: the first only switches; no frame without a target; a failure; and an
+            /* What may cost a response: the first only switches; no frame without a target; a failure; and an
                unasked frame that the request ran into. */
             bool first_switches =
                 (kind == SECOND_A16_RS232 && second_choice(d, CHOICE_a16_first_command) != 0) ||
@@ -105,7 +105,7 @@ TEST(all_seeds_answer_a_plain_request)
                 second_choice(d, CHOICE_hps_unasked) != 0 && second_choice(d, CHOICE_hps_auto_out) != 0;
             if (kind == SECOND_HPS167S && unasked) continue;
             if (kind == SECOND_HPS167S && second_choice(d, CHOICE_hps_fault_every) != 0) continue;
-            if (asked < expected) fail_msg("kind %d seed %u: %zu answers", kind, (unsigned)seed, asked);
+            if (asked < expected) fail_msg("kind %d seed %u: %zu responses", kind, (unsigned)seed, asked);
         }
     }
 }

@@ -75,6 +75,6 @@ uint32_t second_truth_random(second_device_t *d, uint32_t below)
 uint64_t second_truth_span(second_device_t *d, uint64_t shortest_us, second_choice_t longest)
 {
     uint64_t drawn_us = chosen_us(d, longest);
-    if (chosen(d, CHOICE_any_answer_jitter) == 0 || drawn_us <= shortest_us) return drawn_us;
+    if (chosen(d, CHOICE_any_response_jitter) == 0 || drawn_us <= shortest_us) return drawn_us;
     return shortest_us + second_truth_random(d, (uint32_t)(drawn_us - shortest_us) + 1);
 }

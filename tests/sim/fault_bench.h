@@ -16,7 +16,7 @@ static const struct {
     uint32_t wait_ms; /* holds one frame, also a delayed one */
 } golden[SETTINGS] = {
     [A16_AUTO] = {NULL, A16_FRAME, 4, 100},
-    [A16_MODBUS] = {A16_ASKED, A16_ANSWER, 7, 200},
+    [A16_MODBUS] = {A16_ASKED, A16_RESPONSE, 7, 200},
     [A05_AUTO] = {NULL, "FF 03 E8 07 D0 07 A1 0D EA 60", 10, 300},
     [A05_DYP] = {"55 AA 01 01 01", "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62", 13, 300},
     [HPS167S] = {"01 03 00 08 00 04 C5 CB", "01 03 08 08 23 DC B2 07 01 00 00 FD 41", 13, 100},

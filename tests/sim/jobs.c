@@ -47,8 +47,8 @@ ASKS(a16_0206, uint16_t, 9, fathom_a16_modbus_switch_threshold_mm(a16, &out), ou
 ASKS(a16_0207, fathom_dyp_value_t, FATHOM_REAL_TIME, fathom_a16_modbus_automatic_value(a16, &out),
      out == FATHOM_PROCESSED, out == FATHOM_REAL_TIME)
 ASKS(a16_0101, fathom_sample_t, WITH(.distance_mm = 9),
-     fathom_a16_modbus_measure(a16, FATHOM_REAL_TIME, &out), out.distance_mm == 1234 && out.unit == 1,
-     out.distance_mm == 9 && out.unit == 0)
+     fathom_a16_modbus_measure(a16, FATHOM_REAL_TIME, &out), out.distance_mm == 1234 && out.address == 1,
+     out.distance_mm == 9 && out.address == 0)
 
 static uint32_t a16_unit(void) { return bench.a16.device.unit; }
 static uint32_t a16_polarity(void) { return bench.a16.polarity; }

@@ -112,13 +112,13 @@ void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS]
     fathom_modbus_t modbus = seen.modbus;
     modbus.submit = submit;
     const fathom_a16_modbus_config_t a16_config = {
-        .modbus = {.transport = &modbus, .settings = &ultrasonic, .address = 1},
+        .modbus = {.transport = &modbus, .line_settings = &ultrasonic, .address = 1},
         .value = mix->processed ? FATHOM_PROCESSED : FATHOM_REAL_TIME};
     const fathom_a05_modbus_config_t a05_config = {
-        .modbus = {.transport = &modbus, .settings = &ultrasonic, .address = 2}};
+        .modbus = {.transport = &modbus, .line_settings = &ultrasonic, .address = 2}};
     const fathom_hps167s_config_t hps_config = {
         .modbus = {
-            .transport = &modbus, .settings = &infrared, .address = 7, .period_us = mix->hps_period_us}};
+            .transport = &modbus, .line_settings = &infrared, .address = 7, .period_us = mix->hps_period_us}};
     (void)fathom_a16_modbus_init(&a16, &a16_config);
     (void)fathom_a05_modbus_init(&a05, &a05_config);
     (void)fathom_hps167s_init(&hps, &hps_config);
@@ -143,7 +143,7 @@ void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS]
             if (status < 0)
                 shares[which[i]].failures++;
             else if (sample.probe == 1)
-                shares[which[i]].answers++;
+                shares[which[i]].responses++;
         }
         if (mix->loop_us != 0)
             fathom_sim_clock_advance(&seen.clock, mix->loop_us);

@@ -20,9 +20,10 @@ typedef struct {
 } mix_t;
 
 typedef struct {
-    uint32_t answers;
+    uint32_t responses;
     uint32_t failures;
-    uint32_t line_us; /* the line was its own: from a request to the end of its answer, or of its time-out */
+    uint32_t
+        line_us; /* the line was its own: from a request to the end of its response, or of its time-out */
     uint32_t longest_wait_us; /* from the moment a request could leave to its first bit */
 } mix_share_t;
 

@@ -57,13 +57,13 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
 void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_line_settings_t *settings)
 {
     const fathom_a16_modbus_config_t a16 = {
-        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.settings = settings};
+        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.line_settings = settings};
     const fathom_a05_modbus_config_t a05 = {
-        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.settings = settings};
+        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.line_settings = settings};
     const fathom_a05_dyp_config_t dyp = {
-        .modbus.transport = &s.dyp, .modbus.address = unit, .modbus.settings = settings};
+        .modbus.transport = &s.dyp, .modbus.address = unit, .modbus.line_settings = settings};
     const fathom_hps167s_config_t hps = {
-        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.settings = settings};
+        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.line_settings = settings};
     fathom_status_t status = FATHOM_PENDING;
     if (model == HPS) status = fathom_hps167s_init(&driver->hps, &hps);
     if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &a16);
@@ -157,7 +157,7 @@ void assert_measures(uint8_t unit, uint16_t mm)
 {
     assert_int_equal(measure(), FATHOM_READY);
     assert_int_equal(s.sample.kind, FATHOM_TARGET);
-    assert_int_equal(s.sample.unit, unit);
+    assert_int_equal(s.sample.address, unit);
     assert_int_equal(s.sample.distance_mm, mm);
 }
 
@@ -165,7 +165,7 @@ bool recovers(void)
 {
     const uint32_t start_us = s.clock.now_us;
     while (since_us(start_us) < 60 * SECOND) {
-        if (measure() == FATHOM_READY) return s.sample.unit == bench.device->unit;
+        if (measure() == FATHOM_READY) return s.sample.address == bench.device->unit;
         pass();
     }
     return false;
@@ -182,7 +182,8 @@ void rest(uint32_t by_us)
 bool same_place(void)
 {
     const fathom_modbus_unit_t *const unit = unit_of();
-    const fathom_line_settings_t *const settings = unit->settings != NULL ? unit->settings : &s.settings;
+    const fathom_line_settings_t *const settings =
+        unit->line_settings != NULL ? unit->line_settings : &s.settings;
     return unit->address == bench.device->unit && settings->baud == bench.device->settings.baud;
 }
 
@@ -196,7 +197,7 @@ fathom_status_t round_of(fathom_status_t (*command)(void))
 {
     const fathom_status_t status = command();
     if (status != FATHOM_PENDING) return status;
-    /* Samples of an answer from before may be left. */
+    /* Samples of a response from before may be left. */
     assert_true(fathom_poll(&s.sensor, &s.sample) >= FATHOM_PENDING);
     pass();
     return FATHOM_PENDING;

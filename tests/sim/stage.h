@@ -102,7 +102,7 @@ void assert_measures(uint8_t unit, uint16_t mm);
 /* Until it measures again; false: it did not in a minute. */
 bool recovers(void);
 
-/* Lets late answers and dead times pass, with nothing asked. */
+/* Lets late responses and dead times pass, with nothing asked. */
 void rest(uint32_t by_us);
 
 /* Are device and driver at one address and rate? */

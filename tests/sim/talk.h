@@ -43,9 +43,9 @@ extern bench_t bench;
 #define PROCESSED  fathom_sim_fixed(&bench.processed)
 
 /* A16 6(4), example 2: its real-time value, 751 mm; and the automatic frame of that, FF + 02 + EF = 1F0. */
-#define A16_ASKED  "01 03 01 01 00 01 D4 36"
-#define A16_ANSWER "01 03 02 02 EF F8 A8"
-#define A16_FRAME  "FF 02 EF F0"
+#define A16_ASKED    "01 03 01 01 00 01 D4 36"
+#define A16_RESPONSE "01 03 02 02 EF F8 A8"
+#define A16_FRAME    "FF 02 EF F0"
 
 /* ---- the bench ---- */
 

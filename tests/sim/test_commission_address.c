@@ -44,7 +44,7 @@ TEST(an_address_that_is_set_is_followed_and_not_set_twice_also_where_the_line_ec
 
 /* Not in the datasheets, and known of sister models: a sensor whose address was just changed may acknowledge that from
  * the old address or from the new one. Either will do, since a reading at the new one decides. An acknowledgement from
- * the new address is taken for the late answer to the question whether somebody is there, which was put to it before. */
+ * the new address is taken for the late response to the request whether somebody is there, which was put to it before. */
 TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
 {
     for (unsigned from_new = 0; from_new != 2; from_new++) FOR_ALL_MODELS
@@ -54,13 +54,13 @@ TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
             assert_int_equal(carry_out(set_new), FATHOM_READY);
             assert_int_equal(bench.device->unit, NEW);
             COUNTED(.writes = 1);
-            assert_int_equal(s.counters[FATHOM_LINE_LATE_ANSWERS], from_new);
+            assert_int_equal(s.counters[FATHOM_LINE_LATE_RESPONSES], from_new);
             assert_int_equal(s.counters[FATHOM_LINE_STRAYS], 0);
             assert_measures(NEW, 1234);
         }
 }
 
-TEST(an_address_at_which_another_answers_is_not_given)
+TEST(an_address_at_which_another_responses_is_not_given)
 {
     FOR_ALL_MODELS
     {
@@ -73,7 +73,7 @@ TEST(an_address_at_which_another_answers_is_not_given)
     }
 }
 
-/* Its first frame answers the first look; from the second on, the acknowledgement, nothing comes. */
+/* Its first frame responses the first look; from the second on, the acknowledgement, nothing comes. */
 TEST(without_confirmation_it_is_at_one_of_the_two)
 {
     FOR_ALL_MODELS
@@ -82,7 +82,7 @@ TEST(without_confirmation_it_is_at_one_of_the_two)
         assert_int_equal(carry_out(set_new), FATHOM_ERR_UNCONFIRMED);
         assert_int_equal(bench.device->unit, NEW);
         COUNTED(.writes = 1);
-        assert_int_equal(measure(), FATHOM_ERR_NO_ANSWER); /* the driver is where it was */
+        assert_int_equal(measure(), FATHOM_ERR_NO_RESPONSE); /* the driver is where it was */
     }
 }
 
@@ -101,7 +101,7 @@ TEST(a_dead_device_does_not_look_like_success_where_the_line_echoes)
     FOR_ALL_MODELS
     {
         fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
-        assert_int_equal(carry_out(set_new), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(carry_out(set_new), FATHOM_ERR_NO_RESPONSE);
     }
 }
 
@@ -124,8 +124,8 @@ TEST(what_waits_for_the_old_address_is_cancelled)
     {
         if (s.model == A05_DYP || n % 4 != 0) continue;
         uint16_t value = 0;
-        fathom_modbus_request_t request = {.exchange = {.timeout_us = 100 * MS}};
-        fathom_modbus_request_t other = {.exchange = {.timeout_us = 100 * MS}};
+        fathom_modbus_request_t request = {.transaction = {.timeout_us = 100 * MS}};
+        fathom_modbus_request_t other = {.transaction = {.timeout_us = 100 * MS}};
         fathom_modbus_read_holding_registers(&request.message, OLD, 0x0101, 1, &value);
         fathom_modbus_read_holding_registers(&other.message, 9, 0x0101, 1, &value);
         /* Submitted in mid-write: behind it in the queue. */
@@ -137,9 +137,9 @@ TEST(what_waits_for_the_old_address_is_cancelled)
         assert_int_equal(fathom_modbus_client_submit(&s.line, &request), FATHOM_PENDING);
         assert_int_equal(fathom_modbus_client_submit(&s.line, &other), FATHOM_PENDING);
         assert_int_equal(carry_out(set_new), FATHOM_READY);
-        assert_int_equal(request.exchange.status, FATHOM_ERR_CANCELLED);
-        assert_int_equal(request.exchange.attempts, 0);
-        assert_int_equal(other.exchange.status, FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(request.transaction.status, FATHOM_ERR_CANCELLED);
+        assert_int_equal(request.transaction.attempts, 0);
+        assert_int_equal(other.transaction.status, FATHOM_ERR_NO_RESPONSE);
     }
 }
 
@@ -180,7 +180,7 @@ TEST(after_power_on_an_a05_that_is_silent_warms_up)
         const uint32_t start_us = s.clock.now_us;
         while (measure() == FATHOM_ERR_WARMING_UP) continue;
         assert_in_range(since_us(start_us), 1500 * MS, 2500 * MS);
-        assert_int_equal(measure(), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(measure(), FATHOM_ERR_NO_RESPONSE);
     }
 }
 
@@ -216,7 +216,7 @@ TEST(address_0_is_set_read_and_found)
             assert_int_equal(set_address(NEW), FATHOM_ERR_ARGUMENT); /* which every unit would obey */
             bench.device->answers_broadcast = n % 2 != 0;
             rest(5 * SECOND);
-            assert_int_equal(find(&address), n % 2 != 0 ? FATHOM_READY : FATHOM_ERR_NO_ANSWER);
+            assert_int_equal(find(&address), n % 2 != 0 ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
             assert_int_equal(address, n % 2 != 0 ? 0 : 0xA5);
             COUNTED(.writes = 1);
         }

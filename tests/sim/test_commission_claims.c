@@ -25,8 +25,8 @@ static void with_a_second(const job_t *first, const job_t *second)
 }
 
 /*
- * What is write-only begins with a question that others ask too, and as long as that is not answered neither has begun:
- * who is called next gets the answer. The other one is BUSY; nothing is lost, and nothing is written that its caller
+ * What is write-only begins with a request that others ask too, and as long as that is not answered neither has begun:
+ * who is called next gets the response. The other one is BUSY; nothing is lost, and nothing is written that its caller
  * does not know of.
  */
 static void one_of_the_two(const job_t *first, const job_t *second)
@@ -96,18 +96,18 @@ TEST(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands)
         const uint32_t timeout_us = timeouts_us[jobs[j].model];
         set_up_for(&jobs[j], 0, FATHOM_LINE_ECHO_AUTO);
         fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
-        for (unsigned n = 0; n != 3; n++) (void)time_of_next_outcome_us(FATHOM_ERR_NO_ANSWER);
-        /* An owed answer is waited for meanwhile: two time-outs from one request to the next at least. */
+        for (unsigned n = 0; n != 3; n++) (void)time_of_next_outcome_us(FATHOM_ERR_NO_RESPONSE);
+        /* An owed response is waited for meanwhile: two time-outs from one request to the next at least. */
         for (uint32_t alone = 1; alone <= 16; alone *= 2) {
-            const uint32_t took_us = time_of_next_outcome_us(FATHOM_ERR_NO_ANSWER);
+            const uint32_t took_us = time_of_next_outcome_us(FATHOM_ERR_NO_RESPONSE);
             assert_in_range(took_us, (alone + 1) * timeout_us, (alone + 1) * timeout_us + 50 * MS);
         }
         /* A command is asked at once; nobody is there. */
         const uint32_t start_us = s.clock.now_us;
-        assert_int_equal(carry_out(jobs[j].call), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(carry_out(jobs[j].call), FATHOM_ERR_NO_RESPONSE);
         assert_true(since_us(start_us) <= 3 * SECOND);
         assert_int_equal(told(), 0);
-        /* Back again: a command finds it at once, and with its answer the measurement goes on as before. */
+        /* Back again: a command finds it at once, and with its response the measurement goes on as before. */
         attach(bench.device);
         rest(2 * SECOND);
         assert_int_equal(carry_out(jobs[j].call), FATHOM_READY);

@@ -8,7 +8,7 @@
 static bool is_fair(fathom_status_t status, bool moves)
 {
     if (status == FATHOM_READY || status == FATHOM_PENDING) return true;
-    return moves && (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_NO_ANSWER);
+    return moves && (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_NO_RESPONSE);
 }
 
 /* `command` until its end, with two sensors that are read meanwhile. Returns how many readings `beside` had. */
@@ -23,7 +23,7 @@ static unsigned in_company(fathom_status_t (*command)(void), fathom_sensor_t bes
         assert_true(is_fair(is_read, moves));
         if (is_read == FATHOM_READY) {
             assert_int_equal(s.sample.distance_mm, bench.fixed.value[s.sample.probe - 1]);
-            assert_true(s.sample.unit == 1 || s.sample.unit == 7);
+            assert_true(s.sample.address == 1 || s.sample.address == 7);
             readings++;
         }
         *status = command();
@@ -69,9 +69,9 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
         set_up_for(job, loops_us[n % 3], FATHOM_LINE_ECHO_AUTO);
         memset(others, 0, sizeof others);
         for (unsigned i = 0; i != OTHERS; i++) {
-            others[i].exchange.timeout_us = 50 * MS;
-            others[i].exchange.retries = (uint8_t)(i % 3);
-            others[i].exchange.settings = &s.settings;
+            others[i].transaction.timeout_us = 50 * MS;
+            others[i].transaction.retries = (uint8_t)(i % 3);
+            others[i].transaction.line_settings = &s.settings;
             fathom_modbus_read_holding_registers(&others[i].message, (uint8_t)(100 + i), 0x0101, 1,
                                                  &values[i]);
             assert_int_equal(fathom_modbus_client_submit(&s.line, &others[i]), FATHOM_PENDING);
@@ -81,8 +81,8 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
         while ((status = round_of(job->call)) == FATHOM_PENDING) {
             assert_true(since_us(start_us) < 300 * SECOND);
             for (unsigned i = 0; i != OTHERS; i++) {
-                if (others[i].exchange.status == FATHOM_PENDING) continue;
-                assert_int_equal(others[i].exchange.status, FATHOM_ERR_NO_ANSWER);
+                if (others[i].transaction.status == FATHOM_PENDING) continue;
+                assert_int_equal(others[i].transaction.status, FATHOM_ERR_NO_RESPONSE);
                 assert_int_equal(fathom_modbus_client_submit(&s.line, &others[i]), FATHOM_PENDING);
             }
         }
@@ -104,7 +104,7 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         fathom_status_t status;
         set_up(A05_DYP, 1, loops_us[n / 2], FATHOM_LINE_ECHO_AUTO);
         const fathom_a05_modbus_config_t config = {.modbus.transport = &s.modbus,
-                                                   .modbus.settings = &s.settings};
+                                                   .modbus.line_settings = &s.settings};
         assert_int_equal(fathom_a05_modbus_init(&second, &config), FATHOM_READY);
         const fathom_sensor_t modbus = fathom_a05_modbus_sensor(&second);
         const unsigned readings =
@@ -140,14 +140,14 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     return status == FATHOM_READY;
 }
 
-TEST(unasked_measurements_are_no_answers)
+TEST(unasked_measurements_are_no_responses)
 {
     unsigned ready = 0, all = 0;
     for (unsigned j = 0; j != jobs_count; j++)
         for (uint32_t unasked_us = 19 * MS; unasked_us < 300 * MS; unasked_us += 27 * MS)
             for (unsigned l = 0; l != 3 && jobs[j].model == HPS; l++, all++)
                 if (among_unasked(&jobs[j], unasked_us, loops_us[l])) ready++;
-    assert_true(ready > all / 2); /* they collide with answers and requests, as on a real pair */
+    assert_true(ready > all / 2); /* they collide with responses and requests, as on a real pair */
 }
 
 static fathom_status_t set_230400(void) { return fathom_hps167s_set_baud(&s.driver.hps, 230400); }

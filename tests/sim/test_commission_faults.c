@@ -11,7 +11,7 @@ static unsigned problems;
     (print_error("%s, %s: ", job->name, what), print_error(__VA_ARGS__), print_error("\n"), problems++)
 
 #define BIT(kind) FATHOM_SIM_FAULT_BIT(FATHOM_SIM_FAULT_##kind)
-/* What can look like an answer at an address where nobody is, or talk into the question there. */
+/* What can look like a response at an address where nobody is, or talk into the request there. */
 #define WHAT_TALKS                                                                                           \
     (BIT(UNASKED) | BIT(NOISE) | BIT(DUPLICATE) | BIT(BREAK) | BIT(LATE) | BIT(DELAY) | BIT(TRAILING) |      \
      BIT(UNIT) | BIT(ECHO))
@@ -50,7 +50,7 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
     case FATHOM_ERR_IN_USE:
         if (job->kind != MOVES || writes != 0 || (kinds & WHAT_TALKS) == 0) problem("in use");
         break;
-    case FATHOM_ERR_NO_ANSWER:
+    case FATHOM_ERR_NO_RESPONSE:
     case FATHOM_ERR_CHECKSUM:
     case FATHOM_ERR_MALFORMED:
     case FATHOM_ERR_DIFFERS:

@@ -73,7 +73,7 @@ TEST(test_eight_are_found_behind_an_adapter_that_echoes)
 
 TEST(test_an_echo_alone_is_no_device_at_any_address)
 {
-    /* Nor is that of units 83 and 147, which looks like an answer. */
+    /* Nor is that of units 83 and 147, which looks like a response. */
     rig.sim_line.echo = true;
     rig.plan.last = 254;
     rig_finds(0);
@@ -90,7 +90,7 @@ TEST(test_an_echo_alone_is_no_device_at_any_address)
     rig_expect(147, FATHOM_A05);
 }
 
-TEST(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_answers)
+TEST(test_eight_are_found_although_one_is_noisy_and_another_damages_half_of_its_responses)
 {
     static fathom_sim_fault_t noise, flips;
     uint32_t flipped = 0;

@@ -74,7 +74,7 @@ TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devi
 static void hear_hps167s_at_115200(uint32_t period_us)
 {
     const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
-    begin_speaker(&fast, period_us, hps_answer, sizeof hps_answer);
+    begin_speaker(&fast, period_us, hps_response, sizeof hps_response);
     hear(SCAN_SENSOR, 1);
     assert_int_equal(unasked.finding.model, FATHOM_HPS167S);
     assert_int_equal(unasked.finding.line.baud, 115200);
@@ -112,25 +112,25 @@ TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
 {
     scan_request_t request = {
         .line = &scan_hps167s_line, .timeout_us = 100000, .first = 0x0009, .address = 1};
-    scan_answer_t answer;
+    scan_response_t response;
     rig_begin(0);
     rig_hps((hps_config_t){.unit = 1});
     for (uint8_t count = 1; count <= SCAN_REGISTERS; count++) {
         request.count = count;
-        scan_ask(&rig.wire, &request, &answer);
-        assert_int_equal(answer.status, FATHOM_ERR_ARGUMENT);
+        scan_ask(&rig.wire, &request, &response);
+        assert_int_equal(response.status, FATHOM_ERR_ARGUMENT);
     }
     request = (scan_request_t){.line = &scan_hps167s_line, .timeout_us = 100000, .first = 1, .count = 3};
-    scan_ask(&rig.wire, &request, &answer); /* unit 0 */
-    assert_int_equal(answer.status, FATHOM_ERR_ARGUMENT);
+    scan_ask(&rig.wire, &request, &response); /* unit 0 */
+    assert_int_equal(response.status, FATHOM_ERR_ARGUMENT);
     request.address = 1;
-    request.count = SCAN_REGISTERS + 1; /* more than an answer has room for */
-    scan_ask(&rig.wire, &request, &answer);
-    assert_int_equal(answer.status, FATHOM_ERR_ARGUMENT);
+    request.count = SCAN_REGISTERS + 1; /* more than a response has room for */
+    scan_ask(&rig.wire, &request, &response);
+    assert_int_equal(response.status, FATHOM_ERR_ARGUMENT);
     assert_int_equal(rig.requests, 0);
     request.count = 3;
-    scan_ask(&rig.wire, &request, &answer);
-    assert_int_equal(answer.status, FATHOM_READY);
+    scan_ask(&rig.wire, &request, &response);
+    assert_int_equal(response.status, FATHOM_READY);
     assert_int_equal(rig.requests, 1);
     rig_expect_unharmed();
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan_others.h"
 
-/* What `fathom scan` makes of answers that are not as they should be: two units with one address, other devices, other
+/* What `fathom scan` makes of responses that are not as they should be: two units with one address, other devices, other
  * protocols, another master. */
 
 EACH_BEGINS(rig_begin(0))
@@ -28,9 +28,9 @@ TEST(test_two_units_with_one_address_are_told_and_their_neighbours_found)
     }
 }
 
-TEST(test_two_answers_to_one_question_are_told)
+TEST(test_two_responses_to_one_request_are_told)
 {
-    /* One answers 0200 after 17.5 to 20 ms, the other after 35 to 40: both answers are whole. */
+    /* One answers 0200 after 17.5 to 20 ms, the other after 35 to 40: both responses are whole. */
     rig_a16((a16_config_t){.unit = 6});
     rig_a16((a16_config_t){.unit = 6, .settings_us = 40000});
     rig_finds(1);
@@ -49,7 +49,7 @@ TEST(test_one_spike_on_a_dead_address_is_no_device)
     assert_true(rig.walk.heard.bytes != 0);
 }
 
-TEST(test_answers_that_are_no_modbus_are_told_once)
+TEST(test_responses_that_are_no_modbus_are_told_once)
 {
     rig_begin(UINT32_C(0xFFF00000));
     begin_speaker(&scan_hps167s_line, 0, junk, sizeof junk);
@@ -63,7 +63,7 @@ TEST(test_answers_that_are_no_modbus_are_told_once)
     assert_in_range(rig.probed[1][FATHOM_PARITY_EVEN], 64, 80);
 }
 
-TEST(test_no_modbus_at_one_address_of_two_is_a_damaged_answer_and_at_the_only_one_another_protocol)
+TEST(test_no_modbus_at_one_address_of_two_is_a_damaged_response_and_at_the_only_one_another_protocol)
 {
     for (uint8_t last = 3; last <= 4; last++) {
         rig_begin(0);
@@ -139,7 +139,7 @@ TEST(test_an_a05_whose_measurement_is_lost_once_is_known)
     static fathom_sim_fault_t fault;
     rig_a05((a05_config_t){.unit = 9});
     fathom_sim_fault_init(&fault, 1);
-    /* its first answer is that of 0200 */
+    /* its first response is that of 0200 */
     assert_non_null(fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
     fathom_sim_fault_attach(&fault, &rig.sim_line, &rig.a05[0].device);
     rig_walk();
@@ -149,11 +149,11 @@ TEST(test_an_a05_whose_measurement_is_lost_once_is_known)
 
 TEST(test_a_frame_of_an_address_that_was_not_asked_is_noted)
 {
-    /* A16 6, the first example's answer */
-    static const uint8_t answer[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
+    /* A16 6, the first example's response */
+    static const uint8_t response[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
     rig.plan.first = 2;
     rig.plan.last = 4;
-    begin_speaker(&scan_dyp_line, 0, answer, sizeof answer);
+    begin_speaker(&scan_dyp_line, 0, response, sizeof response);
     rig_finds(0);
     assert_int_equal(rig.walk.heard.outside, 1);
     assert_false(rig.walk.heard.has_master);
@@ -170,7 +170,7 @@ TEST(test_another_master_that_begins_later_is_noted)
     assert_int_equal(rig.walk.heard.outside, 0);
 }
 
-TEST(test_measurements_may_take_longer_than_the_first_answer)
+TEST(test_measurements_may_take_longer_than_the_first_response)
 {
     rig_a16((a16_config_t){.unit = 1, .realtime_us = 290000});
     rig_a05((a05_config_t){.unit = 2, .probe_us = 290000});

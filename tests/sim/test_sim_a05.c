@@ -51,10 +51,10 @@ TEST(the_first_command_ends_automatic_output_until_power_off)
     hear(320, "FF 01 3C 00 FA 02 93 09 7A 4E");
 }
 
-TEST(an_answer_and_a_frame_that_are_due_together_follow_each_other)
+TEST(a_response_and_a_frame_that_are_due_together_follow_each_other)
 {
-    int frame_first = 0, answer_first = 0;
-    /* the request ends at 208.3 ms, the frame is due at 300, the answer somewhere between 278 and 338 */
+    int frame_first = 0, response_first = 0;
+    /* the request ends at 208.3 ms, the frame is due at 300, the response somewhere between 278 and 338 */
     for (uint32_t probe_us = 80 * MS; probe_us < 130 * MS; probe_us += 500) {
         set_a05(FATHOM_SIM_A05_AUTO, EXAMPLE, (a05_config_t){.probe_us = probe_us});
         wait_ms(200);
@@ -64,14 +64,14 @@ TEST(an_answer_and_a_frame_that_are_due_together_follow_each_other)
             frame_first++;
             expect("FF 01 3C 00 FA 02 93 09 7A 4E 01 03 02 01 3C B9 C5");
         } else {
-            answer_first++;
+            response_first++;
             expect("01 03 02 01 3C B9 C5 FF 01 3C 00 FA 02 93 09 7A 4E");
         }
         for (size_t i = 1; i < 17; i++) /* one transmitter: characters never overlap */
             assert_true(fathom_elapsed_us(bench.end_us[i], bench.end_us[i - 1]) >= 1041);
     }
     assert_true(frame_first > 10);
-    assert_true(answer_first > 10);
+    assert_true(response_first > 10);
 }
 
 TEST(reads_are_those_of_a05_3_4_1)
@@ -126,7 +126,7 @@ TEST(set_address_is_echoed_and_obeyed_a05_3_4_2)
     talk("01 03 02 00 00 01 85 B2", 50, "");
 }
 
-TEST(a_broadcast_is_obeyed_without_an_answer)
+TEST(a_broadcast_is_obeyed_without_a_response)
 {
     ask("FF 06 02 00 00 05 5D AF", 300);
     talk("FF 03 01 06 00 01 70 29", 300, "");

@@ -96,7 +96,7 @@ TEST(every_unit_that_hears_set_address_obeys_it)
     assert_int_equal(bench.a05.device.unit, 5);
     assert_int_equal(other.device.unit, 5);
     expect("55 AA 05 03 07 55 AA 05 03 07");
-    /* the second answer is a request again to the first unit, which was no longer deaf */
+    /* the second response is a request again to the first unit, which was no longer deaf */
     hear(25, "55 AA 05 03 07");
     COUNTED(.writes = 2);
 }
@@ -132,7 +132,7 @@ TEST(what_it_does_not_know_is_silence_and_counted)
     ask("55 AA 01 14 14", 300);
     ask("55 AA 01 01 00 01", 300);    /* a byte too long */
     ask("55 AA 05 03 00 07", 300);    /* also to set the address */
-    ask("55 AA 01 10 07 A1 B8", 300); /* an answer */
+    ask("55 AA 01 10 07 A1 B8", 300); /* a response */
     COUNTED(.unserved = 7);
     ask("55 AA 02 01 02", 300); /* another unit */
     COUNTED(.others = 1);

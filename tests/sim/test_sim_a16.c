@@ -68,13 +68,13 @@ TEST(no_target_and_interference_are_fffd_and_fffe)
 
 /* ---- automatic, then Modbus: A16 5 ---- */
 
-TEST(the_first_command_ends_automatic_output_with_frames_around_the_answer)
+TEST(the_first_command_ends_automatic_output_with_frames_around_the_response)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
     wait_ms(50);
     talk(A16_ASKED, 300,
          A16_FRAME           /* at 100 ms, nobody stopped it yet */
-             A16_ANSWER      /* the answer, A16 6(4) example 2, about 175 ms */
+             A16_RESPONSE    /* the response, A16 6(4) example 2, about 175 ms */
                  A16_FRAME); /* at 200 ms, within the 150 ms */
     hear(60000, "");
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
@@ -84,14 +84,14 @@ TEST(without_lingering_the_command_is_the_end)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
     hear(105, A16_FRAME);
-    talk(A16_ASKED, 1000, A16_ANSWER);
+    talk(A16_ASKED, 1000, A16_RESPONSE);
 }
 
 TEST(a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
     wait_ms(95); /* the request lasts from 95 to 103.3 ms, the frame from 100 to 104.2 */
-    talk(A16_ASKED, 1000, A16_FRAME A16_ANSWER);
+    talk(A16_ASKED, 1000, A16_FRAME A16_RESPONSE);
 }
 
 TEST(only_a_command_for_it_ends_automatic_output)
@@ -119,7 +119,7 @@ TEST(a_uart_module_takes_no_command)
 TEST(power_makes_it_automatic_again)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
-    talk(A16_ASKED, 500, A16_ANSWER);
+    talk(A16_ASKED, 500, A16_RESPONSE);
     fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us);
     fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us); /* twice is no error */
     hear(500, "");
@@ -135,7 +135,7 @@ TEST(reads_are_those_of_a16_6_4)
     hear(10000, "");
     talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1, 0x0100 */
     bench.fixed.value[0] = 751;
-    talk(A16_ASKED, 600, A16_ANSWER); /* example 2, 0x0101 */
+    talk(A16_ASKED, 600, A16_RESPONSE); /* example 2, 0x0101 */
     bench.fixed.value[0] = FATHOM_SIM_NO_TARGET;
     talk(A16_ASKED, 600, "01 03 02 FF FD 38 35");
     bench.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
@@ -153,7 +153,7 @@ TEST(settings_read_as_from_the_factory)
     COUNTED(.measurements = NONE);
 }
 
-TEST(answers_take_their_time_and_the_seed_decides_which)
+TEST(responses_take_their_time_and_the_seed_decides_which)
 {
     uint32_t first_us[3][8];
     for (size_t run = 0; run < 3; run++) {
@@ -173,7 +173,7 @@ TEST(answers_take_their_time_and_the_seed_decides_which)
     assert_memory_not_equal(first_us[0], first_us[2], sizeof first_us[0]);
 }
 
-TEST(the_answer_times_are_options)
+TEST(the_response_times_are_options)
 {
     set_a16(FATHOM_SIM_A16_MODBUS, 754,
             (a16_config_t){.realtime_us = 40 * MS, .processed_us = 1, .settings_us = 200 * MS});
@@ -204,7 +204,7 @@ TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
     COUNTED(.writes = NONE);
 }
 
-TEST(a_broadcast_is_obeyed_without_an_answer)
+TEST(a_broadcast_is_obeyed_without_a_response)
 {
     talk("FF 06 02 00 00 05 5D AF", 300, "");
     assert_int_equal(bench.a16.device.unit, 5);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 #include "stage.h"
 
 /* Whole cycles: the drivers on the simulated pins, at each start of the clock, in a fine and in slow loops. */
@@ -12,7 +12,7 @@ static fathom_capture_t capture;
 static fathom_a16_pwm_t pwm;
 static fathom_a16_controlled_t controlled;
 static fathom_sample_t last;
-static unsigned samples, no_answers;
+static unsigned samples, no_responses;
 static unsigned errors; /* others */
 
 static void set(uint8_t mode, int32_t distance, uint32_t step_us, a16_config_t config)
@@ -23,7 +23,7 @@ static void set(uint8_t mode, int32_t distance, uint32_t step_us, a16_config_t c
     fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
     trigger = fathom_sim_rx_pin(&s.pins);
     capture = fathom_sim_capture(&s.pins);
-    samples = no_answers = errors = 0;
+    samples = no_responses = errors = 0;
 }
 
 static void begin_pwm(bool by_break)
@@ -54,8 +54,8 @@ static void poll(void)
     if (status == FATHOM_READY) {
         last = s.sample;
         assert_int_equal(last.sequence, ++samples);
-    } else if (status == FATHOM_ERR_NO_ANSWER) {
-        no_answers++;
+    } else if (status == FATHOM_ERR_NO_RESPONSE) {
+        no_responses++;
     } else if (status != FATHOM_PENDING) {
         errors++;
     }
@@ -99,7 +99,7 @@ static void every_width_is_read_each_cycle(bool by_break)
             assert_int_equal(last.kind, readings[i].kind);
             assert_int_equal(last.raw, readings[i].width_us);
             assert_int_equal(last.distance_mm, readings[i].mm);
-            assert_int_equal(no_answers + errors, 0);
+            assert_int_equal(no_responses + errors, 0);
             COUNTED(.unserved = NONE); /* no trigger came too early */
             assert_in_range(bench.device->counters.answered, samples, samples + 1);
         }
@@ -134,14 +134,14 @@ TEST(edges_of_a_pin_interrupt_read_as_a_capture_does_also_doubled)
         run(3000 * MS);
         assert_true(samples >= 7);
         assert_int_equal(last.raw, 86250);
-        assert_int_equal(no_answers + errors, 0);
+        assert_int_equal(no_responses + errors, 0);
         fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_HIGH);
         run(1000 * MS);
         assert_int_equal(last.kind, FATHOM_FAULT);
     }
 }
 
-TEST(a_cut_wire_is_no_answer_and_a_mended_one_is_read_again)
+TEST(a_cut_wire_is_no_response_and_a_mended_one_is_read_again)
 {
     for (size_t n = 0; n < STEPS; n++) {
         set(FATHOM_SIM_A16_PWM, 1739, steps_us[n], DEFAULTS);
@@ -149,12 +149,12 @@ TEST(a_cut_wire_is_no_answer_and_a_mended_one_is_read_again)
         fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_LOW);
         run(2000 * MS);
         assert_int_equal(samples, 0);
-        assert_true(no_answers >= 5);
+        assert_true(no_responses >= 5);
         fathom_sim_tx_wire(&s.pins, FATHOM_SIM_WIRE_WHOLE);
         run(600 * MS);
-        const unsigned before = no_answers;
+        const unsigned before = no_responses;
         run(1000 * MS);
-        assert_int_equal(no_answers, before);
+        assert_int_equal(no_responses, before);
         assert_int_equal(last.distance_mm, 1739);
     }
 }
@@ -172,7 +172,7 @@ TEST(a_stuck_wire_is_a_fault_each_cycle_and_never_a_distance)
             assert_int_equal(last.kind, FATHOM_FAULT);
             assert_int_equal(last.raw, 0);
         }
-        assert_int_equal(no_answers, 0);
+        assert_int_equal(no_responses, 0);
     }
 }
 
@@ -194,16 +194,16 @@ TEST(noise_between_trigger_and_pulse_changes_no_reading)
         assert_int_equal(last.raw, 9999);
     }
     assert_int_equal(pwm.meter.noises, 50);
-    assert_int_equal(no_answers + errors, 0);
+    assert_int_equal(no_responses + errors, 0);
 }
 
-TEST(a_module_without_power_is_no_answer)
+TEST(a_module_without_power_is_no_response)
 {
     set(FATHOM_SIM_A16_PWM, 1739, 20000, (a16_config_t){.start_us = 1500 * MS});
     begin_pwm(false);
     run(1400 * MS);
     assert_int_equal(samples, 0);
-    assert_true(no_answers >= 4);
+    assert_true(no_responses >= 4);
     run(1000 * MS);
     assert_true(samples >= 2);
 }
@@ -218,7 +218,7 @@ TEST(who_sleeps_until_it_is_due_or_woken_reads_each_cycle)
         fathom_sim_clock_idle(&s.clock, fathom_due_us(&s.sensor, 1));
         poll();
     }
-    assert_int_equal(no_answers, 0);
+    assert_int_equal(no_responses, 0);
     /* 2 ms, 19 cycles of 221 ms, 110 ms and the pulse */
     assert_in_range(since_us(start_us), 4320999, 4321100);
 }
@@ -232,7 +232,7 @@ static void controlled_reads_each_trigger(bool by_break, bool knows)
         run(5000 * MS);
         assert_true(samples >= 5000 / (121 + 3 * 70) - 1);
         assert_int_equal(last.distance_mm, 1953);
-        assert_int_equal(no_answers + errors, 0);
+        assert_int_equal(no_responses + errors, 0);
         assert_int_equal(controlled.late, 0);
         COUNTED(.unserved = NONE);
         assert_in_range(bench.device->counters.answered, samples, samples + 1);
@@ -255,7 +255,7 @@ static const uint32_t *delays_us;
 
 static void delay(void *ctx, fathom_sim_frame_t *frame) { frame->delay_us = *delays_us; }
 
-TEST(late_and_lost_answers_are_no_answer_and_never_the_next_ones)
+TEST(late_and_lost_responses_are_no_response_and_never_the_next_ones)
 {
     static const uint32_t late_us[] = {45 * MS, 60 * MS, 85 * MS};
     static const fathom_sim_faults_t faults = {.outgoing = delay};
@@ -265,8 +265,8 @@ TEST(late_and_lost_answers_are_no_answer_and_never_the_next_ones)
         begin_controlled(true);
         run(2000 * MS);
         assert_int_equal(samples, 0);
-        assert_true(no_answers >= 10);
-        assert_in_range(controlled.late, no_answers - 2, no_answers + 1);
+        assert_true(no_responses >= 10);
+        assert_in_range(controlled.late, no_responses - 2, no_responses + 1);
     }
 }
 

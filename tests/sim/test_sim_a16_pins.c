@@ -311,7 +311,7 @@ TEST(a_break_spoils_the_frame_that_a_device_hears)
         assert_int_equal(brk(false), 1);
         pass_us(500 * MS);
         COUNTED(.answered = 1);
-        assert_int_equal(bench.device->counters.torn, with_break);
+        assert_int_equal(bench.device->counters.truncated, with_break);
     }
 }
 

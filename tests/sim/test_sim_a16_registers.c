@@ -55,9 +55,9 @@ TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 TEST(processed_and_real_time_values_are_two)
 {
     talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
-    talk(A16_ASKED, 200, A16_ANSWER);                             /* example 2 */
+    talk(A16_ASKED, 200, A16_RESPONSE);                           /* example 2 */
     bench.a16.device.processed.distance = NULL;                   /* then they are one */
-    talk("01 03 01 00 00 01 85 F6", 600, A16_ANSWER);
+    talk("01 03 01 00 00 01 85 F6", 600, A16_RESPONSE);
 }
 
 TEST(automatic_frames_say_the_value_of_the_data_type)
@@ -111,7 +111,7 @@ TEST(the_controlled_mode_stays_and_no_mode_is_kept)
     echoed("01 06 02 02 00 00 29 B2", 1000);
     cycle_power(100, 101);
     hear(105, AUTO_PROCESSED);
-    talk("01 03 02 02 00 01 24 72", 1000, ""); /* write-only: no answer, and it ends the output */
+    talk("01 03 02 02 00 01 24 72", 1000, ""); /* write-only: no response, and it ends the output */
 }
 
 TEST(rs485_has_no_automatic_mode_to_return_to)
@@ -162,7 +162,7 @@ TEST(flash_wears_with_each_setting_that_is_kept)
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
-TEST(a_broadcast_is_obeyed_without_an_answer)
+TEST(a_broadcast_is_obeyed_without_a_response)
 {
     talk("FF 06 02 06 07 D0 7E 01", 50, "");
     talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");

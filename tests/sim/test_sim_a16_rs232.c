@@ -68,14 +68,14 @@ TEST(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back)
         assert_int_equal(listen(), FATHOM_READY);
         assert_int_equal(ask_it(), FATHOM_READY);
         assert_int_equal(s.sample.distance_mm, 1953);
-        assert_int_equal(s.sample.unit, 1);
-        while (listen() == FATHOM_READY) continue; /* frames linger around the first answer */
+        assert_int_equal(s.sample.address, 1);
+        while (listen() == FATHOM_READY) continue; /* frames linger around the first response */
         const uint32_t sent = bench.device->counters.automatic;
         assert_int_equal(listen(), FATHOM_ERR_STALE);
         assert_int_equal(bench.device->counters.automatic, sent);
 
         assert_int_equal(go_back(), FATHOM_READY);
-        assert_int_equal(s.sample.unit, 0);
+        assert_int_equal(s.sample.address, 0);
         assert_int_equal(s.sample.distance_mm, 1953);
         assert_int_equal(bench.device->counters.automatic, sent + 1);
         for (unsigned i = 0; i != 10; i++) assert_int_equal(listen(), FATHOM_READY);
@@ -92,7 +92,7 @@ TEST(a_frame_from_before_the_command_confirms_nothing)
     go_until_it_listens();
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     assert_int_equal(go_back(), FATHOM_ERR_UNCONFIRMED);
-    assert_int_equal(go_back(), FATHOM_ERR_NO_ANSWER); /* and of one that is not there nothing is claimed */
+    assert_int_equal(go_back(), FATHOM_ERR_NO_RESPONSE); /* and of one that is not there nothing is claimed */
     assert_false(fathom_a16_modbus_is_written(rs232.modbus));
     assert_true(automatic.base.stream.counters[FATHOM_STREAM_FRAMES] != 0);
 }
@@ -136,7 +136,7 @@ TEST(a_lost_or_damaged_acknowledgement_leaves_it_to_the_frames)
     }
 }
 
-/* A first answer with noise before it does not show whether the line echoes (line.h). */
+/* A first response with noise before it does not show whether the line echoes (line.h). */
 TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 {
     set_echo(FATHOM_LINE_ECHO_AUTO);

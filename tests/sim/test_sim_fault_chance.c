@@ -21,7 +21,7 @@ static uint64_t run_frames(uint32_t frames)
     return number;
 }
 
-/* |hits - n p| <= 5 sqrt(n p (1 - p)), squared. With a fixed seed the answer is always the same; for an even
+/* |hits - n p| <= 5 sqrt(n p (1 - p)), squared. With a fixed seed the response is always the same; for an even
  * generator it is wrong once in 1.7 million. */
 static bool is_likely(uint32_t hits, uint32_t n, uint32_t chance_ppm)
 {

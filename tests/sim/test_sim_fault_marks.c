@@ -7,20 +7,20 @@
 
 enum { SEEDS = 60 };
 
-/* The one byte of the answer that is marked, and wrong; the others are right. */
+/* The one byte of the response that is marked, and wrong; the others are right. */
 static size_t marked_byte(uint8_t flag)
 {
-    uint8_t answer[7];
-    from_hex(A16_ANSWER, answer, sizeof answer);
+    uint8_t response[7];
+    from_hex(A16_RESPONSE, response, sizeof response);
     size_t at = SIZE_MAX;
     assert_int_equal(bench.heard, 7);
     for (size_t i = 0; i < 7; i++) {
         if (bench.flags[i] == 0) {
-            assert_int_equal(bench.bytes[i], answer[i]);
+            assert_int_equal(bench.bytes[i], response[i]);
             continue;
         }
         assert_int_equal(bench.flags[i], flag);
-        assert_int_not_equal(bench.bytes[i], answer[i]);
+        assert_int_not_equal(bench.bytes[i], response[i]);
         assert_int_equal(at, SIZE_MAX);
         at = i;
     }
@@ -52,8 +52,8 @@ TEST(framing_marks_one_wrong_byte) { marked(FATHOM_SIM_FAULT_FRAMING, FATHOM_RX_
 
 TEST(overrun_loses_one_byte_and_marks_the_next_that_comes)
 {
-    uint8_t answer[7];
-    from_hex(A16_ANSWER, answer, sizeof answer);
+    uint8_t response[7];
+    from_hex(A16_RESPONSE, response, sizeof response);
     uint32_t places = 0;
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         size_t at = 6;
@@ -64,8 +64,8 @@ TEST(overrun_loses_one_byte_and_marks_the_next_that_comes)
         for (size_t i = 0; i < 6; i++)
             if (bench.flags[i] != 0) at = i;
         if (at < 6) assert_int_equal(bench.flags[at], FATHOM_RX_OVERRUN);
-        assert_memory_equal(bench.bytes, answer, at);
-        assert_memory_equal(bench.bytes + at, answer + at + 1, 6 - at);
+        assert_memory_equal(bench.bytes, response, at);
+        assert_memory_equal(bench.bytes + at, response + at + 1, 6 - at);
         places |= 1u << at;
         assert_int_equal(bench.line.counters.overruns, 1);
         next_is_golden(A16_MODBUS);
@@ -114,10 +114,10 @@ TEST(another_device_takes_a_marked_byte_for_spoiled)
     attach(&other.device);
     FAULT(FRAMING, ALWAYS, 2);
     next(A16_MODBUS);
-    assert_int_equal(other.device.counters.others, 2); /* request and answer */
+    assert_int_equal(other.device.counters.others, 2); /* request and response */
     next(A16_MODBUS);
     assert_int_equal(other.device.counters.others, 3);
-    assert_int_equal(other.device.counters.torn, 1);
+    assert_int_equal(other.device.counters.truncated, 1);
 }
 
 static fathom_sim_clock_t host_clock;

@@ -60,10 +60,10 @@ TEST(duplicate_comes_twice_at_once_or_after_a_pause)
     FAULT(DUPLICATE, ALWAYS, 1);
     FAULT(DUPLICATE, ALWAYS, 2)->us = 30 * MS;
     next(A16_MODBUS);
-    expect(A16_ANSWER A16_ANSWER);
+    expect(A16_RESPONSE A16_RESPONSE);
     assert_in_range(bench.end_us[7] - bench.end_us[6], CHARACTER_US - 1, CHARACTER_US);
     next(A16_MODBUS);
-    expect(A16_ANSWER A16_ANSWER);
+    expect(A16_RESPONSE A16_RESPONSE);
     assert_in_range(bench.end_us[7] - bench.end_us[6], 30 * MS + CHARACTER_US - 1, 30 * MS + CHARACTER_US);
     next_is_golden(A16_MODBUS);
     assert_int_equal(HITS(DUPLICATE), 2);
@@ -74,14 +74,14 @@ TEST(delay_and_late_come_later_by_so_much)
     static const uint32_t by_us[] = {20 * MS, 33 * MS, 1500 * MS, 700 * MS, 0};
     uint32_t plain_us[5];
     for (int is_hit = 0; is_hit < 2; is_hit++) {
-        set_faulty(A16_MODBUS, 0); /* the same answer times */
+        set_faulty(A16_MODBUS, 0); /* the same response times */
         FAULT(DELAY, ALWAYS, 1);
         FAULT(DELAY, ALWAYS, 2)->us = 33 * MS;
         FAULT(LATE, ALWAYS, 3);
         FAULT(LATE, ALWAYS, 4)->us = 700 * MS;
         fathom_sim_fault_enable(&bench.fault, is_hit != 0);
         for (size_t i = 0; i < 5; i++) {
-            talk(A16_ASKED, 2000, A16_ANSWER);
+            talk(A16_ASKED, 2000, A16_RESPONSE);
             if (is_hit == 0) plain_us[i] = bench.end_us[0];
             assert_int_equal(bench.end_us[0] - plain_us[i], is_hit != 0 ? by_us[i] : 0);
         }
@@ -91,13 +91,13 @@ TEST(delay_and_late_come_later_by_so_much)
     assert_int_equal(bench.fault.frames_hit, 4);
 }
 
-TEST(a_late_answer_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too)
+TEST(a_late_response_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_too)
 {
     set_faulty(A16_MODBUS, 0);
     FAULT(LATE, ALWAYS, 1)->us = 700 * MS;
     talk(A16_ASKED, 400, "");
     const uint32_t asked_us = bench.asked_us;
-    talk(A16_ASKED, 500, A16_ANSWER); /* the host asks again, in vain */
+    talk(A16_ASKED, 500, A16_RESPONSE); /* the host asks again, in vain */
     ASSERT_SPAN(bench.end_us[0], asked_us, 805 * MS, 822 * MS);
     hear(2000, "");
     COUNTED(.requests = 1, .unheard = 8);
@@ -112,11 +112,11 @@ TEST(silence_keeps_the_frame_back_and_the_device_is_free)
 {
     set_faulty(A16_MODBUS, 0);
     FAULT(SILENCE, ALWAYS, 2);
-    talk(A16_ASKED, 150, A16_ANSWER);
+    talk(A16_ASKED, 150, A16_RESPONSE);
     talk(A16_ASKED, 130, "");
     COUNTED(.answered = 2);
     assert_int_equal(HITS(SILENCE), 1);
-    talk(A16_ASKED, 150, A16_ANSWER);
+    talk(A16_ASKED, 150, A16_RESPONSE);
 }
 
 TEST(power_cycle_cuts_the_frame_and_the_device_starts_anew)
@@ -187,11 +187,11 @@ TEST(after_its_own_bytes_a_device_listens_again_though_noise_follows)
         ask(A16_ASKED, 140);
         if (bench.heard != 7) continue; /* the noise comes before */
         seen = true;
-        expect(A16_ANSWER);
+        expect(A16_RESPONSE);
         say(A16_ASKED); /* over before the noise begins */
         wait_ms(300);
         assert_in_range(bench.heard, 8, 15);
-        assert_true(is_hex(bench.bytes + bench.heard - 7, A16_ANSWER));
+        assert_true(is_hex(bench.bytes + bench.heard - 7, A16_RESPONSE));
         COUNTED(.unheard = NONE);
     }
     assert_true(seen);
@@ -221,7 +221,7 @@ TEST(unasked_is_a_measurement_also_where_something_else_was_asked)
     for (uint32_t seed = 0; seed < SEEDS; seed++) {
         set_faulty(HPS167S, seed);
         FAULT(UNASKED, ALWAYS, 0);
-        /* #4: 77 degrees Fahrenheit; the answer is 01 03 02 00 4D */
+        /* #4: 77 degrees Fahrenheit; the response is 01 03 02 00 4D */
         ask("01 03 00 04 00 01 C5 CB", 100);
         assert_int_equal(bench.heard, 7 + 13);
         const bool is_before = bench.bytes[2] == 8;
@@ -248,13 +248,13 @@ TEST(echo_repeats_the_request_of_that_frame)
     FAULT(ECHO, ALWAYS, 2);
     for (uint32_t n = 1; n <= 3; n++) {
         next(A16_MODBUS);
-        expect(n == 2 ? A16_ASKED A16_ANSWER : A16_ANSWER);
+        expect(n == 2 ? A16_ASKED A16_RESPONSE : A16_RESPONSE);
         assert_int_equal(HITS(ECHO), n < 2 ? 0 : 1);
     }
     set_faulty(A16_MODBUS, 1); /* also the very first */
     FAULT(ECHO, ALWAYS, 0);
     next(A16_MODBUS);
-    expect(A16_ASKED A16_ANSWER);
+    expect(A16_ASKED A16_RESPONSE);
     fathom_sim_fault_enable(&bench.fault, false);
     next_is_golden(A16_MODBUS);
 }
@@ -266,6 +266,6 @@ TEST(a_line_that_has_an_echo_keeps_it)
     FAULT(ECHO, ALWAYS, 2);
     for (uint32_t n = 1; n <= 3; n++) {
         next(A16_MODBUS);
-        expect(A16_ASKED A16_ANSWER);
+        expect(A16_ASKED A16_RESPONSE);
     }
 }

@@ -56,12 +56,12 @@ static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(a_hook_that_does_nothing_changes_nothing)
 {
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(out.seen, 1);
     assert_false(out.last_automatic);
     assert_int_equal(out.copied, 7);
     faults.outgoing = NULL;
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(out.seen, 1);
 }
 
@@ -71,7 +71,7 @@ TEST(a_bit_can_be_flipped)
     talk(A16_ASKED, 200, "01 03 02 12 EF F8 A8");
 }
 
-TEST(an_answer_can_be_shorter_or_longer)
+TEST(a_response_can_be_shorter_or_longer)
 {
     out.length = 4;
     talk(A16_ASKED, 200, "01 03 02 02");
@@ -130,7 +130,7 @@ TEST(a_delay_counts_from_the_end_of_the_frame_before)
     const uint32_t start_us = bench.now_us;
     ask(A16_ASKED, 180); /* answered between 113 and 128 ms, the frame lasts from 130 to 134 */
     ASSERT_SPAN(bench.end_us[4], start_us, 165208, 165209);
-    expect(A16_FRAME A16_ANSWER);
+    expect(A16_FRAME A16_RESPONSE);
 }
 
 TEST(a_request_can_be_missed_or_heard_wrong)
@@ -146,6 +146,6 @@ TEST(a_request_can_be_missed_or_heard_wrong)
     talk(A16_ASKED, 200, "");
     COUNTED(.crc_errors = 1);
     in.flip = 0;
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(in.seen, 3);
 }

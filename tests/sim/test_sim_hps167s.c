@@ -25,7 +25,7 @@ TEST(sensor_details_are_those_of_command_3)
          "01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC"); /* table 13 */
 }
 
-TEST(version_configuration_and_temperature_answer_tables_9_11_15)
+TEST(version_configuration_and_temperature_response_tables_9_11_15)
 {
     set_hps(2083, (hps_config_t){.temperature_f = -10});
     talk("01 03 00 01 00 03 54 0B", 30, "01 03 06 14 09 1B 02 01 00 58 D4");
@@ -50,7 +50,7 @@ TEST(a_fault_is_the_abnormal_packet_of_command_5)
     talk(MEASURE, 30, "01 03 08 FF FF 00 00 00 FF FF FF E4 5C");
 }
 
-TEST(the_first_answer_comes_at_once_and_the_next_a_period_later)
+TEST(the_first_response_comes_at_once_and_the_next_a_period_later)
 {
     ask(MEASURE, 12);
     assert_int_equal(bench.heard, 13);
@@ -63,26 +63,26 @@ TEST(the_first_answer_comes_at_once_and_the_next_a_period_later)
     ASSERT_SPAN(bench.end_us[0], first_us, 18519, 18519);
 }
 
-static uint32_t answers_in_10_s(void)
+static uint32_t responses_in_10_s(void)
 {
-    uint32_t answers = 0;
+    uint32_t responses = 0;
     for (uint32_t us = 0; us < 10000 * MS; us += 100) {
-        /* the fastest host there is: t3.5 after the last bit of an answer */
+        /* the fastest host there is: t3.5 after the last bit of a response */
         if (us == 0 || (bench.heard == 13 && fathom_elapsed_us(bench.now_us, bench.end_us[12]) >= 2006)) {
-            answers += us != 0;
+            responses += us != 0;
             forget();
             say(MEASURE);
         }
         wait_us(100);
     }
-    return answers;
+    return responses;
 }
 
 TEST(it_measures_54_times_a_second_and_6_times_as_an_option)
 {
-    assert_in_range(answers_in_10_s(), 538, 540);
+    assert_in_range(responses_in_10_s(), 538, 540);
     set_hps(2083, (hps_config_t){.period_us = 166667});
-    assert_in_range(answers_in_10_s(), 59, 60);
+    assert_in_range(responses_in_10_s(), 59, 60);
 }
 
 TEST(without_automatic_measuring_each_takes_a_period)
@@ -136,7 +136,7 @@ TEST(an_unknown_function_is_exception_1_whatever_its_length)
 {
     talk("01 04 00 08 00 04 70 0B", 30, "01 84 01 82 C0");
     talk("01 11 C0 2C", 30, "01 91 01 8C 50");
-    talk("01 83 02 C0 F1", 30, ""); /* but an answer is no request */
+    talk("01 83 02 C0 F1", 30, ""); /* but a response is no request */
 }
 
 TEST(factory_reset_is_that_of_tables_19_and_20_and_is_counted)
@@ -150,7 +150,7 @@ TEST(factory_reset_is_that_of_tables_19_and_20_and_is_counted)
     COUNTED(.resets = 2);
 }
 
-TEST(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_answer_to_a_reset)
+TEST(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_response_to_a_reset)
 {
     static const uint32_t baud[] = {19200, 57600, 115200, 230400};
     for (uint8_t code = 1; code <= 4; code++) {
@@ -195,7 +195,7 @@ TEST(another_unit_is_not_meant)
     talk("02 03 00 08 00 04 C5 F8", 30, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
 }
 
-TEST(while_it_warms_up_it_measures_nothing_but_answers_the_rest)
+TEST(while_it_warms_up_it_measures_nothing_but_responses_the_rest)
 {
     set_hps(2083, (hps_config_t){.warm_up_s = 5});
     wait_ms(4900);
@@ -219,13 +219,13 @@ TEST(a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request)
         forget();
         ask_in_two(MEASURE, first, 870);
         hear(30, "");
-        COUNTED(.torn = 1);
+        COUNTED(.truncated = 1);
         ask_in_two(MEASURE, first, 1990); /* t3.5 is 2005.2 us: still one frame, a bad one */
         hear(30, "");
-        COUNTED(.torn = 2, .crc_errors = NONE);
+        COUNTED(.truncated = 2, .crc_errors = NONE);
         ask_in_two(MEASURE, first, 2010); /* two */
         hear(30, "");
-        COUNTED(.torn = 2, .crc_errors = 2);
+        COUNTED(.truncated = 2, .crc_errors = 2);
         /* none of which it remembers */
         ask_in_two(MEASURE, first, 0);
         wait_ms(30);

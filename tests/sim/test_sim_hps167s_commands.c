@@ -43,7 +43,7 @@ static void set(uint32_t loop_us, hps_config_t config, const fathom_line_setting
     bench.fixed = FIXED(TARGET_MM);
     s.model = HPS;
     const fathom_hps167s_config_t driver = {.modbus.transport = &s.modbus,
-                                            .modbus.settings = at,
+                                            .modbus.line_settings = at,
                                             .modbus.address = config.unit != 0 ? config.unit : 1,
                                             .modbus.timeout_us = 100 * MS};
     assert_int_equal(fathom_hps167s_init(hps, &driver), FATHOM_READY);
@@ -105,7 +105,7 @@ TEST(settings_with_read_back_are_written_once_and_kept)
     }
 }
 
-/* Answers: two to #2, then the acknowledgement is the third frame, and the reading the fourth. */
+/* Responses: two to #2, then the acknowledgement is the third frame, and the reading the fourth. */
 TEST(a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not)
 {
     static const struct {
@@ -148,7 +148,7 @@ TEST(a_write_only_command_is_told_once_where_the_line_echoes)
         assert_int_equal(with(twelve, 7), FATHOM_READY);
         assert_measures(1, TARGET_MM + 7);
         fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
-        assert_int_equal(with(twelve, 7), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(with(twelve, 7), FATHOM_ERR_NO_RESPONSE);
     }
 }
 
@@ -200,7 +200,7 @@ TEST(without_confirmation_both_rates_are_asked_until_it_answers)
         assert_int_equal(bench.device->settings.baud, 115200);
         COUNTED(.flash_writes = 1);
         fathom_sim_fault_enable(&bench.fault, false);
-        fathom_status_t status = FATHOM_ERR_NO_ANSWER;
+        fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
         for (unsigned i = 0; i != 4 && status < 0; i++) status = measure();
         assert_int_equal(status, FATHOM_READY);
         assert_measures(1, TARGET_MM);
@@ -264,7 +264,7 @@ TEST(a_reset_whose_confirmation_is_lost_is_unconfirmed_and_sent_once)
     }
 }
 
-/* #4 is asked, and answered too late with one degree Fahrenheit, 00 01: as if it were the answer to #6. */
+/* #4 is asked, and answered too late with one degree Fahrenheit, 00 01: as if it were the response to #6. */
 TEST(a_late_temperature_of_1_degree_is_not_taken_for_a_reset)
 {
     IN_BOTH_LOOPS
@@ -273,14 +273,14 @@ TEST(a_late_temperature_of_1_degree_is_not_taken_for_a_reset)
             set(loops_us[l], DEFAULTS, NULL);
             bench.hps.temperature_f = 1;
             FAULT(LATE, ALWAYS, 1)->us = late_ms * MS;
-            silence_from(4, 1); /* after two to #2, the answer to #6 */
+            silence_from(4, 1); /* after two to #2, the response to #6 */
             const fathom_status_t first = carry_out(four);
-            assert_int_equal(first, late_ms < 1000 ? FATHOM_READY : FATHOM_ERR_NO_ANSWER);
+            assert_int_equal(first, late_ms < 1000 ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
             const fathom_status_t status = carry_out(six);
-            assert_true(status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_NO_ANSWER ||
+            assert_true(status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_NO_RESPONSE ||
                         status == FATHOM_ERR_MALFORMED);
             assert_int_equal(bench.device->counters.resets, status == FATHOM_ERR_UNCONFIRMED);
-            assert_int_equal(hps->reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
+            assert_int_equal(hps->reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
         }
     }
 }

@@ -2,13 +2,13 @@
 /* What the HPS-167S does unasked, while it warms up, and without data from inside: all of them options. */
 #include "talk.h"
 
-/* The answer to #5 of the datasheet's example, the abnormal packet, and an exception to 03. */
-#define EXAMPLE   "01 03 08 08 23 DC B2 07 01 00 00 FD 41"
-#define ABNORMAL  "01 03 08 FF FF 00 00 00 FF FF FF E4 5C"
-#define EXCEPTION "01 83 04 40 F3"
-#define MEASURE   "01 03 00 08 00 04 C5 CB"
-#define READ_2    "01 03 00 02 00 04 E5 C9"
-#define ANSWER_2  "01 03 08 FF FF 00 00 00 00 B4 01 63 1C"
+/* The response to #5 of the datasheet's example, the abnormal packet, and an exception to 03. */
+#define EXAMPLE    "01 03 08 08 23 DC B2 07 01 00 00 FD 41"
+#define ABNORMAL   "01 03 08 FF FF 00 00 00 FF FF FF E4 5C"
+#define EXCEPTION  "01 83 04 40 F3"
+#define MEASURE    "01 03 00 08 00 04 C5 CB"
+#define READ_2     "01 03 00 02 00 04 E5 C9"
+#define RESPONSE_2 "01 03 08 FF FF 00 00 00 00 B4 01 63 1C"
 enum { FRAME = 13, CHARACTER_US = 573, SILENCE_US = 2005 }; /* 11 bits, and 3.5 of them, at 19200 */
 
 static void lose(bool lost) { fathom_sim_hps167s_lose(&bench.hps, lost, bench.now_us); }
@@ -47,43 +47,43 @@ TEST(what_it_sends_is_the_scene)
     hear(100, "02 03 08 FF FF 00 00 00 FF FF FF EB 18");
 }
 
-/* Asked at every time within a period. Returns true when the answer came, and not only a frame. */
+/* Asked at every time within a period. Returns true when the response came, and not only a frame. */
 static bool asked_at(uint32_t at_us)
 {
-    size_t frames = 0, answers = 0, i = 0;
+    size_t frames = 0, responses = 0, i = 0;
     set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .seed = at_us});
     wait_us(at_us);
     ask(READ_2, 60);
     while (i + FRAME <= bench.heard) {
         const bool is_frame = is_hex(bench.bytes + i, EXAMPLE);
-        const bool is_answer = is_hex(bench.bytes + i, ANSWER_2);
+        const bool is_response = is_hex(bench.bytes + i, RESPONSE_2);
         if (i != 0)
             assert_true(fathom_elapsed_us(bench.end_us[i], bench.end_us[i - 1]) >=
                         SILENCE_US + CHARACTER_US - 1);
         frames += is_frame;
-        answers += is_answer;
+        responses += is_response;
         i += FRAME;
     }
     /* one that collides with the request reaches the host garbled, and the request does not reach the device */
     assert_int_equal(i, bench.heard);
     if (bench.line.counters.collisions == 0) {
-        assert_int_equal((frames + answers) * FRAME, bench.heard);
-        assert_int_equal(answers, bench.hps.device.counters.answered);
+        assert_int_equal((frames + responses) * FRAME, bench.heard);
+        assert_int_equal(responses, bench.hps.device.counters.answered);
     }
-    return answers != 0;
+    return responses != 0;
 }
 
 TEST(it_answers_while_it_sends_by_itself)
 {
     uint32_t answered = 0, beside = 0, collided = 0, tried = 0;
-    /* the request lasts 4.6 ms, the answer begins 4.2 to 4.5 ms behind it, and frames come at 100 and 200 ms */
+    /* the request lasts 4.6 ms, the response begins 4.2 to 4.5 ms behind it, and frames come at 100 and 200 ms */
     for (uint32_t at_us = 80 * MS; at_us < 120 * MS; at_us += 250) {
         const bool came = asked_at(at_us);
         tried++;
         answered += came;
         beside += came && bench.heard == 2 * FRAME;
         collided += bench.line.counters.collisions != 0;
-        assert_true(came || bench.hps.device.counters.unheard + bench.hps.device.counters.torn != 0);
+        assert_true(came || bench.hps.device.counters.unheard + bench.hps.device.counters.truncated != 0);
     }
     assert_int_equal(tried, 160);
     assert_true(answered > 100);

@@ -4,7 +4,7 @@
 
 #define DEFAULTS ((hps_config_t){0})
 
-/* #2 says that all is as it was; its answer has 13 bytes at the address that was. */
+/* #2 says that all is as it was; its response has 13 bytes at the address that was. */
 static void expect_factory(void)
 {
     talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 00 00 00 00 B4 01 63 1C");

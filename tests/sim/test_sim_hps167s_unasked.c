@@ -120,7 +120,7 @@ TEST(every_command_works_while_frames_arrive)
         begin(loops_us[n % 2], 40 * MS, true);
         pass_us(n / 2 * 7 * MS);
         for (unsigned i = 0; i != sizeof commands / sizeof *commands; i++) {
-            fathom_status_t status = FATHOM_ERR_NO_ANSWER;
+            fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
             /* in the slow loop a request may meet a frame and be lost: asked again */
             for (unsigned times = 0; times != 5 && status < 0; times++) status = ask_for(commands[i]);
             if (status != FATHOM_READY)
@@ -131,7 +131,7 @@ TEST(every_command_works_while_frames_arrive)
     }
 }
 
-/* 54 measurements a second: a request has 11 ms between two frames, and the answer the next place that is free. */
+/* 54 measurements a second: a request has 11 ms between two frames, and the response the next place that is free. */
 TEST(every_command_works_at_once_between_frames_every_18_5_ms)
 {
     static const uint32_t replies_us[] = {2500, 500, 1500, 3500};
@@ -183,8 +183,8 @@ TEST(a_reset_is_done_while_frames_arrive)
         const fathom_status_t status = ask_for(six);
         if (status == FATHOM_READY)
             COUNTED(.resets = 1);
-        else /* the request has met a frame, or its answer has */
-            assert_true(status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_NO_ANSWER ||
+        else /* the request has met a frame, or its response has */
+            assert_true(status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_NO_RESPONSE ||
                         status == FATHOM_ERR_MALFORMED);
         assert_true(bench.device->counters.resets <= 1);
         assert_int_equal(wrong, 0);

@@ -21,7 +21,7 @@ TEST(every_flipped_bit_is_met_with_silence)
     }
     expect("");
     COUNTED(.crc_errors = 64);
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
 }
 
 TEST(every_torn_off_request_is_met_with_silence)
@@ -45,14 +45,14 @@ TEST(garbage_of_any_length_is_met_with_silence)
         ask_bytes(garbage, length, 5 * MS);
     }
     expect("");
-    COUNTED(.crc_errors = 255, .torn = 1); /* 256 bytes are longer than any frame */
-    talk(A16_ASKED, 200, A16_ANSWER);
+    COUNTED(.crc_errors = 255, .truncated = 1); /* 256 bytes are longer than any frame */
+    talk(A16_ASKED, 200, A16_RESPONSE);
 }
 
 TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
     ask("01 03 01 01 00 01 00 36 5F", 200); /* 9 bytes */
-    ask(A16_ANSWER, 200);                   /* an answer, 7 bytes */
+    ask(A16_RESPONSE, 200);                 /* a response, 7 bytes */
     talk("01 83 02 C0 F1", 200, "");        /* an exception */
     COUNTED(.unserved = 3, .measurements = NONE);
 }
@@ -71,7 +71,7 @@ TEST(frames_are_divided_by_t35_and_an_a16_minds_no_shorter_gap)
 {
     for (size_t first = 1; first < 8; first++) {
         ask_in_two(A16_ASKED, first, 3600); /* t3.5 is 3645.8 us */
-        hear(200, A16_ANSWER);
+        hear(200, A16_RESPONSE);
         ask_in_two(A16_ASKED, first, 3700);
         hear(200, "");
     }
@@ -83,11 +83,11 @@ TEST(a_device_hears_nothing_while_it_serves_a_request)
     ask(A16_ASKED, 20);
     ask(A16_ASKED, 20); /* it is measuring */
     COUNTED(.unheard = 8);
-    hear(500, A16_ANSWER); /* one */
+    hear(500, A16_RESPONSE); /* one */
     COUNTED(.requests = 1);
 }
 
-TEST(a_frame_that_ends_before_the_answer_does_not_open_its_ears)
+TEST(a_frame_that_ends_before_the_response_does_not_open_its_ears)
 {
     set(FATHOM_SIM_A16_AUTO);
     bench.line.full_duplex = true;
@@ -95,13 +95,13 @@ TEST(a_frame_that_ends_before_the_answer_does_not_open_its_ears)
     ask(A16_ASKED, 20);
     assert_int_equal(bench.heard, 4);
     COUNTED(.requests = 1);
-    ask(A16_ASKED, 20); /* before the answer */
+    ask(A16_ASKED, 20); /* before the response */
     COUNTED(.unheard = 8);
-    hear(500, A16_FRAME A16_ANSWER);
+    hear(500, A16_FRAME A16_RESPONSE);
     COUNTED(.requests = 1);
 }
 
-TEST(a_request_that_begins_during_an_answer_is_lost_with_it)
+TEST(a_request_that_begins_during_a_response_is_lost_with_it)
 {
     ask(A16_ASKED, 5);
     while (bench.heard < 3) wait_us(100);
@@ -110,9 +110,9 @@ TEST(a_request_that_begins_during_an_answer_is_lost_with_it)
     COUNTED(.requests = 1);
     assert_true(bench.a16.device.counters.unheard >= 3);
     assert_true(bench.a16.device.counters.unheard < 8); /* the rest was heard, and is no frame */
-    assert_int_equal(bench.a16.device.counters.crc_errors + bench.a16.device.counters.torn, 1);
+    assert_int_equal(bench.a16.device.counters.crc_errors + bench.a16.device.counters.truncated, 1);
     assert_true(bench.line.counters.collisions >= 4);
-    assert_false(is_hex(bench.bytes, A16_ANSWER)); /* the host hears a mess */
+    assert_false(is_hex(bench.bytes, A16_RESPONSE)); /* the host hears a mess */
 }
 
 TEST(an_automatic_frame_deafens_a_device_on_two_wires)
@@ -122,7 +122,7 @@ TEST(an_automatic_frame_deafens_a_device_on_two_wires)
     ask(A16_ASKED, 20); /* the frame begins in the middle of it */
     COUNTED(.requests = NONE);
     assert_true(bench.a16.device.counters.unheard >= 3);
-    COUNTED(.torn = 1, .crc_errors = NONE);
+    COUNTED(.truncated = 1, .crc_errors = NONE);
     ask(A16_ASKED, 20); /* between two frames it hears */
     COUNTED(.requests = 1);
 }
@@ -130,7 +130,7 @@ TEST(an_automatic_frame_deafens_a_device_on_two_wires)
 TEST(the_host_hears_itself_only_with_echo)
 {
     bench.line.echo = true;
-    talk(A16_ASKED, 200, A16_ASKED A16_ANSWER);
+    talk(A16_ASKED, 200, A16_ASKED A16_RESPONSE);
 }
 
 TEST(sent_turns_true_with_the_last_stop_bit)
@@ -156,8 +156,8 @@ TEST(due_leads_from_event_to_event_and_ends)
         assert_true(bench.heard - before <= 1);
         assert_true(steps < 100);
     }
-    expect(A16_ANSWER);
-    assert_int_equal(steps, 8 + 1 + 1 + 7); /* bytes, t3.5, the answer, its bytes */
+    expect(A16_RESPONSE);
+    assert_int_equal(steps, 8 + 1 + 1 + 7); /* bytes, t3.5, the response, its bytes */
 }
 
 TEST(one_jump_and_many_steps_tell_the_same)
@@ -191,7 +191,7 @@ TEST(it_works_for_hours_across_every_wrap)
 {
     for (int i = 0; i < 30; i++) { /* 12.5 hours, 10 wraps */
         wait_us(UINT32_C(1500000000));
-        talk(A16_ASKED, 200, A16_ANSWER);
+        talk(A16_ASKED, 200, A16_RESPONSE);
     }
 }
 
@@ -242,9 +242,9 @@ TEST(at_another_rate_or_parity_nobody_understands)
     ask(A16_ASKED, 200);
     at_rate(9600, FATHOM_PARITY_EVEN);
     talk(A16_ASKED, 200, "");
-    COUNTED(.wrong_settings = 16, .torn = 2);
+    COUNTED(.wrong_settings = 16, .truncated = 2);
     at_rate(9700, FATHOM_PARITY_NONE);
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
 }
 
 TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
@@ -274,14 +274,14 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     add_hps((hps_config_t){.unit = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
     for (int round = 0; round < 3; round++) {
-        talk(A16_ASKED, 200, A16_ANSWER);
+        talk(A16_ASKED, 200, A16_RESPONSE);
         talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
         at_rate(19200, FATHOM_PARITY_EVEN);
         talk("01 03 00 08 00 04 C5 CB", 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
         at_rate(9600, FATHOM_PARITY_NONE);
     }
     assert_int_equal(bench.line.counters.collisions, 0);
-    /* on two wires each hears the others' answers too: three from the A05 are frames for somebody else, and
+    /* on two wires each hears the others' responses too: three from the A05 are frames for somebody else, and
      * so are three of its requests */
     COUNTED_BY(&bench.a16.device, .others = 6, .requests = 3);
     COUNTED(.others = NONE); /* those were at another rate */
@@ -292,18 +292,18 @@ TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
     say(A16_ASKED);
     wait_us(3600);
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
-    hear(200, A16_ANSWER);
+    hear(200, A16_RESPONSE);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
     say(A16_ASKED);
-    while (bench.heard < 3) wait_us(100); /* and once more, in an answer */
+    while (bench.heard < 3) wait_us(100); /* and once more, in a response */
     wait_us(300);
     fathom_sim_detach(&bench.line, &bench.a05.device, bench.now_us);
     attach(&bench.a05.device);
-    hear(50, A16_ANSWER);
+    hear(50, A16_RESPONSE);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
-TEST(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing)
+TEST(a_device_that_is_taken_off_in_mid_response_leaves_the_others_hearing)
 {
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     ask("05 03 02 00 00 01 84 36", 5);
@@ -313,7 +313,7 @@ TEST(a_device_that_is_taken_off_in_mid_answer_leaves_the_others_hearing)
     wait_ms(50);
     assert_int_equal(bench.heard, 3);
     forget();
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
     /* and it comes back as from power-on */
     attach(&bench.a05.device);
     talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");

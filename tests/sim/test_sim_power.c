@@ -24,7 +24,7 @@ static void expect_both_work(void)
 {
     forget();
     talk(OTHER, 200, OTHERS);
-    talk(A16_ASKED, 200, A16_ANSWER);
+    talk(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(bench.a16.device.carriers, 0);
     assert_int_equal(bench.a05.device.carriers, 0);
 }
@@ -61,10 +61,10 @@ TEST(power_that_is_back_at_once_still_ends_what_it_was_doing)
     expect_both_work();
 }
 
-TEST(it_is_cut_off_at_any_moment_of_an_answer)
+TEST(it_is_cut_off_at_any_moment_of_a_response)
 {
-    uint8_t answer[7];
-    from_hex(A16_ANSWER, answer, sizeof answer);
+    uint8_t response[7];
+    from_hex(A16_RESPONSE, response, sizeof response);
     for (uint32_t into_us = 0; into_us < 7300; into_us += 130) { /* seven characters */
         set(0);
         say(A16_ASKED);
@@ -74,7 +74,7 @@ TEST(it_is_cut_off_at_any_moment_of_an_answer)
         cycle(20 * MS);
         wait_ms(300);
         assert_int_equal(bench.heard, heard); /* nothing of the byte that it was saying */
-        assert_memory_equal(bench.bytes, answer, heard);
+        assert_memory_equal(bench.bytes, response, heard);
         assert_in_range(heard, into_us / 1042, (into_us + 10) / 1041);
         expect_both_work();
     }

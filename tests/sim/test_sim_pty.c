@@ -92,28 +92,28 @@ static size_t pump(int client, uint8_t *bytes, size_t count, uint32_t limit_ms)
 
 static const uint8_t ask_realtime[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}; /* A16 6(4) ex 2 */
 
-static void exchange(int client)
+static void transaction(int client)
 {
     uint8_t bytes[16];
     const uint32_t begin_us = fathom_sim_pty_now_us();
     assert_int_equal(write(client, ask_realtime, 8), 8);
     assert_int_equal(pump(client, bytes, 7, PATIENCE_MS), 7);
     assert_true(is_hex(bytes, "01 03 02 02 EF F8 A8"));
-    /* request 8.3 ms, at least 105 ms of work, answer 7.3 ms */
+    /* request 8.3 ms, at least 105 ms of work, response 7.3 ms */
     assert_true(fathom_elapsed_us(fathom_sim_pty_now_us(), begin_us) >= 120 * MS);
 }
 
-static void exchange_at(const char *path)
+static void transaction_at(const char *path)
 {
     const int client = open_client(path, B9600);
-    exchange(client);
+    transaction(client);
     close(client);
 }
 
-TEST(a_client_gets_an_answer_in_true_time)
+TEST(a_client_gets_a_response_in_true_time)
 {
     set_sending(FATHOM_SIM_A16_MODBUS);
-    exchange_at(fathom_sim_pty_path(&pty));
+    transaction_at(fathom_sim_pty_path(&pty));
 }
 
 TEST(the_port_is_raw_before_anyone_makes_it_so)
@@ -122,8 +122,8 @@ TEST(the_port_is_raw_before_anyone_makes_it_so)
     set_sending(FATHOM_SIM_A16_MODBUS);
     const int client = open(link_path, O_RDWR | O_NOCTTY | O_NONBLOCK);
     assert_true(client >= 0);
-    exchange(client);
-    /* no terminal has echoed the answer to the device */
+    transaction(client);
+    /* no terminal has echoed the response to the device */
     assert_int_equal(pump(client, &byte, 1, 50), 0);
     assert_int_equal(bench.line.counters.from_host, 8);
     close(client);
@@ -147,9 +147,9 @@ TEST(clients_come_and_go)
     set_sending(FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 3; i++) {
         assert_int_equal(pump(-1, &byte, 1, 20), 0); /* nobody is there: no error, no spinning */
-        exchange_at(link_path);
+        transaction_at(link_path);
     }
-    /* one that leaves before its answer */
+    /* one that leaves before its response */
     int client = open_client(link_path, B9600);
     assert_int_equal(write(client, ask_realtime, 8), 8);
     assert_int_equal(pump(client, &byte, 1, 20), 0);
@@ -161,7 +161,7 @@ TEST(clients_come_and_go)
     assert_int_equal(bench.device->counters.answered, 4);
     client = open_client(link_path, B9600);
     tcflush(client, TCIFLUSH);
-    exchange(client);
+    transaction(client);
     close(client);
 }
 

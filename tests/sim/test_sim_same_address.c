@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Several sensors at one address of one pair: all answer, and what they say together nobody understands. */
-#include "fathom/crc16.h"
+/* Several sensors at one address of one pair: all response, and what they say together nobody understands. */
+#include "fathom/codec/crc16.h"
 #include "talk.h"
 
 static fathom_sim_hps167s_t twin;
@@ -18,20 +18,20 @@ static void set(uint32_t seed)
 #define FIRST   "01 03 08 08 23 DC B2 07 01 00 00 FD 41"
 #define SECOND  "01 03 08 05 DC DC B2 07 01 00 00 33 D7"
 
-/* No run of bytes among those that were heard is an answer. */
-static bool is_understood(const char *answer)
+/* No run of bytes among those that were heard is a response. */
+static bool is_understood(const char *response)
 {
     uint8_t bytes[16];
-    const size_t length = from_hex(answer, bytes, sizeof bytes);
+    const size_t length = from_hex(response, bytes, sizeof bytes);
     for (size_t at = 0; at + length <= bench.heard; at++)
-        if (is_hex(bench.bytes + at, answer)) return true;
+        if (is_hex(bench.bytes + at, response)) return true;
     return false;
 }
 
 EACH_BEGINS(set(3))
 static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
-TEST(two_that_answer_within_each_others_answer_are_not_understood)
+TEST(two_that_response_within_each_others_answer_are_not_understood)
 {
     for (uint32_t seed = 0; seed < 50; seed++) { /* together, or up to 0.3 ms apart, of 7.4 */
         set(seed);

@@ -19,7 +19,8 @@ static void run(mix_t mix)
         if ((mix.dead >> i & 1) == 0) assert_int_equal(shares[i].failures, 0);
 }
 
-#define expect_answers(i, low, high) assert_in_range(shares[MIX_##i].answers, (low)*SECONDS, (high)*SECONDS)
+#define expect_responses(i, low, high)                                                                       \
+    assert_in_range(shares[MIX_##i].responses, (low)*SECONDS, (high)*SECONDS)
 #define expect_percent(i, low, high)                                                                         \
     assert_in_range(shares[MIX_##i].line_us, (low)*SECONDS * 10 * MS, (high)*SECONDS * 10 * MS)
 #define expect_wait(i, ms) assert_true(shares[MIX_##i].longest_wait_us <= (ms)*MS)
@@ -27,8 +28,8 @@ static void run(mix_t mix)
 TEST(in_turns_the_fast_one_is_asked_once_for_each_request_of_the_others)
 {
     run((mix_t){.processed = true});
-    expect_answers(HPS, 1, 2);
-    assert_in_range(shares[MIX_HPS].answers - shares[MIX_A16].answers + 1, 0, 2);
+    expect_responses(HPS, 1, 2);
+    assert_in_range(shares[MIX_HPS].responses - shares[MIX_A16].responses + 1, 0, 2);
 }
 
 /* A third is 18 readings a second. Their share of the line is 1/3, and 1/3 * 14.5 / 18.5 of the HPS-167S, the rest of
@@ -37,7 +38,7 @@ TEST(in_turns_the_fast_one_is_asked_once_for_each_request_of_the_others)
 TEST(by_a_fair_share_each_has_a_third_of_the_time)
 {
     run((mix_t){.processed = true, .fair = true});
-    expect_answers(HPS, 16, 19);
+    expect_responses(HPS, 16, 19);
     expect_percent(A16, 31, 36);
     expect_percent(A05, 31, 36);
     expect_percent(HPS, 23, 29);
@@ -46,11 +47,11 @@ TEST(by_a_fair_share_each_has_a_third_of_the_time)
     expect_wait(A16, 2 * (550 + 130) + 19 + 435);
 }
 
-/* A loop of 5 ms sees the HPS-167S's answer up to 5 ms late, and asks it up to 5 later: 28.5 ms at most instead of 18.5. */
+/* A loop of 5 ms sees the HPS-167S's response up to 5 ms late, and asks it up to 5 later: 28.5 ms at most instead of 18.5. */
 TEST(in_a_slower_loop_too)
 {
     run((mix_t){.processed = true, .fair = true, .loop_us = 5 * MS});
-    expect_answers(HPS, 11, 18);
+    expect_responses(HPS, 11, 18);
     expect_percent(A16, 31, 36);
     expect_percent(A05, 31, 36);
 }
@@ -58,8 +59,8 @@ TEST(in_a_slower_loop_too)
 TEST(a_real_time_a16_is_read_more_often_in_its_third)
 {
     run((mix_t){.fair = true});
-    expect_answers(HPS, 16, 19);
-    expect_answers(A16, 2, 3);
+    expect_responses(HPS, 16, 19);
+    expect_responses(A16, 2, 3);
     expect_percent(A16, 30, 36);
     expect_percent(A05, 31, 36);
 }
@@ -67,7 +68,7 @@ TEST(a_real_time_a16_is_read_more_often_in_its_third)
 TEST(alone_it_is_as_fast_as_without)
 {
     run((mix_t){.absent = 1 << MIX_A16 | 1 << MIX_A05, .fair = true});
-    expect_answers(HPS, 53, 55);
+    expect_responses(HPS, 53, 55);
 }
 
 /* With nothing that asks as soon again, nothing is held back: the line is never idle but for the silence and the time
@@ -75,7 +76,7 @@ TEST(alone_it_is_as_fast_as_without)
 TEST(for_one_that_is_asked_five_times_a_second_the_line_is_never_idle)
 {
     run((mix_t){.hps_period_us = 200 * MS, .processed = true, .fair = true});
-    expect_answers(HPS, 2, 5);
+    expect_responses(HPS, 2, 5);
     expect_percent(A16, 45, 50);
     expect_percent(A05, 45, 50);
 }
@@ -84,9 +85,9 @@ TEST(for_one_that_is_asked_five_times_a_second_the_line_is_never_idle)
 TEST(a_dead_one_takes_no_more_than_its_back_off_allows)
 {
     run((mix_t){.dead = 1 << MIX_A05, .fair = true});
-    assert_int_equal(shares[MIX_A05].answers, 0);
+    assert_int_equal(shares[MIX_A05].responses, 0);
     assert_in_range(shares[MIX_A05].failures, 8, 15);
     expect_percent(A05, 5, 15);
     expect_percent(A16, 40, 46);
-    expect_answers(HPS, 22, 26);
+    expect_responses(HPS, 22, 26);
 }

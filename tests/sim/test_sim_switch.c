@@ -88,7 +88,7 @@ TEST(a_fall_of_the_level_is_a_break_to_the_uart_and_a_rise_is_nothing)
     assert_true(has_heard("00", 1));
 }
 
-TEST(an_answer_from_a_high_pin_stands_alone)
+TEST(a_response_from_a_high_pin_stands_alone)
 {
     pass_us(1600 * MS);
     (void)has_heard("", 0);
@@ -99,7 +99,7 @@ TEST(an_answer_from_a_high_pin_stands_alone)
     COUNTED(.writes = 1);
 }
 
-TEST(an_answer_from_a_low_pin_has_a_break_before_and_behind_it)
+TEST(a_response_from_a_low_pin_has_a_break_before_and_behind_it)
 {
     set(1500, AS_IT_IS);
     pass_us(2600 * MS);
@@ -120,7 +120,7 @@ TEST(polarity_is_obeyed_at_once_and_kept_without_power)
     say(NEGATIVE);
     assert_false(level_in(8 * 1042 + 4000)); /* the request, and the silence that ends it */
     pass_us(100 * MS);
-    /* the fall, the break before the answer, the answer, the break behind it */
+    /* the fall, the break before the response, the response, the break behind it */
     assert_true(has_heard("00 00" NEGATIVE "00", 0x403));
     bench.fixed.value[0] = 1001;
     assert_true(level_in(2500 * MS));

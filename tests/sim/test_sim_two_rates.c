@@ -24,9 +24,9 @@ static void begin(const fathom_line_settings_t *slow, const fathom_line_settings
     add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.unit = 2, .scene = fathom_sim_fixed(&scenes[1])});
     add_hps((hps_config_t){.unit = 3, .scene = fathom_sim_fixed(&scenes[2])});
     const fathom_a16_modbus_config_t a16 = {
-        .modbus.transport = &s.modbus, .modbus.settings = slow, .value = FATHOM_REAL_TIME};
+        .modbus.transport = &s.modbus, .modbus.line_settings = slow, .value = FATHOM_REAL_TIME};
     const fathom_hps167s_config_t hps = {.modbus.transport = &s.modbus,
-                                         .modbus.settings = fast,
+                                         .modbus.line_settings = fast,
                                          .modbus.period_us = 100 * MS,
                                          .modbus.address = 3};
     assert_int_equal(fathom_a16_modbus_init(&drivers[0].a16, &a16), FATHOM_READY);
@@ -68,7 +68,7 @@ TEST(sensors_with_different_settings_are_read_on_one_pair)
 }
 
 /* Without it, whoever has other settings hears noise and stays silent. */
-TEST(without_their_settings_only_those_of_the_line_answer)
+TEST(without_their_settings_only_those_of_the_line_response)
 {
     begin(NULL, NULL, false);
     run(20 * SECOND);

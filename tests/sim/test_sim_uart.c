@@ -116,21 +116,21 @@ TEST(a_bare_polling_loop_hears_all_three_sensors)
 }
 
 /* A blocking wait: poll, and idle when there is nothing. */
-TEST(an_idle_hook_leads_through_an_exchange_in_few_steps)
+TEST(an_idle_hook_leads_through_a_transaction_in_few_steps)
 {
-    uint8_t answer[32];
+    uint8_t response[32];
     size_t heard = 0;
     int idles = 0;
     assert_int_equal(write_to_hps(8), 8);
     while (heard < 13) {
-        const size_t count = (size_t)read_from(2, sizeof answer - heard);
-        memcpy(answer + heard, bytes, count);
+        const size_t count = (size_t)read_from(2, sizeof response - heard);
+        memcpy(response + heard, bytes, count);
         heard += count;
         fathom_sim_clock_idle(&desk_clock, 500 * MS);
         idles++;
         assert_true(idles < 50);
     }
-    assert_true(is_hex(answer, MEASURED));
+    assert_true(is_hex(response, MEASURED));
     assert_in_range(fathom_elapsed_us(hal_clock.now_us(hal_clock.ctx), bench_start_us), 14 * MS, 100 * MS);
 }
 

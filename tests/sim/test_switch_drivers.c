@@ -62,7 +62,7 @@ static void set_threshold(uint16_t mm, uint32_t step_us)
     assert_int_equal(read_mm, mm);
 }
 
-TEST(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change)
+TEST(the_threshold_is_set_on_the_same_pins_and_no_response_is_a_change)
 {
     static const struct {
         uint16_t mm[2]; /* one after the other; 0: none */
@@ -82,14 +82,14 @@ TEST(the_threshold_is_set_on_the_same_pins_and_no_answer_is_a_change)
             expect_kinds(rows[n].kinds);
         }
         assert_int_equal(bench.a16.device.counters.writes, 6);
-        assert_true(s.counters[FATHOM_LINE_BAD_BYTES] >= 10); /* breaks around answers */
-        assert_int_equal(s.counters[FATHOM_LINE_NO_ANSWERS], 0);
+        assert_true(s.counters[FATHOM_LINE_BAD_BYTES] >= 10); /* breaks around responses */
+        assert_int_equal(s.counters[FATHOM_LINE_NO_RESPONSES], 0);
         assert_int_equal(s.counters[FATHOM_LINE_CHECKSUM_ERRORS], 0);
     }
 }
 
 /* A port that marks nothing: the bytes of a break are noise, and a line that is not told does not find out that it has
- * no echo. Then a write is not believed by its answer, but by the value that is read back. */
+ * no echo. Then a write is not believed by its response, but by the value that is read back. */
 TEST(a_port_that_knows_nothing_will_do)
 {
     set_switch(1500);
@@ -102,7 +102,7 @@ TEST(a_port_that_knows_nothing_will_do)
     run(4000 * MS, 20000);
     expect_kinds("FNF");
     assert_true(s.counters[FATHOM_LINE_DROPPED_BYTES] >= 4);
-    assert_int_equal(s.counters[FATHOM_LINE_NO_ANSWERS], 1);
+    assert_int_equal(s.counters[FATHOM_LINE_NO_RESPONSES], 1);
 }
 
 static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint32_t step_us)
@@ -140,7 +140,7 @@ TEST(a_polarity_that_could_not_be_set_changes_nothing)
     run(2100 * MS, 20000);
     expect_kinds("FN");
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
-    assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 20000), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 20000), FATHOM_ERR_NO_RESPONSE);
     run(1000 * MS, 20000);
     expect_kinds("FN");
     /* it can be told what somebody else has done */

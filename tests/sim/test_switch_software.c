@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/a05_auto.h"
-#include "fathom/a05_relay_rule.h"
-#include "fathom/a16_auto.h"
-#include "fathom/debounce.h"
+#include "fathom/engine/debounce.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a05_relay_rule.h"
+#include "fathom/sensor/a16_auto.h"
 #include "switch_stage.h"
 
 /* The switches in software beside the modules whose rules they are. */

@@ -3,7 +3,7 @@
 
 /*
  * The books of a run. Each figure stands in two places that know nothing of each other: the port and the simulator
- * on one side, the counters of line, stream, unit and answer on the other. Runs are so short that no counter stops
+ * on one side, the counters of line, stream, unit and response on the other. Runs are so short that no counter stops
  * (16 bits).
  */
 
@@ -51,8 +51,8 @@ uint32_t rig_recovery_us(const rig_unit_t *unit)
     const uint32_t attempts_us = 2 * facts->timeout_us * unit->rig->options.retries;
     for (uint8_t i = 0; i < unit->rig->count; i++) /* the others have their turn first */
         if (&unit->rig->units[i] != unit)
-            wait_us += soak_facts[unit->rig->units[i].setting].answer_us + WIRE_US;
-    return attempts_us + facts->timeout_us + wait_us + facts->period_us + facts->answer_us + WIRE_US +
+            wait_us += soak_facts[unit->rig->units[i].setting].response_us + WIRE_US;
+    return attempts_us + facts->timeout_us + wait_us + facts->period_us + facts->response_us + WIRE_US +
            slack_us;
 }
 
@@ -70,13 +70,13 @@ static void exceed(rig_unit_t *unit, uint64_t a, uint64_t most)
 static void account_asked(rig_unit_t *unit)
 {
     const fathom_modbus_unit_t *const counted = soak_unit_of(&unit->driver, unit->setting);
-    const uint32_t outcomes = unit->answers + unit->failures;
+    const uint32_t outcomes = unit->responses + unit->failures;
     if (unit->rig->options.retries == 0)
         differ(unit, unit->requests, outcomes + (unit->is_open ? 1 : 0));
     else
         exceed(unit, outcomes, unit->requests);
     differ(unit, counted->failures, unit->failures);
-    differ(unit, (uint64_t)counted->answers * soak_facts[unit->setting].probes, unit->samples);
+    differ(unit, (uint64_t)counted->responses * soak_facts[unit->setting].probes, unit->samples);
     differ(unit, soak_implausible(&unit->driver, unit->setting), unit->refused);
     unit->totals.lost = unit->failures;
 }
@@ -97,27 +97,27 @@ static void account_stream(rig_unit_t *unit)
            (uint64_t)counters[FATHOM_STREAM_BYTES] + of_line[FATHOM_LINE_BAD_BYTES] +
                of_line[FATHOM_LINE_DROPPED_BYTES]);
     exceed(unit, unit->clean_lost, seen);
-    unit->totals.lost = unit->totals.exchanges > read ? unit->totals.exchanges - read : 0;
+    unit->totals.lost = unit->totals.transactions > read ? unit->totals.transactions - read : 0;
 }
 
 /* What the line has counted for all units together. */
 static void account_line(rig_t *rig)
 {
     const uint16_t *const counters = rig->counters;
-    uint64_t requests = 0, answers = 0, open = 0;
-    uint64_t failures = counters[FATHOM_LINE_NO_ANSWERS];
+    uint64_t requests = 0, responses = 0, open = 0;
+    uint64_t failures = counters[FATHOM_LINE_NO_RESPONSES];
     failures += (uint64_t)counters[FATHOM_LINE_CHECKSUM_ERRORS] + counters[FATHOM_LINE_EXCEPTIONS];
     failures += (uint64_t)counters[FATHOM_LINE_MALFORMED] + counters[FATHOM_LINE_PORT_ERRORS];
     for (uint8_t i = 0; i < rig->count; i++) {
         requests += rig->units[i].requests;
-        answers += rig->units[i].answers;
+        responses += rig->units[i].responses;
         open += rig->units[i].is_open ? 1 : 0;
     }
-    differ(&rig->units[0], counters[FATHOM_LINE_ANSWERS], answers);
+    differ(&rig->units[0], counters[FATHOM_LINE_RESPONSES], responses);
     if (rig->options.retries == 0)
-        differ(&rig->units[0], requests, counters[FATHOM_LINE_ANSWERS] + failures + open);
+        differ(&rig->units[0], requests, counters[FATHOM_LINE_RESPONSES] + failures + open);
     else
-        exceed(&rig->units[0], requests, counters[FATHOM_LINE_ANSWERS] + failures + open);
+        exceed(&rig->units[0], requests, counters[FATHOM_LINE_RESPONSES] + failures + open);
 }
 
 void rig_account(rig_unit_t *unit)
@@ -134,7 +134,7 @@ void rig_account(rig_unit_t *unit)
 
 void rig_totals_add(rig_totals_t *a, const rig_totals_t *b)
 {
-    a->exchanges += b->exchanges;
+    a->transactions += b->transactions;
     a->readings += b->readings;
     a->errors += b->errors;
     a->lost += b->lost;
@@ -144,7 +144,7 @@ void rig_totals_add(rig_totals_t *a, const rig_totals_t *b)
     a->joint += b->joint;
     a->joint_full += b->joint_full;
     a->old += b->old;
-    a->wrong_answers += b->wrong_answers;
+    a->wrong_responses += b->wrong_responses;
     for (uint8_t i = 0; i < TRUTH_VERDICTS; i++) a->verdicts[i] += b->verdicts[i];
     for (uint8_t i = 0; i < FATHOM_SIM_FAULT_END; i++) a->hits[i] += b->hits[i];
 }

@@ -8,7 +8,7 @@ enum { CHUNK = 3000, LOOPS = 3, PORTS = 2 };
 
 const uint32_t cell_rates_ppm[CELL_RATES] = {1000, 10000, 100000, 300000};
 
-/* Six fifths of the time-out: the answer is late for certain, and with the longest answer of an A05 (400 ms + 720 ms,
+/* Six fifths of the time-out: the response is late for certain, and with the longest response of an A05 (400 ms + 720 ms,
  * and its 13 bytes) within twice the time-out. A stream is just late. */
 static uint32_t late_in_time_us(uint8_t setting)
 {
@@ -58,7 +58,7 @@ static void recover(rig_t *rig, rig_unit_t *unit, cell_result_t *result)
     }
 }
 
-static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t exchanges, cell_result_t *result)
+static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t transactions, cell_result_t *result)
 {
     static const uint32_t loops_us[LOOPS] = {100, 1000, 20000};
     static const uint8_t knows[PORTS] = {
@@ -69,7 +69,7 @@ static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t exchanges, cel
     unit->truth.held_mm = cell->held_mm;
     arm(cell, &unit->fault);
     const uint64_t stuck_limit = 3; /* more says no more */
-    while (unit->totals.exchanges < exchanges && unit->totals.stuck < stuck_limit) rig_turn(&rig);
+    while (unit->totals.transactions < transactions && unit->totals.stuck < stuck_limit) rig_turn(&rig);
     recover(&rig, unit, result);
     rig_account(unit);
     rig_totals_add(&result->totals, &unit->totals);
@@ -79,16 +79,16 @@ static void run_chunk(const cell_t *cell, uint32_t seed, uint64_t exchanges, cel
     result->expected += (double)unit->totals.joint_full * theory_pass_full() / 65536;
 }
 
-void cell_run(const cell_t *cell, uint64_t exchanges, cell_result_t *result)
+void cell_run(const cell_t *cell, uint64_t transactions, cell_result_t *result)
 {
     uint32_t seed = cell->seed, kinds = 0;
     for (uint8_t i = 0; i < cell->kinds_used; i++) kinds |= FATHOM_SIM_FAULT_BIT(cell->kinds[i]);
     if (theory_is_alike(cell->setting, kinds, late_us_of(cell)) != NULL) result->is_alike = true;
     /* at least one chunk for each way of polling, if there is enough for that */
-    uint64_t chunk = exchanges / (LOOPS * PORTS) + 1;
-    if (chunk < 50) chunk = exchanges < 50 ? exchanges : 50;
+    uint64_t chunk = transactions / (LOOPS * PORTS) + 1;
+    if (chunk < 50) chunk = transactions < 50 ? transactions : 50;
     if (chunk > CHUNK) chunk = CHUNK;
-    for (uint64_t done = 0; done < exchanges; done += chunk) run_chunk(cell, seed++, chunk, result);
+    for (uint64_t done = 0; done < transactions; done += chunk) run_chunk(cell, seed++, chunk, result);
 }
 
 void cell_add(cell_result_t *a, const cell_result_t *b)
@@ -107,7 +107,7 @@ const char *cell_broken_rule(const cell_result_t *result)
 {
     const rig_totals_t *const totals = &result->totals;
     const uint64_t most = theory_most(result->expected);
-    if (totals->wrong_answers > most) return "wrong readings, more than the checksum must let pass";
+    if (totals->wrong_responses > most) return "wrong readings, more than the checksum must let pass";
     if (totals->old != 0 && !result->is_alike) return "old values";
     if (totals->stuck != 0) return "stuck";
     if (totals->unaccounted != 0) return "books that do not balance";

@@ -33,9 +33,9 @@ typedef struct {
 /* Faults that come in later than any time-out knows of. */
 uint32_t cell_late_beyond_us(uint8_t setting);
 
-/* Runs at least so many exchanges, in turns of the loop of 0.1, 1 and 20 ms, with ports that know all and nothing,
+/* Runs at least so many transactions, in turns of the loop of 0.1, 1 and 20 ms, with ports that know all and nothing,
  * and adds to *result what came of it. */
-void cell_run(const cell_t *cell, uint64_t exchanges, cell_result_t *result);
+void cell_run(const cell_t *cell, uint64_t transactions, cell_result_t *result);
 
 /* b on top of a. */
 void cell_add(cell_result_t *a, const cell_result_t *b);

@@ -15,7 +15,7 @@ typedef struct {
 
 typedef struct {
     const char *name;
-    void (*run)(uint64_t exchanges, uint32_t seed, defence_result_t *result);
+    void (*run)(uint64_t transactions, uint32_t seed, defence_result_t *result);
 } defence_t;
 
 enum { DEFENCES = 4 };

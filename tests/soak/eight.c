@@ -69,8 +69,8 @@ uint32_t eight_percent(const eight_result_t *alive, const eight_result_t *result
 
 const char *eight_broken_rule(const eight_result_t *result)
 {
-    if (result->others.wrong_answers + result->others.old != 0) return "wrong readings";
-    if (result->troubled.wrong_answers + result->troubled.old != 0) return "wrong readings of the last";
+    if (result->others.wrong_responses + result->others.old != 0) return "wrong readings";
+    if (result->troubled.wrong_responses + result->troubled.old != 0) return "wrong readings of the last";
     if (result->others.errors != 0) return "errors of those that are well";
     if (result->others.stuck + result->troubled.stuck != 0) return "stuck";
     if (result->others.unaccounted + result->troubled.unaccounted != 0) return "books that do not balance";

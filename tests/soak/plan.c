@@ -30,16 +30,18 @@ uint8_t plan_find(const char *name)
 static uint32_t next_seed(uint32_t *seed) { return *seed += 1009; }
 
 /* At one rate after the other, from the highest: `rates` of them. */
-static void run_rates(cell_t *cell, uint32_t *seed, uint8_t rates, uint64_t exchanges, cell_result_t *result)
+static void run_rates(cell_t *cell, uint32_t *seed, uint8_t rates, uint64_t transactions,
+                      cell_result_t *result)
 {
     for (uint8_t i = 0; i < rates; i++) {
         cell->chance_ppm = cell_rates_ppm[CELL_RATES - 1 - i];
         cell->seed = next_seed(seed);
-        cell_run(cell, exchanges / rates + 1, result);
+        cell_run(cell, transactions / rates + 1, result);
     }
 }
 
-void plan_these(const plan_t *plan, uint8_t setting, const uint8_t *kinds, uint8_t count, uint64_t exchanges)
+void plan_these(const plan_t *plan, uint8_t setting, const uint8_t *kinds, uint8_t count,
+                uint64_t transactions)
 {
     cell_result_t result = {0};
     cell_t cell = {.setting = setting, .kinds_used = count};
@@ -50,15 +52,15 @@ void plan_these(const plan_t *plan, uint8_t setting, const uint8_t *kinds, uint8
         const size_t used = i == 0 ? 0 : strlen(name);
         (void)snprintf(name + used, NAME - used, "%s%s", i == 0 ? "" : "+", fathom_sim_fault_name(kinds[i]));
     }
-    run_rates(&cell, &seed, CELL_RATES, exchanges, &result);
+    run_rates(&cell, &seed, CELL_RATES, transactions, &result);
     plan->report(plan->ctx, setting, name, &result);
 }
 
-void plan_singles(const plan_t *plan, uint8_t setting, uint64_t exchanges)
+void plan_singles(const plan_t *plan, uint8_t setting, uint64_t transactions)
 {
     uint8_t kinds[CELL_KINDS];
     const uint8_t count = plan_kinds(setting, kinds);
-    const uint64_t each = exchanges / (count + 2u);
+    const uint64_t each = transactions / (count + 2u);
     plan_these(plan, setting, NULL, 0, each);
     for (uint8_t i = 0; i < count; i++) plan_these(plan, setting, &kinds[i], 1, each);
     if (!soak_is_asked(setting)) return;
@@ -72,11 +74,11 @@ void plan_singles(const plan_t *plan, uint8_t setting, uint64_t exchanges)
     plan->report(plan->ctx, setting, "too-late", &result);
 }
 
-void plan_pairs(const plan_t *plan, uint8_t setting, uint64_t exchanges)
+void plan_pairs(const plan_t *plan, uint8_t setting, uint64_t transactions)
 {
     uint8_t kinds[CELL_KINDS];
     const uint8_t count = plan_kinds(setting, kinds);
-    const uint64_t each = exchanges / (count * (count - 1u) / 2);
+    const uint64_t each = transactions / (count * (count - 1u) / 2);
     const uint8_t rates = each >= (uint64_t)ENOUGH * CELL_RATES ? CELL_RATES : 1;
     uint32_t seed = plan->seed;
     for (uint8_t i = 0; i + 1 < count; i++) {
@@ -94,11 +96,11 @@ void plan_pairs(const plan_t *plan, uint8_t setting, uint64_t exchanges)
                 cell_add(&sum, &result);
         }
         (void)snprintf(name, NAME, "%s+each", fathom_sim_fault_name(kinds[i]));
-        if (sum.totals.exchanges != 0) plan->report(plan->ctx, setting, name, &sum);
+        if (sum.totals.transactions != 0) plan->report(plan->ctx, setting, name, &sum);
     }
 }
 
-void plan_mixtures(const plan_t *plan, uint8_t setting, uint64_t exchanges)
+void plan_mixtures(const plan_t *plan, uint8_t setting, uint64_t transactions)
 {
     static const uint32_t low_ppm[LOW_RATES] = {2000, 20000};
     uint8_t kinds[CELL_KINDS];
@@ -114,7 +116,7 @@ void plan_mixtures(const plan_t *plan, uint8_t setting, uint64_t exchanges)
         for (uint8_t i = 0; i < LOW_RATES; i++) {
             cell.chance_ppm = low_ppm[i];
             cell.seed = next_seed(&seed);
-            cell_run(&cell, exchanges / (2 * LOW_RATES) + 1, &result);
+            cell_run(&cell, transactions / (2 * LOW_RATES) + 1, &result);
         }
         plan->report(plan->ctx, setting, told_apart ? "all-told-apart" : "all", &result);
     }

@@ -87,7 +87,7 @@ static void outgoing(void *ctx, fathom_sim_frame_t *frame)
         unit->totals.joint_full++;
     unit->last_damage = damage;
     unit->last_full = is_full;
-    if (!soak_is_asked(unit->setting)) unit->totals.exchanges++;
+    if (!soak_is_asked(unit->setting)) unit->totals.transactions++;
 }
 
 /* ---- the port, with the requests noted ---- */
@@ -111,7 +111,7 @@ static int port_write(void *ctx, const uint8_t *bytes, size_t length)
         rig_unit_t *const unit = &rig->units[i];
         if (unit->address != address) continue;
         unit->requests++;
-        unit->totals.exchanges++;
+        unit->totals.transactions++;
         if (!unit->is_open) unit->open_us = rig->clock.now_us;
         unit->is_open = true;
     }
@@ -214,9 +214,9 @@ static void judge(rig_unit_t *unit, const fathom_sample_t *sample)
     const soak_facts_t *const facts = &soak_facts[unit->setting];
     const uint32_t age_us =
         facts->timeout_us + facts->period_us + (uint32_t)facts->length * facts->char_us + 2 * rig->loop_us;
-    const uint32_t since_us = is_asked ? unit->answer_us : now_us - age_us;
+    const uint32_t since_us = is_asked ? unit->response_us : now_us - age_us;
     truth_verdict_t verdict = truth_judge(&unit->truth, sample, now_us, since_us, !is_asked);
-    if (sample->unit != (is_asked ? unit->address : 0)) verdict = TRUTH_DAMAGED;
+    if (sample->address != (is_asked ? unit->address : 0)) verdict = TRUTH_DAMAGED;
     for (uint8_t i = 0; verdict == TRUTH_DAMAGED && i < rig->count; i++)
         if (&rig->units[i] != unit && truth_said(&rig->units[i].truth, (uint16_t)sample->raw))
             verdict = TRUTH_FOREIGN;
@@ -226,11 +226,11 @@ static void judge(rig_unit_t *unit, const fathom_sample_t *sample)
     const bool is_old = verdict == TRUTH_STALE && is_asked;
     if (is_old) unit->totals.old++;
     if (verdict == TRUTH_RIGHT || is_old || unit->wrong_sequence == sample->sequence) return;
-    unit->totals.wrong_answers++;
+    unit->totals.wrong_responses++;
     unit->wrong_sequence = sample->sequence;
 }
 
-/* Was it a fault of the exchange, or of nothing? Something must have been hit between the end of the exchange
+/* Was it a fault of the transaction, or of nothing? Something must have been hit between the end of the transaction
  * before and now. */
 static void explain(rig_unit_t *unit)
 {
@@ -244,8 +244,8 @@ static void outcome(rig_unit_t *unit, fathom_status_t status, bool is_value, con
     unit->outcome_us = unit->rig->clock.now_us;
     unit->idle_turns = 0;
     if (status == FATHOM_READY || is_value) {
-        if (unit->is_open || !is_asked) unit->answer_us = unit->open_us;
-        if (unit->is_open) unit->answers++;
+        if (unit->is_open || !is_asked) unit->response_us = unit->open_us;
+        if (unit->is_open) unit->responses++;
         unit->is_open = false;
         unit->samples++;
         unit->silences = 0;
@@ -260,7 +260,7 @@ static void outcome(rig_unit_t *unit, fathom_status_t status, bool is_value, con
     }
     unit->totals.errors++;
     if (!is_asked) return;
-    unit->silences = status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_ECHO ? unit->silences + 1 : 0;
+    unit->silences = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO ? unit->silences + 1 : 0;
     unit->failures++;
     if (!unit->is_open) unit->totals.unaccounted++; /* an outcome of nothing */
     unit->is_open = false;

@@ -18,13 +18,13 @@ enum { RIG_UNITS = 8, RIG_FRAME = 32 };
 
 /* What the rules look at. All but the maxima are sums. */
 typedef struct {
-    uint64_t exchanges;                /* requests that left; of streams: frames that the device sent */
+    uint64_t transactions;             /* requests that left; of streams: frames that the device sent */
     uint64_t readings;                 /* samples */
     uint64_t errors;                   /* outcomes without one */
-    uint64_t lost;                     /* exchanges without a reading */
+    uint64_t lost;                     /* transactions without a reading */
     uint64_t verdicts[TRUTH_VERDICTS]; /* samples */
     uint64_t old;                      /* of them, old values of sensors that are asked */
-    uint64_t wrong_answers;            /* answers and frames with a wrong sample of any other kind */
+    uint64_t wrong_responses;          /* responses and frames with a wrong sample of any other kind */
     uint64_t stuck;                    /* no outcome in the longest time, no deadline, or no progress */
     uint64_t unaccounted;              /* books that do not balance; see account.c */
     uint64_t unexplained;              /* failures that no fault explains */
@@ -43,17 +43,17 @@ typedef struct {
     truth_t truth;
     struct rig *rig;
     uint8_t setting, address;
-    /* asked: the exchange that is open, and the answer that is being handed over */
+    /* asked: the transaction that is open, and the response that is being handed over */
     bool is_open;
-    uint32_t open_us, answer_us;
+    uint32_t open_us, response_us;
     uint32_t requests;       /* written */
-    uint32_t answers;        /* outcomes with samples */
+    uint32_t responses;      /* outcomes with samples */
     uint32_t failures;       /* outcomes without */
     uint32_t samples;        /* handed over or refused for their value */
     uint32_t refused;        /* of these, the latter */
     uint32_t outcome_us;     /* when the last one came */
     uint32_t right_us;       /* when the last right reading came */
-    uint32_t silences;       /* outcomes in a row without any answer */
+    uint32_t silences;       /* outcomes in a row without any response */
     uint32_t trouble_end_us; /* until then what a fault has begun goes on */
     uint32_t watched;        /* streams: frames that were looked at for their loss */
     uint32_t clean_lost;     /* of them, not read though neither they nor their neighbours were hit */

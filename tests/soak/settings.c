@@ -4,7 +4,7 @@
 #include <string.h>
 
 /*
- * Periods, time-outs and answer times: a16_modbus.h, a05_modbus.h, a05_dyp.h, hps167s.h, stream.h, and the
+ * Periods, time-outs and response times: a16_modbus.h, a05_modbus.h, a05_dyp.h, hps167s.h, stream.h, and the
  * simulator's a16.h, a05.h, hps167s.h. A byte takes 10 bits at 9600 baud, 11 at 19200.
  */
 const soak_facts_t soak_facts[SOAK_SETTINGS] = {
@@ -107,7 +107,7 @@ fathom_stream_t *soak_stream_of(soak_driver_t *driver, uint8_t setting)
 uint16_t soak_implausible(const soak_driver_t *driver, uint8_t setting)
 {
     if (setting == SOAK_HPS167S) return driver->hps167s.implausible;
-    if (soak_is_asked(setting)) return ultrasonic(driver, setting)->answer.implausible;
-    return soak_facts[setting].model == FATHOM_A16 ? driver->a16_auto.base.answer.implausible
-                                                   : driver->a05_auto.base.answer.implausible;
+    if (soak_is_asked(setting)) return ultrasonic(driver, setting)->measurement.implausible;
+    return soak_facts[setting].model == FATHOM_A16 ? driver->a16_auto.base.measurement.implausible
+                                                   : driver->a05_auto.base.measurement.implausible;
 }

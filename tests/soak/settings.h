@@ -30,17 +30,17 @@ typedef enum { SOAK_GAP, SOAK_NO_GAP, SOAK_CRC, SOAK_SUM } soak_proof_t;
 
 typedef struct {
     const char *name;
-    uint8_t proof;       /* soak_proof_t */
-    uint8_t model;       /* fathom_model_t */
-    uint8_t first;       /* probe */
-    uint8_t probes;      /* samples an answer or frame */
-    uint8_t length;      /* bytes of it */
-    uint16_t char_us;    /* of one byte */
-    uint16_t least_mm;   /* what the scene gives: least_mm..least_mm + span_mm - 1 */
-    uint16_t span_mm;    /* no multiple of 7 */
-    uint32_t period_us;  /* asked: from request to request, at least; else from frame to frame */
-    uint32_t timeout_us; /* asked: first byte; else: without a good frame it is stale */
-    uint32_t answer_us;  /* asked: the longest that the simulator takes */
+    uint8_t proof;        /* soak_proof_t */
+    uint8_t model;        /* fathom_model_t */
+    uint8_t first;        /* probe */
+    uint8_t probes;       /* samples a response or frame */
+    uint8_t length;       /* bytes of it */
+    uint16_t char_us;     /* of one byte */
+    uint16_t least_mm;    /* what the scene gives: least_mm..least_mm + span_mm - 1 */
+    uint16_t span_mm;     /* no multiple of 7 */
+    uint32_t period_us;   /* asked: from request to request, at least; else from frame to frame */
+    uint32_t timeout_us;  /* asked: first byte; else: without a good frame it is stale */
+    uint32_t response_us; /* asked: the longest that the simulator takes */
 } soak_facts_t;
 
 extern const soak_facts_t soak_facts[SOAK_SETTINGS];

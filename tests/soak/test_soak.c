@@ -6,10 +6,10 @@
 #include "plan.h"
 #include "theory.h"
 
-/* The short form: 5 * 10^4 exchanges and some more, the same each time; with FATHOM_LONG in the environment twice as many.
+/* The short form: 5 * 10^4 transactions and some more, the same each time; with FATHOM_LONG in the environment twice as many.
  * program/soak.c is the long one. */
 enum { SINGLES = 5000, PAIRS = 4000, MIXTURES = 1000, SEED = 1 };
-static uint32_t so_many(uint32_t exchanges) { return suite_is_long ? exchanges : exchanges / 2; }
+static uint32_t so_many(uint32_t transactions) { return suite_is_long ? transactions : transactions / 2; }
 
 static struct {
     uint32_t rows, broken;
@@ -27,7 +27,7 @@ static void report(void *ctx, uint8_t setting, const char *name, const cell_resu
     seen.broken++;
     print_error("%s %s: %s (%lu wrong, %lu old, %.2f expected, %lu stuck, %lu unaccounted, %lu unexplained, "
                 "recovered within %lu of %lu us)\n",
-                soak_facts[setting].name, name, broken, (unsigned long)result->totals.wrong_answers,
+                soak_facts[setting].name, name, broken, (unsigned long)result->totals.wrong_responses,
                 (unsigned long)result->totals.old, result->expected, (unsigned long)result->totals.stuck,
                 (unsigned long)result->totals.unaccounted, (unsigned long)result->totals.unexplained,
                 (unsigned long)result->recovered_us, (unsigned long)result->bound_us);
@@ -40,7 +40,7 @@ static void each_fault_alone(void **state)
     const uint8_t *const setting = *state;
     uint8_t kinds[CELL_KINDS];
     plan_singles(&plan, *setting, so_many(SINGLES));
-    /* none, each kind, and where it is asked answers that are too late */
+    /* none, each kind, and where it is asked responses that are too late */
     assert_int_equal(seen.rows, 1u + plan_kinds(*setting, kinds) + (soak_is_asked(*setting) ? 1u : 0u));
     assert_int_equal(seen.broken, 0);
 }

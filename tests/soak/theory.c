@@ -70,9 +70,9 @@ uint64_t theory_most(double expected)
 
 const theory_alike_t theory_alike[THEORY_ALIKE] = {
     {SOAK_SETTINGS, FATHOM_SIM_FAULT_UNASKED, 0,
-     "a frame that nobody asked for, of the very shape of the answer, while the next one is waited for"},
+     "a frame that nobody asked for, of the very shape of the response, while the next one is waited for"},
     {SOAK_SETTINGS, FATHOM_SIM_FAULT_LATE, 0,
-     "an answer that comes later than twice its time-out, while the next one is waited for"},
+     "a response that comes later than twice its time-out, while the next one is waited for"},
     {SOAK_SETTINGS, FATHOM_SIM_FAULT_CLOCK_JUMP, FATHOM_SIM_FAULT_LATE,
      "the same: by the host's clock twice the time-out has passed"},
 };
@@ -80,7 +80,7 @@ const theory_alike_t theory_alike[THEORY_ALIKE] = {
 const theory_alike_t *theory_is_alike(uint8_t setting, uint32_t kinds, uint32_t late_us)
 {
     const soak_facts_t *const facts = &soak_facts[setting];
-    const bool is_too_late = late_us + facts->answer_us > 2 * facts->timeout_us;
+    const bool is_too_late = late_us + facts->response_us > 2 * facts->timeout_us;
     if (!soak_is_asked(setting)) return NULL;
     for (uint8_t i = 0; i < THEORY_ALIKE; i++) {
         const theory_alike_t *const entry = &theory_alike[i];

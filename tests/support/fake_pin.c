@@ -29,7 +29,7 @@ static void set(void *ctx, bool high)
     pin->has_fallen = true;
     pin->falls++;
     pin->fall_us = now_us;
-    if (pin->answer_width_us != 0) fake_pulse(pin, pin->answer_after_us, pin->answer_width_us);
+    if (pin->response_width_us != 0) fake_pulse(pin, pin->response_after_us, pin->response_width_us);
 }
 
 static void arm(void *ctx)

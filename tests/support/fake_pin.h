@@ -42,8 +42,8 @@ typedef struct {
     bool take_fails;
 
     /* Each fall schedules a pulse of this width this much later; 0: none. */
-    uint32_t answer_width_us;
-    uint32_t answer_after_us;
+    uint32_t response_width_us;
+    uint32_t response_after_us;
 
     fathom_pin_t trigger;
     fathom_capture_t capture;

@@ -30,7 +30,7 @@ static void expect_out(const tool_run_t *run, const char *const *texts)
 
 #define EXPECT_OUT(run, ...) expect_out(run, (const char *const[]){__VA_ARGS__, NULL})
 
-TEST(a_line_without_a_sensor_is_no_answer_within_the_time_out)
+TEST(a_line_without_a_sensor_is_no_response_within_the_time_out)
 {
     const tool_run_t *const run =
         tool_run(&bench.tool, "read a16:1:modbus --timeout 400 --count 1 --port line");

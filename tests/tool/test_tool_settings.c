@@ -75,12 +75,12 @@ TEST(what_it_had_is_unchanged)
     assert_int_equal(counters()->flash_writes, 0);
 }
 
-TEST(without_an_answer_nothing_was_written)
+TEST(without_a_response_nothing_was_written)
 {
-    says(1, "termination off: nothing was written: no answer", "set hps167s termination off");
+    says(1, "termination off: nothing was written: no response", "set hps167s termination off");
     says(1, "\"written\": false, \"confirmed\": false, \"outcome\": \"nothing was written\"",
          "set hps167s termination off --format json");
-    says(1, "filter-sensitivity 5: nothing was written: no answer", "set hps167s filter-sensitivity 5");
+    says(1, "filter-sensitivity 5: nothing was written: no response", "set hps167s filter-sensitivity 5");
 }
 
 /* A faulted sensor that sends by itself: nothing can be made out between its packets at 54 Hz. */
@@ -91,7 +91,7 @@ TEST(of_a_setting_that_was_refused_nothing_is_claimed)
     assert_int_equal(counters()->writes, 0);
 }
 
-/* Frames 1 and 2 answer #2 for the user, 3 and 4 for the driver; 5 acknowledges. */
+/* Frames 1 and 2 response #2 for the user, 3 and 4 for the driver; 5 acknowledges. */
 TEST(what_cannot_be_read_afterwards_is_not_confirmed)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 5, 60);

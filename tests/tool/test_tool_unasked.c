@@ -53,11 +53,11 @@ TEST(scan_names_it_and_sends_nothing)
 {
     const tool_run_t *const run = tool_run(&bench.tool, "scan --port line");
     assert_int_equal(run->status, 0);
-    assert_non_null(strstr(run->out, "hps167s  address 1    19200 8E1    sends answers unasked"));
+    assert_non_null(strstr(run->out, "hps167s  address 1    19200 8E1    sends responses unasked"));
     assert_int_equal(bench.hps167s.device.counters.requests, 0);
 }
 
-TEST(scan_asks_it_when_told_and_takes_what_comes_unasked_for_no_second_answer)
+TEST(scan_asks_it_when_told_and_takes_what_comes_unasked_for_no_second_response)
 {
     for (uint32_t seed = 0; seed != 20; seed++) {
         bench_begin();

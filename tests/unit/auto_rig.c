@@ -49,8 +49,8 @@ void rig_run(uint32_t for_us, uint32_t step_us)
     }
 }
 
-fathom_status_t rig_exchange(fathom_status_t (*call)(void), const uint8_t *request, size_t request_length,
-                             const uint8_t *answer, size_t length)
+fathom_status_t rig_transaction(fathom_status_t (*call)(void), const uint8_t *request, size_t request_length,
+                                const uint8_t *response, size_t length)
 {
     fathom_status_t status = FATHOM_PENDING;
     const size_t before = rig.fake.written;
@@ -59,7 +59,7 @@ fathom_status_t rig_exchange(fathom_status_t (*call)(void), const uint8_t *reque
         assert_true(ms < 500);
         rig.fake.now_us += 1000;
         status = call();
-        if (ms == 300) fake_trickle(&rig.fake, 0, RIG_BYTE_US, answer, length);
+        if (ms == 300) fake_trickle(&rig.fake, 0, RIG_BYTE_US, response, length);
     }
     assert_int_equal(rig.fake.written, before + 1);
     assert_int_equal(rig.fake.writes[before].length, request_length);
@@ -79,7 +79,7 @@ fathom_status_t rig_send(const uint8_t *frame, size_t length, uint32_t step_us)
     return rig.malformed != malformed ? FATHOM_ERR_MALFORMED : FATHOM_PENDING;
 }
 
-size_t rig_dyp_frame(uint8_t *frame, const uint16_t *values, unsigned count)
+size_t rig_dyp_stream(uint8_t *frame, const uint16_t *values, unsigned count)
 {
     unsigned sum = frame[0] = 0xFF;
     for (unsigned i = 0; i != count; i++) {

@@ -4,7 +4,7 @@
 
 #include "drivers.h"
 #include "fake.h"
-#include "fathom/line.h"
+#include "fathom/engine/line.h"
 
 /* A fake UART, a real line on it, and a driver that listens there, with what its polls said. At 9600 8N1. */
 enum {
@@ -17,7 +17,7 @@ enum {
 
 typedef struct {
     fake_t fake;
-    uint8_t frame[27]; /* holds the longest answer */
+    uint8_t frame[27]; /* holds the longest response */
     fathom_line_config_t line_config;
     fathom_line_t line;
     fathom_sensor_t sensor;  /* the test's, after it has started the line */
@@ -42,18 +42,18 @@ fathom_status_t rig_poll(void);
  * advises. */
 void rig_run(uint32_t for_us, uint32_t step_us);
 
-/* Calls a driver in a loop of 1 ms until it has ended: it sends exactly this request, and the answer comes after 300 ms. */
-fathom_status_t rig_exchange(fathom_status_t (*call)(void), const uint8_t *request, size_t request_length,
-                             const uint8_t *answer, size_t length);
+/* Calls a driver in a loop of 1 ms until it has ended: it sends exactly this request, and the response comes after 300 ms. */
+fathom_status_t rig_transaction(fathom_status_t (*call)(void), const uint8_t *request, size_t request_length,
+                                const uint8_t *response, size_t length);
 
 /* One period of 100 ms: silence, with a frame at its end, byte by byte; and the first 5 ms of the next one, which end
  * the frame. Returns what comes of it: FATHOM_READY, FATHOM_ERR_MALFORMED, or FATHOM_PENDING. */
 fathom_status_t rig_send(const uint8_t *frame, size_t length, uint32_t step_us);
 
 /* FF, each value high byte first, the low byte of the sum of all before it (A16 2(3), A05 1(2)). Returns the length. */
-size_t rig_dyp_frame(uint8_t *frame, const uint16_t *values, unsigned count);
+size_t rig_dyp_stream(uint8_t *frame, const uint16_t *values, unsigned count);
 
-/* The answer to #5 with these registers, and its CRC bit by bit, from the text of HPS-167S 2.2.5. */
+/* The response to #5 with these registers, and its CRC bit by bit, from the text of HPS-167S 2.2.5. */
 void rig_hps_frame(uint8_t *frame, uint8_t address, uint16_t a, uint16_t b, uint16_t c, uint16_t d);
 void rig_hps_seal(uint8_t *frame);
 

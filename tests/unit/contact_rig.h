@@ -7,7 +7,7 @@
 #include "suite.h"
 
 #include "fake.h"
-#include "fathom/sensor.h"
+#include "fathom/engine/sensor.h"
 
 /* A pin whose level the test sets or plans, a clock, and a driver that looks at it, with what its polls said. */
 enum { CONTACT_EDGES = 128 };

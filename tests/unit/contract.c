@@ -4,16 +4,16 @@
 #include "contact_rig.h"
 #include "controlled_rig.h"
 #include "desk.h"
-#include "fathom/a05_auto.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/a05_relay.h"
-#include "fathom/a16_auto.h"
-#include "fathom/a16_pwm.h"
-#include "fathom/a16_settings.h"
-#include "fathom/a16_switch.h"
-#include "fathom/hps167s_auto.h"
-#include "fathom/hps167s_info.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a05_dyp.h"
+#include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a05_relay.h"
+#include "fathom/sensor/a16_auto.h"
+#include "fathom/sensor/a16_pwm.h"
+#include "fathom/sensor/a16_settings.h"
+#include "fathom/sensor/a16_switch.h"
+#include "fathom/sensor/hps167s_auto.h"
+#include "fathom/sensor/hps167s_info.h"
 
 uint32_t contract_came_us;
 uint32_t contract_slack_us;
@@ -56,7 +56,7 @@ uint32_t contract_slack_us;
     }
 #define WINDOW(d, most) IS(d, window.min_mm, most + 1), BOTH(d, window.min_mm, 500, window.max_mm, 499)
 
-/* ---- on the seam of Modbus ---- */
+/* ---- on the transport of Modbus ---- */
 
 static fathom_status_t desk_has_said(const contract_driver_t *driver, uint16_t value)
 {
@@ -67,32 +67,32 @@ static fathom_status_t desk_has_said(const contract_driver_t *driver, uint16_t v
     assert_non_null(fake.request);
     fake.heard_us = contract_came_us = fake.now_us + 700;
     contract_slack_us = 0;
-    fake_modbus_answer(&fake, values, driver->count);
+    fake_modbus_response(&fake, values, driver->count);
     fake.submits = 0;
     return desk_poll_after(1000);
 }
 
-static void desk_breaks(bool on) { fake.carrier = on ? FATHOM_ERR_PORT : FATHOM_PENDING; }
+static void desk_breaks(bool on) { fake.transport = on ? FATHOM_ERR_PORT : FATHOM_PENDING; }
 static bool desk_is_used(void) { return fake.submits + fake.polls + fake.cancels != 0; }
 static bool desk_is_at_work(void) { return fake.request != NULL; }
 
-static const contract_kind_t on_seam = {desk_begin,   desk_poll,    desk_has_said,
-                                        desk_breaks,  desk_is_used, desk_is_at_work,
-                                        &desk.sensor, &desk.sample, &fake.now_us};
+static const contract_kind_t on_transport = {desk_begin,   desk_poll,    desk_has_said,
+                                             desk_breaks,  desk_is_used, desk_is_at_work,
+                                             &desk.sensor, &desk.sample, &fake.now_us};
 
-#define ON_SEAM(d)                                                                                           \
-    ITSELF(d, on_seam), .deinit = d##_deinit, .command = d##_command, .cancel = d##_cancel,                  \
-                        .exception = d##_exception, .unit = d##_unit, .address = &d##_config.modbus.address, \
-                        .retries = &d##_config.modbus.retries, .period_us = &d##_config.modbus.period_us,    \
-                        .timeout_us = &d##_config.modbus.timeout_us,                                         \
-                        .command_timeout_us = &d##_config.modbus.command_timeout_us
+#define ON_TRANSPORT(d)                                                                                      \
+    ITSELF(d, on_transport),                                                                                 \
+        .deinit = d##_deinit, .command = d##_command, .cancel = d##_cancel, .exception = d##_exception,      \
+        .unit = d##_unit, .address = &d##_config.modbus.address, .retries = &d##_config.modbus.retries,      \
+        .period_us = &d##_config.modbus.period_us, .timeout_us = &d##_config.modbus.timeout_us,              \
+        .command_timeout_us = &d##_config.modbus.command_timeout_us
 
 #define COUNTS(of) .sequence = &(of).sequence, .implausible = &(of).implausible
-#define DYP(d, its_answer, most, its_model, its_unit)                                                        \
+#define DYP(d, its_response, most, its_model, its_unit)                                                      \
     .window = &d##_config.window, .max_mm = most, .good = 1953, .other = 511, .refused = (most) + 1,         \
-    COUNTS(its_answer),                                                                                      \
+    COUNTS(its_response),                                                                                    \
     .sample = {                                                                                              \
-        .raw = 1953, .distance_mm = 1953, .kind = FATHOM_TARGET, .model = its_model, .unit = its_unit}
+        .raw = 1953, .distance_mm = 1953, .kind = FATHOM_TARGET, .model = its_model, .address = its_unit}
 
 DRIVER(a16_modbus, .modbus.transport = &fake.modbus)
 CAN(a16_modbus, deinit)
@@ -106,8 +106,8 @@ static fathom_status_t a16_modbus_command(void)
 }
 
 const contract_driver_t contract_a16_modbus = {
-    ON_SEAM(a16_modbus),
-    DYP(a16_modbus, a16_modbus.base.answer, 16350, FATHOM_A16, 1),
+    ON_TRANSPORT(a16_modbus),
+    DYP(a16_modbus, a16_modbus.base.measurement, 16350, FATHOM_A16, 1),
     .first = 0x0100,
     .count = 1,
     .most_address = 254,
@@ -130,8 +130,8 @@ static fathom_status_t a05_modbus_command(void)
 }
 
 const contract_driver_t contract_a05_modbus = {
-    ON_SEAM(a05_modbus),
-    DYP(a05_modbus, a05_modbus.base.answer, 6000, FATHOM_A05, 1),
+    ON_TRANSPORT(a05_modbus),
+    DYP(a05_modbus, a05_modbus.base.measurement, 6000, FATHOM_A05, 1),
     .first = 0x0106,
     .count = 1,
     .most_address = 254,
@@ -156,11 +156,11 @@ static fathom_status_t hps167s_command(void)
 
 /* Command #5: 2.083 m, (DCB2 << 7) / 10000 = 723.1744, ambient 1, precision 0. */
 #define HPS_FIGURES                                                                                          \
-    .raw = 2083, .distance_mm = 2083, .kind = FATHOM_TARGET, .model = FATHOM_HPS167S, .unit = 1,             \
+    .raw = 2083, .distance_mm = 2083, .kind = FATHOM_TARGET, .model = FATHOM_HPS167S, .address = 1,          \
     .ambient = 1, .magnitude = 7231744
 
 const contract_driver_t contract_hps167s = {
-    ON_SEAM(hps167s),
+    ON_TRANSPORT(hps167s),
     .good = 2083,
     .other = 511,
     .refused = 31000,
@@ -172,7 +172,7 @@ const contract_driver_t contract_hps167s = {
     .least_period_us = 18519,
     .default_timeout_us = 500000,
     .wrong = {NONE(hps167s, modbus.transport), RANGE(hps167s, modbus.address, 33, 255),
-              IS(hps167s, modbus.address_zero, 1), RANGE(hps167s, same_answers, 9, 255)}};
+              IS(hps167s, modbus.address_zero, 1), RANGE(hps167s, same_responses, 9, 255)}};
 
 /* ---- on a line ---- */
 
@@ -201,13 +201,13 @@ static bool line_is_at_work(void)
             &rig.fake.now_us                                                                                 \
     }
 
-static size_t a16_frame(uint8_t *frame, uint16_t value) { return rig_dyp_frame(frame, &value, 1); }
+static size_t a16_frame(uint8_t *frame, uint16_t value) { return rig_dyp_stream(frame, &value, 1); }
 
 /* Probe 1's value; what is not fitted sends what nothing can mean. */
 static size_t a05_frame(uint8_t *frame, uint16_t value)
 {
     const uint16_t values[] = {value, 0xFFFF, 0xFFFF, 0xFFFF};
-    return rig_dyp_frame(frame, values, 4);
+    return rig_dyp_stream(frame, values, 4);
 }
 
 static size_t hps_frame(uint8_t *frame, uint16_t value)
@@ -233,7 +233,7 @@ DRIVER(a16_auto, .line = &rig.line)
 CAN(a16_auto, deinit)
 
 const contract_driver_t contract_a16_auto = {LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
-                                             DYP(a16_auto, a16_auto.base.answer, 16350, FATHOM_A16, 0),
+                                             DYP(a16_auto, a16_auto.base.measurement, 16350, FATHOM_A16, 0),
                                              .frame = a16_frame,
                                              .wrong = {NONE(a16_auto, line), WINDOW(a16_auto, 16350)}};
 
@@ -242,7 +242,7 @@ CAN(a05_auto, deinit)
 
 const contract_driver_t contract_a05_auto = {
     LISTENS(a05_auto), .gap_us = &a05_auto_config.gap_us,
-    DYP(a05_auto, a05_auto.base.answer, 6000, FATHOM_A05, 0), .frame = a05_frame,
+    DYP(a05_auto, a05_auto.base.measurement, 6000, FATHOM_A05, 0), .frame = a05_frame,
     .wrong = {NONE(a05_auto, line), RANGE(a05_auto, probes, 16, 255), WINDOW(a05_auto, 6000)}};
 
 DRIVER(hps167s_auto, .line = &rig.line)
@@ -254,7 +254,7 @@ const contract_driver_t contract_hps167s_auto = {
     .refused = 31000,      .sample = {HPS_FIGURES},
     COUNTS(hps167s_auto),  .wrong = {NONE(hps167s_auto, line), RANGE(hps167s_auto, address, 33, 255)}};
 
-/* It is asked with 55 AA; the answer is there at once. */
+/* It is asked with 55 AA; the response is there at once. */
 static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
 {
     uint8_t frame[RIG_HPS_LENGTH];
@@ -272,7 +272,7 @@ static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
 }
 
 /* A05 2(3)4 of probe 1: 55 AA 01 10, and 55 + AA + 01 + 10 = 110. */
-static size_t a05_dyp_frame(uint8_t *frame, uint16_t value)
+static size_t a05_dyp_stream(uint8_t *frame, uint16_t value)
 {
     const uint8_t bytes[] = {
         0x55, 0xAA, 0x01, 0x10, HIGH(value), LOW(value), LOW(0x10 + HIGH(value) + LOW(value))};
@@ -295,11 +295,11 @@ CAN(a05_dyp, power_on)
 
 const contract_driver_t contract_a05_dyp = {
     ITSELF(a05_dyp, asked_on_line),
-    DYP(a05_dyp, a05_dyp.base.answer, 6000, FATHOM_A05, 1),
+    DYP(a05_dyp, a05_dyp.base.measurement, 6000, FATHOM_A05, 1),
     .deinit = a05_dyp_deinit,
     .power_on = a05_dyp_power_on,
     .start_us = &a05_dyp_config.start_us,
-    .frame = a05_dyp_frame,
+    .frame = a05_dyp_stream,
     .wrong = {NONE(a05_dyp, modbus.transport), IS(a05_dyp, modbus.address, 255),
               IS(a05_dyp, modbus.address_zero, 1), RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
 
@@ -312,7 +312,7 @@ static fathom_status_t is_triggered(const contract_driver_t *driver, uint16_t va
     contract_came_us = rig.fake.now_us + 100 * MS;
     contract_slack_us = 100;
     driver->frame(frame, value);
-    controlled_answer(frame, 100 * MS);
+    controlled_response(frame, 100 * MS);
     return controlled_outcome(100);
 }
 
@@ -322,7 +322,7 @@ DRIVER(a16_controlled, .line = &rig.line, .trigger = {fathom_output_set_line_bre
 CAN(a16_controlled, deinit)
 
 const contract_driver_t contract_a16_controlled = {
-    ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.answer, 16350, FATHOM_A16, 0),
+    ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.measurement, 16350, FATHOM_A16, 0),
     .deinit = a16_controlled_deinit, .frame = a16_frame,
     .wrong = {NONE(a16_controlled, line), NONE(a16_controlled, trigger.set),
               IS(a16_controlled, earliest_us, 131 * MS), WINDOW(a16_controlled, 16350)}};
@@ -331,8 +331,8 @@ const contract_driver_t contract_a16_controlled = {
 static fathom_status_t has_pulsed(const contract_driver_t *driver, uint16_t value)
 {
     fathom_status_t status = FATHOM_PENDING;
-    controlled.pin.answer_after_us = 110 * MS;
-    controlled.pin.answer_width_us = value;
+    controlled.pin.response_after_us = 110 * MS;
+    controlled.pin.response_width_us = value;
     contract_slack_us = 0;
     for (unsigned polls = 0; status == FATHOM_PENDING; polls++) {
         assert_true(polls < 100);
@@ -391,7 +391,7 @@ DRIVER(a16_switch, .pin = &pins.pin, .clock = &pins.fake.clock, .address = 5)
 
 const contract_driver_t contract_a16_switch = {
     ITSELF(a16_switch, contact), .good = 1,
-    .sample = {.raw = 1, .kind = FATHOM_NEAR, .model = FATHOM_A16, .unit = 5},
+    .sample = {.raw = 1, .kind = FATHOM_NEAR, .model = FATHOM_A16, .address = 5},
     .timing = &a16_switch_config.timing, .wrong = {NONE(a16_switch, pin), NONE(a16_switch, clock)}};
 
 DRIVER(a05_relay, .pin = &pins.pin, .clock = &pins.fake.clock)

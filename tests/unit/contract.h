@@ -3,15 +3,15 @@
 #define FATHOM_TESTS_CONTRACT_H
 
 #include "drivers.h"
-#include "fathom/contact.h"
-#include "fathom/dyp.h"
-#include "fathom/modbus_unit.h"
+#include "fathom/engine/contact.h"
+#include "fathom/engine/modbus_unit.h"
+#include "fathom/sensor/dyp.h"
 
 /* What test_driver_contract.c has to know of a driver, and of the way in which its device speaks. */
 
 typedef struct contract_driver contract_driver_t;
 
-/* Asked on the seam of Modbus, or on a line; listening to frames; triggered; or looking at a contact. */
+/* Asked on the transport of Modbus, or on a line; listening to frames; triggered; or looking at a contact. */
 typedef struct {
     void (*begin)(uint32_t now_us); /* all begins anew, at this time */
     fathom_status_t (*poll)(void);  /* checked */

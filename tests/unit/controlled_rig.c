@@ -35,7 +35,7 @@ void controlled_run_to_break(unsigned breaks, uint32_t step_us)
     }
 }
 
-void controlled_answer(const uint8_t frame[4], uint32_t after_us)
+void controlled_response(const uint8_t frame[4], uint32_t after_us)
 {
     fake_trickle(&rig.fake, after_us - FRAME_US, RIG_BYTE_US, frame, 4);
 }

@@ -4,8 +4,8 @@
 
 #include "auto_rig.h"
 #include "fake_pin.h"
-#include "fathom/a16_controlled.h"
-#include "fathom/line_pins.h"
+#include "fathom/engine/line_pins.h"
+#include "fathom/sensor/a16_controlled.h"
 
 /* auto_rig.h with an A16 that is triggered, by the fake UART's break unless the config names the pin. */
 enum { FRAME_US = 4 * RIG_BYTE_US };
@@ -32,7 +32,7 @@ void controlled_start_at(uint32_t now_us);
 void controlled_run_to_break(unsigned breaks, uint32_t step_us);
 
 /* A frame whose last byte comes so long after now. */
-void controlled_answer(const uint8_t frame[4], uint32_t after_us);
+void controlled_response(const uint8_t frame[4], uint32_t after_us);
 
 /* Polls until something comes of the trigger, and no other trigger may before. */
 fathom_status_t controlled_outcome(uint32_t step_us);

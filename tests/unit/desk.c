@@ -24,10 +24,10 @@ fathom_status_t desk_poll_after(uint32_t us)
 
 void desk_waits(uint32_t us) { PENDS(desk_poll_after(us)); }
 
-void desk_answer(const row_t *row)
+void desk_response(const row_t *row)
 {
     assert_non_null(fake.request);
-    const fathom_line_settings_t *const settings = fake.request->exchange.settings;
+    const fathom_line_settings_t *const settings = fake.request->transaction.line_settings;
     assert_memory_equal(fake.request->message.head, row->head, sizeof row->head);
     assert_int_equal(settings != NULL ? settings->baud : 0, row->baud);
     if (settings != NULL) {
@@ -35,15 +35,15 @@ void desk_answer(const row_t *row)
         assert_int_equal(settings->stop_bits, 1);
     }
     const bool is_reading = row->head[1] == 3 && (row->head[2] != 0 || row->head[3] != 9); /* HPS-167S #6 */
-    assert_int_equal(fake.request->exchange.retries, is_reading ? desk.retries : 0);
-    if (desk.timeout_us != 0) assert_int_equal(fake.request->exchange.timeout_us, desk.timeout_us);
+    assert_int_equal(fake.request->transaction.retries, is_reading ? desk.retries : 0);
+    if (desk.timeout_us != 0) assert_int_equal(fake.request->transaction.timeout_us, desk.timeout_us);
     if (row->head[1] == 0x10) assert_memory_equal(fake.request->message.values, row->values, 4);
     if (row->ends == FATHOM_ERR_EXCEPTION)
         fake_modbus_refuse(&fake, (uint8_t)row->values[0]);
     else if (row->ends != FATHOM_READY)
         fake_modbus_fail(&fake, row->ends);
     else if (row->head[1] == 0x03)
-        fake_modbus_answer(&fake, row->values, row->head[5]);
+        fake_modbus_response(&fake, row->values, row->head[5]);
     else
         fake_modbus_acknowledge(&fake);
 }
@@ -52,7 +52,7 @@ void desk_says(uint16_t value)
 {
     static uint16_t said;
     said = value;
-    fake_modbus_answer(&fake, &said, 1);
+    fake_modbus_response(&fake, &said, 1);
 }
 
 void desk_part(fathom_status_t (*command)(void), const row_t *rows, unsigned count)
@@ -62,7 +62,7 @@ void desk_part(fathom_status_t (*command)(void), const row_t *rows, unsigned cou
         fake.now_us += desk.step_us;
         PENDS(command());
         if (fake.request == NULL || fake.ends != FATHOM_PENDING) continue;
-        desk_answer(rows++);
+        desk_response(rows++);
         count--;
         fake.submits = 0;
     }

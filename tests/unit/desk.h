@@ -5,7 +5,7 @@
 #include "drivers.h"
 #include "fake_modbus.h"
 
-/* A driver on the fake seam of Modbus, and what its device is asked and says, in order. */
+/* A driver on the fake transport of Modbus, and what its device is asked and says, in order. */
 typedef struct {
     fathom_sensor_t sensor; /* the test's, for desk_poll */
     fathom_sample_t sample; /* the last one */
@@ -46,7 +46,7 @@ fathom_status_t desk_poll_after(uint32_t us);
 void desk_waits(uint32_t us);
 
 /* The request under way is as in the row, and ends so with the next poll. */
-void desk_answer(const row_t *row);
+void desk_response(const row_t *row);
 void desk_says(uint16_t value); /* a read of one register */
 
 /* Calls the command in the application's loop until it has ended: exactly these requests are made. desk_part: until the

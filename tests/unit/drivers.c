@@ -23,7 +23,7 @@ void assert_sample(const fathom_sample_t *is, fathom_sample_t should)
     assert_int_equal(is->precision, should.precision);
     assert_int_equal(is->kind, should.kind);
     assert_int_equal(is->model, should.model);
-    assert_int_equal(is->unit, should.unit);
+    assert_int_equal(is->address, should.address);
     assert_int_equal(is->probe, should.probe);
     assert_int_equal(is->ambient, should.ambient);
     assert_int_equal(is->interference, should.interference);

@@ -6,7 +6,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor.h"
+#include "fathom/engine/sensor.h"
 
 /* What the tests of all drivers need. */
 #define MS ((int32_t)1000) /* an int may have 16 bits */

@@ -55,7 +55,7 @@ void read_once(bool echoes)
 {
     send_1(0, 100);
     if (echoes) come_all(0, ask_1_processed);
-    come_all(20000, answer_1_754);
+    come_all(20000, response_1_754);
     run(60000);
     expect_mm(754);
 }

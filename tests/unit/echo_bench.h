@@ -33,7 +33,7 @@ void send_1(uint8_t retries, uint32_t step_us);
 void come(unsigned seed, uint32_t in_us, const uint8_t *bytes, size_t length);
 #define come_all(in_us, array) come(BY_BYTE, in_us, array, sizeof(array))
 
-/* Unit 1 is asked, and answers 754, behind the echo if there is one. */
+/* Unit 1 is asked, and responses 754, behind the echo if there is one. */
 void read_once(bool echoes);
 
 uint8_t known_echo(void);

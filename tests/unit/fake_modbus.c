@@ -12,8 +12,8 @@ static void assert_unchanged(const fake_modbus_t *fake)
     assert_non_null(is);
     assert_memory_equal(is->message.head, was->message.head, sizeof was->message.head);
     assert_ptr_equal(is->message.values, was->message.values);
-    assert_int_equal(is->exchange.timeout_us, was->exchange.timeout_us);
-    assert_int_equal(is->exchange.retries, was->exchange.retries);
+    assert_int_equal(is->transaction.timeout_us, was->transaction.timeout_us);
+    assert_int_equal(is->transaction.retries, was->transaction.retries);
 }
 
 static fathom_status_t fake_submit(void *ctx, fathom_modbus_request_t *request)
@@ -24,16 +24,16 @@ static fathom_status_t fake_submit(void *ctx, fathom_modbus_request_t *request)
     assert_true(fake->submits < FAKE_MODBUS_LOG);
     memcpy(fake->log[fake->submits++], request->message.head, sizeof *fake->log);
     fake->request = request;
-    request->exchange.attempts = 0;
-    request->exchange.status = FATHOM_PENDING;
+    request->transaction.attempts = 0;
+    request->transaction.status = FATHOM_PENDING;
     fake->snapshot = *request;
     return FATHOM_PENDING;
 }
 
 static void end(fake_modbus_t *fake, fathom_status_t status)
 {
-    fake->request->exchange.link.heard_us = fake->heard_us;
-    fake->request->exchange.status = (int8_t)status;
+    fake->request->transaction.link.heard_us = fake->heard_us;
+    fake->request->transaction.status = (int8_t)status;
     fake->request = NULL;
     fake->ends = FATHOM_PENDING;
     fake->is_sent = false;
@@ -60,19 +60,19 @@ static fathom_status_t fake_poll(void *ctx)
 {
     fake_modbus_t *const fake = ctx;
     fake->polls++;
-    if (fake->request == NULL) return fake->carrier;
+    if (fake->request == NULL) return fake->transport;
     assert_unchanged(fake);
     fathom_modbus_request_t *const request = fake->request;
-    if (fake->is_sent) request->exchange.attempts++;
+    if (fake->is_sent) request->transaction.attempts++;
     fake->is_sent = false;
-    if (fake->ends == FATHOM_PENDING) return fake->carrier;
+    if (fake->ends == FATHOM_PENDING) return fake->transport;
     if (fake->ends == FATHOM_READY && request->message.head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) {
-        assert_int_equal(request->message.head[5], fake->answer_count);
-        memcpy(request->message.values, fake->answer, fake->answer_count * sizeof *fake->answer);
+        assert_int_equal(request->message.head[5], fake->response_count);
+        memcpy(request->message.values, fake->response, fake->response_count * sizeof *fake->response);
     }
     if (fake->ends == FATHOM_ERR_EXCEPTION) request->message.exception = fake->exception;
     end(fake, fake->ends);
-    return fake->carrier;
+    return fake->transport;
 }
 
 static uint32_t fake_due_us(void *ctx) { return ((const fake_modbus_t *)ctx)->due_us; }
@@ -95,11 +95,11 @@ void fake_modbus_send(fake_modbus_t *fake)
     fake->is_sent = true;
 }
 
-void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t count)
+void fake_modbus_response(fake_modbus_t *fake, const uint16_t *values, uint8_t count)
 {
-    assert_in_range(count, 1, sizeof fake->answer / sizeof *fake->answer);
-    memcpy(fake->answer, values, count * sizeof *values);
-    fake->answer_count = count;
+    assert_in_range(count, 1, sizeof fake->response / sizeof *fake->response);
+    memcpy(fake->response, values, count * sizeof *values);
+    fake->response_count = count;
     fake_modbus_fail(fake, FATHOM_READY);
 }
 
@@ -119,7 +119,7 @@ void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception)
 void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status)
 {
     assert_non_null(fake->request);
-    if (fake->request->exchange.attempts == 0) fake_modbus_send(fake);
+    if (fake->request->transaction.attempts == 0) fake_modbus_send(fake);
     fake->ends = status;
 }
 

@@ -6,12 +6,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "fathom/modbus.h"
+#include "fathom/engine/modbus.h"
 
 /*
- * A carrier of Modbus and a clock that do what the test says: the seam of modbus.h without a wire. Time stands
+ * A transport of Modbus and a clock that do what the test says: the transport of modbus.h without a wire. Time stands
  * still until the test moves it, and what was submitted waits until the test sends and ends it. It fails the
- * test when a driver breaks the seam's rules: a second submit, or a request that changed under way.
+ * test when a driver breaks the transport's rules: a second submit, or a request that changed under way.
  */
 enum { FAKE_MODBUS_LOG = 64 };
 
@@ -20,17 +20,17 @@ typedef struct {
     fathom_clock_t clock;
     uint32_t now_us;
     uint32_t due_us;
-    uint32_t heard_us;       /* when the answer to a request came */
-    fathom_status_t carrier; /* what poll returns */
-    fathom_status_t refuses; /* < 0: what submit returns, and nothing happens */
+    uint32_t heard_us;         /* when the response to a request came */
+    fathom_status_t transport; /* what poll returns */
+    fathom_status_t refuses;   /* < 0: what submit returns, and nothing happens */
 
     fathom_modbus_request_t *request; /* under way */
     fathom_modbus_request_t snapshot; /* of it, as it was submitted */
     bool is_sent;                     /* the next poll puts it on the wire */
     fathom_status_t ends;             /* with which the next poll ends it; FATHOM_PENDING: it does not */
     uint8_t exception;
-    uint16_t answer[16];
-    uint8_t answer_count;
+    uint16_t response[16];
+    uint8_t response_count;
 
     uint8_t log[FAKE_MODBUS_LOG][6]; /* heads of all that was submitted: unit, function, first, count */
     unsigned submits;
@@ -45,9 +45,9 @@ void fake_modbus_init(fake_modbus_t *fake);
 /* The next poll puts the request on the wire; each time it is a further attempt. */
 void fake_modbus_send(fake_modbus_t *fake);
 
-/* The next poll ends the request: with an answer of `count` registers, which must be as many as were asked, with
+/* The next poll ends the request: with a response of `count` registers, which must be as many as were asked, with
  * an exception, or with another error. A request that was not sent goes out in the same poll. */
-void fake_modbus_answer(fake_modbus_t *fake, const uint16_t *values, uint8_t count);
+void fake_modbus_response(fake_modbus_t *fake, const uint16_t *values, uint8_t count);
 void fake_modbus_acknowledge(fake_modbus_t *fake); /* a write */
 void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception);
 void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status);

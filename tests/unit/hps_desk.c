@@ -31,7 +31,7 @@ void hps_start_at(uint8_t address, const fathom_line_settings_t *settings)
 {
     hps_set_up(NULL);
     hps_config.modbus.address = address;
-    hps_config.modbus.settings = settings;
+    hps_config.modbus.line_settings = settings;
     hps_start();
 }
 
@@ -39,20 +39,20 @@ void hps_asks(uint8_t unit, uint32_t baud)
 {
     desk_waits(3000000);
     fake_modbus_assert_asked(&fake, fake.submits, unit, 0x0008, 4);
-    const fathom_line_settings_t *const settings = fake.request->exchange.settings;
+    const fathom_line_settings_t *const settings = fake.request->transaction.line_settings;
     assert_int_equal(settings != NULL ? settings->baud : 0, baud);
 }
 
-void hps_answers(void)
+void hps_responses(void)
 {
-    fake_modbus_answer(&fake, hps_measured, 4);
+    fake_modbus_response(&fake, hps_measured, 4);
     assert_int_equal(desk_poll(), FATHOM_READY);
     assert_int_equal(desk.sample.distance_mm, 2083);
 }
 
 void hps_is_silent(fathom_status_t as)
 {
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+    fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(desk_poll(), as);
 }
 

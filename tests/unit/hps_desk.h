@@ -3,8 +3,8 @@
 #define FATHOM_TESTS_HPS_DESK_H
 
 #include "desk.h"
-#include "fathom/hps167s_info.h"
-#include "fathom/hps167s_settings.h"
+#include "fathom/sensor/hps167s_info.h"
+#include "fathom/sensor/hps167s_settings.h"
 
 /* desk.h with an HPS-167S. */
 extern fathom_hps167s_config_t hps_config;
@@ -23,7 +23,7 @@ void hps_start_at(uint8_t address, const fathom_line_settings_t *settings);
 /* The next measurement is asked of this unit at this rate, 3 s later; 0: no settings are named. Then it is answered with
  * the example of command #5, or not at all, which fathom_poll tells like this. */
 void hps_asks(uint8_t unit, uint32_t baud);
-void hps_answers(void);
+void hps_responses(void);
 void hps_is_silent(fathom_status_t as);
 
 /* Requests of commands #1, #2, #5 and #6 (tables 9, 11, 17, 19), for rows of desk.h. */
@@ -48,7 +48,7 @@ void hps_is_silent(fathom_status_t as);
     {                                                                                                        \
         {unit, 6, 0, address, HIGH(value), LOW(value)}, ends, {2}, baud                                      \
     }
-/* An answer to #2 whose rate has this code; and two that agree. */
+/* A response to #2 whose rate has this code; and two that agree. */
 #define TWO(unit, ends, code, baud) HPS_2(unit, ends, baud, 0xFFFF, 0x0500, 0x0000, 0xB400 + code)
 #define IS(unit, code, baud)        TWO(unit, FATHOM_READY, code, baud), TWO(unit, FATHOM_READY, code, baud)
 /* Two of unit 1 with these registers; table 12: termination FF, automatic FF, warm-up 5 s, reconnect 180 ms, rate 1. */
@@ -72,7 +72,7 @@ void hps_is_silent(fathom_status_t as);
     }
 
 #define OK     FATHOM_READY
-#define NOBODY FATHOM_ERR_NO_ANSWER
+#define NOBODY FATHOM_ERR_NO_RESPONSE
 
 /* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
 enum { HPS_ROUNDS = 4 };

@@ -4,13 +4,13 @@
 #include "hex.h"
 
 const uint8_t ask_1_processed[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
-const uint8_t answer_1_754[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
-const uint8_t answer_1_751[] = {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8};
+const uint8_t response_1_754[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
+const uint8_t response_1_751[] = {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8};
 const uint8_t set_address_5[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71};
 const uint8_t exception_1_2[] = {0x01, 0x83, 0x02, 0xC0, 0xF1};
 const uint8_t set_36_ms[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24, 0xF1, 0xAC};
 const uint8_t set_ms_done[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x40, 0x02};
-const uint8_t answer_1_three[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
+const uint8_t response_1_three[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
 const uint8_t dyp_four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 const uint8_t dyp_first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 const uint8_t auto_frame[] = {0xFF, 0x07, 0xA1, 0xA7};
@@ -54,20 +54,20 @@ uint32_t due(void) { return fathom_line_due_us(&bench.line); }
 
 void submit(fathom_modbus_request_t *request)
 {
-    request->exchange.timeout_us = TIMEOUT_US;
+    request->transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit_with_zero(&bench.line, request), FATHOM_PENDING);
 }
 
 void submit_dyp(fathom_modbus_request_t *request)
 {
-    request->exchange.timeout_us = TIMEOUT_US;
+    request->transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_submit(&bench.line, request), FATHOM_PENDING);
 }
 
 void ask(fathom_modbus_request_t *request, uint8_t unit, uint16_t *value, uint8_t retries)
 {
     fathom_modbus_read_holding_registers(&request->message, unit, 0x0100, 1, value);
-    request->exchange.retries = retries;
+    request->transaction.retries = retries;
     *value = 0xDEAD;
     submit(request);
 }
@@ -111,11 +111,11 @@ int set_up_asked(void **state)
     return 0;
 }
 
-int set_up_owing(void **state)
+int set_up_quarantined(void **state)
 {
     set_up_asked(state);
     run(TIMEOUT_US + 200);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect(FATHOM_ERR_NO_RESPONSE);
     return 0;
 }
 
@@ -133,7 +133,7 @@ void receive_rx(const uint8_t *bytes, size_t length, uint8_t flags)
 }
 
 /* The CRC by the bitwise definition. */
-void receive_answer(uint8_t unit, uint16_t value)
+void receive_response(uint8_t unit, uint16_t value)
 {
     uint8_t frame[] = {unit, 0x03, 0x02, (uint8_t)(value >> 8), (uint8_t)value, 0, 0};
     uint16_t crc = 0xFFFF;
@@ -158,29 +158,29 @@ void deliver_hex(const char *hex)
     run(100);
 }
 
-void deliver_answer(uint8_t unit, uint16_t value)
+void deliver_response(uint8_t unit, uint16_t value)
 {
-    receive_answer(unit, value);
+    receive_response(unit, value);
     run(100);
 }
 
 void receive_damaged(void)
 {
-    uint8_t damaged[sizeof answer_1_754];
-    memcpy(damaged, answer_1_754, sizeof damaged);
+    uint8_t damaged[sizeof response_1_754];
+    memcpy(damaged, response_1_754, sizeof damaged);
     damaged[4] ^= 0x10;
     receive_all(damaged);
 }
 
-void answer_1(uint16_t value)
+void response_1(uint16_t value)
 {
-    deliver_answer(1, value);
+    deliver_response(1, value);
     expect_mm(value);
 }
 
-void answer_other(uint8_t unit, uint16_t value)
+void response_other(uint8_t unit, uint16_t value)
 {
-    deliver_answer(unit, value);
+    deliver_response(unit, value);
     expect_other(FATHOM_READY);
     assert_int_equal(bench.other_value, value);
 }
@@ -196,7 +196,7 @@ void break_port(void)
 
 fathom_status_t status_of(const fathom_modbus_request_t *request)
 {
-    return (fathom_status_t)request->exchange.status;
+    return (fathom_status_t)request->transaction.status;
 }
 
 unsigned counter(unsigned which) { return bench.counters[which]; }

@@ -7,9 +7,9 @@
 #include "suite.h"
 
 #include "fake.h"
-#include "fathom/dyp_client.h"
-#include "fathom/line.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/dyp_client.h"
+#include "fathom/engine/line.h"
+#include "fathom/engine/modbus_client.h"
 
 /* A line on a fake UART, and two requests to put on it. 9600 8N1. */
 enum { BYTE_US = 1042, T3_5_US = 3646, GAP_US = 5000, TIMEOUT_US = 100000 };
@@ -39,13 +39,13 @@ int set_up(void **state);
 /* Frames of the datasheets: A16 6(4) examples 1 to 3, HPS-167S "abnormal response", HPS-167S tables 37
  * (with 36 ms and the CRC, which it does not print) and 38, A05 3(4) example 3. */
 extern const uint8_t ask_1_processed[8];
-extern const uint8_t answer_1_754[7];
-extern const uint8_t answer_1_751[7];
+extern const uint8_t response_1_754[7];
+extern const uint8_t response_1_751[7];
 extern const uint8_t set_address_5[8];
 extern const uint8_t exception_1_2[5];
 extern const uint8_t set_36_ms[13];
 extern const uint8_t set_ms_done[8];
-extern const uint8_t answer_1_three[11];
+extern const uint8_t response_1_three[11];
 
 /* A05 2(3)3 with its sum put right, 2(3)4; A16 2(4): 1953 mm, which nobody has asked for. */
 extern const uint8_t dyp_four[13];
@@ -81,31 +81,31 @@ void ask_other(uint8_t unit);
 /* Asks unit 1 and runs until the last stop bit has left, which was at most 400 us ago. */
 void ask_1_and_send(uint8_t retries);
 
-/* Before each test or in its loop: a new bench, and unit 1 was asked, without retries; and it owes the answer. */
+/* Before each test or in its loop: a new bench, and unit 1 was asked, without retries; and it owes the response. */
 int set_up_asked(void **state);
-int set_up_owing(void **state);
+int set_up_quarantined(void **state);
 
 /* ---- what comes ---- */
 
-/* Bytes that can be read at once; those with flags are one read. receive_answer makes a frame with one register. */
+/* Bytes that can be read at once; those with flags are one read. receive_response makes a frame with one register. */
 void receive(const uint8_t *bytes, size_t length);
 void receive_rx(const uint8_t *bytes, size_t length, uint8_t flags);
-void receive_answer(uint8_t unit, uint16_t value);
+void receive_response(uint8_t unit, uint16_t value);
 #define receive_all(array) receive(array, sizeof(array))
 void receive_hex(const char *hex); /* "01 03 14" */
 
 /* The same, and a poll 100 us later. */
 void deliver(const uint8_t *bytes, size_t length);
-void deliver_answer(uint8_t unit, uint16_t value);
+void deliver_response(uint8_t unit, uint16_t value);
 #define deliver_all(array) deliver(array, sizeof(array))
 void deliver_hex(const char *hex);
 
-/* answer_1_754 with one wrong bit. */
+/* response_1_754 with one wrong bit. */
 void receive_damaged(void);
 
-/* The answer to bench.request, of unit 1, or to bench.other: each is taken. */
-void answer_1(uint16_t value);
-void answer_other(uint8_t unit, uint16_t value);
+/* The response to bench.request, of unit 1, or to bench.other: each is taken. */
+void response_1(uint16_t value);
+void response_other(uint8_t unit, uint16_t value);
 
 /* The request is no longer the line's. */
 void cancel(fathom_modbus_request_t *request);

@@ -17,16 +17,16 @@ void start_meter_at(uint32_t now_us)
     stand.config.capture = &stand.pin.capture;
     memset(&stand.meter, 0x5A, sizeof stand.meter);
     stand.readings = 0;
-    stand.no_answers = stand.port_errors = 0;
+    stand.no_responses = stand.port_errors = 0;
     assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_READY);
 }
 
 void start_meter(void) { start_meter_at(1000); }
 
-void answer_with(uint32_t after_us, uint32_t width_us)
+void response_with(uint32_t after_us, uint32_t width_us)
 {
-    stand.pin.answer_after_us = after_us;
-    stand.pin.answer_width_us = width_us;
+    stand.pin.response_after_us = after_us;
+    stand.pin.response_width_us = width_us;
 }
 
 int set_up_meter(void **state)
@@ -50,7 +50,7 @@ fathom_status_t poll_meter(void)
     } else {
         assert_memory_equal(&reading, untouched, sizeof untouched);
     }
-    stand.no_answers += status == FATHOM_ERR_NO_ANSWER;
+    stand.no_responses += status == FATHOM_ERR_NO_RESPONSE;
     stand.port_errors += status == FATHOM_ERR_PORT;
     return status;
 }

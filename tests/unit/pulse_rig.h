@@ -5,7 +5,7 @@
 #include "suite.h"
 
 #include "fake_pin.h"
-#include "fathom/pulse.h"
+#include "fathom/engine/pulse.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
@@ -19,7 +19,7 @@ typedef struct {
     fathom_pulse_meter_t meter;
     fathom_pulse_reading_t last;
     unsigned readings;
-    unsigned no_answers;
+    unsigned no_responses;
     unsigned port_errors;
 } pulse_rig_t;
 
@@ -33,7 +33,7 @@ void start_meter_at(uint32_t now_us);
 void start_meter(void);
 
 /* The module answers each trigger so long after its edge with so wide a pulse. */
-void answer_with(uint32_t after_us, uint32_t width_us);
+void response_with(uint32_t after_us, uint32_t width_us);
 
 /* One pulse that rises so long from now. */
 void pulse_in(uint32_t in_us, uint32_t width_us);
@@ -48,11 +48,11 @@ void run_meter(uint32_t for_us);
 void run_to_trigger(void);
 void measure(uint32_t after_us, uint32_t width_us);
 
-#define expect_readings(n)   assert_int_equal(stand.readings, n)
-#define expect_no_answers(n) assert_int_equal(stand.no_answers, n)
-#define expect_falls(n)      assert_int_equal(stand.pin.falls, n)
-#define expect_poll(status)  assert_int_equal(poll_meter(), status)
-#define expect_due(us)       assert_int_equal(fathom_pulse_due_us(&stand.meter), us)
+#define expect_readings(n)     assert_int_equal(stand.readings, n)
+#define expect_no_responses(n) assert_int_equal(stand.no_responses, n)
+#define expect_falls(n)        assert_int_equal(stand.pin.falls, n)
+#define expect_poll(status)    assert_int_equal(poll_meter(), status)
+#define expect_due(us)         assert_int_equal(fathom_pulse_due_us(&stand.meter), us)
 
 /* The last reading. */
 void expect_last(uint8_t kind, uint32_t width_us);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
 #include "fake_pin.h"
-#include "fathom/a05_auto.h"
-#include "fathom/line_pins.h"
+#include "fathom/engine/line_pins.h"
+#include "fathom/sensor/a05_auto.h"
 
 /* Its four probes, and power-on; test_driver_contract.c has what every listener promises. */
 
@@ -42,7 +42,7 @@ static const suite_t suite = {.set_up = set_up};
 static void send(uint16_t one, uint16_t two, uint16_t three, uint16_t four)
 {
     uint8_t frame[10];
-    rig_send(frame, rig_dyp_frame(frame, (const uint16_t[]){one, two, three, four}, 4), 500);
+    rig_send(frame, rig_dyp_stream(frame, (const uint16_t[]){one, two, three, four}, 4), 500);
 }
 
 /* The example has come, and is there to be taken. */
@@ -94,7 +94,7 @@ TEST(one_poll_gives_one_sample_in_the_order_of_the_probes)
 TEST(a_new_frame_does_not_mix_into_the_samples_of_the_old_one)
 {
     uint8_t newer[10];
-    rig_dyp_frame(newer, (const uint16_t[]){301, 302, 303, 304}, 4);
+    rig_dyp_stream(newer, (const uint16_t[]){301, 302, 303, 304}, 4);
     example_is_there();
     takes(1, 1000, 1);
     rig.fake.now_us += 10000;
@@ -157,9 +157,9 @@ TEST(between_silences_an_odd_probe_is_refused_alone_and_told)
                  i == 3 ? odd[i] : 4500);
             assert_int_equal(rig.samples, n * (i != 4 ? 3 : 4));
             assert_int_equal(rig.malformed, i != 4 ? n : 0);
-            assert_int_equal(a05.base.answer.implausible, i != 4 ? n : 0);
-            assert_int_equal(a05.base.answer.refused_probe, i != 4 ? i + 1 : 0);
-            assert_int_equal(a05.base.answer.refused_raw, i != 4 ? odd[i] : 0);
+            assert_int_equal(a05.base.measurement.implausible, i != 4 ? n : 0);
+            assert_int_equal(a05.base.measurement.refused_probe, i != 4 ? i + 1 : 0);
+            assert_int_equal(a05.base.measurement.refused_raw, i != 4 ? odd[i] : 0);
             assert_int_equal(rig.sample.sequence, n);
         }
         for (unsigned p = 0; p != 4; p++) assert_int_equal(rig.last[p].probe, p != i ? p + 1 : 0);
@@ -173,8 +173,8 @@ TEST(the_frame_in_which_a_probe_turns_odd_is_refused_whole_and_those_after_it_ar
     send(1001, 2001, 7001, 4001);
     assert_int_equal(rig.samples, 12);
     assert_int_equal(rig.malformed, 1);
-    assert_int_equal(a05.base.answer.refused_probe, 3);
-    assert_int_equal(a05.base.answer.refused_raw, 7001);
+    assert_int_equal(a05.base.measurement.refused_probe, 3);
+    assert_int_equal(a05.base.measurement.refused_raw, 7001);
     send(1002, 7002, 3002, 4002); /* another one, which makes no difference */
     assert_int_equal(rig.samples, 15);
     assert_int_equal(rig.malformed, 2);
@@ -204,8 +204,8 @@ TEST(where_the_place_is_not_sure_an_odd_probe_has_all_of_the_frame_refused)
     send_on(2, true); /* a silence before the first, and none behind it */
     assert_int_equal(rig.samples, 0);
     assert_int_equal(rig.malformed, 1);
-    assert_int_equal(a05.base.answer.refused_probe, 3);
-    assert_int_equal(a05.base.answer.refused_raw, 7000);
+    assert_int_equal(a05.base.measurement.refused_probe, 3);
+    assert_int_equal(a05.base.measurement.refused_raw, 7000);
     send_on(1, false); /* the second: one step */
     assert_int_equal(rig.samples, 0);
     assert_int_equal(rig.malformed, 2);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/modbus_rtu.h"
+#include "fathom/sensor/a05_dyp.h"
 
 /* An A05 that answers the frames 55 AA (A05 2), over a line on the fake UART. SUM is the low byte of the sum of all
  * before it, and 55 + AA = FF. test_driver_contract.c has one probe alone. */
@@ -77,7 +77,7 @@ static uint32_t until_written(size_t written)
 
 static void receive(const uint8_t *bytes, size_t length) { fake_receive(&rig.fake, 0, bytes, length); }
 
-/* It is asked for all, and answers. */
+/* It is asked for all, and responses. */
 static void tell(size_t written, const uint8_t *bytes, size_t length)
 {
     until_written(written);
@@ -98,19 +98,19 @@ static void takes(unsigned probe)
 
 TEST(four_samples_share_sequence_and_time)
 {
-    for (uint16_t answer = 1; answer <= 3; answer++) {
-        tell(answer - 1u, four, sizeof four);
+    for (uint16_t response = 1; response <= 3; response++) {
+        tell(response - 1u, four, sizeof four);
         const uint32_t heard_us = rig.fake.now_us;
         for (uint8_t probe = 1; probe <= 4; probe++) {
             if (probe != 1) assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
             takes(probe);
             assert_sample(&rig.sample, (fathom_sample_t){.time_us = heard_us,
                                                          .raw = four_mm[probe - 1],
-                                                         .sequence = answer,
+                                                         .sequence = response,
                                                          .distance_mm = four_mm[probe - 1],
                                                          .kind = FATHOM_TARGET,
                                                          .model = FATHOM_A05,
-                                                         .unit = 1,
+                                                         .address = 1,
                                                          .probe = probe});
             rig.fake.now_us += STEP_US;
         }
@@ -135,13 +135,13 @@ TEST(one_probe_is_measured_alone)
     for (uint8_t probe = 1; probe <= 4; probe++) {
         const uint8_t command = (uint8_t)(0x0F + probe);
         const uint8_t request[] = {0x55, 0xAA, 0x01, command, command}; /* FF + 01 = 100 */
-        const uint8_t answer[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
+        const uint8_t response[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
         start_with((uint8_t)(1u << (probe - 1)), 0, 0);
         until_written(0);
         assert_int_equal(rig.fake.writes[0].length, sizeof request);
         assert_memory_equal(rig.fake.writes[0].bytes, request, sizeof request);
         nothing_for(70000);
-        receive(answer, sizeof answer);
+        receive(response, sizeof response);
         assert_int_equal(rig_poll(), FATHOM_READY);
         assert_int_equal(rig.sample.probe, probe);
         assert_int_equal(rig.sample.distance_mm, 1953);
@@ -163,7 +163,7 @@ TEST(a_value_that_cannot_be_is_refused_alone)
         assert_int_equal(rig.sample.interference, i == 1);
     }
     assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
-    assert_int_equal(a05.base.answer.implausible, 1);
+    assert_int_equal(a05.base.measurement.implausible, 1);
     nothing_for(1000);
     config.window = (fathom_dyp_window_t){.min_mm = 1001, .max_mm = 2000};
     start();
@@ -177,7 +177,7 @@ TEST(a_value_that_cannot_be_is_refused_alone)
 
 /* ---- time ---- */
 
-/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the answers are instant. */
+/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the responses are instant. */
 static void assert_period(uint32_t expected_us)
 {
     uint32_t last_us = 0;
@@ -223,7 +223,7 @@ TEST(silence_is_said_after_the_time_out)
         start_with((uint8_t)rows[i][0], 0, rows[i][1]);
         until_written(0);
         nothing_for(REQUEST_US + rows[i][2] - 1000);
-        assert_int_equal(next_within(2000, rig_poll), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(next_within(2000, rig_poll), FATHOM_ERR_NO_RESPONSE);
         nothing_for(1000);
     }
 }
@@ -233,7 +233,7 @@ TEST(retries_are_the_configs)
     config.probes = 1;
     config.modbus.retries = 2;
     start();
-    assert_int_equal(next_within(2000000, rig_poll), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(next_within(2000000, rig_poll), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(rig.fake.written, 3);
 }
 
@@ -244,7 +244,7 @@ TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
     start();
     for (unsigned n = 0; n != 8; n++) {
         const uint32_t at_us = until_written(n);
-        assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_RESPONSE);
         /* 200 ms of time-out and as much of owing; from the third on the pause: 200, then 300 ms after it. */
         if (n >= 4) assert_true(at_us - rig.fake.writes[n - 1].at_us >= 500000);
         if (n >= 1) assert_true(at_us - rig.fake.writes[n - 1].at_us <= 520000);
@@ -262,7 +262,7 @@ TEST(after_power_on_silence_is_warming_up)
         start();
         fathom_a05_dyp_power_on(&a05);
         while (status == FATHOM_ERR_WARMING_UP) status = next_within(2000000, rig_poll);
-        assert_int_equal(status, FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(status, FATHOM_ERR_NO_RESPONSE);
         assert_in_range(rig.fake.now_us - RIG_START_US, starts_us[i][1], starts_us[i][1] + 1600000);
     }
 }
@@ -292,14 +292,14 @@ TEST(address_and_settings_are_the_configs)
     static const uint8_t ask_254[] = {0x55, 0xAA, 0xFE, 0x01, 0xFE}; /* FF + FE + 01 = 1FE */
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
     config.modbus.address = 254;
-    config.modbus.settings = &settings;
+    config.modbus.line_settings = &settings;
     start();
     until_written(0);
     assert_memory_equal(rig.fake.writes[0].bytes, ask_254, sizeof ask_254);
     assert_int_equal(rig.fake.writes[0].baud, 9600);
 }
 
-TEST(after_deinit_an_answer_changes_nothing)
+TEST(after_deinit_a_response_changes_nothing)
 {
     until_written(0);
     fathom_a05_dyp_deinit(&a05);
@@ -349,25 +349,25 @@ static void until_asked(size_t written)
     assert_int_equal(rig.fake.written, written);
 }
 
-static void finds(size_t written, const uint8_t *answer, uint8_t where)
+static void finds(size_t written, const uint8_t *response, uint8_t where)
 {
     until_asked(written);
-    receive(answer, sizeof from_5);
+    receive(response, sizeof from_5);
     finds_within(STEP_US, FATHOM_READY);
     assert_int_equal(address, where);
 }
 
-TEST_IN(finding, the_address_is_where_the_answer_came_from_and_the_next_call_asks_anew)
+TEST_IN(finding, the_address_is_where_the_response_came_from_and_the_next_call_asks_anew)
 {
     finds(1, from_5, 5);
     finds(2, from_254, 254);
 }
 
-TEST_IN(finding, silence_is_no_answer_and_leaves_the_address_alone)
+TEST_IN(finding, silence_is_no_response_and_leaves_the_address_alone)
 {
     until_asked(1);
     finds_within(REQUEST_US + 200000 - 70000 - 1000, FATHOM_PENDING);
-    finds_within(2000, FATHOM_ERR_NO_ANSWER);
+    finds_within(2000, FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(address, GUARD);
 }
 
@@ -385,7 +385,7 @@ TEST_IN(finding, what_is_damaged_gives_no_address)
     }
 }
 
-TEST_IN(finding, of_two_answers_the_first_is_taken)
+TEST_IN(finding, of_two_responses_the_first_is_taken)
 {
     uint8_t glued[sizeof from_5 + sizeof from_254];
     memcpy(glued, from_254, sizeof from_254);
@@ -417,7 +417,7 @@ TEST_IN(finding, it_can_be_given_up)
         assert_null(rig.line.head);
     }
     finds_within(2 * 200000 - 75000, FATHOM_PENDING);
-    assert_int_equal(rig.fake.written, 1); /* all owe an answer */
+    assert_int_equal(rig.fake.written, 1); /* all owe a response */
     finds(2, from_5, 5);
 }
 
@@ -436,18 +436,18 @@ TEST_IN(finding, a_line_without_room_says_so)
     assert_null(rig.line.head);
 }
 
-/* ---- 55 AA 03 gives its address to every A05 on the line (A05 2(3)5). Whoever has the driver's seam to the line can
+/* ---- 55 AA 03 gives its address to every A05 on the line (A05 2(3)5). Whoever has the driver's transport to the line can
  * send it at no time: not before the driver sets an address, not between the calls that set it, and not afterwards ---- */
 
-/* A write of the address register, as a program would send it that has taken the seam for Modbus. */
+/* A write of the address register, as a program would send it that has taken the transport for Modbus. */
 static void assert_refused(void)
 {
     static fathom_modbus_request_t other;
-    const fathom_modbus_t *const seam = a05.base.unit.modbus;
+    const fathom_modbus_t *const transport = a05.base.unit.transport;
     const size_t written = rig.fake.written;
     fathom_modbus_write_single_register(&other.message, 9, 0x0200, 9);
-    assert_int_equal(seam->submit(seam->ctx, &other), FATHOM_ERR_UNSUPPORTED);
-    assert_false(fathom_line_has(&rig.line, &other.exchange));
+    assert_int_equal(transport->submit(transport->ctx, &other), FATHOM_ERR_UNSUPPORTED);
+    assert_false(fathom_line_has(&rig.line, &other.transaction));
     assert_int_equal(rig.fake.written, written);
 }
 
@@ -456,13 +456,13 @@ static fathom_status_t set_7(void) { return fathom_a05_dyp_set_every_address(&a0
 /* 55 AA 01 10 and 0x75B mm: 55 + AA + 01 + 10 + 07 + 5B = 172, so that the sum is 72; and at address 7: 78. 55 + AA + 07
  * + 03 = 109. */
 static const struct {
-    uint8_t address, command, length, answer[7];
+    uint8_t address, command, length, response[7];
 } steps[] = {{0x01, 0x10, 7, {0x55, 0xAA, 0x01, 0x10, 0x07, 0x5B, 0x72}},
              {0x07, 0x10, 0, {0}}, /* is somebody there? */
              {0x07, 0x03, 5, {0x55, 0xAA, 0x07, 0x03, 0x09}},
              {0x07, 0x10, 7, {0x55, 0xAA, 0x07, 0x10, 0x07, 0x5B, 0x78}}};
 
-TEST(a_write_through_the_seam_is_refused_at_every_time)
+TEST(a_write_through_the_transport_is_refused_at_every_time)
 {
     fathom_status_t status = FATHOM_PENDING;
     size_t seen = 0;
@@ -476,7 +476,7 @@ TEST(a_write_through_the_seam_is_refused_at_every_time)
         assert_true(seen < COUNT(steps));
         assert_int_equal(rig.fake.writes[seen].bytes[2], steps[seen].address);
         assert_int_equal(rig.fake.writes[seen].bytes[3], steps[seen].command);
-        if (steps[seen].length != 0) fake_receive(&rig.fake, 70000, steps[seen].answer, steps[seen].length);
+        if (steps[seen].length != 0) fake_receive(&rig.fake, 70000, steps[seen].response, steps[seen].length);
         seen++;
     }
     assert_int_equal(status, FATHOM_READY);
@@ -485,7 +485,7 @@ TEST(a_write_through_the_seam_is_refused_at_every_time)
     assert_refused();
 }
 
-TEST(what_was_refused_or_given_up_leaves_the_seam_closed)
+TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
 {
     assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 0), FATHOM_ERR_ARGUMENT);
     assert_refused();

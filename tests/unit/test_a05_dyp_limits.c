@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/a05_dyp.h"
+#include "fathom/sensor/a05_dyp.h"
 #include "line_bench.h"
 
 /* a05_dyp.h: its time-outs and paces, by default and as the config says, of everything that it asks. The line has 9600
@@ -61,7 +61,7 @@ static void is_sent(fathom_status_t (*command)(void))
 static void is_silent_for(uint32_t us, fathom_status_t (*command)(void))
 {
     assert_int_equal(after(us - 1, command), FATHOM_PENDING);
-    assert_int_equal(after(1, command), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(after(1, command), FATHOM_ERR_NO_RESPONSE);
 }
 
 /* "timeout_us; 0: 500 ms for all probes, 200 ms for one". */
@@ -84,11 +84,11 @@ TEST(all_probes_have_500_ms_and_one_has_200)
 
 /* FATHOM_A05_DYP_ALL_PROBES_US, FATHOM_A05_DYP_ONE_PROBE_US: "from one command to the next, at least", and no longer. The
  * pace counts from the poll in which the request went out. */
-static void is_asked_every(uint32_t us, const uint8_t *answer, size_t length)
+static void is_asked_every(uint32_t us, const uint8_t *response, size_t length)
 {
     start();
     is_sent(measure);
-    receive(answer, length);
+    receive(response, length);
     assert_int_equal(after(0, measure), FATHOM_READY);
     while (measure() == FATHOM_READY) {
     }
@@ -112,7 +112,7 @@ TEST(all_probes_are_asked_every_250_ms_and_one_every_100)
     is_asked_every(100000, first_1953, sizeof first_1953);
 }
 
-/* "command_timeout_us: of whatever else is asked; 0: 1 s". The first question of a setting is one. */
+/* "command_timeout_us: of whatever else is asked; 0: 1 s". The first request of a setting is one. */
 TEST(a_command_has_1_s_or_what_the_config_says)
 {
     start();
@@ -125,7 +125,7 @@ TEST(a_command_has_1_s_or_what_the_config_says)
     is_silent_for(345678, set_address);
 }
 
-/* The command itself is acknowledged at once or not at all: the time of one probe is enough. Address 1 answers with 1953
+/* The command itself is acknowledged at once or not at all: the time of one probe is enough. Address 1 responses with 1953
  * mm, 7 does not, and then 7 is set. */
 TEST(setting_the_address_is_waited_for_as_one_probe_is)
 {
@@ -140,12 +140,12 @@ TEST(setting_the_address_is_waited_for_as_one_probe_is)
     is_sent(set_address);
     assert_memory_equal(bench.fake.writes[2].bytes, set_7, sizeof set_7);
     assert_int_equal(after(199999, set_address), FATHOM_PENDING);
-    assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 1);
+    assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES), 1);
     assert_int_equal(after(1, set_address), FATHOM_PENDING);
-    assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS), 2);
+    assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES), 2);
 }
 
-/* fathom_a05_dyp_find(): "FATHOM_ERR_NO_ANSWER: nothing in 200 ms". */
+/* fathom_a05_dyp_find(): "FATHOM_ERR_NO_RESPONSE: nothing in 200 ms". */
 TEST(who_is_there_is_waited_for_200_ms)
 {
     memset(&find, 0, sizeof find);

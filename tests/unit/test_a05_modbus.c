@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
 #include "desk.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/a05_modbus.h"
 
 /* Its four probes; test_driver_contract.c has the rest. */
 
@@ -29,8 +29,8 @@ static void start(void)
 #define IS_TOLD(...)                                                                                         \
     do {                                                                                                     \
         desk_waits(400000);                                                                                  \
-        fake_modbus_answer(&fake, (const uint16_t[]){__VA_ARGS__},                                           \
-                           (uint8_t)COUNT(((const uint16_t[]){__VA_ARGS__})));                               \
+        fake_modbus_response(&fake, (const uint16_t[]){__VA_ARGS__},                                         \
+                             (uint8_t)COUNT(((const uint16_t[]){__VA_ARGS__})));                             \
     } while (0)
 
 /* ---- what is asked ---- */
@@ -59,7 +59,7 @@ static void take_samples(uint8_t probes, uint16_t sequence)
                                                       .sequence = sequence,
                                                       .kind = FATHOM_TARGET,
                                                       .model = FATHOM_A05,
-                                                      .unit = 1,
+                                                      .address = 1,
                                                       .probe = probe});
     }
 }
@@ -77,11 +77,11 @@ static void ask_spans(uint16_t register_of_1)
         start();
         desk_waits(0);
         fake_modbus_assert_asked(&fake, 1, 1, first, span.count);
-        assert_int_equal(fake.request->exchange.timeout_us, 200000 + pace_us);
+        assert_int_equal(fake.request->transaction.timeout_us, 200000 + pace_us);
         for (uint8_t i = 0; i != span.count; i++) values[i] = (uint16_t)(1000 * (span.first + i) + 1);
         fake_modbus_send(&fake);
         desk_waits(0);
-        fake_modbus_answer(&fake, values, span.count);
+        fake_modbus_response(&fake, values, span.count);
         fake.now_us += 90000;
         take_samples(probes == 0 ? 0xF : probes, 1);
         desk_waits(pace_us - 90001);
@@ -111,13 +111,13 @@ TEST(a_period_that_the_probes_cannot_keep_is_stretched)
 
 /* ---- what comes back ---- */
 
-TEST(the_samples_of_one_answer_share_sequence_and_time)
+TEST(the_samples_of_one_response_share_sequence_and_time)
 {
     start();
-    for (uint16_t answer = 1; answer <= 3; answer++) {
-        fake.heard_us = 1000u * answer;
+    for (uint16_t response = 1; response <= 3; response++) {
+        fake.heard_us = 1000u * response;
         IS_TOLD(1001, 2001, 3001, 4001);
-        take_samples(0xF, answer);
+        take_samples(0xF, response);
         desk_waits(7000);
     }
     IS_TOLD(1000, 0xFFFD, 0xFFFE, 3562);
@@ -137,12 +137,12 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     IS_TOLD(249, 250, 4501, 4500);
     for (unsigned probe = 1; probe <= 4; probe++) {
         assert_int_equal(desk_poll(), probe % 2 != 0 ? FATHOM_ERR_MALFORMED : FATHOM_READY);
-        assert_int_equal(a05.base.answer.refused_probe, probe < 3 ? 1 : 3);
-        assert_int_equal(a05.base.answer.refused_raw, probe < 3 ? 249 : 4501);
+        assert_int_equal(a05.base.measurement.refused_probe, probe < 3 ? 1 : 3);
+        assert_int_equal(a05.base.measurement.refused_raw, probe < 3 ? 249 : 4501);
         if (probe % 2 == 0) assert_int_equal(desk.sample.probe, probe);
         if (probe % 2 == 0) assert_int_equal(desk.sample.distance_mm, probe == 2 ? 250 : 4500);
     }
-    assert_int_equal(a05.base.answer.implausible, 2);
+    assert_int_equal(a05.base.measurement.implausible, 2);
     desk_waits(0);
 }
 
@@ -153,7 +153,7 @@ TEST(a_probe_between_that_is_not_wanted_gives_nothing_whatever_it_reads)
     IS_TOLD(1001, 0xFFFF, 6001, 4001);
     take_samples(0x9, 1);
     desk_waits(0);
-    assert_int_equal(a05.base.answer.implausible, 0);
+    assert_int_equal(a05.base.measurement.implausible, 0);
 }
 
 /* Samples say where they were read. */
@@ -162,14 +162,14 @@ static fathom_status_t move(void) { return fathom_a05_modbus_set_address(&a05, 5
 TEST(an_a05_that_has_moved_measures_at_its_new_address)
 {
     start();
-    PLAY(move, FATHOM_READY, READ(1, 0x0200, FATHOM_READY, 1), READ(5, 0x0200, FATHOM_ERR_NO_ANSWER, 0),
+    PLAY(move, FATHOM_READY, READ(1, 0x0200, FATHOM_READY, 1), READ(5, 0x0200, FATHOM_ERR_NO_RESPONSE, 0),
          WRITE(1, 0x0200, 5, FATHOM_READY), READ(5, 0x0200, FATHOM_READY, 5));
     assert_true(fathom_a05_modbus_is_written(&a05));
     IS_TOLD(1001, 2001, 3001, 4001);
     fake_modbus_assert_asked(&fake, 1, 5, 0x0106, 4);
     for (unsigned probe = 1; probe <= 4; probe++) {
         assert_int_equal(desk_poll(), FATHOM_READY);
-        assert_int_equal(desk.sample.unit, 5);
+        assert_int_equal(desk.sample.address, 5);
     }
 }
 
@@ -177,7 +177,7 @@ TEST(an_a05_that_has_moved_measures_at_its_new_address)
 TEST(the_example_of_the_datasheet_goes_over_a_line)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
-    static const uint8_t answer[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
+    static const uint8_t response[] = {0x01, 0x03, 0x06, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A, 0x8F, 0x47};
     static const uint16_t distances[] = {250, 659, 2426};
     rig_start(RIG_START_US);
     const fathom_modbus_t modbus = fathom_modbus_client(&rig.line);
@@ -185,7 +185,7 @@ TEST(the_example_of_the_datasheet_goes_over_a_line)
     config.probes = 0xE;
     start();
     rig.sensor = desk.sensor;
-    assert_int_equal(rig_exchange(rig_poll, request, 8, answer, 11), FATHOM_READY);
+    assert_int_equal(rig_transaction(rig_poll, request, 8, response, 11), FATHOM_READY);
     for (unsigned i = 0; i != 3; i++) {
         assert_int_equal(rig.sample.probe, i + 2);
         assert_int_equal(rig.sample.distance_mm, distances[i]);

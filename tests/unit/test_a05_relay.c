@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
 #include "drivers.h"
-#include "fathom/a05_relay.h"
+#include "fathom/sensor/a05_relay.h"
 
 /* What its levels mean; test_driver_contract.c has the rest. */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "drivers.h"
-#include "fathom/a05_relay_rule.h"
+#include "fathom/sensor/a05_relay_rule.h"
 
 enum { HALF_S = 500000, NONE = 0 };
 

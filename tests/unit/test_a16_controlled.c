@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
 
-/* The trigger, and when an answer is one; test_driver_contract.c has the rest. */
+/* The trigger, and when a response is one; test_driver_contract.c has the rest. */
 
 static const uint8_t wrong_sum[] = {0xFF, 0x07, 0xA1, 0xA6};
 
@@ -21,7 +21,7 @@ TEST(a_break_of_2_ms_triggers_every_121_ms)
     rig_poll();
     assert_false(rig.fake.in_break);
     for (unsigned n = 2; n <= 10; n++) {
-        controlled_answer(controlled_1953, 98 * MS);
+        controlled_response(controlled_1953, 98 * MS);
         const uint32_t edge_us = rig.fake.now_us - 2 * MS;
         controlled_run_to_break(n, 100);
         assert_int_equal(rig.fake.now_us - edge_us, 121 * MS); /* "must be greater than 120ms" (A16 3(2)) */
@@ -38,7 +38,7 @@ TEST(a_pin_triggers_instead_of_the_break)
     rig_run(2 * MS, 100);
     assert_false(controlled.pin.level);
     assert_int_equal(controlled.pin.falls, 1);
-    controlled_answer(controlled_1953, 100 * MS);
+    controlled_response(controlled_1953, 100 * MS);
     rig_run(110 * MS, 100);
     assert_int_equal(controlled.pin.low_us, 2 * MS);
     assert_int_equal(rig.samples, 1);
@@ -83,7 +83,7 @@ static fathom_status_t answered_after(const uint8_t frame[4], uint32_t us, uint3
 {
     controlled_start();
     controlled_run_to_break(1, step_us);
-    controlled_answer(frame, us);
+    controlled_response(frame, us);
     return controlled_outcome(step_us);
 }
 
@@ -97,15 +97,16 @@ TEST(a_sample_is_told_5_ms_after_its_last_byte)
 }
 
 /* What begins in time and ends too late is damaged as far as it came: CHECKSUM. */
-TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
+TEST(a_frame_responses_80_to_130_ms_after_the_edge_and_is_late_else)
 {
     static const struct {
         uint32_t after_us;
         fathom_status_t status;
-    } times[] = {
-        {30 * MS, FATHOM_ERR_NO_ANSWER}, {79900, FATHOM_ERR_NO_ANSWER},   {80 * MS, FATHOM_READY},
-        {94 * MS, FATHOM_READY},         {114 * MS, FATHOM_READY},        {130 * MS, FATHOM_READY},
-        {130200, FATHOM_ERR_CHECKSUM},   {133 * MS, FATHOM_ERR_CHECKSUM}, {134 * MS, FATHOM_ERR_NO_ANSWER}};
+    } times[] = {{30 * MS, FATHOM_ERR_NO_RESPONSE}, {79900, FATHOM_ERR_NO_RESPONSE},
+                 {80 * MS, FATHOM_READY},           {94 * MS, FATHOM_READY},
+                 {114 * MS, FATHOM_READY},          {130 * MS, FATHOM_READY},
+                 {130200, FATHOM_ERR_CHECKSUM},     {133 * MS, FATHOM_ERR_CHECKSUM},
+                 {134 * MS, FATHOM_ERR_NO_RESPONSE}};
     for (unsigned i = 0; i != COUNT(times); i++) {
         assert_int_equal(answered_after(controlled_1953, times[i].after_us, 50), times[i].status);
         rig_run(20 * MS, 50);
@@ -123,51 +124,51 @@ TEST(both_ends_of_the_time_are_options)
         assert_int_equal(answered_after(controlled_1953, after_us[i], 50) == FATHOM_READY, i == 1 || i == 2);
 }
 
-TEST(no_answer_is_said_at_130_ms_and_the_next_trigger_follows)
+TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
 {
     controlled_run_to_break(1, 100);
     rig_run(129900, 100);
     assert_int_equal(rig.fake.breaks, 1);
     rig.fake.now_us += 100;
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-    assert_int_equal(rig_poll(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(rig_poll(), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(rig.fake.breaks, 2);
 }
 
-/* Bytes before the time of an answer are none. */
-TEST(a_damaged_answer_is_a_wrong_checksum_and_noise_right_after_the_trigger_is_none)
+/* Bytes before the time of a response are none. */
+TEST(a_damaged_response_is_a_wrong_checksum_and_noise_right_after_the_trigger_is_none)
 {
     assert_int_equal(answered_after(wrong_sum, 100 * MS, 100), FATHOM_ERR_CHECKSUM);
-    comes(FATHOM_ERR_NO_ANSWER);
-    controlled_answer(wrong_sum, 20 * MS);
-    comes(FATHOM_ERR_NO_ANSWER);
-    controlled_answer(wrong_sum, 20 * MS);
-    controlled_answer(controlled_1953, 100 * MS);
+    comes(FATHOM_ERR_NO_RESPONSE);
+    controlled_response(wrong_sum, 20 * MS);
+    comes(FATHOM_ERR_NO_RESPONSE);
+    controlled_response(wrong_sum, 20 * MS);
+    controlled_response(controlled_1953, 100 * MS);
     comes(FATHOM_READY);
 }
 
-TEST(a_late_answer_is_not_that_of_the_next_trigger_and_the_count_stops)
+TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
 {
     controlled.a16.late = UINT16_MAX - 1;
     controlled_run_to_break(1, 100);
     for (unsigned i = 0; i != 3; i++) {
-        comes(FATHOM_ERR_NO_ANSWER);
-        controlled_answer(controlled_511, 30 * MS); /* of the trigger before, 160 ms after it */
+        comes(FATHOM_ERR_NO_RESPONSE);
+        controlled_response(controlled_511, 30 * MS); /* of the trigger before, 160 ms after it */
     }
-    comes(FATHOM_ERR_NO_ANSWER);
+    comes(FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(rig.samples, 0);
     assert_int_equal(controlled.a16.late, UINT16_MAX);
-    controlled_answer(controlled_1953, 100 * MS);
+    controlled_response(controlled_1953, 100 * MS);
     comes(FATHOM_READY);
     assert_int_equal(rig.sample.distance_mm, 1953);
 }
 
-/* With an answer taken, a second one to the same trigger has no business. */
+/* With a response taken, a second one to the same trigger has no business. */
 TEST(a_second_frame_to_one_trigger_is_late)
 {
     controlled_run_to_break(1, 100);
-    controlled_answer(controlled_1953, 90 * MS);
-    controlled_answer(controlled_511, 105 * MS);
+    controlled_response(controlled_1953, 90 * MS);
+    controlled_response(controlled_511, 105 * MS);
     comes(FATHOM_READY);
     rig_run(24 * MS, 100);
     assert_int_equal(rig.samples, 1);
@@ -185,7 +186,7 @@ TEST(the_ports_time_stamps_decide_where_there_are_any)
         rig_run(119 * MS, 1 * MS);
         fake_receive_rx(&rig.fake, 20 * MS, controlled_1953, 4,
                         (fathom_rx_t){edge_us + came_us, FATHOM_RX_TIMED});
-        assert_int_equal(controlled_outcome(20 * MS), in_time ? FATHOM_READY : FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(controlled_outcome(20 * MS), in_time ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
         if (in_time) assert_int_equal(rig.sample.time_us, edge_us + came_us);
         assert_int_equal(controlled.a16.late, !in_time);
     }
@@ -216,8 +217,8 @@ TEST(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_w
                 assert_in_range(rig.fake.breaks, rig.samples, rig.samples + 1);
                 if (rig.fake.breaks == triggers) continue;
                 triggers++;
-                controlled_answer(triggers % 2 != 0 ? controlled_1953 : controlled_511,
-                                  90 * MS + triggers % 6 * 4 * MS + FRAME_US);
+                controlled_response(triggers % 2 != 0 ? controlled_1953 : controlled_511,
+                                    90 * MS + triggers % 6 * 4 * MS + FRAME_US);
             }
             assert_int_equal(controlled.a16.late, 0);
         }
@@ -247,17 +248,17 @@ TEST(who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger)
 }
 
 /* Its stream has a deadline of its own, 71 minutes, which is no concern of the user's. */
-TEST(hours_without_an_answer_are_one_no_answer_a_trigger)
+TEST(hours_without_a_response_are_one_no_response_a_trigger)
 {
-    unsigned no_answers = 0;
+    unsigned no_responses = 0;
     for (unsigned i = 0; i != 40000; i++) {
         rig.fake.now_us += 135 * MS;
         rig.fake.busy_until_us = rig.fake.now_us; /* what left 35 minutes ago would come, to the fake */
         const fathom_status_t status = rig_poll();
-        assert_true(status == FATHOM_PENDING || status == FATHOM_ERR_NO_ANSWER);
-        no_answers += status == FATHOM_ERR_NO_ANSWER;
+        assert_true(status == FATHOM_PENDING || status == FATHOM_ERR_NO_RESPONSE);
+        no_responses += status == FATHOM_ERR_NO_RESPONSE;
     }
-    assert_true(no_answers > 15000);
+    assert_true(no_responses > 15000);
     assert_int_equal(rig.stales, 0);
     assert_int_equal(controlled.a16.stream.counters[FATHOM_STREAM_STALES],
                      0); /* who is not asked is silent */
@@ -266,7 +267,7 @@ TEST(hours_without_an_answer_are_one_no_answer_a_trigger)
 
 /* ---- the port ---- */
 
-TEST(a_busy_port_delays_the_edges_and_costs_no_answer)
+TEST(a_busy_port_delays_the_edges_and_costs_no_response)
 {
     rig.fake.never_sent = true;
     rig_run(50 * MS, 100);
@@ -275,7 +276,7 @@ TEST(a_busy_port_delays_the_edges_and_costs_no_answer)
     rig.fake.never_sent = false;
     rig_run(100, 100);
     assert_int_equal(rig.fake.breaks, 1);
-    controlled_answer(controlled_1953, 100 * MS);
+    controlled_response(controlled_1953, 100 * MS);
     rig.fake.never_sent = true;
     rig_run(50 * MS, 100);
     assert_true(rig.fake.in_break);
@@ -286,7 +287,7 @@ TEST(a_busy_port_delays_the_edges_and_costs_no_answer)
     assert_int_equal(rig.samples, 1);
 }
 
-TEST(a_port_that_breaks_in_the_break_is_said_and_then_the_trigger_had_no_answer)
+TEST(a_port_that_breaks_in_the_break_is_said_and_then_the_trigger_had_no_response)
 {
     controlled_run_to_break(1, 100);
     rig.fake.read_fails = true;
@@ -295,7 +296,7 @@ TEST(a_port_that_breaks_in_the_break_is_said_and_then_the_trigger_had_no_answer)
         assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
     }
     rig.fake.read_fails = false;
-    assert_int_equal(rig_poll(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(rig_poll(), FATHOM_ERR_NO_RESPONSE);
     assert_false(rig.fake.in_break);
 }
 

@@ -43,18 +43,18 @@ static fathom_status_t answered_after(uint32_t us, const uint8_t frame[4])
 /* ---- the defaults ---- */
 
 /* "earliest_us; 0: 80 ms", "latest_us; 0: 130 ms". */
-TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
+TEST(a_frame_responses_from_80_to_130_ms_after_the_edge)
 {
     static const struct {
         uint32_t after_us;
-        bool answers;
+        bool responses;
     } rows[] = {{79999, false}, {80000, true}, {130000, true}, {130001, false}};
     for (unsigned i = 0; i != 4; i++) {
         controlled_set_up(state);
         trigger();
         const fathom_status_t status = answered_after(rows[i].after_us, controlled_1953);
-        assert_int_equal(status == FATHOM_READY, rows[i].answers);
-        assert_int_equal(controlled.a16.late, !rows[i].answers);
+        assert_int_equal(status == FATHOM_READY, rows[i].responses);
+        assert_int_equal(controlled.a16.late, !rows[i].responses);
     }
 }
 
@@ -92,10 +92,10 @@ TEST(distances_up_to_16350_mm_are_believed)
     controlled_start();
     trigger();
     assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
-    assert_int_equal(controlled.a16.answer.implausible, 1);
+    assert_int_equal(controlled.a16.measurement.implausible, 1);
 }
 
-/* sample.h: the number is that of the answer, of which one was refused. */
+/* sample.h: the number is that of the response, of which one was refused. */
 TEST(a_refused_frame_takes_a_number)
 {
     static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
@@ -107,8 +107,8 @@ TEST(a_refused_frame_takes_a_number)
     assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
     poll_after(16 * MS);
     assert_int_equal(rig.fake.breaks, 3);
-    assert_int_equal(controlled.a16.answer.refused_raw, 16351);
-    assert_int_equal(controlled.a16.answer.refused_probe, 1);
+    assert_int_equal(controlled.a16.measurement.refused_raw, 16351);
+    assert_int_equal(controlled.a16.measurement.refused_probe, 1);
     assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
     assert_int_equal(rig.sample.sequence, 3);
 }
@@ -135,7 +135,7 @@ TEST(where_the_port_was_busy_it_is_due_in_1_ms)
     assert_int_equal(due_us(), 600);
 }
 
-/* After latest_us an answer that came in time may still wait for its silence. */
+/* After latest_us a response that came in time may still wait for its silence. */
 TEST(where_a_frame_waits_for_its_end_it_is_due_in_1_ms)
 {
     trigger();
@@ -148,7 +148,7 @@ TEST(where_a_frame_waits_for_its_end_it_is_due_in_1_ms)
     assert_int_equal(due_us(), 600);
 }
 
-TEST(while_an_answer_may_come_it_is_due_at_the_end_of_that)
+TEST(while_a_response_may_come_it_is_due_at_the_end_of_that)
 {
     trigger();
     release();
@@ -159,7 +159,7 @@ TEST(while_an_answer_may_come_it_is_due_at_the_end_of_that)
     assert_int_equal(due_us(), 0);
 }
 
-/* After the answer the next trigger is due, however long the period is: the stream's own deadline means nothing. */
+/* After the response the next trigger is due, however long the period is: the stream's own deadline means nothing. */
 TEST(between_two_triggers_it_is_due_at_the_next_one)
 {
     controlled.config.period_us = 20000 * MS;
@@ -170,7 +170,7 @@ TEST(between_two_triggers_it_is_due_at_the_next_one)
         rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
         trigger();
         poll_after(2 * MS);
-        assert_int_equal(poll_after(128 * MS), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(poll_after(128 * MS), FATHOM_ERR_NO_RESPONSE);
         assert_int_equal(due_us(), 19870 * MS);
         rig.fake.now_us += 70 * MS;
         assert_int_equal(due_us(), 19800 * MS);

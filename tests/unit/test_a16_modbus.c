@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
 #include "desk.h"
-#include "fathom/a16_modbus.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/a16_modbus.h"
 
 /* What test_driver_contract.c does not ask of every driver. */
 
@@ -34,7 +34,7 @@ TEST(the_real_time_value_is_asked_with_300_ms)
     for (unsigned i = 1; i <= 2; i++) {
         desk_waits(2000000);
         fake_modbus_assert_asked(&fake, i, 1, 0x0101, 1);
-        assert_int_equal(fake.request->exchange.timeout_us, 300000);
+        assert_int_equal(fake.request->transaction.timeout_us, 300000);
         config.value = FATHOM_PROCESSED; /* read by init only */
         desk_says(751);
         assert_int_equal(desk_poll(), FATHOM_READY);
@@ -53,8 +53,8 @@ static void start_line(void)
 /* A16 6(4) examples 1 and 2, byte for byte. */
 static const uint8_t requests[][8] = {{0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6},
                                       {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}};
-static const uint8_t answers[][7] = {{0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1},
-                                     {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8}};
+static const uint8_t responses[][7] = {{0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1},
+                                       {0x01, 0x03, 0x02, 0x02, 0xEF, 0xF8, 0xA8}};
 
 TEST(the_examples_of_the_datasheet_go_over_a_line)
 {
@@ -63,15 +63,15 @@ TEST(the_examples_of_the_datasheet_go_over_a_line)
         config.value = i;
         config.modbus.timeout_us = 1000000;
         rig.sensor = start(&a16);
-        assert_int_equal(rig_exchange(rig_poll, requests[i], 8, answers[i], 7), FATHOM_READY);
+        assert_int_equal(rig_transaction(rig_poll, requests[i], 8, responses[i], 7), FATHOM_READY);
         assert_int_equal(rig.sample.distance_mm, i == 0 ? 754 : 751);
     }
 }
 
-/* Two units on one line, in a loop that comes to one of them every 10 ms. The first one's answer is read, and
+/* Two units on one line, in a loop that comes to one of them every 10 ms. The first one's response is read, and
  * the second one's request sent, in the second one's poll. sample.h: time_us is the clock when the last byte
- * of the answer came; the port's stamp says when that was. */
-TEST(the_time_is_the_answers_own_when_anothers_poll_brought_it)
+ * of the response came; the port's stamp says when that was. */
+TEST(the_time_is_the_responses_own_when_anothers_poll_brought_it)
 {
     static fathom_a16_modbus_t other;
     start_line();
@@ -85,7 +85,7 @@ TEST(the_time_is_the_answers_own_when_anothers_poll_brought_it)
             assert_int_equal(rig.fake.written, 1);
             assert_int_equal(rig.fake.writes[0].bytes[0], 1);
             came_us = rig.fake.now_us + 14000;
-            fake_receive_rx(&rig.fake, 15000, answers[0], 7, (fathom_rx_t){came_us, FATHOM_RX_TIMED});
+            fake_receive_rx(&rig.fake, 15000, responses[0], 7, (fathom_rx_t){came_us, FATHOM_RX_TIMED});
         }
         rig.fake.now_us += 10000;
         rig.sensor = i % 2 == 0 ? first : second;

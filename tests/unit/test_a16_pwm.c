@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "drivers.h"
 #include "fake_pin.h"
-#include "fathom/a16_pwm.h"
+#include "fathom/sensor/a16_pwm.h"
 
 /* What widths mean; test_driver_contract.c has the rest. */
 
@@ -16,7 +16,7 @@ static void start(void)
 {
     fake_init(&fake);
     fake_pin_init(&pin, &fake);
-    pin.answer_after_us = 110 * MS;
+    pin.response_after_us = 110 * MS;
     memset(&a16, 0x5A, sizeof a16);
     assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_READY);
     sensor = fathom_a16_pwm_sensor(&a16);
@@ -36,13 +36,13 @@ static const suite_t suite = {.set_up = set_up};
 static fathom_status_t cycle(uint32_t width_us)
 {
     fathom_status_t status = FATHOM_PENDING;
-    pin.answer_width_us = width_us;
+    pin.response_width_us = width_us;
     for (unsigned polls = 0; status == FATHOM_PENDING; polls++) {
         assert_true(polls < 100);
         fake.now_us += 20 * MS;
         status = checked_poll(&sensor, &last);
     }
-    pin.answer_width_us = 0;
+    pin.response_width_us = 0;
     return status;
 }
 
@@ -77,23 +77,23 @@ TEST(no_target_and_faults_are_samples_without_a_distance)
     is(cycle(0), FATHOM_FAULT, 0, 0);
 }
 
-TEST(no_pulse_is_no_answer_and_never_no_target)
+TEST(no_pulse_is_no_response_and_never_no_target)
 {
-    measures(0, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(cycle(0), FATHOM_ERR_NO_ANSWER);
+    measures(0, FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(cycle(0), FATHOM_ERR_NO_RESPONSE);
 }
 
 TEST(samples_are_numbered_and_errors_are_not)
 {
-    unsigned no_answers = 0;
+    unsigned no_responses = 0;
     for (unsigned i = 1; i <= 4; i++) {
         fathom_status_t status;
-        while ((status = cycle(10000)) == FATHOM_ERR_NO_ANSWER) no_answers++;
+        while ((status = cycle(10000)) == FATHOM_ERR_NO_RESPONSE) no_responses++;
         assert_int_equal(status, FATHOM_READY);
         assert_int_equal(last.sequence, i);
-        if (i != 1) assert_int_equal(cycle(0), FATHOM_ERR_NO_ANSWER);
+        if (i != 1) assert_int_equal(cycle(0), FATHOM_ERR_NO_RESPONSE);
     }
-    assert_int_equal(no_answers, 2); /* the cycles that had begun without one */
+    assert_int_equal(no_responses, 2); /* the cycles that had begun without one */
 }
 
 TEST(a_window_of_the_users_own_is_kept_and_refusals_are_counted)
@@ -136,7 +136,7 @@ TEST(the_temperature_of_the_air_is_an_option_that_may_change)
 TEST(the_options_of_the_pulse_are_the_drivers)
 {
     config.pulse.noise_us = 11000;
-    measures(10000, FATHOM_ERR_NO_ANSWER);
+    measures(10000, FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(a16.meter.noises, 1);
     config.pulse.noise_us = 0;
     config.pulse.no_target_us = 9000;

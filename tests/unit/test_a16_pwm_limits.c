@@ -4,7 +4,7 @@
 #include "suite.h"
 
 #include "fake_pin.h"
-#include "fathom/a16_pwm.h"
+#include "fathom/sensor/a16_pwm.h"
 
 /* a16_pwm.h: the window, and all members of a sample. */
 
@@ -21,7 +21,7 @@ static int set_up(void **state)
 {
     fake_init(&fake);
     fake_pin_init(&pin, &fake);
-    pin.answer_after_us = 100000;
+    pin.response_after_us = 100000;
     memset(&config, 0, sizeof config);
     config.pulse.clock = &fake.clock;
     config.pulse.capture = &pin.capture;
@@ -38,7 +38,7 @@ static fathom_status_t pulse_of(uint32_t width_us)
 {
     assert_int_equal(init(), FATHOM_READY);
     sensor = fathom_a16_pwm_sensor(&a16);
-    pin.answer_width_us = width_us;
+    pin.response_width_us = width_us;
     for (unsigned polls = 0; polls != 100; polls++) {
         memset(&sample, 0xFF, sizeof sample);
         fake.now_us += 10000;

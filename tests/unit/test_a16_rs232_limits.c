@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/a16_rs232.h"
+#include "fathom/sensor/a16_rs232.h"
 #include "line_bench.h"
 
 /* a16_rs232.h: the way back to automatic output, which a frame ends, or return_us without. */
 
-static fathom_modbus_t seam;
+static fathom_modbus_t transport;
 static fathom_a16_modbus_t modbus;
 static fathom_a16_auto_t automatic;
 static fathom_a16_rs232_t rs232;
@@ -19,7 +19,7 @@ static fathom_status_t after(uint32_t us)
     return fathom_a16_rs232_return_to_automatic(&rs232, &sample);
 }
 
-static void answer_when_sent(size_t written, const uint8_t *bytes, size_t length)
+static void response_when_sent(size_t written, const uint8_t *bytes, size_t length)
 {
     for (unsigned i = 0; bench.fake.written != written; i++) {
         assert_true(i < 10000);
@@ -35,18 +35,18 @@ static uint32_t begins_us; /* not 0: the clock then */
 /* The address has been read and the mode written; from now on it listens. The memory was full of 01, which is true. */
 static int set_up_listening(void **state)
 {
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &seam};
+    const fathom_a16_modbus_config_t config = {.modbus.transport = &transport};
     const fathom_a16_auto_config_t listening = {.line = &bench.line, .stale_us = 100000000};
     set_up(state);
     if (begins_us != 0) bench.fake.now_us = bench.fake.busy_until_us = begins_us;
     assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
-    seam = fathom_modbus_client(&bench.line);
+    transport = fathom_modbus_client(&bench.line);
     assert_int_equal(fathom_a16_modbus_init(&modbus, &config), FATHOM_READY);
     assert_int_equal(fathom_a16_auto_init(&automatic, &listening), FATHOM_READY);
     memset(&rs232, 0x01, sizeof rs232);
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);
-    answer_when_sent(1, address_is_1, sizeof address_is_1);
-    answer_when_sent(2, mode_is_1, sizeof mode_is_1);
+    response_when_sent(1, address_is_1, sizeof address_is_1);
+    response_when_sent(2, mode_is_1, sizeof mode_is_1);
     assert_memory_equal(bench.fake.writes[1].bytes, mode_is_1, sizeof mode_is_1);
     return 0;
 }
@@ -119,7 +119,7 @@ TEST(a_port_that_breaks_after_a_refused_frame_is_said)
     receive(mm_16351, sizeof mm_16351);
     assert_int_equal(after(100), FATHOM_PENDING);
     assert_int_equal(after(GAP_US), FATHOM_PENDING);
-    assert_int_equal(automatic.base.answer.implausible, 1);
+    assert_int_equal(automatic.base.measurement.implausible, 1);
     bench.fake.read_fails = true;
     assert_int_equal(after(100), FATHOM_ERR_PORT);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/a16_settings.h"
+#include "fathom/sensor/a16_settings.h"
 
 /* Requests are those of A16 6(4), without their CRC. */
 
@@ -19,7 +19,7 @@ static int set_up(void **state)
 static const suite_t suite = {.set_up = set_up};
 
 #define OK     FATHOM_READY
-#define NOBODY FATHOM_ERR_NO_ANSWER
+#define NOBODY FATHOM_ERR_NO_RESPONSE
 
 /* ---- one register a row, in the caller's own variable, which keeps what no device has told until FATHOM_READY ---- */
 
@@ -183,11 +183,11 @@ TEST(the_address_is_read_and_followed_when_it_is_set)
 {
     desk.argument = 5;
     PLAY(desk_poll, OK, READ(1, 0x0100, OK, 1000));
-    assert_int_equal(desk.sample.unit, 1);
+    assert_int_equal(desk.sample.address, 1);
     PLAY(set_address, OK, READ(1, 0x0200, OK, 1), READ(5, 0x0200, NOBODY, 0), /* is somebody there? */
          WRITE(1, 0x0200, 5, OK), READ(5, 0x0200, OK, 5));
     PLAY(desk_poll, OK, READ(5, 0x0100, OK, 754));
-    assert_int_equal(desk.sample.unit, 5);
+    assert_int_equal(desk.sample.address, 5);
     assert_int_equal(desk.sample.distance_mm, 754);
 }
 
@@ -234,7 +234,7 @@ TEST(either_distance_can_be_asked_once)
         PLAY(measure, OK, READ(1, 0x0100 + i, OK, distances[i]));
         assert_int_equal(desk.sample.kind, FATHOM_TARGET);
         assert_int_equal(desk.sample.distance_mm, distances[i]);
-        assert_int_equal(desk.sample.unit, 1);
+        assert_int_equal(desk.sample.address, 1);
     }
     desk.argument = 2;
     assert_int_equal(measure(), FATHOM_ERR_ARGUMENT);
@@ -247,7 +247,7 @@ TEST(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one)
     desk_waits(0);
     PENDS(measure());
     assert_int_equal(fake.submits, 1);
-    PLAY(measure, OK, READ(1, 0x0100, OK, 1111), /* to the repeated question, which nobody takes */
+    PLAY(measure, OK, READ(1, 0x0100, OK, 1111), /* to the repeated request, which nobody takes */
          READ(1, 0x0100, OK, 2222));
     assert_int_equal(desk.sample.distance_mm, 2222);
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
 #include "drivers.h"
-#include "fathom/a16_switch.h"
-#include "fathom/line_pins.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/line_pins.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/a16_switch.h"
 
 /* What its levels mean, and Modbus on the same pins; test_driver_contract.c has the rest. */
 
 enum { START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000 };
 
-/* A16 6(4), the last two examples: threshold to 2000 mm, polarity to negative. The answers equal the requests. */
+/* A16 6(4), the last two examples: threshold to 2000 mm, polarity to negative. The responses equal the requests. */
 static const uint8_t threshold_2000[8] = {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF};
 static const uint8_t negative[8] = {0x01, 0x06, 0x02, 0x05, 0x00, 0x00, 0x98, 0x73};
 static const uint8_t nothing = 0;
@@ -66,7 +66,7 @@ static void stands_as(uint8_t kind) { after_ms(60, 1, kind); }
 static void submit(const uint8_t *example)
 {
     memset(&request, 0, sizeof request);
-    request.exchange.timeout_us = TIMEOUT_US;
+    request.transaction.timeout_us = TIMEOUT_US;
     fathom_modbus_write_single_register(&request.message, 1, (uint16_t)(example[2] << 8 | example[3]),
                                         (uint16_t)(example[4] << 8 | example[5]));
     assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
@@ -82,15 +82,15 @@ static void asks(const uint8_t *example)
     assert_memory_equal(pins.fake.writes[0].bytes, example, 8);
 }
 
-static int8_t status(void) { return request.exchange.status; }
+static int8_t status(void) { return request.transaction.status; }
 
 static void until_ended(void)
 {
     while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
 }
 
-/* The bits of an answer on the pin, whose level is `level` before and after it, and the bytes at the UART. */
-static void answer(uint32_t in_us, bool level, const uint8_t *bytes)
+/* The bits of a response on the pin, whose level is `level` before and after it, and the bytes at the UART. */
+static void response(uint32_t in_us, bool level, const uint8_t *bytes)
 {
     bool now = level;
     fake_trickle(&pins.fake, in_us, BYTE_US, bytes, 8);
@@ -126,8 +126,8 @@ TEST(without_a_line_the_level_alone_counts)
 
 /* ---- Modbus on the same pins ---- */
 
-/* Loops of 100 us to 20 ms, levels, and offsets of the answer to the loop: the bits of the answer are no levels. */
-TEST(an_answer_on_the_pin_is_no_change_in_any_loop)
+/* Loops of 100 us to 20 ms, levels, and offsets of the response to the loop: the bits of the response are no levels. */
+TEST(a_response_on_the_pin_is_no_change_in_any_loop)
 {
     static const uint32_t steps_us[] = {100, 1000, 7000, 20000};
     for (unsigned s = 0; s != 4; s++) {
@@ -139,7 +139,7 @@ TEST(an_answer_on_the_pin_is_no_change_in_any_loop)
                 pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
                 submit(threshold_2000);
                 while (pins.fake.written == 0) pins_run(step_us, step_us);
-                answer(30 * MS + offset_us, level != 0, threshold_2000);
+                response(30 * MS + offset_us, level != 0, threshold_2000);
                 pins_run(200 * MS, step_us);
                 assert_int_equal(status(), FATHOM_READY);
                 assert_int_equal(pins.samples, 1);
@@ -149,14 +149,14 @@ TEST(an_answer_on_the_pin_is_no_change_in_any_loop)
     }
 }
 
-TEST(a_level_that_turns_during_an_exchange_is_a_sample_after_it)
+TEST(a_level_that_turns_during_a_transaction_is_a_sample_after_it)
 {
     asks(threshold_2000);
     pins_expect(1, FATHOM_FAR);
     pins_turn(0);
     pins_run(100 * MS, 1000);
     assert_int_equal(pins.samples, 1); /* it has stood for 100 ms: not looked at */
-    answer(0, true, threshold_2000);
+    response(0, true, threshold_2000);
     const uint32_t ended_us = pins.fake.now_us + 8 * BYTE_US;
     while (pins.samples == 1) pins_run(100, 100);
     assert_int_equal(status(), FATHOM_READY);
@@ -177,9 +177,9 @@ TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
     after_ms(100, 1, FATHOM_FAR);
 }
 
-/* To the host's UART a low level is a break: 00 without a stop bit, before the answer and after it. A port that cannot
- * tell: the bytes of a break are noise before the answer. */
-TEST(garbage_with_framing_errors_around_an_answer_or_unmarked_before_it_is_dropped_and_counted)
+/* To the host's UART a low level is a break: 00 without a stop bit, before the response and after it. A port that cannot
+ * tell: the bytes of a break are noise before the response. */
+TEST(garbage_with_framing_errors_around_a_response_or_unmarked_before_it_is_dropped_and_counted)
 {
     static const uint32_t spoilt_us[] = {2 * MS, 30 * MS, 31 * MS, 31 * MS + 9 * BYTE_US};
     for (unsigned marked = 0; marked != 2; marked++) {
@@ -194,25 +194,25 @@ TEST(garbage_with_framing_errors_around_an_answer_or_unmarked_before_it_is_dropp
         assert_int_equal(status(), FATHOM_READY);
         assert_int_equal(counters[FATHOM_LINE_BAD_BYTES], 4 * marked);
         assert_int_equal(counters[FATHOM_LINE_DROPPED_BYTES], !marked);
-        assert_int_equal(counters[FATHOM_LINE_ANSWERS], 1);
+        assert_int_equal(counters[FATHOM_LINE_RESPONSES], 1);
         pins_expect(1, FATHOM_FAR);
     }
 }
 
-TEST(an_answer_after_its_time_out_is_no_change_either)
+TEST(a_response_after_its_time_out_is_no_change_either)
 {
     asks(threshold_2000);
     until_ended();
-    assert_int_equal(status(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status(), FATHOM_ERR_NO_RESPONSE);
     pins_run(60 * MS, 1000);
-    answer(3 * MS, false, threshold_2000);
+    response(3 * MS, false, threshold_2000);
     pins_run(200 * MS, 1000);
-    assert_int_equal(counters[FATHOM_LINE_LATE_ANSWERS], 1);
+    assert_int_equal(counters[FATHOM_LINE_LATE_RESPONSES], 1);
     pins_expect(1, FATHOM_FAR);
     assert_int_equal(pins.stales, 0);
 }
 
-/* The unit owes an answer, so the next request waits for it; the pin is free. */
+/* The unit owes a response, so the next request waits for it; the pin is free. */
 TEST(a_request_that_waits_does_not_hide_the_level)
 {
     asks(threshold_2000);

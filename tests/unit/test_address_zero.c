@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/a16_settings.h"
+#include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a16_settings.h"
 #include "line_bench.h"
 
 /* Addresses 00 and FF of A16 and A05: "0x00~0xFE", and "0xFF is the broadcast address" (A16 6(3), A05 3(3)). */
@@ -20,7 +20,7 @@ TEST(a_read_of_unit_0_is_answered_by_unit_0)
         expect_written(i + 1);
         assert_memory_equal(bench.fake.writes[i].bytes, head, sizeof head);
         run(20000);
-        receive_answer(0, (uint16_t)(100 + i));
+        receive_response(0, (uint16_t)(100 + i));
         run(100);
         expect_mm((uint16_t)(100 + i));
         run(T3_5_US); /* and nobody owes anything */
@@ -34,24 +34,24 @@ TEST(no_other_unit_answers_for_unit_0)
         set_up(state);
         ask(&bench.request, 0, &bench.value, 0);
         run(REQUEST_US);
-        deliver_answer(others[i], 111);
+        deliver_response(others[i], 111);
         expect(FATHOM_PENDING);
         expect_count(FATHOM_LINE_STRAYS, 1);
         run(TIMEOUT_US + 1000);
-        expect_failed(FATHOM_ERR_NO_ANSWER);
+        expect_failed(FATHOM_ERR_NO_RESPONSE);
     }
 }
 
-TEST(nor_does_unit_0_answer_for_another)
+TEST(nor_does_unit_0_response_for_another)
 {
     static const uint8_t others[] = {1, 240};
     for (unsigned i = 0; i != COUNT_OF(others); i++) {
         set_up(state);
         ask(&bench.request, others[i], &bench.value, 0);
         run(REQUEST_US);
-        deliver_answer(0, 111);
+        deliver_response(0, 111);
         expect(FATHOM_PENDING);
-        deliver_answer(others[i], 222);
+        deliver_response(others[i], 222);
         expect_mm(222);
     }
 }
@@ -59,14 +59,14 @@ TEST(nor_does_unit_0_answer_for_another)
 TEST(a_frame_of_unit_0_is_noise_where_it_has_not_been_asked)
 {
     ask_1_and_send(0);
-    deliver_answer(0, 111);
+    deliver_response(0, 111);
     run(GAP_US);
     expect_count(FATHOM_LINE_STRAYS, 0);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
 }
 
 /* 239 and 241 owe by another bit than 0 does, modulo 16. */
-TEST(a_late_answer_of_another_unit_is_taken_while_unit_0_is_asked)
+TEST(a_late_response_of_another_unit_is_taken_while_unit_0_is_asked)
 {
     static const uint8_t others[] = {1, 239, 241};
     for (unsigned i = 0; i != COUNT_OF(others); i++) {
@@ -77,10 +77,10 @@ TEST(a_late_answer_of_another_unit_is_taken_while_unit_0_is_asked)
         run(REQUEST_US);
         expect_written(2);
         expect_unit(1, 0);
-        deliver_answer(others[i], 111);
+        deliver_response(others[i], 111);
         expect_mm(111);
-        expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
-        answer_other(0, 222);
+        expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
+        response_other(0, 222);
     }
 }
 
@@ -99,7 +99,7 @@ TEST(a_unit_0_that_does_not_answer_owes_and_is_asked_again)
     expect_written(1);
     run(TIMEOUT_US + REQUEST_US);
     expect_written(2);
-    deliver_answer(0, 333);
+    deliver_response(0, 333);
     expect_mm(333);
 }
 
@@ -144,7 +144,7 @@ TEST_IN(finding, the_one_device_on_a_line_is_found_at_any_address)
     for (unsigned from = 0; from != 255; from++) {
         set_up_find(state);
         seek(0);
-        receive_answer((uint8_t)from, 0xFFFF); /* what it says is not looked at */
+        receive_response((uint8_t)from, 0xFFFF); /* what it says is not looked at */
         assert_int_equal(find_after(100), FATHOM_READY);
         assert_int_equal(address, from);
     }
@@ -163,28 +163,28 @@ TEST_IN(finding, one_that_answers_from_255_says_where_it_is)
     for (unsigned i = 0; i != COUNT_OF(rows); i++) {
         set_up_find(state);
         seek(0);
-        receive_answer(255, rows[i].says);
+        receive_response(255, rows[i].says);
         assert_int_equal(find_after(100), rows[i].status);
         assert_int_equal(address, rows[i].status == FATHOM_READY ? rows[i].says : 0xA5);
     }
 }
 
-/* "FATHOM_ERR_NO_ANSWER: nothing in a second", once the last byte of the 8 has left. */
-TEST_IN(finding, an_answer_is_waited_for_a_second)
+/* "FATHOM_ERR_NO_RESPONSE: nothing in a second", once the last byte of the 8 has left. */
+TEST_IN(finding, a_response_is_waited_for_a_second)
 {
     for (unsigned i = 0; i != 100 && bench.fake.written == 0; i++)
         assert_int_equal(find_after(100), FATHOM_PENDING);
     expect_written(1);
     assert_int_equal(find_after(8 * BYTE_US), FATHOM_PENDING);
     assert_int_equal(find_after(999999), FATHOM_PENDING);
-    assert_int_equal(find_after(1), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(find_after(1), FATHOM_ERR_NO_RESPONSE);
 }
 
 TEST_IN(finding, each_outcome_of_finding_comes_once)
 {
     seek(0);
     run(1000000 + 1000);
-    assert_int_equal(find(), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(find(), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(find(), FATHOM_PENDING); /* asked anew, once nobody owes */
     run(1000000);
     expect_written(2);
@@ -197,7 +197,7 @@ TEST_IN(finding, each_outcome_of_finding_comes_once)
     assert_int_equal(address, 0xA5);
 }
 
-TEST_IN(finding, what_the_carrier_refuses_is_said)
+TEST_IN(finding, what_the_transport_refuses_is_said)
 {
     bench.line.config = &(const fathom_line_config_t){
         .uart = &bench.fake.uart, .clock = &bench.fake.clock, .frame = bench.frame, .frame_size = 7};
@@ -207,7 +207,7 @@ TEST_IN(finding, what_the_carrier_refuses_is_said)
 
 /* ---- the drivers ---- */
 
-enum { OK = FATHOM_READY, NOBODY = FATHOM_ERR_NO_ANSWER };
+enum { OK = FATHOM_READY, NOBODY = FATHOM_ERR_NO_RESPONSE };
 
 static fathom_a16_modbus_t a16;
 static fathom_a05_modbus_t a05;
@@ -236,7 +236,7 @@ TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
     fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus, .modbus.address_zero = true};
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
-    assert_int_equal(desk.sample.unit, 0);
+    assert_int_equal(desk.sample.address, 0);
     assert_int_equal(desk.sample.distance_mm, 754);
     assert_int_equal(fathom_a16_modbus_set_address(&a16, 5), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_ERR_ARGUMENT);

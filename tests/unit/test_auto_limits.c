@@ -6,10 +6,10 @@
 #include "suite.h"
 
 #include "fake_pin.h"
-#include "fathom/a05_auto.h"
-#include "fathom/a16_auto.h"
-#include "fathom/line_pins.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/line_pins.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a16_auto.h"
 
 /* a05_auto.h and a16_auto.h: what selects a value is driven when it has to be, and let go where it was taken. */
 
@@ -174,15 +174,15 @@ TEST(an_a16_without_a_line_is_refused_before_anything_is_selected)
     assert_int_equal(pin.sets, 0);
 }
 
-/* ---- beside an exchange ---- */
+/* ---- beside a transaction ---- */
 
-/* "FATHOM_ERR_STALE: no good frame for stale_us": a part of an answer, which the line holds back, is no frame that waits
+/* "FATHOM_ERR_STALE: no good frame for stale_us": a part of a response, which the line holds back, is no frame that waits
  * for its end. */
-TEST(it_is_stale_while_the_line_holds_a_part_of_an_answer)
+TEST(it_is_stale_while_the_line_holds_a_part_of_a_response)
 {
     static const uint8_t part[] = {0x01, 0x03, 0x02, 0x02};
     uint16_t value;
-    fathom_modbus_request_t request = {.exchange = {.timeout_us = 1000000}};
+    fathom_modbus_request_t request = {.transaction = {.timeout_us = 1000000}};
     fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &value);
     start_a16(0, false, 50000);
     assert_int_equal(fathom_modbus_client_submit(&rig.line, &request), FATHOM_PENDING);
@@ -191,5 +191,5 @@ TEST(it_is_stale_while_the_line_holds_a_part_of_an_answer)
     fake_receive(&rig.fake, 0, part, sizeof part);
     assert_int_equal(poll_after(29000), FATHOM_PENDING);
     assert_int_equal(poll_after(1000), FATHOM_ERR_STALE); /* 10 + 10 + 29 + 1 = 50 */
-    fathom_line_cancel(&rig.line, &request.exchange);
+    fathom_line_cancel(&rig.line, &request.transaction);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "controlled_rig.h"
-#include "fathom/a05_auto.h"
-#include "fathom/a16_auto.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a16_auto.h"
 #include "pulse_rig.h"
 
 /* Sensors whose RX is held low by a break: where the port refuses to end that, they ask again until it does, say so
@@ -196,7 +196,7 @@ TEST(a_trigger_of_an_a16_ends_although_the_port_refused_that_once)
         assert_true(rig.fake.in_break);
         rig_run(1000, 1000);
         assert_false(rig.fake.in_break);
-        controlled_answer(controlled_1953, 97 * MS);
+        controlled_response(controlled_1953, 97 * MS);
         assert_int_equal(controlled_outcome(1000), FATHOM_READY);
         assert_int_equal(rig.sample.distance_mm, 1953);
     }
@@ -218,7 +218,7 @@ TEST(a_trigger_of_an_a16_that_does_not_end_is_said_once_a_second)
     rig_run(1 * MS, 1000);
     assert_false(rig.fake.in_break);
     controlled_run_to_break(2, 1000);
-    controlled_answer(controlled_511, 100 * MS);
+    controlled_response(controlled_511, 100 * MS);
     assert_int_equal(controlled_outcome(1000), FATHOM_READY);
 }
 
@@ -236,21 +236,21 @@ TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
     assert_int_equal(rig.ports, 4);
     rig.fake.never_sent = false;
     controlled_run_to_break(1, 1000);
-    controlled_answer(controlled_511, 100 * MS);
+    controlled_response(controlled_511, 100 * MS);
     assert_int_equal(controlled_outcome(1000), FATHOM_READY);
 
-    /* Nor is what was left of the time for the last answer, 30 ms of it here, taken for that second. */
+    /* Nor is what was left of the time for the last response, 30 ms of it here, taken for that second. */
     rig.fake.never_sent = true;
     rig.ports = 0;
     rig_run(900 * MS, 1000);
     assert_int_equal(rig.ports, 0);
     rig.fake.never_sent = false;
     controlled_run_to_break(2, 1000);
-    assert_int_equal(controlled_outcome(1000), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(controlled_outcome(1000), FATHOM_ERR_NO_RESPONSE);
 
-    /* In a slow loop the refusal is the first thing after the answer. */
+    /* In a slow loop the refusal is the first thing after the response. */
     controlled_run_to_break(3, 1000);
-    controlled_answer(controlled_511, 100 * MS);
+    controlled_response(controlled_511, 100 * MS);
     assert_int_equal(controlled_outcome(1000), FATHOM_READY);
     rig.fake.never_sent = true;
     rig.fake.now_us += 200 * MS;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "hps_desk.h"
 
-#include "fathom/a05_modbus.h"
-#include "fathom/a16_settings.h"
+#include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a16_settings.h"
 
 /* All that any driver ever sends to unit 0, which every unit on the line obeys (HPS-167S 2.2.1): a list of four. An A05
  * on 55 AA has no unit in its frames; test_a05_dyp.c has what it sends. */
@@ -107,22 +107,22 @@ static int set_up(void **state)
     const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus};
     assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_READY);
     assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
-    hps_config.modbus.settings = &hps_factory;
+    hps_config.modbus.line_settings = &hps_factory;
     hps_start();
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-/* The device at address 1 answers, with the registers of the factory's configuration, and nobody else does. */
+/* The device at address 1 responses, with the registers of the factory's configuration, and nobody else does. */
 static void device(bool is_there)
 {
     static const uint16_t registers[11] = {0xFFFF, 0x0500, 0x0000, 0xB401};
     const uint8_t *const head = fake.request->message.head;
     if (!is_there || head[0] > 1)
-        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
     else if (head[1] == 3)
-        fake_modbus_answer(&fake, registers, head[5]);
+        fake_modbus_response(&fake, registers, head[5]);
     else
         fake_modbus_acknowledge(&fake);
 }

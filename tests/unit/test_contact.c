@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
-#include "fathom/contact.h"
+#include "fathom/engine/contact.h"
 
 #define MS ((int32_t)1000) /* an int may have 16 bits */
 enum { START_US = 1000, SETTLE_US = 20000 };
@@ -29,7 +29,7 @@ static void start_at(uint32_t now_us, bool level)
     contact.guard = NULL;
     contact.near_is_high = near_is_high;
     contact.model = FATHOM_A05;
-    contact.unit = 7;
+    contact.address = 7;
     expect_init(FATHOM_READY);
     pins.sensor = fathom_contact_sensor(&contact);
 }
@@ -73,7 +73,7 @@ TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
     assert_int_equal(pins.sample.raw, 0);
     assert_int_equal(pins.sample.time_us, START_US);
     assert_int_equal(pins.sample.model, FATHOM_A05);
-    assert_int_equal(pins.sample.unit, 7);
+    assert_int_equal(pins.sample.address, 7);
     assert_int_equal(pins.sample.probe, 1);
     assert_int_equal(pins.sample.distance_mm, 0);
     assert_int_equal(pins.sample.magnitude + pins.sample.precision + pins.sample.ambient, 0);
@@ -285,7 +285,7 @@ TEST(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled)
 
 TEST(where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands)
 {
-    timing.look_us = FATHOM_NO_DEADLINE;
+    timing.interval_us = FATHOM_NO_DEADLINE;
     start();
     expect_due(20000);
     pins_run(20 * MS, 20000);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
-#include "fathom/line_pins.h"
+#include "fathom/engine/line_pins.h"
 
 /* contact.h to the microsecond: when it is stale, when it is due, and for how long a line is not looked at. */
 enum { START_US = 1000 };
@@ -16,7 +16,7 @@ static void start_on(uint8_t fill, const fathom_contact_guard_t *guard)
     contact.guard = guard;
     contact.near_is_high = true;
     contact.model = FATHOM_A16;
-    contact.unit = 0;
+    contact.address = 0;
     assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
     pins.sensor = fathom_contact_sensor(&contact);
 }
@@ -77,7 +77,7 @@ TEST(a_sample_has_a_level_and_nothing_that_is_measured)
     assert_int_equal(pins.sample.ambient, 0);
     assert_memory_equal(&pins.sample.interference, &no, sizeof no);
     assert_int_equal(pins.sample.model, FATHOM_A16);
-    assert_int_equal(pins.sample.unit, 0);
+    assert_int_equal(pins.sample.address, 0);
     assert_int_equal(pins.sample.probe, 1);
 }
 
@@ -94,12 +94,12 @@ TEST(a_pin_that_cannot_be_read_is_no_contact)
     assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
 }
 
-/* "time_us is the look at which it was first seen to stand, or the present one when it repeats"; and due_us: "in look_us
+/* "time_us is the look at which it was first seen to stand, or the present one when it repeats"; and due_us: "in interval_us
  * at the latest", or when it repeats. */
 TEST(a_level_that_repeats_has_the_time_of_its_look)
 {
     timing.period_us = 70000;
-    timing.look_us = 1000000;
+    timing.interval_us = 1000000;
     start_on(0, NULL);
     assert_int_equal(poll_after(20000), FATHOM_READY);
     assert_int_equal(pins.sample.time_us, START_US);
@@ -126,7 +126,7 @@ TEST(a_level_settles_anew_when_it_means_something_else)
 /* "FATHOM_NO_DEADLINE where an interrupt of the pin wakes the program": at any time after the last look. */
 TEST(where_an_interrupt_wakes_the_program_nothing_is_due_once_the_level_counts)
 {
-    timing.look_us = FATHOM_NO_DEADLINE;
+    timing.interval_us = FATHOM_NO_DEADLINE;
     start_on(0, NULL);
     assert_int_equal(due_us(), 20000);
     assert_int_equal(poll_after(20000), FATHOM_READY);
@@ -140,7 +140,7 @@ TEST(where_an_interrupt_wakes_the_program_nothing_is_due_once_the_level_counts)
 /* "The longest that due_us advises between looks". */
 TEST(the_next_look_is_due_look_us_after_the_last_one)
 {
-    timing.look_us = 100000;
+    timing.interval_us = 100000;
     start_on(0, NULL);
     assert_int_equal(poll_after(20000), FATHOM_READY);
     assert_int_equal(due_us(), 100000);

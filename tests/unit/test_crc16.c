@@ -8,17 +8,17 @@
 uint16_t crc16_256(const uint8_t *bytes, uint8_t length);
 uint16_t crc16_16(const uint8_t *bytes, uint8_t length);
 
-#include "fathom/crc16.h"
+#include "fathom/codec/crc16.h"
 
 #define fathom_crc16 crc16_256
 #define table        table_256
-#include "../../src/crc16.c"
+#include "../../src/codec/crc16.c"
 #undef fathom_crc16
 #undef table
 
 #define fathom_crc16 crc16_16
 #define table        table_16
-#include "../../src/crc16_small.c"
+#include "../../src/codec/crc16_small.c"
 #undef fathom_crc16
 #undef table
 

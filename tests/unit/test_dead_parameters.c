@@ -2,8 +2,8 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/a16_settings.h"
+#include "fathom/sensor/a05_dyp.h"
+#include "fathom/sensor/a16_settings.h"
 #include "line_bench.h"
 
 /* A request outlives the call that made it: it may point to nothing of that call. */
@@ -26,7 +26,7 @@ TEST(a_setting_over_modbus_keeps_no_pointer_to_its_parameter)
     fake_modbus_init(&modbus);
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
-    fake_modbus_answer(&modbus, is_10000, 1);
+    fake_modbus_response(&modbus, is_10000, 1);
     for (unsigned i = 0; modbus.submits != 2; i++) {
         assert_true(i != 1000);
         modbus.now_us += 1000;

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/debounce.h"
+#include "fathom/engine/debounce.h"
 
 enum { HALF_S = 500000 };
 

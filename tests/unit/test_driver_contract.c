@@ -36,7 +36,7 @@ static int set_up(void **state)
 static const suite_t suite = {.set_up = set_up};
 
 #define OF(promise, name)  TEST_ROW(promise##_of_##name, promise, &contract_##name)
-#define SEAM(promise)      OF(promise, a05_modbus) OF(promise, a16_modbus) OF(promise, hps167s)
+#define TRANSPORT(promise) OF(promise, a05_modbus) OF(promise, a16_modbus) OF(promise, hps167s)
 #define LISTENERS(promise) OF(promise, a05_auto) OF(promise, a16_auto) OF(promise, hps167s_auto)
 #define CONTACTS(promise)  OF(promise, a05_relay) OF(promise, a16_switch)
 #define DYP_VALUES(promise)                                                                                  \
@@ -44,7 +44,8 @@ static const suite_t suite = {.set_up = set_up};
     OF(promise, a05_dyp)                                                                                     \
     OF(promise, a05_modbus) OF(promise, a16_auto) OF(promise, a16_controlled) OF(promise, a16_modbus)
 #define MEASURING(promise)                                                                                   \
-    SEAM(promise) LISTENERS(promise) OF(promise, a05_dyp) OF(promise, a16_controlled) OF(promise, a16_pwm)
+    TRANSPORT(promise)                                                                                       \
+    LISTENERS(promise) OF(promise, a05_dyp) OF(promise, a16_controlled) OF(promise, a16_pwm)
 #define ALL(promise) MEASURING(promise) CONTACTS(promise)
 
 #define CONTRACT(promise, drivers)                                                                           \
@@ -198,7 +199,8 @@ CONTRACT(each_of_the_four_values_means_what_the_user_says, DYP_VALUES)
     assert_int_equal(kind_of(0xFFFF), FATHOM_FAULT);
 }
 
-#define REFUSING(promise) SEAM(promise) LISTENERS(promise) OF(promise, a05_dyp) OF(promise, a16_controlled)
+#define REFUSING(promise)                                                                                    \
+    TRANSPORT(promise) LISTENERS(promise) OF(promise, a05_dyp) OF(promise, a16_controlled)
 
 CONTRACT(refused_values_are_counted_and_the_count_stops_at_65535, REFUSING)
 {
@@ -238,17 +240,17 @@ static void assert_asked(unsigned submits, uint8_t unit)
     fake_modbus_assert_asked(&fake, submits, unit, driver->first, driver->count);
 }
 
-CONTRACT(by_default_it_asks_unit_1_without_retries, SEAM)
+CONTRACT(by_default_it_asks_unit_1_without_retries, TRANSPORT)
 {
     start();
     PENDS(kind->poll());
     assert_asked(1, 1);
-    assert_int_equal(fake.request->exchange.timeout_us, driver->default_timeout_us);
-    assert_int_equal(fake.request->exchange.retries, 0);
-    assert_null(fake.request->exchange.settings);
+    assert_int_equal(fake.request->transaction.timeout_us, driver->default_timeout_us);
+    assert_int_equal(fake.request->transaction.retries, 0);
+    assert_null(fake.request->transaction.line_settings);
 }
 
-CONTRACT(the_config_is_asked_as_it_says_and_read_by_init_only, SEAM)
+CONTRACT(the_config_is_asked_as_it_says_and_read_by_init_only, TRANSPORT)
 {
     *driver->address = driver->most_address;
     *driver->timeout_us = 77000;
@@ -260,14 +262,14 @@ CONTRACT(the_config_is_asked_as_it_says_and_read_by_init_only, SEAM)
     for (unsigned i = 1; i <= 2; i++) {
         PENDS(poll_after(2000000));
         assert_asked(1, driver->most_address);
-        assert_int_equal(fake.request->exchange.timeout_us, 77000);
-        assert_int_equal(fake.request->exchange.retries, 3);
+        assert_int_equal(fake.request->transaction.timeout_us, 77000);
+        assert_int_equal(fake.request->transaction.retries, 3);
         reads(driver->good);
-        assert_int_equal(kind->sample->unit, driver->most_address);
+        assert_int_equal(kind->sample->address, driver->most_address);
     }
 }
 
-CONTRACT(the_pace_is_the_period_but_no_faster_than_the_device, SEAM)
+CONTRACT(the_pace_is_the_period_but_no_faster_than_the_device, TRANSPORT)
 {
     const uint32_t least_us = driver->least_period_us;
     const uint32_t periods_us[] = {0, 1, least_us - 1, least_us + 1, 5000000};
@@ -286,11 +288,12 @@ CONTRACT(the_pace_is_the_period_but_no_faster_than_the_device, SEAM)
     }
 }
 
-CONTRACT(every_error_passes_through_and_leaves_the_sample_alone, SEAM)
+CONTRACT(every_error_passes_through_and_leaves_the_sample_alone, TRANSPORT)
 {
-    /* No answer comes last: after three of them the unit is left alone for a while. */
-    static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION, FATHOM_ERR_MALFORMED,
-                                             FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED, FATHOM_ERR_NO_ANSWER};
+    /* No response comes last: after three of them the unit is left alone for a while. */
+    static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM,  FATHOM_ERR_EXCEPTION,
+                                             FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,
+                                             FATHOM_ERR_CANCELLED, FATHOM_ERR_NO_RESPONSE};
     start();
     for (unsigned i = 0; i != COUNT(errors); i++) {
         PENDS(poll_after(500000));
@@ -306,10 +309,10 @@ CONTRACT(every_error_passes_through_and_leaves_the_sample_alone, SEAM)
     fake.refuses = FATHOM_PENDING;
     reads(driver->good);
     assert_reading(1);
-    assert_int_equal(fathom_modbus_unit_answers(driver->unit()), 1);
+    assert_int_equal(fathom_modbus_unit_responses(driver->unit()), 1);
 }
 
-CONTRACT(a_command_has_its_own_time_out_and_can_be_cancelled, SEAM)
+CONTRACT(a_command_has_its_own_time_out_and_can_be_cancelled, TRANSPORT)
 {
     static const uint32_t timeouts_us[][2] = {{0, 1000000}, {123456, 123456}};
     for (unsigned i = 0; i != 2; i++) {
@@ -318,8 +321,8 @@ CONTRACT(a_command_has_its_own_time_out_and_can_be_cancelled, SEAM)
         *driver->retries = 3;
         start();
         PENDS(driver->command());
-        assert_int_equal(fake.request->exchange.timeout_us, timeouts_us[i][1]);
-        assert_int_equal(fake.request->exchange.retries, 3);
+        assert_int_equal(fake.request->transaction.timeout_us, timeouts_us[i][1]);
+        assert_int_equal(fake.request->transaction.retries, 3);
         driver->cancel();
         driver->cancel();
         assert_int_equal(fake.cancels, 1);
@@ -343,9 +346,9 @@ CONTRACT(after_power_on_silence_is_warming_up_for_start_us, STARTED)
         driver->power_on();
         assert_false(kind->is_at_work());
         PENDS(poll_after(driver->least_period_us));
-        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
         assert_int_equal(poll_after(starts_us[i / 2][1] - driver->least_period_us - !is_late),
-                         is_late ? FATHOM_ERR_NO_ANSWER : FATHOM_ERR_WARMING_UP);
+                         is_late ? FATHOM_ERR_NO_RESPONSE : FATHOM_ERR_WARMING_UP);
     }
 }
 

@@ -3,26 +3,26 @@
 
 #include "suite.h"
 
-#include "fathom/dyp.h"
+#include "fathom/sensor/dyp.h"
 
 enum { GUARD = 0xA5 };
 
 static uint16_t values[4];
-static fathom_dyp_answer_t answer;
+static fathom_dyp_measurement_t response;
 static fathom_sample_t sample;
 
 static int set_up(void **state)
 {
     memset(values, 0, sizeof values);
-    memset(&answer, 0, sizeof answer);
-    answer.refused_raw = answer.refused_probe = GUARD;
+    memset(&response, 0, sizeof response);
+    response.refused_raw = response.refused_probe = GUARD;
     memset(&sample, GUARD, sizeof sample);
-    answer.values = values;
-    answer.model = FATHOM_A05;
-    answer.unit = 7;
-    answer.first = 1;
-    assert_int_equal(fathom_dyp_answer_init(&answer, FATHOM_A05_MAX_MM), FATHOM_READY);
-    assert_int_equal(answer.refused_raw | answer.refused_probe, 0); /* none yet */
+    response.values = values;
+    response.model = FATHOM_A05;
+    response.address = 7;
+    response.first = 1;
+    assert_int_equal(fathom_dyp_measurement_init(&response, FATHOM_A05_MAX_MM), FATHOM_READY);
+    assert_int_equal(response.refused_raw | response.refused_probe, 0); /* none yet */
     return 0;
 }
 
@@ -38,7 +38,7 @@ static void assert_sample_untouched(void)
 static void expect_next(fathom_status_t status)
 {
     memset(&sample, GUARD, sizeof sample);
-    assert_int_equal(fathom_dyp_next(&answer, &sample), status);
+    assert_int_equal(fathom_dyp_measurement_next(&response, &sample), status);
     if (status != FATHOM_READY) assert_sample_untouched();
 }
 
@@ -72,10 +72,10 @@ static unsigned kind_of(meaning_t meaning)
 static void assert_next_means(uint32_t value, meaning_t meaning)
 {
     values[0] = (uint16_t)value;
-    answer.implausible = 0;
-    fathom_dyp_answer(&answer, 1, 123456);
+    response.implausible = 0;
+    fathom_dyp_measurement_set(&response, 1, 123456);
     expect_next(meaning == CANNOT_BE ? FATHOM_ERR_MALFORMED : FATHOM_READY);
-    assert_int_equal(answer.implausible, meaning == CANNOT_BE);
+    assert_int_equal(response.implausible, meaning == CANNOT_BE);
     if (meaning != CANNOT_BE) {
         assert_int_equal(sample.raw, value);
         assert_int_equal(sample.kind, kind_of(meaning));
@@ -111,9 +111,9 @@ TEST(every_value_means_what_the_rule_says)
     for (unsigned i = 0; i != sizeof windows / sizeof *windows; i++) {
         const window_case_t *const w = &windows[i];
         unsigned targets = 0;
-        answer.window.min_mm = w->min_mm;
-        answer.window.max_mm = w->max_mm;
-        assert_int_equal(fathom_dyp_answer_init(&answer, w->default_max_mm), FATHOM_READY);
+        response.window.min_mm = w->min_mm;
+        response.window.max_mm = w->max_mm;
+        assert_int_equal(fathom_dyp_measurement_init(&response, w->default_max_mm), FATHOM_READY);
         for (uint32_t value = 0; value != 65536; value++) {
             const meaning_t meaning = meaning_of(value, w->rule_min_mm, w->rule_max_mm);
             assert_next_means(value, meaning);
@@ -136,18 +136,18 @@ TEST(each_of_the_four_values_takes_each_meaning_and_no_other_value_does)
                     {FATHOM_MEANS_TOO_NEAR, FATHOM_NEAR},
                     {FATHOM_MEANS_FAULT, FATHOM_FAULT},
                     {FATHOM_MEANS_REFUSED, 0}};
-    uint8_t *const members[] = {&answer.window.value_0, &answer.window.value_fffd, &answer.window.value_fffe,
-                                &answer.window.value_ffff};
+    uint8_t *const members[] = {&response.window.value_0, &response.window.value_fffd,
+                                &response.window.value_fffe, &response.window.value_ffff};
     for (unsigned v = 0; v != 4; v++) {
         for (unsigned m = 0; m != 6; m++) {
-            memset(&answer.window, 0, sizeof answer.window);
+            memset(&response.window, 0, sizeof response.window);
             *members[v] = meanings[m].meaning;
-            assert_int_equal(fathom_dyp_answer_init(&answer, 65535), FATHOM_READY);
+            assert_int_equal(fathom_dyp_measurement_init(&response, 65535), FATHOM_READY);
             for (unsigned other = 0; other != 4; other++) {
                 if (other != v) assert_next_means(four[other], meaning_of(four[other], 1, 65535));
             }
             values[0] = four[v];
-            fathom_dyp_answer(&answer, 1, 123456);
+            fathom_dyp_measurement_set(&response, 1, 123456);
             expect_next(meanings[m].kind != 0 ? FATHOM_READY : FATHOM_ERR_MALFORMED);
             if (meanings[m].kind == 0) continue;
             assert_int_equal(sample.kind, meanings[m].kind);
@@ -162,29 +162,29 @@ TEST(the_default_windows_are_16350_and_6000_mm)
 {
     assert_int_equal(FATHOM_A16_MAX_MM, 16350);
     assert_int_equal(FATHOM_A05_MAX_MM, 6000);
-    assert_int_equal(answer.window.max_mm, 6000);
+    assert_int_equal(response.window.max_mm, 6000);
 }
 
 TEST(a_window_upside_down_is_refused)
 {
     static const uint16_t refused[][2] = {{1000, 999}, {65535, 1}, {6001, 0}};
     for (unsigned i = 0; i != 3; i++) {
-        answer.window.min_mm = refused[i][0];
-        answer.window.max_mm = refused[i][1];
-        assert_int_equal(fathom_dyp_answer_init(&answer, 6000), FATHOM_ERR_ARGUMENT);
+        response.window.min_mm = refused[i][0];
+        response.window.max_mm = refused[i][1];
+        assert_int_equal(fathom_dyp_measurement_init(&response, 6000), FATHOM_ERR_ARGUMENT);
     }
 }
 
-TEST(nothing_is_there_before_an_answer) { expect_next(FATHOM_PENDING); }
+TEST(nothing_is_there_before_a_response) { expect_next(FATHOM_PENDING); }
 
-TEST(an_answer_gives_one_sample_a_probe_in_their_order)
+TEST(a_response_gives_one_sample_a_probe_in_their_order)
 {
     static const uint8_t order[] = {1, 2, 4};
     values[0] = 1000;
     values[1] = 0xFFFD;
     values[2] = 1953;
     values[3] = 0xFFFE;
-    fathom_dyp_answer(&answer, 0x0B, 777);
+    fathom_dyp_measurement_set(&response, 0x0B, 777);
     for (unsigned i = 0; i != 3; i++) {
         expect_next(FATHOM_READY);
         assert_int_equal(sample.probe, order[i]);
@@ -192,7 +192,7 @@ TEST(an_answer_gives_one_sample_a_probe_in_their_order)
         assert_int_equal(sample.time_us, 777);
         assert_int_equal(sample.sequence, 1);
         assert_int_equal(sample.model, FATHOM_A05);
-        assert_int_equal(sample.unit, 7);
+        assert_int_equal(sample.address, 7);
         assert_int_equal(sample.magnitude | sample.precision | sample.ambient, 0);
     }
     expect_next(FATHOM_PENDING);
@@ -200,10 +200,10 @@ TEST(an_answer_gives_one_sample_a_probe_in_their_order)
 
 TEST(the_values_begin_with_the_first_probe_that_was_read)
 {
-    answer.first = 3;
+    response.first = 3;
     values[0] = 333;
     values[1] = 444;
-    fathom_dyp_answer(&answer, 0x0C, 0);
+    fathom_dyp_measurement_set(&response, 0x0C, 0);
     expect_mm(3, 333);
     expect_mm(4, 444);
 }
@@ -212,21 +212,21 @@ TEST(after_a_value_that_cannot_be_the_next_probe_follows)
 {
     values[0] = 6001;
     values[1] = 2000;
-    fathom_dyp_answer(&answer, 0x03, 0);
+    fathom_dyp_measurement_set(&response, 0x03, 0);
     expect_next(FATHOM_ERR_MALFORMED);
-    assert_int_equal(answer.refused_probe, 1);
-    assert_int_equal(answer.refused_raw, 6001);
+    assert_int_equal(response.refused_probe, 1);
+    assert_int_equal(response.refused_raw, 6001);
     expect_mm(2, 2000);
-    assert_int_equal(answer.implausible, 1);
+    assert_int_equal(response.implausible, 1);
 }
 
-TEST(a_new_answer_replaces_what_was_left_of_the_old_one)
+TEST(a_new_response_replaces_what_was_left_of_the_old_one)
 {
     values[0] = 1000;
     values[1] = 2000;
-    fathom_dyp_answer(&answer, 0x03, 1);
+    fathom_dyp_measurement_set(&response, 0x03, 1);
     expect_next(FATHOM_READY);
-    fathom_dyp_answer(&answer, 0x01, 2);
+    fathom_dyp_measurement_set(&response, 0x01, 2);
     expect_next(FATHOM_READY);
     assert_int_equal(sample.probe, 1);
     assert_int_equal(sample.sequence, 2);
@@ -236,13 +236,13 @@ TEST(a_new_answer_replaces_what_was_left_of_the_old_one)
 
 TEST(the_sequence_wraps_and_the_counter_stops)
 {
-    answer.sequence = 65535;
-    answer.implausible = 65534;
+    response.sequence = 65535;
+    response.implausible = 65534;
     for (unsigned i = 0; i != 3; i++) {
         values[0] = 65535;
-        fathom_dyp_answer(&answer, 1, 0);
-        assert_int_equal(answer.sequence, i);
+        fathom_dyp_measurement_set(&response, 1, 0);
+        assert_int_equal(response.sequence, i);
         expect_next(FATHOM_ERR_MALFORMED);
-        assert_int_equal(answer.implausible, 65535);
+        assert_int_equal(response.implausible, 65535);
     }
 }

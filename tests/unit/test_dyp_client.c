@@ -11,7 +11,7 @@ static void fill(uint8_t unit, uint16_t first, uint8_t count)
 {
     memset(values, 0xA5, sizeof values);
     fathom_modbus_read_holding_registers(&bench.request.message, unit, first, count, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
 }
 
 static void expect_submitted(fathom_status_t expected)
@@ -21,7 +21,7 @@ static void expect_submitted(fathom_status_t expected)
 
 static void expect_set_address(uint8_t address, fathom_status_t expected)
 {
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, address), expected);
 }
 
@@ -90,11 +90,11 @@ TEST(each_probe_is_answered_by_its_own_command)
     for (uint8_t probe = 0; probe != 4; probe++)
         for (uint8_t command = 0x10; command != 0x14; command++) {
             /* 1953 mm: FF + 01 + 07 + A1 = 1A8, and the command. */
-            const uint8_t answer[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
+            const uint8_t response[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
             set_up(state);
             fill(1, (uint16_t)(0x0106 + probe), 1);
             send_request();
-            deliver_all(answer);
+            deliver_all(response);
             if (command == 0x10 + probe) {
                 expect(FATHOM_READY);
                 assert_int_equal(values[0], 1953);
@@ -138,9 +138,9 @@ TEST(reads_without_a_command_are_unsupported)
                 {0x0200, 1}, {0x0006, 1}, {0x0206, 4}, {0x0000, 1}, {0xFFFF, 1}};
     for (size_t i = 0; i != COUNT_OF(none); i++) {
         fill(1, none[i].first, none[i].count);
-        bench.request.exchange.status = 77;
+        bench.request.transaction.status = 77;
         expect_submitted(FATHOM_ERR_UNSUPPORTED);
-        assert_int_equal(bench.request.exchange.status, 77);
+        assert_int_equal(bench.request.transaction.status, 77);
     }
     fill(1, 0x0106, 4);
     bench.request.message.head[4] = 1; /* 260 registers */
@@ -148,7 +148,7 @@ TEST(reads_without_a_command_are_unsupported)
     expect_written_after(20000, 0);
 }
 
-/* The command that sets the address has a name of its own: through the seam no driver can reach it. */
+/* The command that sets the address has a name of its own: through the transport no driver can reach it. */
 TEST(writes_are_unsupported)
 {
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
@@ -169,7 +169,7 @@ TEST(wrong_units_and_addresses_are_refused)
     expect_written_after(20000, 0);
 }
 
-TEST(a_line_without_room_for_the_longest_answer_is_refused)
+TEST(a_line_without_room_for_the_longest_response_is_refused)
 {
     for (uint8_t size = 12; size != 14; size++) {
         const fathom_status_t expected = size == 12 ? FATHOM_ERR_CAPACITY : FATHOM_PENDING;
@@ -193,7 +193,7 @@ TEST(a_request_under_way_is_busy)
 
 /* ---- what comes back ---- */
 
-TEST(an_answer_of_another_unit_is_a_stray)
+TEST(a_response_of_another_unit_is_a_stray)
 {
     uint8_t of_unit_2[sizeof dyp_four];
     memcpy(of_unit_2, dyp_four, sizeof dyp_four);
@@ -207,7 +207,7 @@ TEST(an_answer_of_another_unit_is_a_stray)
     expect_four();
 }
 
-TEST(an_answer_to_another_command_is_malformed_unless_the_right_one_follows)
+TEST(a_response_to_another_command_is_malformed_unless_the_right_one_follows)
 {
     for (unsigned follows = 0; follows != 2; follows++) {
         set_up(state);
@@ -226,7 +226,7 @@ TEST(an_answer_to_another_command_is_malformed_unless_the_right_one_follows)
 
 /* One bit makes the command 03 of 01, and 1H = 03 the right sum of what is then a whole frame. Every other bit spoils
  * the sum or the shape. */
-TEST(an_answer_with_one_wrong_bit_is_never_taken)
+TEST(a_response_with_one_wrong_bit_is_never_taken)
 {
     uint8_t damaged[sizeof dyp_four];
     for (unsigned bit = 0; bit != 8 * sizeof dyp_four; bit++) {
@@ -240,7 +240,7 @@ TEST(an_answer_with_one_wrong_bit_is_never_taken)
             expect(FATHOM_ERR_MALFORMED);
         else
             assert_true(status_of(&bench.request) == FATHOM_ERR_CHECKSUM ||
-                        status_of(&bench.request) == FATHOM_ERR_NO_ANSWER);
+                        status_of(&bench.request) == FATHOM_ERR_NO_RESPONSE);
         expect_untouched(0);
     }
 }
@@ -256,7 +256,7 @@ TEST(a_wrong_sum_is_a_checksum_error_after_a_gap)
     expect_nothing(FATHOM_ERR_CHECKSUM);
 }
 
-TEST(an_answer_that_breaks_off_is_a_checksum_error)
+TEST(a_response_that_breaks_off_is_a_checksum_error)
 {
     for (size_t length = 3; length != sizeof dyp_four; length++) {
         set_up(state);
@@ -267,7 +267,7 @@ TEST(an_answer_that_breaks_off_is_a_checksum_error)
     }
 }
 
-TEST(an_answer_glued_to_noise_is_found)
+TEST(a_response_glued_to_noise_is_found)
 {
     static const uint8_t noises[][4] = {{0x55, 0x55, 0x55, 0x55},
                                         {0x00, 0xFF, 0xAA, 0x55},
@@ -287,7 +287,7 @@ TEST(an_answer_glued_to_noise_is_found)
         }
 }
 
-TEST(every_cut_of_an_answer_into_two_reads_is_put_together)
+TEST(every_cut_of_a_response_into_two_reads_is_put_together)
 {
     for (size_t cut = 1; cut != sizeof dyp_four; cut++) {
         set_up(state);
@@ -299,26 +299,26 @@ TEST(every_cut_of_an_answer_into_two_reads_is_put_together)
     }
 }
 
-TEST(a_late_answer_serves_the_retry_and_no_other_request)
+TEST(a_late_response_serves_the_retry_and_no_other_request)
 {
     for (uint8_t retries = 0; retries != 2; retries++) {
         set_up(state);
-        bench.request.exchange.retries = retries;
+        bench.request.transaction.retries = retries;
         ask_four();
-        expect_after(TIMEOUT_US + 400, retries != 0 ? FATHOM_PENDING : FATHOM_ERR_NO_ANSWER);
+        expect_after(TIMEOUT_US + 400, retries != 0 ? FATHOM_PENDING : FATHOM_ERR_NO_RESPONSE);
         if (retries == 0) {
             fill(1, 0x0106, 4);
             expect_submitted(FATHOM_PENDING);
         }
         deliver_all(dyp_four);
-        expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+        expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
         expect(retries != 0 ? FATHOM_READY : FATHOM_PENDING);
         assert_int_equal(values[0], retries != 0 ? 1000 : 0xA5A5);
         expect_written(1);
     }
 }
 
-TEST(a_late_answer_of_another_unit_is_known_as_such)
+TEST(a_late_response_of_another_unit_is_known_as_such)
 {
     uint8_t of_unit_2[sizeof dyp_first_1953];
     memcpy(of_unit_2, dyp_first_1953, sizeof dyp_first_1953);
@@ -331,45 +331,45 @@ TEST(a_late_answer_of_another_unit_is_known_as_such)
     expect_bytes(0, requests[0].bytes, 5);
     receive_all(dyp_four);
     deliver_all(of_unit_2);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect(FATHOM_READY);
     assert_int_equal(values[0], 1953);
 }
 
 /* Nor does it serve that one's retry: 55 AA names no register, so that the unit alone tells them apart. */
-TEST(a_late_answer_of_another_unit_serves_no_retry)
+TEST(a_late_response_of_another_unit_serves_no_retry)
 {
     ask_dyp(&bench.other, 1, 1, &bench.other_value);
     run(REQUEST_US);
-    cancel(&bench.other); /* unit 1 owes its answer for 200 ms */
+    cancel(&bench.other); /* unit 1 owes its response for 200 ms */
     fill(2, 0x0106, 1);
-    bench.request.exchange.retries = 1;
+    bench.request.transaction.retries = 1;
     expect_submitted(FATHOM_PENDING);
     run(REQUEST_US + TIMEOUT_US);
     deliver_all(dyp_first_1953);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_nothing(FATHOM_PENDING);
 }
 
-/* ---- the seam ---- */
+/* ---- the transport ---- */
 
-TEST(the_seam_does_what_the_functions_do)
+TEST(the_transport_does_what_the_functions_do)
 {
-    const fathom_modbus_t seam = fathom_dyp_client(&bench.line);
-    assert_ptr_equal(seam.ctx, &bench.line);
+    const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
+    assert_ptr_equal(transport.ctx, &bench.line);
     fill(0, 0x0106, 4);
-    assert_int_equal(seam.submit(seam.ctx, &bench.request), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(transport.submit(transport.ctx, &bench.request), FATHOM_ERR_ARGUMENT);
     fill(1, 0x0106, 4);
-    assert_int_equal(seam.submit(seam.ctx, &bench.request), FATHOM_PENDING);
-    assert_int_equal(seam.due_us(seam.ctx), due());
+    assert_int_equal(transport.submit(transport.ctx, &bench.request), FATHOM_PENDING);
+    assert_int_equal(transport.due_us(transport.ctx), due());
     bench.fake.now_us += T3_5_US;
-    assert_int_equal(seam.poll(seam.ctx), FATHOM_PENDING);
+    assert_int_equal(transport.poll(transport.ctx), FATHOM_PENDING);
     bench.fake.now_us += T3_5_US;
-    assert_int_equal(seam.poll(seam.ctx), FATHOM_PENDING);
+    assert_int_equal(transport.poll(transport.ctx), FATHOM_PENDING);
     expect_written(1);
-    seam.cancel(seam.ctx, &bench.request);
-    seam.cancel(seam.ctx, &bench.request);
+    transport.cancel(transport.ctx, &bench.request);
+    transport.cancel(transport.ctx, &bench.request);
     expect(FATHOM_ERR_CANCELLED);
     bench.fake.read_fails = true;
-    assert_int_equal(seam.poll(seam.ctx), FATHOM_ERR_PORT);
+    assert_int_equal(transport.poll(transport.ctx), FATHOM_ERR_PORT);
 }

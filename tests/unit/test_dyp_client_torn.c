@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/dyp_client.h"
+#include "fathom/engine/dyp_client.h"
 #include "line_bench.h"
 
 /* Frames 55 AA that break off, are another master's, or stand one behind the other, on a line that does not know whether
@@ -22,14 +22,14 @@ static void ask_all(void)
     const size_t before = bench.fake.written;
     memset(values, 0xA5, sizeof values);
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 4, values);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, before + 1);
     run(5 * BYTE_US);
 }
 
-/* Another master asks the unit for its first probe: an answer of 7 bytes could begin like that, but not this request. */
+/* Another master asks the unit for its first probe: a response of 7 bytes could begin like that, but not this request. */
 TEST(another_masters_request_to_the_unit_is_no_echo)
 {
     static const uint8_t others[] = {0x55, 0xAA, 0x01, 0x10, 0x10};
@@ -41,9 +41,9 @@ TEST(another_masters_request_to_the_unit_is_no_echo)
 }
 
 /* 0101, 0202, 0303, 0404 mm: FF + 01 + 01 + 2 * (1 + 2 + 3 + 4) = 115 hexadecimal. What follows the first five bytes
- * stands in the line's memory when the same answer comes again and breaks off; fathom_protocol_t: "on an answer it writes
+ * stands in the line's memory when the same response comes again and breaks off; fathom_protocol_t: "on a response it writes
  * the results ..., and only then". */
-TEST(an_answer_that_breaks_off_writes_nothing_though_the_same_came_before)
+TEST(a_response_that_breaks_off_writes_nothing_though_the_same_came_before)
 {
     static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x01, 0x01, 0x02,
                                    0x02, 0x03, 0x03, 0x04, 0x04, 0x15};
@@ -59,17 +59,18 @@ TEST(an_answer_that_breaks_off_writes_nothing_though_the_same_came_before)
         run(2 * GAP_US);
         for (unsigned i = 0; i != 4; i++) assert_int_equal(values[i], 0xA5A5);
         run(TIMEOUT_US);
-        /* five bytes of it are the request, which no answer follows */
-        assert_int_equal(status_of(&bench.request), length < 5 ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_ANSWER);
+        /* five bytes of it are the request, which no response follows */
+        assert_int_equal(status_of(&bench.request),
+                         length < 5 ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE);
     }
 }
 
-/* line.h: "the first exchange whose answer cannot equal its request, a read, shows the echo". A write does not, though
+/* line.h: "the first transaction whose response cannot equal its request, a read, shows the echo". A write does not, though
  * both copies may come in one read. */
 TEST(two_copies_of_a_set_address_in_one_read_show_no_echo)
 {
     static const uint8_t copies[] = {0x55, 0xAA, 0x05, 0x03, 0x07, 0x55, 0xAA, 0x05, 0x03, 0x07};
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
     run(T3_5_US + 200);
     run(5 * BYTE_US);
@@ -81,7 +82,7 @@ TEST(two_copies_of_a_set_address_in_one_read_show_no_echo)
 
 /* Behind five bytes that are the request 55 AA begins another frame; behind others it is the first probe's low and the
  * second one's high byte. 0355, AA00, 0000, 0000 hexadecimal: FF + 01 + 01 + 03 + 55 + AA = 203. */
-TEST(an_answer_that_does_not_begin_as_its_request_is_taken_whatever_it_says)
+TEST(a_response_that_does_not_begin_as_its_request_is_taken_whatever_it_says)
 {
     static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0x55, 0xAA, 0, 0, 0, 0, 0, 0x03};
     ask_all();

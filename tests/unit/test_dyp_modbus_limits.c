@@ -4,8 +4,8 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/a16_settings.h"
+#include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a16_settings.h"
 
 /* a05_modbus.h and a16_modbus.h, a16_settings.h: what their registers and configs can say, to the end of the range. */
 
@@ -48,14 +48,14 @@ static void is_asked_and_sent(void)
     assert_int_equal(poll_after(0), FATHOM_PENDING);
 }
 
-/* Four silences, each 2 s after the question: then it is left alone for two time-outs of 1.2 s or 1 s, or for no longer
+/* Four silences, each 2 s after the request: then it is left alone for two time-outs of 1.2 s or 1 s, or for no longer
  * than the config says. The pace has long passed. */
 static void is_left_alone_for(uint32_t us)
 {
     for (unsigned n = 0; n != 4; n++) {
         is_asked_and_sent();
-        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-        assert_int_equal(poll_after(2000000), FATHOM_ERR_NO_ANSWER);
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
+        assert_int_equal(poll_after(2000000), FATHOM_ERR_NO_RESPONSE);
         if (n != 3) fake.now_us += sensor.due_us(sensor.ctx);
     }
     assert_int_equal(sensor.due_us(sensor.ctx), us);
@@ -80,19 +80,19 @@ TEST(after_power_on_silence_is_no_error_for_1500_ms)
         start_a05(0);
         fathom_a05_modbus_power_on(&a05);
         is_asked_and_sent();
-        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
         assert_int_equal(poll_after(1499999 + late),
-                         late == 0 ? FATHOM_ERR_WARMING_UP : FATHOM_ERR_NO_ANSWER);
+                         late == 0 ? FATHOM_ERR_WARMING_UP : FATHOM_ERR_NO_RESPONSE);
     }
 }
 
-/* "what was under way is forgotten": the other three probes of an answer too. */
+/* "what was under way is forgotten": the other three probes of a response too. */
 TEST(after_power_on_no_sample_of_before_is_handed_over)
 {
     static const uint16_t four[] = {1000, 2000, 3000, 4000};
     start_a05(0);
     is_asked_and_sent();
-    fake_modbus_answer(&fake, four, 4);
+    fake_modbus_response(&fake, four, 4);
     assert_int_equal(poll_after(0), FATHOM_READY);
     assert_int_equal(sample.distance_mm, 1000);
     fathom_a05_modbus_power_on(&a05);
@@ -108,12 +108,12 @@ TEST(an_address_register_says_up_to_255)
     uint8_t address = 0;
     start_a05(0);
     assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_PENDING);
-    fake_modbus_answer(&fake, is_255, 1);
+    fake_modbus_response(&fake, is_255, 1);
     assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_READY);
     assert_int_equal(address, 255);
     fake.now_us += 1000000;
     assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_PENDING);
-    fake_modbus_answer(&fake, is_256, 1);
+    fake_modbus_response(&fake, is_256, 1);
     assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_ERR_MALFORMED);
     assert_int_equal(address, 255);
 }
@@ -125,7 +125,7 @@ TEST(a_register_that_is_0_or_1_is_not_0100)
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
     assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
-    fake_modbus_answer(&fake, is_0100, 1);
+    fake_modbus_response(&fake, is_0100, 1);
     assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_MALFORMED);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
@@ -137,8 +137,8 @@ TEST(a_register_that_cannot_be_read_writes_nothing)
     start_a16(0);
     assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_ANSWER);
+    fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
 
@@ -171,14 +171,14 @@ TEST(commands_of_two_registers_are_told_apart)
         }
 }
 
-/* The answer to a read says nothing of a write. */
+/* The response to a read says nothing of a write. */
 TEST(a_blind_write_has_to_wait_for_a_read_of_its_register)
 {
     static const uint16_t is_0[] = {0};
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
     assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
-    fake_modbus_answer(&fake, is_0, 1);
+    fake_modbus_response(&fake, is_0, 1);
     assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), FATHOM_READY);
     assert_int_equal(fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_POSITIVE), FATHOM_ERR_BUSY);
     assert_int_equal(fake.submits, 1);

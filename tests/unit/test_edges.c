@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 
 static fathom_edges_t edges;
 static fathom_capture_t capture;

@@ -7,7 +7,7 @@
 #include <sys/time.h>
 #include <ucontext.h>
 
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 
 /*
  * A signal stops the main loop between any two of its instructions and runs to its end before the loop goes on: what an

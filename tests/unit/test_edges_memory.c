@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 
 /* edges.h: "Makes it ready", whatever the memory held before. */
 

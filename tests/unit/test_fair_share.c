@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-#include "fathom/crc16.h"
-#include "fathom/fair_share.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/engine/fair_share.h"
 
-/* Units that answer so long after a request, and are asked again so long after that. */
+/* Units that response so long after a request, and are asked again so long after that. */
 typedef struct {
     uint8_t unit;
     uint32_t works_us;
@@ -85,12 +85,12 @@ static void step(asker_t *asker)
         fathom_modbus_message_t *const message = &asker->request.message;
         fathom_modbus_read_holding_registers(message, asker->unit, 0x0100, 1, &asker->value);
         if (asker->unit == 0) fathom_modbus_write_single_register(message, 0, 0x0100, 1);
-        asker->request.exchange.timeout_us = asker->timeout_us;
+        asker->request.transaction.timeout_us = asker->timeout_us;
         assert_int_equal(fathom_modbus_client_submit(&bench.line, &asker->request), FATHOM_PENDING);
         asker->is_asked = true;
         asker->free_us = now_us;
     }
-    if (!asker->has_left && fathom_line_owes(&bench.line, asker->unit)) asker->free_us = now_us;
+    if (!asker->has_left && fathom_line_is_quarantined(&bench.line, asker->unit)) asker->free_us = now_us;
 }
 
 static void sent(asker_t *asker)
@@ -170,7 +170,7 @@ TEST(three_have_a_third_each)
 
 /* ---- holding back ---- */
 
-/* Both have been asked; the fast one's next request would come 4 ms after its answer, and the slow one waits. */
+/* Both have been asked; the fast one's next request would come 4 ms after its response, and the slow one waits. */
 static asker_t *begin_fast_and_slow(uint32_t rests_us)
 {
     asker_t *const fast = add(7, 2 * MS, rests_us);
@@ -205,7 +205,7 @@ TEST(one_that_comes_again_goes_at_once)
     assert_int_equal(fast->left, before + 1);
 }
 
-/* Its requests come 55 ms after its answers. */
+/* Its requests come 55 ms after its responses. */
 TEST(for_one_that_asks_more_slowly_nothing_is_held_back)
 {
     asker_t *const fast = add(7, 2 * MS, 55 * MS);
@@ -319,9 +319,9 @@ TEST(where_all_owe_it_is_due_when_that_is_forgotten)
     play(700 * MS);
     assert_int_equal(dead->left, 1);
     assert_true(dead->is_asked);
-    assert_true(fathom_line_owes(&bench.line, 3));
-    assert_false(fathom_line_owes(&bench.line, 2));
-    expect_due(bench.line.owed_us);
+    assert_true(fathom_line_is_quarantined(&bench.line, 3));
+    assert_false(fathom_line_is_quarantined(&bench.line, 2));
+    expect_due(bench.line.quarantine_left_us);
     play(550 * MS);
     assert_int_equal(dead->left, 2);
 }

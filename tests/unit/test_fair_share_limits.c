@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-#include "fathom/fair_share.h"
+#include "fathom/engine/fair_share.h"
 
 /* What a fair share keeps of each unit, to the microsecond. */
 
@@ -53,7 +53,7 @@ TEST(the_silence_before_a_request_is_used_time)
         expect_written(i + 1);
         assert_int_equal(bench.line.polled_us - share.since_us, i == 0 ? T3_5_US : 4011);
         run(REQUEST_US);
-        answer_1(754);
+        response_1(754);
     }
 }
 
@@ -62,20 +62,20 @@ TEST(what_is_due_is_asked_without_use_of_time)
 {
     ask_1(0);
     run(REQUEST_US);
-    answer_1(754);
+    response_1(754);
     ask_other(2);
     run(1000);
     (void)due();
     assert_int_equal(share.since_us, share.units[1].ended_us);
 }
 
-/* Unit 16 asked 1 ms after its answers, and asks no more; for unit 2, whose last took 400 ms, the line is held. */
+/* Unit 16 asked 1 ms after its responses, and asks no more; for unit 2, whose last took 400 ms, the line is held. */
 static int hold(void **state)
 {
     (void)begin(state);
     ask(&bench.request, 16, &bench.value, 0);
     run(REQUEST_US);
-    deliver_answer(16, 111);
+    deliver_response(16, 111);
     ask_other(2);
     share.units[2].ahead_us = 100000;
     share.units[2].hold_us = 50000;

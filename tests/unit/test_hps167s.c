@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 #include "hps_desk.h"
 
 /* Commands #1, #3 and #5; test_driver_contract.c has what every driver promises. */
@@ -59,7 +59,7 @@ static void is_after(uint32_t us, fathom_status_t (*call)(void), fathom_status_t
     assert_int_equal(after(us, call), status);
 }
 
-static void measures(void) { fake_modbus_answer(&fake, hps_measured, 4); }
+static void measures(void) { fake_modbus_response(&fake, hps_measured, 4); }
 
 static void assert_version(void)
 {
@@ -87,7 +87,7 @@ TEST(the_abnormal_packet_is_a_fault)
                                                       .precision = 65535,
                                                       .kind = FATHOM_FAULT,
                                                       .model = FATHOM_HPS167S,
-                                                      .unit = 1,
+                                                      .address = 1,
                                                       .probe = 1,
                                                       .ambient = 255});
     }
@@ -106,8 +106,9 @@ TEST(figures_that_it_cannot_mean_are_an_error_and_no_sample)
 
 TEST(every_error_passes_through_and_leaves_all_outputs_alone)
 {
-    static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION, FATHOM_ERR_MALFORMED,
-                                             FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED, FATHOM_ERR_NO_ANSWER};
+    static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM,  FATHOM_ERR_EXCEPTION,
+                                             FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,
+                                             FATHOM_ERR_CANCELLED, FATHOM_ERR_NO_RESPONSE};
     for (unsigned i = 0; i != COUNT(errors); i++) {
         PLAY(ask_version, errors[i], HPS_1(1, errors[i], 0));
         PLAY(ask_details, errors[i], {{1, 3, 0, 3, 0, 11}, errors[i], {0x14, 0, 0, 0}, 0});
@@ -128,8 +129,8 @@ TEST(the_details_are_what_the_bytes_say_and_not_the_text)
                                      0x20, 0x34, 0x38, 0x35, 0x01, 0x06, 0x07, 0x05};
     PENDS(ask_details());
     fake_modbus_assert_asked(&fake, 1, 1, 0x0003, 11);
-    assert_int_equal(fake.request->exchange.timeout_us, 1000000);
-    fake_modbus_answer(&fake, detailed, 11);
+    assert_int_equal(fake.request->transaction.timeout_us, 1000000);
+    fake_modbus_response(&fake, detailed, 11);
     is_after(9000, ask_details, OK);
     assert_memory_equal(details.uuid, uuid, 16);
     assert_int_equal(details.year, 2019);
@@ -146,7 +147,7 @@ TEST(details_with_any_other_ack_byte_are_malformed)
     for (unsigned ack = 0; ack != 256; ack++) {
         registers[0] = (uint16_t)(ack * 256);
         is_after(PACE_US, ask_details, FATHOM_PENDING);
-        fake_modbus_answer(&fake, registers, 11);
+        fake_modbus_response(&fake, registers, 11);
         is_after(9000, ask_details, ack == 0xB0 ? OK : FATHOM_ERR_MALFORMED);
         assert_int_equal(nothing_else_was_sent(NULL), 0);
         fake.submits = 0;
@@ -165,7 +166,7 @@ TEST(a_command_takes_its_turn_after_a_measurement_under_way)
     is_after(PACE_US, ask_details, FATHOM_PENDING);
     fake_modbus_assert_asked(&fake, 2, 1, 0x0003, 11);
     desk_waits(1000);
-    fake_modbus_answer(&fake, detailed, 11);
+    fake_modbus_response(&fake, detailed, 11);
     is_after(1000, ask_details, OK);
     assert_int_equal(details.year, 2019);
 }
@@ -173,14 +174,14 @@ TEST(a_command_takes_its_turn_after_a_measurement_under_way)
 /* The device answers whatever it is asked 12 ms later. A loop of 1 ms polls and asks for the details in turns. */
 static unsigned ms_until_details_are_asked(bool poll_first)
 {
-    unsigned answer_in_ms = 0;
+    unsigned response_in_ms = 0;
     for (unsigned ms = 0; ms != 1000; ms++) {
         fake.now_us += 1000;
-        if (fake.request == NULL) answer_in_ms = 12;
+        if (fake.request == NULL) response_in_ms = 12;
         if (fake.request != NULL && fake.request->message.head[3] == 3) return ms;
-        if (fake.request != NULL && answer_in_ms != 0) {
-            if (--answer_in_ms == 11) fake_modbus_send(&fake);
-            if (answer_in_ms == 0) measures();
+        if (fake.request != NULL && response_in_ms != 0) {
+            if (--response_in_ms == 11) fake_modbus_send(&fake);
+            if (response_in_ms == 0) measures();
         }
         if (poll_first) desk_poll();
         PENDS(ask_details());
@@ -202,7 +203,7 @@ TEST(measurements_wait_until_the_outcome_of_a_command_was_taken)
 {
     PENDS(ask_version());
     desk_waits(1000);
-    fake_modbus_answer(&fake, versioned, 3);
+    fake_modbus_response(&fake, versioned, 3);
     for (unsigned i = 0; i != 4; i++) desk_waits(PACE_US);
     assert_int_equal(fake.submits, 1);
     is_after(0, ask_version, OK);
@@ -218,7 +219,7 @@ TEST(a_second_command_is_told_busy)
 {
     PENDS(ask_version());
     is_after(1000, ask_details, FATHOM_ERR_BUSY);
-    fake_modbus_answer(&fake, versioned, 3);
+    fake_modbus_response(&fake, versioned, 3);
     is_after(1000, ask_details, FATHOM_ERR_BUSY);
     is_after(0, ask_version, OK);
     is_after(PACE_US, ask_details, FATHOM_PENDING);
@@ -247,15 +248,15 @@ TEST(commands_3_and_5_go_over_a_line_byte_for_byte)
                                     0x34, 0x57, 0x14, 0x20, 0x34, 0x38, 0x35, 0x01, 0x06,
                                     0x07, 0x05, 0x13, 0x09, 0x17, 0x03, 0x09, 0x1A, 0xDC};
     start_line();
-    assert_int_equal(rig_exchange(rig_poll, ask_5, 8, say_5, sizeof say_5), OK);
+    assert_int_equal(rig_transaction(rig_poll, ask_5, 8, say_5, sizeof say_5), OK);
     assert_int_equal(rig.sample.distance_mm, 2083);
     assert_int_equal(rig.sample.magnitude, 7231744);
-    assert_int_equal(rig_exchange(ask_details, ask_3, 8, say_3, sizeof say_3), OK);
+    assert_int_equal(rig_transaction(ask_details, ask_3, 8, say_3, sizeof say_3), OK);
     assert_int_equal(details.year, 2019);
 }
 
 /* 27 bytes for the details (hps167s.h), 13 for a measurement. */
-TEST(a_line_with_less_room_than_an_answer_says_capacity)
+TEST(a_line_with_less_room_than_a_response_says_capacity)
 {
     start_line();
     rig.line_config.frame_size = 26;

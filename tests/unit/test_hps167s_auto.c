@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
-#include "fathom/hps167s_auto.h"
-#include "fathom/hps167s_info.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/hps167s_auto.h"
+#include "fathom/sensor/hps167s_info.h"
 
 /* Frames that nobody asked for, on a line; test_driver_contract.c has what every listener promises. */
 
@@ -86,7 +86,7 @@ TEST(only_its_address_counts)
     hears(FATHOM_PENDING, 31, 1000, 0, 0, 0);
     hears(FATHOM_PENDING, 1, 1000, 0, 0, 0);
     hears(FATHOM_READY, 32, 2000, 0, 0, 0);
-    assert_int_equal(rig.sample.unit, 32);
+    assert_int_equal(rig.sample.address, 32);
 }
 
 TEST(what_is_not_of_this_shape_is_passed_over)
@@ -115,11 +115,11 @@ TEST(no_single_wrong_bit_makes_a_sample)
 /* Up to 12 bytes of a frame that broke off, and at once a whole one. */
 TEST(a_frame_is_found_behind_the_beginning_of_another)
 {
-    for (unsigned torn = 0; torn != LENGTH; torn++) {
+    for (unsigned truncated = 0; truncated != LENGTH; truncated++) {
         uint8_t bytes[2 * LENGTH];
-        memcpy(bytes, example, torn);
-        memcpy(bytes + torn, example, LENGTH);
-        assert_int_equal(rig_send(bytes, torn + LENGTH, loop_us), FATHOM_READY);
+        memcpy(bytes, example, truncated);
+        memcpy(bytes + truncated, example, LENGTH);
+        assert_int_equal(rig_send(bytes, truncated + LENGTH, loop_us), FATHOM_READY);
     }
 }
 
@@ -215,10 +215,10 @@ TEST(its_address_is_that_of_the_driver_that_asks)
     asking.unit.address = 7;
     hears(FATHOM_PENDING, 1, 1000, 0, 0, 0);
     hears(FATHOM_READY, 7, 1000, 0, 0, 0);
-    assert_int_equal(rig.sample.unit, 7);
+    assert_int_equal(rig.sample.address, 7);
 }
 
-/* The driver asks #2 now, and would take a 255 mm of these figures for its answer. */
+/* The driver asks #2 now, and would take a 255 mm of these figures for its response. */
 #define LOOKS_LIKE_2 0x00FF, 0x0500, 0x0000, 0xB401
 
 /* The driver asks meanwhile, if it has not ended before; returns what has come of it. */
@@ -240,18 +240,18 @@ static fathom_status_t ask_2(void) { return fathom_hps167s_configuration(&asking
 static fathom_hps167s_version_t version;
 static fathom_status_t ask_1(void) { return fathom_hps167s_interface_version(&asking, &version); }
 
-TEST(an_answer_to_2_that_comes_by_itself_is_no_measurement)
+TEST(a_response_to_2_that_comes_by_itself_is_no_measurement)
 {
     ask_too();
     hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* 255 mm, while nobody asks */
-    assert_int_equal(run_both(2000000, ask_2), FATHOM_ERR_NO_ANSWER);
-    hears(FATHOM_PENDING, 1, LOOKS_LIKE_2); /* asked and not answered: this may be the answer */
+    assert_int_equal(run_both(2000000, ask_2), FATHOM_ERR_NO_RESPONSE);
+    hears(FATHOM_PENDING, 1, LOOKS_LIKE_2); /* asked and not answered: this may be the response */
     assert_int_equal(hps.implausible, 1);
     hears(FATHOM_PENDING, 1, 0x00FF, 0x0500, 0x0003, 0xE800); /* whatever its rate and reconnect time are */
     assert_int_equal(hps.implausible, 2);
     hears(FATHOM_READY, 1, 0xFFFF, 0x0000, 0x00FF, 0xFFFF); /* but not the abnormal packet */
-    assert_int_equal(run_both(2000000, ask_1), FATHOM_ERR_NO_ANSWER);
-    hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* there was another question */
+    assert_int_equal(run_both(2000000, ask_1), FATHOM_ERR_NO_RESPONSE);
+    hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* there was another request */
 }
 
 TEST(what_was_told_last_is_no_measurement_at_any_time)
@@ -259,7 +259,7 @@ TEST(what_was_told_last_is_no_measurement_at_any_time)
     static const uint16_t told[4] = {LOOKS_LIKE_2};
     ask_too();
     hears(FATHOM_READY, 1, 1000, 0, 0, 0);
-    memcpy(asking.told, told, sizeof told);
+    memcpy(asking.last_configuration, told, sizeof told);
     hears(FATHOM_PENDING, 1, LOOKS_LIKE_2);
     assert_int_equal(hps.implausible, 1);
     hears(FATHOM_READY, 1, 0x00FF, 0x0500, 0x0000, 0xB402);
@@ -278,7 +278,7 @@ TEST(a_held_value_is_never_taken_for_the_configuration)
         status = run_both(100000, ask_2);
     }
     assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_answers(fathom_hps167s_unit(&asking)), 8);
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&asking)), 8);
 }
 
 /* Command #5: "If a sensor failure occurs during continuous measurement, an abnormal data packet will be returned". */
@@ -293,18 +293,18 @@ TEST(a_faulted_sensor_that_talks_never_yields_a_configuration)
         status = run_both(100000, ask_2);
     }
     assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_answers(fathom_hps167s_unit(&asking)), 8);
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&asking)), 8);
 }
 
 TEST(commands_are_answered_while_frames_arrive)
 {
-    static const uint8_t answer_1[] = {0x01, 0x03, 0x06, 0x14, 0x09, 0x1B, 0x02, 0x01, 0x00, 0x58, 0xD4};
+    static const uint8_t response_1[] = {0x01, 0x03, 0x06, 0x14, 0x09, 0x1B, 0x02, 0x01, 0x00, 0x58, 0xD4};
     ask_too();
     rig_run(10000, 1000);
     PENDS(run_both(20000, ask_1));
     assert_int_equal(rig.fake.written, 1);
     fake_trickle(&rig.fake, 0, RIG_BYTE_US, example, LENGTH);
-    fake_trickle(&rig.fake, 20000, RIG_BYTE_US, answer_1, sizeof answer_1);
+    fake_trickle(&rig.fake, 20000, RIG_BYTE_US, response_1, sizeof response_1);
     fake_trickle(&rig.fake, 50000, RIG_BYTE_US, example, LENGTH);
     assert_int_equal(run_both(100000, ask_1), FATHOM_READY);
     assert_int_equal(version.year, 2020);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-#include "fathom/hps167s_auto.h"
+#include "fathom/sensor/hps167s_auto.h"
 
 /* hps167s_auto.h: where a frame begins, and when there has been none. */
 

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/hps167s_registers.h"
+#include "fathom/codec/hps167s_registers.h"
 
 enum { GUARD = 0xA5 };
 
@@ -71,7 +71,7 @@ TEST(decode_leaves_the_members_that_are_not_the_devices)
     assert_int_equal(sample.time_us, 0xA5A5A5A5);
     assert_int_equal(sample.sequence, 0xA5A5);
     assert_int_equal(sample.model, GUARD);
-    assert_int_equal(sample.unit, GUARD);
+    assert_int_equal(sample.address, GUARD);
     assert_int_equal(sample.probe, GUARD);
 }
 

@@ -37,7 +37,7 @@ HPS_SUITE;
 
 /* ---- #2 ---- */
 
-TEST(the_configuration_is_believed_when_two_answers_agree) { PLAY(configuration, OK, TELLS(RATE_1)); }
+TEST(the_configuration_is_believed_when_two_responses_agree) { PLAY(configuration, OK, TELLS(RATE_1)); }
 
 TEST(every_member_of_the_configuration_is_its_own_bytes)
 {
@@ -76,7 +76,7 @@ TEST(every_member_of_the_configuration_is_its_own_bytes)
     }
 }
 
-TEST(a_measurement_in_its_place_is_passed_over_and_then_three_answers_have_to_agree)
+TEST(a_measurement_in_its_place_is_passed_over_and_then_three_responses_have_to_agree)
 {
     PLAY(configuration, OK, HPS_2(1, OK, 0, MEASURES), HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES),
          HPS_2(1, OK, 0, RATE_2), HPS_2(1, OK, 0, MEASURES), HPS_2(1, OK, 0, RATE_2),
@@ -85,17 +85,17 @@ TEST(a_measurement_in_its_place_is_passed_over_and_then_three_answers_have_to_ag
 }
 
 /* "for 2 s", and if more are asked for, more. */
-TEST(after_a_frame_that_nobody_asked_for_three_answers_have_to_agree_for_2_s)
+TEST(after_a_frame_that_nobody_asked_for_three_responses_have_to_agree_for_2_s)
 {
     static const row_t four[] = {TELLS(RATE_1), TELLS(RATE_1)};
     static const uint16_t frame[4] = {MEASURES};
     static const struct {
         uint32_t after_us;
-        uint8_t same_answers, needed;
+        uint8_t same_responses, needed;
     } rows[] = {{0, 1, 3}, {0, 2, 3}, {1000000, 2, 3}, {0, 4, 4}, {2000000, 2, 2}, {2000000, 1, 1}};
     for (unsigned i = 0; i != COUNT(rows); i++) {
         hps_set_up(NULL);
-        hps_config.same_answers = rows[i].same_answers;
+        hps_config.same_responses = rows[i].same_responses;
         hps_start();
         assert_true(fathom_hps167s_heard(&hps, frame, fake.now_us));
         fake.now_us += rows[i].after_us;
@@ -103,15 +103,15 @@ TEST(after_a_frame_that_nobody_asked_for_three_answers_have_to_agree_for_2_s)
     }
 }
 
-/* The same bytes by themselves and as an answer: 255 mm that hold, or an answer that comes late. */
-TEST(what_is_heard_unasked_between_two_answers_takes_away_their_agreement)
+/* The same bytes by themselves and as a response: 255 mm that hold, or a response that comes late. */
+TEST(what_is_heard_unasked_between_two_responses_takes_away_their_agreement)
 {
     static const uint16_t told[4] = {RATE_1};
     PART(configuration, HPS_2(1, OK, 0, RATE_1));
     PENDS(configuration());
     assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
-    /* but not the one answer that is still to come, where a measurement was taken for it */
+    /* but not the one response that is still to come, where a measurement was taken for it */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
     assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
@@ -123,7 +123,7 @@ TEST(what_is_heard_unasked_between_two_answers_takes_away_their_agreement)
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
 }
 
-TEST(two_answers_that_differ_are_not_enough)
+TEST(two_responses_that_differ_are_not_enough)
 {
     PLAY(configuration, OK, HPS_2(1, OK, 0, RATE_1), TELLS(RATE_2));
     assert_int_equal(is.baud, 57600);
@@ -131,16 +131,16 @@ TEST(two_answers_that_differ_are_not_enough)
 
 #define TWICE HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, RATE_2)
 
-TEST(after_eight_answers_without_agreement_it_gives_up)
+TEST(after_eight_responses_without_agreement_it_gives_up)
 {
     PLAY(configuration, FATHOM_ERR_MALFORMED, TWICE, TWICE, TWICE, TWICE);
     /* the next time counts anew: one more of the last kind is no agreement */
     PLAY(configuration, OK, TELLS(RATE_2));
 }
 
-/* The one answer that is still to come has a measurement's shape: until the command's time-out (1 s) has passed there is
+/* The one response that is still to come has a measurement's shape: until the command's time-out (1 s) has passed there is
  * no outcome, and nothing is asked. */
-TEST(where_unasked_frames_were_taken_for_it_it_gives_up_when_no_answer_can_come_any_more)
+TEST(where_unasked_frames_were_taken_for_it_it_gives_up_when_no_response_can_come_any_more)
 {
     const row_t row = HPS_2(1, OK, 0, MEASURES);
     PART(configuration, row, row, row, row, row, row, row, row);
@@ -158,8 +158,8 @@ TEST(where_unasked_frames_were_taken_for_it_it_gives_up_when_no_answer_can_come_
     assert_int_equal(configuration(), FATHOM_ERR_MALFORMED);
 }
 
-/* Each differs from an answer to #2 in one thing. */
-TEST(what_cannot_be_an_answer_to_2_never_counts)
+/* Each differs from a response to #2 in one thing. */
+TEST(what_cannot_be_a_response_to_2_never_counts)
 {
     static const uint16_t wrong[][4] = {
         {0x01FF, 0x0500, 0x0000, 0xB401},
@@ -206,7 +206,7 @@ TEST(what_was_measured_last_is_no_configuration)
     PLAY(configuration, FATHOM_ERR_MALFORMED, next, next, next, next, next, next, next, next);
 }
 
-/* An unasked frame was taken for the answer, and the answer comes when a measurement is being waited for: termination
+/* An unasked frame was taken for the response, and the response comes when a measurement is being waited for: termination
  * off; or 255 mm. */
 TEST(what_was_told_last_is_no_measurement)
 {
@@ -240,14 +240,14 @@ TEST(a_second_command_does_not_disturb_it)
 
 /* ---- its options ---- */
 
-TEST(how_many_answers_have_to_agree_is_an_option)
+TEST(how_many_responses_have_to_agree_is_an_option)
 {
     static const row_t eight[] = {TELLS(RATE_1), TELLS(RATE_1), TELLS(RATE_1), TELLS(RATE_1)};
-    static const uint8_t answers[] = {1, 3, 8};
-    for (unsigned i = 0; i != COUNT(answers); i++) {
-        hps_config.same_answers = answers[i];
+    static const uint8_t responses[] = {1, 3, 8};
+    for (unsigned i = 0; i != COUNT(responses); i++) {
+        hps_config.same_responses = responses[i];
         hps_start();
-        assert_int_equal(desk_play(configuration, eight, answers[i]), OK);
+        assert_int_equal(desk_play(configuration, eight, responses[i]), OK);
     }
 }
 

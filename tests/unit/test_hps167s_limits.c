@@ -33,7 +33,7 @@ static void asks(fathom_status_t (*command)(void))
 static void measures(fathom_status_t as, const uint16_t *registers)
 {
     asks(desk_poll);
-    fake_modbus_answer(&fake, registers, 4);
+    fake_modbus_response(&fake, registers, 4);
     assert_int_equal(desk_poll(), as);
 }
 
@@ -41,10 +41,10 @@ HPS_SUITE;
 
 /* ---- memory that is not zero ---- */
 
-TEST(a_new_driver_has_had_no_answer_to_a_reset)
+TEST(a_new_driver_has_had_no_response_to_a_reset)
 {
-    assert_int_equal(hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
-    assert_int_equal(hps.reset_answer, 0xFFFF);
+    assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
+    assert_int_equal(hps.reset_response, 0xFFFF);
 }
 
 TEST(a_new_driver_has_written_nothing_whatever_stood_in_the_memory)
@@ -58,7 +58,7 @@ TEST(a_new_driver_has_written_nothing_whatever_stood_in_the_memory)
 TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
 {
     static const uint16_t first[4] = {0x0823, 0x0101, 0x0701, 0x0000};
-    memcpy(hps.told, first, sizeof first);
+    memcpy(hps.last_configuration, first, sizeof first);
     hps_start();
     measures(OK, first);
     assert_int_equal(desk.sample.distance_mm, 2083);
@@ -68,7 +68,7 @@ TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
 TEST(the_first_configuration_is_believed_whatever_stood_in_the_memory)
 {
     static const uint16_t first[4] = {0x0000, 0x0101, 0x0000, 0x0801};
-    memcpy(hps.measured, first, sizeof first);
+    memcpy(hps.last_measurement, first, sizeof first);
     hps_start();
     PLAY(configuration, OK, TELLS(0x0000, 0x0101, 0x0000, 0x0801));
     assert_int_equal(is.warm_up_s, 1);
@@ -103,29 +103,29 @@ TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
     }
 }
 
-/* hps167s_info.h: "the questions come at intervals that are no multiple of 18519 us": from question to question the pace,
+/* hps167s_info.h: "the requests come at intervals that are no multiple of 18519 us": from request to request the pace,
  * and then n periods and 9259 us. */
-TEST(after_a_measurement_in_the_place_of_an_answer_no_interval_is_a_multiple_of_a_period)
+TEST(after_a_measurement_in_the_place_of_a_response_no_interval_is_a_multiple_of_a_period)
 {
     for (uint32_t n = 1; n != 5; n++) {
         asks(configuration);
-        fake_modbus_answer(&fake, n < 4 ? hps_measured : tells, 4);
+        fake_modbus_response(&fake, n < 4 ? hps_measured : tells, 4);
         PENDS(configuration());
-        /* 46296, 64814, 83332 and, after an answer that may count, 101850 us */
+        /* 46296, 64814, 83332 and, after a response that may count, 101850 us */
         assert_int_equal(due_us(), PERIOD_US + n * 18518 + 9259);
     }
 }
 
-TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_first_answer_on)
+TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_first_response_on)
 {
     assert_true(fathom_hps167s_heard(&hps, hps_measured, fake.now_us));
     asks(configuration);
-    fake_modbus_answer(&fake, tells, 4);
+    fake_modbus_response(&fake, tells, 4);
     PENDS(configuration());
     assert_int_equal(due_us(), PERIOD_US + 18518 + 9259);
 }
 
-/* No answer came, so none was a measurement, whatever the registers hold from before. */
+/* No response came, so none was a measurement, whatever the registers hold from before. */
 TEST(a_configuration_that_is_not_answered_puts_nothing_off)
 {
     measures(OK, hps_measured);
@@ -138,18 +138,18 @@ TEST(a_configuration_that_is_not_answered_puts_nothing_off)
     assert_int_equal(due_us(), 0);
 }
 
-/* ---- how many answers to #2 ---- */
+/* ---- how many responses to #2 ---- */
 
 /* "For 2 s after such a frame": of the last row there was none. */
-TEST(for_2_s_to_the_microsecond_one_answer_is_not_enough_and_a_new_driver_has_heard_nothing)
+TEST(for_2_s_to_the_microsecond_one_response_is_not_enough_and_a_new_driver_has_heard_nothing)
 {
     static const uint32_t before_us[] = {1999999, 2000000, 0};
-    hps_config.same_answers = 1;
+    hps_config.same_responses = 1;
     for (unsigned i = 0; i != 3; i++) {
         hps_start();
         if (i != 2) assert_true(fathom_hps167s_heard(&hps, hps_measured, fake.now_us - before_us[i]));
         asks(configuration);
-        fake_modbus_answer(&fake, tells, 4);
+        fake_modbus_response(&fake, tells, 4);
         assert_int_equal(configuration(), i == 0 ? FATHOM_PENDING : OK);
     }
 }
@@ -157,17 +157,17 @@ TEST(for_2_s_to_the_microsecond_one_answer_is_not_enough_and_a_new_driver_has_he
 TEST(after_power_on_the_configuration_is_asked_as_often_as_ever)
 {
     asks(configuration);
-    fake_modbus_answer(&fake, tells, 4);
+    fake_modbus_response(&fake, tells, 4);
     PENDS(configuration()); /* one of two */
     fathom_hps167s_power_on(&hps);
     PLAY(configuration, OK, TELLS(ON));
 }
 
 /* FATHOM_ERR_BUSY: "another command or setting is not finished": that one does not notice. */
-TEST(who_is_told_busy_costs_a_setting_no_answer)
+TEST(who_is_told_busy_costs_a_setting_no_response)
 {
     asks(set_termination);
-    fake_modbus_answer(&fake, tells, 4);
+    fake_modbus_response(&fake, tells, 4);
     PENDS(set_termination()); /* one of two */
     assert_int_equal(configuration(), FATHOM_ERR_BUSY);
     PLAY(set_termination, OK, HPS_2(1, OK, 0, ON), {{1, 6, 0, 0x13, 0, 0}, OK, {0}, 0}, TELLS(OFF));
@@ -175,10 +175,10 @@ TEST(who_is_told_busy_costs_a_setting_no_answer)
 
 /* ---- where it is ---- */
 
-/* hps167s_settings.h: "the driver asks at both in turns until it is answered": a turn is a question, not a call. */
-TEST(calls_before_the_next_question_do_not_change_the_rate)
+/* hps167s_settings.h: "the driver asks at both in turns until it is answered": a turn is a request, not a call. */
+TEST(calls_before_the_next_request_do_not_change_the_rate)
 {
-    hps_config.modbus.settings = &hps_factory;
+    hps_config.modbus.line_settings = &hps_factory;
     hps_config.modbus.backoff_us = 1; /* else it is left alone for longer than hps_asks() waits */
     hps_start();
     PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200},

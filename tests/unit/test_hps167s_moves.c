@@ -23,8 +23,8 @@ TEST(the_driver_follows_the_device_to_its_address)
     assert_int_equal(fake.unit_cancels, 1);
     assert_int_equal(fake.cancelled_unit, 1);
     hps_asks(32, 0);
-    hps_answers();
-    assert_int_equal(desk.sample.unit, 32);
+    hps_responses();
+    assert_int_equal(desk.sample.address, 32);
 }
 
 TEST(addresses_are_1_to_32)
@@ -56,7 +56,7 @@ FOLLOWS(a_device_that_answers_at_neither_address_is_unconfirmed, 1, 0, 1, NULL, 
 TEST(a_reset_device_is_followed_to_address_1)
 {
     PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, NOBODY, 0, 0), HPS_6(7, OK, 1, 0), IS(1, 1, 0));
-    assert_int_equal(hps.reset_answer, 1);
+    assert_int_equal(hps.reset_response, 1);
     assert_int_equal(fake.cancelled_unit, 7);
     hps_asks(1, 0);
 }
@@ -93,7 +93,7 @@ TEST(a_reset_whose_rate_waits_for_power_on_is_followed_then)
 TEST(nobody_else_may_be_at_address_1)
 {
     PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_IN_USE, IS(7, 1, 0), IS(1, 1, 0));
-    assert_int_equal(hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
+    assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
     hps_asks(7, 0);
 }
 
@@ -104,21 +104,21 @@ TEST(the_devices_own_error_code_is_kept)
     for (unsigned i = 0; i != 4; i++) {
         PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(7, 1, 0), TWO(1, NOBODY, 0, 0),
                 HPS_6(7, OK, codes[i], 0));
-        assert_int_equal(hps.reset_answer, codes[i]);
+        assert_int_equal(hps.reset_response, codes[i]);
         hps_asks(7, 0);
         PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(1, 1, 0), HPS_6(1, OK, codes[i], 0));
-        assert_int_equal(hps.reset_answer, codes[i]);
+        assert_int_equal(hps.reset_response, codes[i]);
     }
 }
 
 TEST(a_modbus_exception_is_told_from_that)
 {
     PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(1, 1, 0), HPS_6(1, EXCEPTION, 4, 0));
-    assert_int_equal(hps.reset_answer, FATHOM_HPS167S_NO_RESET_ANSWER);
+    assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
     assert_int_equal(fathom_hps167s_exception(&hps), 4);
 }
 
-TEST(a_reset_without_an_answer_shows_in_where_the_device_is)
+TEST(a_reset_without_a_response_shows_in_where_the_device_is)
 {
     PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, NOBODY, 0, 0), HPS_6(7, NOBODY, 0, 0), IS(1, 1, 0));
     hps_asks(1, 0);
@@ -130,11 +130,11 @@ TEST(a_reset_without_an_answer_shows_in_where_the_device_is)
     hps_asks(7, 0);
 }
 
-FOLLOWS(a_reset_without_an_answer_shows_in_its_rate_too, 1, 19200, 1, &fast, 0, reset, OK, IS(1, 3, 115200),
+FOLLOWS(a_reset_without_a_response_shows_in_its_rate_too, 1, 19200, 1, &fast, 0, reset, OK, IS(1, 3, 115200),
         TWO(1, NOBODY, 0, 19200), HPS_6(1, NOBODY, 0, 115200), IS(1, 1, 19200))
 
 /* It is where it was, which shows nothing. */
-TEST(a_reset_without_an_answer_at_address_1_is_unconfirmed)
+TEST(a_reset_without_a_response_at_address_1_is_unconfirmed)
 {
     PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 1, 0), HPS_6(1, NOBODY, 0, 0), IS(1, 1, 0));
     PLAY_AT(1, &fast, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200),

@@ -10,7 +10,7 @@ static fathom_status_t says_after(uint32_t us, const uint16_t *registers, fathom
     assert_non_null(fake.request);
     fake.now_us += us;
     if (registers != NULL)
-        fake_modbus_answer(&fake, registers, 4);
+        fake_modbus_response(&fake, registers, 4);
     else
         fake_modbus_fail(&fake, status);
     fake.submits = 0;
@@ -52,7 +52,7 @@ TEST(without_power_on_they_are_what_they_are)
 }
 
 /* Until when is silence no error: seconds of the config and one time-out. 0 is the factory's 5. */
-TEST(the_warm_up_is_an_option_and_its_last_question_counts)
+TEST(the_warm_up_is_an_option_and_its_last_request_counts)
 {
     static const uint32_t rows[][3] = {
         {0, 0, 5500000}, {1, 0, 1500000}, {9, 0, 9500000}, {255, 0, 255500000}, {2, 170000, 2170000}};

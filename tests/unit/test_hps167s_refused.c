@@ -16,7 +16,7 @@ static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_setti
 
 #define EXCEPTION FATHOM_ERR_EXCEPTION
 
-/* Answers to #2 with this warm-up and the code of the rate; and two that agree. */
+/* Responses to #2 with this warm-up and the code of the rate; and two that agree. */
 #define TWO_OF(unit, ends, warm_up, code, baud)                                                              \
     HPS_2(unit, ends, baud, 0xFFFF, (warm_up)*256u, 0x0000, 0xB400 + code)
 #define IS_OF(unit, warm_up, code, baud)                                                                     \
@@ -90,11 +90,11 @@ TEST(after_a_reset_that_was_refused_rate_and_warm_up_are_as_before)
     hps_asks(1, 115200);
 }
 
-/* Its own error code stays in reset_answer; that is not the next setting's. */
+/* Its own error code stays in reset_response; that is not the next setting's. */
 TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
 {
     PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 5, 1, 0), HPS_6(1, OK, 2, 0));
-    assert_int_equal(hps.reset_answer, 2);
+    assert_int_equal(hps.reset_response, 2);
     PLAY(set_warm_up, OK, IS_OF(1, 5, 1, 0), HPS_WRITE(1, 0x0A, 200, OK, 0), IS_OF(1, 200, 1, 0));
     assert_warm_up(200);
 }
@@ -118,7 +118,7 @@ TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before
         PENDS(fathom_hps167s_configuration(&hps, &configuration));
         fake.now_us += 20000;
         PENDS(fathom_hps167s_configuration(&hps, &configuration));
-        fake_modbus_answer(&fake, is, 4);
+        fake_modbus_response(&fake, is, 4);
     }
     PLAY(reset, OK, HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));
 }
@@ -126,7 +126,7 @@ TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before
 /* #9: "from now on the driver asks at both in turns": also where the port breaks before the old rate could be asked. */
 static fathom_status_t set_baud_until_the_port_breaks(void)
 {
-    if (fake.ends == FATHOM_ERR_PORT) fake.carrier = FATHOM_ERR_PORT;
+    if (fake.ends == FATHOM_ERR_PORT) fake.transport = FATHOM_ERR_PORT;
     return set_baud();
 }
 
@@ -135,11 +135,11 @@ TEST(a_device_is_sought_at_both_rates_when_the_port_breaks_while_the_new_one_is_
     PLAY_AT(1, &hps_factory, 57600, set_baud_until_the_port_breaks, FATHOM_ERR_UNCONFIRMED,
             IS_OF(1, 5, 1, 19200), TWO_OF(1, NOBODY, 5, 1, 57600), HPS_WRITE(1, 0x11, 2, OK, 19200),
             TWO_OF(1, FATHOM_ERR_PORT, 5, 1, 57600));
-    fake.carrier = FATHOM_PENDING;
+    fake.transport = FATHOM_PENDING;
     hps_asks(1, 19200);
     hps_is_silent(NOBODY);
     hps_asks(1, 57600);
-    hps_answers();
+    hps_responses();
 }
 
 /* #15. 01000008 hexadecimal = 16777224 = 18 * 932068. */

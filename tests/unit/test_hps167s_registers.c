@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/hps167s_registers.h"
+#include "fathom/codec/hps167s_registers.h"
 
 /* The commands and figures of the datasheet, section 3; test_hps167s_decode.c has those of #5. */
 
@@ -115,7 +115,7 @@ TEST(the_configuration_is_read_byte_by_byte)
 
 /* Table 12: each is 00 or FF. #5: the exponent of the abnormal packet is not named; what differs from it in one of the
  * figures that are is none. */
-TEST(an_answer_to_2_has_two_switches_and_is_not_the_abnormal_packet)
+TEST(a_response_to_2_has_two_switches_and_is_not_the_abnormal_packet)
 {
     static const struct {
         uint16_t registers[4];

@@ -51,7 +51,7 @@ TEST(zero_in_the_config_means_the_default_silence_and_gap)
     run_in_steps(10, 10);
     expect_written(1);
     run(8 * BYTE_US);
-    receive(answer_1_754, 4);
+    receive(response_1_754, 4);
     run_in_steps(4990, 10);
     assert_int_equal(bench.line.have, 4); /* the gap has not passed yet */
     run_in_steps(30, 10);
@@ -74,44 +74,44 @@ TEST(received_bytes_put_the_silence_off)
 {
     ask_1(0);
     run_in_steps(3000, 10);
-    receive(answer_1_754, 1);
+    receive(response_1_754, 1);
     run_in_steps(T3_5_US - 6, 10);
     expect_written(0);
     run_in_steps(30, 10);
     expect_written(1);
 }
 
-TEST_IN(asked, the_answer_is_ready_in_the_poll_that_brings_its_last_byte)
+TEST_IN(asked, the_response_is_ready_in_the_poll_that_brings_its_last_byte)
 {
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     expect(FATHOM_PENDING);
     poll_line();
     expect_mm(754);
-    expect_count(FATHOM_LINE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_RESPONSES, 1);
 }
 
-TEST_IN(asked, an_answer_that_comes_a_byte_at_a_time_is_complete_with_the_last)
+TEST_IN(asked, a_response_that_comes_a_byte_at_a_time_is_complete_with_the_last)
 {
-    for (size_t i = 0; i != sizeof answer_1_754; i++) {
+    for (size_t i = 0; i != sizeof response_1_754; i++) {
         expect_failed(FATHOM_PENDING);
-        receive(answer_1_754 + i, 1);
+        receive(response_1_754 + i, 1);
         run(BYTE_US);
     }
     expect_mm(754);
 }
 
-TEST(every_cut_of_an_answer_into_two_reads_is_put_together)
+TEST(every_cut_of_a_response_into_two_reads_is_put_together)
 {
-    for (size_t cut = 1; cut != sizeof answer_1_754; cut++) {
+    for (size_t cut = 1; cut != sizeof response_1_754; cut++) {
         set_up_asked(state);
-        receive(answer_1_754, cut);
-        receive(answer_1_754 + cut, sizeof answer_1_754 - cut);
+        receive(response_1_754, cut);
+        receive(response_1_754 + cut, sizeof response_1_754 - cut);
         poll_line();
         expect_mm(754);
     }
 }
 
-TEST(a_loop_of_20_ms_reads_an_answer_that_is_spread_over_its_rounds)
+TEST(a_loop_of_20_ms_reads_a_response_that_is_spread_over_its_rounds)
 {
     for (uint32_t start_us = 0; start_us < 40000; start_us += 700) {
         set_up(state);
@@ -119,7 +119,7 @@ TEST(a_loop_of_20_ms_reads_an_answer_that_is_spread_over_its_rounds)
         ask_1(0);
         run_in_steps(60000, 20000);
         expect_written(1);
-        fake_trickle(&bench.fake, start_us, BYTE_US, answer_1_754, sizeof answer_1_754);
+        fake_trickle(&bench.fake, start_us, BYTE_US, response_1_754, sizeof response_1_754);
         run_in_steps(80000, 20000);
         expect_mm(754);
     }
@@ -134,7 +134,7 @@ TEST(a_write_is_acknowledged_by_its_own_words)
     expect(FATHOM_READY);
 }
 
-TEST(an_exception_ends_the_exchange_and_keeps_its_number)
+TEST(an_exception_ends_the_transaction_and_keeps_its_number)
 {
     ask_1_and_send(3);
     deliver_all(exception_1_2);
@@ -144,48 +144,48 @@ TEST(an_exception_ends_the_exchange_and_keeps_its_number)
     expect_count(FATHOM_LINE_EXCEPTIONS, 1);
 }
 
-TEST(exchanges_are_served_first_come_first_served)
+TEST(transactions_are_served_first_come_first_served)
 {
     ask_1(0);
     ask_other(2);
     run(T3_5_US + 9 * BYTE_US);
     expect_unit(0, 1);
-    receive_answer(1, 111);
+    receive_response(1, 111);
     run(T3_5_US + 9 * BYTE_US);
     expect_unit(1, 2);
-    answer_other(2, 222);
+    response_other(2, 222);
     expect_mm(111);
 }
 
-TEST_IN(asked, an_exchange_may_be_submitted_again_when_it_has_ended_and_not_before)
+TEST_IN(asked, a_transaction_may_be_submitted_again_when_it_has_ended_and_not_before)
 {
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_BUSY);
-    answer_1(111);
+    response_1(111);
     ask_1(0);
     expect_written_after(20000, 2);
-    answer_1(112);
+    response_1(112);
 }
 
 /* ---- time ---- */
 
-TEST_IN(asked, no_answer_is_said_when_the_time_out_has_passed_since_the_request_left)
+TEST_IN(asked, no_response_is_said_when_the_time_out_has_passed_since_the_request_left)
 {
     run(TIMEOUT_US - 500); /* up to 400 us have passed since the last bit */
     expect(FATHOM_PENDING);
-    expect_after(700, FATHOM_ERR_NO_ANSWER);
-    expect_count(FATHOM_LINE_NO_ANSWERS, 1);
+    expect_after(700, FATHOM_ERR_NO_RESPONSE);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 1);
     assert_int_equal(bench.value, 0xDEAD);
 }
 
-TEST_IN(asked, an_answer_that_began_in_time_may_end_after_the_time_out)
+TEST_IN(asked, a_response_that_began_in_time_may_end_after_the_time_out)
 {
     run(TIMEOUT_US - 2000);
-    fake_trickle(&bench.fake, 0, BYTE_US, answer_1_754, sizeof answer_1_754);
+    fake_trickle(&bench.fake, 0, BYTE_US, response_1_754, sizeof response_1_754);
     run(8 * BYTE_US);
     expect_mm(754);
 }
 
-TEST(a_flood_of_noise_does_not_keep_an_exchange_for_ever)
+TEST(a_flood_of_noise_does_not_keep_a_transaction_for_ever)
 {
     static const uint8_t noise[] = {0x01, 0x03, 0x02, 0x11, 0x22, 0x33, 0x44, 0x99};
     uint32_t waited_us = 0;
@@ -199,19 +199,19 @@ TEST(a_flood_of_noise_does_not_keep_an_exchange_for_ever)
     assert_true(waited_us < TIMEOUT_US + 20 * BYTE_US);
 }
 
-TEST(a_request_goes_out_and_an_answer_comes_in_across_the_wrap_of_the_clock)
+TEST(a_request_goes_out_and_a_response_comes_in_across_the_wrap_of_the_clock)
 {
     for (uint32_t before_us = 0; before_us < 140000; before_us += 1700) {
         set_up(state);
         set_clock(0u - before_us);
         ask_1_and_send(0);
         run(20000);
-        answer_1(754);
+        response_1(754);
         ask_other(2);
         run(T3_5_US + 8 * BYTE_US + TIMEOUT_US - 500);
         expect_other(FATHOM_PENDING);
         run(1000);
-        expect_other(FATHOM_ERR_NO_ANSWER);
+        expect_other(FATHOM_ERR_NO_RESPONSE);
     }
 }
 
@@ -222,12 +222,12 @@ TEST(a_single_poll_across_the_wrap_sees_all_the_time_that_passed)
     assert_true(bench.fake.now_us > 0x80000000u);
     run_in_steps(TIMEOUT_US, TIMEOUT_US);
     assert_true(bench.fake.now_us < 0x80000000u);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect(FATHOM_ERR_NO_RESPONSE);
 }
 
-TEST_IN(asked, a_late_poll_finds_the_answer_before_it_looks_at_the_time)
+TEST_IN(asked, a_late_poll_finds_the_response_before_it_looks_at_the_time)
 {
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     run_in_steps(3 * TIMEOUT_US, 3 * TIMEOUT_US);
     expect(FATHOM_READY);
 }
@@ -236,7 +236,7 @@ TEST_IN(asked, a_late_poll_finds_the_answer_before_it_looks_at_the_time)
 
 TEST(cancelling_what_is_not_queued_does_nothing)
 {
-    bench.request.exchange.status = FATHOM_READY;
+    bench.request.transaction.status = FATHOM_READY;
     cancel(&bench.request);
     expect(FATHOM_READY);
     ask_1(0);
@@ -245,7 +245,7 @@ TEST(cancelling_what_is_not_queued_does_nothing)
     expect(FATHOM_ERR_CANCELLED);
 }
 
-TEST(an_exchange_cancelled_before_it_is_sent_is_never_sent)
+TEST(a_transaction_cancelled_before_it_is_sent_is_never_sent)
 {
     ask_1(0);
     ask_other(2);
@@ -254,20 +254,20 @@ TEST(an_exchange_cancelled_before_it_is_sent_is_never_sent)
     expect_unit(0, 2);
 }
 
-TEST_IN(asked, an_exchange_cancelled_in_flight_leaves_an_answer_that_nobody_takes)
+TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_nobody_takes)
 {
     cancel(&bench.request);
     expect(FATHOM_ERR_CANCELLED);
     memset(&bench.request, 0xA5, sizeof bench.request); /* the memory is the caller's again */
     ask_other(1);
     expect_written_after(30000, 1);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     expect_written_after(20000, 2);
     assert_int_equal(bench.other_value, 0xDEAD);
-    answer_other(1, 751);
+    response_other(1, 751);
 }
 
-TEST(an_exchange_cancelled_while_it_leaves_owes_no_longer_than_any_other)
+TEST(a_transaction_cancelled_while_it_leaves_owes_no_longer_than_any_other)
 {
     bench.fake.never_sent = true;
     ask_1(0);
@@ -291,7 +291,7 @@ TEST(a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled)
 
 /* ---- broadcast ---- */
 
-TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_answer)
+TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_response)
 {
     ask_to_write(&bench.request, FATHOM_MODBUS_BROADCAST);
     ask_other(2);
@@ -317,7 +317,7 @@ TEST(due_says_when_something_can_happen_without_new_bytes)
     expect_due(1000); /* sending */
     run_in_steps(9000, 9000);
     expect_due(TIMEOUT_US);
-    receive(answer_1_754, 4);
+    receive(response_1_754, 4);
     poll_line();
     expect_due(GAP_US); /* the rest of the frame, or its end */
     run_in_steps(GAP_US, GAP_US);
@@ -331,7 +331,7 @@ TEST(due_says_when_something_can_happen_without_new_bytes)
 
 /* Sleeping as long as due says, and no longer, must never miss anything: every outcome comes at the same time
  * as with polling all the time. */
-TEST(sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause)
+TEST(sleeping_for_due_us_ends_a_transaction_as_early_as_polling_without_pause)
 {
     uint32_t ended_us[2];
     for (int sleeps = 0; sleeps != 2; sleeps++) {
@@ -353,22 +353,22 @@ TEST(sleeping_for_due_us_ends_an_exchange_as_early_as_polling_without_pause)
 
 TEST(counters_stop_at_their_end)
 {
-    bench.counters[FATHOM_LINE_ANSWERS] = 65534;
+    bench.counters[FATHOM_LINE_RESPONSES] = 65534;
     bench.counters[FATHOM_LINE_DROPPED_BYTES] = 65530;
     for (int i = 0; i != 3; i++) {
         ask_1(0);
         run(80000); /* what 9 has sent unasked is forgotten */
-        deliver_answer(1, 111);
-        receive_answer(9, 999);
+        deliver_response(1, 111);
+        receive_response(9, 999);
         run(10000);
     }
-    expect_count(FATHOM_LINE_ANSWERS, 65535);
+    expect_count(FATHOM_LINE_RESPONSES, 65535);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 65535);
 }
 
 TEST(a_poll_reads_the_port_a_bounded_number_of_times)
 {
-    for (int i = 0; i != 100; i++) receive(answer_1_754, 1);
+    for (int i = 0; i != 100; i++) receive(response_1_754, 1);
     poll_line();
     assert_int_equal(bench.fake.reads, 16);
     assert_false(fake_drained(&bench.fake));

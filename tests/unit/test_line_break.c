@@ -33,18 +33,18 @@ TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it)
     expect_due(T3_5_US);
     expect_sent(T3_5_US - 100, 200);
     run(8 * BYTE_US);
-    answer_1(111);
+    response_1(111);
 }
 
-TEST(with_an_exchange_on_the_wire_it_is_busy_and_nothing_changes)
+TEST(with_a_transaction_on_the_wire_it_is_busy_and_nothing_changes)
 {
     ask_1(0);
     expect_written_after(T3_5_US + 100, 1);
     assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* it is leaving */
     run(8 * BYTE_US);
-    assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* the answer may come */
+    assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* the response may come */
     assert_int_equal(bench.fake.breaks, 0);
-    answer_1(111);
+    response_1(111);
     hold(true);
     assert_int_equal(bench.fake.breaks, 1);
 }
@@ -72,7 +72,7 @@ TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break)
     expect_written_after(1000, 1);
 }
 
-/* A module that is triggered by the break answers in frames that begin after a silence. */
+/* A module that is triggered by the break responses in frames that begin after a silence. */
 TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
 {
     for (unsigned silent_us = 4900; silent_us <= 5000; silent_us += 100) {
@@ -82,18 +82,18 @@ TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
         run(silent_us);
         hold(false);
         assert_int_equal(ear.length, 0);
-        deliver(answer_1_754, 7);
+        deliver(response_1_754, 7);
         assert_int_equal(ear.length, 7);
         assert_int_equal(ear.gaps, silent_us == 5000);
     }
 }
 
-/* Unit 1 still owes; of its late answer a part has come, right behind a byte of noise. */
+/* Unit 1 still owes; of its late response a part has come, right behind a byte of noise. */
 TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
 {
     listen_for(500);
     ask_1_and_send(0);
-    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(ear.length, 0);
     receive_hex("55 01 03 02");
     run(1000);
@@ -119,7 +119,7 @@ static void refuse(int times, int how)
 
 static fathom_status_t end(void) { return fathom_line_break(&bench.line, false); }
 
-/* In a break, with an exchange that waits. */
+/* In a break, with a transaction that waits. */
 static void hold_and_ask(void)
 {
     hold(true);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* line.h, FATHOM_ERR_PORT: "the port is broken; every queued exchange has ended with that. Go on polling and it works
+/* line.h, FATHOM_ERR_PORT: "the port is broken; every queued transaction has ended with that. Go on polling and it works
  * again when the port does." */
 
 static const suite_t suite = {.set_up = set_up};
@@ -34,7 +34,7 @@ TEST(a_unit_whose_request_the_port_had_not_taken_owes_nothing)
 }
 
 /* It may have gone out. */
-TEST(a_unit_whose_request_was_leaving_owes_an_answer)
+TEST(a_unit_whose_request_was_leaving_owes_a_response)
 {
     bench.fake.never_sent = true;
     ask(&bench.request, 1, &bench.value, 0);
@@ -46,9 +46,9 @@ TEST(a_unit_whose_request_was_leaving_owes_an_answer)
     after(8 * BYTE_US);
     after(T3_5_US);
     assert_int_equal(bench.fake.written, 1);
-    receive(answer_1_754, sizeof answer_1_754);
+    receive(response_1_754, sizeof response_1_754);
     after(100);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 1);
     after(T3_5_US);
     assert_int_equal(bench.fake.written, 2);
 }
@@ -102,7 +102,7 @@ TEST(the_first_bytes_of_a_port_that_works_again_are_after_no_gap)
     bench.fake.read_fails = true;
     assert_int_equal(after(1000), FATHOM_ERR_PORT);
     bench.fake.read_fails = false;
-    receive(answer_1_754, sizeof answer_1_754);
+    receive(response_1_754, sizeof response_1_754);
     after(100);
     assert_int_equal(heard, 7);
     assert_int_equal(gaps, 0);

@@ -31,9 +31,9 @@ TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order)
     fathom_line_cancel_unit(&bench.line, 3);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
     run(REQUEST_US);
-    receive_answer(2, 222);
+    receive_response(2, 222);
     run(REQUEST_US);
-    deliver_answer(4, 444);
+    deliver_response(4, 444);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_READY, FATHOM_ERR_CANCELLED, FATHOM_READY);
     assert_int_equal(values[1], 222);
     assert_int_equal(values[3], 444);
@@ -42,18 +42,18 @@ TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order)
     expect_unit(1, 4);
 }
 
-TEST(one_on_its_way_ends_too_and_its_answer_is_late)
+TEST(one_on_its_way_ends_too_and_its_response_is_late)
 {
     static const uint8_t units[4] = {1, 1, 2, 1};
     ask_all(units);
     expect_written_after(REQUEST_US, 1);
     fathom_line_cancel_unit(&bench.line, 1);
     assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_PENDING, FATHOM_ERR_CANCELLED);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     run(REQUEST_US);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_written(2);
-    receive_answer(2, 222);
+    receive_response(2, 222);
     run(400);
     assert_int_equal(status_of(&requests[2]), FATHOM_READY);
     assert_int_equal(values[0], 0xDEAD);
@@ -66,19 +66,19 @@ TEST(one_on_its_way_to_another_is_answered)
     run(REQUEST_US);
     fathom_line_cancel_unit(&bench.line, 2);
     assert_statuses(FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     run(400);
     assert_int_equal(status_of(&requests[0]), FATHOM_READY);
     assert_int_equal(values[0], 754);
     expect_due(FATHOM_NO_DEADLINE);
 }
 
-TEST(a_question_to_everybody_or_to_anybody_is_no_units_own)
+TEST(a_request_to_everybody_or_to_anybody_is_no_units_own)
 {
     static const uint8_t units[4] = {5, 6, 7, 8};
     ask_all(units);
-    requests[0].exchange.unit = FATHOM_LINE_ANY_UNIT;
-    requests[1].exchange.unit = FATHOM_LINE_ALL_UNITS;
+    requests[0].transaction.address = FATHOM_LINE_ANY_UNIT;
+    requests[1].transaction.address = FATHOM_LINE_ALL_UNITS;
     fathom_line_cancel_unit(&bench.line, 7);
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
 }

@@ -50,14 +50,14 @@ TEST(a_request_that_waits_when_a_frame_ends_leaves_behind_it)
     }
 }
 
-/* A frame may have waited for the answer, and comes as soon as a request might. */
-TEST(behind_an_answer_no_request_leaves_before_the_next_frame)
+/* A frame may have waited for the response, and comes as soon as a request might. */
+TEST(behind_a_response_no_request_leaves_before_the_next_frame)
 {
     send_unasked(13);
     ask_1(0);
     run(REQUEST_US);
     expect_written(1);
-    answer_1(111);
+    response_1(111);
     ask_1(0);
     expect_behind_the_next_frame(1);
 }
@@ -75,20 +75,20 @@ TEST(what_is_sent_unasked_is_forgotten_after_65_ms_of_silence)
     run(100);
     expect_written(1);
     run(8 * BYTE_US);
-    answer_1(111);
+    response_1(111);
     ask_1(0);
     expect_due(T3_5_US); /* as on any line */
     expect_sent(T3_5_US - 200, 400);
 }
 
-/* A driver that lets go of an RS-485 pair leaves a byte or two there. Only what is sent between two answers adds up. */
-TEST(a_glitch_behind_each_answer_delays_nothing)
+/* A driver that lets go of an RS-485 pair leaves a byte or two there. Only what is sent between two responses adds up. */
+TEST(a_glitch_behind_each_response_delays_nothing)
 {
     for (unsigned i = 0; i != 4; i++) {
         ask_1(0);
         run(REQUEST_US);
         expect_written(i + 1);
-        answer_1(111);
+        response_1(111);
         deliver_hex("00 00 00");
         run(T3_5_US + 1000);
     }
@@ -98,7 +98,7 @@ TEST(a_glitch_behind_each_answer_delays_nothing)
     expect_written_after(20000, 4);
 }
 
-/* Nor do three bytes before the first answer of all. */
+/* Nor do three bytes before the first response of all. */
 TEST(a_glitch_before_the_first_request_delays_nothing)
 {
     memset(&bench.line, 0x5A, sizeof bench.line);
@@ -131,7 +131,7 @@ TEST(eight_bytes_at_once_are_company_as_four_are)
 }
 
 /* It owes nothing that comes later in the silence: the next request leaves as on any line. */
-TEST(what_is_left_of_a_damaged_answer_is_nobodys_company)
+TEST(what_is_left_of_a_damaged_response_is_nobodys_company)
 {
     ask_1(0);
     run(REQUEST_US);
@@ -143,7 +143,7 @@ TEST(what_is_left_of_a_damaged_answer_is_nobodys_company)
     expect_written(2);
 }
 
-TEST(bytes_that_belong_to_no_exchange_are_counted_without_coming_round)
+TEST(bytes_that_belong_to_no_transaction_are_counted_without_coming_round)
 {
     for (unsigned i = 0; i != 20; i++) send_unasked(13); /* 260 of them */
     run(T3_5_US + 200);

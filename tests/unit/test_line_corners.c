@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 #include "fake_modbus.h"
-#include "fathom/modbus_unit.h"
-#include "fathom/stream.h"
+#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/stream.h"
 
 static uint16_t values[4];
 
@@ -17,7 +17,7 @@ static void refuse_set_address(void)
 /* dyp_client.h: FATHOM_ERR_BUSY; line.h: "it is queued already; nothing changed". */
 TEST(a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address)
 {
-    bench.request.exchange.retries = 1;
+    bench.request.transaction.retries = 1;
     ask_dyp(&bench.request, 1, 4, values);
     run_until_written(1, 100);
     refuse_set_address();
@@ -25,8 +25,8 @@ TEST(a_refused_set_address_does_not_turn_a_read_under_way_into_a_set_address)
     expect_bytes(1, bench.fake.writes[0].bytes, 5);
 }
 
-/* the same for an answer that comes. */
-TEST(a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone)
+/* the same for a response that comes. */
+TEST(a_refused_set_address_leaves_the_response_of_a_read_under_way_alone)
 {
     ask_dyp(&bench.request, 1, 4, values);
     run_until_written(1, 100);
@@ -36,25 +36,25 @@ TEST(a_refused_set_address_leaves_the_answer_of_a_read_under_way_alone)
     expect(FATHOM_READY);
 }
 
-/* line.h: "A late answer does serve a retry of the same exchange." */
-TEST(a_late_answer_serves_the_retry_of_a_question_to_anyone)
+/* line.h: "A late response does serve a retry of the same transaction." */
+TEST(a_late_response_serves_the_retry_of_a_request_to_anyone)
 {
-    bench.request.exchange.retries = 1;
+    bench.request.transaction.retries = 1;
     ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);
     run(TIMEOUT_US + 10000);
     deliver_hex("55 AA 05 10 07 A1 BC");
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect(FATHOM_READY);
 }
 
-/* line.h: FATHOM_LINE_ANY_UNIT: "the first answer is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast address. */
+/* line.h: FATHOM_LINE_ANY_UNIT: "the first response is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast address. */
 TEST(modbus_to_unit_255_takes_any_units_answer)
 {
     ask(&bench.request, 255, &bench.value, 0);
     run_until_written(1, 100);
     run(20000);
-    deliver_answer(5, 111);
+    deliver_response(5, 111);
     expect_mm(111);
     assert_int_equal(bench.request.message.head[0], 5);
 }
@@ -88,15 +88,15 @@ TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
         assert_memory_equal(fathom_stream_frame(&stream), good, 10);
 }
 
-/* line.h: "An answer is complete by its length, at once". */
-TEST_IN(asked, after_a_broken_port_an_answer_is_complete_at_once)
+/* line.h: "A response is complete by its length, at once". */
+TEST_IN(asked, after_a_broken_port_a_response_is_complete_at_once)
 {
     deliver_hex("01 03 14 00");
     break_port();
     ask_other(2);
     run_until_written(2, 100);
     run(9 * BYTE_US);
-    receive_answer(2, 222);
+    receive_response(2, 222);
     poll_line();
     expect_other(FATHOM_READY);
 }
@@ -110,8 +110,8 @@ static void write_with_echo(void)
     come_all(0, set_address_5);
 }
 
-/* line.h: cancel: "the unit then owes an answer, which no later exchange takes for its own". The echo is no answer. */
-TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed)
+/* line.h: cancel: "the unit then owes a response, which no later transaction takes for its own". The echo is no response. */
+TEST(the_echo_of_a_cancelled_write_is_not_the_response_that_is_owed)
 {
     write_with_echo();
     cancel(&bench.request);
@@ -120,22 +120,22 @@ TEST(the_echo_of_a_cancelled_write_is_not_the_answer_that_is_owed)
     expect_written_after(20000, 1); /* the unit still owes */
 }
 
-/* After the echo the next copy is the answer that is owed. */
-TEST(the_answer_after_the_echo_of_a_cancelled_write_lifts_the_debt)
+/* After the echo the next copy is the response that is owed. */
+TEST(the_response_after_the_echo_of_a_cancelled_write_lifts_the_debt)
 {
     write_with_echo();
     run(9 * BYTE_US);
     cancel(&bench.request);
     deliver(set_address_5, 8);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     ask_other(1);
     expect_written_after(T3_5_US + 200, 2);
 }
 
-static fathom_status_t asks(fathom_modbus_unit_t *unit, const fathom_modbus_question_t *question)
+static fathom_status_t asks(fathom_modbus_unit_t *unit, const fathom_modbus_unit_request_t *request)
 {
     fathom_modbus_unit_poll(unit);
-    return fathom_modbus_unit_ask(unit, question);
+    return fathom_modbus_unit_ask(unit, request);
 }
 
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
@@ -143,8 +143,8 @@ TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
 {
     static fake_modbus_t fake;
     static fathom_modbus_unit_t unit;
-    const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
-    const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x81};
+    const fathom_modbus_unit_request_t measure = {values, 0x0100, 1, 3, 1};
+    const fathom_modbus_unit_request_t version = {values, 0x0001, 3, 3, 0x81};
     fake_modbus_init(&fake);
     assert_int_equal(
         fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = 9},
@@ -154,9 +154,9 @@ TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
         assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);
         fake_modbus_send(&fake);
         assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);
-        fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
         fake.now_us += 300000;
-        assert_int_equal(asks(&unit, &measure), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(asks(&unit, &measure), FATHOM_ERR_NO_RESPONSE);
     }
     assert_int_equal(asks(&unit, &version), FATHOM_PENDING);
     assert_int_equal(fake.submits, 4);
@@ -175,9 +175,9 @@ TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
     expect(FATHOM_ERR_PORT);
 }
 
-/* two A05 answer FF; the second one's answer, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the answer to
+/* two A05 response FF; the second one's response, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the response to
  * the next request. */
-TEST(the_second_answer_to_anyone_is_not_the_next_requests)
+TEST(the_second_response_to_anyone_is_not_the_next_requests)
 {
     ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);

@@ -28,7 +28,7 @@ TEST(a_new_line_knows_of_nothing)
         set_up_on(fills[i]);
         for (unsigned c = 0; c != FATHOM_LINE_COUNTERS; c++) assert_int_equal(counter(c), 0);
         assert_true(fathom_line_is_idle(&bench.line));
-        assert_false(fathom_line_has(&bench.line, &bench.request.exchange));
+        assert_false(fathom_line_has(&bench.line, &bench.request.transaction));
         assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
         assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
         assert_int_equal(fathom_line_heard_us(&bench.line), bench.fake.now_us);
@@ -51,12 +51,12 @@ TEST(the_first_request_waits_for_one_silence_and_nothing_else)
         }
 }
 
-TEST(the_first_answer_is_complete_with_its_last_byte_and_shows_that_there_is_no_echo)
+TEST(the_first_response_is_complete_with_its_last_byte_and_shows_that_there_is_no_echo)
 {
     for (unsigned i = 0; i != FILLS; i++) {
         set_up_on(fills[i]);
         ask_1_and_send(0);
-        receive(answer_1_754, sizeof answer_1_754);
+        receive(response_1_754, sizeof response_1_754);
         after(0);
         assert_int_equal(status_of(&bench.request), FATHOM_READY);
         assert_int_equal(bench.value, 754);
@@ -74,7 +74,7 @@ TEST(the_first_debt_ends_in_its_time)
         after(T3_5_US);
         after(8 * BYTE_US); /* sent */
         after(TIMEOUT_US);
-        assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
         ask(&bench.request, 1, &bench.value, 0);
         after(TIMEOUT_US - 1);
         assert_int_equal(bench.fake.written, 1);

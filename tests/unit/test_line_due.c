@@ -3,12 +3,12 @@
 
 /* A program that sleeps for as long as fathom_line_due_us says makes progress with every sleep. */
 
-/* Half of the answer came in time, and its time is over. */
+/* Half of the response came in time, and its time is over. */
 static void receive_half_in_time(void)
 {
     ask_1_and_send(0);
     run(TIMEOUT_US - 2000);
-    receive(answer_1_754, 4);
+    receive(response_1_754, 4);
     run_in_steps(3000, 1000);
     expect(FATHOM_PENDING);
 }
@@ -16,12 +16,12 @@ static void receive_half_in_time(void)
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
 
-/* Of an answer that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
-TEST(an_answer_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap)
+/* Of a response that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
+TEST(a_response_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap)
 {
     receive_half_in_time();
     assert_in_range(due(), 1, GAP_US);
-    deliver(answer_1_754 + 4, 3);
+    deliver(response_1_754 + 4, 3);
     expect_mm(754);
 }
 
@@ -39,8 +39,8 @@ TEST(one_that_breaks_off_ends_with_the_gap)
     assert_int_equal(sleeps, 1);
 }
 
-/* The CRC is 38 A1. None of it can begin an answer, so that it is dropped at once. */
-TEST_IN(asked, the_end_of_a_damaged_answer_is_due_at_its_gap)
+/* The CRC is 38 A1. None of it can begin a response, so that it is dropped at once. */
+TEST_IN(asked, the_end_of_a_damaged_response_is_due_at_its_gap)
 {
     receive_hex("01 03 02 02 F2 00 00");
     poll_line();
@@ -50,7 +50,7 @@ TEST_IN(asked, the_end_of_a_damaged_answer_is_due_at_its_gap)
     expect(FATHOM_ERR_CHECKSUM);
 }
 
-TEST_IN(asked, a_damaged_answer_at_the_end_of_the_time_out_does_not_put_that_off)
+TEST_IN(asked, a_damaged_response_at_the_end_of_the_time_out_does_not_put_that_off)
 {
     run(TIMEOUT_US - 2000);
     receive_hex("01 03 02 02 F2 00 00");
@@ -66,7 +66,7 @@ TEST(bytes_that_come_while_the_request_leaves_do_not_put_off_the_next_look)
 {
     ask_1(0);
     expect_written_after(T3_5_US + 200, 1);
-    deliver(answer_1_754, 4);
+    deliver(response_1_754, 4);
     assert_int_equal(bench.line.have, 4);
     expect_due(1000);
 }
@@ -91,9 +91,9 @@ TEST(without_a_time_out_it_is_due_at_once)
         run_in_steps(due_us, due_us);
     }
     expect(FATHOM_PENDING);
-    assert_int_equal(bench.request.exchange.attempts, 1);
+    assert_int_equal(bench.request.transaction.attempts, 1);
     run_in_steps(1, 1);
-    expect(FATHOM_ERR_NO_ANSWER);
+    expect(FATHOM_ERR_NO_RESPONSE);
 }
 
 /* ---- while the request leaves; hal.h: leaves_in_us ---- */
@@ -188,7 +188,7 @@ TEST(a_port_that_takes_no_request_is_asked_again_when_it_has_sent)
 /* Bytes that came wait for the gap behind them, and that is sooner. */
 TEST_IN(leaving, the_gap_behind_what_has_come_is_due_before_the_request_has_left)
 {
-    deliver(answer_1_754, 4);
+    deliver(response_1_754, 4);
     assert_int_equal(bench.line.have, 4);
     expect_due(GAP_US);
 }

@@ -22,7 +22,7 @@ static void send(void)
     assert_int_equal(due_us(), TIMEOUT_US);
 }
 
-/* "FATHOM_NO_DEADLINE when only a byte or a submit can bring that": however late the question. */
+/* "FATHOM_NO_DEADLINE when only a byte or a submit can bring that": however late the request. */
 TEST(an_idle_line_has_no_deadline_at_any_time)
 {
     after(100);
@@ -33,8 +33,8 @@ TEST(an_idle_line_has_no_deadline_at_any_time)
     assert_int_equal(due_us(), FATHOM_NO_DEADLINE);
 }
 
-/* The bytes of a damaged answer have been dropped; the attempt ends with its gap or its time-out. */
-TEST(after_a_damaged_answer_the_earlier_of_gap_and_time_out_is_due)
+/* The bytes of a damaged response have been dropped; the attempt ends with its gap or its time-out. */
+TEST(after_a_damaged_response_the_earlier_of_gap_and_time_out_is_due)
 {
     static const uint8_t damaged[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00}; /* nothing begins with 00 */
     for (uint32_t left_us = 2000; left_us <= 8000; left_us += 3000) {
@@ -53,18 +53,18 @@ TEST(while_the_port_sends_it_is_1000_us_with_bytes_held_too)
 {
     ask(&bench.request, 1, &bench.value, 0);
     after(T3_5_US);
-    receive(answer_1_754, 1);
+    receive(response_1_754, 1);
     after(100);
     assert_true(bench.line.have == 1);
     assert_int_equal(due_us(), 1000);
 }
 
-/* A part of an answer is there: its time-out does not end it, the gap does. */
-TEST(with_a_part_of_an_answer_it_is_the_rest_of_the_gap)
+/* A part of a response is there: its time-out does not end it, the gap does. */
+TEST(with_a_part_of_a_response_it_is_the_rest_of_the_gap)
 {
     send();
     after(TIMEOUT_US - 2000);
-    receive(answer_1_754, 1);
+    receive(response_1_754, 1);
     after(0);
     assert_int_equal(due_us(), GAP_US);
     after(1500);
@@ -73,13 +73,13 @@ TEST(with_a_part_of_an_answer_it_is_the_rest_of_the_gap)
     assert_int_equal(due_us(), GAP_US - 1800);
 }
 
-/* The same of a late answer, while another request waits: that needs a silence of 3646 us, and an empty frame. */
-TEST(with_a_part_of_a_late_answer_the_next_request_is_due_after_the_gap)
+/* The same of a late response, while another request waits: that needs a silence of 3646 us, and an empty frame. */
+TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
 {
     send();
     after(TIMEOUT_US);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
-    receive(answer_1_754, 4);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
+    receive(response_1_754, 4);
     after(0);
     ask(&bench.other, 2, &bench.other_value, 0);
     assert_int_equal(due_us(), GAP_US);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 
-/* line.h, local echo, where something goes wrong besides. The request is a write whose answer equals it (A16 6(5)). */
+/* line.h, local echo, where something goes wrong besides. The request is a write whose response equals it (A16 6(5)). */
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -10,8 +10,8 @@ static void write_on(void **state, uint8_t echo)
 {
     set_up_with(echo);
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    bench.request.exchange.retries = 0;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
+    bench.request.transaction.retries = 0;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     run_until_written(1, 100);
     run(8 * BYTE_US);
@@ -23,8 +23,8 @@ static void come_at_once(const uint8_t *bytes, size_t length)
     run(100);
 }
 
-/* FATHOM_ERR_CHECKSUM: "an answer from the unit was damaged". */
-TEST(a_damaged_answer_behind_one_copy_is_a_checksum_error)
+/* FATHOM_ERR_CHECKSUM: "a response from the unit was damaged". */
+TEST(a_damaged_response_behind_one_copy_is_a_checksum_error)
 {
     static const uint8_t damaged[] = {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x70};
     write_on(state, FATHOM_LINE_ECHO_AUTO);
@@ -35,11 +35,11 @@ TEST(a_damaged_answer_behind_one_copy_is_a_checksum_error)
 }
 
 /* FATHOM_ERR_MALFORMED: "the unit sent something else with a right checksum". */
-TEST(another_answer_behind_one_copy_is_malformed)
+TEST(another_response_behind_one_copy_is_malformed)
 {
     write_on(state, FATHOM_LINE_ECHO_AUTO);
     come_at_once(set_address_5, sizeof set_address_5);
-    come_at_once(answer_1_754, sizeof answer_1_754);
+    come_at_once(response_1_754, sizeof response_1_754);
     run(TIMEOUT_US);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_MALFORMED);
 }
@@ -68,7 +68,7 @@ TEST(one_copy_behind_an_overrun_is_no_acknowledgement)
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_ECHO);
 }
 
-/* The echo belongs to the exchange: fathom_listener_t takes "the bytes that belong to no exchange", and DROPPED_BYTES
+/* The echo belongs to the transaction: fathom_listener_t takes "the bytes that belong to no transaction", and DROPPED_BYTES
  * counts what "belonged to no frame". */
 static unsigned heard;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 
-/* Local echo with 55 AA reads, whose answer may begin like the request; with retries, late answers, broadcasts
+/* Local echo with 55 AA reads, whose response may begin like the request; with retries, late responses, broadcasts
  * and a listener. */
 
 /* SUM is the low byte of the sum of all before it; 55 + AA = FF. */
@@ -10,7 +10,7 @@ typedef struct {
     uint16_t values[4];
     uint8_t request[5];
     uint8_t length;
-    uint8_t answer[13];
+    uint8_t response[13];
 } probe_t;
 
 static const probe_t probes[] = {
@@ -35,8 +35,8 @@ static const probe_t probes[] = {
      {0x55, 0xAA, 0x01, 0x01, 0x01},
      13,
      {0x55, 0xAA, 0x01, 0x01, 0x01, 0x55, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0xCD}},
-    /* Echo and answer glued: the 12 bytes 55 AA 01 01 01 55 AA 01 01 03 E8 07 have the sum FF + 03 + FF + 02 + 03 + E8
-     * + 07 = 2F5, and F5 is the 13th, so that they look like one answer. 62 - D0 + F5 = 87. */
+    /* Echo and response glued: the 12 bytes 55 AA 01 01 01 55 AA 01 01 03 E8 07 have the sum FF + 03 + FF + 02 + 03 + E8
+     * + 07 = 2F5, and F5 is the 13th, so that they look like one response. 62 - D0 + F5 = 87. */
     {4,
      {1000, 2037, 1953, 3562},
      {0x55, 0xAA, 0x01, 0x01, 0x01},
@@ -60,33 +60,33 @@ static void dyp_read(const way_t *way)
         for (unsigned echoes = 0; echoes != 2; echoes++) {
             ask_probes(&probes[i], way->mode, way->step_us);
             if (echoes != 0) come(way->seed, 0, probes[i].request, 5);
-            come(way->seed, 5 * BYTE_US + way->pause_us, probes[i].answer, probes[i].length);
+            come(way->seed, 5 * BYTE_US + way->pause_us, probes[i].response, probes[i].length);
             run_in_steps(80000, way->step_us);
             expect(FATHOM_READY);
             assert_memory_equal(values, probes[i].values, probes[i].count * sizeof *values);
             expect_learned(way->mode, echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
-            expect_count(FATHOM_LINE_ANSWERS, 1);
+            expect_count(FATHOM_LINE_RESPONSES, 1);
         }
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-TEST(an_answer_that_begins_like_its_request_is_told_from_the_echo) { in_every_way(dyp_read); }
+TEST(a_response_that_begins_like_its_request_is_told_from_the_echo) { in_every_way(dyp_read); }
 
-TEST(the_echo_of_a_dyp_read_is_no_answer)
+TEST(the_echo_of_a_dyp_read_is_no_response)
 {
     for (size_t i = 0; i != COUNT_OF(probes); i++)
         for (size_t s = 0; s != COUNT_OF(steps_us); s++) {
             ask_probes(&probes[i], FATHOM_LINE_ECHO_AUTO, steps_us[s]);
             come_all(0, probes[i].request);
             run_in_steps(2 * TIMEOUT_US, steps_us[s]);
-            expect(FATHOM_ERR_NO_ANSWER);
+            expect(FATHOM_ERR_NO_RESPONSE);
             assert_int_equal(values[0], 0xDEAD);
             expect_echo(FATHOM_LINE_ECHO_ON);
         }
 }
 
-/* ---- a read whose request begins with a whole answer to it ---- */
+/* ---- a read whose request begins with a whole response to it ---- */
 
 /*
  * 53 03 02 00 00 01 88 are seven of the eight bytes that ask unit 83 for register 0200, the address of an A16 or A05,
@@ -96,7 +96,7 @@ TEST(the_echo_of_a_dyp_read_is_no_answer)
 typedef struct {
     uint8_t unit;
     uint8_t request[8];
-    uint8_t answer[7]; /* the register holds the address */
+    uint8_t response[7]; /* the register holds the address */
 } prefix_t;
 
 static const prefix_t prefixes[] = {
@@ -120,16 +120,16 @@ static void echoed_prefix(const way_t *way)
     for (size_t i = 0; i != COUNT_OF(prefixes); i++) {
         ask_address(&prefixes[i], way->mode, way->step_us);
         come(way->seed, 0, prefixes[i].request, 8);
-        come(way->seed, 8 * BYTE_US + way->pause_us, prefixes[i].answer, 7);
+        come(way->seed, 8 * BYTE_US + way->pause_us, prefixes[i].response, 7);
         run_in_steps(80000, way->step_us);
         expect_mm(prefixes[i].unit);
-        expect_count(FATHOM_LINE_ANSWERS, 1);
+        expect_count(FATHOM_LINE_RESPONSES, 1);
     }
 }
 
-TEST(an_echo_that_begins_with_a_whole_answer_is_no_answer) { in_every_way(echoed_prefix); }
+TEST(an_echo_that_begins_with_a_whole_response_is_no_response) { in_every_way(echoed_prefix); }
 
-TEST(an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure)
+TEST(an_echo_that_begins_with_a_whole_response_and_nothing_else_is_a_failure)
 {
     for (size_t i = 0; i != COUNT_OF(prefixes); i++)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {
@@ -137,8 +137,8 @@ TEST(an_echo_that_begins_with_a_whole_answer_and_nothing_else_is_a_failure)
             ask_address(&prefixes[i], modes[m], 100);
             come_all(0, prefixes[i].request);
             expect_after(2 * TIMEOUT_US,
-                         modes[m] == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_ANSWER : FATHOM_ERR_ECHO);
-            expect_count(FATHOM_LINE_ANSWERS, 0);
+                         modes[m] == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_RESPONSE : FATHOM_ERR_ECHO);
+            expect_count(FATHOM_LINE_RESPONSES, 0);
         }
 }
 
@@ -151,12 +151,12 @@ TEST(an_echo_that_comes_in_parts_behind_noise_is_an_echo)
     deliver_all(noise_and_part);
     deliver(ask_1_processed + 5, 3);
     assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_ON);
-    deliver_all(answer_1_754);
+    deliver_all(response_1_754);
     expect_mm(754);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 1);
 }
 
-TEST(without_echo_the_same_bytes_are_the_answer)
+TEST(without_echo_the_same_bytes_are_the_response)
 {
     for (size_t i = 0; i != COUNT_OF(prefixes); i++) {
         ask_address(&prefixes[i], FATHOM_LINE_ECHO_OFF, 100);
@@ -168,32 +168,32 @@ TEST(without_echo_the_same_bytes_are_the_answer)
 
 /* ---- attempts ---- */
 
-TEST(a_retry_on_an_echoing_line_takes_the_answer_behind_its_own_echo)
+TEST(a_retry_on_an_echoing_line_takes_the_response_behind_its_own_echo)
 {
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     send_1(1, 100);
     come_all(0, ask_1_processed);
     run_until_written(2, 100);
-    expect_count(FATHOM_LINE_NO_ANSWERS, 1);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 1);
     come_all(0, ask_1_processed);
-    come_all(20000, answer_1_754);
+    come_all(20000, response_1_754);
     run(40000);
     expect_mm(754);
 }
 
-TEST(a_late_answer_on_an_echoing_line_is_no_other_requests)
+TEST(a_late_response_on_an_echoing_line_is_no_other_requests)
 {
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     send_1(0, 100);
     come_all(0, ask_1_processed);
-    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_NO_RESPONSE);
     ask_other(1);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     run_until_written(2, 100);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     assert_int_equal(bench.other_value, 0xDEAD);
     come_all(0, ask_1_processed);
-    come_all(9 * BYTE_US, answer_1_751);
+    come_all(9 * BYTE_US, response_1_751);
     run(30000);
     assert_int_equal(bench.other_value, 751);
 }
@@ -215,7 +215,7 @@ TEST(a_broadcast_on_an_echoing_line_is_over_when_its_time_is)
         expect_echo(modes[m]);
         run_until_written(2, 100);
         come_all(0, ask_1_processed);
-        come_all(20000, answer_1_754);
+        come_all(20000, response_1_754);
         run(40000);
         assert_int_equal(bench.other_value, 754);
     }
@@ -231,7 +231,7 @@ TEST(a_listener_does_not_hear_the_echo_of_a_read)
         send_1(0, 100);
         come(seed, 0, ask_1_processed, sizeof ask_1_processed);
         come(seed, 9 * BYTE_US, auto_frame, sizeof auto_frame);
-        come(seed, 14 * BYTE_US, answer_1_754, sizeof answer_1_754);
+        come(seed, 14 * BYTE_US, response_1_754, sizeof response_1_754);
         come(seed, 40000, auto_frame, sizeof auto_frame);
         run(80000);
         expect_mm(754);

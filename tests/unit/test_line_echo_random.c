@@ -3,12 +3,12 @@
 
 /*
  * Random traffic with one unit, on lines with and without echo that nobody told of: reads and writes in both
- * protocols, with retries; echoes and answers with a wrong bit, answers that are late or missing. Whatever comes:
+ * protocols, with retries; echoes and responses with a wrong bit, responses that are late or missing. Whatever comes:
  *  - a write is READY only if the unit has answered it,
  *  - a read is READY only with the unit's value,
  *  - a line with echo is never believed to have none.
  */
-enum { RUNS = 300, EXCHANGES = 8, KINDS = 4 };
+enum { RUNS = 300, TRANSACTIONS = 8, KINDS = 4 };
 
 typedef enum { READ = 0, WRITE = 1, DYP_READ = 2, DYP_SET_ADDRESS = 3 } kind_t;
 
@@ -31,8 +31,8 @@ static void ask_for(kind_t kind, uint16_t value)
     fathom_modbus_request_t *const request = &bench.request;
     fathom_status_t status = FATHOM_PENDING;
     memset(values, 0xA5, sizeof values);
-    request->exchange.timeout_us = TIMEOUT_US;
-    request->exchange.retries = (uint8_t)below(3);
+    request->transaction.timeout_us = TIMEOUT_US;
+    request->transaction.retries = (uint8_t)below(3);
     if (kind == READ || kind == DYP_READ)
         fathom_modbus_read_holding_registers(&request->message, 1, 0x0106, kind == READ ? 1 : 4, values);
     else
@@ -47,7 +47,7 @@ static void ask_for(kind_t kind, uint16_t value)
 }
 
 /* What the unit says to a request. */
-static size_t make_answer(kind_t kind, uint16_t value, const fake_write_t *request, uint8_t *answer)
+static size_t make_response(kind_t kind, uint16_t value, const fake_write_t *request, uint8_t *response)
 {
     const uint8_t high = (uint8_t)(value >> 8);
     const uint8_t low = (uint8_t)value;
@@ -55,25 +55,25 @@ static size_t make_answer(kind_t kind, uint16_t value, const fake_write_t *reque
     const uint8_t one[] = {0x01, 0x03, 0x02, high, low};
     uint16_t sum = 0;
     if (kind == WRITE || kind == DYP_SET_ADDRESS) {
-        memcpy(answer, request->bytes, request->length);
+        memcpy(response, request->bytes, request->length);
         return request->length;
     }
     if (kind == DYP_READ) {
-        for (size_t i = 0; i != sizeof four; i++) sum = (uint16_t)(sum + (answer[i] = four[i]));
-        answer[sizeof four] = (uint8_t)sum;
+        for (size_t i = 0; i != sizeof four; i++) sum = (uint16_t)(sum + (response[i] = four[i]));
+        response[sizeof four] = (uint8_t)sum;
         return sizeof four + 1;
     }
     sum = 0xFFFF;
     for (size_t i = 0; i != sizeof one; i++) {
-        sum ^= answer[i] = one[i];
+        sum ^= response[i] = one[i];
         for (int bit = 0; bit != 8; bit++) sum = (uint16_t)((sum & 1) != 0 ? sum >> 1 ^ 0xA001 : sum >> 1);
     }
-    answer[5] = (uint8_t)sum;
-    answer[6] = (uint8_t)(sum >> 8);
+    response[5] = (uint8_t)sum;
+    response[6] = (uint8_t)(sum >> 8);
     return sizeof one + 2;
 }
 
-/* What follows a request on the wire; true: the unit's undamaged answer is among it. */
+/* What follows a request on the wire; true: the unit's undamaged response is among it. */
 static bool follow(kind_t kind, uint16_t value, bool echoes, const fake_write_t *request)
 {
     uint8_t bytes[16];
@@ -84,7 +84,7 @@ static bool follow(kind_t kind, uint16_t value, bool echoes, const fake_write_t 
         come(BY_BYTE, 0, bytes, request->length);
     }
     const uint32_t delay_us = below(below(3) != 0 ? 20000 : 2 * TIMEOUT_US - 40000);
-    const size_t length = make_answer(kind, value, request, bytes);
+    const size_t length = make_response(kind, value, request, bytes);
     const uint32_t fate = below(10);
     if (fate >= 8) return false;
     if (fate >= 6) damage(bytes, length);
@@ -94,7 +94,7 @@ static bool follow(kind_t kind, uint16_t value, bool echoes, const fake_write_t 
 
 static unsigned ready[KINDS];
 
-static void exchange(bool echoes, uint32_t step_us)
+static void transaction(bool echoes, uint32_t step_us)
 {
     const kind_t kind = (kind_t)below(KINDS);
     const uint16_t value = (uint16_t)(below(4) == 0 ? 0x0100 + below(256) : 1 + below(6000));
@@ -126,7 +126,7 @@ TEST(no_traffic_makes_an_echo_an_acknowledgement)
         const bool echoes = below(2) != 0;
         const uint32_t step_us = steps_us[below(2)];
         set_up_with(FATHOM_LINE_ECHO_AUTO);
-        for (unsigned n = 0; n != EXCHANGES; n++) exchange(echoes, step_us);
+        for (unsigned n = 0; n != TRANSACTIONS; n++) transaction(echoes, step_us);
     }
     for (unsigned kind = 0; kind != KINDS; kind++) assert_true(ready[kind] > RUNS); /* it was no idle talk */
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 
-/* Local echo on writes: the answer to function 06 and to 55 AA 03 is the request again. */
+/* Local echo on writes: the response to function 06 and to 55 AA 03 is the request again. */
 
 static const uint8_t dyp_address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07}; /* A05 2(3)5 */
 
@@ -27,8 +27,8 @@ static void set_up_for(size_t which, uint8_t mode)
 static void start_write(uint8_t retries, uint32_t step_us)
 {
     const size_t before = bench.fake.written;
-    bench.request.exchange.timeout_us = TIMEOUT_US;
-    bench.request.exchange.retries = retries;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
+    bench.request.transaction.retries = retries;
     if (wanted->is_dyp)
         assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
     else
@@ -45,27 +45,27 @@ static void copy_in(unsigned seed, uint32_t in_us) { come(seed, in_us, wanted->b
 static fathom_status_t of_one_copy(uint8_t mode)
 {
     if (mode == FATHOM_LINE_ECHO_OFF) return FATHOM_READY;
-    return mode == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_ANSWER : FATHOM_ERR_ECHO;
+    return mode == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_RESPONSE : FATHOM_ERR_ECHO;
 }
 
 static void one_copy(const way_t *way)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
-        for (unsigned is_answer = 0; is_answer != 2; is_answer++) { /* while it leaves, or after that */
+        for (unsigned is_response = 0; is_response != 2; is_response++) { /* while it leaves, or after that */
             set_up_for(w, way->mode);
             start_write(0, way->step_us);
-            copy_in(way->seed, is_answer != 0 ? leaves_us() + way->pause_us : 0);
+            copy_in(way->seed, is_response != 0 ? leaves_us() + way->pause_us : 0);
             run_in_steps(80000, way->step_us);
             if (way->mode == FATHOM_LINE_ECHO_OFF) {
                 expect(FATHOM_READY);
                 continue;
             }
             expect(FATHOM_PENDING);
-            expect_count(FATHOM_LINE_ANSWERS, 0);
+            expect_count(FATHOM_LINE_RESPONSES, 0);
             run_in_steps(60000, way->step_us);
             expect(of_one_copy(way->mode));
-            expect_count(FATHOM_LINE_NO_ANSWERS, 1);
-            expect_count(FATHOM_LINE_ANSWERS, 0);
+            expect_count(FATHOM_LINE_NO_RESPONSES, 1);
+            expect_count(FATHOM_LINE_RESPONSES, 0);
             expect_echo(way->mode); /* it proves nothing */
         }
 }
@@ -85,8 +85,8 @@ static void two_copies(const way_t *way)
             copy_in(way->seed, leaves_us() + way->pause_us);
             run_in_steps(80000, way->step_us);
             expect(FATHOM_READY);
-            expect_count(FATHOM_LINE_ANSWERS, 1);
-            assert_int_equal(counter(FATHOM_LINE_STRAYS) + counter(FATHOM_LINE_LATE_ANSWERS), 0);
+            expect_count(FATHOM_LINE_RESPONSES, 1);
+            assert_int_equal(counter(FATHOM_LINE_STRAYS) + counter(FATHOM_LINE_LATE_RESPONSES), 0);
         }
 }
 
@@ -99,7 +99,7 @@ TEST(the_first_copy_alone_never_ends_a_write_where_an_echo_is_known)
     expect_echo(FATHOM_LINE_ECHO_ON);
     start_write(0, 100);
     copy_in(BY_BYTE, 0);
-    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_NO_ANSWER); /* the device is dead, and the line says so */
+    expect_after(TIMEOUT_US + 10000, FATHOM_ERR_NO_RESPONSE); /* the device is dead, and the line says so */
 }
 
 TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
@@ -111,13 +111,13 @@ TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
     expect_after(30000, FATHOM_READY);
 }
 
-TEST(a_write_that_nothing_answers_is_no_answer_whatever_is_known)
+TEST(a_write_that_nothing_responses_is_no_response_whatever_is_known)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {
             set_up_for(w, modes[m]);
             start_write(0, 100);
-            expect_after(2 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
+            expect_after(2 * TIMEOUT_US, FATHOM_ERR_NO_RESPONSE);
         }
 }
 
@@ -136,7 +136,7 @@ TEST(a_damaged_copy_does_not_count)
                 run(2 * TIMEOUT_US);
                 assert_int_not_equal(status_of(&bench.request), FATHOM_READY);
                 assert_int_not_equal(status_of(&bench.request), FATHOM_ERR_ECHO);
-                expect_count(FATHOM_LINE_ANSWERS, 0);
+                expect_count(FATHOM_LINE_RESPONSES, 0);
                 expect_echo(modes[m]);
             }
 }
@@ -153,8 +153,8 @@ TEST(each_attempt_of_a_write_needs_its_own_two_copies)
     expect_after(9 * BYTE_US, FATHOM_PENDING);
     copy_in(BY_BYTE, 0);
     expect_after(9 * BYTE_US, FATHOM_READY);
-    assert_int_equal(bench.request.exchange.attempts, 2);
-    expect_count(FATHOM_LINE_NO_ANSWERS, 1);
+    assert_int_equal(bench.request.transaction.attempts, 2);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 1);
 }
 
 TEST(the_last_attempt_of_an_unknown_echo_says_echo)
@@ -167,7 +167,7 @@ TEST(the_last_attempt_of_an_unknown_echo_says_echo)
         copy_in(BY_BYTE, 0);
     }
     expect_after(TIMEOUT_US + 10000, FATHOM_ERR_ECHO);
-    expect_count(FATHOM_LINE_NO_ANSWERS, 3);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 3);
 }
 
 TEST(a_late_second_copy_serves_the_retry_of_a_write)
@@ -176,10 +176,10 @@ TEST(a_late_second_copy_serves_the_retry_of_a_write)
     start_write(1, 100);
     copy_in(BY_BYTE, 0);
     run(TIMEOUT_US + 20000);
-    expect_count(FATHOM_LINE_NO_ANSWERS, 1);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 1);
     copy_in(BY_BYTE, 0);
     expect_after(9 * BYTE_US, FATHOM_READY);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_written(1);
 }
 
@@ -198,7 +198,7 @@ TEST(a_refused_write_on_an_echoing_line_is_an_exception)
     }
 }
 
-/* ---- a write of many, whose answer is shorter than the request ---- */
+/* ---- a write of many, whose response is shorter than the request ---- */
 
 static void start_write_of_many(uint32_t step_us)
 {
@@ -223,11 +223,11 @@ static void write_of_many(const way_t *way)
 
 TEST(a_write_of_many_registers_is_told_from_its_echo) { in_every_way(write_of_many); }
 
-TEST(the_echo_of_a_write_of_many_is_no_answer)
+TEST(the_echo_of_a_write_of_many_is_no_response)
 {
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     start_write_of_many(100);
     come_all(0, set_36_ms);
-    expect_after(2 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
+    expect_after(2 * TIMEOUT_US, FATHOM_ERR_NO_RESPONSE);
     expect_echo(FATHOM_LINE_ECHO_ON);
 }

@@ -3,11 +3,11 @@
 
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
-static const suite_t owing = {.set_up = set_up_owing};
+static const suite_t quarantined = {.set_up = set_up_quarantined};
 
-/* ---- what is not the answer ---- */
+/* ---- what is not the response ---- */
 
-TEST_IN(asked, noise_before_an_answer_is_dropped_in_the_same_poll)
+TEST_IN(asked, noise_before_a_response_is_dropped_in_the_same_poll)
 {
     receive_hex("00 FF 81 00 55 01 03 02 02 F2 38 A1");
     run(GAP_US + 200);
@@ -15,37 +15,37 @@ TEST_IN(asked, noise_before_an_answer_is_dropped_in_the_same_poll)
     expect_count(FATHOM_LINE_DROPPED_BYTES, 5);
 }
 
-TEST_IN(asked, noise_that_looks_like_the_start_of_a_long_answer_costs_one_gap_at_most)
+TEST_IN(asked, noise_that_looks_like_the_start_of_a_long_response_costs_one_gap_at_most)
 {
     receive_hex("01 03 14"); /* 25 bytes are promised */
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     run(GAP_US + 200);
     expect_mm(754);
 }
 
 TEST_IN(asked, another_units_answer_is_a_stray_and_the_wait_goes_on)
 {
-    receive_answer(2, 222);
+    receive_response(2, 222);
     run(1000);
     expect_failed(FATHOM_PENDING);
     expect_count(FATHOM_LINE_STRAYS, 1);
-    answer_1(111);
+    response_1(111);
 }
 
-TEST_IN(asked, an_answer_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
+TEST_IN(asked, a_response_of_the_wrong_shape_is_malformed_unless_the_right_one_follows)
 {
-    receive_all(answer_1_three);
+    receive_all(response_1_three);
     expect_after(1000, FATHOM_PENDING);
-    answer_1(111);
+    response_1(111);
 
     set_up_asked(state);
-    receive_all(answer_1_three);
+    receive_all(response_1_three);
     run(TIMEOUT_US);
     expect_failed(FATHOM_ERR_MALFORMED);
     expect_count(FATHOM_LINE_MALFORMED, 1);
 }
 
-TEST_IN(asked, a_damaged_answer_ends_the_attempt_at_the_first_gap)
+TEST_IN(asked, a_damaged_response_ends_the_attempt_at_the_first_gap)
 {
     receive_damaged();
     expect_after(GAP_US - 200, FATHOM_PENDING);
@@ -54,8 +54,8 @@ TEST_IN(asked, a_damaged_answer_ends_the_attempt_at_the_first_gap)
     expect_count(FATHOM_LINE_CHECKSUM_ERRORS, 1);
 }
 
-/* USB adapters say up to 16 ms late that a request has left; the answer may be here by then. */
-TEST(a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_left)
+/* USB adapters say up to 16 ms late that a request has left; the response may be here by then. */
+TEST(a_damaged_response_counts_although_the_port_says_late_that_the_request_has_left)
 {
     bench.fake.never_sent = true;
     ask_1(1);
@@ -69,11 +69,11 @@ TEST(a_damaged_answer_counts_although_the_port_says_late_that_the_request_has_le
                 2000); /* it might have been noise: owes for twice the time-out */
 }
 
-TEST(an_answer_that_breaks_off_is_a_checksum_error)
+TEST(a_response_that_breaks_off_is_a_checksum_error)
 {
-    for (size_t length = 3; length != sizeof answer_1_754; length++) {
+    for (size_t length = 3; length != sizeof response_1_754; length++) {
         set_up_asked(state);
-        receive(answer_1_754, length);
+        receive(response_1_754, length);
         run(GAP_US + 400);
         expect_failed(FATHOM_ERR_CHECKSUM);
     }
@@ -81,9 +81,9 @@ TEST(an_answer_that_breaks_off_is_a_checksum_error)
 
 TEST_IN(asked, less_than_three_bytes_are_noise_and_end_nothing)
 {
-    receive(answer_1_754, 2);
+    receive(response_1_754, 2);
     expect_after(GAP_US + 400, FATHOM_PENDING);
-    answer_1(754);
+    response_1(754);
 }
 
 TEST(a_frame_longer_than_the_memory_is_dropped_without_overrun)
@@ -95,67 +95,67 @@ TEST(a_frame_longer_than_the_memory_is_dropped_without_overrun)
     ask_1_and_send(0);
     receive_all(flood);
     run(1000);
-    receive_answer(1, 111);
+    receive_response(1, 111);
     run(GAP_US + 100);
     expect_mm(111);
 }
 
-/* ---- late answers ---- */
+/* ---- late responses ---- */
 
-/* The shape of both answers is the same, so only the quarantine can tell them apart. */
-TEST(a_late_answer_is_never_the_reading_of_the_next_request)
+/* The shape of both responses is the same, so only the quarantine can tell them apart. */
+TEST(a_late_response_is_never_the_reading_of_the_next_request)
 {
     for (uint32_t late_us = TIMEOUT_US + 300; late_us < 2 * TIMEOUT_US - 1000; late_us += 1000) {
         set_up_asked(state);
-        fake_receive(&bench.fake, late_us, answer_1_754, sizeof answer_1_754);
-        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_ANSWER);
+        fake_receive(&bench.fake, late_us, response_1_754, sizeof response_1_754);
+        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_RESPONSE);
         ask_other(1);
         expect_written_after(late_us - TIMEOUT_US, 1); /* it was not even asked */
-        expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+        expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
         expect_written_after(T3_5_US + 9 * BYTE_US, 2);
         expect_other(FATHOM_PENDING);
         assert_int_equal(bench.other_value, 0xDEAD);
-        answer_other(1, 751);
+        response_other(1, 751);
     }
 }
 
-TEST_IN(owing, a_unit_that_owes_an_answer_is_asked_again_after_twice_the_time_out)
+TEST_IN(quarantined, a_unit_that_owes_a_response_is_asked_again_after_twice_the_time_out)
 {
     ask_other(1);
     expect_sent(TIMEOUT_US - 1000, 1500);
 }
 
-TEST_IN(owing, other_units_are_asked_while_one_owes)
+TEST_IN(quarantined, other_units_are_asked_while_one_owes)
 {
     ask_1(0);
     ask_other(2);
     expect_written_after(T3_5_US + 9 * BYTE_US, 2);
     expect_unit(1, 2);
-    answer_other(2, 222);
+    response_other(2, 222);
     expect(FATHOM_PENDING);
 }
 
-TEST_IN(owing, a_late_answer_during_another_units_exchange_is_counted_and_harmless)
+TEST_IN(quarantined, a_late_response_during_another_units_transaction_is_counted_and_harmless)
 {
     ask_other(2);
     run(T3_5_US + 9 * BYTE_US);
-    deliver_answer(1, 111);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    deliver_response(1, 111);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_other(FATHOM_PENDING);
-    answer_other(2, 222);
+    response_other(2, 222);
 }
 
-TEST(a_late_answer_serves_the_retry_that_waits_for_it)
+TEST(a_late_response_serves_the_retry_that_waits_for_it)
 {
     ask_1_and_send(1);
     expect_after(TIMEOUT_US + 200, FATHOM_PENDING);
-    answer_1(111);
+    response_1(111);
     expect_written(1);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
-    expect_count(FATHOM_LINE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
+    expect_count(FATHOM_LINE_RESPONSES, 1);
 }
 
-TEST(a_damaged_answer_owes_for_what_is_left_of_the_time_out)
+TEST(a_damaged_response_owes_for_what_is_left_of_the_time_out)
 {
     ask_1_and_send(1);
     receive_damaged();
@@ -164,11 +164,11 @@ TEST(a_damaged_answer_owes_for_what_is_left_of_the_time_out)
     expect_sent(TIMEOUT_US - GAP_US - 1500, 2000);
 }
 
-/* What broke off may have been noise, and the answer come late. */
-TEST(an_answer_that_broke_off_owes_for_twice_the_time_out)
+/* What broke off may have been noise, and the response come late. */
+TEST(a_response_that_broke_off_owes_for_twice_the_time_out)
 {
     ask_1_and_send(1);
-    receive(answer_1_754, 5);
+    receive(response_1_754, 5);
     run(GAP_US + 300);
     expect_count(FATHOM_LINE_CHECKSUM_ERRORS, 1);
     expect_sent(2 * TIMEOUT_US - GAP_US - 1500, 2000);
@@ -177,22 +177,22 @@ TEST(an_answer_that_broke_off_owes_for_twice_the_time_out)
 TEST(retries_are_the_callers_number_and_the_last_error_stays)
 {
     ask_1(2);
-    expect_after(8 * TIMEOUT_US, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(bench.request.exchange.attempts, 3);
+    expect_after(8 * TIMEOUT_US, FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(bench.request.transaction.attempts, 3);
     expect_written(3);
-    expect_count(FATHOM_LINE_NO_ANSWERS, 3);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 3);
 }
 
 TEST(a_stray_while_nothing_is_asked_is_dropped)
 {
-    deliver_answer(1, 111);
+    deliver_response(1, 111);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
     assert_int_equal(bench.line.have, 0);
 }
 
 /* ---- a port that fails ---- */
 
-TEST_IN(asked, a_port_that_cannot_be_read_ends_every_exchange_and_recovers)
+TEST_IN(asked, a_port_that_cannot_be_read_ends_every_transaction_and_recovers)
 {
     ask_other(2);
     break_port();
@@ -201,7 +201,7 @@ TEST_IN(asked, a_port_that_cannot_be_read_ends_every_exchange_and_recovers)
     expect_count(FATHOM_LINE_PORT_ERRORS, 1);
     ask_other(2);
     run(20000);
-    answer_other(2, 222);
+    response_other(2, 222);
 }
 
 TEST_IN(asked, a_unit_that_was_asked_when_the_port_broke_still_owes)
@@ -209,19 +209,19 @@ TEST_IN(asked, a_unit_that_was_asked_when_the_port_broke_still_owes)
     break_port();
     ask_1(0);
     expect_written_after(20000, 1);
-    deliver_answer(1, 111); /* to the request of before */
+    deliver_response(1, 111); /* to the request of before */
     assert_int_equal(bench.value, 0xDEAD);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_written_after(20000, 2);
 }
 
 TEST_IN(asked, what_was_received_before_the_port_broke_is_forgotten)
 {
-    deliver(answer_1_754, 3);
+    deliver(response_1_754, 3);
     break_port();
-    receive(answer_1_754 + 3, 4); /* no late answer: some of it may have been lost */
+    receive(response_1_754 + 3, 4); /* no late response: some of it may have been lost */
     run(2 * GAP_US);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 0);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 0);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
 }
 
@@ -234,7 +234,7 @@ static void ask_while(void **state, bool *fails, uint32_t for_us)
     run(for_us);
 }
 
-TEST(a_port_that_cannot_write_or_tears_a_request_ends_the_exchange)
+TEST(a_port_that_cannot_write_or_tears_a_request_ends_the_transaction)
 {
     ask_while(state, &bench.fake.write_fails, 5000);
     expect(FATHOM_ERR_PORT);
@@ -261,10 +261,10 @@ TEST(a_port_that_takes_nothing_or_sends_nothing_for_a_second_is_broken)
     }
 }
 
-TEST(what_comes_while_the_port_refuses_the_request_is_no_answer)
+TEST(what_comes_while_the_port_refuses_the_request_is_no_response)
 {
     ask_while(state, &bench.fake.write_busy, 50000);
-    deliver_all(answer_1_754);
+    deliver_all(response_1_754);
     expect_failed(FATHOM_PENDING);
 }
 
@@ -278,8 +278,8 @@ TEST(a_request_that_the_port_never_took_is_not_owed_when_it_breaks)
     expect_written_after(T3_5_US + 200, 1);
 }
 
-TEST(an_answer_counts_although_the_port_does_not_say_yet_that_the_request_has_left)
+TEST(a_response_counts_although_the_port_does_not_say_yet_that_the_request_has_left)
 {
     ask_while(state, &bench.fake.never_sent, 20000);
-    answer_1(754);
+    response_1(754);
 }

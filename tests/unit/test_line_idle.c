@@ -19,7 +19,7 @@ TEST(a_new_line_and_one_with_a_waiting_request_are_idle)
     expect_idle(false);
 }
 
-TEST(it_is_busy_from_the_request_to_the_answer)
+TEST(it_is_busy_from_the_request_to_the_response)
 {
     run(10000);
     ask_1(0);
@@ -27,23 +27,23 @@ TEST(it_is_busy_from_the_request_to_the_answer)
     expect_idle(false);
     run(50000);
     expect_idle(false);
-    deliver(answer_1_754, 6);
+    deliver(response_1_754, 6);
     expect_idle(false);
-    deliver(answer_1_754 + 6, 1);
+    deliver(response_1_754 + 6, 1);
     expect_mm(754);
     expect_idle(true);
 }
 
-TEST_IN(asked, a_unit_that_owes_an_answer_does_not_keep_it_busy)
+TEST_IN(asked, a_unit_that_owes_a_response_does_not_keep_it_busy)
 {
-    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_ANSWER);
+    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
     expect_idle(true);
     ask_1(0);
     expect_written_after(50000, 1); /* it still may come */
     expect_idle(true);
-    deliver(answer_1_754, 3); /* and does */
+    deliver(response_1_754, 3); /* and does */
     expect_idle(false);
-    deliver(answer_1_754 + 3, 4);
+    deliver(response_1_754 + 3, 4);
     expect_idle(true);
 }
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* line.h: whose answer is late, whose is a stray, and until when a unit is asked nothing. */
+/* line.h: whose response is late, whose is a stray, and until when a unit is asked nothing. */
 
 static const suite_t suite = {.set_up = set_up};
 
 static void start_write(void)
 {
     fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
 }
 
@@ -17,7 +17,7 @@ static void ask_and_send(fathom_modbus_request_t *request, uint8_t unit, uint16_
 {
     const size_t before = bench.fake.written;
     ask(request, unit, value, 0);
-    request->exchange.timeout_us = timeout_us;
+    request->transaction.timeout_us = timeout_us;
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, before + 1);
     run(8 * BYTE_US + 100);
@@ -36,10 +36,10 @@ TEST(a_short_debt_of_another_unit_does_not_end_a_long_one)
 {
     ask_and_send(&bench.request, 2, &bench.value, 300000);
     run(300000);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
     ask_and_send(&bench.other, 3, &bench.other_value, 10000);
     run(10000);
-    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_RESPONSE);
     ask(&bench.request, 2, &bench.value, 0);
     run(200000);
     assert_int_equal(bench.fake.written, 2);
@@ -52,10 +52,10 @@ TEST(a_long_debt_outlasts_a_short_one_that_was_there_before)
 {
     ask_and_send(&bench.request, 2, &bench.value, 80000);
     run(80000);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
     ask_and_send(&bench.other, 3, &bench.other_value, 60000);
     run(60000);
-    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_RESPONSE);
     ask(&bench.other, 3, &bench.other_value, 0);
     run(50000); /* by then what 2 owed is over */
     assert_int_equal(bench.fake.written, 2);
@@ -63,37 +63,37 @@ TEST(a_long_debt_outlasts_a_short_one_that_was_there_before)
     assert_int_equal(bench.fake.written, 3);
 }
 
-/* "LATE_ANSWERS: from a unit that owed one"; "STRAYS: whole frames" that were not asked for. Unit 9 has its bit in the
+/* "LATE_RESPONSES: from a unit that owed one"; "STRAYS: whole frames" that were not asked for. Unit 9 has its bit in the
  * upper byte. */
 TEST(a_frame_of_a_unit_that_owes_nothing_is_a_stray_and_leaves_the_debt_of_another)
 {
     ask_and_send(&bench.request, 9, &bench.value, TIMEOUT_US);
     run(TIMEOUT_US);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
-    receive_answer(1, 111);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
+    receive_response(1, 111);
     run(100);
     assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 0);
+    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 0);
     ask(&bench.request, 9, &bench.value, 0);
     assert_false(goes_out());
 }
 
-/* cancel: "the unit then owes an answer". The first copy of the request is its echo, the second the answer. */
-TEST(after_the_echo_of_a_cancelled_write_its_answer_is_late_and_lifts_the_debt)
+/* cancel: "the unit then owes a response". The first copy of the request is its echo, the second the response. */
+TEST(after_the_echo_of_a_cancelled_write_its_response_is_late_and_lifts_the_debt)
 {
     set_up_echo(FATHOM_LINE_ECHO_AUTO);
     start_write();
     run(T3_5_US + 200);
-    fathom_line_cancel(&bench.line, &bench.request.exchange);
+    fathom_line_cancel(&bench.line, &bench.request.transaction);
     run(8 * BYTE_US);
     receive(set_address_5, sizeof set_address_5);
     run(100);
     assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 0);
+    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 0);
     receive(set_address_5, sizeof set_address_5);
     run(100);
     assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
+    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 1);
     ask(&bench.other, 1, &bench.other_value, 0);
     assert_true(goes_out());
 }
@@ -104,15 +104,15 @@ TEST(after_the_next_request_no_echo_of_a_cancelled_one_is_expected)
     set_up_echo(FATHOM_LINE_ECHO_AUTO);
     start_write();
     run(T3_5_US + 200);
-    fathom_line_cancel(&bench.line, &bench.request.exchange);
+    fathom_line_cancel(&bench.line, &bench.request.transaction);
     ask(&bench.other, 2, &bench.other_value, 0);
     run(8 * BYTE_US + T3_5_US + 200);
     assert_int_equal(bench.fake.written, 2);
     run(8 * BYTE_US);
     receive(set_address_5, sizeof set_address_5);
     run(100);
-    assert_int_equal(counter(FATHOM_LINE_LATE_ANSWERS), 1);
-    receive_answer(2, 222);
+    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 1);
+    receive_response(2, 222);
     run(100);
     assert_int_equal(status_of(&bench.other), FATHOM_READY);
     run(66000); /* the late one might have been what a device sends by itself */
@@ -120,7 +120,7 @@ TEST(after_the_next_request_no_echo_of_a_cancelled_one_is_expected)
     assert_true(goes_out());
 }
 
-/* "A late answer does serve a retry of the same exchange": then it is an answer, and none of its bytes is left over. */
+/* "A late response does serve a retry of the same transaction": then it is a response, and none of its bytes is left over. */
 static unsigned heard;
 
 static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
@@ -138,21 +138,21 @@ static void serve_a_retry(fathom_listener_t *listener)
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING); /* the retry waits for the debt */
     assert_int_equal(bench.fake.written, 1);
     fathom_line_listen(&bench.line, listener);
-    receive(answer_1_754, sizeof answer_1_754);
+    receive(response_1_754, sizeof response_1_754);
     run(100);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
     assert_int_equal(bench.value, 754);
-    assert_int_equal(counter(FATHOM_LINE_ANSWERS), 1);
+    assert_int_equal(counter(FATHOM_LINE_RESPONSES), 1);
     run(2 * GAP_US);
 }
 
-TEST(no_byte_of_a_late_answer_that_is_taken_is_dropped)
+TEST(no_byte_of_a_late_response_that_is_taken_is_dropped)
 {
     serve_a_retry(NULL);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
 }
 
-TEST(no_byte_of_a_late_answer_that_is_taken_goes_to_the_listener)
+TEST(no_byte_of_a_late_response_that_is_taken_goes_to_the_listener)
 {
     fathom_listener_t listener = {hear, 2000};
     serve_a_retry(&listener);
@@ -160,12 +160,12 @@ TEST(no_byte_of_a_late_answer_that_is_taken_goes_to_the_listener)
 }
 
 /* A unit that has not been asked cannot answer. */
-TEST(what_comes_while_the_port_refuses_the_request_is_no_answer_to_it)
+TEST(what_comes_while_the_port_refuses_the_request_is_no_response_to_it)
 {
     bench.fake.write_busy = true;
     ask(&bench.request, 1, &bench.value, 0);
     run(T3_5_US + 200);
-    receive(answer_1_754, sizeof answer_1_754);
+    receive(response_1_754, sizeof response_1_754);
     run(100);
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
     assert_int_equal(bench.value, 0xDEAD);
@@ -179,7 +179,7 @@ TEST(the_next_request_goes_out_after_one_was_cancelled_on_a_line_of_unknown_echo
 {
     set_up_echo(FATHOM_LINE_ECHO_AUTO);
     ask_1_and_send(0);
-    fathom_line_cancel(&bench.line, &bench.request.exchange);
+    fathom_line_cancel(&bench.line, &bench.request.transaction);
     ask(&bench.other, 2, &bench.other_value, 0);
     assert_true(goes_out());
 }
@@ -202,7 +202,7 @@ TEST(a_pause_within_bytes_that_were_held_back_is_no_gap_before_them)
     heard = gaps = 0;
     fathom_line_listen(&bench.line, &listener);
     ask_1_and_send(0);
-    receive(answer_1_754, 4);
+    receive(response_1_754, 4);
     run(3000);
     receive(wrong, sizeof wrong);
     run(2 * GAP_US);

@@ -51,14 +51,14 @@ TEST(a_first_poll_after_65536_us_has_seen_the_silence)
 }
 
 /* fathom_line_config_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
-TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_an_answer)
+TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response)
 {
     bench.config.gap_us = 25000;
     ask_1_and_send(0);
-    receive(answer_1_754, 4);
+    receive(response_1_754, 4);
     after(100);
     after(24999);
-    receive(answer_1_754 + 4, 3);
+    receive(response_1_754 + 4, 3);
     after(0);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
 }
@@ -67,7 +67,7 @@ TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_an_answer)
 TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
 {
     fathom_modbus_write_single_register(&bench.request.message, 0, 0x0200, 5);
-    bench.request.exchange.timeout_us = 0;
+    bench.request.transaction.timeout_us = 0;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     ask(&bench.other, 2, &bench.other_value, 0);
     after(T3_5_US);
@@ -134,7 +134,7 @@ static void set_up_long(void)
 {
     bench.config.frame = long_frame;
     bench.config.frame_size = sizeof long_frame;
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
 }
 
 static void add_crc(uint8_t *frame, size_t length)
@@ -150,17 +150,17 @@ static void add_crc(uint8_t *frame, size_t length)
 }
 
 /* 125 registers: 3 + 250 + 2 bytes. One read of the port may bring so many: no flag is made of the count. */
-TEST(the_longest_answer_may_come_in_one_read)
+TEST(the_longest_response_may_come_in_one_read)
 {
-    static uint8_t answer[255] = {1, 0x03, 250};
+    static uint8_t response[255] = {1, 0x03, 250};
     set_up_long();
-    for (unsigned i = 0; i != 250; i++) answer[3 + i] = (uint8_t)i;
-    add_crc(answer, 253);
+    for (unsigned i = 0; i != 250; i++) response[3 + i] = (uint8_t)i;
+    add_crc(response, 253);
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0000, 125, registers);
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     after(T3_5_US);
     after(8 * BYTE_US);
-    receive(answer, sizeof answer);
+    receive(response, sizeof response);
     after(100);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
     assert_int_equal(registers[0], 0x0001);
@@ -210,7 +210,7 @@ TEST(every_negative_result_of_set_line_means_unsupported)
     static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
     set_up_uart();
     uart.set_line = set_line_fails;
-    bench.request.exchange.settings = &settings;
+    bench.request.transaction.line_settings = &settings;
     ask(&bench.request, 1, &bench.value, 0);
     after(T3_5_US);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_UNSUPPORTED);
@@ -263,7 +263,7 @@ static int read_the_rest(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t
 TEST(a_port_is_asked_for_no_more_than_there_is_room_for)
 {
     ask_1_and_send(0);
-    deliver(answer_1_754, 5);
+    deliver(response_1_754, 5);
     set_up_uart();
     uart.read = read_the_rest;
     after(100);

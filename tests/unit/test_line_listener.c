@@ -8,20 +8,20 @@ static const suite_t asked = {.set_up = set_up_asked};
 
 TEST_IN(asked, a_silence_that_the_port_saw_ends_a_frame)
 {
-    receive(answer_1_754, 4);
-    receive_rx(answer_1_754, sizeof answer_1_754, FATHOM_RX_SILENCE);
+    receive(response_1_754, 4);
+    receive_rx(response_1_754, sizeof response_1_754, FATHOM_RX_SILENCE);
     poll_line();
     expect_mm(754);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
 }
 
-TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer)
+TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_a_response)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING};
     for (size_t i = 0; i != sizeof flags; i++) {
         set_up_asked(state);
-        receive(answer_1_754, 4);
-        receive_rx(answer_1_754 + 4, 3, flags[i]);
+        receive(response_1_754, 4);
+        receive_rx(response_1_754 + 4, 3, flags[i]);
         expect_after(GAP_US + 300, FATHOM_ERR_CHECKSUM);
         expect_count(FATHOM_LINE_BAD_BYTES, 3);
     }
@@ -29,8 +29,8 @@ TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_an_answer)
 
 TEST_IN(asked, an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
 {
-    receive(answer_1_754, 4);
-    receive_rx(answer_1_754, sizeof answer_1_754, FATHOM_RX_OVERRUN);
+    receive(response_1_754, 4);
+    receive_rx(response_1_754, sizeof response_1_754, FATHOM_RX_OVERRUN);
     run(100);
     expect_mm(754);
 }
@@ -38,11 +38,11 @@ TEST_IN(asked, an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
 TEST_IN(asked, a_silence_behind_bytes_that_are_held_back_is_none_before_them)
 {
     listen_for(5000);
-    deliver(answer_1_754, 4);
-    receive_rx(answer_1_754, sizeof answer_1_754, FATHOM_RX_SILENCE);
+    deliver(response_1_754, 4);
+    receive_rx(response_1_754, sizeof response_1_754, FATHOM_RX_SILENCE);
     run(100);
     expect_mm(754);
-    expect_heard(answer_1_754, 4, NULL, 0);
+    expect_heard(response_1_754, 4, NULL, 0);
     assert_int_equal(ear.gaps, 0);
 }
 
@@ -50,8 +50,8 @@ TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
 {
     ask_other(2);
     const fathom_rx_t rx = {bench.fake.now_us + 1000, FATHOM_RX_TIMED};
-    fake_receive_rx(&bench.fake, 1000, answer_1_754, sizeof answer_1_754, rx);
-    run_in_steps(20000, 20000); /* one late poll: the answer was in 19 ms ago, and the line silent since */
+    fake_receive_rx(&bench.fake, 1000, response_1_754, sizeof response_1_754, rx);
+    run_in_steps(20000, 20000); /* one late poll: the response was in 19 ms ago, and the line silent since */
     expect(FATHOM_READY);
     expect_written(2);
     assert_int_equal(fathom_line_heard_us(&bench.line), rx.last_us);
@@ -106,25 +106,25 @@ TEST(after_a_broken_port_no_silence_is_known)
     assert_int_equal(ear.gaps, 0);
 }
 
-TEST(unasked_bytes_around_an_answer_go_to_the_listener_and_the_answer_does_not)
+TEST(unasked_bytes_around_a_response_go_to_the_listener_and_the_response_does_not)
 {
     listen_for(5000);
     ask_1_and_send(0);
     receive_all(auto_frame);
     run(200);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     run(GAP_US + 200);
     receive_all(auto_frame);
     expect_after(200, FATHOM_READY);
     expect_heard(auto_frame, 4, auto_frame, 4);
 }
 
-TEST(only_the_first_of_unasked_bytes_during_an_exchange_is_after_the_gap)
+TEST(only_the_first_of_unasked_bytes_during_a_transaction_is_after_the_gap)
 {
     listen_for(5000);
     ask_1_and_send(0);
     run(6000);
-    receive(auto_frame, 4); /* given one by one: each might have begun an answer */
+    receive(auto_frame, 4); /* given one by one: each might have begun a response */
     run(2 * GAP_US);
     assert_int_equal(ear.length, 4);
     assert_int_equal(ear.calls, 4);
@@ -146,12 +146,12 @@ TEST(whole_foreign_frames_go_to_the_listener)
 {
     listen_for(5000);
     ask_1_and_send(0);
-    receive_answer(2, 222);
+    receive_response(2, 222);
     run(200);
     assert_int_equal(ear.length, 7);
     assert_int_equal(ear.calls, 1);
     fathom_line_listen(&bench.line, NULL);
-    receive_answer(2, 222);
+    receive_response(2, 222);
     run(200);
     assert_int_equal(ear.length, 7);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
@@ -190,17 +190,17 @@ TEST(a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before)
     expect_count(FATHOM_LINE_BAD_BYTES, 1);
 }
 
-/* What waited as the possible beginning of an answer comes before the loss, in the order in which it came. */
-TEST(what_an_exchange_held_back_goes_to_the_listener_before_the_loss)
+/* What waited as the possible beginning of a response comes before the loss, in the order in which it came. */
+TEST(what_a_transaction_held_back_goes_to_the_listener_before_the_loss)
 {
     listen_for(5000);
     ask_1_and_send(0);
-    deliver(answer_1_754, 4);
+    deliver(response_1_754, 4);
     assert_int_equal(ear.length, 0);
     receive_rx(auto_frame, 4, FATHOM_RX_OVERRUN);
     run(100);
     run(2 * GAP_US);
-    expect_heard(answer_1_754, 4, auto_frame, 4);
+    expect_heard(response_1_754, 4, auto_frame, 4);
     assert_int_equal(ear.lost_at, 4);
     expect(FATHOM_ERR_CHECKSUM);
 }
@@ -218,25 +218,25 @@ static void lose_and_receive(uint8_t flag, const uint8_t *bytes, size_t length)
 
 static const uint8_t losses[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN};
 
-/* The same read before and after: only together would they be an answer. */
-TEST(an_answer_is_never_put_together_across_lost_bytes)
+/* The same read before and after: only together would they be a response. */
+TEST(a_response_is_never_put_together_across_lost_bytes)
 {
     for (size_t i = 0; i != COUNT_OF(losses); i++)
-        for (size_t cut = 1; cut != sizeof answer_1_754; cut++) {
+        for (size_t cut = 1; cut != sizeof response_1_754; cut++) {
             set_up_asked(state);
-            receive(answer_1_754, cut);
-            lose_and_receive(losses[i], answer_1_754 + cut, sizeof answer_1_754 - cut);
+            receive(response_1_754, cut);
+            lose_and_receive(losses[i], response_1_754 + cut, sizeof response_1_754 - cut);
             run(TIMEOUT_US + 400);
-            expect_failed(cut >= 3 ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_ANSWER);
+            expect_failed(cut >= 3 ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE);
         }
 }
 
-TEST(a_whole_answer_after_lost_bytes_is_taken)
+TEST(a_whole_response_after_lost_bytes_is_taken)
 {
     for (size_t i = 0; i != COUNT_OF(losses); i++) {
         set_up_asked(state);
-        receive(answer_1_754, 5);
-        lose_and_receive(losses[i], answer_1_751, sizeof answer_1_751);
+        receive(response_1_754, 5);
+        lose_and_receive(losses[i], response_1_751, sizeof response_1_751);
         run(100);
         expect_mm(751);
     }
@@ -250,7 +250,7 @@ TEST(lost_bytes_while_nothing_is_asked_are_only_counted)
     expect_count(FATHOM_LINE_BAD_BYTES, 5);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
     ask_1_and_send(0);
-    answer_1(754);
+    response_1(754);
 }
 
 TEST(due_makes_room_for_the_listener_to_see_its_gap)

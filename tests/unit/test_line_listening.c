@@ -105,8 +105,8 @@ TEST_IN(bare, without_marks_the_bytes_that_the_port_marks_are_as_any_other)
     for (size_t i = 0; i != sizeof flags; i++) {
         set_up_bare(state);
         ask_1_and_send(0);
-        receive(answer_1_754, 4);
-        receive_rx(answer_1_754 + 4, 3, flags[i]);
+        receive(response_1_754, 4);
+        receive_rx(response_1_754 + 4, 3, flags[i]);
         run(100);
         expect_mm(754);
     }
@@ -117,7 +117,7 @@ TEST_IN(bare, what_is_told_of_an_echo_stays)
 {
     ask_1_and_send(0);
     receive_all(ask_1_processed);
-    deliver_all(answer_1_754);
+    deliver_all(response_1_754);
     expect_mm(754);
     assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
     break_port();
@@ -140,7 +140,7 @@ TEST_IN(bare, a_write_is_acknowledged_by_one_copy_without_echo_and_by_two_with_i
     }
 }
 
-TEST_IN(bare, an_exception_a_late_answer_and_a_damaged_one_end_as_on_any_line)
+TEST_IN(bare, an_exception_a_late_response_and_a_damaged_one_end_as_on_any_line)
 {
     ask_1_and_send(0);
     deliver_all(exception_1_2);
@@ -152,7 +152,7 @@ TEST_IN(bare, an_exception_a_late_answer_and_a_damaged_one_end_as_on_any_line)
     set_up_bare(state);
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
-    deliver_all(answer_1_754);
+    deliver_all(response_1_754);
     expect_mm(754);
 }
 
@@ -165,17 +165,17 @@ TEST_IN(bare, a_client_without_unit_0_does_not_read_it)
     expect_written(0);
 }
 
-/* A 55 AA frame of unit 1, which owes an answer to Modbus: it is late, and not that answer, though it is one to a read of
+/* A 55 AA frame of unit 1, which owes a response to Modbus: it is late, and not that answer, though it is one to a read of
  * the same register. */
-TEST_IN(bare, a_late_frame_of_another_protocol_is_not_the_answer)
+TEST_IN(bare, a_late_frame_of_another_protocol_is_not_the_response)
 {
     ask_dyp(&bench.other, 1, 1, &bench.other_value);
     run(REQUEST_US + TIMEOUT_US);
-    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_RESPONSE);
     run(TIMEOUT_US + 200);
     bench.value = 0xDEAD;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, 1, &bench.value);
-    bench.request.exchange.retries = 1;
+    bench.request.transaction.retries = 1;
     submit(&bench.request);
     run(REQUEST_US + TIMEOUT_US);
     ask_dyp(&bench.other, 2, 1, &bench.other_value);

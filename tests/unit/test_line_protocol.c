@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* What line.h promises a protocol that is not from here: fathom_protocol_t. This one asks with one byte, '?'. An answer is
+/* What line.h promises a protocol that is not from here: fathom_protocol_t. This one asks with one byte, '?'. A response is
  * its unit (1..15), a count and so many bytes; there is no checksum but that FF as the last byte is wrong. */
 
 static const suite_t suite = {.set_up = set_up};
 
-static fathom_exchange_t exchange;
+static fathom_transaction_t transaction;
 
-static uint8_t encode(const fathom_exchange_t *asked, uint8_t *frame)
+static uint8_t encode(const fathom_transaction_t *asked, uint8_t *frame)
 {
     (void)asked;
     frame[0] = '?';
@@ -23,7 +23,7 @@ static uint8_t length_of(const uint8_t *frame, uint8_t have)
 
 static uint16_t check(const uint8_t *frame, uint8_t length) { return frame[length - 1] == 0xFF; }
 
-static bool is_request(const fathom_exchange_t *asked, const uint8_t *frame, uint8_t have)
+static bool is_request(const fathom_transaction_t *asked, const uint8_t *frame, uint8_t have)
 {
     (void)asked;
     (void)have;
@@ -31,21 +31,21 @@ static bool is_request(const fathom_exchange_t *asked, const uint8_t *frame, uin
 }
 
 /* "from a unit that was asked": of another nothing is to be judged. */
-static fathom_status_t answer_of(fathom_exchange_t *asked, const uint8_t *frame)
+static fathom_status_t response_of(fathom_transaction_t *asked, const uint8_t *frame)
 {
-    assert_int_equal(frame[0], asked->unit);
+    assert_int_equal(frame[0], asked->address);
     return frame[1] == 9 ? FATHOM_ERR_MALFORMED : FATHOM_READY;
 }
 
-static const fathom_protocol_t protocol = {encode, length_of, check, is_request, answer_of, 0, false};
+static const fathom_protocol_t protocol = {encode, length_of, check, is_request, response_of, 0, false};
 
 static void start(void)
 {
-    memset(&exchange, 0, sizeof exchange);
-    exchange.protocol = &protocol;
-    exchange.unit = 1;
-    exchange.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_line_submit(&bench.line, &exchange), FATHOM_PENDING);
+    memset(&transaction, 0, sizeof transaction);
+    transaction.protocol = &protocol;
+    transaction.address = 1;
+    transaction.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_line_submit(&bench.line, &transaction), FATHOM_PENDING);
     run(T3_5_US + 200);
     run(BYTE_US + 100);
 }
@@ -53,26 +53,26 @@ static void start(void)
 /* "its length, 1..255". */
 TEST(a_request_may_be_one_byte)
 {
-    static const uint8_t answer[] = {1, 2, 0xF1, 0xF2};
+    static const uint8_t response[] = {1, 2, 0xF1, 0xF2};
     start();
     assert_int_equal(bench.fake.written, 1);
     assert_int_equal(bench.fake.writes[0].length, 1);
     assert_int_equal(bench.fake.writes[0].bytes[0], '?');
-    receive(answer, sizeof answer);
+    receive(response, sizeof response);
     run(100);
-    assert_int_equal(exchange.status, FATHOM_READY);
+    assert_int_equal(transaction.status, FATHOM_READY);
 }
 
-TEST(a_part_of_a_frame_is_no_answer)
+TEST(a_part_of_a_frame_is_no_response)
 {
     static const uint8_t part[] = {1, 3, 0xF1, 0xF2};
     start();
     receive(part, sizeof part);
     run(GAP_US - 200);
-    assert_int_equal(exchange.status, FATHOM_PENDING);
+    assert_int_equal(transaction.status, FATHOM_PENDING);
     run(400);
-    assert_int_equal(exchange.status, FATHOM_ERR_CHECKSUM);
-    assert_int_equal(counter(FATHOM_LINE_ANSWERS), 0);
+    assert_int_equal(transaction.status, FATHOM_ERR_CHECKSUM);
+    assert_int_equal(counter(FATHOM_LINE_RESPONSES), 0);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 4);
 }
 
@@ -80,63 +80,63 @@ TEST(a_part_of_a_frame_is_no_answer)
 TEST(bytes_that_begin_no_frame_are_noise)
 {
     static const uint8_t noise[] = {0xF1, 0xF2, 0xF3};
-    static const uint8_t answer[] = {1, 1, 0xF1};
+    static const uint8_t response[] = {1, 1, 0xF1};
     start();
     receive(noise, sizeof noise);
     run(100);
-    assert_int_equal(exchange.status, FATHOM_PENDING);
+    assert_int_equal(transaction.status, FATHOM_PENDING);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 3);
-    receive(answer, sizeof answer);
+    receive(response, sizeof response);
     run(100);
-    assert_int_equal(exchange.status, FATHOM_READY);
-    assert_int_equal(counter(FATHOM_LINE_ANSWERS), 1);
+    assert_int_equal(transaction.status, FATHOM_READY);
+    assert_int_equal(counter(FATHOM_LINE_RESPONSES), 1);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 3);
 }
 
-/* "check: ... wrong": it was the answer, and it is damaged. */
+/* "check: ... wrong": it was the response, and it is damaged. */
 TEST(a_wrong_checksum_ends_the_attempt_at_the_gap)
 {
-    static const uint8_t answer[] = {1, 2, 0xF1, 0xFF};
+    static const uint8_t response[] = {1, 2, 0xF1, 0xFF};
     start();
-    receive(answer, sizeof answer);
+    receive(response, sizeof response);
     run(GAP_US - 200);
-    assert_int_equal(exchange.status, FATHOM_PENDING);
+    assert_int_equal(transaction.status, FATHOM_PENDING);
     run(400);
-    assert_int_equal(exchange.status, FATHOM_ERR_CHECKSUM);
+    assert_int_equal(transaction.status, FATHOM_ERR_CHECKSUM);
 }
 
-TEST(another_units_frame_is_not_shown_to_the_exchange)
+TEST(another_units_frame_is_not_shown_to_the_transaction)
 {
-    static const uint8_t answer[] = {2, 1, 0xF1};
+    static const uint8_t response[] = {2, 1, 0xF1};
     start();
-    receive(answer, sizeof answer);
+    receive(response, sizeof response);
     run(100);
-    assert_int_equal(exchange.status, FATHOM_PENDING);
+    assert_int_equal(transaction.status, FATHOM_PENDING);
     assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
 }
 
 /* "more than have: so many bytes are needed to tell": it is looked at again with each byte, and is over with the last. */
-TEST(an_answer_that_comes_byte_by_byte_is_over_with_the_last)
+TEST(a_response_that_comes_byte_by_byte_is_over_with_the_last)
 {
-    static const uint8_t answer[] = {1, 4, 0xF1, 0xF2, 0xF3, 0xF4};
+    static const uint8_t response[] = {1, 4, 0xF1, 0xF2, 0xF3, 0xF4};
     start();
-    for (unsigned i = 0; i != sizeof answer; i++) {
-        assert_int_equal(exchange.status, FATHOM_PENDING);
-        receive(answer + i, 1);
+    for (unsigned i = 0; i != sizeof response; i++) {
+        assert_int_equal(transaction.status, FATHOM_PENDING);
+        receive(response + i, 1);
         run(1000);
     }
-    assert_int_equal(exchange.status, FATHOM_READY);
+    assert_int_equal(transaction.status, FATHOM_READY);
 }
 
 /* A line that only listens has no room for it. */
 TEST(nothing_is_submitted_to_a_line_that_only_listens)
 {
     assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_READY);
-    memset(&exchange, 0, sizeof exchange);
-    exchange.protocol = &protocol;
-    exchange.unit = 1;
-    assert_int_equal(fathom_line_submit(&bench.line, &exchange), FATHOM_ERR_UNSUPPORTED);
-    assert_false(fathom_line_has(&bench.line, &exchange));
+    memset(&transaction, 0, sizeof transaction);
+    transaction.protocol = &protocol;
+    transaction.address = 1;
+    assert_int_equal(fathom_line_submit(&bench.line, &transaction), FATHOM_ERR_UNSUPPORTED);
+    assert_false(fathom_line_has(&bench.line, &transaction));
     run(100000);
     expect_written(0);
 }

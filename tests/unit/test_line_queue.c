@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* Exchanges that wait: for their turn, for a retry, for what is owed; and how long that is. */
+/* Transactions that wait: for their turn, for a retry, for what is owed; and how long that is. */
 
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
-static const suite_t owing = {.set_up = set_up_owing};
+static const suite_t quarantined = {.set_up = set_up_quarantined};
 
 TEST_IN(asked, one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire)
 {
@@ -13,10 +13,10 @@ TEST_IN(asked, one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wi
     cancel(&bench.other);
     expect_other(FATHOM_ERR_CANCELLED);
     expect(FATHOM_PENDING);
-    answer_1(754);
+    response_1(754);
     ask_other(2); /* it was never asked, so it owes nothing */
     expect_written_after(REQUEST_US, 2);
-    receive_answer(2, 222);
+    receive_response(2, 222);
     ask_1(0); /* nor does the one that has answered */
     expect_written_after(T3_5_US + 400, 3);
 }
@@ -30,10 +30,10 @@ TEST(one_in_the_middle_of_the_queue_can_be_cancelled)
     ask_other(2);
     ask(&third, 3, &third_value, 0);
     cancel(&bench.other);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     expect_written_after(REQUEST_US, 2);
     expect_unit(1, 3);
-    deliver_answer(3, 333);
+    deliver_response(3, 333);
     assert_int_equal(third_value, 333);
 }
 
@@ -42,23 +42,23 @@ TEST(a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more)
 {
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
-    deliver_all(answer_1_three);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, sizeof answer_1_three);
+    deliver_all(response_1_three);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, sizeof response_1_three);
     expect_failed(FATHOM_PENDING);
     expect_written_after(REQUEST_US, 2); /* it owes nothing any more */
-    answer_1(111);
+    response_1(111);
 }
 
 /* The long debt of unit 2 was paid; what is left of its time is not unit 1's. */
 TEST(a_debt_lasts_no_longer_because_of_one_that_was_paid)
 {
     ask_other(2);
-    bench.other.exchange.timeout_us = 10 * TIMEOUT_US;
+    bench.other.transaction.timeout_us = 10 * TIMEOUT_US;
     run(REQUEST_US);
     cancel(&bench.other);
-    deliver_answer(2, 222);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    deliver_response(2, 222);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     ask_1(1);
     run(REQUEST_US + TIMEOUT_US);
     expect_written(2);
@@ -87,7 +87,7 @@ TEST(after_a_long_silence_a_request_is_due_at_once)
     expect_due(1000); /* while it leaves */
 }
 
-TEST_IN(owing, what_only_waits_for_a_debt_is_due_when_that_is_forgotten)
+TEST_IN(quarantined, what_only_waits_for_a_debt_is_due_when_that_is_forgotten)
 {
     ask_1(0);
     const uint32_t due_us = due();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* Line settings of an exchange: an A16 with 9600 8N1 and an HPS-167S with 19200 8E1 on one pair of wires. */
+/* Line settings of a transaction: an A16 with 9600 8N1 and an HPS-167S with 19200 8E1 on one pair of wires. */
 
 static const fathom_line_settings_t n9600 = {9600, FATHOM_PARITY_NONE, 1};
 static const fathom_line_settings_t e19200 = {19200, FATHOM_PARITY_EVEN, 1};
@@ -15,13 +15,13 @@ static void assert_set_to(const fathom_line_settings_t *settings)
 
 static void ask_1_with(uint8_t retries, const fathom_line_settings_t *settings)
 {
-    bench.request.exchange.settings = settings;
+    bench.request.transaction.line_settings = settings;
     ask_1(retries);
 }
 
 static void ask_2_with(const fathom_line_settings_t *settings)
 {
-    bench.other.exchange.settings = settings;
+    bench.other.transaction.line_settings = settings;
     ask_other(2);
 }
 
@@ -37,9 +37,9 @@ static void expect_written_with(size_t which, uint8_t unit, const fathom_line_se
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
 
-TEST_IN(asked, an_exchange_without_settings_leaves_the_line_as_it_is)
+TEST_IN(asked, a_transaction_without_settings_leaves_the_line_as_it_is)
 {
-    answer_1(111);
+    response_1(111);
     assert_int_equal(bench.fake.set_lines, 0);
 }
 
@@ -50,7 +50,7 @@ TEST(settings_hold_before_the_request_is_written)
     assert_int_equal(bench.fake.set_lines, 0); /* what still comes is at the settings before */
     run(400);
     expect_written_with(0, 1, &e19200);
-    answer_1(111);
+    response_1(111);
 }
 
 TEST(two_sensors_with_their_own_settings_share_a_line)
@@ -60,13 +60,13 @@ TEST(two_sensors_with_their_own_settings_share_a_line)
         ask_2_with(&e19200);
         run(REQUEST_US);
         expect_written_with(2 * round, 1, &n9600);
-        receive_answer(1, (uint16_t)(100 + round));
+        receive_response(1, (uint16_t)(100 + round));
         run(T3_5_US - 300); /* the silence is kept before the other settings too */
         expect_mm((uint16_t)(100 + round));
         assert_set_to(&n9600);
         run(8 * BYTE_US + 800);
         expect_written_with(2 * round + 1, 2, &e19200);
-        answer_other(2, (uint16_t)(200 + round));
+        response_other(2, (uint16_t)(200 + round));
     }
 }
 
@@ -75,7 +75,7 @@ TEST(each_attempt_sets_its_settings_again)
     ask_1_with(2, &e19200);
     ask_2_with(&n9600);
     run(8 * TIMEOUT_US);
-    assert_int_equal(bench.request.exchange.attempts, 3);
+    assert_int_equal(bench.request.transaction.attempts, 3);
     expect_written(4);
     for (size_t i = 0; i != 4; i++)
         assert_int_equal(bench.fake.writes[i].baud, bench.fake.writes[i].bytes[0] == 1 ? 19200 : 9600);
@@ -94,7 +94,7 @@ TEST(a_port_that_cannot_change_yet_is_asked_again)
     bench.fake.never_sent = false;
     run(8 * BYTE_US + 400);
     expect_written_with(0, 1, &e19200);
-    answer_1(111);
+    response_1(111);
 }
 
 TEST(a_port_that_never_changes_is_broken_after_a_second)
@@ -107,17 +107,17 @@ TEST(a_port_that_never_changes_is_broken_after_a_second)
     expect_written(0);
 }
 
-TEST(settings_that_the_port_cannot_do_end_that_exchange_alone)
+TEST(settings_that_the_port_cannot_do_end_that_transaction_alone)
 {
     bench.fake.unsupported_baud = 19200;
     ask_1_with(0, &e19200);
     ask_2_with(&n9600);
     expect_after(REQUEST_US + 200, FATHOM_ERR_UNSUPPORTED);
-    assert_int_equal(bench.request.exchange.attempts, 0);
+    assert_int_equal(bench.request.transaction.attempts, 0);
     expect_written(1);
     expect_unit(0, 2);
     expect_count(FATHOM_LINE_PORT_ERRORS, 0);
-    answer_other(2, 222);
+    response_other(2, 222);
     assert_int_equal(bench.value, 0xDEAD);
 }
 
@@ -140,10 +140,10 @@ TEST(settings_on_a_port_whose_settings_are_fixed_are_unsupported)
     ask_2_with(NULL);
     expect_after(REQUEST_US + 200, FATHOM_ERR_UNSUPPORTED);
     expect_written(1);
-    answer_other(2, 222);
+    response_other(2, 222);
 }
 
-TEST(settings_that_turn_out_unsupported_after_a_busy_port_end_the_exchange)
+TEST(settings_that_turn_out_unsupported_after_a_busy_port_end_the_transaction)
 {
     bench.fake.never_sent = true;
     ask_1_with(0, &e19200);
@@ -165,7 +165,7 @@ TEST(a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free)
     expect_written_with(0, 1, &e19200);
 }
 
-TEST(an_exchange_that_waits_for_its_settings_can_be_cancelled_and_owes_nothing)
+TEST(a_transaction_that_waits_for_its_settings_can_be_cancelled_and_owes_nothing)
 {
     bench.fake.never_sent = true;
     ask_1_with(0, &e19200);

@@ -16,11 +16,11 @@ static uint32_t stamp_us; /* of the last byte */
 static int read_later(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     fake_t *const fake = ctx;
-    const uint32_t looked_us = fake->now_us;
+    const uint32_t sampled_us = fake->now_us;
     fake->now_us += between_us;
     const int n = read_at_once(ctx, bytes, capacity, rx);
     if (n == 0) {
-        fake->now_us = looked_us;
+        fake->now_us = sampled_us;
         return 0;
     }
     stamp_us = fake->now_us + ahead_us;
@@ -60,7 +60,7 @@ static void begin_at(uint32_t now_us, void **state)
 }
 
 /* At 9600 baud a byte takes 1042 us; the interrupt of any of the seven may come so late. */
-TEST(a_time_stamp_from_the_future_leaves_a_good_answer_whole)
+TEST(a_time_stamp_from_the_future_leaves_a_good_response_whole)
 {
     static const uint32_t starts_us[] = {1000, UINT32_MAX - 20000};
     for (unsigned i = 0; i != 2 * 7 * 2; i++) {
@@ -71,12 +71,12 @@ TEST(a_time_stamp_from_the_future_leaves_a_good_answer_whole)
             assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
             between_us = at == i / 2 % 7 && i % 2 == 0 ? 3 : 0;
             ahead_us = at == i / 2 % 7 && i % 2 != 0 ? 3 : 0;
-            poll_with(answer_1_754 + at);
+            poll_with(response_1_754 + at);
         }
         assert_int_equal(status_of(&bench.request), FATHOM_READY);
         assert_int_equal(bench.value, 754);
         /* the sample's time: the stamp, or the clock where the stamp is later than that */
-        assert_int_equal(bench.request.exchange.link.heard_us, stamp_us - ahead_us);
+        assert_int_equal(bench.request.transaction.link.heard_us, stamp_us - ahead_us);
         assert_int_equal(fathom_line_heard_us(&bench.line), stamp_us - ahead_us);
     }
 }
@@ -86,10 +86,10 @@ TEST(a_time_stamp_in_the_past_is_believed)
     ask_1_and_send(0);
     ahead_us = (uint32_t)-700;
     bench.fake.now_us += 9000;
-    receive(answer_1_754, 7);
+    receive(response_1_754, 7);
     (void)fathom_line_poll(&bench.line);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
-    assert_int_equal(bench.request.exchange.link.heard_us, bench.fake.now_us - 700);
+    assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us - 700);
 }
 
 /* 35 minutes and 47 s are the border between the two; what a line tells of the past ends after 65 ms anyway. */
@@ -98,7 +98,7 @@ TEST(a_time_stamp_half_way_round_the_clock_is_in_the_future)
     for (uint32_t ago_us = INT32_MAX; ago_us <= UINT32_C(0x80000000); ago_us++) {
         ahead_us = (uint32_t)-ago_us;
         bench.fake.now_us += 9000;
-        receive(answer_1_754, 7);
+        receive(response_1_754, 7);
         (void)fathom_line_poll(&bench.line);
         const uint32_t told_us = ago_us == INT32_MAX ? UINT16_MAX : 0;
         assert_int_equal(bench.fake.now_us - fathom_line_heard_us(&bench.line), told_us);
@@ -111,7 +111,7 @@ TEST(no_request_leaves_while_the_port_may_hold_bytes_from_before_it)
     ahead_us = (uint32_t)-9000000;
     run(T3_5_US);
     ask(&bench.request, 1, &bench.value, 0);
-    for (unsigned read = 0; read != 40; read++) fake_receive(&bench.fake, read + 1, answer_1_754, 7);
+    for (unsigned read = 0; read != 40; read++) fake_receive(&bench.fake, read + 1, response_1_754, 7);
     bench.fake.now_us += 100;
     for (unsigned poll = 0; poll != 2; poll++) {
         (void)fathom_line_poll(&bench.line);
@@ -134,7 +134,7 @@ TEST(the_silence_before_a_request_is_counted_from_a_byte_that_came_after_the_loo
         ask(&bench.other, 2, &bench.other_value, 0);
         bench.fake.now_us += 9000;
         between_us = 20000;
-        fake_receive(&bench.fake, between_us, answer_1_754, 7);
+        fake_receive(&bench.fake, between_us, response_1_754, 7);
         (void)fathom_line_poll(&bench.line);
         between_us = 0;
         assert_int_equal(status_of(&bench.request), FATHOM_READY);
@@ -154,13 +154,13 @@ TEST(a_frame_is_not_torn_where_its_first_bytes_came_after_the_look_at_the_clock)
         ask_1_and_send(0);
         bench.fake.now_us += 9000;
         between_us = 2 * GAP_US;
-        fake_receive(&bench.fake, between_us, answer_1_754, 4);
+        fake_receive(&bench.fake, between_us, response_1_754, 4);
         (void)fathom_line_poll(&bench.line);
         between_us = 0;
         run(1000);
         assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
         assert_true(fathom_line_due_us(&bench.line) <= GAP_US - 1000);
-        receive(answer_1_754 + 4, 3);
+        receive(response_1_754 + 4, 3);
         run(100);
         assert_int_equal(status_of(&bench.request), FATHOM_READY);
         assert_int_equal(bench.value, 754);
@@ -187,12 +187,12 @@ TEST(a_listener_is_told_the_stamp_and_of_no_silence_that_was_not)
     fathom_line_listen(&bench.line, &listener);
     heard = gaps = 0;
     between_us = 2 * GAP_US;
-    poll_with(answer_1_754);
+    poll_with(response_1_754);
     assert_int_equal(heard, 1);
     assert_int_equal(heard_us, stamp_us);
     between_us = 0;
     run(1000);
-    poll_with(answer_1_754 + 1);
+    poll_with(response_1_754 + 1);
     assert_int_equal(heard, 2);
     assert_int_equal(gaps, 0);
 }
@@ -208,13 +208,13 @@ TEST(the_time_that_a_read_takes_counts_against_the_time_out)
         assert_true(bench.fake.now_us - left_us < 2 * TIMEOUT_US);
         poll_with(&noise);
     }
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
     assert_in_range(bench.fake.now_us - left_us, TIMEOUT_US - 400, TIMEOUT_US + 2 * BYTE_US);
     /* and against what the unit owes: another time-out from here */
-    assert_in_range(bench.line.owed_us, TIMEOUT_US - 2 * BYTE_US, TIMEOUT_US);
+    assert_in_range(bench.line.quarantine_left_us, TIMEOUT_US - 2 * BYTE_US, TIMEOUT_US);
     for (unsigned i = 0; i != TIMEOUT_US / (2 * BYTE_US) + 1; i++) {
-        assert_true(bench.line.owing != 0);
+        assert_true(bench.line.quarantined != 0);
         poll_with(&noise);
     }
-    assert_int_equal(bench.line.owing, 0);
+    assert_int_equal(bench.line.quarantined, 0);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* The longest time-out is 2^31 - 1 us, 35 minutes: twice that, which a unit may owe its answer, fits the clock. */
+/* The longest time-out is 2^31 - 1 us, 35 minutes: twice that, which a unit may owe its response, fits the clock. */
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -10,18 +10,18 @@ static const suite_t suite = {.set_up = set_up};
 static fathom_status_t ask_for(uint32_t timeout_us)
 {
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
-    bench.request.exchange.timeout_us = timeout_us;
-    bench.request.exchange.retries = 0;
+    bench.request.transaction.timeout_us = timeout_us;
+    bench.request.transaction.retries = 0;
     return fathom_modbus_client_submit(&bench.line, &bench.request);
 }
 
-TEST(a_unit_owes_its_answer_for_twice_the_longest_time_out)
+TEST(a_unit_owes_its_response_for_twice_the_longest_time_out)
 {
     assert_int_equal(ask_for(LONGEST_US), FATHOM_PENDING);
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, 1);
-    fathom_line_cancel(&bench.line, &bench.request.exchange); /* while it leaves */
-    assert_true(bench.line.owed_us == 2 * LONGEST_US);
+    fathom_line_cancel(&bench.line, &bench.request.transaction); /* while it leaves */
+    assert_true(bench.line.quarantine_left_us == 2 * LONGEST_US);
 
     assert_int_equal(ask_for(1000), FATHOM_PENDING);
     assert_true(fathom_line_due_us(&bench.line) == 2 * LONGEST_US);
@@ -39,10 +39,10 @@ TEST(a_time_out_over_the_longest_is_refused_and_not_cut)
 {
     static const uint32_t too_long_us[] = {LONGEST_US + 1, UINT32_C(0x90000000), UINT32_MAX};
     for (unsigned i = 0; i != 3; i++) {
-        bench.request.exchange.status = FATHOM_READY;
+        bench.request.transaction.status = FATHOM_READY;
         assert_int_equal(ask_for(too_long_us[i]), FATHOM_ERR_ARGUMENT);
         assert_int_equal(status_of(&bench.request), FATHOM_READY);
-        assert_false(fathom_line_has(&bench.line, &bench.request.exchange));
+        assert_false(fathom_line_has(&bench.line, &bench.request.transaction));
     }
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, 0);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-#include "fathom/line_turns.h"
+#include "fathom/engine/line_turns.h"
 
 /* A program's own policy: the highest unit goes first, and unit 1 not before it is let go. */
 
@@ -50,13 +50,14 @@ static void ended(fathom_line_turns_t *policy, uint8_t unit, uint32_t at_us)
     tell(ENDED, unit, at_us);
 }
 
-static fathom_exchange_t *next(fathom_line_turns_t *policy, const fathom_line_t *line)
+static fathom_transaction_t *next(fathom_line_turns_t *policy, const fathom_line_t *line)
 {
-    fathom_exchange_t *best = NULL;
-    policy->wait_us = line->owed_us;
-    for (fathom_exchange_t *x = line->head; x != NULL; x = x->link.next)
-        if (!fathom_line_owes(line, x->unit) && (best == NULL || x->unit > best->unit)) best = x;
-    if (best == NULL || best->unit != 1 || !holds_1) return best;
+    fathom_transaction_t *best = NULL;
+    policy->wait_us = line->quarantine_left_us;
+    for (fathom_transaction_t *x = line->head; x != NULL; x = x->link.next)
+        if (!fathom_line_is_quarantined(line, x->address) && (best == NULL || x->address > best->address))
+            best = x;
+    if (best == NULL || best->address != 1 || !holds_1) return best;
     policy->wait_us = 12345;
     return NULL;
 }
@@ -84,10 +85,10 @@ TEST(the_policy_says_who_goes_next_and_hears_who_asked_and_who_has_ended)
     run(REQUEST_US);
     expect_unit(0, 9);
     run(17900 - REQUEST_US);
-    answer_other(9, 222);
+    response_other(9, 222);
     run(REQUEST_US);
     expect_unit(1, 1);
-    answer_1(754);
+    response_1(754);
     expect_told(ASKED, 1, 0);
     expect_told(ASKED, 9, 0);
     expect_told(ENDED, 9, 18);
@@ -108,7 +109,7 @@ TEST(what_it_holds_back_is_due_when_it_says)
     expect_unit(0, 9);
     holds_1 = false;
     run(8 * BYTE_US);
-    answer_other(9, 222);
+    response_other(9, 222);
     run(REQUEST_US);
     expect_unit(1, 1);
 }
@@ -121,7 +122,7 @@ TEST(an_attempt_that_ends_and_is_tried_again_has_ended_too)
     expect_told(ASKED, 1, 0);
     expect_told(ENDED, 1, 112);
     expect_no_more();
-    expect_due(bench.line.owed_us);
+    expect_due(bench.line.quarantine_left_us);
     run(TIMEOUT_US + REQUEST_US);
     expect_written(2);
     break_port();

@@ -22,7 +22,7 @@ static void ask_any(void)
 }
 
 static const suite_t suite = {.set_up = set_up};
-static const suite_t owing = {.set_up = set_up_owing};
+static const suite_t quarantined = {.set_up = set_up_quarantined};
 
 TEST(any_unit_may_answer_who_asked_them_all)
 {
@@ -36,7 +36,7 @@ TEST(any_unit_may_answer_who_asked_them_all)
     }
 }
 
-TEST(what_is_damaged_is_nobodys_answer)
+TEST(what_is_damaged_is_nobodys_response)
 {
     ask_any();
     receive_first_probe(9, 0xA1, 5);
@@ -45,12 +45,12 @@ TEST(what_is_damaged_is_nobodys_answer)
     assert_int_equal(bench.request.message.head[0], 255);
 }
 
-TEST(after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out)
+TEST(after_a_request_to_anyone_nobody_is_asked_until_twice_its_time_out)
 {
     for (unsigned unit = 1; unit != 255; unit++) {
         set_up(state);
         ask_any();
-        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_ANSWER);
+        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_RESPONSE);
         ask_other((uint8_t)unit);
         run_in_steps(TIMEOUT_US - 1000, 500);
         expect_written(1);
@@ -58,13 +58,13 @@ TEST(after_a_question_to_anyone_nobody_is_asked_until_twice_its_time_out)
     }
 }
 
-TEST_IN(owing, nobody_is_asked_for_anyone_while_somebody_owes)
+TEST_IN(quarantined, nobody_is_asked_for_anyone_while_somebody_owes)
 {
     ask_dyp(&bench.other, 255, 1, &bench.other_value);
     expect_sent(TIMEOUT_US - 1000, 1500);
 }
 
-TEST(a_late_answer_to_a_question_to_anyone_is_no_other_requests)
+TEST(a_late_response_to_a_request_to_anyone_is_no_other_requests)
 {
     ask_any();
     run(TIMEOUT_US + 200);
@@ -72,12 +72,12 @@ TEST(a_late_answer_to_a_question_to_anyone_is_no_other_requests)
     run(20000);
     receive_first_probe(9, 0xA1, 7);
     run(100);
-    expect_count(FATHOM_LINE_LATE_ANSWERS, 1);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     assert_int_equal(bench.other_value, 0xDEAD);
     expect_other(FATHOM_PENDING);
 }
 
-TEST(a_cancelled_question_to_anyone_is_owed_by_all)
+TEST(a_cancelled_request_to_anyone_is_owed_by_all)
 {
     ask_any();
     cancel(&bench.request);
@@ -85,17 +85,17 @@ TEST(a_cancelled_question_to_anyone_is_owed_by_all)
     expect_sent(2 * TIMEOUT_US - 1000, 2000);
 }
 
-TEST(what_all_are_told_none_owes_an_answer_to)
+TEST(what_all_are_told_none_owes_a_response_to)
 {
     ask_to_write(&bench.request, 0);
     run(REQUEST_US);
-    ask_other(16);          /* modulo 16 the same */
-    receive_answer(3, 333); /* a unit that answers all the same is not heard */
+    ask_other(16);            /* modulo 16 the same */
+    receive_response(3, 333); /* a unit that answers all the same is not heard */
     expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
     expect_written(1);
     expect_after(1500, FATHOM_READY);
     expect_written(2);
-    assert_int_equal(counter(FATHOM_LINE_NO_ANSWERS) + counter(FATHOM_LINE_ANSWERS), 0);
+    assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES) + counter(FATHOM_LINE_RESPONSES), 0);
 }
 
 TEST(a_cancelled_broadcast_is_owed_by_none)

@@ -26,7 +26,7 @@ TEST(a_count_out_of_range_is_refused)
     assert_null(bench.line.head);
 }
 
-/* 13 registers are 31 bytes of answer, 14 are 33; the frame has 32. 11 written are 31 bytes, 12 are 33. */
+/* 13 registers are 31 bytes of response, 14 are 33; the frame has 32. 11 written are 31 bytes, 12 are 33. */
 TEST(what_does_not_fit_the_frame_is_refused)
 {
     uint16_t values[14] = {0};
@@ -38,7 +38,7 @@ TEST(what_does_not_fit_the_frame_is_refused)
 }
 
 /* A05 3(4)1 example 3. */
-TEST(several_registers_are_read_in_one_exchange)
+TEST(several_registers_are_read_in_one_transaction)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
     static const uint16_t expected[] = {250, 659, 2426};
@@ -47,7 +47,7 @@ TEST(several_registers_are_read_in_one_exchange)
     submit(&bench.request);
     run(20000);
     expect_bytes(0, request, sizeof request);
-    deliver_all(answer_1_three);
+    deliver_all(response_1_three);
     expect(FATHOM_READY);
     assert_memory_equal(values, expected, sizeof expected);
 }
@@ -78,20 +78,20 @@ TEST(every_byte_of_an_acknowledgement_counts)
     }
 }
 
-TEST(the_seam_is_the_same_client)
+TEST(the_transport_is_the_same_client)
 {
     const fathom_modbus_t modbus = fathom_modbus_client(&bench.line);
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
     assert_int_equal(modbus.submit(modbus.ctx, &bench.request), FATHOM_PENDING);
     assert_int_equal(modbus.submit(modbus.ctx, &bench.request), FATHOM_ERR_BUSY);
     modbus.poll(modbus.ctx);
     assert_int_equal(modbus.due_us(modbus.ctx), T3_5_US);
     run(20000);
-    receive_all(answer_1_754);
+    receive_all(response_1_754);
     modbus.poll(modbus.ctx);
     expect_mm(754);
-    assert_int_equal(bench.request.exchange.link.heard_us, bench.fake.now_us);
+    assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us);
     modbus.submit(modbus.ctx, &bench.request);
     modbus.cancel(modbus.ctx, &bench.request);
     expect(FATHOM_ERR_CANCELLED);

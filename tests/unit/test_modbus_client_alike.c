@@ -2,7 +2,7 @@
 #include "line_bench.h"
 
 /* line.h, local echo: what begins like its request may be the echo, as long as the line does not know. All else that
- * answers is an answer. */
+ * answers is a response. */
 
 static int set_up_auto(void **state)
 {
@@ -29,7 +29,7 @@ static void add_crc(uint8_t *frame, size_t length)
 
 static void send(void)
 {
-    bench.request.exchange.timeout_us = TIMEOUT_US;
+    bench.request.transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     run(T3_5_US + 200);
     run(8 * BYTE_US);
@@ -38,7 +38,7 @@ static void send(void)
 
 /*
  * Two registers from 0410 are asked for with 01 03 04 10 00 02, and 1000, 02FF are told with 01 03 04 10 00 02 FF. With
- * one other byte it is no echo. (The third byte of the answer is its size and stays; so the request has the other one.)
+ * one other byte it is no echo. (The third byte of the response is its size and stays; so the request has the other one.)
  */
 typedef struct {
     uint16_t first;
@@ -54,25 +54,25 @@ static void is_answered_at_once(void **state)
 {
     const alike_t *const row = *state;
     uint16_t values[2] = {0, 0};
-    uint8_t answer[9] = {1, 3, 4};
+    uint8_t response[9] = {1, 3, 4};
     for (unsigned i = 0; i != 2; i++) {
-        answer[3 + 2 * i] = (uint8_t)(row->values[i] >> 8);
-        answer[4 + 2 * i] = (uint8_t)row->values[i];
+        response[3 + 2 * i] = (uint8_t)(row->values[i] >> 8);
+        response[4 + 2 * i] = (uint8_t)row->values[i];
     }
-    add_crc(answer, 7);
+    add_crc(response, 7);
     fathom_modbus_read_holding_registers(&bench.request.message, 1, row->first, 2, values);
     send();
-    receive(answer, sizeof answer);
+    receive(response, sizeof response);
     run(100);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
     assert_memory_equal(values, row->values, sizeof values);
     assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
 }
 
-TEST_ROW(an_answer_whose_size_alone_differs_from_the_request_is_an_answer, is_answered_at_once, &third)
-TEST_ROW(an_answer_whose_fourth_byte_alone_differs_is_an_answer, is_answered_at_once, &fourth)
-TEST_ROW(an_answer_whose_fifth_byte_alone_differs_is_an_answer, is_answered_at_once, &fifth)
-TEST_ROW(an_answer_whose_sixth_byte_alone_differs_is_an_answer, is_answered_at_once, &sixth)
+TEST_ROW(a_response_whose_size_alone_differs_from_the_request_is_a_response, is_answered_at_once, &third)
+TEST_ROW(a_response_whose_fourth_byte_alone_differs_is_a_response, is_answered_at_once, &fourth)
+TEST_ROW(a_response_whose_fifth_byte_alone_differs_is_a_response, is_answered_at_once, &fifth)
+TEST_ROW(a_response_whose_sixth_byte_alone_differs_is_a_response, is_answered_at_once, &sixth)
 
 /* The exception 2 to function 06 of unit 1 is 01 86 02 C3 A1. Register 02C3 is written with A105 by 01 06 02 C3 A1 05:
  * bytes 2 to 4 are the same, and a sixth the exception has not. */

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/modbus_rtu.h"
 
 /* CRCs that no datasheet prints were worked out apart, bit by bit, and stand here as bytes. Every prefix and
  * every damaged byte of the datasheets' frames: tests/golden/test_corruption.c. */
@@ -48,7 +48,7 @@ static void assert_values_untouched_from(size_t from)
     for (; from != VALUES; from++) assert_int_equal(values[from], GUARD16);
 }
 
-#define expect_room(n) assert_int_equal(fathom_modbus_rtu_room(&message), n)
+#define expect_room(n) assert_int_equal(fathom_modbus_rtu_frame_size(&message), n)
 #define expect_response(bytes, status)                                                                       \
     assert_int_equal(fathom_modbus_rtu_parse_response(&message, bytes), status)
 #define expect_request(bytes, most, status)                                                                  \
@@ -66,7 +66,7 @@ static void ask(uint8_t function, uint8_t count)
 
 /* ---- the client's side ---- */
 
-/* 8 bytes, and where it is longer: a read's answer is 5 + 2 n (6.3), a write's request 9 + 2 n (6.12). modbus_rtu.h:
+/* 8 bytes, and where it is longer: a read's response is 5 + 2 n (6.3), a write's request 9 + 2 n (6.12). modbus_rtu.h:
  * "what is outside is refused when it is submitted or encoded (..., length 0)". */
 TEST(the_room_of_every_count)
 {
@@ -110,7 +110,7 @@ static const uint8_t three_values[] = {0x01, 0x03, 0x06, 0x00, 0x00, 0x80, 0x00,
 static const uint8_t write_three[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 0x00,
                                       0x00, 0x80, 0x00, 0xFF, 0xFF, 0xCF, 0x9A};
 
-TEST(an_answer_brings_0000_8000_and_FFFF)
+TEST(a_response_brings_0000_8000_and_FFFF)
 {
     ask(READ, 3);
     expect_response(three_values, FATHOM_READY);
@@ -125,10 +125,10 @@ TEST(an_answer_brings_0000_8000_and_FFFF)
 TEST(a_write_of_many_carries_0000_8000_and_FFFF)
 {
     static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
-    static const uint8_t answer[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x00, 0x00};
+    static const uint8_t response[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x00, 0x00};
     fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 3, written);
     expect_encoded_request(write_three, sizeof write_three);
-    expect_response(answer, FATHOM_READY);
+    expect_response(response, FATHOM_READY);
     expect_request(write_three, 2, FATHOM_ERR_EXCEPTION);
     message.values = values;
     expect_request(write_three, 3, FATHOM_READY);
@@ -163,7 +163,7 @@ static void assert_values(unsigned count)
     assert_values_untouched_from(count);
 }
 
-TEST(the_largest_answer_is_255_bytes_and_fits)
+TEST(the_largest_response_is_255_bytes_and_fits)
 {
     static const uint8_t head[] = {0x01, 0x03, 250};
     ask(READ, 125);
@@ -190,7 +190,7 @@ TEST(the_largest_request_is_255_bytes_and_fits)
 }
 
 /* Every first three bytes. A byte count of 0 is a whole frame that answers nothing. */
-TEST(the_length_of_an_answer_for_every_function_and_third_byte)
+TEST(the_length_of_a_response_for_every_function_and_third_byte)
 {
     for (unsigned function = 0; function != 256; function++) {
         for (unsigned third = 0; third != 256; third++) {
@@ -209,10 +209,10 @@ TEST(an_exception_of_any_code_is_kept_as_a_number)
     static const uint8_t functions[] = {READ, WRITE, WRITE_MANY};
     for (unsigned i = 0; i != 3; i++) {
         for (unsigned code = 0; code != 256; code++) {
-            const uint8_t answer[] = {0x01, (uint8_t)(functions[i] | 0x80), (uint8_t)code, 0x00, 0x00};
+            const uint8_t response[] = {0x01, (uint8_t)(functions[i] | 0x80), (uint8_t)code, 0x00, 0x00};
             ask(READ, 3);
             message.head[1] = functions[i];
-            expect_response(answer, FATHOM_ERR_EXCEPTION);
+            expect_response(response, FATHOM_ERR_EXCEPTION);
             assert_int_equal(message.exception, code);
             assert_int_equal(values[0], GUARD16);
         }
@@ -220,18 +220,18 @@ TEST(an_exception_of_any_code_is_kept_as_a_number)
 }
 
 /* modbus_rtu.h: "where one answers, message.head[0] becomes its address". */
-TEST(an_answer_to_any_unit_says_whose_it_is)
+TEST(a_response_to_any_unit_says_whose_it_is)
 {
     for (unsigned unit = 1; unit != 256; unit++) {
-        const uint8_t answer[] = {(uint8_t)unit, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00};
+        const uint8_t response[] = {(uint8_t)unit, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00};
         fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, values);
-        expect_response(answer, FATHOM_READY);
+        expect_response(response, FATHOM_READY);
         assert_int_equal(message.head[0], unit);
         assert_int_equal(values[0], 754);
     }
 }
 
-/* Answers with a right CRC that answer something else. */
+/* Responses with a right CRC that response something else. */
 typedef struct {
     uint8_t function;
     fathom_status_t status;
@@ -267,7 +267,7 @@ static const other_t others[] = {
     {WRITE_MANY, FATHOM_ERR_MALFORMED, {0x01, 0x10, 0x00, 0x20, 0x80, 0x03}},
 };
 
-TEST(an_answer_to_something_else_writes_nothing)
+TEST(a_response_to_something_else_writes_nothing)
 {
     for (unsigned i = 0; i != COUNT_OF(others); i++) {
         set_up(NULL);
@@ -299,7 +299,7 @@ typedef struct {
     uint8_t capacity;
     uint8_t exception;
     uint8_t request[15];
-    uint8_t answer[5];
+    uint8_t response[5];
 } refused_t;
 
 static const refused_t refusals[] = {
@@ -331,7 +331,7 @@ TEST(a_request_that_cannot_be_served_is_refused_by_its_number)
         expect_request(refused->request, refused->capacity, FATHOM_ERR_EXCEPTION);
         assert_int_equal(message.exception, refused->exception);
         assert_values_untouched_from(0);
-        expect_encoded_response(refused->answer, 5);
+        expect_encoded_response(refused->response, 5);
     }
 }
 

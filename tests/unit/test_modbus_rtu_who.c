@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 #include "suite.h"
 
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/modbus_rtu.h"
 
 /* modbus_rtu.h, FATHOM_MODBUS_ANY_UNIT: "where one answers, message.head[0] becomes its address". */
 
-TEST(after_an_answer_to_a_question_to_any_unit_its_address_stands_in_the_head)
+TEST(after_a_response_to_a_request_to_any_unit_its_address_stands_in_the_head)
 {
-    static const uint8_t answer[] = {0x05, 0x03, 0x02, 0x02, 0xF2, 0xC9, 0x61};
+    static const uint8_t response[] = {0x05, 0x03, 0x02, 0x02, 0xF2, 0xC9, 0x61};
     uint16_t value = 0;
     fathom_modbus_message_t message;
     fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, &value);
     assert_int_equal(message.head[0], 255);
-    assert_int_equal(fathom_modbus_rtu_parse_response(&message, answer), FATHOM_READY);
+    assert_int_equal(fathom_modbus_rtu_parse_response(&message, response), FATHOM_READY);
     assert_int_equal(message.head[0], 5);
     assert_int_equal(value, 754);
 }
 
-TEST(after_a_refusal_or_another_answer_it_is_still_a_question_to_any_unit)
+TEST(after_a_refusal_or_another_response_it_is_still_a_request_to_any_unit)
 {
     static const uint8_t exception[] = {0x05, 0x83, 0x02, 0x81, 0x30};
     static const uint8_t two[] = {0x05, 0x03, 0x04, 0x02, 0xF2, 0x02, 0xF2, 0x00, 0x00};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/modbus_setting.h"
+#include "fathom/engine/modbus_setting.h"
 
-/* A device with a setting in register 0x020F, as a driver sees it; the seam plays the device. The id of the write has
+/* A device with a setting in register 0x020F, as a driver sees it; the transport plays the device. The id of the write has
  * the last of the 16 doubts. */
 enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, REGISTER = 0x020F };
 
@@ -12,16 +12,16 @@ static fathom_modbus_setting_t setting;
 
 static const fathom_line_settings_t fast = {57600, FATHOM_PARITY_EVEN, 1};
 
-/* Questions of one register. */
-static const fathom_modbus_question_t look = {&found, REGISTER, 1, 3, 0x81};
-static const fathom_modbus_question_t put = {NULL, REGISTER, NEW, 6, 0xCF};
-static const fathom_modbus_question_t measure = {&found, 0x0100, 1, 3, 1};
-static const fathom_modbus_question_t command = {&found, 0x0101, 1, 3, 0x82};
+/* Requests of one register. */
+static const fathom_modbus_unit_request_t look = {&found, REGISTER, 1, 3, 0x81};
+static const fathom_modbus_unit_request_t put = {NULL, REGISTER, NEW, 6, 0xCF};
+static const fathom_modbus_unit_request_t measure = {&found, 0x0100, 1, 3, 1};
+static const fathom_modbus_unit_request_t command = {&found, 0x0101, 1, 3, 0x82};
 
-static fathom_status_t asks(const fathom_modbus_question_t *question)
+static fathom_status_t asks(const fathom_modbus_unit_request_t *request)
 {
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, question);
+    return fathom_modbus_unit_ask(&unit, request);
 }
 
 static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
@@ -55,7 +55,7 @@ static fathom_status_t set(void)
 }
 
 #define OK            FATHOM_READY
-#define NOBODY        FATHOM_ERR_NO_ANSWER
+#define NOBODY        FATHOM_ERR_NO_RESPONSE
 #define IS(at, value) READ(at, REGISTER, OK, value)
 #define FAILS(at, as) READ(at, REGISTER, as, 2)
 #define PUT(ends)     WRITE(HERE, REGISTER, NEW, ends)
@@ -127,8 +127,8 @@ TEST(what_is_never_sent_ends_it)
 TEST(a_port_that_is_broken_before_the_write_is_asked_is_not_unconfirmed)
 {
     PART(set, IS(HERE, OLD));
-    fake.carrier = FATHOM_ERR_PORT;
-    fathom_status_t status = set(); /* takes the answer */
+    fake.transport = FATHOM_ERR_PORT;
+    fathom_status_t status = set(); /* takes the response */
     if (status == FATHOM_PENDING) status = set();
     assert_int_equal(status, FATHOM_ERR_PORT);
     was_written(false);
@@ -294,11 +294,11 @@ TEST(an_address_is_looked_at_first_and_followed)
 
 TEST(an_address_that_answers_is_in_use)
 {
-    static const fathom_status_t answers[] = {OK, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
-                                              FATHOM_ERR_EXCEPTION};
+    static const fathom_status_t responses[] = {OK, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
+                                                FATHOM_ERR_EXCEPTION};
     setting.address = THERE;
-    for (size_t i = 0; i != COUNT(answers); i++)
-        SETS(FATHOM_ERR_IN_USE, HERE, IS(HERE, OLD), FAILS(THERE, answers[i]));
+    for (size_t i = 0; i != COUNT(responses); i++)
+        SETS(FATHOM_ERR_IN_USE, HERE, IS(HERE, OLD), FAILS(THERE, responses[i]));
 }
 
 SETTING(a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed, THERE, FATHOM_ERR_PORT, HERE,
@@ -317,17 +317,17 @@ static const row_t not_fast = {{HERE, 3, HIGH(REGISTER), LOW(REGISTER), 0, 1}, N
 
 TEST(line_settings_are_followed_without_a_look_at_the_new_ones)
 {
-    setting.settings = &fast;
+    setting.line_settings = &fast;
     SETS(OK, HERE, IS(HERE, OLD), PUT(OK), is_fast);
     assert_int_equal(fake.cancelled_unit, HERE); /* what waits names the settings of before */
-    assert_ptr_equal(unit.settings, &fast);
+    assert_ptr_equal(unit.line_settings, &fast);
 }
 
 TEST(settings_that_take_effect_later_are_read_at_the_old_ones)
 {
-    setting.settings = &fast;
+    setting.line_settings = &fast;
     SETS(OK, HERE, IS(HERE, OLD), PUT(OK), not_fast, IS(HERE, NEW));
-    assert_null(unit.settings);
+    assert_null(unit.line_settings);
 }
 
 /* ---- meanwhile ---- */
@@ -346,7 +346,7 @@ TEST(measurements_rest_and_other_commands_are_refused_meanwhile)
     assert_int_equal(fake.submits, 1);
 }
 
-/* The application asks for the same register as the setting does: the answer is the setting's. */
+/* The application asks for the same register as the setting does: the response is the setting's. */
 TEST(the_outcome_of_a_settings_own_question_is_kept_for_it)
 {
     PART(set, IS(HERE, OLD));
@@ -368,9 +368,9 @@ TEST(a_setting_waits_for_no_command_of_somebody_else)
     SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
 }
 
-TEST(the_same_register_measured_is_another_question)
+TEST(the_same_register_measured_is_another_request)
 {
-    static const fathom_modbus_question_t same = {&found, REGISTER, 1, 3, 2};
+    static const fathom_modbus_unit_request_t same = {&found, REGISTER, 1, 3, 2};
     PENDS(asks(&same));
     PENDS(set());
     desk_says(NEW);
@@ -381,15 +381,15 @@ TEST(the_same_register_measured_is_another_question)
 TEST(what_is_given_up_in_the_middle_leaves_the_driver_where_it_was)
 {
     setting.address = THERE;
-    setting.settings = &fast;
+    setting.line_settings = &fast;
     PART(set, IS(HERE, OLD));
     PENDS(set());
     assert_int_equal(fake.request->message.head[0], THERE);
-    assert_ptr_equal(fake.request->exchange.settings, &fast);
+    assert_ptr_equal(fake.request->transaction.line_settings, &fast);
     fathom_modbus_unit_cancel(&unit);
     assert_null(fake.request);
     assert_int_equal(unit.address, HERE);
-    assert_null(unit.settings);
+    assert_null(unit.line_settings);
     PENDS(asks(&command));
 }
 

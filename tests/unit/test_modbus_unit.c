@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/modbus_unit.h"
+#include "fathom/engine/modbus_unit.h"
 
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, GUARD16 = 0xA5A5 };
 
@@ -8,10 +8,10 @@ static fathom_modbus_unit_t unit;
 static uint16_t values[11];
 static uint16_t wanted[2] = {0x07D0, 0x1234};
 
-/* As drivers use them: one repeated question, and two commands. */
-static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
-static const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x80};
-static const fathom_modbus_question_t details = {values, 0x0003, 11, 3, 0xFF};
+/* As drivers use them: one repeated request, and two commands. */
+static const fathom_modbus_unit_request_t measure = {values, 0x0100, 1, 3, 1};
+static const fathom_modbus_unit_request_t version = {values, 0x0001, 3, 3, 0x80};
+static const fathom_modbus_unit_request_t details = {values, 0x0003, 11, 3, 0xFF};
 
 static void set_up_at(uint32_t now_us)
 {
@@ -35,28 +35,28 @@ static const suite_t suite = {.set_up = set_up};
 
 /* What happens in the order of time. */
 typedef struct {
-    const fathom_modbus_question_t *question; /* is asked; NULL: the carrier does something */
+    const fathom_modbus_unit_request_t *request; /* is asked; NULL: the transport does something */
     uint32_t after_us;
-    /* What comes of it; of the carrier: how it ends the request, or FATHOM_PENDING: it sends it. */
+    /* What comes of it; of the transport: how it ends the request, or FATHOM_PENDING: it sends it. */
     fathom_status_t is;
     uint8_t submits; /* requests so far */
 } step_t;
 
-#define P(us, question, submits)                                                                             \
-    (step_t) { &(question), us, FATHOM_PENDING, submits }
-#define IS(status, us, question, submits)                                                                    \
-    (step_t) { &(question), us, status, submits }
+#define P(us, request, submits)                                                                              \
+    (step_t) { &(request), us, FATHOM_PENDING, submits }
+#define IS(status, us, request, submits)                                                                     \
+    (step_t) { &(request), us, status, submits }
 #define SENT                                                                                                 \
     (step_t) { NULL, 0, FATHOM_PENDING, 0 }
 #define ENDS(status)                                                                                         \
     (step_t) { NULL, 0, status, 0 }
 #define ANSWERED ENDS(FATHOM_READY)
-/* It is asked and on the wire; and the answer has been taken, so long after. */
-#define ON_WIRE(question, submits) P(0, question, submits), SENT, P(0, question, submits)
-#define TAKEN(us, question, submits)                                                                         \
-    ON_WIRE(question, submits), ANSWERED, IS(FATHOM_READY, us, question, submits)
+/* It is asked and on the wire; and the response has been taken, so long after. */
+#define ON_WIRE(request, submits) P(0, request, submits), SENT, P(0, request, submits)
+#define TAKEN(us, request, submits)                                                                          \
+    ON_WIRE(request, submits), ANSWERED, IS(FATHOM_READY, us, request, submits)
 /* It is asked in exactly so long. */
-#define ASKED_IN(us, question, submits) P((us)-1, question, (submits)-1), P(1, question, submits)
+#define ASKED_IN(us, request, submits) P((us)-1, request, (submits)-1), P(1, request, submits)
 
 static const uint16_t three_values[] = {0x1409, 0x1B02, 0x0100};
 
@@ -64,10 +64,10 @@ static void go(const step_t *steps, unsigned count)
 {
     static const uint16_t one_value[] = {754};
     for (const step_t *step = steps; step != steps + count; step++) {
-        if (step->question != NULL) {
+        if (step->request != NULL) {
             fake.now_us += step->after_us;
             const unsigned before = fake.submits;
-            const fathom_modbus_question_t *const asked = step->question;
+            const fathom_modbus_unit_request_t *const asked = step->request;
             fathom_modbus_unit_poll(&unit);
             assert_int_equal(fathom_modbus_unit_ask(&unit, asked), step->is);
             assert_int_equal(fake.submits, step->submits);
@@ -81,7 +81,7 @@ static void go(const step_t *steps, unsigned count)
             fake_modbus_send(&fake);
         } else if (step->is == FATHOM_READY && fake.request->message.head[1] == 3) {
             const uint8_t asked = fake.request->message.head[5];
-            fake_modbus_answer(&fake, asked == 1 ? one_value : three_values, asked);
+            fake_modbus_response(&fake, asked == 1 ? one_value : three_values, asked);
         } else {
             fake_modbus_fail(&fake, step->is);
         }
@@ -96,7 +96,7 @@ static uint32_t due(void) { return fathom_modbus_unit_due_us(&unit); }
 
 /* ---- setting up ---- */
 
-TEST(a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device)
+TEST(a_unit_needs_a_transport_a_clock_and_an_address_of_one_device)
 {
     fathom_modbus_unit_t other;
     fathom_modbus_config_t config = {.address = 1};
@@ -120,52 +120,53 @@ TEST(a_unit_needs_a_carrier_a_clock_and_an_address_of_one_device)
     assert_int_equal(fake.polls + fake.submits, 0);
 }
 
-TEST(the_first_question_goes_out_at_once_just_as_it_was_asked)
+TEST(the_first_request_goes_out_at_once_just_as_it_was_asked)
 {
     assert_int_equal(due(), 0);
     fake.now_us += 1000000;
     assert_int_equal(due(), 0);
     GO(P(0, measure, 1));
-    assert_int_equal(fake.request->exchange.timeout_us, TIMEOUT_US);
-    assert_int_equal(fake.request->exchange.retries, 2);
+    assert_int_equal(fake.request->transaction.timeout_us, TIMEOUT_US);
+    assert_int_equal(fake.request->transaction.retries, 2);
     assert_ptr_equal(fake.request->message.values, values);
 }
 
 TEST(a_command_has_the_time_out_of_commands)
 {
     GO(P(0, version, 1));
-    assert_int_equal(fake.request->exchange.timeout_us, FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US);
+    assert_int_equal(fake.request->transaction.timeout_us, FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US);
 }
 
 /* ---- outcomes ---- */
 
-TEST(an_answer_is_handed_over_once)
+TEST(a_response_is_handed_over_once)
 {
     fake.heard_us = 4711;
     GO(TAKEN(10, measure, 1), P(10, measure, 1), P(10, measure, 1));
     assert_int_equal(values[0], 754);
     assert_int_equal(fathom_modbus_unit_heard_us(&unit), 4711);
-    assert_int_equal(fathom_modbus_unit_answers(&unit), 1);
+    assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
     assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
 }
 
 TEST(every_error_is_handed_over_once_and_the_next_attempt_follows)
 {
-    static const fathom_status_t errors[] = {FATHOM_ERR_NO_ANSWER, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
-                                             FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,     FATHOM_ERR_CANCELLED};
+    static const fathom_status_t errors[] = {FATHOM_ERR_NO_RESPONSE, FATHOM_ERR_CHECKSUM,
+                                             FATHOM_ERR_EXCEPTION,   FATHOM_ERR_MALFORMED,
+                                             FATHOM_ERR_PORT,        FATHOM_ERR_CANCELLED};
     fake.exception = 171;
     for (uint8_t i = 1; i <= COUNT(errors); i++) {
         GO(ON_WIRE(measure, i), ENDS(errors[i - 1]), IS(errors[i - 1], 10, measure, i),
            P(PACE_US - 11, measure, i));
         assert_int_equal(fathom_modbus_unit_failures(&unit), i);
-        assert_int_equal(fathom_modbus_unit_answers(&unit), 0);
+        assert_int_equal(fathom_modbus_unit_responses(&unit), 0);
         assert_int_equal(values[0], GUARD16);
         assert_int_equal(fathom_modbus_unit_exception(&unit), i == 3 ? 171 : 0);
         fake.now_us += 1;
     }
 }
 
-TEST(a_request_that_the_carrier_does_not_take_is_tried_again_each_time)
+TEST(a_request_that_the_transport_does_not_take_is_tried_again_each_time)
 {
     static const fathom_status_t errors[] = {FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY, FATHOM_ERR_BUSY};
     for (unsigned i = 0; i != 3; i++) {
@@ -180,11 +181,11 @@ TEST(a_request_that_the_carrier_does_not_take_is_tried_again_each_time)
 
 TEST(the_counters_stop_at_65535)
 {
-    unit.answers = unit.failures = 65534;
+    unit.responses = unit.failures = 65534;
     for (uint8_t i = 1; i <= 5; i += 2) {
-        GO(TAKEN(PACE_US, measure, i), ON_WIRE(measure, i + 1), ENDS(FATHOM_ERR_NO_ANSWER),
-           IS(FATHOM_ERR_NO_ANSWER, PACE_US, measure, i + 1));
-        assert_int_equal(fathom_modbus_unit_answers(&unit), 65535);
+        GO(TAKEN(PACE_US, measure, i), ON_WIRE(measure, i + 1), ENDS(FATHOM_ERR_NO_RESPONSE),
+           IS(FATHOM_ERR_NO_RESPONSE, PACE_US, measure, i + 1));
+        assert_int_equal(fathom_modbus_unit_responses(&unit), 65535);
         assert_int_equal(fathom_modbus_unit_failures(&unit), 65535);
     }
 }
@@ -211,7 +212,7 @@ STEPS(the_pace_of_the_second_request_counts_from_the_poll_that_found_it_sent, TA
 STEPS(the_pace_counts_from_the_last_attempt, ON_WIRE(measure, 1), P(6 * PACE_US, measure, 1), SENT,
       P(0, measure, 1), ANSWERED, IS(FATHOM_READY, 25000, measure, 1), ASKED_IN(PACE_US - 25000, measure, 2))
 
-STEPS(an_answer_slower_than_the_pace_is_followed_at_once, TAKEN(PACE_US, measure, 1), P(0, measure, 2))
+STEPS(a_response_slower_than_the_pace_is_followed_at_once, TAKEN(PACE_US, measure, 1), P(0, measure, 2))
 
 TEST(the_pace_holds_across_the_wrap_of_the_clock_and_due_tells_it)
 {
@@ -230,14 +231,14 @@ TEST(the_pace_holds_across_the_wrap_of_the_clock_and_due_tells_it)
     }
 }
 
-/* ---- commands beside the repeated question ---- */
+/* ---- commands beside the repeated request ---- */
 
 /* The measurement's outcome is dropped. */
 TEST(a_command_waits_for_a_measurement_and_takes_its_place)
 {
     GO(ON_WIRE(measure, 1), P(10, version, 1), ANSWERED, P(10, version, 1),
        ASKED_IN(PACE_US - 20, version, 2));
-    assert_int_equal(fathom_modbus_unit_answers(&unit), 1);
+    assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
     GO(ANSWERED, IS(FATHOM_READY, 10, version, 2));
     assert_memory_equal(values, three_values, sizeof three_values);
 }
@@ -251,7 +252,7 @@ TEST(a_measurement_waits_until_the_outcome_of_a_command_was_taken)
     }
     assert_memory_equal(values, three_values, sizeof three_values);
     GO(IS(FATHOM_READY, 10, version, 1), P(0, measure, 2));
-    assert_int_equal(fathom_modbus_unit_answers(&unit), 1);
+    assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
 }
 
 STEPS(an_error_of_a_command_waits_for_who_asked_too, ON_WIRE(version, 1), ENDS(FATHOM_ERR_EXCEPTION),
@@ -261,16 +262,16 @@ STEPS(a_second_command_is_told_busy_until_the_first_was_taken, ON_WIRE(version, 
       IS(FATHOM_ERR_BUSY, 10, details, 1), ANSWERED, IS(FATHOM_ERR_BUSY, 10, details, 1),
       IS(FATHOM_ERR_BUSY, PACE_US, details, 1), IS(FATHOM_READY, 10, version, 1), P(10, details, 2))
 
-static const fathom_modbus_question_t at_0000 = {values, 0x0000, 1, 3, 0x7F};
-static const fathom_modbus_question_t at_ffff = {values, 0xFFFF, 1, 3, 0x81};
+static const fathom_modbus_unit_request_t at_0000 = {values, 0x0000, 1, 3, 0x7F};
+static const fathom_modbus_unit_request_t at_ffff = {values, 0xFFFF, 1, 3, 0x81};
 
-STEPS(another_repeated_question_replaces_the_first_when_that_has_ended, ON_WIRE(measure, 1),
+STEPS(another_repeated_request_replaces_the_first_when_that_has_ended, ON_WIRE(measure, 1),
       P(PACE_US, at_0000, 1), ANSWERED, P(PACE_US, at_0000, 2))
 
 STEPS(any_register_can_be_asked_for, ON_WIRE(at_ffff, 1), ANSWERED, P(PACE_US, at_0000, 1),
       IS(FATHOM_READY, 0, at_ffff, 1), P(0, at_0000, 2))
 
-STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_question, TAKEN(1000, measure, 1),
+STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_request, TAKEN(1000, measure, 1),
       P(1000, version, 1), P(PACE_US, measure, 1), /* the pause is over, but a command waits */
       IS(FATHOM_ERR_BUSY, 0, details, 1),          /* another one must not overtake it */
       P(0, version, 2))
@@ -306,7 +307,7 @@ TEST(cancel_gives_up_a_command_that_waits)
 
 /* ---- due ---- */
 
-TEST(it_is_due_when_the_carrier_is_while_it_waits)
+TEST(it_is_due_when_the_transport_is_while_it_waits)
 {
     GO(ON_WIRE(measure, 1));
     fake.due_us = 1234;
@@ -315,7 +316,7 @@ TEST(it_is_due_when_the_carrier_is_while_it_waits)
     assert_true(due() == FATHOM_NO_DEADLINE);
 }
 
-/* Several drivers share a carrier, so that one driver's poll may end another's request. */
+/* Several drivers share a transport, so that one driver's poll may end another's request. */
 TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 {
     GO(ON_WIRE(measure, 1), ANSWERED);
@@ -323,39 +324,39 @@ TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
     assert_int_equal(due(), 0);
 }
 
-/* ---- a broken carrier ---- */
+/* ---- a broken transport ---- */
 
-TEST(a_broken_carrier_is_said_by_every_read_and_nothing_is_asked)
+TEST(a_broken_transport_is_said_by_every_read_and_nothing_is_asked)
 {
-    fake.carrier = FATHOM_ERR_PORT;
+    fake.transport = FATHOM_ERR_PORT;
     GO(IS(FATHOM_ERR_PORT, 0, measure, 0), IS(FATHOM_ERR_PORT, 0, version, 0));
-    fake.carrier = FATHOM_PENDING;
+    fake.transport = FATHOM_PENDING;
     GO(P(0, measure, 1));
 }
 
-TEST(a_command_that_waits_when_the_carrier_breaks_has_ended)
+TEST(a_command_that_waits_when_the_transport_breaks_has_ended)
 {
     GO(ON_WIRE(measure, 1), P(0, version, 1));
-    fake.carrier = FATHOM_ERR_PORT;
+    fake.transport = FATHOM_ERR_PORT;
     GO(IS(FATHOM_ERR_PORT, 0, version, 1));
-    fake.carrier = FATHOM_PENDING;
+    fake.transport = FATHOM_PENDING;
     GO(P(0, details, 1));
 }
 
-TEST(what_was_under_way_when_the_carrier_broke_has_its_own_outcome_first)
+TEST(what_was_under_way_when_the_transport_broke_has_its_own_outcome_first)
 {
     GO(ON_WIRE(measure, 1));
-    fake.carrier = FATHOM_ERR_PORT;
+    fake.transport = FATHOM_ERR_PORT;
     GO(ANSWERED, IS(FATHOM_READY, 0, measure, 1), IS(FATHOM_ERR_PORT, 0, measure, 1));
 }
 
-/* ---- questions about one register that are not the same question: a read, a write, a measurement ---- */
+/* ---- requests about one register that are not the same request: a read, a write, a measurement ---- */
 
 enum { REGISTER = 0x0206 };
-static const fathom_modbus_question_t measurement = {values, REGISTER, 1, 3, 2};
-static const fathom_modbus_question_t reading = {values, REGISTER, 1, 3, 0x82};
-static const fathom_modbus_question_t one_write = {NULL, REGISTER, 0x07D0, 6, 0xC2};
-static const fathom_modbus_question_t two_written = {wanted, REGISTER, 2, 16, 0xC3};
+static const fathom_modbus_unit_request_t measurement = {values, REGISTER, 1, 3, 2};
+static const fathom_modbus_unit_request_t reading = {values, REGISTER, 1, 3, 0x82};
+static const fathom_modbus_unit_request_t one_write = {NULL, REGISTER, 0x07D0, 6, 0xC2};
+static const fathom_modbus_unit_request_t two_written = {wanted, REGISTER, 2, 16, 0xC3};
 
 /* The read does not take the outcome of the write. */
 STEPS(while_a_register_is_written_a_read_is_told_busy_and_a_measurement_waits, P(0, one_write, 1),

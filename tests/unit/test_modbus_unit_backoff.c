@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/modbus_unit.h"
+#include "fathom/engine/modbus_unit.h"
 
 /* A unit that does not answer is asked less and less often. */
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000 };
@@ -8,8 +8,8 @@ enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000 };
 static fathom_modbus_unit_t unit;
 static uint16_t values[3];
 
-static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
-static const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x81};
+static const fathom_modbus_unit_request_t measure = {values, 0x0100, 1, 3, 1};
+static const fathom_modbus_unit_request_t version = {values, 0x0001, 3, 3, 0x81};
 
 static void set_up_at(uint32_t now_us)
 {
@@ -29,11 +29,11 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static fathom_status_t read_after(uint32_t us, const fathom_modbus_question_t *question)
+static fathom_status_t read_after(uint32_t us, const fathom_modbus_unit_request_t *request)
 {
     fake.now_us += us;
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, question);
+    return fathom_modbus_unit_ask(&unit, request);
 }
 
 /* Nothing is asked for `us` - 1, and at `us` it is; until then due says how long that is. */
@@ -53,24 +53,24 @@ static void assert_paused_for(uint32_t us)
 }
 
 /* The request under way leaves, and ends so after the time-out. */
-static void end_with(const fathom_modbus_question_t *question, fathom_status_t status)
+static void end_with(const fathom_modbus_unit_request_t *request, fathom_status_t status)
 {
     static const uint16_t says[3];
     fake_modbus_send(&fake);
-    PENDS(read_after(0, question));
+    PENDS(read_after(0, request));
     if (status == FATHOM_READY)
-        fake_modbus_answer(&fake, says, (uint8_t)question->last);
+        fake_modbus_response(&fake, says, (uint8_t)request->last);
     else
         fake_modbus_fail(&fake, status);
-    assert_int_equal(read_after(question == &measure ? unit.timeout_us : 1000000, question), status);
+    assert_int_equal(read_after(request == &measure ? unit.timeout_us : 1000000, request), status);
 }
 
-static void silence(void) { end_with(&measure, FATHOM_ERR_NO_ANSWER); }
+static void silence(void) { end_with(&measure, FATHOM_ERR_NO_RESPONSE); }
 
 static void ask_first(void) { assert_paused_for(0); }
 
 /* So many silences in a row, with these pauses after them, the last of which goes on. */
-static void silences(unsigned count, const uint32_t *pauses_us, unsigned known)
+static void timeouts_in_row(unsigned count, const uint32_t *pauses_us, unsigned known)
 {
     ask_first();
     for (unsigned n = 0; n != count; n++) {
@@ -84,13 +84,13 @@ static const uint32_t time_outs_us[] = {0, 0, 300000, 600000, 1200000, 2400000, 
 /* All but the last one's pause. */
 static void silent_for(unsigned count)
 {
-    silences(count - 1, time_outs_us, COUNT(time_outs_us));
+    timeouts_in_row(count - 1, time_outs_us, COUNT(time_outs_us));
     silence();
 }
 
 TEST(the_third_silence_pauses_one_time_out_and_the_next_twice_as_much_up_to_16)
 {
-    silences(57, time_outs_us, COUNT(time_outs_us));
+    timeouts_in_row(57, time_outs_us, COUNT(time_outs_us));
 }
 
 /* A pause is at least the pace, which counts from the request, a time-out before. a05_modbus.h: a cap of less than the
@@ -106,7 +106,7 @@ static void pauses_as_in(void **state)
     unit.timeout_us = cap->timeout_us;
     unit.backoff_us = cap->backoff_us;
     unit.pace_us = cap->pace_us;
-    silences(8, cap->pauses_us, 6);
+    timeouts_in_row(8, cap->pauses_us, 6);
 }
 
 #define CAP(promise, timeout_us, backoff_us, pace_us, ...)                                                   \
@@ -129,7 +129,7 @@ TEST(the_first_thing_that_it_says_ends_that)
     for (unsigned i = 0; i != COUNT(said); i++)
         for (unsigned before = 1; before != 8; before++) {
             set_up(state);
-            silences(before, time_outs_us, COUNT(time_outs_us));
+            timeouts_in_row(before, time_outs_us, COUNT(time_outs_us));
             end_with(&measure, said[i]);
             assert_paused_for(0);
             silence(); /* and the count begins anew */
@@ -168,7 +168,7 @@ TEST(a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits)
     assert_paused_for(8 * TIMEOUT_US);
     fake_modbus_send(&fake);
     PENDS(read_after(0, &version)); /* the measurement is on the wire */
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
+    fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
     (void)read_after(TIMEOUT_US, &version);
     (void)read_after(PACE_US, &version);
     fake_modbus_assert_asked(&fake, 8, UNIT, 0x0001, 3);
@@ -196,7 +196,7 @@ TEST(a_command_that_nobody_answers_counts_too)
     silent_for(2);
     PENDS(read_after(0, &version));
     fake_modbus_assert_asked(&fake, 3, UNIT, 0x0001, 3);
-    end_with(&version, FATHOM_ERR_NO_ANSWER);
+    end_with(&version, FATHOM_ERR_NO_RESPONSE);
     assert_paused_for(1000000); /* its own time-out */
 }
 

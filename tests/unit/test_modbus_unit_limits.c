@@ -4,7 +4,7 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/modbus_unit.h"
+#include "fathom/engine/modbus_unit.h"
 
 /* modbus_unit.h: memory that is not zero, the longest back-off, and power-on. */
 enum { UNIT = 9 };
@@ -12,8 +12,8 @@ enum { UNIT = 9 };
 static fake_modbus_t fake;
 static fathom_modbus_unit_t unit;
 static uint16_t values[1];
-static const uint16_t answer[1] = {754};
-static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
+static const uint16_t response[1] = {754};
+static const fathom_modbus_unit_request_t measure = {values, 0x0100, 1, 3, 1};
 
 static void set_up_on(uint8_t fill)
 {
@@ -42,8 +42,8 @@ static fathom_status_t ask_after(uint32_t us)
 
 static void silence(void)
 {
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER);
-    assert_int_equal(ask_after(unit.timeout_us), FATHOM_ERR_NO_ANSWER);
+    fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(ask_after(unit.timeout_us), FATHOM_ERR_NO_RESPONSE);
 }
 
 TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
@@ -51,16 +51,16 @@ TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
     static const uint8_t fills[] = {0xA5, 0xFF};
     for (unsigned i = 0; i != sizeof fills; i++) {
         set_up_on(fills[i]);
-        assert_int_equal(fathom_modbus_unit_answers(&unit), 0);
+        assert_int_equal(fathom_modbus_unit_responses(&unit), 0);
         assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
         assert_int_equal(unit.address, UNIT);
         assert_int_equal(fathom_modbus_unit_exception(&unit), 0);
-        assert_null(unit.settings);
+        assert_null(unit.line_settings);
         assert_false(fathom_modbus_unit_is_warming_up(&unit));
         assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
         assert_int_equal(ask_after(0), FATHOM_PENDING);
         assert_int_equal(fake.submits, 1);
-        assert_null(fake.request->exchange.settings);
+        assert_null(fake.request->transaction.line_settings);
         for (unsigned n = 0; n != 2; n++) { /* the third is the first after which it is left alone */
             silence();
             assert_int_equal(ask_after(0), FATHOM_PENDING);
@@ -72,14 +72,15 @@ TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
 /* "backoff_us ... 0: 16 time-outs; up to 2^31": 16 of 2^28 would be 2^32. Half of that is the longest. */
 TEST(without_a_cap_the_longest_back_off_is_2_to_the_31)
 {
-    static const uint32_t alone_us[] = {0, 0, 0x10000000, 0x20000000, 0x40000000, 0x80000000, 0x80000000};
+    static const uint32_t backoff_left_us[] = {0,          0,          0x10000000, 0x20000000,
+                                               0x40000000, 0x80000000, 0x80000000};
     unit.timeout_us = 0x10000000;
-    for (unsigned n = 0; n != sizeof alone_us / sizeof *alone_us; n++) {
+    for (unsigned n = 0; n != sizeof backoff_left_us / sizeof *backoff_left_us; n++) {
         assert_int_equal(ask_after(0), FATHOM_PENDING);
         assert_int_equal(fake.submits, n + 1);
         silence();
-        assert_int_equal(fathom_modbus_unit_due_us(&unit), alone_us[n]);
-        fake.now_us += alone_us[n];
+        assert_int_equal(fathom_modbus_unit_due_us(&unit), backoff_left_us[n]);
+        fake.now_us += backoff_left_us[n];
     }
 }
 
@@ -127,6 +128,6 @@ TEST(after_power_on_three_silences_in_a_row_are_needed_again)
     assert_int_equal(fake.submits, 6);
     assert_int_equal(ask_after(100000), FATHOM_PENDING);
     assert_int_equal(fake.submits, 7);
-    fake_modbus_answer(&fake, answer, 1);
+    fake_modbus_response(&fake, response, 1);
     assert_int_equal(ask_after(0), FATHOM_READY);
 }

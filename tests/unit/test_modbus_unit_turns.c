@@ -4,7 +4,7 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/modbus_unit.h"
+#include "fathom/engine/modbus_unit.h"
 
 /* modbus_unit.h: whose turn it is, and when, where requests are cancelled, wait behind others, or the port breaks. */
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, WRITE = FATHOM_MODBUS_WRITE_SINGLE_REGISTER };
@@ -12,14 +12,14 @@ enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, WRITE = FATHOM_MODBUS_WR
 static fake_modbus_t fake;
 static fathom_modbus_unit_t unit;
 static uint16_t values[3];
-static const uint16_t answer[3] = {1, 2, 3};
+static const uint16_t response[3] = {1, 2, 3};
 
-static const fathom_modbus_question_t measure = {values, 0x0100, 1, 3, 1};
-static const fathom_modbus_question_t version = {values, 0x0001, 3, 3, 0x81};
-static const fathom_modbus_question_t read_200 = {values, 0x0200, 1, 3, 0xA0};
-static const fathom_modbus_question_t read_100 = {values, 0x0100, 1, 3, 0x90};
-static const fathom_modbus_question_t write_200 = {NULL, 0x0200, 1, WRITE, 0xE0};
-static const fathom_modbus_question_t write_201 = {NULL, 0x0201, 1, WRITE, 0xE1};
+static const fathom_modbus_unit_request_t measure = {values, 0x0100, 1, 3, 1};
+static const fathom_modbus_unit_request_t version = {values, 0x0001, 3, 3, 0x81};
+static const fathom_modbus_unit_request_t read_200 = {values, 0x0200, 1, 3, 0xA0};
+static const fathom_modbus_unit_request_t read_100 = {values, 0x0100, 1, 3, 0x90};
+static const fathom_modbus_unit_request_t write_200 = {NULL, 0x0200, 1, WRITE, 0xE0};
+static const fathom_modbus_unit_request_t write_201 = {NULL, 0x0201, 1, WRITE, 0xE1};
 
 static int set_up(void **state)
 {
@@ -34,41 +34,41 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static fathom_status_t ask_after(uint32_t us, const fathom_modbus_question_t *question)
+static fathom_status_t ask_after(uint32_t us, const fathom_modbus_unit_request_t *request)
 {
     fake.now_us += us;
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, question);
+    return fathom_modbus_unit_ask(&unit, request);
 }
 
-static void pending_after(uint32_t us, const fathom_modbus_question_t *question)
+static void pending_after(uint32_t us, const fathom_modbus_unit_request_t *request)
 {
-    assert_int_equal(ask_after(us, question), FATHOM_PENDING);
+    assert_int_equal(ask_after(us, request), FATHOM_PENDING);
 }
 
-static void ask_and_send(const fathom_modbus_question_t *question)
+static void ask_and_send(const fathom_modbus_unit_request_t *request)
 {
     const unsigned before = fake.submits;
-    pending_after(0, question);
+    pending_after(0, request);
     assert_int_equal(fake.submits, before + 1);
     fake_modbus_send(&fake);
-    pending_after(0, question);
+    pending_after(0, request);
 }
 
-/* Is the question asked after the time, and not one microsecond sooner? */
-static void asked_after(uint32_t us, const fathom_modbus_question_t *question)
+/* Is the request asked after the time, and not one microsecond sooner? */
+static void asked_after(uint32_t us, const fathom_modbus_unit_request_t *request)
 {
     const unsigned before = fake.submits;
-    pending_after(us - 1, question);
+    pending_after(us - 1, request);
     assert_int_equal(fake.submits, before);
-    pending_after(1, question);
+    pending_after(1, request);
     assert_int_equal(fake.submits, before + 1);
 }
 
 /* ---- the pace: "from this request to the next one to the unit, at least" ---- */
 
 /* It has not left, so nothing was counted down; another driver's requests may hold it for long. */
-TEST(the_pace_begins_when_a_question_ends_that_was_never_sent)
+TEST(the_pace_begins_when_a_request_ends_that_was_never_sent)
 {
     pending_after(0, &measure);
     for (unsigned n = 0; n != 10; n++) pending_after(PACE_US, &measure);
@@ -77,7 +77,7 @@ TEST(the_pace_begins_when_a_question_ends_that_was_never_sent)
 }
 
 /* Settings that the port cannot do, or a port that breaks, end a request before it is sent. */
-TEST(a_question_that_the_line_ends_unsent_is_not_asked_again_before_its_pace)
+TEST(a_request_that_the_line_ends_unsent_is_not_asked_again_before_its_pace)
 {
     static const fathom_status_t ends[] = {FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_PORT};
     for (unsigned i = 0; i != 2; i++) {
@@ -90,7 +90,7 @@ TEST(a_question_that_the_line_ends_unsent_is_not_asked_again_before_its_pace)
 }
 
 /* The request leaves within the poll of another user of the line; its unit hears of that by being cancelled. */
-TEST(a_cancelled_question_does_not_begin_its_pace_anew_at_the_next_call)
+TEST(a_cancelled_request_does_not_begin_its_pace_anew_at_the_next_call)
 {
     pending_after(0, &measure);
     fake_modbus_send(&fake);
@@ -99,18 +99,18 @@ TEST(a_cancelled_question_does_not_begin_its_pace_anew_at_the_next_call)
     asked_after(PACE_US, &measure);
 }
 
-/* ---- commands and the repeated question ---- */
+/* ---- commands and the repeated request ---- */
 
-/* "A command waits for nothing but another command and for what is on its way; the repeated question lets commands
+/* "A command waits for nothing but another command and for what is on its way; the repeated request lets commands
  * pass": whatever its register is. */
-TEST(the_repeated_question_lets_every_command_pass_that_waits)
+TEST(the_repeated_request_lets_every_command_pass_that_waits)
 {
-    static const fathom_modbus_question_t *const commands[] = {&version, &read_200, &write_200};
+    static const fathom_modbus_unit_request_t *const commands[] = {&version, &read_200, &write_200};
     for (unsigned i = 0; i != 3; i++) {
         set_up(state);
         ask_and_send(&measure);
         pending_after(0, commands[i]);
-        fake_modbus_answer(&fake, answer, 1);
+        fake_modbus_response(&fake, response, 1);
         assert_int_equal(ask_after(PACE_US, &measure), FATHOM_READY);
         pending_after(0, &measure);
         assert_int_equal(fake.submits, 1);
@@ -138,11 +138,11 @@ TEST(writes_of_neighbouring_registers_are_two_commands)
     assert_int_equal(fake.submits, 2);
 }
 
-/* An outcome of the repeated question may be replaced by a newer one: once it has given way it is not handed over. */
+/* An outcome of the repeated request may be replaced by a newer one: once it has given way it is not handed over. */
 TEST(an_outcome_that_gave_way_to_a_command_is_not_handed_over)
 {
     ask_and_send(&measure);
-    fake_modbus_answer(&fake, answer, 1);
+    fake_modbus_response(&fake, response, 1);
     pending_after(0, &version); /* within the pace */
     pending_after(0, &measure);
     assert_int_equal(fake.submits, 1);
@@ -154,7 +154,7 @@ TEST(an_outcome_that_gave_way_to_a_command_is_not_handed_over)
 TEST(the_outcome_of_a_command_is_due_at_once_within_the_pace)
 {
     ask_and_send(&version);
-    fake_modbus_answer(&fake, answer, 3);
+    fake_modbus_response(&fake, response, 3);
     pending_after(0, &measure); /* in which the command ends */
     assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
 }
@@ -164,7 +164,7 @@ TEST(the_outcome_of_a_command_is_due_at_once_within_the_pace)
 static void break_port(void)
 {
     fake_modbus_fail(&fake, FATHOM_ERR_PORT);
-    fake.carrier = FATHOM_ERR_PORT;
+    fake.transport = FATHOM_ERR_PORT;
 }
 
 TEST(a_waiting_command_that_was_told_of_a_broken_port_keeps_no_turn)
@@ -173,7 +173,7 @@ TEST(a_waiting_command_that_was_told_of_a_broken_port_keeps_no_turn)
     pending_after(0, &version);
     break_port();
     assert_int_equal(ask_after(0, &version), FATHOM_ERR_PORT);
-    fake.carrier = FATHOM_PENDING;
+    fake.transport = FATHOM_PENDING;
     assert_int_equal(ask_after(PACE_US, &measure), FATHOM_ERR_PORT); /* its own outcome */
     pending_after(0, &measure);
     assert_int_equal(fake.submits, 2);
@@ -187,7 +187,7 @@ TEST(a_waiting_command_keeps_its_turn_when_another_question_is_told_of_a_broken_
     assert_int_equal(ask_after(0, &measure), FATHOM_ERR_PORT); /* its own outcome */
     assert_int_equal(ask_after(0, &measure), FATHOM_ERR_PORT);
     assert_int_equal(ask_after(0, &read_200), FATHOM_ERR_PORT);
-    fake.carrier = FATHOM_PENDING;
+    fake.transport = FATHOM_PENDING;
     pending_after(PACE_US, &measure);
     assert_int_equal(ask_after(0, &read_200), FATHOM_ERR_BUSY);
     assert_int_equal(fake.submits, 1);

@@ -7,7 +7,7 @@ static const suite_t suite = {.set_up = set_up_meter};
 
 TEST(a_pulse_is_a_target_with_its_width_and_end)
 {
-    answer_with(110 * MS, 10 * MS); /* A16 1(4) */
+    response_with(110 * MS, 10 * MS); /* A16 1(4) */
     run_to_trigger();
     const uint32_t edge_us = stand.fake.now_us;
     run_meter(119900);
@@ -18,7 +18,7 @@ TEST(a_pulse_is_a_target_with_its_width_and_end)
     assert_int_equal(stand.last.time_us, edge_us + 120 * MS);
     run_meter(100 * MS);
     expect_readings(1);
-    expect_no_answers(0);
+    expect_no_responses(0);
 }
 
 /* A pulse of this width is one reading of this kind; 0: noise. */
@@ -27,7 +27,7 @@ static void expect_kind(uint32_t width_us, uint8_t kind)
     measure(110 * MS, width_us);
     expect_readings(kind != 0);
     assert_int_equal(stand.meter.noises, kind == 0);
-    expect_no_answers(kind == 0);
+    expect_no_responses(kind == 0);
     if (kind != 0) expect_last(kind, width_us);
 }
 
@@ -65,7 +65,7 @@ TEST(a_pulse_anywhere_after_the_trigger_counts)
         measure(after_us[i], 3000);
         expect_readings(1);
         expect_last(FATHOM_TARGET, 3000);
-        expect_no_answers(0);
+        expect_no_responses(0);
     }
 }
 
@@ -109,19 +109,19 @@ TEST(a_pulse_that_began_before_the_trigger_does_not_count)
     run_to_trigger();
     run_meter(222 * MS);
     expect_readings(0);
-    expect_no_answers(1);
+    expect_no_responses(1);
 }
 
-TEST(no_pulse_at_all_is_no_answer_when_the_cycle_is_over_and_it_tries_again)
+TEST(no_pulse_at_all_is_no_response_when_the_cycle_is_over_and_it_tries_again)
 {
     run_to_trigger();
     run_meter(220900);
-    expect_no_answers(0);
+    expect_no_responses(0);
     stand.fake.now_us += 100;
-    expect_poll(FATHOM_ERR_NO_ANSWER);
+    expect_poll(FATHOM_ERR_NO_RESPONSE);
     expect_falls(2); /* at once */
     run_meter(10 * 221 * MS);
-    expect_no_answers(11);
+    expect_no_responses(11);
     expect_readings(0);
     pulse_in(110 * MS, 10 * MS);
     run_meter(222 * MS);
@@ -142,7 +142,7 @@ TEST(a_line_that_is_high_when_the_cycle_is_over_is_a_fault)
     stand.pin.stuck_high = false;
     run_meter(221 * MS);
     expect_readings(2);
-    expect_no_answers(1);
+    expect_no_responses(1);
 }
 
 TEST(a_pulse_that_never_ends_is_a_fault_when_the_cycle_is_over)

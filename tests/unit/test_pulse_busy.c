@@ -90,7 +90,7 @@ TEST(no_cycle_begins_before_the_trigger_has_risen)
     poll_after(2 * MS);
     assert_int_equal(stand.pin.arms, 1);
     is_busy_for(500 * MS);
-    assert_int_equal(poll_after(221 * MS), FATHOM_ERR_NO_ANSWER);
+    assert_int_equal(poll_after(221 * MS), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(poll_after(1 * MS), FATHOM_PENDING);
     assert_int_equal(stand.pin.arms, 1);
     assert_int_equal(stand.fake.breaks, 1);
@@ -135,7 +135,7 @@ TEST_IN(with_pin, without_a_pulse_the_next_cycle_begins_221_ms_after_the_last)
         /* 2 ms of it have passed */
         assert_int_equal(poll_after((i == 3 ? 219001u : 219000u) - 1), FATHOM_PENDING);
         assert_int_equal(stand.pin.falls, 1);
-        assert_int_equal(poll_after(1), FATHOM_ERR_NO_ANSWER);
+        assert_int_equal(poll_after(1), FATHOM_ERR_NO_RESPONSE);
         assert_int_equal(stand.pin.falls, 2);
     }
 }

@@ -46,7 +46,7 @@ TEST(the_low_time_is_an_option)
 /* "This cycle period of the module must be greater than 220ms" (A16 1(2)) */
 TEST(a_cycle_is_221_ms_from_edge_to_edge)
 {
-    answer_with(110 * MS, 10 * MS);
+    response_with(110 * MS, 10 * MS);
     run_to_trigger();
     run_meter(220900);
     expect_falls(1);
@@ -86,13 +86,13 @@ TEST(the_cycle_counts_from_a_look_at_the_clock_after_the_edge)
 
 TEST(a_loop_of_300_ms_leaves_the_pin_high_for_2_ms_before_the_next_edge)
 {
-    answer_with(110 * MS, 10 * MS);
+    response_with(110 * MS, 10 * MS);
     run_meter_in_steps(12000 * MS, 300 * MS);
     assert_true(stand.pin.falls >= 15);
     assert_int_equal(stand.pin.least_high_us, 300 * MS);
-    expect_no_answers(0);
+    expect_no_responses(0);
     start_meter();
-    answer_with(110 * MS, 10 * MS);
+    response_with(110 * MS, 10 * MS);
     for (unsigned i = 0; i != 100; i++) { /* in turn 300 ms and 500 us */
         poll_after(i % 2 != 0 ? 300 * MS : 500);
     }
@@ -114,9 +114,9 @@ TEST(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wra
     for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
         for (unsigned n = 0; n != COUNT_OF(starts_us); n++) {
             start_meter_at(starts_us[n]);
-            stand.pin.answer_after_us = 110 * MS;
+            stand.pin.response_after_us = 110 * MS;
             for (uint32_t cycle = 1; cycle <= 5; cycle++) {
-                stand.pin.answer_width_us = 3000 + cycle * 1000;
+                stand.pin.response_width_us = 3000 + cycle * 1000;
                 while (stand.readings != cycle) {
                     assert_true(stand.fake.now_us - starts_us[n] < cycle * 900 * MS);
                     run_meter_in_steps(steps_us[s], steps_us[s]);
@@ -125,7 +125,7 @@ TEST(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wra
                 assert_int_equal(stand.last.time_us,
                                  stand.pin.pulses[cycle - 1].rise_us + stand.last.width_us);
             }
-            expect_no_answers(0);
+            expect_no_responses(0);
             assert_true(stand.pin.least_us >= 221 * MS);
         }
     }
@@ -139,7 +139,7 @@ TEST(what_is_over_stays_over_however_late_the_poll)
         run_to_trigger();
         stand.fake.now_us += late_us[i];
         expect_due(0);
-        expect_poll(FATHOM_ERR_NO_ANSWER);
+        expect_poll(FATHOM_ERR_NO_RESPONSE);
         poll_after(3 * MS);
         expect_falls(2);
     }
@@ -147,12 +147,12 @@ TEST(what_is_over_stays_over_however_late_the_poll)
 
 TEST(who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle)
 {
-    answer_with(110 * MS, 10 * MS);
+    response_with(110 * MS, 10 * MS);
     for (unsigned polls = 0; polls != 31; polls++) { /* trigger, release and end of ten cycles */
         poll_after(fathom_pulse_due_us(&stand.meter));
     }
-    assert_int_equal(stand.readings + stand.no_answers, 15);
-    expect_no_answers(0);
+    assert_int_equal(stand.readings + stand.no_responses, 15);
+    expect_no_responses(0);
 }
 
 /* A module that answers at once. */
@@ -160,7 +160,7 @@ TEST(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept)
 {
     stand.config.low_us = 30 * MS;
     start_meter();
-    answer_with(500, 3000);
+    response_with(500, 3000);
     run_meter(2000 * MS);
     expect_falls(9); /* 30 ms, 8 * 221 ms */
     expect_readings(9);
@@ -210,11 +210,11 @@ static void expect_every_trigger_answered(void)
         start_meter_at(starts_us[i / 2]);
         stand.fake.uart.set_break = set_break;
         stand.fake.busy_until_us = stand.fake.now_us + 5 * MS; /* a break cannot begin yet */
-        answer_with(0, 10 * MS);
+        response_with(0, 10 * MS);
         run_meter_in_steps(2100 * MS, loops_us[i % 2]);
         assert_in_range(stand.readings, 8, 10); /* cycles of 221 to 240 ms */
         expect_readings(stand.pin.falls + stand.fake.breaks);
-        expect_no_answers(0);
+        expect_no_responses(0);
         assert_int_equal(stand.port_errors, 0); /* a busy port is none */
         expect_last(FATHOM_TARGET, 10 * MS);
     }
@@ -222,7 +222,7 @@ static void expect_every_trigger_answered(void)
 
 TEST(a_pulse_that_begins_with_the_edge_counts) { expect_every_trigger_answered(); }
 
-static int break_and_answer(void *ctx, bool on)
+static int break_and_response(void *ctx, bool on)
 {
     fake_t *const fake = ctx;
     if (on && (int32_t)(fake->now_us - fake->busy_until_us) < 0) return 0;
@@ -235,7 +235,7 @@ static int break_and_answer(void *ctx, bool on)
 TEST(a_pulse_that_begins_with_a_break_counts)
 {
     trigger_by_break();
-    stand.fake.uart.set_break = break_and_answer;
+    stand.fake.uart.set_break = break_and_response;
     expect_every_trigger_answered();
 }
 

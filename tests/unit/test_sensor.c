@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "drivers.h"
+#include "fathom/engine/wait.h"
 #include "fathom/hal.h"
-#include "fathom/wait.h"
 
 /* A driver that is pending some times and then says what it has, and what it was told to be due in. */
 typedef struct {
@@ -50,7 +50,7 @@ static void idle(void *ctx, uint32_t max_us)
 /* ---- fathom_poll and fathom_due_us ---- */
 
 static const fathom_status_t all[] = {FATHOM_READY,           FATHOM_PENDING,         FATHOM_ERR_ARGUMENT,
-                                      FATHOM_ERR_PORT,        FATHOM_ERR_NO_ANSWER,   FATHOM_ERR_CHECKSUM,
+                                      FATHOM_ERR_PORT,        FATHOM_ERR_NO_RESPONSE, FATHOM_ERR_CHECKSUM,
                                       FATHOM_ERR_EXCEPTION,   FATHOM_ERR_MALFORMED,   FATHOM_ERR_STALE,
                                       FATHOM_ERR_CANCELLED,   FATHOM_ERR_BUSY,        FATHOM_ERR_CAPACITY,
                                       FATHOM_ERR_ECHO,        FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_WARMING_UP,
@@ -116,7 +116,7 @@ TEST(a_count_down_stops_at_0)
     static const uint32_t rows[][3] = {{10, 0, 10}, {10, 9, 1}, {1, 1, 0}, {0, 0, 0}, {3, UINT32_MAX, 0}};
     for (unsigned i = 0; i != COUNT(rows); i++) {
         uint32_t left_us = rows[i][0];
-        assert_int_equal(fathom_run_down(&left_us, rows[i][1]), rows[i][2] == 0);
+        assert_int_equal(fathom_count_down(&left_us, rows[i][1]), rows[i][2] == 0);
         assert_int_equal(left_us, rows[i][2]);
     }
 }

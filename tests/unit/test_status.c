@@ -16,7 +16,7 @@ static const char *name_in_the_header(fathom_status_t status)
         return "PENDING";
         ERROR_NAMED(ARGUMENT);
         ERROR_NAMED(PORT);
-        ERROR_NAMED(NO_ANSWER);
+        ERROR_NAMED(NO_RESPONSE);
         ERROR_NAMED(CHECKSUM);
         ERROR_NAMED(EXCEPTION);
         ERROR_NAMED(MALFORMED);
@@ -44,5 +44,5 @@ TEST(each_status_has_its_name_and_any_other_number_a_question_mark)
         named += name[0] != '?';
     }
     assert_int_equal(named, 18);
-    assert_string_equal(fathom_status_name(FATHOM_ERR_NO_ANSWER), "NO_ANSWER");
+    assert_string_equal(fathom_status_name(FATHOM_ERR_NO_RESPONSE), "NO_RESPONSE");
 }

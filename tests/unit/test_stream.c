@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/stream.h"
+#include "fathom/engine/stream.h"
 #include "hex.h"
 
 static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};                                  /* A16 2(4) */

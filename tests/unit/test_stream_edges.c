@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/stream.h"
+#include "fathom/engine/stream.h"
 
 /* stream.h: what ends a frame, and how one that is not believed is counted. */
 

@@ -2,9 +2,9 @@
 #include "line_bench.h"
 
 #include "fake_modbus.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/a16_settings.h"
+#include "fathom/sensor/a05_dyp.h"
+#include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a16_settings.h"
 
 /* config.modbus.retries is for reading alone: what is written goes out once, whatever becomes of it. Flash wears, and every
  * A05 on the line obeys 55 AA 03. */
@@ -34,7 +34,7 @@ static uint8_t asked(fathom_status_t (*set)(void), uint8_t retries_by_function[7
     assert_non_null(fake.request);
     const uint8_t function = fake.request->message.head[1];
     assert_true(function == 3 || function == 6);
-    retries_by_function[function] = fake.request->exchange.retries;
+    retries_by_function[function] = fake.request->transaction.retries;
     return function;
 }
 
@@ -56,9 +56,9 @@ TEST(over_modbus_reads_are_repeated_and_writes_are_not)
         assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
         for (unsigned asks = 0; asks != 3 && asked(settings[i], retries) == 3; asks++) {
             if (fake.request->message.head[0] == 1)
-                fake_modbus_answer(&fake, one, 1);
+                fake_modbus_response(&fake, one, 1);
             else
-                fake_modbus_fail(&fake, FATHOM_ERR_NO_ANSWER); /* nobody at the new address */
+                fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE); /* nobody at the new address */
         }
         assert_int_equal(retries[3], RETRIES);
         assert_int_equal(retries[6], 0);
@@ -79,7 +79,7 @@ static unsigned sent(uint8_t address, uint8_t command)
     return n;
 }
 
-TEST(over_55_aa_questions_are_repeated_and_the_command_to_all_is_not)
+TEST(over_55_aa_requests_are_repeated_and_the_command_to_all_is_not)
 {
     static fathom_a05_dyp_t dyp;
     const fathom_modbus_t transport = fathom_dyp_client(&bench.line);

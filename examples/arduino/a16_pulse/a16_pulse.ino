@@ -45,7 +45,7 @@ void loop()
     } else if (status == FATHOM_READY) {
         Serial.println(F("stuck line"));
     } else if (status < 0) {
-        Serial.print(F("error ")); // -3 is "no answer"; status.h has them all
+        Serial.print(F("error ")); // -3 is "no response"; status.h has them all
         Serial.println(status);
     }
     // Other work goes here: fathom_poll never waits.

@@ -65,7 +65,7 @@ void loop()
     } else if (status < 0) {
         digitalWrite(LED_BUILTIN, digitalRead(LED_BUILTIN) == HIGH ? LOW : HIGH);
 #ifdef PRINT_TO
-        PRINT_TO.print(F("error ")); // -3 is "no answer"; status.h has them all
+        PRINT_TO.print(F("error ")); // -3 is "no response"; status.h has them all
         PRINT_TO.println(static_cast<long>(status));
 #endif
     }

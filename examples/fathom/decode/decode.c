@@ -4,9 +4,9 @@
 
 #include "commands.h"
 #include "decode/decode_print.h"
-#include "fathom/crc16.h"
-#include "fathom/dyp_frame.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "shared/options.h"
 
 static const char command[] = "decode";
@@ -41,7 +41,7 @@ static void help(FILE *to)
         "  --sensor NAME     only this one: a16, a05 or hps167s; default all that the frame fits\n"
         "  --format NAME     text (default) or json, an object a line\n"
         "  --raw             FILE has the bytes themselves\n\n"
-        "An answer that follows its request is explained by it; alone, by all that it can be. A frame may "
+        "A response that follows its request is explained by it; alone, by all that it can be. A frame may "
         "go\n"
         "across lines, but where there is doubt one begins with a line. A sum of 8 bits proves little: what\n"
         "begins in the middle of a stream may be read a byte or more out of step.\n\n"
@@ -109,15 +109,16 @@ static void guess(const decode_input_t *input, const decode_piece_t *piece, uint
                                             bytes[1] == FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS);
     why[0] = '\0';
     if ((allowed & DECODE_MODBUS) != 0 && has_function) {
-        const uint8_t answer = fathom_modbus_rtu_response_length(bytes, have);
+        const uint8_t response = fathom_modbus_rtu_response_length(bytes, have);
         const uint8_t request = fathom_modbus_rtu_request_length(bytes, have);
         const bool is_known = bytes[1] != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS || have > 6;
-        if (answer > have && request > have && is_known)
+        if (response > have && request > have && is_known)
             (void)snprintf(why, WHY_TEXT,
-                           "begins like a Modbus request of %u or an answer of %u bytes, but ends early",
-                           request, answer);
-        else if (answer > have)
-            (void)snprintf(why, WHY_TEXT, "begins like a Modbus answer of %u bytes, but ends early", answer);
+                           "begins like a Modbus request of %u or a response of %u bytes, but ends early",
+                           request, response);
+        else if (response > have)
+            (void)snprintf(why, WHY_TEXT, "begins like a Modbus response of %u bytes, but ends early",
+                           response);
     }
     if ((allowed & DECODE_DYP) != 0 && have >= 2 && bytes[0] == 0x55 && bytes[1] == 0xAA)
         (void)snprintf(why, WHY_TEXT, "begins like a 55 AA frame, but is none");

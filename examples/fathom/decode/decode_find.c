@@ -4,11 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "fathom/crc16.h"
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
-#include "fathom/hps167s_registers.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/hps167s_registers.h"
+#include "fathom/codec/modbus_rtu.h"
 
 /*
  * The price of each piece; the cheapest way through the input is taken. A damaged frame is dearer than the good
@@ -90,7 +90,7 @@ enum {
     LAST_PAGE = 0x02 /* no register is beyond 0x0207 */
 };
 
-static bool is_likely_answer(const uint8_t *bytes)
+static bool is_likely_response(const uint8_t *bytes)
 {
     enum { LAST_EXCEPTION = 11 };
     if ((bytes[1] & FATHOM_MODBUS_EXCEPTION) != 0) return bytes[2] != 0 && bytes[2] <= LAST_EXCEPTION;
@@ -118,20 +118,20 @@ static void offer_modbus(view_t *view)
     if (view->have < SHORTEST) return;
     const bool is_write = bytes[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
     const uint8_t request = fathom_modbus_rtu_request_length(bytes, view->have);
-    const uint8_t answer = fathom_modbus_rtu_response_length(bytes, view->have);
-    bool is_answer = false;
-    if (answer != 0 && answer <= view->have) {
-        const bool is_good = fathom_crc16(bytes, answer) == 0;
-        is_answer = is_good;
-        if (is_good || is_likely_answer(bytes))
-            offer(view, answer, DECODE_MODBUS, is_write ? DECODE_BOTH : DECODE_ANSWER, is_good,
+    const uint8_t response = fathom_modbus_rtu_response_length(bytes, view->have);
+    bool is_response = false;
+    if (response != 0 && response <= view->have) {
+        const bool is_good = fathom_crc16(bytes, response) == 0;
+        is_response = is_good;
+        if (is_good || is_likely_response(bytes))
+            offer(view, response, DECODE_MODBUS, is_write ? DECODE_BOTH : DECODE_RESPONSE, is_good,
                   is_good ? COST_MODBUS : COST_DAMAGED);
     }
-    if (request == 0 || request > view->have || (is_write && answer == request)) return;
-    /* A good answer of 7 bytes and a 00 after it have a CRC of 0 too. */
+    if (request == 0 || request > view->have || (is_write && response == request)) return;
+    /* A good response of 7 bytes and a 00 after it have a CRC of 0 too. */
     const bool is_good = fathom_crc16(bytes, request) == 0;
     const bool is_likely = is_ours(bytes[1]) && is_likely_request(bytes);
-    if (is_likely || (is_good && !is_answer))
+    if (is_likely || (is_good && !is_response))
         offer(view, request, DECODE_MODBUS, DECODE_REQUEST, is_good, is_good ? COST_MODBUS : COST_DAMAGED);
 }
 
@@ -141,22 +141,23 @@ static void offer_dyp(view_t *view)
 {
     const uint8_t *const bytes = view->bytes;
     if (view->have < FATHOM_DYP_REQUEST_LENGTH || bytes[0] != 0x55 || bytes[1] != 0xAA) return;
-    const uint8_t answer = fathom_dyp_protocol_answer_length(bytes[3]);
-    const bool is_good = fathom_dyp_protocol_valid(bytes, FATHOM_DYP_REQUEST_LENGTH);
-    if (is_good || answer != 0)
+    const uint8_t response = fathom_dyp_55aa_response_length(bytes[3]);
+    const bool is_good = fathom_dyp_55aa_valid(bytes, FATHOM_DYP_REQUEST_LENGTH);
+    if (is_good || response != 0)
         offer(view, FATHOM_DYP_REQUEST_LENGTH, DECODE_DYP,
-              answer == FATHOM_DYP_REQUEST_LENGTH ? DECODE_BOTH : DECODE_REQUEST, is_good,
+              response == FATHOM_DYP_REQUEST_LENGTH ? DECODE_BOTH : DECODE_REQUEST, is_good,
               is_good ? COST_SHORT_SUM : COST_DAMAGED);
-    if (answer <= FATHOM_DYP_REQUEST_LENGTH || answer > view->have) return;
-    const bool is_answer = fathom_dyp_protocol_valid(bytes, answer);
-    offer(view, answer, DECODE_DYP, DECODE_ANSWER, is_answer, is_answer ? COST_LONG_SUM : COST_DAMAGED);
+    if (response <= FATHOM_DYP_REQUEST_LENGTH || response > view->have) return;
+    const bool is_response = fathom_dyp_55aa_valid(bytes, response);
+    offer(view, response, DECODE_DYP, DECODE_RESPONSE, is_response,
+          is_response ? COST_LONG_SUM : COST_DAMAGED);
 }
 
 static void offer_stream(view_t *view, uint8_t length, uint8_t protocol, uint32_t cost)
 {
     if (view->have < length || view->bytes[0] != FATHOM_DYP_START) return;
-    const bool is_good = fathom_dyp_frame_valid(view->bytes, length);
-    offer(view, length, protocol, DECODE_ANSWER, is_good, is_good ? cost : COST_DAMAGED_STREAM);
+    const bool is_good = fathom_dyp_stream_valid(view->bytes, length);
+    offer(view, length, protocol, DECODE_RESPONSE, is_good, is_good ? cost : COST_DAMAGED_STREAM);
 }
 
 /* ---- all of it ---- */

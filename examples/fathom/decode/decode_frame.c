@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "decode/decode_frame.h"
 
-#include "fathom/dyp_frame.h"
+#include "fathom/codec/dyp_stream.h"
 
 /* A frame with a sum is one of the models that send it. */
 static void decode_sum(decode_frame_t *frame)

@@ -5,7 +5,7 @@
 #include "decode/decode_find.h"
 #include "models/models.h"
 
-/* What is remembered from frame to frame: a read whose answer is due. */
+/* What is remembered from frame to frame: a read whose response is due. */
 typedef struct {
     uint8_t models; /* that may be there: bits of their places in the table */
     bool is_asked;

@@ -63,7 +63,7 @@ static void put_meaning(FILE *to, const decode_meaning_t *meaning)
 static void put_frame(FILE *to, const decode_frame_t *frame)
 {
     static const char *const directions[] = {
-        [DECODE_REQUEST] = "request", [DECODE_ANSWER] = "answer", [DECODE_BOTH] = "both"};
+        [DECODE_REQUEST] = "request", [DECODE_RESPONSE] = "response", [DECODE_BOTH] = "both"};
     const decode_piece_t *const piece = frame->piece;
     put_head(to, frame->bytes, piece);
     put_text(to, "protocol", decode_protocol_name(piece->protocol));

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fathom/crc16.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/modbus_rtu.h"
 
 enum { UNIT = 0, HEAD = 6, ALL_UNITS = 0xFF };
 enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, EXCEPTION = FATHOM_MODBUS_EXCEPTION };
@@ -62,8 +62,8 @@ static void decode_exception(decode_frame_t *frame, const decode_context_t *cont
 static void decode_plain(decode_frame_t *frame)
 {
     const uint8_t *const bytes = frame->bytes;
-    const bool is_answer = frame->piece->direction == DECODE_ANSWER;
-    if (bytes[DECODE_AT_FUNCTION] == READ && is_answer) {
+    const bool is_response = frame->piece->direction == DECODE_RESPONSE;
+    if (bytes[DECODE_AT_FUNCTION] == READ && is_response) {
         (void)decode_mean(frame, "", "", "%u registers", bytes[DECODE_AT_SIZE] / 2u);
         return;
     }
@@ -74,11 +74,11 @@ static void decode_plain(decode_frame_t *frame)
                   decode_get16(bytes + DECODE_AT_COUNT), "");
 }
 
-static bool answers(const decode_frame_t *frame, const decode_context_t *context)
+static bool responses(const decode_frame_t *frame, const decode_context_t *context)
 {
     const uint8_t *const bytes = frame->bytes;
     const uint8_t *const head = context->head;
-    if (!context->is_asked || (frame->piece->direction & DECODE_ANSWER) == 0) return false;
+    if (!context->is_asked || (frame->piece->direction & DECODE_RESPONSE) == 0) return false;
     if (bytes[UNIT] != head[UNIT] && head[UNIT] != ALL_UNITS) return false;
     if ((bytes[DECODE_AT_FUNCTION] & (uint8_t)~EXCEPTION) != head[DECODE_AT_FUNCTION]) return false;
     if ((bytes[DECODE_AT_FUNCTION] & EXCEPTION) != 0) return true;
@@ -114,7 +114,7 @@ void decode_modbus(decode_frame_t *frame, decode_context_t *context)
 {
     const decode_piece_t *const piece = frame->piece;
     const uint8_t *const bytes = frame->bytes;
-    const bool is_asked = answers(frame, context);
+    const bool is_asked = responses(frame, context);
     frame->unit = bytes[UNIT];
     frame->code = bytes[DECODE_AT_FUNCTION];
     frame->code_is = "function";
@@ -127,7 +127,7 @@ void decode_modbus(decode_frame_t *frame, decode_context_t *context)
     if (frame->unit == ALL_UNITS) decode_note(frame, "FF is the broadcast address of a16 and a05");
     if ((bytes[DECODE_AT_FUNCTION] & EXCEPTION) != 0) {
         decode_exception(frame, context, is_asked);
-    } else if (piece->direction == DECODE_ANSWER && bytes[DECODE_AT_FUNCTION] == READ) {
+    } else if (piece->direction == DECODE_RESPONSE && bytes[DECODE_AT_FUNCTION] == READ) {
         decode_meanings(frame, context, is_asked ? context->head : NULL);
         if (!is_asked) decode_note(frame, "its request is not here; what it answers hangs on that");
     } else {
@@ -138,7 +138,7 @@ void decode_modbus(decode_frame_t *frame, decode_context_t *context)
                                    : "acknowledges the request before");
     }
     if (is_asked && !piece->is_damaged) context->is_asked = false;
-    if (is_asked || piece->direction == DECODE_ANSWER || piece->is_damaged) return;
+    if (is_asked || piece->direction == DECODE_RESPONSE || piece->is_damaged) return;
     memcpy(context->head, bytes, sizeof context->head);
     context->is_asked = true;
 }

@@ -31,10 +31,10 @@ static const char *direction_text(uint8_t direction)
     switch (direction) {
     case DECODE_REQUEST:
         return "request";
-    case DECODE_ANSWER:
-        return "answer";
+    case DECODE_RESPONSE:
+        return "response";
     default:
-        return "request or answer, which are the same bytes";
+        return "request or response, which are the same bytes";
     }
 }
 

@@ -17,18 +17,18 @@ enum {
     DECODE_ALL = 15
 };
 
-enum { DECODE_REQUEST = 1, DECODE_ANSWER = 2, DECODE_BOTH = 3 };
+enum { DECODE_REQUEST = 1, DECODE_RESPONSE = 2, DECODE_BOTH = 3 };
 
 /* A frame, or bytes that belong to none (protocol 0). */
 typedef struct {
     size_t offset;
     size_t length;
     uint8_t protocol;
-    uint8_t direction; /* DECODE_REQUEST, DECODE_ANSWER, or both where the bytes are the same */
+    uint8_t direction; /* DECODE_REQUEST, DECODE_RESPONSE, or both where the bytes are the same */
     bool is_damaged;   /* the shape of a frame, but its checksum is wrong */
 } decode_piece_t;
 
-/* Where it stands in a Modbus frame; a read's answer has its size in place of the first register. */
+/* Where it stands in a Modbus frame; a read's response has its size in place of the first register. */
 enum {
     DECODE_AT_FUNCTION = 1,
     DECODE_AT_SIZE = 2,

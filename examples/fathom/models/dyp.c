@@ -3,7 +3,7 @@
 
 #include <inttypes.h>
 
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "models/models.h"
 
 /* ---- reading ---- */
@@ -12,10 +12,10 @@ bool dyp_begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t s
 {
     reader->sensor = sensor;
     reader->stream = &base->stream;
-    reader->values = base->answer.values;
+    reader->values = base->measurement.values;
     reader->value_count = (uint8_t)(base->stream.length / 2 - 1);
-    reader->answer = &base->answer;
-    reader->sequence = &base->answer.sequence;
+    reader->response = &base->measurement;
+    reader->sequence = &base->measurement.sequence;
     return true;
 }
 
@@ -26,10 +26,10 @@ bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_
     reader->protocol = protocol;
     reader->is_paced = true;
     reader->unit = &base->unit;
-    reader->values = base->answer.values;
-    reader->value_count = (uint8_t)base->question.last;
-    reader->answer = &base->answer;
-    reader->sequence = &base->answer.sequence;
+    reader->values = base->measurement.values;
+    reader->value_count = (uint8_t)base->request.last;
+    reader->response = &base->measurement;
+    reader->sequence = &base->measurement.sequence;
     return true;
 }
 
@@ -76,9 +76,9 @@ void dyp_print_finding_json(FILE *to, const scan_finding_t *finding)
 
 /* ---- decoding ---- */
 
-bool dyp_is_read_answer(const decode_frame_t *frame)
+bool dyp_is_read_response(const decode_frame_t *frame)
 {
-    return frame->piece->direction == DECODE_ANSWER &&
+    return frame->piece->direction == DECODE_RESPONSE &&
            frame->bytes[DECODE_AT_FUNCTION] == FATHOM_MODBUS_READ_HOLDING_REGISTERS;
 }
 

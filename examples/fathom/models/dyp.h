@@ -42,7 +42,7 @@ void dyp_print_finding_json(FILE *to, const scan_finding_t *finding);
 /* ---- decoding ---- */
 
 /* Has the frame the values of registers in it, not where they are? */
-bool dyp_is_read_answer(const decode_frame_t *frame);
+bool dyp_is_read_response(const decode_frame_t *frame);
 
 /* Is it a distance that a sensor of that range sends, or one of its family's words for no target? */
 bool dyp_is_likely(uint16_t value, uint16_t far_mm);

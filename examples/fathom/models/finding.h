@@ -5,14 +5,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom/codec/hps167s_registers.h"
 #include "fathom/hal.h"
-#include "fathom/hps167s_registers.h"
 
 /* What a scan finds. */
 typedef enum {
     SCAN_SENSOR = 1, /* one of the three */
-    SCAN_OTHER,      /* answers in Modbus, but is none of the three */
-    SCAN_DAMAGED,    /* whatever is at this address, none of its answers was whole */
+    SCAN_OTHER,      /* responses in Modbus, but is none of the three */
+    SCAN_DAMAGED,    /* whatever is at this address, none of its responses was whole */
     SCAN_NOT_MODBUS, /* answers at these line settings, but not in Modbus; no address */
     SCAN_SENDER,     /* sends by itself, and is none of the three; no address */
     SCAN_MASTER      /* requests of another master, which asks this address */
@@ -27,7 +27,7 @@ typedef struct {
     uint8_t model;   /* fathom_model_t, of a sensor */
     uint8_t mode;    /* scan_mode_t, of a sensor */
     uint8_t address; /* 0: none */
-    bool is_double;  /* two answers came to one request */
+    bool is_double;  /* two responses came to one request */
 
     /* of an A16 or A05 that was asked */
     bool has_value;

@@ -66,8 +66,8 @@ typedef struct {
         uint8_t count;
         uint8_t frame_length; /* of what it sends by itself */
         uint16_t own;         /* a register that only it has, of those with the same first read, ... */
-        uint16_t slow_own;    /* ... and one to ask for within INQUIRY_SLOW_US if none of them answers that */
-        /* Instead of `own`: decides by the answer to the first read, and what it asks besides. */
+        uint16_t slow_own; /* ... and one to ask for within INQUIRY_SLOW_US if none of them responses that */
+        /* Instead of `own`: decides by the response to the first read, and what it asks besides. */
         bool (*is_it)(inquiry_t *inquiry);
     } scan;
     void (*print_finding)(FILE *to, const scan_finding_t *finding);
@@ -76,7 +76,7 @@ typedef struct {
     /* ---- what its frames say ---- */
 
     uint8_t protocols; /* DECODE_... */
-    /* A Modbus frame. An answer to a read may have no request (NULL); the bytes of a request are those of the frame. */
+    /* A Modbus frame. A response to a read may have no request (NULL); the bytes of a request are those of the frame. */
     void (*decode)(decode_frame_t *frame, const uint8_t *request);
     void (*decode_sum)(decode_frame_t *frame); /* of another of its protocols */
     const char *(*exception_name)(uint8_t code);

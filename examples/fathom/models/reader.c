@@ -22,7 +22,7 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
 {
     return (fathom_modbus_config_t){
         .transport = transport,
-        .settings = line_of(channel, settings),
+        .line_settings = line_of(channel, settings),
         .period_us = settings->period_us,
         .timeout_us = settings->timeout_us,
         .backoff_us = settings->backoff_us,
@@ -34,12 +34,16 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
 
 bool reader_was_answered_wrong(const reader_t *reader)
 {
-    return reader->unit != NULL && reader->unit->request.exchange.status == FATHOM_ERR_MALFORMED;
+    return reader->unit != NULL && reader->unit->request.transaction.status == FATHOM_ERR_MALFORMED;
 }
 
 uint8_t reader_refused_probe(const reader_t *reader)
 {
-    return reader->answer != NULL && !reader_was_answered_wrong(reader) ? reader->answer->refused_probe : 0;
+    return reader->response != NULL && !reader_was_answered_wrong(reader) ? reader->response->refused_probe
+                                                                          : 0;
 }
 
-bool reader_has_more(const reader_t *reader) { return reader->answer != NULL && reader->answer->left != 0; }
+bool reader_has_more(const reader_t *reader)
+{
+    return reader->response != NULL && reader->response->left != 0;
+}

@@ -5,20 +5,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/a05_auto.h"
-#include "fathom/a05_dyp.h"
-#include "fathom/a05_modbus.h"
-#include "fathom/a16_auto.h"
-#include "fathom/a16_controlled.h"
-#include "fathom/a16_modbus.h"
-#include "fathom/hps167s.h"
-#include "fathom/hps167s_auto.h"
-#include "fathom/line_pins.h"
+#include "fathom/engine/line_pins.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a05_dyp.h"
+#include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a16_auto.h"
+#include "fathom/sensor/a16_controlled.h"
+#include "fathom/sensor/a16_modbus.h"
+#include "fathom/sensor/hps167s.h"
+#include "fathom/sensor/hps167s_auto.h"
 #include "shared/channel.h"
 
 /* What the user may set; 0: the driver's default. */
 typedef struct {
-    uint32_t timeout_us; /* of an answer; of a sensor that sends by itself: until it is stale */
+    uint32_t timeout_us; /* of a response; of a sensor that sends by itself: until it is stale */
     uint32_t period_us;  /* between two requests */
     const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
     uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
@@ -35,14 +35,14 @@ enum { READER_BACKOFF_US = 1 };
 /* Any driver, with what the library's common interface does not show: the causes of an error. */
 typedef struct {
     fathom_sensor_t sensor;
-    const uint16_t *values;            /* the 16-bit values of the last answer, ... */
-    uint8_t value_count;               /* ... and how many there are */
-    const fathom_dyp_answer_t *answer; /* of A16 and A05; NULL: an answer is one sample */
-    uint16_t *sequence;                /* of the last answer */
-    fathom_modbus_unit_t *unit;        /* NULL: it sends by itself */
-    fathom_stream_t *stream;           /* NULL: it is asked */
-    const char *protocol;              /* with which it is asked */
-    bool is_paced;                     /* it keeps the user's interval by itself */
+    const uint16_t *values;                   /* the 16-bit values of the last response, ... */
+    uint8_t value_count;                      /* ... and how many there are */
+    const fathom_dyp_measurement_t *response; /* of A16 and A05; NULL: a response is one sample */
+    uint16_t *sequence;                       /* of the last response */
+    fathom_modbus_unit_t *unit;               /* NULL: it sends by itself */
+    fathom_stream_t *stream;                  /* NULL: it is asked */
+    const char *protocol;                     /* with which it is asked */
+    bool is_paced;                            /* it keeps the user's interval by itself */
     fathom_line_t *line;
     union {
         fathom_a16_auto_t a16_auto;
@@ -69,13 +69,13 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
 /* reader_t.protocol. */
 extern const char reader_modbus[];
 
-/* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the answer that did not fit, and not a value in it? */
+/* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the response that did not fit, and not a value in it? */
 bool reader_was_answered_wrong(const reader_t *reader);
 
 /* The same, where a value of A16 or A05 was refused: of which probe? 0: it was not that. */
 uint8_t reader_refused_probe(const reader_t *reader);
 
-/* Has the last answer more samples? Then poll again before anything else. */
+/* Has the last response more samples? Then poll again before anything else. */
 bool reader_has_more(const reader_t *reader);
 
 #endif

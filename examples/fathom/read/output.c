@@ -56,7 +56,7 @@ static void put_mode(const reading_t *reading, char text[VALUE_TEXT])
 
 static void put_address(const reading_t *reading, char text[VALUE_TEXT])
 {
-    if (reading->mode->is_asked) put_number(text, reading->sample->unit);
+    if (reading->mode->is_asked) put_number(text, reading->sample->address);
 }
 
 static void put_probe(const reading_t *reading, char text[VALUE_TEXT])

@@ -180,11 +180,11 @@ static void advise_on_nothing(const scan_t *scan)
     (void)fputs("fathom: no sensor was found: ", stderr);
     if (heard->bytes != 0)
         (void)fputs(
-            "bytes were heard, but no answer; check A and B swapped, --baud and --parity, and for noise",
+            "bytes were heard, but no response; check A and B swapped, --baud and --parity, and for noise",
             stderr);
     else if (heard->echoes != 0)
         (void)fputs("only the tool's own requests came back, so the adapter works and echoes, but no sensor "
-                    "answers behind it; check the wiring behind the adapter (A, B, ground) and the supply",
+                    "responses behind it; check the wiring behind the adapter (A, B, ground) and the supply",
                     stderr);
     else
         (void)fputs("nothing was heard at all; check the supply, and A and B (or RX and TX) swapped", stderr);

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#include "fathom/dyp_client.h"
-#include "fathom/hps167s_registers.h"
-#include "fathom/modbus_client.h"
+#include "fathom/codec/hps167s_registers.h"
+#include "fathom/engine/dyp_client.h"
+#include "fathom/engine/modbus_client.h"
 
 enum { SET_LINE_POLL_US = 1000 };
 
@@ -58,37 +58,37 @@ static bool is_harmless(const scan_request_t *request)
     return request->first != FATHOM_HPS167S_RESET && request->count <= SCAN_REGISTERS && !is_to_all;
 }
 
-static fathom_status_t wait_for_answer(const scan_wire_t *wire, fathom_modbus_request_t *transaction)
+static fathom_status_t wait_for_response(const scan_wire_t *wire, fathom_modbus_request_t *pending)
 {
-    const fathom_exchange_t *const exchange = &transaction->exchange;
+    const fathom_transaction_t *const transaction = &pending->transaction;
     for (;;) {
-        (void)fathom_line_poll(wire->line); /* a broken port ends the exchange */
-        if (exchange->status != FATHOM_PENDING) return exchange->status;
-        if (!wait_for_line(wire, FATHOM_NO_DEADLINE)) fathom_line_cancel(wire->line, &transaction->exchange);
-        if (exchange->status != FATHOM_PENDING) return exchange->status;
+        (void)fathom_line_poll(wire->line); /* a broken port ends the transaction */
+        if (transaction->status != FATHOM_PENDING) return transaction->status;
+        if (!wait_for_line(wire, FATHOM_NO_DEADLINE)) fathom_line_cancel(wire->line, &pending->transaction);
+        if (transaction->status != FATHOM_PENDING) return transaction->status;
     }
 }
 
-void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_answer_t *answer)
+void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_response_t *response)
 {
-    fathom_modbus_request_t transaction;
-    memset(&transaction, 0, sizeof transaction);
-    memset(answer, 0, sizeof *answer);
-    answer->status = FATHOM_ERR_ARGUMENT;
+    fathom_modbus_request_t pending;
+    memset(&pending, 0, sizeof pending);
+    memset(response, 0, sizeof *response);
+    response->status = FATHOM_ERR_ARGUMENT;
     if (!is_harmless(request)) return;
-    transaction.exchange.timeout_us = request->timeout_us;
-    transaction.exchange.settings = request->line;
-    fathom_modbus_read_holding_registers(&transaction.message, request->address, request->first,
-                                         request->count, answer->values);
+    pending.transaction.timeout_us = request->timeout_us;
+    pending.transaction.line_settings = request->line;
+    fathom_modbus_read_holding_registers(&pending.message, request->address, request->first, request->count,
+                                         response->values);
     listener_forget(wire->listener);
     const fathom_modbus_t modbus = fathom_modbus_client_with_zero(wire->line);
-    answer->status = request->is_dyp ? fathom_dyp_client_submit(wire->line, &transaction)
-                                     : modbus.submit(modbus.ctx, &transaction);
-    if (answer->status == FATHOM_PENDING) answer->status = wait_for_answer(wire, &transaction);
-    answer->address = transaction.message.head[0];
-    if (scan_is_answered(answer->status) && request->linger_us != 0) {
+    response->status = request->is_dyp ? fathom_dyp_client_submit(wire->line, &pending)
+                                       : modbus.submit(modbus.ctx, &pending);
+    if (response->status == FATHOM_PENDING) response->status = wait_for_response(wire, &pending);
+    response->address = pending.message.head[0];
+    if (scan_is_answered(response->status) && request->linger_us != 0) {
         const fathom_status_t heard = listen(wire, request->linger_us, NULL, NULL);
-        if (heard != FATHOM_READY) answer->status = heard;
+        if (heard != FATHOM_READY) response->status = heard;
     }
-    listener_judge(wire->listener, request->address, &answer->evidence);
+    listener_judge(wire->listener, request->address, &response->evidence);
 }

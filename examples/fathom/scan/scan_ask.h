@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/line.h"
+#include "fathom/engine/line.h"
 #include "shared/listener.h"
 
 /* A line with an listener on it, and a way to wait: what a scan needs of the world. */
@@ -18,13 +18,13 @@ typedef struct {
     void *ctx;
 } scan_wire_t;
 
-enum { SCAN_REGISTERS = 11 }; /* of the longest answer: HPS-167S #3 */
+enum { SCAN_REGISTERS = 11 }; /* of the longest response: HPS-167S #3 */
 
 /* A read: the only thing that a scan can ask. */
 typedef struct {
     const fathom_line_settings_t *line;
     uint32_t timeout_us;
-    uint32_t linger_us; /* after an answer it goes on listening for so long: a second one may come */
+    uint32_t linger_us; /* after a response it goes on listening for so long: a second one may come */
     uint16_t first;     /* register */
     uint8_t count;
     uint8_t address;
@@ -32,21 +32,21 @@ typedef struct {
 } scan_request_t;
 
 typedef struct {
-    /* As fathom_exchange_t.status. FATHOM_ERR_CANCELLED: the scan is to end. FATHOM_ERR_ARGUMENT: a request that may
+    /* As fathom_transaction_t.status. FATHOM_ERR_CANCELLED: the scan is to end. FATHOM_ERR_ARGUMENT: a request that may
      * not be asked. */
     fathom_status_t status;
     uint8_t address; /* of FATHOM_READY: who answered */
     uint16_t values[SCAN_REGISTERS];
     evidence_t evidence; /* what was heard since the request */
-} scan_answer_t;
+} scan_response_t;
 
 /*
- * Asks, and comes back with the answer.
+ * Asks, and comes back with the response.
  *
  * Nothing that changes a device is ever sent: there is no write among the requests, register 0x0009, the factory
  * reset of an HPS-167S (#6), is refused here whatever the count is, and so is unit 0, the broadcast.
  */
-void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_answer_t *answer);
+void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_response_t *response);
 
 /* A device has answered, whatever it was. */
 bool scan_is_answered(fathom_status_t status);

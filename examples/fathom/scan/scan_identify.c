@@ -5,7 +5,7 @@
 
 #include "models/models.h"
 
-/* A second answer to one request is there by then: two units differ by a few milliseconds. */
+/* A second response to one request is there by then: two units differ by a few milliseconds. */
 enum { LINGER_US = 40000 };
 
 enum { DAMAGED_TRIES = 4, ROUNDS = 2 };
@@ -33,7 +33,7 @@ typedef struct {
     inquiry_t base; /* first, so that one pointer is both */
     const scan_wire_t *wire;
     const scan_request_t *request; /* the first one: to whom, with which settings */
-    scan_answer_t answer;
+    scan_response_t response;
     fathom_status_t failed; /* FATHOM_READY, or why it cannot go on */
 } asking_t;
 
@@ -46,10 +46,10 @@ static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t time
     request.linger_us = 0;
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     for (uint8_t tries = DAMAGED_TRIES; tries != 0 && asking->failed == FATHOM_READY; tries--) {
-        scan_ask(asking->wire, &request, &asking->answer);
-        const fathom_status_t status = asking->answer.status;
+        scan_ask(asking->wire, &request, &asking->response);
+        const fathom_status_t status = asking->response.status;
         inquiry->status = status;
-        inquiry->values = asking->answer.values;
+        inquiry->values = asking->response.values;
         if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_READY;
         if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) asking->failed = status;
         if (status != FATHOM_ERR_CHECKSUM && status != FATHOM_ERR_MALFORMED && --silence_tries == 0) break;
@@ -106,7 +106,7 @@ static const model_t *find_model(asking_t *asking)
 }
 
 fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *request,
-                              const scan_answer_t *first, scan_finding_t *finding)
+                              const scan_response_t *first, scan_finding_t *finding)
 {
     asking_t asking = {
         .base = {.ask = ask, .status = first->status, .values = first->values, .finding = finding},

@@ -10,7 +10,7 @@
  *
  * At the rates of an HPS-167S and its addresses 1..32: #1, the interface version (03 @0x0001 x3), which it answers in
  * a few milliseconds. Elsewhere the address register of A16 and A05 (03 @0x0200 x1), which takes no measurement.
- * A device of another kind answers either with a value, an exception or silence.
+ * A device of another kind responses either with a value, an exception or silence.
  */
 void scan_first_request(const fathom_line_settings_t *line, uint8_t address, scan_request_t *request);
 
@@ -28,6 +28,6 @@ void scan_first_request(const fathom_line_settings_t *line, uint8_t address, sca
  * FATHOM_READY: *finding is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT: it could not be asked to the end.
  */
 fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *request,
-                              const scan_answer_t *first, scan_finding_t *finding);
+                              const scan_response_t *first, scan_finding_t *finding);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "fathom/stream.h"
+#include "fathom/engine/stream.h"
 #include "models/models.h"
 #include "scan/scan_plan.h"
 #include "shared/channel.h"
@@ -92,7 +92,7 @@ static bool understand(const scan_wire_t *wire, const fathom_line_settings_t *li
         return true;
     }
     if (evidence.foreign == 0) return false;
-    /* Answers to no request: tables 12, #10 and #15 of the HPS-167S speak of continuous output. */
+    /* Responses to no request: tables 12, #10 and #15 of the HPS-167S speak of continuous output. */
     finding->kind = SCAN_SENDER;
     finding->address = evidence.foreign_address;
     for (size_t i = 0; i != MODELS; i++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan/scan_plan.h"
 
-#include "fathom/line.h"
+#include "fathom/engine/line.h"
 #include "models/dyp.h"
 #include "models/hps167s/hps167s.h"
 

@@ -33,7 +33,7 @@ uint8_t scan_factory_parity(uint32_t baud);
 bool scan_is_dyp_line(const fathom_line_settings_t *line);
 
 /*
- * How long an address may take for the first byte of its answer.
+ * How long an address may take for the first byte of its response.
  *
  * 100 ms: an HPS-167S needs 2.5 to 20 ms, a USB adapter may hold bytes back for 16. 150 ms where A16 and A05 are: no
  * figure is printed, and a module that has just begun a measurement of 110 ms (A16 1) may want to finish it. What

@@ -86,7 +86,7 @@ static void tell_other(FILE *to, const scan_finding_t *finding)
         (void)fputs("another Modbus device: none of the three sensors", to);
         break;
     case SCAN_DAMAGED:
-        (void)fputs("its answers are damaged: two sensors with one address?", to);
+        (void)fputs("its responses are damaged: two sensors with one address?", to);
         break;
     case SCAN_NOT_MODBUS:
         (void)fputs("something answers, but not Modbus", to);
@@ -192,7 +192,7 @@ void scan_print_advice(FILE *to, const scan_finding_t *finding)
     else if (finding->is_double)
         (void)fprintf(
             to,
-            "fathom: two answers came from address %u: two sensors with one address? Connect one at "
+            "fathom: two responses came from address %u: two sensors with one address? Connect one at "
             "a time\n",
             finding->address);
 }

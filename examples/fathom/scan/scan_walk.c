@@ -3,13 +3,13 @@
 
 #include <string.h>
 
-#include "fathom/dyp_client.h"
+#include "fathom/engine/dyp_client.h"
 #include "scan/scan_identify.h"
 
 /* What is known of an address at the present settings. */
 enum { NOT_ASKED = 0, SILENT, ANSWERED, LATE, GARBLED, DAMAGED };
 
-/* A damaged answer is asked for again so often; once only, where most addresses are answered like that. */
+/* A damaged response is asked for again so often; once only, where most addresses are answered like that. */
 enum { DAMAGED_REPEATS = 3, FEW_GARBLED = 3 };
 
 /* For those that have been late. */
@@ -39,14 +39,14 @@ static void note(scan_walk_t *walk, const evidence_t *evidence)
         walk->states[other] = LATE;
 }
 
-/* Something came that is neither a frame nor an echo, or what began as the answer was damaged. */
-static bool is_troubled(const scan_answer_t *answer)
+/* Something came that is neither a frame nor an echo, or what began as the response was damaged. */
+static bool is_troubled(const scan_response_t *response)
 {
-    if (answer->status == FATHOM_ERR_CHECKSUM) return true;
-    return answer->evidence.rest != 0;
+    if (response->status == FATHOM_ERR_CHECKSUM) return true;
+    return response->evidence.rest != 0;
 }
 
-/* How often an address is asked again after so many damaged answers. */
+/* How often an address is asked again after so many damaged responses. */
 static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
 {
     if (troubles == 0) return walk->plan->repeats;
@@ -54,20 +54,20 @@ static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
 }
 
 /* Asks one address until it is clear what becomes of it; FATHOM_READY unless the scan is over or the port cannot. */
-static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, scan_answer_t *answer)
+static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, scan_response_t *response)
 {
     uint8_t *const state = &walk->states[request->address];
     uint8_t silences = 0;
     uint8_t troubles = 0;
     bool has_checksum = false;
     for (;;) {
-        scan_ask(walk->wire, request, answer);
-        const fathom_status_t status = answer->status;
+        scan_ask(walk->wire, request, response);
+        const fathom_status_t status = response->status;
         if (has_ended(status) || status == FATHOM_ERR_UNSUPPORTED) return status;
-        note(walk, &answer->evidence);
+        note(walk, &response->evidence);
         *state = ANSWERED;
         if (scan_is_answered(status)) return FATHOM_READY;
-        if (is_troubled(answer)) {
+        if (is_troubled(response)) {
             troubles++;
             if (status == FATHOM_ERR_CHECKSUM) has_checksum = true;
         } else {
@@ -82,10 +82,11 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, s
     return FATHOM_READY;
 }
 
-static fathom_status_t identify(scan_walk_t *walk, const scan_request_t *request, const scan_answer_t *answer)
+static fathom_status_t identify(scan_walk_t *walk, const scan_request_t *request,
+                                const scan_response_t *response)
 {
     scan_finding_t finding;
-    const fathom_status_t status = scan_identify(walk->wire, request, answer, &finding);
+    const fathom_status_t status = scan_identify(walk->wire, request, response, &finding);
     if (status != FATHOM_READY) return status;
     walk->found_baud[request->address] = request->line->baud;
     if (finding.model == FATHOM_A05) walk->has_a05 = true;
@@ -98,14 +99,14 @@ static fathom_status_t visit(scan_walk_t *walk, const fathom_line_settings_t *li
                              uint32_t timeout_us)
 {
     scan_request_t request;
-    scan_answer_t answer;
+    scan_response_t response;
     scan_first_request(line, address, &request);
     request.timeout_us = scan_timeout_us(walk->plan, line);
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     walk->asked++;
-    const fathom_status_t status = probe(walk, &request, &answer);
+    const fathom_status_t status = probe(walk, &request, &response);
     if (status != FATHOM_READY || walk->states[address] != ANSWERED) return status;
-    return identify(walk, &request, &answer);
+    return identify(walk, &request, &response);
 }
 
 static void tell_damaged(const scan_walk_t *walk, const fathom_line_settings_t *line, uint8_t kind,
@@ -115,7 +116,7 @@ static void tell_damaged(const scan_walk_t *walk, const fathom_line_settings_t *
     walk->tell->found(walk->tell->ctx, &finding);
 }
 
-/* All addresses have been asked: what do the damaged answers mean? */
+/* All addresses have been asked: what do the damaged responses mean? */
 static void judge_damaged(const scan_walk_t *walk, const fathom_line_settings_t *line)
 {
     const bool is_other_protocol = 2 * walk->garbled > walk->asked;
@@ -127,7 +128,7 @@ static void judge_damaged(const scan_walk_t *walk, const fathom_line_settings_t 
     }
 }
 
-/* One A05 that speaks 55 AA answers this whatever its address is. Several answer at once, and damage each other. */
+/* One A05 that speaks 55 AA responses this whatever its address is. Several response at once, and damage each other. */
 static fathom_status_t ask_any_a05(scan_walk_t *walk)
 {
     const scan_request_t request = {.line = &scan_dyp_line,
@@ -138,12 +139,12 @@ static fathom_status_t ask_any_a05(scan_walk_t *walk)
                                     .is_dyp = true};
     scan_finding_t finding = {
         .line = scan_dyp_line, .kind = SCAN_SENSOR, .model = FATHOM_A05, .mode = SCAN_DYP, .has_value = true};
-    scan_answer_t answer;
-    scan_ask(walk->wire, &request, &answer);
-    if (has_ended(answer.status)) return answer.status;
-    finding.address = answer.address;
-    finding.value = answer.values[0];
-    if (answer.status != FATHOM_READY) return FATHOM_READY;
+    scan_response_t response;
+    scan_ask(walk->wire, &request, &response);
+    if (has_ended(response.status)) return response.status;
+    finding.address = response.address;
+    finding.value = response.values[0];
+    if (response.status != FATHOM_READY) return FATHOM_READY;
     walk->has_a05 = true;
     walk->tell->found(walk->tell->ctx, &finding);
     return FATHOM_READY;

@@ -47,10 +47,10 @@ typedef struct {
 /*
  * Asks what the plan says: first a probe of each address, then, where a device answers, what it is.
  *
- *  - An answer that comes too late is heard while another address is asked, and its sender is asked again with a long
+ *  - A response that comes too late is heard while another address is asked, and its sender is asked again with a long
  *    time-out.
  *  - Bytes that are no frame, or a damaged one, make it ask again; if that happens each time, the address is
- *    DAMAGED. If more than half of the addresses are, and no answer was whole, it is NOT_MODBUS.
+ *    DAMAGED. If more than half of the addresses are, and no response was whole, it is NOT_MODBUS.
  *  - Where a device was found, other parities of the same rate are not tried.
  *  - On the line of A16 and A05, if no A05 was found, any A05 is asked by 55 AA: one with an address beyond the plan's
  *    is found by that, if it is alone.

@@ -13,14 +13,15 @@ static session_t session;
 /* Is it perhaps just this one that is not told? */
 static bool is_of_one(fathom_status_t status)
 {
-    return status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED;
+    return status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_EXCEPTION ||
+           status == FATHOM_ERR_MALFORMED;
 }
 
 static const char *reason(fathom_status_t status)
 {
-    if (status == FATHOM_ERR_NO_ANSWER) return "no answer; not every variant has it";
+    if (status == FATHOM_ERR_NO_RESPONSE) return "no response; not every variant has it";
     return status == FATHOM_ERR_EXCEPTION ? "refused; not every variant has it"
-                                          : "its answers cannot be that";
+                                          : "its responses cannot be that";
 }
 
 static void print_text(const setting_t *setting, fathom_status_t status, const char *text)

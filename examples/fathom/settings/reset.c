@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "fathom/hps167s_settings.h"
+#include "fathom/sensor/hps167s_settings.h"
 #include "settings/session.h"
 #include "shared/line_text.h"
 

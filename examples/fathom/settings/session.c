@@ -121,7 +121,7 @@ fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
         if (status != FATHOM_PENDING) return status;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
         if (channel_is_stuck(&session->channel))
-            return reader->unit->is_written ? FATHOM_ERR_UNCONFIRMED : FATHOM_ERR_NO_ANSWER;
+            return reader->unit->is_written ? FATHOM_ERR_UNCONFIRMED : FATHOM_ERR_NO_RESPONSE;
         host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
     }
     return FATHOM_ERR_CANCELLED;
@@ -147,7 +147,7 @@ static fathom_status_t call_set(reader_t *reader, void *ctx)
     return what->setting->set(reader, what->value);
 }
 
-/* Calls again what has written nothing, where a frame that the device sent unasked may have met request or answer. */
+/* Calls again what has written nothing, where a frame that the device sent unasked may have met request or response. */
 static fathom_status_t call_again(session_t *session, session_call_t call, what_t *what)
 {
     enum { TIMES = 4 };
@@ -156,8 +156,8 @@ static fathom_status_t call_again(session_t *session, session_call_t call, what_
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned times = 0; times != TIMES; times++) {
         status = session_call(session, call, what);
-        const bool is_met =
-            status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+        const bool is_met = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_CHECKSUM ||
+                            status == FATHOM_ERR_MALFORMED;
         const bool is_among_unasked =
             model->has_unasked != NULL && model->has_unasked(&session->station->reader);
         if (!is_met || unit->is_written || !is_among_unasked) break;
@@ -198,12 +198,12 @@ void session_explain(session_t *session, fathom_status_t status)
     counters_take(&station->counters, &session->port_counts, &session->channel, &station->reader);
     listener_judge(&session->channel.listener, station->address, &failure.evidence);
     if (status == FATHOM_ERR_CANCELLED)
-        (void)fputs("ended before the answer came", stderr);
+        (void)fputs("ended before the response came", stderr);
     else if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(&station->reader))
-        (void)fprintf(stderr, "its answers cannot be that%s; check that it is %s, and alone at this address",
-                      station->model->has_unasked != NULL ? ", or what it sends unasked stands between them"
-                                                          : "",
-                      station->model->name);
+        (void)fprintf(
+            stderr, "its responses cannot be that%s; check that it is %s, and alone at this address",
+            station->model->has_unasked != NULL ? ", or what it sends unasked stands between them" : "",
+            station->model->name);
     else
         advice_print(stderr, &failure);
 }

@@ -19,7 +19,8 @@ static void print_next(const change_t *change)
     const station_t *const station = change->session->station;
     const model_t *const model = station->model;
     const fathom_modbus_unit_t *const unit = station->reader.unit;
-    const fathom_line_settings_t *const line = unit->settings != NULL ? unit->settings : &station->line;
+    const fathom_line_settings_t *const line =
+        unit->line_settings != NULL ? unit->line_settings : &station->line;
     char options[LINE_OPTIONS];
     if (!setting->moves) return;
     (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, unit->address,
@@ -178,9 +179,9 @@ static void print_failed(const change_t *change, outcome_t outcome, fathom_statu
 /* What was asked for is done, and more than that cannot be known. */
 static bool is_done_blind(const change_t *change, outcome_t outcome)
 {
-    const int8_t answer = change->session->station->reader.unit->outcome;
+    const int8_t response = change->session->station->reader.unit->outcome;
     /* what came back is its acknowledgement, or may be: nothing was read that could tell an echo from one */
-    const bool is_answered = answer == FATHOM_READY || answer == FATHOM_ERR_ECHO;
+    const bool is_answered = response == FATHOM_READY || response == FATHOM_ERR_ECHO;
     return outcome == SENT || (change->is_blind && outcome == UNCONFIRMED && is_answered);
 }
 

@@ -4,7 +4,7 @@
 
 #include "models/setting.h"
 
-/* The settings as words: on the command line, in lists, in answers. */
+/* The settings as words: on the command line, in lists, in responses. */
 
 /* By name; NULL after a usage error that lists what there is. */
 const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "shared/channel.h"
 
-#include "fathom/hps167s_registers.h"
+#include "fathom/codec/hps167s_registers.h"
 #include "shared/tcp_address.h"
 
 /* What the line has to know of a serial port, ... */
@@ -12,11 +12,11 @@ static void suit_serial(channel_t *channel, const fathom_line_settings_t *settin
     const uint32_t baud =
         settings->baud > FATHOM_HPS167S_FACTORY_BAUD ? FATHOM_HPS167S_FACTORY_BAUD : settings->baud;
     channel->config.silence_us = FATHOM_T3_5_US(baud, bits);
-    channel->config.gap_us = CHANNEL_ANSWER_GAP_US;
+    channel->config.gap_us = CHANNEL_RESPONSE_GAP_US;
     channel->config.echo = channel->echo;
 }
 
-/* ... and of a connection, where answers come whole and need no silence between them. */
+/* ... and of a connection, where responses come whole and need no silence between them. */
 static void suit_tcp(channel_t *channel)
 {
     channel->config.silence_us = 1;
@@ -73,9 +73,9 @@ void channel_close(channel_t *channel)
 bool channel_is_stuck(channel_t *channel)
 {
     enum { STUCK_US = 10000000 };
-    const fathom_exchange_t *const first = channel->line.head;
+    const fathom_transaction_t *const first = channel->line.head;
     const uint64_t now = channel->host->now_us(channel->host->ctx);
-    const bool is_waiting = first != NULL && channel->line.owing == 0;
+    const bool is_waiting = first != NULL && channel->line.quarantined == 0;
     const uint64_t most_us = is_waiting ? STUCK_US + 2ull * first->timeout_us : 0;
     const bool is_stuck =
         is_waiting && channel->listener.requests == channel->requests && now - channel->moved_us > most_us;

@@ -5,9 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/dyp_client.h"
-#include "fathom/line.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/dyp_client.h"
+#include "fathom/engine/line.h"
+#include "fathom/engine/modbus_client.h"
 #include "shared/host.h"
 #include "shared/listener.h"
 #include "shared/tcp.h"
@@ -35,10 +35,10 @@ typedef struct {
 /*
  * The silence that ends a frame. A USB adapter holds bytes back for up to 16 ms, and the system may be late too: 25
  * ms, which is less than the pause between two frames of a sensor that sends by itself. Where a sensor is asked
- * nothing hangs on it but how soon a damaged answer is given up; there the far end may also be a program,
+ * nothing hangs on it but how soon a damaged response is given up; there the far end may also be a program,
  * which a busy system interrupts in mid-frame.
  */
-enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_ANSWER_GAP_US = 60000 };
+enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_RESPONSE_GAP_US = 60000 };
 
 /* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may
  * not be moved. One that was closed may be opened again. */

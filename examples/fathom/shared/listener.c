@@ -3,10 +3,10 @@
 
 #include <string.h>
 
-#include "fathom/crc16.h"
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
 
 static uint32_t now_us(const listener_t *listener) { return listener->clock.now_us(listener->clock.ctx); }
 
@@ -29,7 +29,7 @@ static int listener_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t
 static int listener_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     listener_t *const tap = ctx;
-    const uint32_t asked_us = now_us(tap); /* an answer may be there before the write returns */
+    const uint32_t asked_us = now_us(tap); /* a response may be there before the write returns */
     const int n = tap->inner.write(tap->inner.ctx, bytes, length);
     if (n <= 0 || length > sizeof tap->request) return n;
     if (tap->whose != NULL) tap->now = tap->whose(tap->ctx);
@@ -107,7 +107,7 @@ static uint16_t streamed(const listener_t *listener, uint16_t at, uint8_t length
     uint16_t end = at;
     uint32_t in_a_row = 0;
     while (listener->have - end >= length && listener->window[end] == FATHOM_DYP_START &&
-           fathom_dyp_frame_valid(listener->window + end, length)) {
+           fathom_dyp_stream_valid(listener->window + end, length)) {
         end = (uint16_t)(end + length);
         in_a_row++;
     }
@@ -116,7 +116,7 @@ static uint16_t streamed(const listener_t *listener, uint16_t at, uint8_t length
     return (uint16_t)(end - at);
 }
 
-static void note_answer(evidence_t *evidence, uint8_t from, uint8_t address)
+static void note_response(evidence_t *evidence, uint8_t from, uint8_t address)
 {
     if (from == address)
         evidence->own++;
@@ -129,11 +129,11 @@ static void note_request(evidence_t *evidence, uint8_t to)
     if (evidence->masters++ == 0) evidence->masters_address = to;
 }
 
-static bool is_fitting(const listener_t *listener, const uint8_t *answer, uint8_t length)
+static bool is_fitting(const listener_t *listener, const uint8_t *response, uint8_t length)
 {
-    enum { FUNCTION = 1, COUNT = 5, READ_REQUEST = 8, READ_ANSWER = 5 };
-    return answer[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS ||
-           listener->request_length != READ_REQUEST || length == READ_ANSWER + 2 * listener->request[COUNT];
+    enum { FUNCTION = 1, COUNT = 5, READ_REQUEST = 8, READ_RESPONSE = 5 };
+    return response[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS ||
+           listener->request_length != READ_REQUEST || length == READ_RESPONSE + 2 * listener->request[COUNT];
 }
 
 /* As account, for the frames 55 AA. A request that is no echo has the length and the sum of one and the command of a
@@ -141,14 +141,14 @@ static bool is_fitting(const listener_t *listener, const uint8_t *answer, uint8_
 static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, evidence_t *evidence)
 {
     enum { ADDRESS = 2, COMMAND = 3 };
-    const uint8_t length = fathom_dyp_protocol_length(bytes, have);
+    const uint8_t length = fathom_dyp_55aa_length(bytes, have);
     if (length == 0 || have < FATHOM_DYP_REQUEST_LENGTH) return 0;
-    if (length <= have && fathom_dyp_protocol_valid(bytes, length)) {
-        note_answer(evidence, bytes[ADDRESS], address);
+    if (length <= have && fathom_dyp_55aa_valid(bytes, length)) {
+        note_response(evidence, bytes[ADDRESS], address);
         return length;
     }
-    if (fathom_dyp_protocol_values(bytes[COMMAND]) == 0 ||
-        !fathom_dyp_protocol_valid(bytes, FATHOM_DYP_REQUEST_LENGTH))
+    if (fathom_dyp_55aa_values(bytes[COMMAND]) == 0 ||
+        !fathom_dyp_55aa_valid(bytes, FATHOM_DYP_REQUEST_LENGTH))
         return 0;
     note_request(evidence, bytes[ADDRESS]);
     return FATHOM_DYP_REQUEST_LENGTH;
@@ -167,7 +167,7 @@ static uint16_t account(const listener_t *listener, uint16_t at, uint8_t address
     uint8_t length = fathom_modbus_rtu_response_length(bytes, have);
     length = bytes[0] == 0 && address != 0 ? 0 : whole(bytes, have, length);
     if (length != 0) {
-        note_answer(evidence, bytes[0], address);
+        note_response(evidence, bytes[0], address);
         if (bytes[0] == address && is_fitting(listener, bytes, length)) evidence->fitting++;
         return length;
     }

@@ -37,7 +37,7 @@ typedef struct {
     uint32_t bytes;   /* all that was heard */
     uint32_t echoes;  /* of the request that was sent last */
     uint32_t rest;    /* bytes of the window that were neither echo nor frame */
-    uint32_t own;     /* answers with a right CRC from the unit that was asked; ... */
+    uint32_t own;     /* responses with a right CRC from the unit that was asked; ... */
     uint32_t fitting; /* ... and those of them that are no measurement which came unasked, by their length */
     uint32_t foreign; /* frames with a right CRC from another unit than the one that was asked, ... */
     uint8_t foreign_address; /* ... and the first of these units */

@@ -36,7 +36,7 @@ static void lose(const tcp_t *tcp)
         what = "what was answered is no Modbus TCP";
         advice = "; check the port (502 is usual), and that it is no server of something else";
         break;
-    case FATHOM_LIBMODBUS_ERR_TORN:
+    case FATHOM_LIBMODBUS_ERR_TRUNCATED:
         what = "the system took a part of a request only";
         advice = "";
         break;

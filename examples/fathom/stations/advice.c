@@ -99,7 +99,7 @@ static void print_tcp(FILE *to, const failure_t *failure)
             to, "the gateway says exception %02u (%s); check --address, and there the line and the supply",
             exception, exception_text(exception).name);
     else if (failure->evidence.bytes != 0)
-        (void)fputs("an answer came that does not fit; check that the server is one of Modbus TCP", to);
+        (void)fputs("a response came that does not fit; check that the server is one of Modbus TCP", to);
     else
         (void)fputs("the connection stands, but nothing came back; check --address, the sensor's line and "
                     "supply, and "
@@ -116,7 +116,8 @@ static void print_untriggered(FILE *to, const failure_t *failure)
         (void)fputs(", and for noise", to);
     } else {
         (void)fputs(
-            "no answer to the trigger; check the supply, the wires from the adapter's TX to the module's RX "
+            "no response to the trigger; check the supply, the wires from the adapter's TX to the module's "
+            "RX "
             "and back, that the adapter can send a break, and that the module is a UART-controlled one (if "
             "not: --mode auto or modbus)",
             to);
@@ -147,11 +148,11 @@ static bool print_unasked(FILE *to, const failure_t *failure)
     return true;
 }
 
-static void print_no_answer(FILE *to, const failure_t *failure)
+static void print_no_response(FILE *to, const failure_t *failure)
 {
     const evidence_t *const evidence = &failure->evidence;
-    (void)fprintf(to, "no answer from address %u: ", failure->address);
-    if (failure->counters->attempt.line[FATHOM_LINE_LATE_ANSWERS] != 0) {
+    (void)fprintf(to, "no response from address %u: ", failure->address);
+    if (failure->counters->attempt.line[FATHOM_LINE_LATE_RESPONSES] != 0) {
         print_late(to, evidence->slowest_us);
     } else if (print_others(to, failure) || print_unasked(to, failure)) {
         return;
@@ -159,7 +160,7 @@ static void print_no_answer(FILE *to, const failure_t *failure)
         print_tcp(to, failure);
     } else if (is_only_echo(evidence)) {
         (void)fputs("only the tool's own request came back, so the adapter works and echoes, but no sensor "
-                    "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
+                    "responses behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
                     "supply, and --address",
                     to);
     } else if (evidence->own != 0) {
@@ -170,11 +171,11 @@ static void print_no_answer(FILE *to, const failure_t *failure)
         (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->reader->protocol);
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
-    } else if (failure->others_answer) {
+    } else if (failure->others_response) {
         char settings[LINE_TEXT];
         (void)fprintf(
             to,
-            "nothing was heard of it, while others on this line answer; check its supply, its wires, "
+            "nothing was heard of it, while others on this line response; check its supply, its wires, "
             "its address and its settings (asked at %s)",
             line_text(failure->line, settings));
     } else {
@@ -190,13 +191,13 @@ static void print_no_answer(FILE *to, const failure_t *failure)
 static void print_damaged(FILE *to, const failure_t *failure)
 {
     const counters_t *const counters = failure->counters;
-    (void)fprintf(to, "the answer of address %u was damaged; ", failure->address);
+    (void)fprintf(to, "the response of address %u was damaged; ", failure->address);
     if (print_others(to, failure) || print_unasked(to, failure)) return;
     if (failure->channel->tcp != NULL)
         (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
     else if (counters->readings != 0)
         (void)fprintf(to,
-                      "other answers were good, so the settings are right and it is the line: check the "
+                      "other responses were good, so the settings are right and it is the line: check the "
                       "screw terminals, the cable, its termination and its ground, and keep it away from "
                       "motors (%" PRIu64 " of %" PRIu64 " attempts damaged)",
                       counters->failures[-FATHOM_ERR_CHECKSUM], counters->attempts + 1);
@@ -238,8 +239,8 @@ static void print_stale(FILE *to, const failure_t *failure)
 /* Which value of an A16 or A05 was refused and why, and what became of the other probes. */
 static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
 {
-    const fathom_dyp_answer_t *const answer = failure->reader->answer;
-    const uint16_t raw = answer->refused_raw;
+    const fathom_dyp_measurement_t *const response = failure->reader->response;
+    const uint16_t raw = response->refused_raw;
     const bool is_code = raw == 0 || raw >= 0xFFFD;
     const bool has_probes = failure->model->probes > 1;
     if (has_probes) (void)fprintf(to, "probe %u: ", probe);
@@ -247,7 +248,7 @@ static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
         (void)fprintf(to, "%u (%X) is refused", raw, raw);
     else
         (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw,
-                      answer->window.min_mm != 0 ? answer->window.min_mm : 1u, answer->window.max_mm);
+                      response->window.min_mm != 0 ? response->window.min_mm : 1u, response->window.max_mm);
     if (failure->is_whole)
         (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
     if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
@@ -283,14 +284,15 @@ static void print_port(FILE *to, const failure_t *failure)
 void advice_print(FILE *to, const failure_t *failure)
 {
     const bool is_triggered = failure->reader->protocol == NULL && failure->reader->is_paced;
-    if (is_triggered && (failure->status == FATHOM_ERR_NO_ANSWER || failure->status == FATHOM_ERR_CHECKSUM)) {
+    if (is_triggered &&
+        (failure->status == FATHOM_ERR_NO_RESPONSE || failure->status == FATHOM_ERR_CHECKSUM)) {
         print_untriggered(to, failure);
         return;
     }
     switch (failure->status) {
     case FATHOM_ERR_CHECKSUM:
         if (is_only_echo(&failure->evidence))
-            print_no_answer(to, failure);
+            print_no_response(to, failure);
         else
             print_damaged(to, failure);
         break;
@@ -326,8 +328,8 @@ void advice_print(FILE *to, const failure_t *failure)
                       line_text(failure->line, settings));
         break;
     }
-    default: /* FATHOM_ERR_NO_ANSWER, and that only the echo came */
-        print_no_answer(to, failure);
+    default: /* FATHOM_ERR_NO_RESPONSE, and that only the echo came */
+        print_no_response(to, failure);
         break;
     }
 }

@@ -5,10 +5,14 @@
 
 /* Those that can end an attempt; the others have no name. */
 static const char *const failure_names[FAILURE_KINDS] = {
-    [FAILURE_VALUE] = "impossible values", [-FATHOM_ERR_PORT] = "port",
-    [-FATHOM_ERR_NO_ANSWER] = "no answer", [-FATHOM_ERR_CHECKSUM] = "damaged",
-    [-FATHOM_ERR_EXCEPTION] = "exception", [-FATHOM_ERR_MALFORMED] = "other answer",
-    [-FATHOM_ERR_STALE] = "stale",         [FAILURE_KINDS - 1] = "other",
+    [FAILURE_VALUE] = "impossible values",
+    [-FATHOM_ERR_PORT] = "port",
+    [-FATHOM_ERR_NO_RESPONSE] = "no response",
+    [-FATHOM_ERR_CHECKSUM] = "damaged",
+    [-FATHOM_ERR_EXCEPTION] = "exception",
+    [-FATHOM_ERR_MALFORMED] = "other response",
+    [-FATHOM_ERR_STALE] = "stale",
+    [FAILURE_KINDS - 1] = "other",
 };
 
 const char *counters_failure_name(size_t kind) { return failure_names[kind]; }
@@ -58,8 +62,8 @@ void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel
         take(reader->stream->counters, counters->attempt.stream, counters->total.stream,
              FATHOM_STREAM_COUNTERS);
     if (reader->unit != NULL) {
-        take(&reader->unit->answers, counters->attempt.unit + UNIT_ANSWERS,
-             counters->total.unit + UNIT_ANSWERS, 1);
+        take(&reader->unit->responses, counters->attempt.unit + UNIT_RESPONSES,
+             counters->total.unit + UNIT_RESPONSES, 1);
         take(&reader->unit->failures, counters->attempt.unit + UNIT_FAILURES,
              counters->total.unit + UNIT_FAILURES, 1);
     }
@@ -68,7 +72,7 @@ void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel
 
 void counters_take_late(counters_t *counters, channel_t *channel)
 {
-    enum { LATE = FATHOM_LINE_LATE_ANSWERS };
+    enum { LATE = FATHOM_LINE_LATE_RESPONSES };
     take(&channel->counters[LATE], &counters->attempt.line[LATE], &counters->total.line[LATE], 1);
 }
 

@@ -11,7 +11,7 @@
 enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, PORT_COUNTERS = 4 };
 
 /* What the driver of a sensor that is asked counts. */
-enum { UNIT_ANSWERS = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
+enum { UNIT_RESPONSES = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
 
 /* Failures by kind: -status, and beside it those whose values were refused. */
 enum { FAILURE_VALUE = 0, FAILURE_KINDS = 16 };
@@ -35,7 +35,7 @@ typedef struct {
     uint64_t readings;
     uint64_t skipped;                 /* frames that came sooner than the interval */
     uint64_t failures[FAILURE_KINDS]; /* each is a line on stderr; four of an a05 may be one failed attempt */
-    uint64_t timed;                   /* answers whose time is in the next three: from the request's start */
+    uint64_t timed; /* responses whose time is in the next three: from the request's start */
     uint64_t time_sum_us;
     uint32_t time_min_us;
     uint32_t time_max_us;
@@ -53,7 +53,7 @@ void counters_begin_port(port_counts_t *port, channel_t *channel);
 /* Takes the counters out of the line, the stream, the unit and the port and adds them. */
 void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader);
 
-/* Takes the line's late answers alone: they are this sensor's. */
+/* Takes the line's late responses alone: they are this sensor's. */
 void counters_take_late(counters_t *counters, channel_t *channel);
 
 void counters_begin_attempt(counters_t *counters);

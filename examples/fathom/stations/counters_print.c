@@ -6,14 +6,14 @@
 
 /* Also the members of the JSON object, with underscores for spaces. */
 static const char *const line_names[FATHOM_LINE_COUNTERS] = {
-    [FATHOM_LINE_ANSWERS] = "answers",
+    [FATHOM_LINE_RESPONSES] = "responses",
     [FATHOM_LINE_DROPPED_BYTES] = "bytes of no frame",
     [FATHOM_LINE_PORT_ERRORS] = "port errors",
-    [FATHOM_LINE_NO_ANSWERS] = "requests without an answer",
-    [FATHOM_LINE_CHECKSUM_ERRORS] = "damaged answers",
+    [FATHOM_LINE_NO_RESPONSES] = "requests without a response",
+    [FATHOM_LINE_CHECKSUM_ERRORS] = "damaged responses",
     [FATHOM_LINE_EXCEPTIONS] = "exceptions",
-    [FATHOM_LINE_MALFORMED] = "answers that do not fit",
-    [FATHOM_LINE_LATE_ANSWERS] = "late answers",
+    [FATHOM_LINE_MALFORMED] = "responses that do not fit",
+    [FATHOM_LINE_LATE_RESPONSES] = "late responses",
     [FATHOM_LINE_STRAYS] = "unasked frames",
     [FATHOM_LINE_BAD_BYTES] = "bad bytes",
 };
@@ -28,7 +28,7 @@ static const char *const stream_names[FATHOM_STREAM_COUNTERS] = {
 };
 
 static const char *const unit_names[UNIT_COUNTERS] = {
-    [UNIT_ANSWERS] = "answers",
+    [UNIT_RESPONSES] = "responses",
     [UNIT_FAILURES] = "failures",
 };
 
@@ -92,19 +92,19 @@ static void print_attempts(const counters_t *counters, FILE *to, const char *of,
 /* Before the port was there, there is no unit. */
 static unsigned silences(const station_t *station)
 {
-    return station->reader.unit != NULL ? station->reader.unit->silences : 0u;
+    return station->reader.unit != NULL ? station->reader.unit->timeouts_in_row : 0u;
 }
 
-static uint32_t alone_us(const station_t *station)
+static uint32_t backoff_left_us(const station_t *station)
 {
-    return station->reader.unit != NULL ? station->reader.unit->alone_us : 0u;
+    return station->reader.unit != NULL ? station->reader.unit->backoff_left_us : 0u;
 }
 
 /* Silences in a row, and for how long the driver leaves it alone because of them. */
 static void print_back_off(const station_t *station, FILE *to)
 {
     (void)fprintf(to, ", silences in a row %u, left alone for %.1f s", silences(station),
-                  alone_us(station) / 1000000.0);
+                  backoff_left_us(station) / 1000000.0);
 }
 
 void counters_print(const account_t *account, FILE *to)
@@ -139,7 +139,8 @@ static void print_unit(const station_t *station, FILE *to)
 {
     const uint64_t *const unit = station->counters.total.unit;
     print_attempts(&station->counters, to, station->name, ": ");
-    (void)fprintf(to, ", answers %" PRIu64 ", failures %" PRIu64, unit[UNIT_ANSWERS], unit[UNIT_FAILURES]);
+    (void)fprintf(to, ", responses %" PRIu64 ", failures %" PRIu64, unit[UNIT_RESPONSES],
+                  unit[UNIT_FAILURES]);
     print_back_off(station, to);
     print_time(&station->counters, to, ", ");
     (void)fputs("\n", to);
@@ -190,11 +191,11 @@ static void print_json_time(const counters_t *counters, FILE *to)
 {
     if (counters->timed != 0)
         (void)fprintf(to,
-                      ",\"answer_us\":{\"answers\":%" PRIu64 ",\"min\":%" PRIu32
+                      ",\"response_us\":{\"responses\":%" PRIu64 ",\"min\":%" PRIu32
                       ",\"mean\":%.0f,\"max\":%" PRIu32 "}",
                       counters->timed, counters->time_min_us, mean_us(counters), counters->time_max_us);
     else
-        (void)fputs(",\"answer_us\":null", to);
+        (void)fputs(",\"response_us\":null", to);
 }
 
 static void print_json_group(const group_t *group, FILE *to)
@@ -223,8 +224,9 @@ static void print_json_unit(const station_t *station, FILE *to)
                   station->mode->name, station->address);
     print_json_attempts(&station->counters, to);
     (void)fprintf(to,
-                  ",\"answers\":%" PRIu64 ",\"failures\":%" PRIu64 ",\"silences\":%u,\"alone_us\":%" PRIu32,
-                  counts[UNIT_ANSWERS], counts[UNIT_FAILURES], silences(station), alone_us(station));
+                  ",\"responses\":%" PRIu64 ",\"failures\":%" PRIu64
+                  ",\"silences\":%u,\"backoff_left_us\":%" PRIu32,
+                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], silences(station), backoff_left_us(station));
     print_json_time(&station->counters, to);
     (void)fputs("}", to);
 }

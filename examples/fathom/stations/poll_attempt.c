@@ -17,7 +17,7 @@ listener_t *poll_whose(void *ctx)
 {
     poll_loop_t *const loop = ctx;
     for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
-        if (loop->channel.line.head == &station->reader.unit->request.exchange) return station->listener;
+        if (loop->channel.line.head == &station->reader.unit->request.transaction) return station->listener;
     return NULL;
 }
 
@@ -32,7 +32,7 @@ static station_t *station_at(poll_loop_t *loop, uint8_t address)
 void poll_take_late(poll_loop_t *loop)
 {
     const channel_t *const channel = &loop->channel;
-    if (!poll_is_shared(loop) || channel->counters[FATHOM_LINE_LATE_ANSWERS] == 0) return;
+    if (!poll_is_shared(loop) || channel->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
     for (station_t *station = loop->options.stations; station != poll_end(loop); station++) {
         evidence_t evidence;
         if (channel->listener.now != station->listener) continue;
@@ -44,7 +44,7 @@ void poll_take_late(poll_loop_t *loop)
 }
 
 /* Has another sensor of this line answered? */
-static bool others_answer(const poll_loop_t *loop, const station_t *station)
+static bool others_response(const poll_loop_t *loop, const station_t *station)
 {
     const sensor_options_t *const options = &loop->options;
     for (size_t i = 0; i != options->station_count; i++)
@@ -91,7 +91,7 @@ static void report_failure(poll_loop_t *loop, station_t *station, fathom_status_
         .line = &station->line,
         .shared = poll_is_shared(loop) ? station->name : NULL,
         .address = station->address,
-        .others_answer = others_answer(loop, station),
+        .others_response = others_response(loop, station),
         .waits = loop->options.reconnect && has_more_to_do(loop, station),
         .is_whole = is_first && !reader_has_more(&station->reader) && has_probes(loop, station),
     };
@@ -121,7 +121,7 @@ static void end_attempt(const poll_loop_t *loop, station_t *station)
 
 /*
  * A sensor that sends by itself does not keep the user's interval: what comes between two attempts is dropped,
- * a whole answer at a time. The driver of a sensor that is asked keeps the interval itself.
+ * a whole response at a time. The driver of a sensor that is asked keeps the interval itself.
  */
 static bool is_early(const poll_loop_t *loop, station_t *station, fathom_status_t status)
 {

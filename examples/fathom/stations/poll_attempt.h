@@ -19,7 +19,7 @@ bool poll_is_done(const poll_loop_t *loop, const station_t *station);
 /* A request is about to leave: the listener of its station. The line has put it at the front. */
 listener_t *poll_whose(void *ctx);
 
-/* A late answer comes while its unit is asked nothing, and perhaps another one is: it explains the failures of the
+/* A late response comes while its unit is asked nothing, and perhaps another one is: it explains the failures of the
  * unit that it is from. */
 void poll_take_late(poll_loop_t *loop);
 

@@ -55,7 +55,7 @@ static bool poll_station(poll_loop_t *loop, station_t *station)
         loop->is_lost = fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST;
         if (loop->is_lost && status == FATHOM_PENDING) status = FATHOM_ERR_PORT;
         if (status == FATHOM_PENDING && station->reader.unit != NULL && channel_is_stuck(&loop->channel))
-            status = FATHOM_ERR_NO_ANSWER;
+            status = FATHOM_ERR_NO_RESPONSE;
         if (status == FATHOM_PENDING) return false;
         poll_take_outcome(loop, station, status, &sample);
     } while (!loop->is_lost && reader_has_more(&station->reader));

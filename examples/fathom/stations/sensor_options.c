@@ -241,7 +241,7 @@ void sensor_options_help(FILE *to)
         "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --duration S      ends after so many seconds; without it Ctrl-C does\n"
         "  --interval MS     from one attempt to the next; default: as fast as the sensor can\n"
-        "  --timeout MS      how long to wait for an answer (default: as the sensor needs, 0.5 to 1 s), or "
+        "  --timeout MS      how long to wait for a response (default: as the sensor needs, 0.5 to 1 s), or "
         "for a\n"
         "                    good frame of a sensor that sends by itself (default 10000)\n"
         "  --retries N       how often a failed request is repeated before it counts; default 0\n"

@@ -54,11 +54,11 @@ static bool check_two(const station_t *one, const station_t *other, const char *
                           other->name);
         return false;
     }
-    /* One flipped bit in an answer 55 AA gives its address to every other A05 that hears it. */
+    /* One flipped bit in a response 55 AA gives its address to every other A05 that hears it. */
     if (one->model == other->model && (is_a05_dyp(one) || is_a05_dyp(other))) {
         (void)usage_error(
             command,
-            "a damaged answer in mode dyp can change the address of another %s on the line; ask "
+            "a damaged response in mode dyp can change the address of another %s on the line; ask "
             "them all by Modbus, such as %s:modbus",
             one->model->name, is_a05_dyp(one) ? one->name : other->name);
         return false;

@@ -20,8 +20,8 @@ typedef struct {
         own_listener;     /* where several sensors are asked: what was heard while it was this one's turn */
     listener_t *listener; /* the line's or its own */
     uint64_t next_us;     /* when the present attempt began, or will */
-    bool skipping;        /* the present answer came before it */
-    bool answering;       /* the present attempt has begun to hand over an answer, ... */
+    bool skipping;        /* the present response came before it */
+    bool answering;       /* the present attempt has begun to hand over a response, ... */
     bool has_failed;      /* ... or a part of it was an error */
     bool has_good;        /* there has been a reading that is not unknown */
 } station_t;

@@ -24,8 +24,8 @@ static const struct {
     [MARK_UNKNOWN] = {'?', false, "unknown"},
     [MARK_TOO_NEAR] = {'n', false, "too near"},
     [MARK_STALE] = {'s', true, "stale"},
-    [MARK_NO_ANSWER] = {'x', true, "no answer"},
-    [MARK_BAD_ANSWER] = {'!', true, "bad answer"},
+    [MARK_NO_RESPONSE] = {'x', true, "no response"},
+    [MARK_BAD_RESPONSE] = {'!', true, "bad data"},
     [MARK_FAULT] = {'F', false, "fault"},
     [MARK_PORT] = {'P', true, "port lost"},
 };
@@ -111,8 +111,8 @@ void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *st
     /* 0: it is the failure of all */
     const bool is_of_one = status == FATHOM_ERR_MALFORMED && !failure->is_whole;
     const uint8_t probe = is_of_one ? reader_refused_probe(&station->reader) : 0;
-    mark_t mark = MARK_BAD_ANSWER;
-    if (status == FATHOM_ERR_NO_ANSWER || status == FATHOM_ERR_ECHO) mark = MARK_NO_ANSWER;
+    mark_t mark = MARK_BAD_RESPONSE;
+    if (status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO) mark = MARK_NO_RESPONSE;
     if (status == FATHOM_ERR_STALE) mark = MARK_STALE;
     if (status == FATHOM_ERR_PORT) mark = MARK_PORT;
     for (size_t i = 0; i != lanes->count; i++)

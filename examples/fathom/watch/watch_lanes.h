@@ -14,8 +14,8 @@ typedef enum {
     MARK_UNKNOWN,  /* a value without a meaning */
     MARK_TOO_NEAR, /* ... to be measured */
     MARK_STALE,
-    MARK_NO_ANSWER,
-    MARK_BAD_ANSWER, /* damaged, refused, or with a value that cannot be */
+    MARK_NO_RESPONSE,
+    MARK_BAD_RESPONSE, /* damaged, refused, or with a value that cannot be */
     MARK_FAULT,
     MARK_PORT, /* it is lost */
     MARKS
@@ -80,7 +80,7 @@ step_t lane_step(const lanes_t *lanes, const lane_t *lane, uint32_t ago);
 /* Readings in ten seconds, over the last few. */
 uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane);
 
-/* "1.234 m", "no answer", "waiting", in a buffer of the caller's. */
+/* "1.234 m", "no response", "waiting", in a buffer of the caller's. */
 enum { LANE_VALUE = 24 };
 const char *lane_value(const lane_t *lane, char text[LANE_VALUE]);
 

@@ -100,8 +100,8 @@ static void draw_words(picture_t *picture, const lanes_t *lanes, const lane_t *l
     if (is_short) return;
     (void)snprintf(text, sizeof text, "lost %" PRIu64 " of %" PRIu64, lane->lost, lane->outcomes);
     uint16_t end = put_text(picture, row, 38, text, lane->lost != 0 ? COLOUR_LOSS : COLOUR_PLAIN);
-    if (unit == NULL || unit->alone_us < 1000000) return;
-    (void)snprintf(text, sizeof text, "asked again in %" PRIu32 " s", unit->alone_us / 1000000);
+    if (unit == NULL || unit->backoff_left_us < 1000000) return;
+    (void)snprintf(text, sizeof text, "asked again in %" PRIu32 " s", unit->backoff_left_us / 1000000);
     (void)put_text(picture, row, (uint16_t)(end + 2), text, COLOUR_PLAIN);
 }
 

@@ -3,7 +3,7 @@
 
 static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
 
-DRIVER(hps167s, modbus_begin(), .modbus.transport = &modbus, .modbus.settings = &settings)
+DRIVER(hps167s, modbus_begin(), .modbus.transport = &modbus, .modbus.line_settings = &settings)
 
 void hps167s_use(const fathom_sample_t *sample)
 {

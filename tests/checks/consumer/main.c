@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
-#include "fathom/crc16.h"
-#include "fathom/modbus_client.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/engine/modbus_client.h"
 #include "fathom/version.h"
 
 /* Prints the version and whether code from the library works; MODBUS over Serial Line V1.02 has the frame. */

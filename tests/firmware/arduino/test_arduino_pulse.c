@@ -15,10 +15,10 @@ enum { CYCLE_US = 240000 };       /* more than from one reading to the next */
 enum { STEP_US = 4, BOUND_US = 11 };
 
 static struct {
-    uint64_t width_cycles;   /* of the answer; 0: none */
+    uint64_t width_cycles;   /* of the response; 0: none */
     uint64_t rise_at_cycles; /* not 0: the edge is so long after an overflow of Timer0 */
     uint64_t fall_at_cycles, rise_cycle;
-    uint64_t fell_cycles; /* width of the last answer in truth */
+    uint64_t fell_cycles; /* width of the last response in truth */
     bool stays_high;
     uint64_t overflow_cycle;
     uint32_t rise_count; /* of overflows, as the core counts them */
@@ -127,13 +127,13 @@ TEST(pulses_become_distances)
     assert_in_range(bench.trigger_cycles / BOARD_CYCLES_PER_US, 220001, CYCLE_US);
 }
 
-TEST(nothing_in_range_no_answer_and_a_stuck_line_are_told_apart)
+TEST(nothing_in_range_no_response_and_a_stuck_line_are_told_apart)
 {
     begin("a16_pulse");
     bench.width_cycles = 94000 * BOARD_CYCLES_PER_US;
     assert_string_equal(line(), "nothing in range");
     bench.width_cycles = 0;
-    assert_string_equal(line(), "error -3");         /* FATHOM_ERR_NO_ANSWER */
+    assert_string_equal(line(), "error -3");         /* FATHOM_ERR_NO_RESPONSE */
     bench.width_cycles = 1000 * BOARD_CYCLES_PER_US; /* noise */
     assert_string_equal(line(), "error -3");
     bench.width_cycles = 120000 * BOARD_CYCLES_PER_US;

@@ -79,7 +79,7 @@ TEST(the_led_shows_what_is_nearer_than_a_meter)
     fathom_sim_detach(&bench.line, &bench.hps.device, board.clock.now_us);
     board_plan();
     board_run_us(3 * A_SECOND_US / 2);
-    assert_in_range(bench.led_changes, 5, 7); /* it blinks: no answer within 500 ms, again and again */
+    assert_in_range(bench.led_changes, 5, 7); /* it blinks: no response within 500 ms, again and again */
     assert_int_equal(bench.hps.device.counters.crc_errors, 0);
 }
 
@@ -136,7 +136,7 @@ TEST(distances_arrive_as_they_were_sent)
     expect_reading(65535);
 }
 
-TEST(a_loop_of_20_ms_talks_into_the_answers)
+TEST(a_loop_of_20_ms_talks_into_the_responses)
 {
     begin("hps_probe", true, false);
     board_run_us(2 * A_SECOND_US);

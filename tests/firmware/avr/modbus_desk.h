@@ -3,7 +3,7 @@
 #define FATHOM_TEST_AVR_MODBUS_DESK_H
 
 #include "board.h"
-#include "fathom/line.h"
+#include "fathom/engine/line.h"
 #include "reports.h"
 
 /* The image "sensors" on RS-485 with two HPS-167S, addresses 1 and 2, each with faults of its own. */

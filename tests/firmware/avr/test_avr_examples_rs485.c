@@ -108,7 +108,7 @@ TEST(it_asks_54_times_a_second)
     const uint32_t before = hps.device.counters.answered;
     assert_true(board_run_us(1000000));
     assert_in_range(hps.device.counters.answered - before, 53, 54);
-    assert_int_equal(hps.device.counters.torn, 0);
+    assert_int_equal(hps.device.counters.truncated, 0);
     assert_int_equal(hps.device.counters.crc_errors, 0);
     assert_int_equal(hps.device.counters.unserved, 0);
 }
@@ -149,7 +149,7 @@ TEST(while_it_warms_up_nothing_is_lit)
     assert_lit(false, true, false);
 }
 
-TEST(a_single_damaged_answer_is_no_error)
+TEST(a_single_damaged_response_is_no_error)
 {
     assert_true(board_run_us(6000000));
     for (int i = 0; i < 10; i++) {

@@ -7,7 +7,7 @@
 
 static const suite_t suite = {.tear_down = desk_stop};
 
-/* Each request has its answer, all is well on the wire and nothing is counted. */
+/* Each request has its response, all is well on the wire and nothing is counted. */
 typedef struct {
     uint8_t orders;
     bool echo; /* of the line: an adapter or a transceiver whose receiver stays on hands back what is sent */
@@ -31,7 +31,7 @@ static void assert_run(void **state)
     assert_in_range(desk_assert_wire(&silence_cycles), run->readings, run->readings + run->more_requests);
     if (run->least_us != 0) {
         const uint64_t us = silence_cycles / BOARD_CYCLES_PER_US;
-        print_message("%u baud: %u us between an answer and the next request\n", (unsigned)desk.baud,
+        print_message("%u baud: %u us between a response and the next request\n", (unsigned)desk.baud,
                       (unsigned)us);
         assert_in_range(us, run->least_us, run->most_us);
     }
@@ -42,7 +42,7 @@ static void assert_run(void **state)
     for (int i = 1; i < FATHOM_LINE_COUNTERS; i++) assert_int_equal(line[i], 0);
     for (int i = 0; i < 16; i++) assert_int_equal(desk.errors[i], 0);
     assert_int_equal(desk.hps[0].device.counters.crc_errors, 0);
-    assert_int_equal(desk.hps[0].device.counters.torn, 0);
+    assert_int_equal(desk.hps[0].device.counters.truncated, 0);
     assert_int_equal(desk.hps[0].device.counters.unheard, 0);
     assert_int_equal(desk.hps[0].device.counters.wrong_settings, 0);
 }
@@ -51,11 +51,12 @@ static void assert_run(void **state)
     static const run_t name = {__VA_ARGS__};                                                                 \
     TEST_ROW(name, assert_run, &name)
 
-RUN(every_request_has_its_answer_and_the_wire_its_silences, ORDER_HPS167S, .readings = 60, .more_requests = 1)
+RUN(every_request_has_its_response_and_the_wire_its_silences, ORDER_HPS167S, .readings = 60,
+    .more_requests = 1)
 
-/* Where two units wait to be asked, one request follows upon the other's answer as soon as it may: t3.5 are 2005 us,
+/* Where two units wait to be asked, one request follows upon the other's response as soon as it may: t3.5 are 2005 us,
  * and the processor wakes and looks for less than half a millisecond. */
-RUN(the_next_request_comes_t3_5_after_the_answer_before_and_not_much_later, ORDER_HPS167S | ORDER_TWO_UNITS,
+RUN(the_next_request_comes_t3_5_after_the_response_before_and_not_much_later, ORDER_HPS167S | ORDER_TWO_UNITS,
     .readings = 100, .more_requests = 1, .least_us = 2005, .most_us = 2504)
 
 RUN(at_115200_too, ORDER_HPS167S | ORDER_TWO_UNITS | ORDER_115200, .readings = 100, .more_requests = 1,
@@ -80,8 +81,8 @@ TEST(a_unit_that_is_not_there_costs_its_time_outs_and_nothing_else)
     board_plan();
     desk_run(100);
     assert_int_equal(desk.samples[1], 0);
-    assert_true(desk.errors[-FATHOM_ERR_NO_ANSWER] > 0);
-    assert_int_equal(desk.samples[0] + desk.errors[-FATHOM_ERR_NO_ANSWER], 100);
+    assert_true(desk.errors[-FATHOM_ERR_NO_RESPONSE] > 0);
+    assert_int_equal(desk.samples[0] + desk.errors[-FATHOM_ERR_NO_RESPONSE], 100);
     assert_true(desk.samples[0] > 80);
     assert_in_range(desk_assert_wire(&silence_cycles), 100, 102);
 }

@@ -110,8 +110,8 @@ TEST(a_cut_wire_is_an_error_and_no_reading)
 {
     assert_next("1000 mm");
     set_wire(FATHOM_SIM_WIRE_LOW);
-    assert_next("error -3: no answer");
-    assert_string_equal(board_line(PATIENCE_US), "error -3: no answer");
+    assert_next("error -3: no response");
+    assert_string_equal(board_line(PATIENCE_US), "error -3: no response");
     set_wire(FATHOM_SIM_WIRE_WHOLE);
     assert_next("1000 mm");
 }

@@ -54,13 +54,13 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         self.assertEqual(re.findall(r'params set to (.*)$', done.err, re.M),
                          ['9600 8N1', '9600 8N1', '19201 8N1', '9600 8N1', '9600 8N1'])
 
-    def test_more_answers_than_an_index_of_the_ring_can_count(self):
-        """60 answers of 13 bytes."""
+    def test_more_responses_than_an_index_of_the_ring_can_count(self):
+        """60 responses of 13 bytes."""
         ports = {'gate': self.libmodbus((19200, 'none'), 8, qemu.DATASHEET)}
         done = self.end_well(self.five_lines(ports, 60, GATE))
         self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 60)
 
-    def nobody_answers(self, name, error, count):
+    def nobody_responses(self, name, error, count):
         """On that line. The others go on after it was noticed; the image ends when three of them have `count`."""
         ports = self.far_ends()
         ports[name] = self.device().port
@@ -74,12 +74,12 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
             self.assertIn(f'{other} probe 1 ', ''.join(image.lines()[before:]), 'it has not gone on')
 
     def test_four_go_on_beside_an_a05_that_does_not_answer(self):
-        self.nobody_answers('bumper', 'NO_ANSWER', 24)
+        self.nobody_responses('bumper', 'NO_RESPONSE', 24)
 
     def test_four_go_on_beside_an_a16_that_does_not_send(self):
-        self.nobody_answers('silo', 'STALE', 24)
+        self.nobody_responses('silo', 'STALE', 24)
 
-    def answer_to_the_end(self, image, device, request, answer):
+    def response_to_the_end(self, image, device, request, response):
         """The last request may be cut off by the end of the image."""
         got = b''
         while True:
@@ -90,10 +90,10 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
             got += os.read(device.master, len(request) - len(got))
             self.assertTrue(request.startswith(got), got.hex(' '))
             if got == request:
-                device.write(answer)
+                device.write(response)
                 got = b''
 
-    def test_four_go_on_beside_a_line_with_noise_damage_strangers_and_late_answers(self):
+    def test_four_go_on_beside_a_line_with_noise_damage_strangers_and_late_responses(self):
         ports = self.far_ends()
         tank = self.device()
         ports['tank'] = tank.port
@@ -114,7 +114,7 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         answered()
         asked()
         tank.write(b'\x55\xAA\x00\xFF\x02\xF2' * 20)
-        failed('NO_ANSWER')
+        failed('NO_RESPONSE')
         answered()
         asked()
         tank.write(right[:-1] + bytes((right[-1] ^ 1,)))
@@ -122,12 +122,12 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         answered()
         asked()
         tank.write(e2e.registers(2, 999))
-        failed('NO_ANSWER')
+        failed('NO_RESPONSE')
         answered()
         asked()
-        failed('NO_ANSWER')
+        failed('NO_RESPONSE')
         tank.write(right)  # late
-        self.answer_to_the_end(image, tank, request, right)
+        self.response_to_the_end(image, tank, request, right)
         done = self.end_well(image)
         self.check_said(done.out, SAID, 6)
         self.assertEqual(tank.baud(), e2e.termios.B9600)

@@ -42,13 +42,13 @@ def build(project):
     return images
 
 
-class Nrf51(qemu.Exchange, qemu.Case):
+class Nrf51(qemu.Transaction, qemu.Case):
     machine = 'nrf51'
     baud = 115200
     sim_options = ('--baud', '115200')
 
     def check(self, port, image='hps167s'):
-        """30 answers of 13 bytes are more than an index of the ring can count."""
+        """30 responses of 13 bytes are more than an index of the ring can count."""
         done = self.end_well(self.boot(image, port, traces=('nrf51_uart_write',)))
         self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 30)
         # 29.10.14 and 29.10.15: 19200 baud, and the parity bit is included.

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom/engine/wait.h"
 #include "fathom/hal.h"
-#include "fathom/wait.h"
 
 /* For images that test themselves: each writes a line "ok WHAT" or "FAILED WHAT", by semihosting. */
 void check(bool is_right, const char *what);

@@ -2,7 +2,7 @@
 """What the tests with QEMU share: an image is booted with programs, or the test itself, at the far ends of its UARTs,
 and ends by itself with an exit status. What it says by semihosting is the program's stdout, traces are its stderr.
 
-QEMU has no bits on its wires, and its time is the time of this machine: on a busy one the far ends answer late. So
+QEMU has no bits on its wires, and its time is the time of this machine: on a busy one the far ends response late. So
 nothing here is judged by how long it takes, and an attempt may fail for that; what must not be is a wrong reading."""
 import os
 import re
@@ -20,9 +20,9 @@ PATIENCE = 60  # seconds; an image takes up to 5
 MACHINES = {'mps2': ('qemu-system-arm', '-M', 'mps2-an385'),
             'stm32f4': ('qemu-system-arm', '-M', 'netduinoplus2'),
             'virt': ('qemu-system-riscv32', '-M', 'virt', '-bios', 'none')}
-# What a slow far end may cause: no answer, one that broke off, a stream that was read out of step and refused, a stale
+# What a slow far end may cause: no response, one that broke off, a stream that was read out of step and refused, a stale
 # one.
-LATE = {'NO_ANSWER', 'CHECKSUM', 'MALFORMED', 'STALE'}
+LATE = {'NO_RESPONSE', 'CHECKSUM', 'MALFORMED', 'STALE'}
 
 DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 723.1744
 
@@ -78,7 +78,7 @@ def alone(**images):
     main()
 
 
-class Exchange:
+class Transaction:
     """For a Case with check(port): an HPS-167S at 2083 mm, simulated and served by others. sim_options: of its rate."""
     serve = interop.LibmodbusServer.serve
     baud = 19200

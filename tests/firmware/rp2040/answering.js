@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A Modbus device that knows one request and one answer, of the datasheets' examples.
+// A Modbus device that knows one request and one response, of the datasheets' examples.
 'use strict';
 
 const A16_REAL_TIME = { // A16 6(4), example 2: 751 mm
   format: '8N1',
   baud: 9600,
   request: [0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xd4, 0x36],
-  answer: [0x01, 0x03, 0x02, 0x02, 0xef, 0xf8, 0xa8],
+  response: [0x01, 0x03, 0x02, 0x02, 0xef, 0xf8, 0xa8],
 };
 
-// Answers `after` us (undefined: never) after the request's last stop bit. Keeps when each request ended, in ns, and what
+// Responses `after` us (undefined: never) after the request's last stop bit. Keeps when each request ended, in ns, and what
 // else it heard.
 class Answering {
   constructor(machine, uart, frames, after) {
@@ -34,7 +34,7 @@ class Answering {
 
   send() {
     const character = 10e6 / this.frames.baud;
-    this.frames.answer.forEach((value, i) => this.machine.after((i + 1) * character, () => this.uart.receive(value)));
+    this.frames.response.forEach((value, i) => this.machine.after((i + 1) * character, () => this.uart.receive(value)));
   }
 }
 

@@ -33,16 +33,16 @@ class A16 {
 
 // 01 03 00 08 00 04 C5 CB and 01 03 08 08 23 DC B2 07 01 00 00 FD 41 (HPS-167S table 17 and command #5).
 const REQUEST = [0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xc5, 0xcb];
-const ANSWER = [0x01, 0x03, 0x08, 0x08, 0x23, 0xdc, 0xb2, 0x07, 0x01, 0x00, 0x00, 0xfd, 0x41];
+const RESPONSE = [0x01, 0x03, 0x08, 0x08, 0x23, 0xdc, 0xb2, 0x07, 0x01, 0x00, 0x00, 0xfd, 0x41];
 const CHARACTER_NS = 11e9 / 19200; // 8E1
 const T1_5_NS = 1.5 * CHARACTER_NS, T3_5_NS = 3.5 * CHARACTER_NS; // HPS-167S 2.2.3
 
-// Takes requests from a UART and answers each by `answers`: {after, errors} in turns, the last one for ever. after: us
-// from the request's end to the answer's start, undefined: never. errors: {index: DR bits}. It hears only what leaves
-// while the driver is on, and keeps each exchange: {start, end, answered} in ns.
+// Takes requests from a UART and answers each by `responses`: {after, errors} in turns, the last one for ever. after: us
+// from the request's end to the response's start, undefined: never. errors: {index: DR bits}. It hears only what leaves
+// while the driver is on, and keeps each transaction: {start, end, answered} in ns.
 class Hps167s {
-  constructor(machine, {uart, driver, answers}) {
-    Object.assign(this, {machine, uart, answers: [...answers], driver: machine.record(driver), exchanges: [], heard: []});
+  constructor(machine, {uart, driver, responses}) {
+    Object.assign(this, {machine, uart, responses: [...responses], driver: machine.record(driver), transactions: [], heard: []});
     uart.onSent = (character) => this.hear(character);
   }
 
@@ -54,24 +54,24 @@ class Hps167s {
     const frame = this.heard;
     this.heard = [];
     if (frame.some(({value, format}, i) => value !== REQUEST[i] || format !== '8E1')) return;
-    const exchange = {start: frame[0].start, end: character.end, answered: null, characters: frame};
-    this.exchanges.push(exchange);
-    const {after, errors} = this.answers.length > 1 ? this.answers.shift() : this.answers[0];
-    if (after !== undefined) this.machine.after(after, () => this.answer(exchange, errors || {}));
+    const transaction = {start: frame[0].start, end: character.end, answered: null, characters: frame};
+    this.transactions.push(transaction);
+    const {after, errors} = this.responses.length > 1 ? this.responses.shift() : this.responses[0];
+    if (after !== undefined) this.machine.after(after, () => this.response(transaction, errors || {}));
   }
 
-  answer(exchange, errors) {
-    ANSWER.forEach((value, i) => this.machine.after((i + 1) * CHARACTER_NS / US, () => {
+  response(transaction, errors) {
+    RESPONSE.forEach((value, i) => this.machine.after((i + 1) * CHARACTER_NS / US, () => {
       this.uart.receive(value, errors[i]);
-      if (i === ANSWER.length - 1) exchange.answered = this.machine.clock.nanos;
+      if (i === RESPONSE.length - 1) transaction.answered = this.machine.clock.nanos;
     }));
   }
 }
 
-const READING = 'target 2083 mm, raw 2083'; // what is printed of ANSWER
+const READING = 'target 2083 mm, raw 2083'; // what is printed of RESPONSE
 const MEASURING = {after: 3000}; // what the device takes
 const NEVER = {after: undefined};
-const NO_ANSWER = 'error -3', CHECKSUM = 'error -4', STALE = 'error -7';
+const NO_RESPONSE = 'error -3', CHECKSUM = 'error -4', STALE = 'error -7';
 const WRAP_NS = 2 ** 32 * US; // of TIMER
 
 // The lines of text that UART 0 has sent.
@@ -96,5 +96,5 @@ class Terminal {
 }
 
 module.exports = {
-  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_ANSWER, CHECKSUM, STALE, WRAP_NS,
+  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_RESPONSE, CHECKSUM, STALE, WRAP_NS,
 };

@@ -6,7 +6,7 @@ const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {PE, FE} = require('./pl011.js');
 const {
-  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_ANSWER, CHECKSUM, WRAP_NS,
+  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_RESPONSE, CHECKSUM, WRAP_NS,
 } = require('./devices.js');
 
 const EXAMPLE = 'hps167s_rs485';
@@ -15,9 +15,9 @@ const DI = 4, RO = 5, DE = 6, TRIGGER = 2, ECHO = 3;
 const UART1_IRQ = 21, TIMER_IRQ_0 = 0;
 const LOOPS = {fine: 0, coarse: 20000}; // us
 
-function start(image, answers, options) {
+function start(image, responses, options) {
   const machine = new Machine(image, options);
-  const hps = new Hps167s(machine, {uart: machine.uart[1], driver: DE, answers});
+  const hps = new Hps167s(machine, {uart: machine.uart[1], driver: DE, responses});
   return {machine, hps, terminal: new Terminal(machine)};
 }
 
@@ -29,9 +29,9 @@ function assertDriven({hps}, most = CHARACTER_NS) {
   hps.driver.forEach(({high, at}, i) => {
     if (high) highs.push({from: at, to: i + 1 < hps.driver.length ? hps.driver[i + 1].at : Infinity});
   });
-  assert.ok(hps.exchanges.length > 0 && highs.length >= hps.exchanges.length);
+  assert.ok(hps.transactions.length > 0 && highs.length >= hps.transactions.length);
   let longest = 0;
-  hps.exchanges.forEach(({start: from, end}, i) => {
+  hps.transactions.forEach(({start: from, end}, i) => {
     assert.ok(highs[i].from <= from, `driven ${highs[i].from - from} ns too late`);
     if (highs[i].to === Infinity) return; // still leaving
     assert.ok(highs[i].to >= end, `let go ${end - highs[i].to} ns too early`);
@@ -43,20 +43,20 @@ function assertDriven({hps}, most = CHARACTER_NS) {
 
 // Nothing within a character: the longest silence in a request.
 function assertNoGaps({hps}) {
-  for (const {characters} of hps.exchanges)
+  for (const {characters} of hps.transactions)
     for (let i = 1; i < characters.length; i++)
       assert.ok(characters[i].start - characters[i - 1].end < characters[i].bit / 8);
 }
 
 function assertSilence({hps}) {
-  for (let i = 1; i < hps.exchanges.length; i++) {
-    const before = hps.exchanges[i - 1];
-    const silence = hps.exchanges[i].start - (before.answered || before.end);
+  for (let i = 1; i < hps.transactions.length; i++) {
+    const before = hps.transactions[i - 1];
+    const silence = hps.transactions[i].start - (before.answered || before.end);
     assert.ok(silence >= T3_5_NS, `only ${silence} ns of silence`);
   }
 }
 
-test('the datasheet\'s answer becomes its reading, again and again', () => {
+test('the datasheet\'s response becomes its reading, again and again', () => {
   const bench = start(EXAMPLE, [MEASURING]);
   assert.deepStrictEqual(lines(bench, 5), Array(5).fill(READING));
   assertNoGaps(bench);
@@ -82,34 +82,34 @@ test('the line is 19200 8E1: divider, format and pins', () => {
   assert.strictEqual(bench.hps.driver[0].high, false);
 });
 
-test('no answer and a late one are errors, and no reading is made of them', () => {
-  // The time-out of a measurement is 500 ms; the unit is owed its late answer and asked nothing until it has come.
+test('no response and a late one are errors, and no reading is made of them', () => {
+  // The time-out of a measurement is 500 ms; the unit is owed its late response and asked nothing until it has come.
   const bench = start(EXAMPLE, [MEASURING, NEVER, {after: 620000}, MEASURING]);
   const said = lines(bench, 4, 6000);
-  assert.deepStrictEqual(said, [READING, NO_ANSWER, NO_ANSWER, READING]);
-  const {exchanges} = bench.hps;
-  assert.ok(exchanges[3].start > exchanges[2].answered + T3_5_NS);
+  assert.deepStrictEqual(said, [READING, NO_RESPONSE, NO_RESPONSE, READING]);
+  const {transactions} = bench.hps;
+  assert.ok(transactions[3].start > transactions[2].answered + T3_5_NS);
   assertDriven(bench);
   assertSilence(bench);
 });
 
-// The second answer of three is damaged at that byte, and the port counts it.
+// The second response of three is damaged at that byte, and the port counts it.
 function assertDamaged(index, error, parity, framing) {
   const bench = start(EXAMPLE, [MEASURING, {after: 3000, errors: {[index]: error}}, MEASURING]);
   const said = lines(bench, 3, 6000);
-  assert.ok(said[1] === CHECKSUM || said[1] === NO_ANSWER, said[1]);
+  assert.ok(said[1] === CHECKSUM || said[1] === NO_RESPONSE, said[1]);
   assert.deepStrictEqual([said[0], said[2]], [READING, READING]);
   assert.deepStrictEqual([4, 6].map((offset) => bench.machine.halfword('rs485', offset)), [parity, framing]);
 }
 
-test('a byte with wrong parity damages its answer, whichever it is', () => {
+test('a byte with wrong parity damages its response, whichever it is', () => {
   for (const index of [0, 1, 3, 11, 12]) assertDamaged(index, PE, 1, 0);
 });
 
-test('a byte without a stop bit damages its answer', () => assertDamaged(4, FE, 0, 1));
+test('a byte without a stop bit damages its response', () => assertDamaged(4, FE, 0, 1));
 
-test('exchanges go on across the wrap of the clock', () => {
-  // In steps of 100 us over a whole exchange, so that the wrap comes upon each part of it.
+test('transactions go on across the wrap of the clock', () => {
+  // In steps of 100 us over a whole transaction, so that the wrap comes upon each part of it.
   for (let early = 1000; early < 21000; early += 700) {
     const bench = start(EXAMPLE, [MEASURING], {startUs: 2 ** 32 - early});
     assert.deepStrictEqual(lines(bench, 3), Array(3).fill(READING));
@@ -155,7 +155,7 @@ for (const [loop, round] of Object.entries(LOOPS)) {
     if (round !== 0) return;
     const [idle] = [...cost.idle].reduce((most, each) => (each[1] > most[1] ? each : most));
     figure('rp2040_poll_idle', idle, 'cycles');
-    figure('rp2040_poll_with_answer', cost.ready, 'cycles');
+    figure('rp2040_poll_with_response', cost.ready, 'cycles');
     figure('rp2040_crc_byte', (crc.cycles / crc.bytes).toFixed(1), 'cycles');
     figure('rp2040_both_deepest_stack', machine.deepestStack, 'bytes');
   });
@@ -168,9 +168,9 @@ const LEAST_NS = 21 * CHARACTER_NS + SLOW.after * US + T3_5_NS;
 
 function assertBusTime(name, image, options) {
   const bench = start(image, [SLOW], options);
-  bench.machine.until(() => bench.hps.exchanges.length >= 6, 300);
-  const {exchanges} = bench.hps;
-  const took = (exchanges[5].start - exchanges[1].start) / 4;
+  bench.machine.until(() => bench.hps.transactions.length >= 6, 300);
+  const {transactions} = bench.hps;
+  const took = (transactions[5].start - transactions[1].start) / 4;
   figure(name, ((took / LEAST_NS - 1) * 100).toFixed(2), '%');
   assert.ok(took <= 1.01 * LEAST_NS, `${took} ns, the line allows ${LEAST_NS}`);
 }

@@ -3,7 +3,7 @@
 'use strict';
 const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
-const {A16, Terminal, MS, NO_ANSWER, WRAP_NS} = require('./devices.js');
+const {A16, Terminal, MS, NO_RESPONSE, WRAP_NS} = require('./devices.js');
 
 const IMAGE = 'a16_pulse';
 const TRIGGER = 2, ECHO = 3, IO_IRQ_BANK0 = 13;
@@ -35,7 +35,7 @@ function assertCycle(before, behind) {
 test('the pulses of the datasheet are readings, each within 1 us of its width', () => {
   const bench = start([0, 3000, 10100, 86250, 94000]);
   const said = lines(bench, 5);
-  assert.strictEqual(said[0], NO_ANSWER); // no pulse, a cut wire
+  assert.strictEqual(said[0], NO_RESPONSE); // no pulse, a cut wire
   assertTarget(said[1], 3000);
   assertTarget(said[2], 10100);
   assertTarget(said[3], 86250);
@@ -57,7 +57,7 @@ test('the trigger is low for 2 ms, once every 221 ms', () => {
 test('a pulse of 1 ms, out of the blind zone, is noise', () => {
   const bench = start([1000, 3000]);
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], NO_ANSWER);
+  assert.strictEqual(said[0], NO_RESPONSE);
   assertTarget(said[1], 3000);
 });
 
@@ -85,7 +85,7 @@ test('a pulse during which the clock wraps is right, also between whole microsec
 test('a cycle whose time-out is beyond the wrap ends in time', () => {
   const bench = start([0, 3000], {startUs: 2 ** 32 - FIRST_US});
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], NO_ANSWER);
+  assert.strictEqual(said[0], NO_RESPONSE);
   assertTarget(said[1], 3000);
   const [before, behind] = bench.a16.triggers;
   assert.ok(before.at < WRAP_NS && behind.at > WRAP_NS);
@@ -109,7 +109,7 @@ test('edges that both wait when the interrupt runs give no width, and the next p
     if (state === 1 && bench.a16.triggers.length === 1) machine.after(115000, flicker);
   });
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], NO_ANSWER);
+  assert.strictEqual(said[0], NO_RESPONSE);
   assertTarget(said[1], 10100);
 });
 

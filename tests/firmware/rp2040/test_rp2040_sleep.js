@@ -4,7 +4,7 @@
 const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {FE, BE} = require('./pl011.js');
-const {Hps167s, Terminal, MS, READING, MEASURING, NEVER, NO_ANSWER, WRAP_NS} = require('./devices.js');
+const {Hps167s, Terminal, MS, READING, MEASURING, NEVER, NO_RESPONSE, WRAP_NS} = require('./devices.js');
 
 const IMAGE = 'hps167s_battery';
 const IMAGE_75 = 'battery_75';
@@ -27,9 +27,9 @@ class Switched extends Hps167s {
   }
 }
 
-function start(image, answers, options) {
+function start(image, responses, options) {
   const machine = new Machine(image, options);
-  const hps = new Switched(machine, {uart: machine.uart[1], driver: DE, answers});
+  const hps = new Switched(machine, {uart: machine.uart[1], driver: DE, responses});
   return {machine, hps, terminal: new Terminal(machine)};
 }
 
@@ -47,7 +47,7 @@ function powered({hps}) {
 
 function assertEvery(minutes, spans) {
   spans.forEach(({from, to}, i) => {
-    // A question that was asked just before the end of the warm-up takes its time-out of 500 ms.
+    // A request that was asked just before the end of the warm-up takes its time-out of 500 ms.
     assert.ok(to - from > WARM_UP_MS && to - from < WARM_UP_MS + 600, `power for ${to - from} ms`);
     const late = from - spans[0].from - i * minutes * MINUTE_MS;
     assert.ok(Math.abs(late) < 1, `${late} ms off the ${minutes} minutes`);
@@ -59,7 +59,7 @@ test('every ten minutes it gets power, warms up, is read once and loses power ag
   assert.deepStrictEqual(lines(bench, 4, 31), Array(4).fill(READING));
   const spans = powered(bench);
   assert.strictEqual(spans.length, 4);
-  assert.strictEqual(bench.hps.exchanges.length, 4, 'one measurement each time');
+  assert.strictEqual(bench.hps.transactions.length, 4, 'one measurement each time');
   assert.ok(bench.hps.early > 0, 'it was asked while it warmed up');
   assertEvery(10, spans);
 });
@@ -76,7 +76,7 @@ test('the core sleeps for more than 99.9 % of the time', () => {
 
 test('a sensor that does not answer is an error, and it does not keep its power', () => {
   const bench = start(IMAGE, [NEVER, MEASURING]);
-  assert.deepStrictEqual(lines(bench, 2, 11), [NO_ANSWER, READING]);
+  assert.deepStrictEqual(lines(bench, 2, 11), [NO_RESPONSE, READING]);
   for (const {from, to} of powered(bench)) assert.ok(to - from < WARM_UP_MS + 1200, `power for ${to - from} ms`);
 });
 

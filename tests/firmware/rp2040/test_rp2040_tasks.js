@@ -16,7 +16,7 @@ function start({tank = 50000, gate = [MEASURING], ...options} = {}) {
   return {
     machine,
     tank: new Answering(machine, machine.uart[0], A16_REAL_TIME, tank),
-    gate: new Hps167s(machine, {uart: machine.uart[1], driver: DE, answers: gate}),
+    gate: new Hps167s(machine, {uart: machine.uart[1], driver: DE, responses: gate}),
     lamp: machine.record(LAMP),
     near: machine.record(NEAR),
   };
@@ -64,7 +64,7 @@ test('a line that is dead holds up neither the other one nor the lamp', () => {
   const [tank, gate] = both(bench);
   assertReadings(tank, 24, 25);
   assert.strictEqual(tank.errors, 0);
-  assert.deepStrictEqual([gate.readings, gate.mm, gate.status], [0, NONE, -3]); // FATHOM_ERR_NO_ANSWER
+  assert.deepStrictEqual([gate.readings, gate.mm, gate.status], [0, NONE, -3]); // FATHOM_ERR_NO_RESPONSE
   assert.ok(gate.errors >= 2);
   assertBlinks(bench, 3000);
 });

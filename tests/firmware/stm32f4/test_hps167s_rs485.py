@@ -5,7 +5,7 @@ are at 115200 baud, QEMU's own."""
 import qemu
 
 
-class Exchange(qemu.Exchange, qemu.Case):
+class Transaction(qemu.Transaction, qemu.Case):
     baud = 115200
     sim_options = ('--baud', '115200')
 

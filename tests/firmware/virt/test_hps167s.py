@@ -4,9 +4,9 @@
 import qemu
 
 
-class Exchange(qemu.Exchange, qemu.Case):
+class Transaction(qemu.Transaction, qemu.Case):
     def check(self, port):
-        """30 answers of 13 bytes are more than an index of the ring can count."""
+        """30 responses of 13 bytes are more than an index of the ring can count."""
         done = self.end_well(self.boot('hps167s', port, traces=('serial_update_parameters',)))
         self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 30)
         # QEMU's UART has 399193 baud to divide, of which 19009 is next to 19200. Each register that is written makes a

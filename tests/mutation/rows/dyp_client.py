@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 ROWS = (
-    ('unit-not-compared', "line.h: another unit's late answer serves no retry", 'unit/test_dyp_client',
-     ('src/line_request.c', 'fathom_line_deliver',
+    ('unit-not-compared', "line.h: another unit's late response serves no retry", 'unit/test_dyp_client',
+     ('src/engine/line_request.c', 'fathom_line_deliver',
       'x->attempts == 0 || !is_of(x, unit) ||',
       'x->attempts == 0 ||')),
-    ('echo-is-an-answer', 'dyp_client.h: the echo of a read of all probes, with an answer behind it, is none',
+    ('echo-is-an-response', 'dyp_client.h: the echo of a read of all probes, with a response behind it, is none',
      'unit/test_line_echo_more',
-     ('src/dyp_client.c', 'check',
-      'fathom_dyp_protocol_valid(frame, NEXT)', 'frame[NEXT] != frame[0]')),
+     ('src/engine/dyp_client.c', 'check',
+      'fathom_dyp_55aa_valid(frame, NEXT)', 'frame[NEXT] != frame[0]')),
 )

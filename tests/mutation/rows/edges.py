@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 ROWS = (
     ('doubled-rise-begins-anew', 'edges.h: a rise seen twice is one, and the first counts', 'unit/test_edges',
-     ('src/edges.c', 'rise',
+     ('src/engine/edges.c', 'rise',
       'if (!edges->high) {',
       'if (!edges->high || edges->timed) {')),
     ('clock-wrap', 'edges.h: times may wrap', 'unit/test_edges',
-     ('src/edges.c', 'fall',
+     ('src/engine/edges.c', 'fall',
       'pulse->width_us = fathom_elapsed_us(time_us, edges->rise_us);',
       'pulse->width_us = time_us > edges->rise_us ? time_us - edges->rise_us : 0;')),
 )

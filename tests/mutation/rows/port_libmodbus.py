@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 ROWS = (
-    ('transaction-not-compared', 'fathom_libmodbus.h: a late answer is counted and dropped',
+    ('transaction-not-compared', 'fathom_libmodbus.h: a late response is counted and dropped',
      'libmodbus/test_libmodbus_tcp',
-     ('port/libmodbus/tcp.c', 'is_answer',
+     ('port/libmodbus/tcp.c', 'is_response',
       'if (word_at(adu + TRANSACTION) != port->transaction) {',
       'if (word_at(adu + TRANSACTION) > port->transaction) {')),
     ('closed-is-silence', 'fathom_libmodbus.h: a server that has closed is FATHOM_LIBMODBUS_ERR_HUNG_UP',
@@ -10,7 +10,7 @@ ROWS = (
      ('port/libmodbus/tcp.c', 'take',
       'if (there == 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);',
       'if (there == 0) return 0;')),
-    ('half-an-answer-wakes', 'fathom_libmodbus.h: who waits for the rest of an answer sleeps',
+    ('half-an-response-wakes', 'fathom_libmodbus.h: who waits for the rest of a response sleeps',
      'libmodbus/test_libmodbus_half',
      ('port/libmodbus/tcp.c', 'wait_for_rest',
       'wake_at(fd, need);', '')),

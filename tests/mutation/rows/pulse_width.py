@@ -2,11 +2,11 @@
 ROWS = (
     ('other-speed-of-sound', 'pulse_width.h: us * 4 / 23, which is T / 57.5',
      'property/test_pulse_width unit/test_a16_pwm',
-     ('src/pulse_width.c', 'fathom_pulse_width_mm',
+     ('src/codec/pulse_width.c', 'fathom_pulse_width_mm',
       '(bounded_us(width_us) * 4 + 11) / 23',
       '(bounded_us(width_us) * 174 + 500) / 1000')),
     ('cold-is-warm', 'pulse_width.h: 0.606 m/s more for each degree', 'property/test_pulse_width',
-     ('src/pulse_width.c', 'fathom_pulse_width_mm_in_air',
+     ('src/codec/pulse_width.c', 'fathom_pulse_width_mm_in_air',
       '(uint16_t)(air_dc - FATHOM_PULSE_WIDTH_MIN_AIR_DC)',
       '(uint16_t)(FATHOM_PULSE_WIDTH_MAX_AIR_DC - air_dc)')),
 )

@@ -15,19 +15,20 @@
 /* The soak as a program: prints a line for each sensor and fault, and fails when a rule is broken. */
 
 static const char usage[] =
-    "usage: soak [--exchanges N] [--seed N] [--jobs N] [--only SENSOR[:FAULT[+FAULT]] | --only eight]\n"
+    "usage: soak [--transactions N] [--seed N] [--jobs N] [--only SENSOR[:FAULT[+FAULT]] | --only eight]\n"
     "Every sensor and mode in simulated time with each fault, each pair of faults, and all at once.\n"
-    "  exchanges    requests sent; of a sensor that sends by itself: frames\n"
-    "  readings     samples; wrong: answers with a sample that the device has not said, or (old) not now\n"
-    "  most         wrong answers that the checksum must let pass, at most: expected from the frames that "
+    "  transactions    requests sent; of a sensor that sends by itself: frames\n"
+    "  readings     samples; wrong: responses with a sample that the device has not said, or (old) not now\n"
+    "  most         wrong responses that the checksum must let pass, at most: expected from the frames that "
     "were\n"
     "               hit in a way that it does not see for certain\n"
     "  stuck        no outcome in the longest time that the headers allow\n"
     "  recovered    from the end of the faults to the next right reading, the worst beside its bound\n"
-    "  lost         exchanges without a reading; unaccounted: of them those that no counter shows, or books\n"
+    "  lost         transactions without a reading; unaccounted: of them those that no counter shows, or "
+    "books\n"
     "               that do not balance; unexplained: those that no fault explains\n";
 
-enum { MOST_JOBS = 8, EIGHT_SECONDS = 600, OPTION_EXCHANGES = 20000 };
+enum { MOST_JOBS = 8, EIGHT_SECONDS = 600, OPTION_TRANSACTIONS = 20000 };
 
 typedef struct {
     uint8_t setting;
@@ -39,7 +40,7 @@ typedef struct {
 } share_t;
 
 static struct {
-    uint64_t exchanges;
+    uint64_t transactions;
     uint32_t seed, jobs;
     uint8_t only; /* SOAK_SETTINGS: all */
     bool only_eight;
@@ -47,7 +48,8 @@ static struct {
     pthread_mutex_t lock;
     uint8_t next;
     share_t shares[SOAK_SETTINGS];
-} job = {.exchanges = 100000, .seed = 1, .jobs = 1, .only = SOAK_SETTINGS, .lock = PTHREAD_MUTEX_INITIALIZER};
+} job = {
+    .transactions = 100000, .seed = 1, .jobs = 1, .only = SOAK_SETTINGS, .lock = PTHREAD_MUTEX_INITIALIZER};
 
 static void print_row(FILE *out, const char *sensor, const char *name, const cell_result_t *result)
 {
@@ -56,7 +58,7 @@ static void print_row(FILE *out, const char *sensor, const char *name, const cel
     (void)fprintf(out,
                   "%-13s %-26s %9" PRIu64 " %9" PRIu64 " %6" PRIu64 " %5" PRIu64 " %8.2f %5" PRIu64
                   " %9.1f %9.1f %8" PRIu64 " %4" PRIu64 " %4" PRIu64 "  %s%s\n",
-                  sensor, name, totals->exchanges, totals->readings, totals->wrong_answers, totals->old,
+                  sensor, name, totals->transactions, totals->readings, totals->wrong_responses, totals->old,
                   result->expected, totals->stuck, (double)result->recovered_us / 1000,
                   (double)result->bound_us / 1000, totals->lost, totals->unaccounted, totals->unexplained,
                   broken != NULL ? "BROKEN: " : "ok",
@@ -67,8 +69,9 @@ static void print_row(FILE *out, const char *sensor, const char *name, const cel
 
 static void print_head(void)
 {
-    (void)printf("%-13s %-26s %9s %9s %6s %5s %8s %5s %9s %9s %8s %4s %4s\n", "sensor", "fault", "exchanges",
-                 "readings", "wrong", "old", "most", "stuck", "recov ms", "bound ms", "lost", "unac", "unex");
+    (void)printf("%-13s %-26s %9s %9s %6s %5s %8s %5s %9s %9s %8s %4s %4s\n", "sensor", "fault",
+                 "transactions", "readings", "wrong", "old", "most", "stuck", "recov ms", "bound ms", "lost",
+                 "unac", "unex");
 }
 
 static void report(void *ctx, uint8_t setting, const char *name, const cell_result_t *result)
@@ -80,16 +83,16 @@ static void report(void *ctx, uint8_t setting, const char *name, const cell_resu
     cell_add(&share->sum, result);
 }
 
-static void soak(share_t *share, uint64_t exchanges)
+static void soak(share_t *share, uint64_t transactions)
 {
     const plan_t plan = {report, share, job.seed};
     if (job.kinds_used != 0) {
-        plan_these(&plan, share->setting, job.kinds, job.kinds_used, exchanges);
+        plan_these(&plan, share->setting, job.kinds, job.kinds_used, transactions);
         return;
     }
-    plan_singles(&plan, share->setting, exchanges / 2);
-    plan_pairs(&plan, share->setting, exchanges / 10 * 4);
-    plan_mixtures(&plan, share->setting, exchanges / 10);
+    plan_singles(&plan, share->setting, transactions / 2);
+    plan_pairs(&plan, share->setting, transactions / 10 * 4);
+    plan_mixtures(&plan, share->setting, transactions / 10);
 }
 
 static void *work(void *unused)
@@ -104,7 +107,7 @@ static void *work(void *unused)
         share->setting = setting;
         share->out = open_memstream(&share->text, &share->size);
         if (share->out == NULL) abort();
-        soak(share, job.only == SOAK_SETTINGS ? job.exchanges / SOAK_SETTINGS : job.exchanges);
+        soak(share, job.only == SOAK_SETTINGS ? job.transactions / SOAK_SETTINGS : job.transactions);
         (void)fclose(share->out);
     }
 }
@@ -132,8 +135,8 @@ static bool parse(int argc, char **argv)
     for (int i = 1; i < argc; i += 2) {
         if (i + 1 == argc) return false;
         const unsigned long long number = strtoull(argv[i + 1], NULL, 10);
-        if (strcmp(argv[i], "--exchanges") == 0)
-            job.exchanges = number;
+        if (strcmp(argv[i], "--transactions") == 0)
+            job.transactions = number;
         else if (strcmp(argv[i], "--seed") == 0)
             job.seed = (uint32_t)number;
         else if (strcmp(argv[i], "--jobs") == 0)
@@ -141,7 +144,7 @@ static bool parse(int argc, char **argv)
         else if (strcmp(argv[i], "--only") != 0 || !parse_only(argv[i + 1]))
             return false;
     }
-    return job.jobs >= 1 && job.jobs <= MOST_JOBS && job.exchanges != 0;
+    return job.jobs >= 1 && job.jobs <= MOST_JOBS && job.transactions != 0;
 }
 
 /* Sensors and faults; returns how many lines break a rule. */
@@ -168,10 +171,10 @@ static uint32_t soak_all(void)
     print_row(stdout, "all", "all", &sum);
     (void)printf("\nold values that nobody can tell from new ones (%d causes):\n", THEORY_ALIKE);
     for (uint8_t i = 0; i < THEORY_ALIKE; i++) (void)printf("  %s\n", theory_alike[i].why);
-    (void)printf("\n%" PRIu64 " exchanges, %" PRIu64 " readings, %" PRIu64
+    (void)printf("\n%" PRIu64 " transactions, %" PRIu64 " readings, %" PRIu64
                  " wrong (at most %.1f expected), %" PRIu64 " stuck, %" PRIu64 " s; %" PRIu32
                  " lines, %" PRIu32 " of them break a rule\n",
-                 sum.totals.exchanges, sum.totals.readings, sum.totals.wrong_answers, sum.expected,
+                 sum.totals.transactions, sum.totals.readings, sum.totals.wrong_responses, sum.expected,
                  sum.totals.stuck, (uint64_t)(time(NULL) - begin), rows, broken);
     return broken;
 }
@@ -185,6 +188,6 @@ int main(int argc, char **argv)
     }
     if (!job.only_eight) broken += soak_all();
     if (job.only == SOAK_SETTINGS) broken += tables_eight(EIGHT_SECONDS, job.seed);
-    if (job.only == SOAK_SETTINGS && !job.only_eight) broken += tables_options(OPTION_EXCHANGES, job.seed);
+    if (job.only == SOAK_SETTINGS && !job.only_eight) broken += tables_options(OPTION_TRANSACTIONS, job.seed);
     return broken == 0 ? 0 : 1;
 }

@@ -51,13 +51,14 @@ uint32_t tables_eight(uint32_t seconds, uint32_t seed)
     return broken;
 }
 
-uint32_t tables_options(uint64_t exchanges, uint32_t seed)
+uint32_t tables_options(uint64_t transactions, uint32_t seed)
 {
     uint32_t broken = 0;
-    (void)printf("\nwhat is an option, as it should be and switched off, %" PRIu64 " exchanges\n", exchanges);
+    (void)printf("\nwhat is an option, as it should be and switched off, %" PRIu64 " transactions\n",
+                 transactions);
     for (uint8_t i = 0; i < DEFENCES; i++) {
         defence_result_t result;
-        defences[i].run(exchanges, seed, &result);
+        defences[i].run(transactions, seed, &result);
         const bool matters = defence_matters(&result);
         (void)printf("%-22s %9" PRIu64 " %9" PRIu64 " %s  %s\n", defences[i].name, result.with,
                      result.without, result.what, matters ? "ok" : "BROKEN: it makes no difference");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/dyp_frame.h"
-#include "fathom/dyp_protocol.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "models/a05/a05.h"
 #include "models/dyp.h"
 
@@ -56,7 +56,7 @@ static void explain_probes(decode_frame_t *frame, uint8_t first, const uint8_t *
         count == 1 ? decode_mean(frame, name, source, "0x%04X distance of %s", address, probe_names[first])
                    : decode_mean(frame, name, source, "0x%04X distances of probes %u to %u", address,
                                  first + 1u, first + (unsigned)count);
-    if (!dyp_is_read_answer(frame)) return;
+    if (!dyp_is_read_response(frame)) return;
     for (uint8_t i = 0; i != count; i++)
         dyp_decode_distance(meaning, probe_names[first + i],
                             decode_get16(frame->bytes + DECODE_AT_SIZE + 1 + 2 * i));
@@ -73,7 +73,7 @@ void a05_decode(decode_frame_t *frame, const uint8_t *request)
         decode_meaning_t *const meaning =
             decode_mean(frame, name, source, "%s0x0200 slave address", function == WRITE ? "set " : "");
         if (function == WRITE) dyp_decode_address(meaning, decode_get16(frame->bytes + DECODE_AT_VALUE));
-        if (dyp_is_read_answer(frame))
+        if (dyp_is_read_response(frame))
             dyp_decode_address(meaning, decode_get16(frame->bytes + DECODE_AT_SIZE + 1));
     } else if (probe != PROBES && function == READ) {
         explain_probes(frame, probe, request);
@@ -86,7 +86,7 @@ void a05_decode(decode_frame_t *frame, const uint8_t *request)
 static void decode_stream(decode_frame_t *frame)
 {
     uint16_t values[PROBES];
-    fathom_dyp_frame_decode(frame->bytes, values, PROBES);
+    fathom_dyp_stream_decode(frame->bytes, values, PROBES);
     decode_meaning_t *const meaning = decode_mean(frame, name, "A05 1(2)", "automatic output");
     for (uint8_t i = 0; i != PROBES; i++) dyp_decode_distance(meaning, probe_names[i], values[i]);
 }
@@ -103,26 +103,26 @@ static void decode_set_address(decode_frame_t *frame)
 static void decode_dyp(decode_frame_t *frame)
 {
     const uint8_t command = frame->bytes[3];
-    const bool is_answer = frame->piece->direction == DECODE_ANSWER;
+    const bool is_response = frame->piece->direction == DECODE_RESPONSE;
     uint16_t values[PROBES];
     frame->unit = frame->bytes[2];
     frame->code = command;
     frame->code_is = "command";
     if (frame->unit == FATHOM_DYP_ANY_ADDRESS && command != FATHOM_DYP_SET_ADDRESS)
         decode_note(frame, "FF is the broadcast address; whether a unit answers it is not in the datasheet");
-    const uint8_t count = fathom_dyp_protocol_values(command);
+    const uint8_t count = fathom_dyp_55aa_values(command);
     if (command == FATHOM_DYP_SET_ADDRESS) {
         decode_set_address(frame);
     } else if (count == 0) {
         (void)decode_mean(frame, name, "A05 2(3)2", "no command of it");
-    } else if (!is_answer) {
+    } else if (!is_response) {
         if (count == 1)
             (void)decode_mean(frame, name, "A05 2(3)4", "measure with %s",
                               probe_names[command - FATHOM_DYP_FIRST_PROBE]);
         else
             (void)decode_mean(frame, name, "A05 2(3)3", "measure with all probes");
     } else {
-        fathom_dyp_protocol_decode(frame->bytes, values);
+        fathom_dyp_55aa_decode(frame->bytes, values);
         decode_meaning_t *const meaning =
             count == 1 ? decode_mean(frame, name, "A05 2(3)4", "one probe has measured")
                        : decode_mean(frame, name, "A05 2(3)3", "all probes have measured");

@@ -24,7 +24,7 @@ static fathom_status_t set_every_address(reader_t *reader, int32_t value)
     return fathom_a05_dyp_set_every_address(&reader->driver.a05_dyp, (uint8_t)value);
 }
 
-/* All probes, as they are read: the samples of one answer, one after the other. */
+/* All probes, as they are read: the samples of one response, one after the other. */
 static fathom_status_t get_distances(reader_t *reader, char text[SETTING_TEXT])
 {
     size_t length = 0;

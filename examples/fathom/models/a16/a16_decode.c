@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <stddef.h>
 
-#include "fathom/dyp_frame.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "models/a16/a16.h"
 #include "models/dyp.h"
 
@@ -78,7 +78,7 @@ static void explain(decode_frame_t *frame, const register_t *entry, const uint8_
         const uint16_t count = decode_get16(request + DECODE_AT_COUNT);
         if (!entry->is_readable) decode_note(frame, "a16: 0x%04X can be written only", entry->address);
         if (count != 1) decode_note(frame, "a16: a read of several registers is not in its datasheet");
-        if (dyp_is_read_answer(frame))
+        if (dyp_is_read_response(frame))
             put_value(meaning, entry, decode_get16(frame->bytes + DECODE_AT_SIZE + 1));
         return;
     }
@@ -105,7 +105,7 @@ void a16_decode(decode_frame_t *frame, const uint8_t *request)
 void a16_decode_sum(decode_frame_t *frame)
 {
     uint16_t value = 0;
-    fathom_dyp_frame_decode(frame->bytes, &value, 1);
+    fathom_dyp_stream_decode(frame->bytes, &value, 1);
     dyp_decode_distance(decode_mean(frame, name, "A16 2(3), 3(4), 5(3)", "automatic or controlled output"),
                         "distance", value);
 }

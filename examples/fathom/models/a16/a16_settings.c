@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/a16_rs232.h"
+#include "fathom/sensor/a16_rs232.h"
 #include "models/a16/a16.h"
 #include "models/dyp.h"
 

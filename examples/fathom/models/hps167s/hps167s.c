@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "fathom/hps167s_info.h"
-#include "fathom/hps167s_settings.h"
+#include "fathom/sensor/hps167s_info.h"
+#include "fathom/sensor/hps167s_settings.h"
 
 /* ---- reading ---- */
 
@@ -21,7 +21,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
     reader->is_paced = true;
     reader->unit = &driver->unit;
     reader->sequence = &driver->sequence;
-    reader->values = driver->answer;
+    reader->values = driver->measurement;
     reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
     return true;
 }
@@ -75,7 +75,7 @@ static void simulate_modbus(device_t *device, const device_settings_t *settings)
         .offset_adds = traits[DEVICE_OFFSET_ADDS] != 0,
         .reconnect_ms = traits[DEVICE_RECONNECT],
         .no_baud_code = traits[DEVICE_NO_BAUD_CODE] != 0,
-        .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
+        .answers_from_new = traits[DEVICE_RESPONSES_FROM_NEW] != 0,
         .unasked_us = traits[DEVICE_UNASKED],
         .seed = settings->seed,
         .scene = settings->scene};
@@ -115,7 +115,7 @@ const model_t model_hps167s = {
     .has_optics = true,
     .near_mm = 500,
     .far_mm = 12000,
-    .traits = 1u << DEVICE_ANSWERS_FROM_NEW | 1u << DEVICE_WARM_UP | 1u << DEVICE_WARM_UP_REFUSES |
+    .traits = 1u << DEVICE_RESPONSES_FROM_NEW | 1u << DEVICE_WARM_UP | 1u << DEVICE_WARM_UP_REFUSES |
               1u << DEVICE_WARM_UP_ABNORMAL | 1u << DEVICE_UNASKED | 1u << DEVICE_NO_OUTPUT |
               1u << DEVICE_NO_TERMINATION | 1u << DEVICE_BAUD_LATER | 1u << DEVICE_OFFSET_ADDS |
               1u << DEVICE_RECONNECT | 1u << DEVICE_NO_BAUD_CODE | 1u << DEVICE_COUNT_EXCEPTION,

@@ -3,8 +3,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include "fathom/hps167s_registers.h"
-#include "fathom/modbus_rtu.h"
+#include "fathom/codec/hps167s_registers.h"
+#include "fathom/codec/modbus_rtu.h"
 #include "models/hps167s/hps167s.h"
 
 enum { MANY_SIZE = 6 };
@@ -14,7 +14,7 @@ enum {
     WRITE_MANY = FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS
 };
 
-/* ---- what the answers carry ---- */
+/* ---- what the responses carry ---- */
 
 static void put_date(decode_meaning_t *meaning, uint16_t year, uint8_t month, uint8_t day)
 {
@@ -130,7 +130,7 @@ static void put_reset(decode_meaning_t *meaning, const uint16_t *registers)
         decode_number(meaning, "error code", registers[0], "");
 }
 
-/* ---- which of the answers of one shape it can be ---- */
+/* ---- which of the responses of one shape it can be ---- */
 
 static bool is_version(const uint16_t *registers)
 {
@@ -209,8 +209,8 @@ typedef struct {
     uint8_t registers;
     const char *name;
     const char *source;
-    bool (*is_likely)(const uint16_t *registers);                         /* is this its answer? */
-    void (*answer)(decode_meaning_t *meaning, const uint16_t *registers); /* of a read */
+    bool (*is_likely)(const uint16_t *registers);                           /* is this its response? */
+    void (*response)(decode_meaning_t *meaning, const uint16_t *registers); /* of a read */
     void (*write)(decode_meaning_t *meaning, uint16_t value);
 } command_row_t;
 
@@ -243,7 +243,7 @@ static const command_row_t rows[] = {
 };
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
-/* The registers behind the length byte of an answer or of a write of many. */
+/* The registers behind the length byte of a response or of a write of many. */
 static void get_registers(const uint8_t *size, uint8_t count,
                           uint16_t registers[FATHOM_HPS167S_MAX_REGISTERS])
 {
@@ -252,7 +252,7 @@ static void get_registers(const uint8_t *size, uint8_t count,
 
 static void command_known(decode_frame_t *frame, const command_row_t *row, const uint8_t *request)
 {
-    const bool is_answer = frame->piece->direction == DECODE_ANSWER;
+    const bool is_response = frame->piece->direction == DECODE_RESPONSE;
     decode_meaning_t *const meaning =
         decode_mean(frame, "hps167s", row->source, "#%u %s", row->number, row->name);
     uint16_t registers[FATHOM_HPS167S_MAX_REGISTERS] = {0};
@@ -261,29 +261,30 @@ static void command_known(decode_frame_t *frame, const command_row_t *row, const
                     row->registers, decode_get16(request + DECODE_AT_COUNT));
         return;
     }
-    if (row->function == READ && is_answer) {
+    if (row->function == READ && is_response) {
         get_registers(frame->bytes + DECODE_AT_SIZE, row->registers, registers);
-        row->answer(meaning, registers);
+        row->response(meaning, registers);
     }
     if (row->function == WRITE) row->write(meaning, decode_get16(frame->bytes + DECODE_AT_VALUE));
-    if (row->function == WRITE_MANY && !is_answer) {
+    if (row->function == WRITE_MANY && !is_response) {
         get_registers(frame->bytes + MANY_SIZE, row->registers, registers);
         put_reconnect(meaning, fathom_hps167s_reconnect_time_ms(registers[0], registers[1], false));
     }
-    if (row->address == FATHOM_HPS167S_RESET && !is_answer) decode_note(frame, "hps167s: resets the device");
+    if (row->address == FATHOM_HPS167S_RESET && !is_response)
+        decode_note(frame, "hps167s: resets the device");
     if (row->address == FATHOM_HPS167S_LOAD &&
         decode_get16(frame->bytes + DECODE_AT_VALUE) == FATHOM_HPS167S_FACTORY)
         decode_note(frame, "hps167s: resets the device's settings");
 }
 
-/* An answer whose request is not known: is it this command's? */
+/* A response whose request is not known: is it this command's? */
 static void command_guessed(decode_frame_t *frame, const command_row_t *row)
 {
     uint16_t registers[FATHOM_HPS167S_MAX_REGISTERS];
     if (2 * row->registers != frame->bytes[DECODE_AT_SIZE]) return;
     get_registers(frame->bytes + DECODE_AT_SIZE, row->registers, registers);
     if (frame->is_sure || row->is_likely(registers))
-        row->answer(
+        row->response(
             decode_mean(frame, "hps167s", row->source, "if #%u was asked: %s", row->number, row->name),
             registers);
 }

@@ -5,7 +5,7 @@
 
 /* What a scan asks of an HPS-167S, and tells of it: #1, #2 and #3. */
 
-/* Registers of #2 and of #5, whose answers have one shape. */
+/* Registers of #2 and of #5, whose responses have one shape. */
 enum { FOUR = FATHOM_HPS167S_CONFIGURATION_COUNT };
 
 enum { NEXT_CENTURY = 2100 };
@@ -18,7 +18,7 @@ static bool ask_four(inquiry_t *inquiry, uint16_t first, uint16_t four[FOUR])
     return true;
 }
 
-/* The answer of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ from
+/* The response of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ from
  * a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {
@@ -89,7 +89,7 @@ void hps167s_print_finding(FILE *to, const scan_finding_t *finding)
         print_part(to, finding->has_interface ? ", " : "", "sensor", part_of_sensor(&finding->details));
     if (finding->has_config) (void)fprintf(to, ", termination %s", finding->has_termination ? "on" : "off");
     if (!finding->has_interface && !finding->has_details && !finding->has_config)
-        (void)fputs("sends answers unasked", to);
+        (void)fputs("sends responses unasked", to);
 }
 
 static void print_part_json(FILE *to, const char *name, part_t part)

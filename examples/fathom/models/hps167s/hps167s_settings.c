@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
-#include "fathom/hps167s_info.h"
-#include "fathom/hps167s_settings.h"
+#include "fathom/sensor/hps167s_info.h"
+#include "fathom/sensor/hps167s_settings.h"
 #include "models/hps167s/hps167s.h"
 
 /* The commands of the HPS-167S (3, #1 to #15) but for the two that restore the factory's settings: hps167s.c. */
@@ -225,7 +225,7 @@ const setting_t hps167s_settings[] = {
      .get = get_warm_up,
      .set = set_warm_up},
     {.name = "measure-after-power-on",
-     .what = "whether it measures all the time, so that an answer is ready "
+     .what = "whether it measures all the time, so that a response is ready "
              "sooner (#10)",
      .mode = "modbus",
      .effect = NEXT_POWER,

@@ -134,33 +134,34 @@ static double silence_us(const fathom_line_settings_t *settings)
 
 /*
  * From the first start bit of a request to that of the next, against what the line allows. That is the request at
- * this chip's rate; t3.5, in which the device learns that it has ended, and the device's own time; the answer; and
+ * this chip's rate; t3.5, in which the device learns that it has ended, and the device's own time; the response; and
  * t3.5. The worst of them, in us and in percent.
  */
 typedef struct {
     double over_us, over_percent;
 } bus_t;
 
-static bus_t bus_time(const fathom_line_settings_t *settings, uint8_t answer)
+static bus_t bus_time(const fathom_line_settings_t *settings, uint8_t response)
 {
     enum { REQUEST = 8 };
     const double us = BOARD_CYCLES_PER_US;
-    const uint32_t per_exchange = REQUEST + answer;
+    const uint32_t per_transaction = REQUEST + response;
     bus_t worst = {-1000, -100};
     fathom_line_settings_t chip = *settings;
     chip.baud = usart_settings(&board.usart).baud;
     if (board.bytes_seen > BOARD_BYTES) board_give_up("more bytes on the wire than are kept");
     /* The first request finds a measurement that has waited for it: the pace begins with the third. */
-    for (uint32_t n = 2 * per_exchange; n + per_exchange < board.bytes_seen; n += per_exchange) {
+    for (uint32_t n = 2 * per_transaction; n + per_transaction < board.bytes_seen; n += per_transaction) {
         const board_byte_t *const b = &board.bytes[n];
         if (!b[0].from_here || !b[REQUEST - 1].from_here || b[REQUEST].from_here ||
-            b[per_exchange - 1].from_here || !b[per_exchange].from_here)
+            b[per_transaction - 1].from_here || !b[per_transaction].from_here)
             board_give_up("the bytes on the wire are not as expected");
         const double device = (double)(b[REQUEST].begin_cycle - b[REQUEST - 1].end_cycle) / us;
-        const double answered = (double)(b[per_exchange - 1].end_cycle - b[REQUEST].begin_cycle) / us;
-        const double silent = (double)(b[per_exchange].begin_cycle - b[per_exchange - 1].end_cycle) / us;
+        const double answered = (double)(b[per_transaction - 1].end_cycle - b[REQUEST].begin_cycle) / us;
+        const double silent =
+            (double)(b[per_transaction].begin_cycle - b[per_transaction - 1].end_cycle) / us;
         const double allowed = REQUEST * character_us(&chip) + device + answered + silence_us(settings);
-        const double over = (double)(b[per_exchange].begin_cycle - b[0].begin_cycle) / us - allowed;
+        const double over = (double)(b[per_transaction].begin_cycle - b[0].begin_cycle) / us - allowed;
         if (silent < silence_us(settings)) board_give_up("t3.5 was not kept");
         if (over > worst.over_us) worst.over_us = over;
         if (100 * over / allowed > worst.over_percent) worst.over_percent = 100 * over / allowed;

@@ -3,12 +3,12 @@
  * A bare modbus_client that asks again at once, for the bus time of a poll: no driver and no pace of one. It sleeps
  * while there is nothing to do. GPIOR0, set before it starts, says what it asks: bits 0..1 the rate, 9600, 19200,
  * 57600 or 115200; bit 2 an A05 for its first probe, 8N1, else an HPS-167S for a measurement, 8E1. DE is PD3. Each
- * exchange is a record without bytes, of kind 1 when it was READY and 2 when it was not.
+ * transaction is a record without bytes, of kind 1 when it was READY and 2 when it was not.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
 #include "fathom_avr.h"
 
 static uint8_t sending[8];
@@ -22,7 +22,7 @@ static fathom_line_config_t config = {.uart = &fathom_avr_usart0,
                                       .frame_size = sizeof frame,
                                       .echo = FATHOM_LINE_ECHO_OFF};
 static fathom_line_t line;
-static fathom_modbus_request_t request = {.exchange = {.timeout_us = 500000}};
+static fathom_modbus_request_t request = {.transaction = {.timeout_us = 500000}};
 static uint16_t values[4];
 
 static void set_up(uint8_t what)
@@ -50,9 +50,9 @@ int main(void)
         fathom_modbus_client_submit(&line, &request);
         for (;;) {
             fathom_line_poll(&line);
-            if (request.exchange.status != FATHOM_PENDING) break;
+            if (request.transaction.status != FATHOM_PENDING) break;
             fathom_avr_idle(NULL, fathom_line_due_us(&line));
         }
-        GPIOR1 = request.exchange.status == FATHOM_READY ? 1 : 2;
+        GPIOR1 = request.transaction.status == FATHOM_READY ? 1 : 2;
     }
 }

@@ -8,9 +8,9 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "fathom/hps167s.h"
-#include "fathom/modbus_client.h"
-#include "fathom/wait.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/hps167s.h"
 #include "fathom_avr.h"
 
 static uint8_t sending[8];

@@ -7,7 +7,7 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "fathom/edges.h"
+#include "fathom/engine/edges.h"
 #include "fathom_avr.h"
 
 static uint8_t sending[1];

@@ -5,10 +5,10 @@
 #include <util/delay.h>
 
 #include "../reports.h"
-#include "fathom/a05_auto.h"
-#include "fathom/a16_auto.h"
-#include "fathom/hps167s.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/a05_auto.h"
+#include "fathom/sensor/a16_auto.h"
+#include "fathom/sensor/hps167s.h"
 #include "fathom_avr.h"
 
 /* ---- what it tells the bench (../board.h) ---- */
@@ -31,7 +31,7 @@ static void report_sample(const fathom_sample_t *sample)
     report_16(sample->distance_mm);
     report_16(sample->sequence);
     GPIOR0 = sample->kind;
-    GPIOR0 = sample->unit;
+    GPIOR0 = sample->address;
     GPIOR0 = sample->probe;
     GPIOR1 = REPORT_SAMPLE;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "board.h"
-#include "fathom/a16_pwm.h"
-#include "fathom/hps167s.h"
-#include "fathom/modbus_client.h"
+#include "fathom/engine/modbus_client.h"
+#include "fathom/sensor/a16_pwm.h"
+#include "fathom/sensor/hps167s.h"
 #include "fathom_rp2040.h"
 #include "report.h"
 #include "rp2040.h"

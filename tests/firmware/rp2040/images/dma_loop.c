@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/a16_auto.h"
-#include "fathom/line.h"
-#include "fathom/wait.h"
+#include "fathom/engine/line.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a16_auto.h"
 #include "rp2040.h"
 
 /*

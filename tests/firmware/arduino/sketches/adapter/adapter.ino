@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the adapter answers, asked without a line. Reports the source line of each failure (kind 2) and the number of
+// What the adapter responses, asked without a line. Reports the source line of each failure (kind 2) and the number of
 // checks that held (kind 1), and ends.
 #include <fathom_arduino.h>
 

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_DYP_AUTO_H
+#define FATHOM_DYP_AUTO_H
+
+#include "fathom/engine/line.h"
+#include "fathom/engine/stream.h"
+#include "fathom/sensor/dyp.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a16_auto.h and a05_auto.h are built on: an ultrasonic sensor that sends frames by itself. Their users
+ * need not know it. */
+typedef struct {
+    fathom_stream_t stream;
+    fathom_dyp_measurement_t measurement;
+    fathom_line_t *line;
+} fathom_dyp_auto_t;
+
+/*
+ * Makes it ready; then the driver makes the stream's listener that of the line. The caller has set the line, what
+ * fathom_stream_begin wants, and values, window, model, unit and first of the response. FATHOM_READY, or
+ * FATHOM_ERR_ARGUMENT: no line, or a window that is upside down.
+ */
+fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm);
+
+/* Stops listening. */
+void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
+
+/*
+ * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the response, of which probe 1 waits to
+ * be handed over. FATHOM_PENDING: none has come. FATHOM_ERR_STALE, FATHOM_ERR_PORT: as a16_auto.h has them.
+ */
+fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor);
+
+/* How long until take has something to do if no byte comes. */
+uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

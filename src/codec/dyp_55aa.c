@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/codec/dyp_55aa.h"
+
+#include "fathom/codec/dyp_stream.h"
+
+/* Offsets in a frame; without values it is OVERHEAD bytes long. */
+enum { COMMAND = 3, OVERHEAD = 5 };
+
+enum { START = 0x55, SECOND_START = 0xAA };
+
+uint8_t fathom_dyp_55aa_values(uint8_t command)
+{
+    if (command == FATHOM_DYP_ALL_PROBES) return FATHOM_DYP_PROBES;
+    return (uint8_t)(command - FATHOM_DYP_FIRST_PROBE) < FATHOM_DYP_PROBES ? 1 : 0;
+}
+
+uint8_t fathom_dyp_55aa_response_length(uint8_t command)
+{
+    const uint8_t values = fathom_dyp_55aa_values(command);
+    return values != 0 || command == FATHOM_DYP_SET_ADDRESS ? (uint8_t)(OVERHEAD + 2 * values) : 0;
+}
+
+static uint8_t *put_head(uint8_t *frame, uint8_t address, uint8_t command)
+{
+    *frame++ = START;
+    *frame++ = SECOND_START;
+    *frame++ = address;
+    *frame++ = command;
+    return frame;
+}
+
+static uint8_t seal(uint8_t *frame, uint8_t *end)
+{
+    const uint8_t length = (uint8_t)(end - frame);
+    *end = fathom_dyp_sum(frame, length);
+    return (uint8_t)(length + 1);
+}
+
+uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t command)
+{
+    return seal(frame, put_head(frame, address, command));
+}
+
+uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have)
+{
+    if (bytes[0] != START || (have > 1 && bytes[1] != SECOND_START)) return 0;
+    return have > COMMAND ? fathom_dyp_55aa_response_length(bytes[COMMAND]) : COMMAND + 1;
+}
+
+bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length)
+{
+    const uint8_t last = (uint8_t)(length - 1);
+    return fathom_dyp_sum(frame, last) == frame[last];
+}
+
+void fathom_dyp_55aa_decode(const uint8_t *frame, uint16_t *values)
+{
+    fathom_dyp_stream_decode(frame + COMMAND, values, fathom_dyp_55aa_values(frame[COMMAND]));
+}
+
+uint8_t fathom_dyp_55aa_encode_response(uint8_t *frame, uint8_t address, uint8_t command,
+                                        const uint16_t *values)
+{
+    uint8_t *at = put_head(frame, address, command);
+    for (uint8_t left = fathom_dyp_55aa_values(command); left != 0; left--, values++) {
+        *at++ = (uint8_t)(*values >> 8);
+        *at++ = (uint8_t)*values;
+    }
+    return seal(frame, at);
+}

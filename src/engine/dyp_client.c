@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/dyp_client.h"
+
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+
+/* Offsets in a frame; behind an echo the response stands at NEXT. */
+enum { ADDRESS = 2, COMMAND = 3, NEXT = FATHOM_DYP_REQUEST_LENGTH };
+
+enum { ADDRESS_REGISTER = 0x0200 };
+
+/* The command for a read; 0: there is none. */
+static uint8_t command_of_read(const uint8_t *head)
+{
+    const uint8_t count = head[5];
+    const uint16_t probe = (uint16_t)(head[2] * 256u + head[3] - FATHOM_DYP_FIRST_REGISTER);
+    if (head[4] != 0 || probe >= FATHOM_DYP_PROBES) return 0;
+    if (count == 1) return (uint8_t)(FATHOM_DYP_FIRST_PROBE + probe);
+    return count == FATHOM_DYP_PROBES && probe == 0 ? FATHOM_DYP_ALL_PROBES : 0;
+}
+
+static uint8_t command_of(const uint8_t *head)
+{
+    return head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS ? command_of_read(head) : FATHOM_DYP_SET_ADDRESS;
+}
+
+static const fathom_modbus_message_t *message_of(const fathom_transaction_t *transaction)
+{
+    return &((const fathom_modbus_request_t *)transaction)->message;
+}
+
+static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
+{
+    const uint8_t *const head = message_of(transaction)->head;
+    return fathom_dyp_55aa_encode_request(frame, head[0], command_of(head));
+}
+
+/*
+ * With a probe in the right place a response begins with the same five bytes as its request (1H is the request's
+ * sum). If 55 AA follows these, they are the echo and the response comes: as distances it would be 43520 mm or more
+ * for the second probe, which no A05 measures.
+ */
+static uint16_t check(const uint8_t *frame, uint8_t length)
+{
+    if (length == FATHOM_DYP_MAX_RESPONSE && frame[NEXT] == frame[0] && frame[NEXT + 1] == frame[1] &&
+        fathom_dyp_55aa_valid(frame, NEXT))
+        return 1;
+    return !fathom_dyp_55aa_valid(frame, length);
+}
+
+static bool is_request(const fathom_transaction_t *transaction, const uint8_t *frame, uint8_t have)
+{
+    const uint8_t *const head = message_of(transaction)->head;
+    return have < NEXT || (frame[ADDRESS] == head[0] && frame[COMMAND] == command_of(head));
+}
+
+static fathom_status_t parse_response(fathom_transaction_t *transaction, const uint8_t *frame)
+{
+    fathom_modbus_message_t *const message = &((fathom_modbus_request_t *)transaction)->message;
+    if (frame[COMMAND] != command_of(message->head)) return FATHOM_ERR_MALFORMED;
+    fathom_dyp_55aa_decode(frame, message->values);
+    message->head[0] = frame[ADDRESS];
+    return FATHOM_READY;
+}
+
+static const fathom_protocol_t protocol = {
+    encode, fathom_dyp_55aa_length, check, is_request, parse_response, ADDRESS, false};
+
+static fathom_status_t start(fathom_line_t *line, fathom_modbus_request_t *request)
+{
+    if (line->config->frame_size < FATHOM_DYP_MAX_RESPONSE) return FATHOM_ERR_CAPACITY;
+    request->transaction.protocol = &protocol;
+    request->transaction.address = request->message.head[0];
+    return fathom_line_submit(line, &request->transaction);
+}
+
+fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_request_t *request)
+{
+    const uint8_t *const head = request->message.head;
+    if (head[1] != FATHOM_MODBUS_READ_HOLDING_REGISTERS || command_of_read(head) == 0)
+        return FATHOM_ERR_UNSUPPORTED;
+    return head[0] != FATHOM_LINE_ALL_UNITS ? start(line, request) : FATHOM_ERR_ARGUMENT;
+}
+
+fathom_status_t fathom_dyp_client_set_every_address(fathom_line_t *line, fathom_modbus_request_t *request,
+                                                    uint8_t address)
+{
+    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    if (fathom_line_has(line, &request->transaction)) return FATHOM_ERR_BUSY;
+    fathom_modbus_write_single_register(&request->message, address, ADDRESS_REGISTER, address);
+    return start(line, request);
+}
+
+static fathom_status_t transport_submit(void *ctx, fathom_modbus_request_t *request)
+{
+    return fathom_dyp_client_submit(ctx, request);
+}
+
+fathom_modbus_t fathom_dyp_client(fathom_line_t *line)
+{
+    return fathom_modbus_over_line(line, transport_submit);
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/line.h"
+
+#include "line_internal.h"
+
+/* What is made of the bytes that come to a line which asks. */
+
+enum { LEAST_TORN = 3 };
+
+void fathom_line_learn(fathom_line_t *line, uint8_t echo)
+{
+    if (line->config->find_echo != NULL) line->config->find_echo(line, echo);
+}
+
+/*
+ * The first `length` bytes were not taken. After its time-out a response that has begun may end, but what begins then is
+ * another's, or noise without end: the attempt is over.
+ */
+static void leave(fathom_line_t *line, uint8_t length)
+{
+    fathom_line_leave(line, length);
+    if (!is_asking(line)) {
+        const uint16_t known = (uint16_t)(line->known + length * ONE_UNASKED);
+        line->known = (uint8_t)(known < OTHERS_SEND ? known : line->known | OTHERS_SEND);
+        return;
+    }
+    /* It may be what is left of its response. A whole frame hides no echo. */
+    if (length == 1) line->state |= NOISY;
+    if (line->left_us == 0 && phase(line) == LISTENING) fathom_line_end_attempt(line);
+}
+
+/* What is no frame may be the request; so may a frame that is all of it, or all but its last byte. */
+static uint8_t match_echo(const fathom_line_t *line, uint8_t frame_length)
+{
+    const fathom_protocol_t *const protocol = line->protocol;
+    const uint8_t *const frame = line->config->frame;
+    const uint8_t sent = line->sent;
+    if (sent == 0 ||
+        (frame_length != 0 && ((line->state & ECHOED) != 0 || (uint8_t)(sent - frame_length) > 1)))
+        return 0;
+    if (!protocol->is_request(line->head, frame, line->have)) return 0;
+    return sent > line->have || protocol->check(frame, sent) == 0 ? sent : 0;
+}
+
+enum { TAKEN = 0x100 };
+
+/* What to do with the front of what was received: so many bytes leave, with TAKEN to a transaction; or, below zero, so many
+ * are needed to tell. `over`: nothing more will come to complete a frame. */
+static int judge(fathom_line_t *line, bool over)
+{
+    const fathom_protocol_t *const protocol = line->protocol;
+    const uint8_t *const frame = line->config->frame;
+    const uint8_t have = line->have;
+    if (!is_asking(line) && line->quarantined == 0) return have;
+    const uint8_t length = protocol->length(frame, have);
+    if (length > have && length <= line->config->frame_size && !over) return -length;
+    const bool is_whole = (uint8_t)(length - 1) < have;
+    const bool is_frame = is_whole && protocol->check(frame, length) == 0;
+    const uint8_t echo = match_echo(line, is_frame ? length : 0);
+    if (echo > have && !over) return -echo;
+    if ((uint8_t)(echo - 1) < have) {
+        if (!is_frame) fathom_line_learn(line, FATHOM_LINE_ECHO_ON); /* which may equal the response */
+        line->state |= ECHOED;
+        return echo | TAKEN;
+    }
+    if (is_frame) return fathom_line_deliver(line) ? length | TAKEN : length;
+    /* While the request leaves, noise is likelier than a response. */
+    if (length != 0 && have >= LEAST_TORN && fathom_line_is_asked(line, frame[protocol->address_at]))
+        line->state |=
+            (uint8_t)(is_whole && phase(line) == LISTENING ? RESPONSE_CORRUPT : RESPONSE_TRUNCATED);
+    return 1;
+}
+
+void fathom_line_scan_asking(fathom_line_t *line, bool over)
+{
+    while (line->have != 0) {
+        const int judged = judge(line, over);
+        if (judged < 0) {
+            line->need = (uint8_t)-judged;
+            return;
+        }
+        if (judged >= TAKEN)
+            line->known = (uint8_t)((line->known & ~UNASKED) | LATE);
+        else
+            leave(line, (uint8_t)judged);
+        fathom_line_drop(line, (uint8_t)judged);
+    }
+}

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/modbus.h"
+
+static void cancel(void *ctx, fathom_modbus_request_t *request)
+{
+    fathom_line_cancel(ctx, &request->transaction);
+}
+
+static void cancel_unit(void *ctx, uint8_t unit) { fathom_line_cancel_unit(ctx, unit); }
+
+static fathom_status_t poll(void *ctx) { return fathom_line_poll(ctx); }
+
+static uint32_t due_us(void *ctx) { return fathom_line_due_us(ctx); }
+
+fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
+                                        fathom_status_t (*submit)(void *line,
+                                                                  fathom_modbus_request_t *request))
+{
+    fathom_modbus_t modbus;
+    modbus.submit = submit;
+    modbus.cancel = cancel;
+    modbus.cancel_unit = cancel_unit;
+    modbus.poll = poll;
+    modbus.due_us = due_us;
+    modbus.clock = line->config->clock;
+    modbus.ctx = line;
+    return modbus;
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/modbus_client.h"
+
+#include "fathom/codec/crc16.h"
+#include "modbus_client_internal.h"
+
+uint8_t fathom_modbus_client_encode(const fathom_transaction_t *transaction, uint8_t *frame)
+{
+    return fathom_modbus_rtu_encode_request(&((const fathom_modbus_request_t *)transaction)->message, frame);
+}
+
+bool fathom_modbus_client_is_request(const fathom_transaction_t *transaction, const uint8_t *frame,
+                                     uint8_t have)
+{
+    return fathom_modbus_rtu_is_request(&((const fathom_modbus_request_t *)transaction)->message, frame,
+                                        have);
+}
+
+fathom_status_t fathom_modbus_client_parse_response(fathom_transaction_t *transaction, const uint8_t *frame)
+{
+    return fathom_modbus_rtu_parse_response(&((fathom_modbus_request_t *)transaction)->message, frame);
+}
+
+/* Zeros are what noise is made of: no frame of unit 0 is looked for. */
+static uint8_t length(const uint8_t *frame, uint8_t have)
+{
+    return frame[0] != FATHOM_MODBUS_BROADCAST ? fathom_modbus_rtu_response_length(frame, have) : 0;
+}
+
+static const fathom_protocol_t protocol = {
+    fathom_modbus_client_encode,         length, fathom_crc16, fathom_modbus_client_is_request,
+    fathom_modbus_client_parse_response, 0,      false};
+
+fathom_status_t fathom_modbus_client_start(fathom_line_t *line, fathom_modbus_request_t *request,
+                                           const fathom_protocol_t *with)
+{
+    const uint8_t frame_size = fathom_modbus_rtu_frame_size(&request->message);
+    if (frame_size == 0) return FATHOM_ERR_ARGUMENT;
+    if (frame_size > line->config->frame_size) return FATHOM_ERR_CAPACITY;
+    request->transaction.protocol = with;
+    request->transaction.address = request->message.head[0];
+    return fathom_line_submit(line, &request->transaction);
+}
+
+fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_request_t *request)
+{
+    if (fathom_modbus_client_reads_0(request)) return FATHOM_ERR_UNSUPPORTED;
+    return fathom_modbus_client_start(line, request, &protocol);
+}
+
+void fathom_modbus_client_cancel(fathom_line_t *line, fathom_modbus_request_t *request)
+{
+    fathom_line_cancel(line, &request->transaction);
+}
+
+static fathom_status_t transport_submit(void *ctx, fathom_modbus_request_t *request)
+{
+    return fathom_modbus_client_submit(ctx, request);
+}
+
+fathom_modbus_t fathom_modbus_client(fathom_line_t *line)
+{
+    return fathom_modbus_over_line(line, transport_submit);
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/modbus_client.h"
+
+#include "fathom/codec/crc16.h"
+#include "modbus_client_internal.h"
+
+static const fathom_protocol_t protocol = {fathom_modbus_client_encode,
+                                           fathom_modbus_rtu_response_length,
+                                           fathom_crc16,
+                                           fathom_modbus_client_is_request,
+                                           fathom_modbus_client_parse_response,
+                                           0,
+                                           true};
+
+fathom_status_t fathom_modbus_client_submit_with_zero(fathom_line_t *line, fathom_modbus_request_t *request)
+{
+    if (fathom_modbus_client_reads_0(request) || request->message.head[0] == FATHOM_MODBUS_ANY_UNIT)
+        return fathom_modbus_client_start(line, request, &protocol);
+    return fathom_modbus_client_submit(line, request);
+}
+
+static fathom_status_t transport_submit(void *ctx, fathom_modbus_request_t *request)
+{
+    return fathom_modbus_client_submit_with_zero(ctx, request);
+}
+
+fathom_modbus_t fathom_modbus_client_with_zero(fathom_line_t *line)
+{
+    return fathom_modbus_over_line(line, transport_submit);
+}

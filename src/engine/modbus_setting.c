@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/modbus_setting.h"
+
+enum { READ_OLD = 0, PROBE_NEW = 1, WRITE = 2, CONFIRM_NEW = 3, CONFIRM_OLD = 4, WRITE_UNREAD = 5, STEP = 7 };
+enum { IN_SETTING = FATHOM_MODBUS_UNIT_IN_SETTING, ONCE = FATHOM_MODBUS_UNIT_ONCE };
+
+static void use_new_address(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
+{
+    if (setting->address != 0) unit->address = (uint8_t)setting->address;
+    if (setting->line_settings != NULL) unit->line_settings = setting->line_settings;
+}
+
+static void restore_address(fathom_modbus_unit_t *unit)
+{
+    unit->address = unit->known_address;
+    unit->line_settings = unit->known_line_settings;
+}
+
+/* Two settings whose ids are equal modulo 16 share one: then one is written without need, once. */
+static uint16_t setting_bit(const fathom_modbus_unit_t *unit)
+{
+    return (uint16_t)(1u << (unit->setting & 15));
+}
+
+static bool moves(const fathom_modbus_setting_t *setting)
+{
+    return setting->address != 0 || setting->line_settings != NULL;
+}
+
+/* Is what the device says of this setting all that there is to know of it? So it is where it said another value
+ * before or acknowledged this one, was given it, and says so now. */
+static bool is_certain(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
+{
+    return moves(setting) || (unit->unconfirmed & setting_bit(unit)) == 0 ||
+           (unit->last_written == unit->setting && unit->last_written_value == (uint16_t)setting->value);
+}
+
+/* After the first look: is there anything to do? */
+static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                                    fathom_status_t status, uint32_t value)
+{
+    const bool is_so = value == setting->value;
+    if (status < 0 || (is_so && is_certain(unit, setting))) return status;
+    unit->step = is_so ? WRITE_UNREAD : WRITE;
+    if (setting->address != 0) {
+        unit->step = PROBE_NEW;
+        use_new_address(unit, setting);
+    }
+    return FATHOM_PENDING;
+}
+
+/* At the new address: silence is what is hoped for. */
+static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_t status)
+{
+    restore_address(unit);
+    unit->step = WRITE;
+    if (status == FATHOM_ERR_NO_RESPONSE) return FATHOM_PENDING;
+    const bool is_heard = status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION ||
+                          status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+    return is_heard ? FATHOM_ERR_IN_USE : status;
+}
+
+static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                               fathom_status_t status)
+{
+    unit->outcome = (int8_t)status;
+    if (status == FATHOM_ERR_UNSUPPORTED) unit->is_written = false; /* taken, and it could not leave */
+    if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
+    unit->unconfirmed |= setting_bit(unit);
+    /* What it tells may have been so before: the acknowledgement alone says that it has taken the value. */
+    const bool is_lost = unit->step == WRITE_UNREAD && status < 0;
+    unit->last_written = is_lost ? 0 : unit->setting;
+    unit->last_written_value = (uint16_t)setting->value;
+    if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
+    if (setting->read == NULL) return status;
+    unit->step = CONFIRM_OLD;
+    if (moves(setting)) {
+        unit->step = CONFIRM_NEW;
+        unit->transport->cancel_unit(unit->transport->ctx, unit->address);
+        use_new_address(unit, setting);
+    }
+    return FATHOM_PENDING;
+}
+
+static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                                 fathom_status_t status, uint32_t value)
+{
+    if (status == FATHOM_READY && value == setting->value) {
+        unit->unconfirmed &= (uint16_t)~setting_bit(unit);
+        return FATHOM_READY;
+    }
+    if (unit->step == CONFIRM_NEW) {
+        unit->step = CONFIRM_OLD;
+        restore_address(unit);
+        return FATHOM_PENDING;
+    }
+    if (status < 0) return FATHOM_ERR_UNCONFIRMED;
+    return unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS;
+}
+
+static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                             fathom_status_t status, uint32_t value)
+{
+    switch (unit->step) {
+    case READ_OLD:
+        return old_was_read(unit, setting, status, value);
+    case PROBE_NEW:
+        return new_was_probed(unit, status);
+    case WRITE:
+    case WRITE_UNREAD:
+        return written(unit, setting, status);
+    default:
+        return confirmed(unit, setting, status, value);
+    }
+}
+
+fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
+{
+    if (unit->setting != 0) return FATHOM_ERR_BUSY;
+    unit->is_blind = true;
+    return FATHOM_READY;
+}
+
+fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
+{
+    fathom_status_t status;
+    if (unit->setting == 0) {
+        unit->setting = setting->write.id;
+        unit->is_written = false;
+        unit->step = setting->read != NULL && !unit->is_blind ? READ_OLD : WRITE_UNREAD;
+        unit->known_address = unit->address;
+        unit->known_line_settings = unit->line_settings;
+    } else if (unit->setting != setting->write.id) {
+        return FATHOM_ERR_BUSY;
+    }
+    do {
+        const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == WRITE_UNREAD;
+        uint32_t value = 0;
+        unit->step = (uint8_t)(unit->step | (is_write ? IN_SETTING | ONCE : IN_SETTING));
+        status = is_write ? fathom_modbus_unit_ask(unit, &setting->write) : setting->read(setting, &value);
+        unit->step &= STEP;
+        if (status == FATHOM_PENDING) return status;
+        status = go_on(unit, setting, status, value);
+    } while (status == FATHOM_PENDING);
+    unit->setting = 0;
+    unit->is_blind = false;
+    return status;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/output.h"
+
+fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level)
+{
+    const fathom_pin_t *const pin = ctx;
+    if (level != FATHOM_OUTPUT_FREE) pin->set(pin->ctx, level != FATHOM_OUTPUT_LOW);
+    return FATHOM_READY;
+}
+
+fathom_status_t fathom_output_set_break(const void *ctx, uint8_t level)
+{
+    const fathom_uart_t *const uart = ctx;
+    if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
+    if (level == FATHOM_OUTPUT_REST) return FATHOM_READY;
+    const int is_set = uart->set_break(uart->ctx, level == FATHOM_OUTPUT_LOW);
+    if (is_set < 0) return FATHOM_ERR_PORT;
+    return is_set > 0 ? FATHOM_READY : FATHOM_PENDING;
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/engine/sensor.h"
+
+#include "fathom/hal.h"
+
+fathom_status_t fathom_poll(const fathom_sensor_t *sensor, fathom_sample_t *sample)
+{
+    return sensor->poll(sensor->ctx, sample);
+}
+
+uint32_t fathom_due_us(const fathom_sensor_t *sensors, size_t count)
+{
+    uint32_t least_us = FATHOM_NO_DEADLINE;
+    for (; count != 0; count--, sensors++) {
+        const uint32_t due_us = sensors->due_us(sensors->ctx);
+        if (due_us < least_us) least_us = due_us;
+    }
+    return least_us;
+}

@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a05_auto.h"
+
+#include "../common.h"
+
+enum { ALL_PROBES = 0x0F, AGAIN_US = 1000 };
+
+fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config)
+{
+    fathom_dyp_auto_t *const base = &sensor->base;
+    if (config->probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+    base->stream.length = FATHOM_DYP_A05_LENGTH;
+    base->stream.listener.gap_us = config->gap_us;
+    base->stream.storage = sensor->storage;
+    base->stream.stale_us = config->stale_us;
+    base->measurement.values = sensor->values;
+    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.model = FATHOM_A05;
+    base->measurement.address = 0;
+    base->measurement.first = 1;
+    base->line = config->line;
+    sensor->probes = (uint8_t)or_default(config->probes, ALL_PROBES);
+    sensor->was_odd = true; /* there is no frame before the first that could say otherwise */
+    sensor->select = config->select;
+    sensor->selecting = false;
+    const fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
+    if (status == FATHOM_READY) fathom_line_listen(base->line, &base->stream.listener);
+    return status;
+}
+
+/* ---- the RX pin in the first second ---- */
+
+fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_value_t value)
+{
+    fathom_dyp_auto_t *const base = &sensor->base;
+    if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    const bool low = value == FATHOM_REAL_TIME;
+    uint8_t level = FATHOM_OUTPUT_REST;
+    if (low)
+        level = FATHOM_OUTPUT_LOW;
+    else if (sensor->selecting)
+        level = FATHOM_OUTPUT_HIGH;
+    const bool is_needed = low || sensor->select.set != NULL;
+    const fathom_status_t status = is_needed ? fathom_output_set(&sensor->select, level) : FATHOM_READY;
+    if (status != FATHOM_READY) return status == FATHOM_PENDING ? FATHOM_ERR_BUSY : status;
+    sensor->selecting = low;
+    sensor->select_left_us = FATHOM_A05_SELECT_US;
+    sensor->polled_us = clock_us(base->line->config->clock);
+    base->measurement.left = 0;
+    fathom_stream_begin(&base->stream, sensor->polled_us);
+    return FATHOM_READY;
+}
+
+static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
+{
+    const fathom_status_t status = fathom_output_set(&sensor->select, FATHOM_OUTPUT_HIGH);
+    if (status == FATHOM_READY) sensor->selecting = false;
+    return status;
+}
+
+/* FATHOM_PENDING, or what is wrong. */
+static fathom_status_t release(fathom_a05_auto_t *sensor)
+{
+    const uint32_t now_us = clock_us(sensor->base.line->config->clock);
+    const uint32_t passed_us = fathom_elapsed_us(now_us, sensor->polled_us);
+    sensor->polled_us = now_us;
+    if (!sensor->selecting || !fathom_count_down(&sensor->select_left_us, passed_us)) return FATHOM_PENDING;
+    const fathom_status_t status = end_selection(sensor);
+    return status == FATHOM_READY ? FATHOM_PENDING : status;
+}
+
+fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
+{
+    fathom_dyp_auto_deinit(&sensor->base);
+    return sensor->selecting ? end_selection(sensor) : FATHOM_READY;
+}
+
+/* ---- reading ---- */
+
+/* The first fitted probe, as a bit, whose value is refused; 0: none. */
+static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
+{
+    const uint16_t *value = sensor->values;
+    for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1), value++)
+        if ((sensor->probes & bit) != 0 &&
+            fathom_dyp_meaning(&sensor->base.measurement.window, *value) == FATHOM_MEANS_REFUSED)
+            return bit;
+    return 0;
+}
+
+/* The probes of which the newest frame speaks: all that are fitted, or the odd one alone. */
+static uint8_t believed(fathom_a05_auto_t *sensor)
+{
+    const uint8_t odd = odd_probe(sensor);
+    const bool is_whole = odd == 0 || (sensor->base.stream.sure && sensor->was_odd);
+    sensor->was_odd = odd != 0;
+    return is_whole ? sensor->probes : odd;
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_a05_auto_t *const sensor = ctx;
+    fathom_dyp_measurement_t *const measurement = &sensor->base.measurement;
+    const fathom_status_t rx = release(sensor);
+    fathom_status_t status = fathom_dyp_measurement_next(measurement, sample);
+    if (status != FATHOM_PENDING) return status;
+    status = fathom_dyp_auto_take(&sensor->base);
+    if (status == FATHOM_READY) {
+        measurement->left = believed(sensor);
+        status = fathom_dyp_measurement_next(measurement, sample);
+    }
+    return status != FATHOM_PENDING ? status : rx;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_a05_auto_t *const sensor = ctx;
+    if (sensor->base.measurement.left != 0) return 0;
+    const uint32_t base_us = fathom_dyp_auto_due_us(&sensor->base);
+    if (!sensor->selecting) return base_us;
+    const uint32_t now_us = clock_us(sensor->base.line->config->clock);
+    const uint32_t left_us = or_default(sensor->select_left_us, AGAIN_US);
+    return least_us(base_us, rest_us(left_us, fathom_elapsed_us(now_us, sensor->polled_us)));
+}
+
+fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor) { return sensor_of(poll, due_us, sensor); }

@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a05_dyp.h"
+
+/* The response comes after 200..210 or 65..75 ms (A05 2(3)1). */
+#define ALL_PROBES_TIMEOUT_US 500000ul
+#define ONE_PROBE_TIMEOUT_US  200000ul
+
+enum { ALL_PROBES = 0x0F };
+
+static bool is_one(uint8_t probes) { return (probes & (probes - 1)) == 0; }
+
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
+{
+    fathom_dyp_modbus_t *const base = &sensor->base;
+    const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
+    if (config->modbus.address_zero || probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+
+    const bool is_single = is_one(probes);
+    uint8_t first = 0;
+    if (is_single)
+        while ((probes >> first & 1) == 0) first++;
+    base->request.first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
+    base->request.last = is_single ? 1 : FATHOM_DYP_PROBES;
+    base->measurement.values = sensor->values;
+    base->start_us = config->start_us;
+    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.model = FATHOM_A05;
+    base->measurement.first = (uint8_t)(first + 1);
+    base->probes = probes;
+    return fathom_dyp_modbus_init(base, &config->modbus,
+                                  is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,
+                                  is_single ? FATHOM_A05_DYP_ONE_PROBE_US : FATHOM_A05_DYP_ALL_PROBES_US);
+}
+
+void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}
+
+void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
+
+bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor) { return sensor->base.unit.is_written; }
+
+void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+/* The unit's transport to the line while the address is being set, and at no other time: so nothing else can send the
+ * command. */
+static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request)
+{
+    const uint8_t *const head = request->message.head;
+    if (head[1] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return fathom_dyp_client_submit(ctx, request);
+    request->transaction.timeout_us = ONE_PROBE_TIMEOUT_US;
+    return fathom_dyp_client_set_every_address(ctx, request, head[5]);
+}
+
+/* Measures the first probe; the unit that answers is at the address that was asked. */
+static fathom_status_t read_address(const fathom_modbus_setting_t *setting, uint32_t *address)
+{
+    fathom_dyp_modbus_t *const base = setting->driver;
+    uint16_t distance = 0;
+    const fathom_status_t status = fathom_dyp_modbus_look(base, FATHOM_DYP_FIRST_REGISTER, &distance);
+    *address = base->unit.address;
+    return status;
+}
+
+fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address)
+{
+    fathom_modbus_unit_t *const unit = &sensor->base.unit;
+    const fathom_modbus_t *const transport = unit->transport;
+    fathom_modbus_setting_t setting;
+    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT || unit->is_blind)
+        return FATHOM_ERR_ARGUMENT;
+    fathom_modbus_unit_poll(unit);
+    const fathom_modbus_t either = fathom_modbus_over_line(transport->ctx, submit_either);
+    fathom_dyp_modbus_describe(&sensor->base, &setting, FATHOM_DYP_REGISTER_ADDRESS, address);
+    setting.read = read_address;
+    setting.address = address;
+    unit->transport = &either;
+    const fathom_status_t status = fathom_modbus_set(unit, &setting);
+    unit->transport = transport;
+    return status;
+}
+
+fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *line, uint8_t *address)
+{
+    fathom_modbus_request_t *const request = &find->request;
+    if (!find->is_asked) {
+        request->transaction.timeout_us = ONE_PROBE_TIMEOUT_US;
+        fathom_modbus_read_holding_registers(&request->message, FATHOM_LINE_ANY_UNIT,
+                                             FATHOM_DYP_FIRST_REGISTER, 1, &find->value);
+        const fathom_status_t status = fathom_dyp_client_submit(line, request);
+        if (status != FATHOM_PENDING) return status;
+        find->is_asked = true;
+    }
+    (void)fathom_line_poll(line); /* a broken port ends the request */
+    if (request->transaction.status == FATHOM_PENDING) return FATHOM_PENDING;
+    find->is_asked = false;
+    if (request->transaction.status == FATHOM_READY) *address = request->message.head[0];
+    return (fathom_status_t)request->transaction.status;
+}
+
+void fathom_a05_dyp_find_cancel(fathom_a05_dyp_find_t *find, fathom_line_t *line)
+{
+    fathom_line_cancel(line, &find->request.transaction);
+    find->is_asked = false;
+}

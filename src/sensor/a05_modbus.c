@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a05_modbus.h"
+
+#define RESPONSE_TIMEOUT_US 200000ul /* beside the probes' own time */
+
+enum { ALL_PROBES = 0x0F };
+
+fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
+{
+    fathom_dyp_modbus_t *const base = &sensor->base;
+    const uint16_t registers = config->registers != 0 ? config->registers : FATHOM_A05_REGISTERS;
+    const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
+    if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+    if (registers != FATHOM_A05_REGISTERS && registers != FATHOM_A05_REGISTERS_ALIAS)
+        return FATHOM_ERR_ARGUMENT;
+
+    uint8_t first = 0;
+    while ((probes >> first & 1) == 0) first++;
+    uint8_t count = 1;
+    uint32_t measuring_us = FATHOM_A05_PROBE_US;
+    for (; probes >> (first + count) != 0; count++) measuring_us += FATHOM_A05_PROBE_US;
+
+    base->request.first = (uint16_t)(registers + first);
+    base->request.last = count;
+    base->measurement.values = sensor->values;
+    base->start_us = config->start_us;
+    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.model = FATHOM_A05;
+    base->measurement.first = (uint8_t)(first + 1);
+    base->probes = probes;
+    return fathom_dyp_modbus_init(base, &config->modbus, RESPONSE_TIMEOUT_US + measuring_us, measuring_us);
+}
+
+void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor) { return sensor->base.unit.is_written; }
+
+void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
+
+fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address)
+{
+    return fathom_dyp_modbus_address(&sensor->base, address);
+}
+
+fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address)
+{
+    return fathom_dyp_modbus_set_address(&sensor->base, address);
+}
+
+fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_set_address_to_0(&sensor->base);
+}
+
+fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_auto.h"
+
+#include "../common.h"
+
+fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config)
+{
+    fathom_dyp_auto_t *const base = &sensor->base;
+    base->stream.length = FATHOM_DYP_A16_LENGTH;
+    base->stream.listener.gap_us = config->gap_us;
+    base->stream.storage = sensor->storage;
+    base->stream.stale_us = config->stale_us;
+    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.values = sensor->values;
+    base->measurement.model = FATHOM_A16;
+    base->measurement.address = 0;
+    base->measurement.first = 1;
+    base->line = config->line;
+    sensor->select = config->select;
+    sensor->value = FATHOM_PROCESSED;
+    fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
+    if (status < 0) return status;
+    if (sensor->select.set != NULL || config->value != FATHOM_PROCESSED) {
+        status = fathom_a16_auto_select(sensor, (fathom_dyp_value_t)config->value);
+        if (status != FATHOM_READY) return status == FATHOM_PENDING ? FATHOM_ERR_BUSY : status;
+    }
+    fathom_line_listen(base->line, &base->stream.listener);
+    return FATHOM_READY;
+}
+
+fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value)
+{
+    if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    /* FATHOM_OUTPUT_HIGH or _LOW; a TX that was not held low is left alone */
+    const bool is_driven = value != FATHOM_PROCESSED || sensor->value != FATHOM_PROCESSED;
+    const uint8_t level = (uint8_t)(is_driven ? (unsigned)value : (unsigned)FATHOM_OUTPUT_REST);
+    const fathom_status_t status = fathom_output_set(&sensor->select, level);
+    if (status == FATHOM_READY) sensor->value = (uint8_t)value;
+    return status;
+}
+
+fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor)
+{
+    fathom_dyp_auto_deinit(&sensor->base);
+    if (sensor->value == FATHOM_PROCESSED) return FATHOM_READY;
+    const fathom_status_t status = fathom_output_set(&sensor->select, FATHOM_OUTPUT_FREE);
+    if (status == FATHOM_READY) sensor->value = FATHOM_PROCESSED;
+    return status;
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_a16_auto_t *const sensor = ctx;
+    const fathom_status_t status = fathom_dyp_auto_take(&sensor->base);
+    return status == FATHOM_READY ? fathom_dyp_measurement_next(&sensor->base.measurement, sample) : status;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_a16_auto_t *const sensor = ctx;
+    return fathom_dyp_auto_due_us(&sensor->base);
+}
+
+fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor) { return sensor_of(poll, due_us, sensor); }

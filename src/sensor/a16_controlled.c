@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_controlled.h"
+
+#include "../common.h"
+
+/* Did what came last, between came_us and time_us, come in time? What came before the edge is far beyond latest_us. */
+static bool is_in_time(const fathom_a16_controlled_t *sensor, uint32_t time_us)
+{
+    return sensor->waiting && fathom_elapsed_us(time_us, sensor->edge_us) >= sensor->earliest_us &&
+           fathom_elapsed_us(sensor->came_us, sensor->edge_us) <= sensor->latest_us;
+}
+
+static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
+                    uint32_t time_us)
+{
+    fathom_a16_controlled_t *const sensor = (fathom_a16_controlled_t *)listener;
+    /* a port without time stamps: the line says the time of its poll */
+    sensor->came_us = time_us == sensor->line->polled_us ? sensor->trigger.polled_us : time_us;
+    if (is_in_time(sensor, time_us)) sensor->heard = true;
+    fathom_stream_receive(listener, bytes, count, after_gap, time_us);
+}
+
+static fathom_status_t judge(fathom_a16_controlled_t *sensor, fathom_sample_t *sample)
+{
+    fathom_dyp_measurement_t *const measurement = &sensor->measurement;
+    if (!is_in_time(sensor, sensor->stream.time_us)) {
+        count_one(&sensor->late);
+        return FATHOM_PENDING;
+    }
+    sensor->waiting = false;
+    fathom_dyp_stream_decode(fathom_stream_frame(&sensor->stream), measurement->values, 1);
+    fathom_dyp_measurement_set(measurement, 1, sensor->stream.time_us);
+    return fathom_dyp_measurement_next(measurement, sample);
+}
+
+/* Of the time for the response, at the last look. */
+static uint32_t response_left_us(const fathom_a16_controlled_t *sensor)
+{
+    return rest_us(sensor->latest_us, fathom_elapsed_us(sensor->trigger.polled_us, sensor->edge_us));
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_a16_controlled_t *const sensor = ctx;
+    fathom_trigger_t *const trigger = &sensor->trigger;
+    fathom_status_t status = fathom_line_poll(sensor->line);
+    fathom_trigger_look(trigger);
+    if (status < 0) return status;
+    /* its deadline means nothing here: who is not asked is silent */
+    if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_READY)
+        status = judge(sensor, sample);
+    if (sensor->waiting && sensor->stream.candidate == 0 && response_left_us(sensor) == 0) {
+        sensor->waiting = false;
+        status = sensor->heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE;
+    }
+    const fathom_status_t driven = fathom_trigger_drive(trigger, !sensor->waiting);
+    if (driven == FATHOM_READY) {
+        sensor->edge_us = trigger->polled_us;
+        sensor->waiting = true;
+        sensor->heard = false;
+    }
+    return status != FATHOM_PENDING || driven == FATHOM_READY ? status : driven;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_a16_controlled_t *const sensor = ctx;
+    const fathom_trigger_t *const trigger = &sensor->trigger;
+    const uint32_t until_us = sensor->waiting ? response_left_us(sensor) : trigger->left_us;
+    if (sensor->stream.fresh) return 0;
+    /* The line knows when the silence behind a frame is over: it is the listener's gap. */
+    return least_us(fathom_trigger_due_us(trigger, until_us), fathom_line_due_us(sensor->line));
+}
+
+/* ---- setting up ---- */
+
+fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
+                                           const fathom_a16_controlled_config_t *config)
+{
+    fathom_line_t *const line = config->line;
+    fathom_stream_t *const stream = &sensor->stream;
+    fathom_trigger_t *const trigger = &sensor->trigger;
+    fathom_dyp_measurement_t *const measurement = &sensor->measurement;
+    const uint32_t period_us = config->period_us;
+    sensor->line = line;
+    sensor->earliest_us = or_default(config->earliest_us, FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US);
+    sensor->latest_us = or_default(config->latest_us, FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US);
+    fathom_dyp_window_copy(&measurement->window, &config->window);
+    measurement->values = sensor->values;
+    measurement->model = FATHOM_A16;
+    measurement->address = 0;
+    measurement->first = 1;
+    if (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) < 0 || line == NULL ||
+        sensor->earliest_us > sensor->latest_us)
+        return FATHOM_ERR_ARGUMENT;
+    sensor->late = 0;
+    sensor->waiting = false;
+    trigger->output = config->trigger;
+    trigger->clock = line->config->clock;
+    trigger->period_us = period_us > FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US
+                             ? period_us
+                             : FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US;
+    trigger->low_us = config->low_us;
+    const fathom_status_t status = fathom_trigger_init(trigger);
+    if (status < 0) return status;
+    stream->length = FATHOM_DYP_A16_LENGTH;
+    stream->listener.gap_us = config->gap_us;
+    stream->storage = sensor->storage;
+    stream->stale_us = UINT32_MAX;
+    fathom_stream_begin(stream, trigger->polled_us);
+    stream->listener.receive = receive;
+    fathom_line_listen(line, &stream->listener);
+    return FATHOM_READY;
+}
+
+fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
+{
+    if (sensor->line->listener == &sensor->stream.listener) fathom_line_listen(sensor->line, NULL);
+    return fathom_trigger_deinit(&sensor->trigger);
+}
+
+fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor)
+{
+    return sensor_of(poll, due_us, sensor);
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_modbus.h"
+
+/* What sister models need and some margin. */
+#define PROCESSED_TIMEOUT_US 1000000ul
+#define REAL_TIME_TIMEOUT_US 300000ul
+
+fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config)
+{
+    fathom_dyp_modbus_t *const base = &sensor->base;
+    if (config->value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    const bool is_real_time = config->value == FATHOM_REAL_TIME;
+    base->request.first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
+    base->request.last = 1;
+    base->measurement.values = sensor->values;
+    base->start_us = config->start_us;
+    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.model = FATHOM_A16;
+    base->measurement.first = 1;
+    base->probes = 1;
+    return fathom_dyp_modbus_init(base, &config->modbus,
+                                  is_real_time ? REAL_TIME_TIMEOUT_US : PROCESSED_TIMEOUT_US,
+                                  FATHOM_A16_MIN_PERIOD_US);
+}
+
+void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
+
+fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}

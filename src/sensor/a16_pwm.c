@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_pwm.h"
+
+#include "../common.h"
+#include "fathom/codec/pulse_width.h"
+
+fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
+{
+    sensor->window.min_mm = (uint16_t)or_default(config->window.min_mm, 1);
+    sensor->window.max_mm = config->window.max_mm;
+    if (sensor->window.max_mm == 0)
+        sensor->window.max_mm = config->in_air ? FATHOM_A16_PWM_MAX_MM_IN_AIR : FATHOM_A16_MAX_MM;
+    sensor->sequence = 0;
+    sensor->implausible = 0;
+    sensor->air_dc = config->air_dc;
+    sensor->in_air = config->in_air;
+    if (sensor->window.min_mm > sensor->window.max_mm) return FATHOM_ERR_ARGUMENT;
+    return fathom_pulse_init(&sensor->meter, &config->pulse);
+}
+
+fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor)
+{
+    return fathom_pulse_deinit(&sensor->meter);
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_a16_pwm_t *const sensor = ctx;
+    fathom_pulse_reading_t reading;
+    uint16_t mm = 0;
+    const fathom_status_t status = fathom_pulse_poll(&sensor->meter, &reading);
+    if (status != FATHOM_READY) return status;
+    if (reading.kind == FATHOM_TARGET) {
+        mm = sensor->in_air ? fathom_pulse_width_mm_in_air(reading.width_us, sensor->air_dc)
+                            : fathom_pulse_width_mm(reading.width_us);
+        if (mm < sensor->window.min_mm || mm > sensor->window.max_mm) {
+            count_one(&sensor->implausible);
+            return FATHOM_ERR_MALFORMED;
+        }
+    }
+    sample->time_us = reading.time_us;
+    sample->magnitude = 0;
+    sample->raw = reading.width_us;
+    sample->sequence = ++sensor->sequence;
+    sample->distance_mm = mm;
+    sample->precision = 0;
+    sample->kind = reading.kind;
+    sample->model = FATHOM_A16;
+    sample->address = 0;
+    sample->probe = 1;
+    sample->ambient = 0;
+    sample->interference = false;
+    return FATHOM_READY;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_a16_pwm_t *const sensor = ctx;
+    return fathom_pulse_due_us(&sensor->meter);
+}
+
+fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor) { return sensor_of(poll, due_us, sensor); }

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_rs232.h"
+
+#include "../common.h"
+
+static uint32_t now_us(const fathom_a16_rs232_t *rs232)
+{
+    return clock_us(rs232->modbus->base.unit.transport->clock);
+}
+
+void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbus,
+                           fathom_a16_auto_t *automatic)
+{
+    rs232->modbus = modbus;
+    rs232->automatic = automatic;
+    rs232->return_us = FATHOM_A16_RS232_DEFAULT_RETURN_US;
+    rs232->since_us = 0;
+    rs232->is_listening = false;
+}
+
+static bool is_since(const fathom_a16_rs232_t *rs232, uint32_t time_us)
+{
+    return fathom_elapsed_us(time_us, rs232->since_us) <= INT32_MAX;
+}
+
+fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample)
+{
+    fathom_dyp_auto_t *const automatic = &rs232->automatic->base;
+    fathom_status_t status;
+    if (!rs232->is_listening) {
+        status = fathom_a16_modbus_set_operating_mode(rs232->modbus, FATHOM_A16_AUTOMATIC);
+        /* where it was not acknowledged it may hold all the same */
+        if (status != FATHOM_READY && status != FATHOM_ERR_UNCONFIRMED) return status;
+        rs232->is_listening = true;
+        rs232->since_us = now_us(rs232);
+    }
+    status = fathom_dyp_auto_take(automatic);
+    /* A frame from before the command may have waited to be taken; it proves nothing. */
+    if (status == FATHOM_READY && is_since(rs232, automatic->measurement.time_us))
+        status = fathom_dyp_measurement_next(&automatic->measurement, sample);
+    else if (status == FATHOM_READY)
+        status = FATHOM_PENDING;
+    if (status != FATHOM_READY && status != FATHOM_ERR_PORT) {
+        if (fathom_elapsed_us(now_us(rs232), rs232->since_us) < rs232->return_us) return FATHOM_PENDING;
+        status = FATHOM_ERR_UNCONFIRMED;
+    }
+    rs232->is_listening = false;
+    return status;
+}
+
+void fathom_a16_rs232_cancel(fathom_a16_rs232_t *rs232)
+{
+    rs232->is_listening = false;
+    fathom_a16_modbus_cancel(rs232->modbus);
+}
+
+uint32_t fathom_a16_rs232_due_us(const fathom_a16_rs232_t *rs232)
+{
+    if (!rs232->is_listening) return fathom_modbus_unit_due_us(&rs232->modbus->base.unit);
+    const uint32_t due_us = fathom_dyp_auto_due_us(&rs232->automatic->base);
+    const uint32_t passed_us = fathom_elapsed_us(now_us(rs232), rs232->since_us);
+    return least_us(rest_us(rs232->return_us, passed_us), due_us);
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_settings.h"
+
+void fathom_a16_modbus_cancel(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
+
+bool fathom_a16_modbus_is_written(const fathom_a16_modbus_t *sensor) { return sensor->base.unit.is_written; }
+
+fathom_status_t fathom_a16_modbus_next_is_blind(fathom_a16_modbus_t *sensor)
+{
+    return fathom_modbus_next_is_blind(&sensor->base.unit);
+}
+
+fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dyp_value_t value,
+                                          fathom_sample_t *sample)
+{
+    if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    const uint16_t address =
+        value == FATHOM_REAL_TIME ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
+    const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, sensor->values);
+    if (status != FATHOM_READY) return status;
+    sensor->base.measurement.address = sensor->base.unit.address;
+    fathom_dyp_measurement_set(&sensor->base.measurement, 1, fathom_modbus_unit_heard_us(&sensor->base.unit));
+    return fathom_dyp_measurement_next(&sensor->base.measurement, sample);
+}
+
+fathom_status_t fathom_a16_modbus_address(fathom_a16_modbus_t *sensor, uint8_t *address)
+{
+    return fathom_dyp_modbus_address(&sensor->base, address);
+}
+
+fathom_status_t fathom_a16_modbus_set_address(fathom_a16_modbus_t *sensor, uint8_t address)
+{
+    return fathom_dyp_modbus_set_address(&sensor->base, address);
+}
+
+fathom_status_t fathom_a16_modbus_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_set_address_to_0(&sensor->base);
+}
+
+fathom_status_t fathom_a16_modbus_set_operating_mode(fathom_a16_modbus_t *sensor,
+                                                     fathom_a16_operating_mode_t mode)
+{
+    if ((unsigned)mode > FATHOM_A16_AUTOMATIC) return FATHOM_ERR_ARGUMENT;
+    return fathom_dyp_modbus_write(&sensor->base, FATHOM_A16_REGISTER_OPERATING_MODE, (uint16_t)mode);
+}
+
+/* A register that is 0 or 1. */
+static fathom_status_t get_choice(fathom_a16_modbus_t *sensor, uint16_t address, uint16_t *value)
+{
+    uint16_t found = 0;
+    const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, &found);
+    if (status != FATHOM_READY) return status;
+    if (found > 1) return FATHOM_ERR_MALFORMED;
+    *value = found;
+    return status;
+}
+
+static fathom_status_t set_choice(fathom_a16_modbus_t *sensor, uint16_t address, unsigned value)
+{
+    if (value > 1) return FATHOM_ERR_ARGUMENT;
+    return fathom_dyp_modbus_set(&sensor->base, address, (uint16_t)value);
+}
+
+fathom_status_t fathom_a16_modbus_switch_polarity(fathom_a16_modbus_t *sensor,
+                                                  fathom_a16_polarity_t *polarity)
+{
+    uint16_t value = 0;
+    const fathom_status_t status = get_choice(sensor, FATHOM_A16_REGISTER_SWITCH_POLARITY, &value);
+    if (status == FATHOM_READY) *polarity = (fathom_a16_polarity_t)value;
+    return status;
+}
+
+fathom_status_t fathom_a16_modbus_set_switch_polarity(fathom_a16_modbus_t *sensor,
+                                                      fathom_a16_polarity_t polarity)
+{
+    return set_choice(sensor, FATHOM_A16_REGISTER_SWITCH_POLARITY, (unsigned)polarity);
+}
+
+fathom_status_t fathom_a16_modbus_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t *threshold_mm)
+{
+    return fathom_dyp_modbus_get(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
+}
+
+fathom_status_t fathom_a16_modbus_set_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t threshold_mm)
+{
+    if (threshold_mm == 0 || threshold_mm > FATHOM_A16_MAX_MM) return FATHOM_ERR_ARGUMENT;
+    return fathom_dyp_modbus_set(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
+}
+
+fathom_status_t fathom_a16_modbus_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t *value)
+{
+    uint16_t found = 0;
+    const fathom_status_t status = get_choice(sensor, FATHOM_A16_REGISTER_AUTOMATIC_VALUE, &found);
+    if (status == FATHOM_READY) *value = (fathom_dyp_value_t)found;
+    return status;
+}
+
+fathom_status_t fathom_a16_modbus_set_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t value)
+{
+    return set_choice(sensor, FATHOM_A16_REGISTER_AUTOMATIC_VALUE, (unsigned)value);
+}

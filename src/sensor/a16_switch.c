@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/a16_switch.h"
+
+fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config)
+{
+    fathom_contact_t *const base = &sensor->base;
+    base->pin = config->pin;
+    base->clock = config->clock;
+    base->guard = config->guard;
+    base->near_is_high = !config->negative;
+    base->model = FATHOM_A16;
+    base->address = config->address;
+    return fathom_contact_init(base, &config->timing);
+}
+
+fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
+                                               fathom_a16_polarity_t polarity)
+{
+    const fathom_status_t status = fathom_a16_modbus_set_switch_polarity(modbus, polarity);
+    fathom_contact_hold(&sensor->base, status == FATHOM_PENDING);
+    if (status == FATHOM_READY) fathom_a16_switch_polarity_is(sensor, polarity);
+    return status;
+}
+
+void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity)
+{
+    fathom_contact_hold(&sensor->base, false);
+    fathom_contact_set_near_is_high(&sensor->base, polarity == FATHOM_A16_POSITIVE);
+}
+
+fathom_sensor_t fathom_a16_switch_sensor(fathom_a16_switch_t *sensor)
+{
+    return fathom_contact_sensor(&sensor->base);
+}

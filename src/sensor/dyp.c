@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/dyp.h"
+
+#include <stddef.h>
+
+#include "../common.h"
+
+/* Of FFFD, FFFE, FFFF and 0, four bits each, the first one last. */
+enum {
+    MEANINGS = FATHOM_MEANS_NO_TARGET | FATHOM_MEANS_INTERFERENCE << 4 | FATHOM_MEANS_REFUSED << 8 |
+               FATHOM_MEANS_UNKNOWN << 12
+};
+
+uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value)
+{
+    const uint16_t special = (uint16_t)(value + 3);
+    if (special > 3)
+        return value >= window->min_mm && value <= window->max_mm ? (uint8_t)FATHOM_TARGET
+                                                                  : (uint8_t)FATHOM_MEANS_REFUSED;
+    const uint8_t meaning = ((const uint8_t *)window)[offsetof(fathom_dyp_window_t, value_fffd) + special];
+    if (meaning != FATHOM_MEANS_DEFAULT) return meaning;
+    return (uint8_t)(MEANINGS >> 4 * special & 15);
+}
+
+fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measurement, fathom_sample_t *sample)
+{
+    uint8_t left = measurement->left;
+    uint8_t probe = 1;
+    if (left == 0) return FATHOM_PENDING;
+    measurement->left = left & (uint8_t)(left - 1);
+    for (; (left & 1) == 0; left >>= 1) probe++;
+    const uint16_t value = measurement->values[probe - measurement->first];
+    uint8_t kind = fathom_dyp_meaning(&measurement->window, value);
+    if (kind == FATHOM_MEANS_REFUSED) {
+        count_one(&measurement->implausible);
+        measurement->refused_raw = value;
+        measurement->refused_probe = probe;
+        return FATHOM_ERR_MALFORMED;
+    }
+    sample->interference = false;
+    if (kind == FATHOM_MEANS_INTERFERENCE) {
+        kind = FATHOM_NO_TARGET;
+        sample->interference = true;
+    }
+    sample->kind = kind;
+    sample->distance_mm = 0;
+    if (kind == FATHOM_TARGET) sample->distance_mm = value;
+    sample->raw = value;
+    sample->time_us = measurement->time_us;
+    sample->magnitude = 0;
+    sample->sequence = measurement->sequence;
+    sample->precision = 0;
+    sample->model = measurement->model;
+    sample->address = measurement->address;
+    sample->probe = probe;
+    sample->ambient = 0;
+    return FATHOM_READY;
+}
+
+void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
+{
+    const uint8_t *next = (const uint8_t *)from;
+    /* volatile: or they make one of this loop too */
+    for (volatile uint8_t *byte = (uint8_t *)to; byte != (uint8_t *)(to + 1); byte++) *byte = *next++;
+}
+
+fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm)
+{
+    fathom_dyp_window_t *const window = &measurement->window;
+    if (window->max_mm == 0) window->max_mm = default_max_mm;
+    measurement->left = 0;
+    measurement->sequence = 0;
+    measurement->implausible = 0;
+    measurement->refused_raw = 0;
+    measurement->refused_probe = 0;
+    return window->min_mm > window->max_mm ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
+}

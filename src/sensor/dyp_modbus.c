@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/dyp_modbus.h"
+
+#include "../common.h"
+
+enum { ZERO_ADDRESS = 256 };       /* fathom_modbus_setting_t */
+enum { MEASURE = 1, WRITES = 64 }; /* ids of requests */
+
+fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
+                                       uint32_t timeout_us, uint32_t pace_us)
+{
+    const uint16_t max_mm = sensor->measurement.model == FATHOM_A16 ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
+    const fathom_status_t status = fathom_dyp_measurement_init(&sensor->measurement, max_mm);
+    sensor->request.values = sensor->measurement.values;
+    sensor->request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    sensor->request.id = MEASURE;
+    sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
+    return status < 0 ? status : fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us);
+}
+
+void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
+
+void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor)
+{
+    sensor->measurement.left = 0;
+    fathom_modbus_unit_power_on(&sensor->unit, sensor->start_us);
+}
+
+/* ---- commands ---- */
+
+/* By what registers differ: they are 0010.., 0100.. and 0200... */
+static uint8_t id_of(uint16_t address)
+{
+    return (uint8_t)(FATHOM_MODBUS_COMMAND | (address >> 4 & 0x30) | (address & 0x0F));
+}
+
+fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
+{
+    fathom_modbus_unit_request_t request;
+    request.values = &sensor->found;
+    request.first = address;
+    request.last = 1;
+    request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    request.id = id_of(address);
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &request);
+    if (status == FATHOM_READY) *value = sensor->found;
+    return status;
+}
+
+fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
+{
+    fathom_modbus_unit_poll(&sensor->unit);
+    return fathom_dyp_modbus_look(sensor, address, value);
+}
+
+fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address)
+{
+    uint16_t value = 0;
+    const fathom_status_t status = fathom_dyp_modbus_get(sensor, FATHOM_DYP_REGISTER_ADDRESS, &value);
+    if (status != FATHOM_READY) return status;
+    if (value > UINT8_MAX) return FATHOM_ERR_MALFORMED;
+    *address = (uint8_t)value;
+    return status;
+}
+
+static fathom_status_t read(const fathom_modbus_setting_t *setting, uint32_t *value)
+{
+    uint16_t found = 0;
+    const fathom_status_t status = fathom_dyp_modbus_look(setting->driver, setting->write.first, &found);
+    *value = found;
+    return status;
+}
+
+void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setting_t *setting,
+                                uint16_t address, uint16_t value)
+{
+    setting->driver = sensor;
+    setting->write.values = NULL;
+    setting->write.first = address;
+    setting->write.last = value;
+    setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    setting->write.id = id_of(address) | WRITES;
+    setting->value = value;
+    setting->line_settings = NULL;
+    setting->address = 0;
+}
+
+typedef fathom_status_t (*read_t)(const fathom_modbus_setting_t *setting, uint32_t *value);
+
+static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value, read_t its_read)
+{
+    const fathom_modbus_unit_t *const unit = &sensor->unit;
+    const bool is_address = address == FATHOM_DYP_REGISTER_ADDRESS;
+    fathom_modbus_setting_t setting;
+    if (is_address && unit->is_blind) return FATHOM_ERR_ARGUMENT;
+    if (unit->address == FATHOM_MODBUS_BROADCAST && unit->setting == 0) return FATHOM_ERR_ARGUMENT;
+    fathom_dyp_modbus_describe(sensor, &setting, address, value);
+    setting.read = its_read;
+    if (is_address) setting.address = value != 0 ? value : ZERO_ADDRESS;
+    return fathom_modbus_set(&sensor->unit, &setting);
+}
+
+fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
+{
+    fathom_modbus_unit_poll(&sensor->unit);
+    return set(sensor, address, value, read);
+}
+
+fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
+{
+    fathom_modbus_unit_poll(&sensor->unit);
+    if (sensor->unit.setting == 0 && !sensor->unit.is_blind) {
+        sensor->unit.is_written = false; /* nor will it be before that is answered */
+        const fathom_status_t status =
+            fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);
+        if (status != FATHOM_READY) return status;
+    }
+    return set(sensor, address, value, NULL);
+}
+
+fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address)
+{
+    if (address == FATHOM_MODBUS_BROADCAST || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address);
+}
+
+fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0);
+}
+
+/* ---- who is there ---- */
+
+fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport,
+                                       uint8_t *address)
+{
+    fathom_modbus_request_t *const request = &find->request;
+    if (!find->is_asked) {
+        request->transaction.timeout_us = FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US;
+        fathom_modbus_read_holding_registers(&request->message, FATHOM_MODBUS_ANY_UNIT,
+                                             FATHOM_DYP_REGISTER_ADDRESS, 1, &find->value);
+        const fathom_status_t status = transport->submit(transport->ctx, request);
+        if (status != FATHOM_PENDING) return status;
+        find->is_asked = true;
+    }
+    (void)transport->poll(transport->ctx); /* a broken port ends the request */
+    const fathom_status_t status = (fathom_status_t)request->transaction.status;
+    if (status == FATHOM_PENDING) return status;
+    find->is_asked = false;
+    if (status != FATHOM_READY) return status;
+    const uint16_t found =
+        request->message.head[0] != FATHOM_MODBUS_ANY_UNIT ? request->message.head[0] : find->value;
+    if (found >= FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_MALFORMED;
+    *address = (uint8_t)found;
+    return status;
+}
+
+void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport)
+{
+    if (find->is_asked) transport->cancel(transport->ctx, &find->request);
+    find->is_asked = false;
+}
+
+/* ---- measuring ---- */
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_dyp_modbus_t *const sensor = ctx;
+    const fathom_status_t next = fathom_dyp_measurement_next(&sensor->measurement, sample);
+    if (next != FATHOM_PENDING) return next;
+    fathom_modbus_unit_poll(&sensor->unit);
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->request);
+    if (status != FATHOM_READY) return status;
+    sensor->measurement.address =
+        sensor->unit.address; /* it may have moved, and a move may have been given up */
+    fathom_dyp_measurement_set(&sensor->measurement, sensor->probes,
+                               fathom_modbus_unit_heard_us(&sensor->unit));
+    return fathom_dyp_measurement_next(&sensor->measurement, sample);
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_dyp_modbus_t *const sensor = ctx;
+    return sensor->measurement.left != 0 ? 0 : fathom_modbus_unit_due_us(&sensor->unit);
+}
+
+fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)
+{
+    return sensor_of(poll, due_us, sensor);
+}

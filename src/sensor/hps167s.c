@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/hps167s.h"
+
+#include "hps167s_internal.h"
+
+enum { MAX_SAME_RESPONSES = 8 };
+
+#define MEASURE_TIMEOUT_US 500000ul
+
+fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
+{
+    if (config->modbus.address > FATHOM_HPS167S_MAX_ADDRESS || config->modbus.address_zero ||
+        config->same_responses > MAX_SAME_RESPONSES)
+        return FATHOM_ERR_ARGUMENT;
+    clear(sensor, sizeof *sensor);
+    sensor->warm_up_s = config->warm_up_s;
+    if (config->warm_up_s == 0 && !config->no_warm_up) sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
+    sensor->same_responses = config->same_responses;
+    sensor->steps_per_degree = config->steps_per_degree;
+    sensor->low_word_first = config->low_word_first;
+    sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;
+    return fathom_modbus_unit_init(&sensor->unit, &config->modbus, MEASURE_TIMEOUT_US,
+                                   FATHOM_HPS167S_MIN_PERIOD_US);
+}
+
+fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits)
+{
+    const fathom_status_t status = fathom_hps167s_complete_limits(limits);
+    if (status == FATHOM_READY) sensor->limits = limits;
+    return status;
+}
+
+void fathom_hps167s_deinit(fathom_hps167s_t *sensor) { fathom_hps167s_cancel(sensor); }
+
+void fathom_hps167s_cancel(fathom_hps167s_t *sensor)
+{
+    sensor->responses = 0;
+    fathom_modbus_unit_cancel(&sensor->unit);
+}
+
+void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
+{
+    const uint32_t warm_us = (uint32_t)(sensor->warm_up_s * 1000000ul) + sensor->unit.timeout_us;
+    sensor->responses = 0;
+    fathom_modbus_unit_power_on(&sensor->unit, warm_us);
+    if (sensor->follow != NULL) sensor->follow(sensor, FATHOM_PENDING);
+}
+
+fathom_status_t fathom_hps167s_ask(fathom_hps167s_t *sensor, uint8_t id, uint8_t count)
+{
+    fathom_modbus_unit_request_t *const request = &sensor->request;
+    request->values = id < FATHOM_MODBUS_COMMAND ? sensor->measurement : sensor->values;
+    request->first = id % FATHOM_MODBUS_COMMAND;
+    request->last = count;
+    request->function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    request->id = id;
+    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, request);
+    if (status != FATHOM_PENDING && sensor->follow != NULL) sensor->follow(sensor, status);
+    return status;
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    fathom_hps167s_t *const sensor = ctx;
+    const uint16_t *const response = sensor->measurement;
+    fathom_modbus_unit_poll(&sensor->unit);
+    const fathom_status_t status =
+        fathom_hps167s_ask(sensor, FATHOM_HPS167S_MEASUREMENT, FATHOM_HPS167S_MEASUREMENT_COUNT);
+    if (status != FATHOM_READY) return status;
+    if (fathom_modbus_unit_is_warming_up(&sensor->unit) && fathom_hps167s_is_abnormal(response))
+        return FATHOM_ERR_WARMING_UP;
+    if ((sensor->is_new != NULL && !sensor->is_new(sensor)) ||
+        fathom_hps167s_decode_within(sensor->limits, response, sample) < 0) {
+        count_one(&sensor->implausible);
+        return FATHOM_ERR_MALFORMED;
+    }
+    sample->time_us = fathom_modbus_unit_heard_us(&sensor->unit);
+    sample->sequence = ++sensor->sequence;
+    sample->model = FATHOM_HPS167S;
+    sample->address = sensor->unit.address;
+    sample->probe = 1;
+    return FATHOM_READY;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const fathom_hps167s_t *const sensor = ctx;
+    return fathom_modbus_unit_due_us(&sensor->unit);
+}
+
+fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor) { return sensor_of(poll, due_us, sensor); }

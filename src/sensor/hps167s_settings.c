@@ -1,0 +1,322 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/hps167s_settings.h"
+
+#include "hps167s_internal.h"
+
+/* What #2 tells, what no response tells, and what goes to all units: in the id of that; no command's address has the bit. */
+enum { TOLD = 0, UNTOLD = 1, TO_ALL = 0x40 };
+
+/* ---- where it is ---- */
+
+/* The line settings with another rate, in that half of `moved` which is not in use. */
+static const fathom_line_settings_t *with_baud(fathom_hps167s_t *sensor, uint32_t baud)
+{
+    const fathom_line_settings_t *const old = sensor->unit.line_settings;
+    fathom_line_settings_t *const there = &sensor->moved[old == &sensor->moved[0] ? 1 : 0];
+    there->baud = baud;
+    there->parity = old->parity;
+    there->stop_bits = old->stop_bits;
+    return there;
+}
+
+/* Changes over to the other place where the device may be. */
+static void change_over(fathom_hps167s_t *sensor)
+{
+    const fathom_line_settings_t *const old = sensor->unit.line_settings;
+    sensor->unit.line_settings = sensor->other;
+    sensor->other = old;
+}
+
+static void seek(fathom_hps167s_t *sensor, const fathom_line_settings_t *other)
+{
+    sensor->other = other;
+    sensor->is_seeking = true;
+}
+
+/* The power has come, or a request has ended: does it tell where the device is? No setting begins before that is
+ * known. */
+static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
+{
+    if (status == FATHOM_PENDING && sensor->next_baud != 0) {
+        seek(sensor, with_baud(sensor, sensor->next_baud));
+        sensor->next_baud = 0;
+        change_over(sensor);
+    }
+    if (!sensor->is_seeking) return;
+    if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.transaction.status;
+    if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED)
+        sensor->is_seeking = false;
+    else if (status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_CHECKSUM)
+        change_over(sensor);
+}
+
+/* ---- what is read back ---- */
+
+static bool is_at_home(const fathom_modbus_unit_t *unit)
+{
+    return unit->address == unit->known_address && unit->line_settings == unit->known_line_settings;
+}
+
+/*
+ * #6 is past and the device answers #2: was it reset? It was if it says so, and if it has moved; it was not if it still
+ * has another address than 1. The first look comes before.
+ */
+static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
+{
+    const bool is_done = sensor->reset_response == FATHOM_HPS167S_RESET_DONE || !is_at_home(&sensor->unit);
+    const bool is_first = !sensor->is_looked_at;
+    sensor->is_looked_at = true;
+    if (!is_done && !is_first && sensor->unit.address == 1) return FATHOM_ERR_UNCONFIRMED;
+    *value = is_done ? FATHOM_HPS167S_RESET_DONE : 0;
+    return FATHOM_READY;
+}
+
+static bool is_reset_refused(const fathom_hps167s_t *sensor)
+{
+    return sensor->reset_response != FATHOM_HPS167S_NO_RESET_RESPONSE &&
+           sensor->reset_response != FATHOM_HPS167S_RESET_DONE;
+}
+
+/* The code of the rate; one without a rate of its own tells less than where the response came from. */
+static uint8_t baud_code(const fathom_hps167s_t *sensor)
+{
+    const uint8_t code = fathom_hps167s_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE);
+    const bool has_rate = fathom_hps167s_baud_code(fathom_hps167s_baud(code)) == code;
+    return has_rate ? code : fathom_hps167s_baud_code(sensor->unit.line_settings->baud);
+}
+
+/* What the device says of a setting, as it is written. */
+static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *value)
+{
+    fathom_hps167s_t *const sensor = setting->driver;
+    const uint16_t *const values = sensor->values;
+    const uint8_t command = (uint8_t)setting->write.first;
+    fathom_status_t status;
+    if (command == FATHOM_HPS167S_ADDRESS) {
+        *value = sensor->unit.address;
+        return fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
+    }
+    /* It has said that it was not reset, so it is where it was: nothing is to be asked. */
+    if (command == FATHOM_HPS167S_RESET && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
+    status = fathom_hps167s_read_configuration(sensor);
+    if (status != FATHOM_READY) return status;
+    switch (command) {
+    case FATHOM_HPS167S_WARM_UP:
+        sensor->warm_up_s = fathom_hps167s_byte(values, FATHOM_HPS167S_WARM_UP_BYTE);
+        *value = sensor->warm_up_s;
+        break;
+    case FATHOM_HPS167S_BAUD:
+        *value = baud_code(sensor);
+        break;
+    case FATHOM_HPS167S_MEASURES:
+        *value = fathom_hps167s_byte(values, FATHOM_HPS167S_MEASURES_BYTE);
+        break;
+    case FATHOM_HPS167S_TERMINATION:
+        *value = fathom_hps167s_byte(values, FATHOM_HPS167S_TERMINATION_BYTE);
+        break;
+    case FATHOM_HPS167S_RECONNECT:
+        *value = fathom_hps167s_told_reconnect_time_ms(values, sensor->low_word_first);
+        break;
+    default:
+        status = look_for_reset(sensor, value);
+    }
+    return status;
+}
+
+/* ---- what is set ---- */
+
+/*
+ * FATHOM_READY: sensor->setting is this setting and may go on, or begin; the caller adds what is its own. Where it is
+ * not known at which rate the device is, or where nothing else would be read, that takes a request that changes
+ * nothing.
+ */
+static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t value, uint8_t kind)
+{
+    fathom_modbus_unit_t *const unit = &sensor->unit;
+    fathom_modbus_setting_t *const setting = &sensor->setting;
+    const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
+    fathom_modbus_unit_poll(unit);
+    if (unit->setting != 0) /* to load the user's settings is not to load the factory's */
+        return unit->setting == id && setting->value == value ? FATHOM_READY : FATHOM_ERR_BUSY;
+    unit->is_written = false; /* nor will it be before that is answered */
+    if (!unit->is_blind && (sensor->is_seeking || kind == UNTOLD)) {
+        const fathom_status_t status =
+            fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
+        if (status != FATHOM_READY) return status;
+    }
+    setting->read = kind == UNTOLD ? NULL : look;
+    setting->driver = sensor;
+    setting->value = value;
+    setting->line_settings = NULL;
+    setting->address = 0;
+    setting->write.first = command;
+    setting->write.last = (uint16_t)value;
+    setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    setting->write.id = id;
+    return FATHOM_READY;
+}
+
+static fathom_status_t go_on(fathom_hps167s_t *sensor)
+{
+    return fathom_modbus_set(&sensor->unit, &sensor->setting);
+}
+
+static fathom_status_t set(fathom_hps167s_t *sensor, uint8_t command, uint16_t value, uint8_t kind)
+{
+    const fathom_status_t status = begin(sensor, command, value, kind);
+    return status == FATHOM_READY ? go_on(sensor) : status;
+}
+
+fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor)
+{
+    return fathom_modbus_next_is_blind(&sensor->unit);
+}
+
+bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor) { return sensor->unit.is_written; }
+
+fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s)
+{
+    return set(sensor, FATHOM_HPS167S_WARM_UP, warm_up_s, TOLD);
+}
+
+static uint16_t switch_of(bool is_on) { return is_on ? FATHOM_HPS167S_ON : FATHOM_HPS167S_OFF; }
+
+fathom_status_t fathom_hps167s_set_measures_after_power_on(fathom_hps167s_t *sensor, bool measures)
+{
+    return set(sensor, FATHOM_HPS167S_MEASURES, switch_of(measures), TOLD);
+}
+
+fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool termination)
+{
+    return set(sensor, FATHOM_HPS167S_TERMINATION, switch_of(termination), TOLD);
+}
+
+fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
+{
+    /* it may add to the offset that is there, so that none is ever written twice */
+    if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
+    return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, UNTOLD);
+}
+
+fathom_status_t fathom_hps167s_load_user_settings(fathom_hps167s_t *sensor)
+{
+    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_USER, UNTOLD);
+}
+
+fathom_status_t fathom_hps167s_load_factory_settings(fathom_hps167s_t *sensor)
+{
+    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_FACTORY, UNTOLD);
+}
+
+fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, int16_t sensitivity)
+{
+    return set(sensor, FATHOM_HPS167S_FILTER, (uint16_t)sensitivity, UNTOLD);
+}
+
+fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, uint32_t reconnect_time_ms)
+{
+    fathom_modbus_unit_request_t *const write = &sensor->setting.write;
+    if (reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS != 0) return FATHOM_ERR_ARGUMENT;
+    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, TOLD);
+    if (status != FATHOM_READY) return status;
+    fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
+    write->values = sensor->words;
+    write->last = FATHOM_HPS167S_RECONNECT_COUNT;
+    write->function = FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS;
+    return go_on(sensor);
+}
+
+/* ---- to all units ---- */
+
+static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool is_on)
+{
+    fathom_modbus_unit_t *const unit = &sensor->unit;
+    const uint8_t home = unit->address;
+    if (unit->setting == 0) unit->is_blind = true;
+    fathom_status_t status = begin(sensor, command, switch_of(is_on), TO_ALL);
+    if (status != FATHOM_READY) return status;
+    unit->address = FATHOM_MODBUS_BROADCAST;
+    status = go_on(sensor);
+    unit->address = home;
+    unit->known_address = home;
+    unit->last_written = 0; /* sent is not acknowledged */
+    return status;
+}
+
+fathom_status_t fathom_hps167s_set_measures_after_power_on_of_all_units(fathom_hps167s_t *sensor,
+                                                                        bool measures)
+{
+    return set_all(sensor, FATHOM_HPS167S_MEASURES, measures);
+}
+
+fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *sensor, bool termination)
+{
+    return set_all(sensor, FATHOM_HPS167S_TERMINATION, termination);
+}
+
+/* ---- what moves the device ---- */
+
+fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
+{
+    if (address == 0 || address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
+    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, TOLD);
+    if (status != FATHOM_READY) return status;
+    sensor->setting.address = address;
+    return go_on(sensor);
+}
+
+/* The setting also moves the device to this rate, where it has another one; the address is for looking there first.
+ * Said again while that is under way, it comes to the same. */
+static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t address)
+{
+    const fathom_line_settings_t *const is = sensor->unit.line_settings;
+    if (is == NULL || is->baud == baud) return;
+    sensor->setting.line_settings = with_baud(sensor, baud);
+    sensor->setting.address = address;
+}
+
+/* The device has been told to be at this rate: is it, or will it be? */
+static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
+{
+    const fathom_line_settings_t *const is = sensor->unit.line_settings;
+    sensor->next_baud = is != NULL && is->baud != baud ? baud : 0;
+    sensor->follow = follow;
+}
+
+fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
+{
+    const uint8_t code = fathom_hps167s_baud_code(baud);
+    if (code == 0 || sensor->unit.line_settings == NULL) return FATHOM_ERR_ARGUMENT;
+    fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, TOLD);
+    if (status != FATHOM_READY) return status;
+    move_to_baud(sensor, baud, sensor->unit.address);
+    status = go_on(sensor);
+    if (status == FATHOM_READY) expect_baud(sensor, baud);
+    if (status == FATHOM_ERR_UNCONFIRMED && sensor->setting.line_settings != NULL) {
+        seek(sensor, sensor->setting.line_settings);
+        sensor->follow = follow;
+    }
+    return status;
+}
+
+fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor)
+{
+    fathom_modbus_setting_t *const setting = &sensor->setting;
+    if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
+    fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, TOLD);
+    if (status != FATHOM_READY) return status;
+    if (sensor->unit.setting == 0) {
+        move_to_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD, 1);
+        if (sensor->unit.address != 1) setting->address = 1;
+        setting->write.values = &sensor->reset_response;
+        setting->write.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+        sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;
+        sensor->is_looked_at = false;
+    }
+    status = go_on(sensor);
+    if (status == FATHOM_READY) {
+        expect_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD);
+        sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
+    }
+    return status == FATHOM_ERR_UNCONFIRMED && is_reset_refused(sensor) ? FATHOM_ERR_EXCEPTION : status;
+}

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "suite.h"
+
+#include "fathom/codec/dyp_stream.h"
+
+/* A05 1(3). The datasheets' frames both ways: tests/golden/test_frames.c. */
+static const uint8_t a05_frame[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
+
+/* A16 2(4): SUM = (FF + H + L) & FF, mm = H * 256 + L. */
+TEST(every_value_of_an_A16_goes_both_ways)
+{
+    for (uint32_t mm = 0; mm != 65536; mm++) {
+        const uint8_t expected[] = {0xFF, (uint8_t)(mm / 256), (uint8_t)(mm % 256),
+                                    (uint8_t)((255 + mm / 256 + mm % 256) % 256)};
+        const uint16_t value = (uint16_t)mm;
+        uint16_t decoded = (uint16_t)~mm;
+        uint8_t frame[4];
+        assert_int_equal(fathom_dyp_stream_encode(frame, &value, 1), 4);
+        assert_memory_equal(frame, expected, 4);
+        assert_true(fathom_dyp_stream_valid(expected, 4));
+        fathom_dyp_stream_decode(expected, &decoded, 1);
+        assert_int_equal(decoded, mm);
+    }
+}
+
+TEST(every_value_of_every_probe_of_an_A05_goes_both_ways)
+{
+    for (unsigned probe = 0; probe != 4; probe++) {
+        for (uint32_t mm = 0; mm < 65536; mm += 7) {
+            uint16_t values[4] = {0, 0, 0, 0};
+            uint16_t decoded[4] = {1, 1, 1, 1};
+            uint8_t expected[10] = {0xFF};
+            uint8_t frame[10];
+            values[probe] = (uint16_t)mm;
+            expected[1 + 2 * probe] = (uint8_t)(mm / 256);
+            expected[2 + 2 * probe] = (uint8_t)(mm % 256);
+            expected[9] = (uint8_t)((255 + mm / 256 + mm % 256) % 256);
+            assert_int_equal(fathom_dyp_stream_encode(frame, values, 4), 10);
+            assert_memory_equal(frame, expected, 10);
+            assert_true(fathom_dyp_stream_valid(expected, 10));
+            fathom_dyp_stream_decode(expected, decoded, 4);
+            assert_memory_equal(decoded, values, sizeof values);
+        }
+    }
+}
+
+TEST(every_other_start_and_every_other_sum_is_refused)
+{
+    for (unsigned byte = 0; byte != 256; byte++) {
+        /* The sum is made right for the wrong start, so that the start alone is at fault. */
+        const uint8_t start[] = {(uint8_t)byte, 0x07, 0xA1, (uint8_t)(byte + 0x07 + 0xA1)};
+        const uint8_t sum[] = {0xFF, 0x07, 0xA1, (uint8_t)byte};
+        uint8_t sum_of_ten[10];
+        memcpy(sum_of_ten, a05_frame, 10);
+        sum_of_ten[9] = (uint8_t)byte;
+        assert_true(fathom_dyp_stream_valid(start, 4) == (byte == 0xFF));
+        assert_true(fathom_dyp_stream_valid(sum, 4) == (byte == 0xA7));
+        assert_true(fathom_dyp_stream_valid(sum_of_ten, 10) == (byte == 0x60));
+    }
+}
+
+/* 255 bytes of FF are 65025 = FE01; of n bytes of FF the sum is 256 - n. What lies behind does not count. */
+TEST(the_sum_of_0_to_255_bytes_is_the_low_byte)
+{
+    uint8_t bytes[256];
+    memset(bytes, 0xFF, sizeof bytes);
+    assert_int_equal(fathom_dyp_sum(bytes, 0), 0);
+    for (unsigned n = 1; n != 256; n++) assert_int_equal(fathom_dyp_sum(bytes, (uint8_t)n), 256 - n);
+    assert_int_equal(fathom_dyp_sum(bytes, 255), 0x01);
+    assert_int_equal(fathom_dyp_sum(a05_frame, 9), 0x60);
+}
+
+/* Why stream.h has further rules. Each of these is a valid frame that no sensor sent. */
+TEST(a_good_sum_does_not_prove_where_a_frame_begins)
+{
+    /* 511 mm held still is FF 01 FF FF, FF + 01 + FF = 1FF; a byte early it is FF FF 01 FF, 65281 mm. */
+    static const uint8_t shifted_by_one[] = {0xFF, 0xFF, 0x01, 0xFF};
+    /* FF 03 E8 07 D0 07 FF 05 3B 07, 1000 2000 2047 1339 mm: FF + 03 + E8 + 07 + D0 + 07 + FF + 05 + 3B = 407.
+     * Six bytes on, FF + 05 + 3B + 07 + FF + 03 + E8 + 07 + D0 = 407 too. */
+    static const uint8_t right[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
+    static const uint8_t shifted_by_six[] = {0xFF, 0x05, 0x3B, 0x07, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07};
+    static const uint16_t permuted[] = {1339, 2047, 1000, 2000};
+    uint16_t values[4];
+    assert_true(fathom_dyp_stream_valid(shifted_by_one, 4));
+    fathom_dyp_stream_decode(shifted_by_one, values, 1);
+    assert_int_equal(values[0], 65281);
+    assert_true(fathom_dyp_stream_valid(right, 10));
+    assert_true(fathom_dyp_stream_valid(shifted_by_six, 10));
+    fathom_dyp_stream_decode(shifted_by_six, values, 4);
+    assert_memory_equal(values, permuted, sizeof permuted);
+}
+
+/* "No object" is FF FF FD FB: FF + FF + FD = 2FB. No rule such as "the second byte is not FF" may be made. */
+TEST(FF_may_follow_the_start)
+{
+    static const uint8_t frame[] = {0xFF, 0xFF, 0xFD, 0xFB};
+    uint16_t value = 0;
+    assert_true(fathom_dyp_stream_valid(frame, 4));
+    fathom_dyp_stream_decode(frame, &value, 1);
+    assert_int_equal(value, 0xFFFD);
+}
