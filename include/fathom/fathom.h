@@ -24,10 +24,10 @@
 #include "fathom/sensor/a05_relay_rule.h" /* the relay's rule over distances of any other mode */
 
 /* HPS-167S, infrared time of flight, Modbus RTU on RS485 */
-#include "fathom/codec/hps167s_registers.h" /* where each command is and what its figures mean: a codec */
+#include "fathom/codec/hps167s_registers.h" /* addresses of the commands, and what their values mean */
 #include "fathom/sensor/hps167s.h"          /* distances */
 #include "fathom/sensor/hps167s_auto.h"     /* frames that it sends without a request */
-#include "fathom/sensor/hps167s_info.h"     /* what it tells: commands #1 to #4 */
+#include "fathom/sensor/hps167s_info.h"     /* what can be read: commands #1 to #4 */
 #include "fathom/sensor/hps167s_settings.h" /* what can be set: commands #6 to #15 */
 
 /* What goes with them */

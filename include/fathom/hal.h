@@ -15,11 +15,11 @@ extern "C" {
  * and they may be const. Rules for all of them:
  *  - every function returns at once; none waits, none calls back into Fathom;
  *  - the core calls them from one context (one task or the main loop). Interrupts belong to the port,
- *    which hands over what they gathered when it is asked;
+ *    which hands over what they gathered when the core calls it;
  *  - `ctx` is the port's and is passed back untouched.
  */
 
-/* Where a line stands. Fathom's sensors all use 8 data bits. */
+/* The settings of a line. Fathom's sensors all use 8 data bits. */
 typedef enum { FATHOM_PARITY_NONE = 0, FATHOM_PARITY_EVEN = 1, FATHOM_PARITY_ODD = 2 } fathom_parity_t;
 
 typedef struct {
@@ -38,10 +38,8 @@ enum {
 };
 
 typedef struct {
-    /* Clock at the end of the last byte, with FATHOM_RX_TIMED. It may be later than the core's last look at the clock:
-     * an interrupt stamps when the byte comes, and the core looks again after each read that has brought bytes. A stamp
-     * that is ahead of that look too (of another timer, rounded up) counts as "now"; so does one of 2^31 us or more
-     * ago. */
+    /* Clock at the end of the last byte, with FATHOM_RX_TIMED. The core reads the clock after each read that brought
+     * bytes; a stamp that is later than that (another timer, rounded up), or 2^31 us or more ago, counts as "now". */
     uint32_t last_us;
     uint8_t flags; /* FATHOM_RX_... */
 } fathom_rx_t;
@@ -60,17 +58,16 @@ typedef struct {
  *        adapter cannot know better): bytes that were read before it counts still count as a response.
  * leaves_in_us  In how many microseconds from now, at most, the last stop bit of all that was written will have left
  *        the pin: by the bytes that are left, their settings and the clock; less than 2^31. fathom_line_due_us is that
- *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is asked then.
+ *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is called then.
  *        0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond.
  *        NULL where the port does not know: the same. Too short costs looks; too long puts off what follows the
- *        request, the end of a broadcast and the beginning of a time-out; neither loses a byte. It may be asked any
+ *        request, the end of a broadcast and the beginning of a time-out; neither loses a byte. It may be called at any
  *        time and changes nothing.
- * set_line  Changes the line settings; what was received is kept. 1: they hold now (at once, if they did
- *        before; it is called before each request that names settings). 0: bytes are still leaving, ask again.
- *        < 0: this port cannot reach them within 2.5 %; the settings before still hold. NULL where they are
- *        fixed.
+ * set_line  Changes the line settings; what was received is kept. 1: they are in force (at once, if they
+ *        were before; it is called before each request that names settings). 0: bytes are still leaving, call
+ *        again. < 0: this port cannot reach them within 2.5 %, and nothing changed. NULL where they are fixed.
  * set_break  Holds TX low (true), or lets it go high again: the trigger and the mode select of modules whose RX
- *        pin is our TX. 1: done. 0: bytes are still leaving, ask again; after a second of that the port counts as
+ *        pin is our TX. 1: done. 0: bytes are still leaving, call again; after a second of that the port counts as
  *        broken. < 0: the port is broken. NULL where it cannot.
  */
 typedef struct {
@@ -129,7 +126,7 @@ typedef struct {
 /* "Nothing will happen without new bytes": what the due_us functions return instead of a time. */
 #define FATHOM_NO_DEADLINE UINT32_MAX
 
-/* The only way in which Fathom compares times: right across the wrap, for spans up to 71.6 minutes. So
+/* The only way in which Fathom compares times: correct across the wrap, for spans up to 71.6 minutes. So
  * whatever is polled must be polled at least that often. */
 static inline uint32_t fathom_elapsed_us(uint32_t now_us, uint32_t since_us)
 {

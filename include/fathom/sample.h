@@ -9,15 +9,15 @@
 extern "C" {
 #endif
 
-/* What the device said. An error of the line is no sample: it is a fathom_status_t. */
+/* What the device reported. An error of the line is no sample: it is a fathom_status_t. */
 typedef enum {
     FATHOM_TARGET = 1,    /* something is distance_mm away */
     FATHOM_NO_TARGET = 2, /* the device works and sees nothing in range */
-    FATHOM_FAULT = 3,     /* the device says that it is broken (HPS-167S command #5, abnormal packet), or its
-                             output does what no working one can */
-    FATHOM_NEAR = 4,      /* a switch or a contact says: something is nearer than its threshold, ... */
-    FATHOM_FAR = 5,       /* ... nothing is. Neither has a distance */
-    FATHOM_UNKNOWN = 6    /* a value that has been given no meaning: it is in raw. No distance */
+    /* the device reports that it is broken (HPS-167S #5, abnormal packet), or its output does what no working one can */
+    FATHOM_FAULT = 3,
+    FATHOM_NEAR = 4,   /* a switch or a contact: something is nearer than its threshold; no distance */
+    FATHOM_FAR = 5,    /* the same: nothing is; no distance */
+    FATHOM_UNKNOWN = 6 /* a value without a known meaning: it is in raw. No distance */
 } fathom_sample_kind_t;
 
 typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model_t;
@@ -27,10 +27,10 @@ typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model
  * for the others.
  */
 typedef struct {
-    uint32_t time_us;     /* the HAL's clock when the last byte of the response came; wraps */
-    uint32_t magnitude;   /* strength of the reflected light * 10000: 7231744 is 723.1744 (HPS-167S #5) */
-    uint32_t raw;         /* what the device sent, whatever it means: 16 bits, the width of a pulse in us, the
-                             level of a switch */
+    uint32_t time_us;   /* the HAL's clock when the last byte of the response came; wraps */
+    uint32_t magnitude; /* strength of the reflected light * 10000: 7231744 is 723.1744 (HPS-167S #5) */
+    /* what the device sent, whatever it means: 16 bits, the width of a pulse in us, the level of a switch */
+    uint32_t raw;
     uint16_t sequence;    /* of the response; wraps; the probes of one A05 response share it */
     uint16_t distance_mm; /* 0 unless kind is FATHOM_TARGET */
     uint16_t precision;   /* the device's accuracy figure: the smaller the better, no unit (HPS-167S #5) */

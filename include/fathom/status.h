@@ -9,7 +9,7 @@ extern "C" {
 /*
  * What every call that can be unfinished or fail returns. An error is below zero, so `status < 0` asks
  * for one. None of these is ever a reading: "nothing in range" and "the sensor says that it is broken"
- * are samples (sample.h), because the device did answer.
+ * are samples (sample.h), because the device did respond.
  *
  * The numbers are part of the interface: they fit an int8_t and new ones are only added.
  */
@@ -18,23 +18,23 @@ typedef enum {
     FATHOM_PENDING = 0, /* not finished: nothing was written, call again */
 
     FATHOM_ERR_ARGUMENT = -1,    /* the caller's values are outside what the function's comment allows */
-    FATHOM_ERR_PORT = -2,        /* the HAL said that the port is broken, tore a write, or cannot send */
-    FATHOM_ERR_NO_RESPONSE = -3, /* asked, and nothing that could be a response came in time */
+    FATHOM_ERR_PORT = -2,        /* the HAL reports a broken port, took part of a write, or cannot send */
+    FATHOM_ERR_NO_RESPONSE = -3, /* nothing that could be the response came in time */
     FATHOM_ERR_CHECKSUM = -4,    /* a response began and its CRC was wrong, or it broke off */
-    FATHOM_ERR_EXCEPTION = -5,   /* the device answered with a Modbus exception; its number is beside it */
-    FATHOM_ERR_MALFORMED = -6,   /* a response with a right checksum that does not fit the request, or a
-                                  value that this device cannot mean */
-    FATHOM_ERR_STALE = -7,       /* a sensor that sends by itself has sent nothing good for too long */
-    FATHOM_ERR_CANCELLED = -8,   /* ended by cancel */
-    FATHOM_ERR_BUSY = -9,        /* this object is already at work; try again when it has finished */
-    FATHOM_ERR_CAPACITY = -10,   /* the memory that the caller gave is too small for this request */
-    FATHOM_ERR_ECHO = -11, /* a write: all that came equals the request, so it may be the device's response
-                                  or the line's own echo, and which is not known yet (line.h) */
+    FATHOM_ERR_EXCEPTION = -5,   /* the device refused with a Modbus exception; its number is beside it */
+    /* a response with a right checksum that does not fit the request, or a value that this device cannot mean */
+    FATHOM_ERR_MALFORMED = -6,
+    FATHOM_ERR_STALE = -7,     /* a sensor that sends by itself has sent nothing good for too long */
+    FATHOM_ERR_CANCELLED = -8, /* ended by cancel */
+    FATHOM_ERR_BUSY = -9,      /* this object is already at work; try again when it has finished */
+    FATHOM_ERR_CAPACITY = -10, /* the memory that the caller gave is too small for this request */
+    /* a write: all that came equals the request; whether that is the response or the line's echo is not known (line.h) */
+    FATHOM_ERR_ECHO = -11,
     FATHOM_ERR_UNSUPPORTED = -12, /* the port, or what carries the request, cannot do this */
-    FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (the driver was told of it) */
-    FATHOM_ERR_UNCONFIRMED = -14, /* a setting was sent and could not be read back: it may hold, or not */
-    FATHOM_ERR_IN_USE = -15,      /* a unit answers at the address that was to be set; nothing was changed */
-    FATHOM_ERR_DIFFERS = -16 /* a setting was acknowledged, and the device says that it has another value */
+    FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (..._power_on was called) */
+    FATHOM_ERR_UNCONFIRMED = -14, /* a setting was sent and could not be read back: it may be set, or not */
+    FATHOM_ERR_IN_USE = -15,      /* a unit responds at the address that was to be set; nothing was changed */
+    FATHOM_ERR_DIFFERS = -16      /* a setting was acknowledged, and reads back as another value */
 } fathom_status_t;
 
 /*

@@ -5,7 +5,7 @@
 
 enum { FIRST_YEAR = 2000, ACK = 0xB0 };
 
-/* What a distance can say (#5). Over range is 65.53 m: the note has two decimals, so from 65530 to all ones,
+/* What a distance can mean (#5). Over range is 65.53 m: the note has two decimals, so from 65530 to all ones,
  * which is the abnormal packet. */
 enum { MIN_MM = 80, MAX_MM = 30000 };
 #define MIN_OVER_RANGE 65530u

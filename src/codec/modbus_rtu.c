@@ -97,8 +97,8 @@ uint8_t fathom_modbus_rtu_frame_size(const fathom_modbus_message_t *message)
         overhead = WRITE_MANY_OVERHEAD;
     }
     if ((uint8_t)(count - 1) >= most) return 0;
-    const uint8_t room = (uint8_t)(2 * count + overhead);
-    return room > FIXED_LENGTH ? room : FIXED_LENGTH;
+    const uint8_t frame_size = (uint8_t)(2 * count + overhead);
+    return frame_size > FIXED_LENGTH ? frame_size : FIXED_LENGTH;
 }
 
 uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message, uint8_t *frame)

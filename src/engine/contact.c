@@ -44,7 +44,7 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
 
 void fathom_contact_hold(fathom_contact_t *contact, bool hold) { contact->is_held = hold; }
 
-/* May the level be looked at? */
+/* Does the level mean anything now? */
 static bool is_clear(const fathom_contact_t *contact)
 {
     const fathom_contact_guard_t *const guard = contact->guard;
@@ -90,7 +90,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const fathom_status_t beside = guard != NULL ? guard->poll(guard->ctx) : FATHOM_PENDING;
     const uint32_t now_us = clock_us(contact->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, contact->sampled_us);
-    /* Until the look before this one all was well, and how long ago it ceased to be nobody knows. */
+    /* The level counted until the look before this one; when it ceased to is not known. */
     const bool counted = contact->settle_us == 0;
     const bool repeats = fathom_count_down(&contact->period_us, passed_us) && timing->period_us != 0;
     contact->sampled_us = now_us;

@@ -37,7 +37,7 @@ static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
 
 /*
  * With a probe in the right place a response begins with the same five bytes as its request (1H is the request's
- * sum). If 55 AA follows these, they are the echo and the response comes: as distances it would be 43520 mm or more
+ * sum). If 55 AA follows these, they are the echo and the response comes: as a distance it would be 43520 mm or more
  * for the second probe, which no A05 measures.
  */
 static uint16_t check(const uint8_t *frame, uint8_t length)

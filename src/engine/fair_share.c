@@ -3,9 +3,9 @@
 
 enum { NEVER_US = UINT16_MAX, HELD_PART = 8 };
 
-static fathom_fair_share_unit_t *unit_of(fathom_fair_share_t *share, uint8_t unit)
+static fathom_fair_share_unit_t *unit_of(fathom_fair_share_t *share, uint8_t address)
 {
-    return &share->units[unit % FATHOM_FAIR_SHARE_UNITS];
+    return &share->units[address % FATHOM_FAIR_SHARE_UNITS];
 }
 
 static uint16_t at_most_16_bits(uint32_t us) { return us > UINT16_MAX ? UINT16_MAX : (uint16_t)us; }
@@ -19,16 +19,16 @@ static uint32_t bill(fathom_fair_share_t *share, fathom_fair_share_unit_t *unit,
     return passed_us;
 }
 
-static void asked(fathom_line_turns_t *turns, uint8_t name, uint32_t at_us)
+static void asked(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)
 {
-    fathom_fair_share_unit_t *const unit = unit_of((fathom_fair_share_t *)turns, name);
+    fathom_fair_share_unit_t *const unit = unit_of((fathom_fair_share_t *)turns, address);
     unit->again_us = at_most_16_bits(fathom_elapsed_us(at_us, unit->ended_us));
 }
 
-static void ended(fathom_line_turns_t *turns, uint8_t name, uint32_t at_us)
+static void ended(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)
 {
     fathom_fair_share_t *const share = (fathom_fair_share_t *)turns;
-    fathom_fair_share_unit_t *const unit = unit_of(share, name);
+    fathom_fair_share_unit_t *const unit = unit_of(share, address);
     unit->hold_us = at_most_16_bits(bill(share, unit, at_us) / HELD_PART);
     unit->ended_us = at_us;
 }

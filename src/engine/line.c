@@ -35,7 +35,7 @@ static inline uint32_t look(fathom_line_t *line)
 
 uint32_t fathom_line_look(fathom_line_t *line) { return look(line); }
 
-/* Has the line been silent for as long as the listener wants to know of? */
+/* Has the line been silent for the listener's gap? */
 static bool is_listeners_gap(const fathom_line_t *line)
 {
     return line->listener != NULL && line->silent_us >= line->listener->gap_us;
@@ -65,8 +65,8 @@ fathom_status_t fathom_line_broken(fathom_line_t *line)
     count(line, FATHOM_LINE_PORT_ERRORS, 1);
     line->have = 0;
     line->need = 0;
-    line->known = line->config->echo;                  /* perhaps it comes back as another one */
-    if (line->state == ENDING) line->state = IN_BREAK; /* which the port is given a second for, once more */
+    line->known = line->config->echo;                  /* it may come back as another port */
+    if (line->state == ENDING) line->state = IN_BREAK; /* the port gets its second again */
     if (line->kind->give_up != NULL) line->kind->give_up(line);
     return FATHOM_ERR_PORT;
 }
@@ -79,7 +79,7 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
     uint8_t came = 0;
     fathom_rx_t rx;
     for (;;) {
-        /* Looked at before each read, and after one that has brought bytes, which may be newer than the look before. */
+        /* The clock is read before each read of the port, and after one with bytes, which may be newer than it. */
         uint32_t silent_us = look(line) + line->silent_us;
         if (came != 0) {
             line->silent_us = 0;
@@ -87,7 +87,7 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
             line->have = (uint8_t)(line->have + came);
             if (line->have >= line->need) line->kind->scan(line, false);
             silent_us = line->silent_us;
-            if (--reads == 0) { /* the port may hold more, whatever a stamp says of what it gave */
+            if (--reads == 0) { /* the port may hold newer bytes than those of the stamp */
                 line->silent_us = 0;
                 break;
             }
@@ -119,7 +119,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     const int is_set = uart->set_break(uart->ctx, on);
     fathom_line_look(line);
     if (is_set <= 0) {
-        /* A port that does not end a break is given as much time as one that does not take a request. */
+        /* A port that does not end a break gets as much time as one that does not take a request. */
         if (!on && (line->state == IN_BREAK || line->state == ENDING)) {
             if (line->state == IN_BREAK) line->left_us = FATHOM_LINE_SEND_US;
             line->state = ENDING;
@@ -129,8 +129,8 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     }
     line->state = IN_BREAK;
     if (!on) {
-        line->state = IDLE; /* a port that refused a request is given its time anew */
-        /* the silence before a request begins here; that of what comes in has been as long as it has */
+        line->state = IDLE; /* a port that refused a request gets its time anew */
+        /* the silence before a request begins here; the listener's has gone on */
         if (line->have == 0 && is_listeners_gap(line)) line->known |= AFTER_GAP;
         line->silent_us = 0;
     }
@@ -139,8 +139,8 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 
 uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
 
-/* When to ask the port again whether the request has left, or whether it takes it; as all here, from the last poll on.
- * The port answers as of now. */
+/* How long until the port may have sent the request, or may take it; as all here, from the last poll on. The port's own
+ * time is from now on. */
 static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_uart_t *const uart = line->config->uart;

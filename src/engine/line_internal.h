@@ -7,7 +7,7 @@
 
 /*
  * What the sources of a line share, and no user needs. line.c is every line's, and line_listening.c that of one which
- * asks nothing. line_request.c has the queue, line_send.c what goes out, line_response.c what comes in. The others are what
+ * only listens. line_request.c has the queue, line_send.c what goes out, line_response.c what comes in. The others are what
  * a config names: line_marks.c, line_find_echo.c, line_count.c.
  */
 
@@ -22,7 +22,7 @@ enum {
     PHASE = 7,                /* these bits */
     RESPONSE_CORRUPT = 8,     /* a response came and was wrong from end to end */
     RESPONSE_TRUNCATED = 16,  /* a response seemed to begin and broke off */
-    RESPONSE_BAD = 24,        /* either: nothing more is to be expected than the rest of it */
+    RESPONSE_BAD = 24,        /* either: nothing more is expected than the rest of it */
     RESPONSE_UNEXPECTED = 32, /* the unit sent something else; the response may still come */
     NOISY = 64,               /* bytes came that were not taken */
     ECHOED = 128              /* the request came back, or is known not to */
@@ -33,15 +33,15 @@ enum {
     ECHO = 3,      /* fathom_line_echo() */
     ECHO_DUE = 4,  /* the request that was cancelled may still come back */
     AFTER_GAP = 8, /* of the listener's; before the first byte in the frame */
-    LATE = 16,     /* since others sent there has been time for a request: the next one may come any time */
+    LATE = 16,     /* since the last byte there has been time for a request: a frame may come any time */
     ONE_UNASKED = 32,
     UNASKED = 96, /* so many bytes since the last response belonged to no transaction */
-    OTHERS_SEND =
-        128 /* there were four, no glitch but the shortest frame of all protocols here: others send too,
-                       unasked; forgotten after a silence of QUIET_US */
+    /* There were four, no glitch but the shortest frame of all protocols here: a device sends by itself; forgotten after a
+     * silence of QUIET_US. */
+    OTHERS_SEND = 128
 };
 
-/* As much as silent_us can tell. */
+/* As much as silent_us can hold. */
 enum { QUIET_US = UINT16_MAX };
 
 static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
@@ -69,8 +69,8 @@ static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
     if (line->config->count != NULL) line->config->count(line, which, by);
 }
 
-/* Is the transaction at the head on the wire, and one that a unit answers? */
-static inline bool is_asking(const fathom_line_t *line) { return line->sent != 0; }
+/* Is the transaction at the head on the wire, and one that a unit responds to? */
+static inline bool expects_response(const fathom_line_t *line) { return line->sent != 0; }
 
 /* The bits of `quarantined` for a unit; all of them for any unit. */
 static inline uint16_t quarantine_bits(uint8_t unit)
@@ -78,7 +78,7 @@ static inline uint16_t quarantine_bits(uint8_t unit)
     return (uint16_t)(unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : 1u << (unit & 15));
 }
 
-/* Others send here too, and there has been time for a request. */
+/* A device sends by itself, and there has been time for a request. */
 static inline bool is_late(const fathom_line_t *line)
 {
     return (line->known & (LATE | OTHERS_SEND)) == (LATE | OTHERS_SEND);
@@ -91,7 +91,7 @@ uint32_t fathom_line_look(fathom_line_t *line);
 fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_t *config,
                                   const fathom_line_kind_t *kind);
 
-/* The first `length` bytes leave the frame, to the listener; with 0 it is told that bytes were lost. */
+/* The first `length` bytes leave the frame, to the listener; with 0 it is called for lost bytes. */
 void fathom_line_leave(fathom_line_t *line, uint8_t length);
 
 /* The first `length` bytes of the frame are done with. */
@@ -109,19 +109,19 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
  * nothing saves no registers for it. What poll returns. */
 fathom_status_t fathom_line_send(fathom_line_t *line);
 
-/* fathom_line_kind_t.scan of a line that asks. */
-void fathom_line_scan_asking(fathom_line_t *line, bool over);
+/* fathom_line_kind_t.scan of a line for requests. */
+void fathom_line_scan_responses(fathom_line_t *line, bool over);
 
 /* Is a response of this unit waited for? */
-bool fathom_line_is_asked(const fathom_line_t *line, uint8_t unit);
+bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t unit);
 
 /*
- * A whole frame: is it taken? By the transaction on the wire as its response; or, if its unit owes one, by a transaction that
- * waits for a retry. A response that is not preceded by anything but whole frames shows that there is no echo.
+ * A whole frame: is it taken? By the transaction on the wire as its response; or, from a quarantined unit, by a
+ * transaction that waits for a retry. A response with nothing but whole frames before it shows that there is no echo.
  */
 bool fathom_line_deliver(fathom_line_t *line);
 
-/* The attempt on the wire is over: it has failed, but for a request that no unit answers. */
+/* The attempt on the wire is over: it has failed, but for a broadcast. */
 void fathom_line_end_attempt(fathom_line_t *line);
 
 /* What has come shows whether there is an echo. */

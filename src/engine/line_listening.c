@@ -3,7 +3,7 @@
 
 #include "line_internal.h"
 
-/* A line that asks nothing: all that comes is the listener's. */
+/* A line that only listens: all that comes is the listener's. */
 
 static void scan(fathom_line_t *line, bool over)
 {

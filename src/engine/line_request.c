@@ -25,14 +25,14 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
 }
 
 /*
- * The transaction on the wire may still be answered: its unit is asked nothing until twice the time-out has passed since
- * the request left. What broke off may have been noise, and the response late; what was damaged from end to end hardly
- * was, so that after it the rest of the time-out is enough.
+ * A response to the transaction on the wire may still come (fathom_line_is_quarantined). What broke off may have been
+ * noise, and the response late; what was damaged from end to end hardly was, so that after it the rest of the time-out is
+ * enough.
  */
 static void quarantine(fathom_line_t *line)
 {
     const fathom_transaction_t *const transaction = line->head;
-    if (!is_asking(line)) return;
+    if (!expects_response(line)) return;
     uint32_t longest_us = phase(line) == SENDING ? transaction->timeout_us : line->left_us;
     if ((line->state & RESPONSE_CORRUPT) == 0) longest_us += transaction->timeout_us;
     if (line->quarantined == 0 || line->quarantine_left_us < longest_us)
@@ -43,7 +43,7 @@ static void quarantine(fathom_line_t *line)
 void fathom_line_end_attempt(fathom_line_t *line)
 {
     fathom_status_t error = FATHOM_ERR_NO_RESPONSE;
-    if (!is_asking(line)) {
+    if (!expects_response(line)) {
         fathom_line_finish(line, &line->head, FATHOM_READY);
         return;
     }
@@ -68,9 +68,9 @@ static bool is_of(const fathom_transaction_t *transaction, uint8_t unit)
     return transaction->address == unit || transaction->address == FATHOM_LINE_ANY_UNIT;
 }
 
-bool fathom_line_is_asked(const fathom_line_t *line, uint8_t unit)
+bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t unit)
 {
-    return is_asking(line) && is_of(line->head, unit);
+    return expects_response(line) && is_of(line->head, unit);
 }
 
 bool fathom_line_deliver(fathom_line_t *line)
@@ -79,7 +79,7 @@ bool fathom_line_deliver(fathom_line_t *line)
     const uint8_t *const frame = line->config->frame;
     const uint8_t unit = frame[protocol->address_at];
     uint8_t before = NOISY;
-    if (fathom_line_is_asked(line, unit)) {
+    if (fathom_line_expects_unit(line, unit)) {
         if (line->head->address == FATHOM_LINE_ANY_UNIT) quarantine(line);
         before = line->state & (uint8_t) ~(PHASE | RESPONSE_UNEXPECTED);
         line->state |= RESPONSE_UNEXPECTED;
@@ -106,7 +106,7 @@ bool fathom_line_deliver(fathom_line_t *line)
 
 /* ---- when one may leave ---- */
 
-/* The first in the queue whose unit owes nothing. */
+/* The first in the queue whose unit is not quarantined. */
 static fathom_transaction_t *next(const fathom_line_t *line)
 {
     fathom_transaction_t *x = line->head;
@@ -120,9 +120,9 @@ static uint32_t due_us(const fathom_line_t *line)
     return rest_us(is_late(line) ? QUIET_US : silence_us(line), line->silent_us);
 }
 
-/* Has the line been silent for long enough? A device that sends by itself leaves room for a request behind each of its
- * frames and nowhere else: not behind a response, which one of its frames may have waited for, nor later in a silence. */
-static bool has_room(fathom_line_t *line)
+/* Has the line been silent for long enough? Among frames that a device sends by itself a request fits right behind a
+ * frame and nowhere else: not behind a response, which a frame may have waited for, nor later in a silence. */
+static bool may_send(fathom_line_t *line)
 {
     if (line->silent_us < silence_us(line)) return false;
     if (line->silent_us == QUIET_US) line->known &= (uint8_t) ~(UNASKED | OTHERS_SEND);
@@ -150,7 +150,7 @@ static fathom_status_t go_on(fathom_line_t *line)
             return FATHOM_PENDING;
         fathom_line_end_attempt(line);
     }
-    if (line->state == IN_BREAK || line->state == ENDING || !has_room(line)) return FATHOM_PENDING;
+    if (line->state == IN_BREAK || line->state == ENDING || !may_send(line)) return FATHOM_PENDING;
     return fathom_line_send(line);
 }
 
@@ -160,14 +160,14 @@ static void give_up(fathom_line_t *line)
     while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_PORT);
 }
 
-static const fathom_line_kind_t asking = {fathom_line_scan_asking, go_on, next, due_us, give_up};
+static const fathom_line_kind_t requesting = {fathom_line_scan_responses, go_on, next, due_us, give_up};
 
 /* ---- the queue ---- */
 
 fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config)
 {
     if (config->echo == FATHOM_LINE_ECHO_AUTO && config->find_echo == NULL) return FATHOM_ERR_ARGUMENT;
-    return fathom_line_begin(line, config, &asking);
+    return fathom_line_begin(line, config, &requesting);
 }
 
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *transaction)

@@ -3,9 +3,9 @@
 
 #include "line_internal.h"
 
-/* What is made of the bytes that come to a line which asks. */
+/* What is made of the bytes that come to a line for requests. */
 
-enum { LEAST_TORN = 3 };
+enum { LEAST_TRUNCATED = 3 };
 
 void fathom_line_learn(fathom_line_t *line, uint8_t echo)
 {
@@ -14,12 +14,12 @@ void fathom_line_learn(fathom_line_t *line, uint8_t echo)
 
 /*
  * The first `length` bytes were not taken. After its time-out a response that has begun may end, but what begins then is
- * another's, or noise without end: the attempt is over.
+ * another unit's, or endless noise: the attempt is over.
  */
 static void leave(fathom_line_t *line, uint8_t length)
 {
     fathom_line_leave(line, length);
-    if (!is_asking(line)) {
+    if (!expects_response(line)) {
         const uint16_t known = (uint16_t)(line->known + length * ONE_UNASKED);
         line->known = (uint8_t)(known < OTHERS_SEND ? known : line->known | OTHERS_SEND);
         return;
@@ -44,14 +44,14 @@ static uint8_t match_echo(const fathom_line_t *line, uint8_t frame_length)
 
 enum { TAKEN = 0x100 };
 
-/* What to do with the front of what was received: so many bytes leave, with TAKEN to a transaction; or, below zero, so many
- * are needed to tell. `over`: nothing more will come to complete a frame. */
+/* What to do with the front of what was received: so many bytes leave, with TAKEN to a transaction; or, below zero, so
+ * many are needed to know. `over`: nothing more will come to complete a frame. */
 static int judge(fathom_line_t *line, bool over)
 {
     const fathom_protocol_t *const protocol = line->protocol;
     const uint8_t *const frame = line->config->frame;
     const uint8_t have = line->have;
-    if (!is_asking(line) && line->quarantined == 0) return have;
+    if (!expects_response(line) && line->quarantined == 0) return have;
     const uint8_t length = protocol->length(frame, have);
     if (length > have && length <= line->config->frame_size && !over) return -length;
     const bool is_whole = (uint8_t)(length - 1) < have;
@@ -65,13 +65,13 @@ static int judge(fathom_line_t *line, bool over)
     }
     if (is_frame) return fathom_line_deliver(line) ? length | TAKEN : length;
     /* While the request leaves, noise is likelier than a response. */
-    if (length != 0 && have >= LEAST_TORN && fathom_line_is_asked(line, frame[protocol->address_at]))
+    if (length != 0 && have >= LEAST_TRUNCATED && fathom_line_expects_unit(line, frame[protocol->address_at]))
         line->state |=
             (uint8_t)(is_whole && phase(line) == LISTENING ? RESPONSE_CORRUPT : RESPONSE_TRUNCATED);
     return 1;
 }
 
-void fathom_line_scan_asking(fathom_line_t *line, bool over)
+void fathom_line_scan_responses(fathom_line_t *line, bool over)
 {
     while (line->have != 0) {
         const int judged = judge(line, over);

@@ -5,7 +5,7 @@
 
 static fathom_line_turns_t *turns_of(const fathom_line_t *line) { return (fathom_line_turns_t *)line->kind; }
 
-/* Tells the policy what has happened since it was told last. */
+/* Tells the policy what has happened since the last call. */
 static fathom_line_turns_t *tell(const fathom_line_t *line)
 {
     fathom_line_turns_t *const turns = turns_of(line);
@@ -14,7 +14,7 @@ static fathom_line_turns_t *tell(const fathom_line_t *line)
     turns->is_busy = is_busy(line);
     for (const fathom_transaction_t *x = line->head; x != NULL; x = x->link.next) {
         const uint16_t bit = (uint16_t)(1u << (x->address & 15));
-        /* It was submitted after the last poll; and who submits has polled before. */
+        /* It was submitted after the last poll; and its driver polled right before that. */
         if (((turns->waiting | waiting) & bit) == 0) turns->asked(turns, x->address, turns->polled_us);
         waiting |= bit;
     }

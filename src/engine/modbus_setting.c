@@ -27,15 +27,15 @@ static bool moves(const fathom_modbus_setting_t *setting)
     return setting->address != 0 || setting->line_settings != NULL;
 }
 
-/* Is what the device says of this setting all that there is to know of it? So it is where it said another value
- * before or acknowledged this one, was given it, and says so now. */
+/* Can the value that the device reports be trusted? Not where it was written and has not read back since, unless this
+ * very value was written last, and was acknowledged or another one was read before. */
 static bool is_certain(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     return moves(setting) || (unit->unconfirmed & setting_bit(unit)) == 0 ||
            (unit->last_written == unit->setting && unit->last_written_value == (uint16_t)setting->value);
 }
 
-/* After the first look: is there anything to do? */
+/* After the first read: is there anything to do? */
 static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                     fathom_status_t status, uint32_t value)
 {
@@ -49,7 +49,7 @@ static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_mod
     return FATHOM_PENDING;
 }
 
-/* At the new address: silence is what is hoped for. */
+/* At the new address: silence shows that it is free. */
 static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_t status)
 {
     restore_address(unit);
@@ -64,10 +64,10 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
                                fathom_status_t status)
 {
     unit->outcome = (int8_t)status;
-    if (status == FATHOM_ERR_UNSUPPORTED) unit->is_written = false; /* taken, and it could not leave */
+    if (status == FATHOM_ERR_UNSUPPORTED) unit->is_written = false; /* submitted, and it could not leave */
     if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
     unit->unconfirmed |= setting_bit(unit);
-    /* What it tells may have been so before: the acknowledgement alone says that it has taken the value. */
+    /* The value may have read so before: only the acknowledgement shows that it was taken. */
     const bool is_lost = unit->step == WRITE_UNREAD && status < 0;
     unit->last_written = is_lost ? 0 : unit->setting;
     unit->last_written_value = (uint16_t)setting->value;

@@ -5,11 +5,11 @@
 
 enum { IDLE = 0, ASKED = 1, ANSWERED = 2 };
 
-/* After so many silences in a row a unit is left alone, and with each of the next the time is doubled. */
+/* Back-off begins after so many time-outs in a row, and is doubled so often by the next ones. */
 enum { PATIENCE = 3, DOUBLINGS = 4 };
 #define LONGEST_US 0x80000000u
 
-/* An outcome is there: for how long is the unit left alone? */
+/* An outcome is there: how long is the back-off? */
 static void back_off(fathom_modbus_unit_t *unit)
 {
     const fathom_transaction_t *const transaction = &unit->request.transaction;
@@ -34,8 +34,8 @@ void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
     const uint32_t passed_us = fathom_elapsed_us(now_us, unit->polled_us);
     unit->polled_us = now_us;
     fathom_count_down(&unit->pause_us, passed_us);
-    if ((unit->backoff_left_us | unit->warm_us) !=
-        0) { /* which is rare, and an AVR takes its time to subtract */
+    /* Which is rare, and an AVR takes its time to subtract. */
+    if ((unit->backoff_left_us | unit->warm_us) != 0) {
         fathom_count_down(&unit->backoff_left_us, passed_us);
         fathom_count_down(&unit->warm_us, passed_us);
     }
@@ -114,19 +114,19 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
 {
     const uint8_t id = request->id;
     const bool is_command = id >= FATHOM_MODBUS_COMMAND;
-    /* Does a setting have the unit to itself, and this question is none of its? */
+    /* Does a setting have the unit to itself, and this request is not its own? */
     const bool is_kept_out = unit->setting != 0 && (unit->step & FATHOM_MODBUS_UNIT_IN_SETTING) == 0;
-    /* The same command asked by another caller would take a setting's outcome away from it. */
+    /* The same command of another caller would take a setting's outcome away from it. */
     if (unit->state != IDLE && unit->current == id && !(is_command && is_kept_out)) {
         if (unit->state == ASKED) return FATHOM_PENDING;
         unit->state = IDLE;
         return outcome(unit);
     }
-    if (unit->transport_status < 0) { /* nothing could be asked; not to say so would let a caller wait */
+    if (unit->transport_status < 0) { /* nothing can be sent; with FATHOM_PENDING a caller would wait */
         if (unit->waiting == id) unit->waiting = 0; /* that was its outcome */
         return (fathom_status_t)unit->transport_status;
     }
-    /* A command waits for nothing but another command and for what is on its way; the repeated request lets commands
+    /* A command waits only for another command and for the request on the wire; the repeated request lets commands
      * pass, and while a setting is carried out the device may be elsewhere. */
     if (is_kept_out || (unit->waiting != 0 && unit->waiting != id) ||
         (unit->state != IDLE && unit->current >= FATHOM_MODBUS_COMMAND))

@@ -83,7 +83,7 @@ void fathom_stream_receive(fathom_listener_t *listener, const uint8_t *bytes, ui
         accept(stream, true);
         stream->to_whole = (uint8_t)(stream->length + 1);
         stream->gap = true;
-    } else if (count_of_bytes == 0) { /* some were lost: the next one is in no known place */
+    } else if (count_of_bytes == 0) { /* bytes were lost: the place of the next one is not known */
         stream->gap = false;
         stream->candidate = 0;
         stream->to_step = 0;

@@ -5,7 +5,7 @@
 
 enum { AGAIN_US = 1000 };
 
-/* FATHOM_PENDING: not yet; said for a second at a time, and then FATHOM_ERR_PORT. */
+/* FATHOM_PENDING: not yet; for a second at a time, and then FATHOM_ERR_PORT. */
 static fathom_status_t hold(fathom_trigger_t *trigger, bool low)
 {
     const fathom_output_t *const output = &trigger->output;

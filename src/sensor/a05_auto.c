@@ -20,7 +20,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
     base->measurement.first = 1;
     base->line = config->line;
     sensor->probes = (uint8_t)or_default(config->probes, ALL_PROBES);
-    sensor->was_odd = true; /* there is no frame before the first that could say otherwise */
+    sensor->was_odd = true; /* before the first frame there is none that was not */
     sensor->select = config->select;
     sensor->selecting = false;
     const fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
@@ -88,7 +88,7 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
     return 0;
 }
 
-/* The probes of which the newest frame speaks: all that are fitted, or the odd one alone. */
+/* The probes of which the newest frame is believed: all that are fitted, or the odd one alone. */
 static uint8_t believed(fathom_a05_auto_t *sensor)
 {
     const uint8_t odd = odd_probe(sensor);

@@ -55,7 +55,7 @@ static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request
     return fathom_dyp_client_set_every_address(ctx, request, head[5]);
 }
 
-/* Measures the first probe; the unit that answers is at the address that was asked. */
+/* Measures the first probe; the unit that responds is at the address of the request. */
 static fathom_status_t read_address(const fathom_modbus_setting_t *setting, uint32_t *address)
 {
     fathom_dyp_modbus_t *const base = setting->driver;

@@ -24,7 +24,7 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
     return fathom_debounce_init(&rule->debounce, &own);
 }
 
-/* What one probe says; 0: it stands at the threshold; FATHOM_UNKNOWN: nothing. */
+/* The verdict of one probe; 0: it stands at the threshold; FATHOM_UNKNOWN: none. */
 static uint8_t verdict_of(const fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
 {
     if (sample->kind == FATHOM_TARGET) return fathom_debounce_compare(&rule->debounce, sample->distance_mm);

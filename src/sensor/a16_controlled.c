@@ -14,7 +14,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t c
                     uint32_t time_us)
 {
     fathom_a16_controlled_t *const sensor = (fathom_a16_controlled_t *)listener;
-    /* a port without time stamps: the line says the time of its poll */
+    /* a port without time stamps: it is the time of the line's poll */
     sensor->came_us = time_us == sensor->line->polled_us ? sensor->trigger.polled_us : time_us;
     if (is_in_time(sensor, time_us)) sensor->heard = true;
     fathom_stream_receive(listener, bytes, count, after_gap, time_us);
@@ -46,7 +46,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_status_t status = fathom_line_poll(sensor->line);
     fathom_trigger_look(trigger);
     if (status < 0) return status;
-    /* its deadline means nothing here: who is not asked is silent */
+    /* its deadline means nothing here: without a trigger the sensor is silent */
     if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_READY)
         status = judge(sensor, sample);
     if (sensor->waiting && sensor->stream.candidate == 0 && response_left_us(sensor) == 0) {

@@ -29,7 +29,7 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     fathom_status_t status;
     if (!rs232->is_listening) {
         status = fathom_a16_modbus_set_operating_mode(rs232->modbus, FATHOM_A16_AUTOMATIC);
-        /* where it was not acknowledged it may hold all the same */
+        /* where it was not acknowledged it may be set all the same */
         if (status != FATHOM_READY && status != FATHOM_ERR_UNCONFIRMED) return status;
         rs232->is_listening = true;
         rs232->since_us = now_us(rs232);

@@ -60,7 +60,7 @@ fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measuremen
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
 {
     const uint8_t *next = (const uint8_t *)from;
-    /* volatile: or they make one of this loop too */
+    /* volatile: or compilers make this loop a call of memcpy too */
     for (volatile uint8_t *byte = (uint8_t *)to; byte != (uint8_t *)(to + 1); byte++) *byte = *next++;
 }
 

@@ -110,7 +110,7 @@ fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t ad
 {
     fathom_modbus_unit_poll(&sensor->unit);
     if (sensor->unit.setting == 0 && !sensor->unit.is_blind) {
-        sensor->unit.is_written = false; /* nor will it be before that is answered */
+        sensor->unit.is_written = false; /* nor will it be before this read has ended */
         const fathom_status_t status =
             fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);
         if (status != FATHOM_READY) return status;
@@ -129,7 +129,7 @@ fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor)
     return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0);
 }
 
-/* ---- who is there ---- */
+/* ---- the address of the one device on a line ---- */
 
 fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport,
                                        uint8_t *address)

@@ -33,7 +33,7 @@ static bool same_4(const uint16_t *a, const uint16_t *b)
     return i == 4;
 }
 
-/* Not where it is the very response to #2 again, which came late. */
+/* Not where it equals the last response to #2: that may have come late. */
 static bool is_new(fathom_hps167s_t *sensor)
 {
     if (same_4(sensor->measurement, sensor->last_configuration)) return false;
@@ -41,8 +41,8 @@ static bool is_new(fathom_hps167s_t *sensor)
     return true;
 }
 
-/* From the first time on that #2 matters, all measurements are looked at; what was measured before it is still there.
- * Nothing told yet is all 0, a distance that is refused anyway. */
+/* From the first time on that #2 matters, all measurements are compared; what was measured before is still there. Without
+ * a response to #2 yet that is all 0, a distance that is refused anyway. */
 static void be_wary(fathom_hps167s_t *sensor)
 {
     if (sensor->is_new != NULL) return;
@@ -62,7 +62,7 @@ bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4],
     be_wary(sensor);
     be_among_unasked(sensor, time_us);
     if (same_4(registers, sensor->last_configuration)) {
-        /* Was it that which came as a response? Not if a response is still to come. */
+        /* Was this frame taken for a response before? Not if a response is still to come. */
         if (!sensor->is_outstanding) sensor->agreed = 0;
         sensor->is_outstanding = false;
         return false;
@@ -74,7 +74,7 @@ bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4],
     return true;
 }
 
-/* A frame of the right shape has come: is it enough now? One that is a measurement counts neither way. */
+/* A frame of the right shape has come: do enough agree now? One that is a measurement counts neither way. */
 static bool is_believed(fathom_hps167s_t *sensor)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
@@ -94,14 +94,14 @@ static bool is_believed(fathom_hps167s_t *sensor)
         sensor->is_among_unasked = false;
     if (sensor->is_among_unasked && needed < RESPONSES_AMONG_UNASKED) needed = RESPONSES_AMONG_UNASKED;
     if (sensor->agreed >= needed) return true;
-    /* A request in step with what the device sends by itself would get that each time. */
+    /* A request in step with what the device sends by itself would get an unasked frame each time. */
     if (sensor->is_among_unasked)
         unit->pause_us += (uint32_t)((2u * sensor->responses + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2));
     return false;
 }
 
-/* It gives up. Where an unasked frame was taken for a response, one of the responses is still to come, and has the shape of
- * a measurement: until it cannot come any more there is no outcome, or it would meet the next request of the next driver. */
+/* It gives up. Where an unasked frame was taken for a response, a response is still to come, and has the shape of a
+ * measurement: until it cannot come any more there is no outcome, or another driver's next request would meet it. */
 static fathom_status_t give_up(const fathom_hps167s_t *sensor)
 {
     return sensor->is_outstanding && sensor->unit.pause_us != 0 ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;

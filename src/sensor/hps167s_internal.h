@@ -13,7 +13,7 @@ static inline void copy_4(volatile uint16_t *to, const uint16_t *from)
     for (uint8_t i = 4; i != 0; i--) *to++ = *from++;
 }
 
-/* The id of a command is its address; with FATHOM_MODBUS_COMMAND, but for #5, which is asked again and again. */
+/* The id of a command is its address; with FATHOM_MODBUS_COMMAND, but for #5, which is repeated. */
 static inline uint8_t fathom_hps167s_id(uint8_t command)
 {
     return (uint8_t)(FATHOM_MODBUS_COMMAND | command);
@@ -23,7 +23,7 @@ static inline uint8_t fathom_hps167s_id(uint8_t command)
  * into sensor->response, others into sensor->values. */
 fathom_status_t fathom_hps167s_ask(fathom_hps167s_t *sensor, uint8_t id, uint8_t count);
 
-/* A command that is asked once. */
+/* A command that is sent once. */
 static inline fathom_status_t fathom_hps167s_ask_once(fathom_hps167s_t *sensor, uint8_t command,
                                                       uint8_t count)
 {

@@ -3,8 +3,9 @@
 
 #include "hps167s_internal.h"
 
-/* What #2 tells, what no response tells, and what goes to all units: in the id of that; no command's address has the bit. */
-enum { TOLD = 0, UNTOLD = 1, TO_ALL = 0x40 };
+/* Settings that #2 reads back, those that nothing reads back, and those of all units, whose id has this bit: no command's
+ * address has it. */
+enum { READ_BACK = 0, WRITE_ONLY = 1, TO_ALL = 0x40 };
 
 /* ---- where it is ---- */
 
@@ -33,8 +34,7 @@ static void seek(fathom_hps167s_t *sensor, const fathom_line_settings_t *other)
     sensor->is_seeking = true;
 }
 
-/* The power has come, or a request has ended: does it tell where the device is? No setting begins before that is
- * known. */
+/* Power-on, or a request has ended: does it show where the device is? No setting begins before that is known. */
 static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
 {
     if (status == FATHOM_PENDING && sensor->next_baud != 0) {
@@ -58,8 +58,8 @@ static bool is_at_home(const fathom_modbus_unit_t *unit)
 }
 
 /*
- * #6 is past and the device answers #2: was it reset? It was if it says so, and if it has moved; it was not if it still
- * has another address than 1. The first look comes before.
+ * #6 was sent and the device responds to #2: was it reset? It was if it reported success, and if it has moved; it was not
+ * if it still has another address than 1. The first call comes before #6.
  */
 static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
 {
@@ -77,7 +77,7 @@ static bool is_reset_refused(const fathom_hps167s_t *sensor)
            sensor->reset_response != FATHOM_HPS167S_RESET_DONE;
 }
 
-/* The code of the rate; one without a rate of its own tells less than where the response came from. */
+/* The code of the rate; for a code without a rate of its own, that at which the response came. */
 static uint8_t baud_code(const fathom_hps167s_t *sensor)
 {
     const uint8_t code = fathom_hps167s_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE);
@@ -85,7 +85,7 @@ static uint8_t baud_code(const fathom_hps167s_t *sensor)
     return has_rate ? code : fathom_hps167s_baud_code(sensor->unit.line_settings->baud);
 }
 
-/* What the device says of a setting, as it is written. */
+/* The present value of a setting, as it would be written. */
 static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *value)
 {
     fathom_hps167s_t *const sensor = setting->driver;
@@ -96,7 +96,7 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
         *value = sensor->unit.address;
         return fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
     }
-    /* It has said that it was not reset, so it is where it was: nothing is to be asked. */
+    /* It reported that it was not reset, so it is where it was: nothing is to be read. */
     if (command == FATHOM_HPS167S_RESET && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
     status = fathom_hps167s_read_configuration(sensor);
     if (status != FATHOM_READY) return status;
@@ -126,9 +126,8 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
 /* ---- what is set ---- */
 
 /*
- * FATHOM_READY: sensor->setting is this setting and may go on, or begin; the caller adds what is its own. Where it is
- * not known at which rate the device is, or where nothing else would be read, that takes a request that changes
- * nothing.
+ * FATHOM_READY: sensor->setting is this setting and may go on, or begin; the caller adds what is special to it. Where
+ * the rate of the device is not known, or where nothing else would be read, that takes a read of #1 first.
  */
 static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t value, uint8_t kind)
 {
@@ -138,13 +137,13 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     fathom_modbus_unit_poll(unit);
     if (unit->setting != 0) /* to load the user's settings is not to load the factory's */
         return unit->setting == id && setting->value == value ? FATHOM_READY : FATHOM_ERR_BUSY;
-    unit->is_written = false; /* nor will it be before that is answered */
-    if (!unit->is_blind && (sensor->is_seeking || kind == UNTOLD)) {
+    unit->is_written = false; /* nor will it be before this read has ended */
+    if (!unit->is_blind && (sensor->is_seeking || kind == WRITE_ONLY)) {
         const fathom_status_t status =
             fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
         if (status != FATHOM_READY) return status;
     }
-    setting->read = kind == UNTOLD ? NULL : look;
+    setting->read = kind == WRITE_ONLY ? NULL : look;
     setting->driver = sensor;
     setting->value = value;
     setting->line_settings = NULL;
@@ -176,48 +175,48 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor) { return sensor->
 
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s)
 {
-    return set(sensor, FATHOM_HPS167S_WARM_UP, warm_up_s, TOLD);
+    return set(sensor, FATHOM_HPS167S_WARM_UP, warm_up_s, READ_BACK);
 }
 
 static uint16_t switch_of(bool is_on) { return is_on ? FATHOM_HPS167S_ON : FATHOM_HPS167S_OFF; }
 
 fathom_status_t fathom_hps167s_set_measures_after_power_on(fathom_hps167s_t *sensor, bool measures)
 {
-    return set(sensor, FATHOM_HPS167S_MEASURES, switch_of(measures), TOLD);
+    return set(sensor, FATHOM_HPS167S_MEASURES, switch_of(measures), READ_BACK);
 }
 
 fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool termination)
 {
-    return set(sensor, FATHOM_HPS167S_TERMINATION, switch_of(termination), TOLD);
+    return set(sensor, FATHOM_HPS167S_TERMINATION, switch_of(termination), READ_BACK);
 }
 
 fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
 {
     /* it may add to the offset that is there, so that none is ever written twice */
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
-    return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, UNTOLD);
+    return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, WRITE_ONLY);
 }
 
 fathom_status_t fathom_hps167s_load_user_settings(fathom_hps167s_t *sensor)
 {
-    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_USER, UNTOLD);
+    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_USER, WRITE_ONLY);
 }
 
 fathom_status_t fathom_hps167s_load_factory_settings(fathom_hps167s_t *sensor)
 {
-    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_FACTORY, UNTOLD);
+    return set(sensor, FATHOM_HPS167S_LOAD, FATHOM_HPS167S_FACTORY, WRITE_ONLY);
 }
 
 fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, int16_t sensitivity)
 {
-    return set(sensor, FATHOM_HPS167S_FILTER, (uint16_t)sensitivity, UNTOLD);
+    return set(sensor, FATHOM_HPS167S_FILTER, (uint16_t)sensitivity, WRITE_ONLY);
 }
 
 fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, uint32_t reconnect_time_ms)
 {
     fathom_modbus_unit_request_t *const write = &sensor->setting.write;
     if (reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS != 0) return FATHOM_ERR_ARGUMENT;
-    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, TOLD);
+    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, READ_BACK);
     if (status != FATHOM_READY) return status;
     fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
     write->values = sensor->words;
@@ -259,14 +258,14 @@ fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *se
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
 {
     if (address == 0 || address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
-    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, TOLD);
+    const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, READ_BACK);
     if (status != FATHOM_READY) return status;
     sensor->setting.address = address;
     return go_on(sensor);
 }
 
-/* The setting also moves the device to this rate, where it has another one; the address is for looking there first.
- * Said again while that is under way, it comes to the same. */
+/* The setting also moves the device to this rate, where it has another one; the address is for the read there first.
+ * A second call while that is under way changes nothing. */
 static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t address)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
@@ -275,7 +274,7 @@ static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t addres
     sensor->setting.address = address;
 }
 
-/* The device has been told to be at this rate: is it, or will it be? */
+/* The device was set to this rate: is it there, or will it be? */
 static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
@@ -287,7 +286,7 @@ fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const uint8_t code = fathom_hps167s_baud_code(baud);
     if (code == 0 || sensor->unit.line_settings == NULL) return FATHOM_ERR_ARGUMENT;
-    fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, TOLD);
+    fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, READ_BACK);
     if (status != FATHOM_READY) return status;
     move_to_baud(sensor, baud, sensor->unit.address);
     status = go_on(sensor);
@@ -303,7 +302,7 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
 {
     fathom_modbus_setting_t *const setting = &sensor->setting;
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
-    fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, TOLD);
+    fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, READ_BACK);
     if (status != FATHOM_READY) return status;
     if (sensor->unit.setting == 0) {
         move_to_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD, 1);

@@ -34,7 +34,7 @@ PERHAPS = {
     'protocol->check': ('crc16.c:fathom_crc16', 'crc16_small.c:fathom_crc16', 'dyp_client.c:check'),
     'protocol->is_request': ('modbus_client.c:fathom_modbus_client_is_request', 'dyp_client.c:is_request'),
     'protocol->parse_response': ('modbus_client.c:fathom_modbus_client_parse_response', 'dyp_client.c:parse_response'),
-    'kind->scan': ('line_response.c:fathom_line_scan_asking', 'line_listening.c:scan'),
+    'kind->scan': ('line_response.c:fathom_line_scan_responses', 'line_listening.c:scan'),
     'kind->go_on': ('line_request.c:go_on', 'line_turns.c:go_on', 'line_listening.c:go_on'),
     'config->find_echo': ('line_find_echo.c:fathom_line_find_echo',),
     'config->marks': ('line_marks.c:fathom_line_marks',),

@@ -11,7 +11,7 @@ ROWS = [
      'fathom_count_down(& line->quarantine_left_us, passed_us) | if (line->quarantined != 0 && fathom_count_down(& line->quarantine_left_us, '
      'passed_us))',
      'src/engine/line.c | fathom_line_poll | condition: line->have >= line->need -> 1 | if (line->have >= line->need)',
-     'src/engine/line_response.c | fathom_line_scan_asking | statement dropped: it -> nothing | line->need = (uint8_t) - '
+     'src/engine/line_response.c | fathom_line_scan_responses | statement dropped: it -> nothing | line->need = (uint8_t) - '
      'judged'),
     ("a byte's difference, and never negative",
      'src/engine/line.c | fathom_line_poll | type: size_t -> uint8_t | const int n = uart->read(uart->ctx, config->frame + '
@@ -247,9 +247,9 @@ ROWS = [
      'src/codec/hps167s_registers.c | fathom_hps167s_decode_details | name: FATHOM_HPS167S_UUID_LENGTH -> '
      'FATHOM_HPS167S_RECONNECT_STEP_MS | for (uint8_t i = 0; i != FATHOM_HPS167S_UUID_LENGTH; i ++)'),
     ('it is never 0: a byte at least leaves, or one more is needed',
-     'src/engine/line_response.c | fathom_line_scan_asking | relational: < -> <= | if (judged < 0)',
-     'src/engine/line_response.c | fathom_line_scan_asking | constant: 0 -> 1 | if (judged < 0)',
-     'src/engine/line_response.c | fathom_line_scan_asking | relational: >= -> > | if (judged >= TAKEN)'),
+     'src/engine/line_response.c | fathom_line_scan_responses | relational: < -> <= | if (judged < 0)',
+     'src/engine/line_response.c | fathom_line_scan_responses | constant: 0 -> 1 | if (judged < 0)',
+     'src/engine/line_response.c | fathom_line_scan_responses | relational: >= -> > | if (judged >= TAKEN)'),
 ]
 
 assert sum(len(row) - 1 for row in ROWS) == COUNT

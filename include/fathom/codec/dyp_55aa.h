@@ -13,7 +13,7 @@ extern "C" {
  * The "DYP protocol" of the A05 on RS-485 (A05 2), in both directions. Pure functions: no time, no I/O, no
  * state.
  *
- *   request              55 AA ADDRESS COMMAND SUM                                    5 bytes
+ *   request                55 AA ADDRESS COMMAND SUM                                    5 bytes
  *   response, all probes   55 AA ADDRESS 01 1H 1L 2H 2L 3H 3L 4H 4L SUM                13 bytes
  *   response, one probe    55 AA ADDRESS 10..13 H L SUM                                 7 bytes
  *   response, set address  55 AA ADDRESS 03 SUM                                         5 bytes
@@ -24,8 +24,8 @@ extern "C" {
  * (printed: 10 and 7).
  *
  * What it cannot do: a sum of 8 bits lets one in 256 of the frames pass that are damaged in more than one
- * byte. Setting the address is a command to whoever hears it, with the new address where others have the old
- * one, and its response is the same bytes again: fathom_a05_dyp.h and line.h say what follows from that.
+ * byte. Setting the address is a command to every unit that hears it, with the new address where others have the
+ * old one, and its response is the same bytes again: a05_dyp.h and line.h have what follows from that.
  */
 enum {
     FATHOM_DYP_ALL_PROBES = 0x01,
@@ -34,7 +34,7 @@ enum {
 };
 
 enum {
-    FATHOM_DYP_ANY_ADDRESS = 0xFF, /* all units obey; whether one answers is not in the datasheet */
+    FATHOM_DYP_ANY_ADDRESS = 0xFF, /* all units obey; whether one responds is not in the datasheet */
     FATHOM_DYP_REQUEST_LENGTH = 5,
     FATHOM_DYP_MAX_RESPONSE = 13
 };
@@ -52,7 +52,7 @@ uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t 
 /*
  * The length of the response that begins with these `have` (>= 1) bytes, as far as they tell:
  *   0          no response begins like this: drop the first byte and look again
- *   > have     so many bytes are needed to say more (4 until the command is there)
+ *   > have     so many bytes are needed to know more (4 until the command is there)
  *   <= have    the response is here, with its sum still to be checked
  */
 uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have);

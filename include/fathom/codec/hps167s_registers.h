@@ -13,8 +13,8 @@ extern "C" {
 #endif
 
 /*
- * HPS-167S: where its commands #1 to #15 are, and what their values mean (datasheet, 3 and table 8). A pure codec: it
- * keeps nothing, asks nothing and knows no time. hps167s.h and its like ask the device.
+ * HPS-167S: where its commands #1 to #15 are, and what their values mean (datasheet, 3 and table 8). Pure functions:
+ * no time, no I/O, no state. hps167s.h and its like talk to the device.
  *
  * The registers of a response are handed over as fathom_modbus_message_t has them, first one first, and all of them:
  * FATHOM_HPS167S_..._COUNT, or one. Nothing here checks an address or a length.
@@ -28,17 +28,16 @@ enum {
     FATHOM_HPS167S_DETAILS = 0x0003,       /* #3 */
     FATHOM_HPS167S_TEMPERATURE = 0x0004,   /* #4 */
     FATHOM_HPS167S_MEASUREMENT = 0x0008,   /* #5 */
-    FATHOM_HPS167S_RESET =
-        0x0009, /* #6, of the interface; responses FATHOM_HPS167S_RESET_DONE or an error code */
-    FATHOM_HPS167S_WARM_UP = 0x000A,     /* #7: seconds; more than 255 #2 cannot tell */
-    FATHOM_HPS167S_ADDRESS = 0x0010,     /* #8: 1..FATHOM_HPS167S_MAX_ADDRESS */
-    FATHOM_HPS167S_BAUD = 0x0011,        /* #9: fathom_hps167s_baud_code */
-    FATHOM_HPS167S_MEASURES = 0x0012,    /* #10: FATHOM_HPS167S_OFF or _ON */
-    FATHOM_HPS167S_TERMINATION = 0x0013, /* #11: the same */
-    FATHOM_HPS167S_OFFSET = 0x0014,      /* #12: mm, int16_t */
-    FATHOM_HPS167S_LOAD = 0x0015,        /* #13: FATHOM_HPS167S_USER or _FACTORY */
-    FATHOM_HPS167S_FILTER = 0x0016,      /* #14: int16_t, FATHOM_HPS167S_MAX_FILTER at most is recommended */
-    FATHOM_HPS167S_RECONNECT = 0x0020    /* #15: fathom_hps167s_encode_reconnect_time */
+    FATHOM_HPS167S_RESET = 0x0009,         /* #6, of the interface; response: _RESET_DONE or an error code */
+    FATHOM_HPS167S_WARM_UP = 0x000A,       /* #7: seconds; #2 has 255 at most */
+    FATHOM_HPS167S_ADDRESS = 0x0010,       /* #8: 1..FATHOM_HPS167S_MAX_ADDRESS */
+    FATHOM_HPS167S_BAUD = 0x0011,          /* #9: fathom_hps167s_baud_code */
+    FATHOM_HPS167S_MEASURES = 0x0012,      /* #10: FATHOM_HPS167S_OFF or _ON */
+    FATHOM_HPS167S_TERMINATION = 0x0013,   /* #11: the same */
+    FATHOM_HPS167S_OFFSET = 0x0014,        /* #12: mm, int16_t */
+    FATHOM_HPS167S_LOAD = 0x0015,          /* #13: FATHOM_HPS167S_USER or _FACTORY */
+    FATHOM_HPS167S_FILTER = 0x0016,   /* #14: int16_t, FATHOM_HPS167S_MAX_FILTER at most is recommended */
+    FATHOM_HPS167S_RECONNECT = 0x0020 /* #15: fathom_hps167s_encode_reconnect_time */
 };
 
 /* How many registers a command has, where it is not one. */
@@ -78,7 +77,7 @@ enum {
     FATHOM_HPS167S_EXPONENT_BYTE = 4
 };
 
-/* Byte n of what was answered, 0 the first, in the order of the wire. */
+/* Byte n of a response's registers, 0 the first, in the order of the wire. */
 static inline uint8_t fathom_hps167s_byte(const uint16_t *registers, uint8_t n)
 {
     return (uint8_t)(n % 2 == 0 ? registers[n / 2] >> 8 : registers[n / 2]);
@@ -112,28 +111,28 @@ bool fathom_hps167s_is_date(uint8_t month, uint8_t day);
 
 /* ---- #2, table 12, and #15 ---- */
 
-/* What takes effect at the next power-on (hps167s_settings.h) is told as it was set. */
+/* What takes effect at the next power-on (hps167s_settings.h) reads as it was set. */
 typedef struct {
     uint32_t baud;              /* what baud_code means by #9, whose "others are all 19200" */
-    uint32_t reconnect_time_ms; /* what #15 sets is a multiple of 18; what is told may be anything */
+    uint32_t reconnect_time_ms; /* what #15 sets is a multiple of 18; what is read may be anything */
     uint8_t warm_up_s;
-    uint8_t baud_code; /* as it is told; table 12 has no encoding of its own */
+    uint8_t baud_code; /* as it is read; table 12 has no encoding of its own */
     bool termination; /* the resistor; on in every unit from the factory, and eight of them overload a line */
     bool measures_after_power_on;
 } fathom_hps167s_configuration_t;
 
-/* low_word_first: the reconnect time has; the datasheet does not say. */
+/* low_word_first: of the reconnect time; the datasheet leaves it open. */
 void fathom_hps167s_decode_configuration(const uint16_t registers[4], bool low_word_first,
                                          fathom_hps167s_configuration_t *configuration);
 
-/* Can these four registers be a response to #2, and not one to #5, which has the same shape? Of their figures alone:
+/* Can these four registers be a response to #2, and not one to #5, which has the same shape? By their values:
  * the first two bytes are 00 or FF, and it is not the abnormal packet. */
 bool fathom_hps167s_may_be_configuration(const uint16_t registers[4]);
 
-/* The reconnect time that #2 tells. */
+/* The reconnect time, ms, in a response to #2. */
 uint32_t fathom_hps167s_told_reconnect_time_ms(const uint16_t registers[4], bool low_word_first);
 
-/* The two registers of #15, and what they say. The device takes multiples of FATHOM_HPS167S_RECONNECT_STEP_MS. */
+/* The two registers of #15, and what they mean. The device takes multiples of FATHOM_HPS167S_RECONNECT_STEP_MS. */
 void fathom_hps167s_encode_reconnect_time(uint32_t ms, bool low_word_first, uint16_t registers[2]);
 uint32_t fathom_hps167s_reconnect_time_ms(uint16_t first, uint16_t second, bool low_word_first);
 
@@ -156,13 +155,13 @@ bool fathom_hps167s_may_be_details(const uint16_t registers[11]);
 /* ---- #4 ---- */
 
 /* The temperature of the analog front end in tenths of a degree Celsius, rounded to the nearest, where the device
- * counts so many steps (1..255) to a degree Fahrenheit. */
+ * has so many steps (1..255) to a degree Fahrenheit. */
 int32_t fathom_hps167s_temperature_dc(int16_t fahrenheit, uint8_t steps_per_degree);
 
 /* ---- #5, table 18 ---- */
 
 /* What a distance is taken for. The datasheet says "65.53 meters" for over range (#5), two decimals of a figure in mm,
- * and gives a range of 18 m and a note about 20 m; what lies between is no figure of this device. */
+ * and gives a range of 18 m and a note about 20 m; what lies between is no value of this device. */
 typedef struct {
     uint16_t max_mm;        /* min_mm..max_mm is a target; 0: 30000 */
     uint16_t over_range_mm; /* from here to 65534 is no target; over max_mm; 0: 65530 */

@@ -27,11 +27,11 @@ enum {
 };
 
 enum {
-    FATHOM_MODBUS_BROADCAST =
-        0, /* the unit that all obey and none answers; but one that is asked there, by a read, is
-                                     a unit as any other, which A16 and A05 allow (A16 6(3), A05 3(3)) */
-    FATHOM_MODBUS_ANY_UNIT = 255, /* not the standard's: A16 and A05 obey it whatever their address is, and
-                                     where one answers, message.head[0] becomes its address */
+    /* A write to it is for all units, and none responds. A read of it is a unit like any other's: A16 and A05 may have
+     * the address 0 (A16 6(3), A05 3(3)). */
+    FATHOM_MODBUS_BROADCAST = 0,
+    /* Not the standard's: A16 and A05 obey it whatever their address is; message.head[0] becomes that of the response. */
+    FATHOM_MODBUS_ANY_UNIT = 255,
     FATHOM_MODBUS_MAX_READ = 125,
     FATHOM_MODBUS_MAX_WRITE = 123,
     FATHOM_MODBUS_MAX_FRAME = 255
@@ -58,7 +58,7 @@ typedef struct {
 /*
  * Fill in a request. The caller owns `values` and keeps it until the response is there.
  * unit: 0..255. count: 1..125 to read, 1..123 to write. Nothing is checked here: fathom_modbus_rtu_frame_size()
- * finds a count out of range, and who submits a request gets FATHOM_ERR_ARGUMENT for it.
+ * finds a count out of range, and to submit such a request is FATHOM_ERR_ARGUMENT.
  */
 void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint8_t unit, uint16_t first,
                                           uint8_t count, uint16_t *values);
@@ -78,21 +78,21 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
 
 /*
  * The length of the response that begins with these `have` (>= 1) bytes, as far as they tell:
- *   0          no response begins like this: drop the first byte and look again. The unit is the caller's to look at
- *   > have     so many bytes are needed to say more (3 until the length is known)
+ *   0          no response begins like this: drop the first byte and look again. The caller checks the unit
+ *   > have     so many bytes are needed to know more (3 until the length is known)
  *   <= have    the response is here, with its CRC still to be checked
  */
 uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have);
 
 /* Do these `have` (>= 1) bytes begin like the request itself, as a line with local echo brings it back? The first six
- * are compared; where all of it has come, the CRC says of the rest. */
+ * are compared; where all of it has come, the CRC vouches for the rest. */
 bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const uint8_t *bytes, uint8_t have);
 
 /*
  * Reads a whole response whose CRC the caller has found right (fathom_crc16() == 0).
- *   FATHOM_READY           it answers `message`; the values of a read are written
+ *   FATHOM_READY           it is the response to `message`; the values of a read are written
  *   FATHOM_ERR_EXCEPTION   it refuses `message`; message->exception is set
- *   FATHOM_ERR_MALFORMED   from the unit that was asked, but no response to this: another function, count,
+ *   FATHOM_ERR_MALFORMED   from the unit of the request, but no response to it: another function, count,
  *                          address or value. Nothing is written.
  *   FATHOM_PENDING         another unit's. Nothing is written.
  */

@@ -15,9 +15,9 @@ extern "C" {
 /*
  * A level that a sensor drives: what a16_switch.h and a05_relay.h are built on, and what reads any other switch.
  *
- * A look at the pin is all there is, so it sees what stands at its looks and nothing between them. A level counts
- * when it stood at every look for settle_us; then, if it says something new, there is a sample. Between two looks
- * less than 71 minutes pass.
+ * Each poll reads the pin once, which is a look; what the level does between two looks is not seen. A level counts
+ * when it was the same at every look for settle_us; then, if it is new, there is a sample. Between two looks less than
+ * 71 minutes pass.
  */
 
 /* Zero-valued members of the timing mean these. */
@@ -26,7 +26,7 @@ extern "C" {
 #define FATHOM_CONTACT_DEFAULT_STALE_US    2000000u
 
 /* After the last byte of a line on the same pin. More than a character at 9600 baud, which a look could hit. Where the
- * level may not be looked at, a look is due in as long. */
+ * guard is not clear, the next look is due in as long. */
 #define FATHOM_CONTACT_QUIET_US 5000u
 
 /* Members that are 0 mean their defaults. */
@@ -45,10 +45,10 @@ typedef struct {
 
 /* What else stands on the pin, and when its level means nothing; line_pins.h makes one of a line. Outlives the contact. */
 typedef struct {
-    fathom_status_t (*poll)(void *ctx); /* before each look; FATHOM_PENDING, or the error that a poll says
-                                                     where it has nothing else to say */
-    bool (*is_clear)(void *ctx, uint32_t now_us); /* may the level be looked at? */
-    uint32_t (*due_us)(void *ctx);                /* when poll has something to do, as fathom_due_us */
+    /* Before each look; FATHOM_PENDING, or the error that the contact's poll returns where it has nothing else. */
+    fathom_status_t (*poll)(void *ctx);
+    bool (*is_clear)(void *ctx, uint32_t now_us); /* does the level mean anything now? */
+    uint32_t (*due_us)(void *ctx);                /* until poll has something to do, as fathom_due_us */
     void *ctx;
 } fathom_contact_guard_t;
 
@@ -71,7 +71,7 @@ typedef struct {
     uint16_t sequence;
     uint8_t last_kind; /* kind of the last sample; 0: none yet */
     bool is_high;      /* the level at the last look */
-    bool is_clear;     /* it could be looked at then */
+    bool is_clear;     /* the guard was clear then */
     bool is_held;
 } fathom_contact_t;
 
@@ -79,23 +79,21 @@ typedef struct {
  * copied. */
 fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing);
 
-/* What a high level means from now on. The level has to settle anew; if what it says is the same as before there is
- * no sample. */
+/* What a high level means from now on. The level has to settle anew; if it means the same as before there is no
+ * sample. */
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high);
 
-/* While it is held (true) the level is not looked at: it is about to mean something else. Then it settles anew. */
+/* While it is held (true) the level does not count: it is about to mean something else. Then it settles anew. */
 void fathom_contact_hold(fathom_contact_t *contact, bool hold);
 
 /*
  * For fathom_poll. Each poll is one look, and one poll of the guard.
- * FATHOM_READY       a sample: the first level that counts, one that says something new, or the period is over.
- *                    raw is the level, 1 for high; time_us is the look at which it was first seen to stand, or the
- *                    present one when it repeats
+ * FATHOM_READY       a sample: the first level that counts, a new one, or the period is over. raw is the level, 1
+ *                    for high; time_us is the look at which it was first seen, or the present one when it repeats
  * FATHOM_PENDING     nothing new; the level may be settling, or the guard at work
  * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, the guard is never clear, or it is
- *                    held;
- *                    said once every stale_us
- * FATHOM_ERR_PORT    the port of a guard's line is broken; said by every poll that has nothing else to say
+ *                    held; returned once every stale_us
+ * FATHOM_ERR_PORT    the port of the guard's line is broken; returned by every poll that has nothing else
  * A cut wire is no error: it reads as the level that the board pulls it to. fathom_due_us says when the next look
  * makes sense: in interval_us at the latest, sooner while a level settles.
  */

@@ -33,7 +33,7 @@ extern "C" {
  *
  * unknown_us after the last measurement that counted, the level becomes FATHOM_UNKNOWN. That is an error: treat it as
  * a broken wire. A new level then needs a whole row, and does not wait for hold_us. Where nothing comes any more, only
- * the loop knows how late it is: let it call fathom_debounce_time.
+ * the loop knows the time: let it call fathom_debounce_time.
  *
  * Otherwise the level changes with a measurement only. One that is held back because the level before has not yet
  * lasted hold_us changes with the first measurement after that, if its row is still unbroken.
@@ -92,7 +92,7 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
  *
  * verdict   FATHOM_NEAR: nearer. FATHOM_FAR: farther. Anything else: equal, as FATHOM_EQUAL_HOLDS
  * distance  a distance, 0..65535 mm
- * sample    any sample, at its time_us. Those of a switch count as what they say
+ * sample    any sample, at its time_us. Those of a switch count as their kind
  */
 bool fathom_debounce_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us);
 bool fathom_debounce_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us);

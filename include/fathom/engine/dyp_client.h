@@ -10,15 +10,15 @@ extern "C" {
 #endif
 
 /*
- * The 55 AA frames of the A05 (A05 2, dyp_55aa.h) on a line, behind the same transport as Modbus: the two ask for
- * the same distances, and so the same driver serves both. A request is described as for Modbus, by the register
+ * The 55 AA frames of the A05 (A05 2, dyp_55aa.h) on a line, behind the same transport as Modbus: both read the
+ * same distances, and so the same driver serves both. A request is described as for Modbus, by the register
  * of its first probe:
  *
  *   read 0x0106, 4 registers             command 01, all probes
  *   read 0x0106..0x0109, 1 register      command 10..13, one probe
  *
- * Nothing else is sent through the transport. On a bad wire the 8-bit sum lets one in 256 of the responses pass that are
- * damaged in more than one byte; Modbus, which the same sensors speak, one in 65536.
+ * Nothing else is sent through the transport. On a bad wire one in 256 of the responses that are damaged in
+ * more than one byte passes the 8-bit sum; of Modbus, which the same sensors have, one in 65536.
  */
 enum { FATHOM_DYP_FIRST_REGISTER = 0x0106 };
 
@@ -29,7 +29,7 @@ fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_requ
 
 /*
  * Command 03: gives this address, 1..254, to EVERY A05 that hears it, since the frame carries the new address and
- * no old one. Have one unit on the line. transaction.timeout_us, retries and settings are set by the caller.
+ * no old one. Have one unit on the line. transaction.timeout_us, retries and line_settings are set by the caller.
  * FATHOM_PENDING; FATHOM_ERR_ARGUMENT: 0 or 255; FATHOM_ERR_BUSY. The response equals the request: where the line
  * does not know yet whether it echoes, the outcome is FATHOM_ERR_ECHO. Confirm it by a read at the new address.
  */

@@ -30,7 +30,7 @@ extern "C" {
  * Safe on 8-bit machines without a lock: there is one writer, the interrupt (or interrupts of one priority, which
  * cannot interrupt each other), and one reader, the main loop, on one core. Both sides write different members; what
  * both look at is single bytes, volatile, which no machine reads in halves; a pulse is in place before the byte that
- * tells of it is, and is not written to again before the reader has said that it was taken.
+ * announces it, and is not written to again before the reader has marked it as taken.
  */
 enum {
     FATHOM_EDGES_PULSES = 4, /* that wait to be taken; more are dropped and counted. A power of two */
@@ -49,7 +49,7 @@ typedef struct {
     uint32_t rise_us;
     volatile uint8_t written; /* pulses so far; wraps */
     volatile uint8_t rises;   /* so far; wraps */
-    volatile uint8_t lost;    /* pulses that found no room; stops at 255 */
+    volatile uint8_t lost;    /* pulses that found no free place; stops at 255 */
     volatile uint8_t missed;  /* edges that must have been missed; stops at 255 */
     volatile bool high;
     bool timed; /* rise_us is the time of the rise */

@@ -23,8 +23,8 @@ static inline fathom_output_t fathom_output_line_break(fathom_line_t *line)
     return output;
 }
 
-/* A contact stands on its RX: the level is not looked at while a transaction is on the line, nor until 5 ms after the
- * last byte. The contact polls the line too. For `guard`:
+/* A contact on its RX: the level is not read while a transaction is on the line, nor until 5 ms after the last byte.
+ * The contact polls the line too. For `guard`:
  *
  *   static fathom_contact_guard_t guard;
  *   guard = fathom_contact_line_guard(&line);

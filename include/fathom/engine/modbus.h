@@ -10,13 +10,13 @@ extern "C" {
 #endif
 
 /*
- * The transport between the Modbus sensors and whatever carries Modbus: modbus_client.h on a line, or a port over
+ * The transport between the Modbus sensors and what carries Modbus: modbus_client.h on a line, or a port over
  * another stack. A driver knows only this.
  */
 
 /*
  * A request in the caller's memory. Fill in the message (modbus_rtu.h), transaction.timeout_us,
- * transaction.retries and transaction.settings (NULL: as the line is), submit it, and leave it alone until
+ * transaction.retries and transaction.line_settings (NULL: as the line is), submit it, and leave it alone until
  * transaction.status is no longer FATHOM_PENDING; what it may then be stands at fathom_transaction_t, as does the time of
  * the response, transaction.link.heard_us. The rest of the transaction is the transport's.
  */
@@ -47,8 +47,8 @@ typedef struct {
     void *ctx;
 } fathom_modbus_t;
 
-/* The transport over a line, for a transport whose requests are transactions of that line: all but submit is the line's, the
- * clock too: the line is ready (fathom_line_init). By value: keep it as long as the drivers that point to it. */
+/* A transport whose requests are transactions of a line: all but submit is the line's, the clock too. The line is
+ * ready (fathom_line_init). By value: keep it as long as the drivers that point to it. */
 fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
                                         fathom_status_t (*submit)(void *line,
                                                                   fathom_modbus_request_t *request));

@@ -9,32 +9,32 @@ extern "C" {
 #endif
 
 /*
- * A setting of a device, from asking what it is to having seen that it is what was wanted. The set functions of the
- * drivers are built on it, and share these rules:
+ * A setting of a device, read, written once and read back. The set functions of the drivers are built on it, and share
+ * these rules:
  *
- *  1. The device is asked for the value that it has. If that is the one, nothing is written: flash wears. But where the
- *     last time that this was set it was written and did not read so, it is written: until the next power-on a device
- *     may tell the value that it works with, and keep another.
- *  2. Where the setting has an address (the new one, or with new line settings also the present one), it is asked there
- *     whether somebody answers; that costs a time-out. It also shows whether the port can do the line settings.
+ *  1. The value is read. If it is the wanted one, nothing is written: flash wears. But where the last write of this
+ *     setting did not read back, it is written: until the next power-on a device may report the value that it works
+ *     with, and keep another.
+ *  2. Where the setting has an address (the new one, or with new line settings also the present one), a read there shows
+ *     whether a unit responds already; that costs a time-out. It also shows whether the port can do the line settings.
  *  3. The value is written, once: a write is never retried.
- *  4. The driver follows the device to its new address or line settings. Requests of others that wait for the unit
+ *  4. The driver follows the device to its new address or line settings. Other drivers' requests that wait for the unit
  *     end with FATHOM_ERR_CANCELLED.
- *  5. The device is asked again; where that fails at the new place, at the old one too.
+ *  5. The value is read back; where that fails at the new place, at the old one too.
  *
- * A setting that unit->is_blind was set for consists of the third alone: for a device whose responses cannot be made out.
- * The setting clears it, whatever it ends with.
+ * A blind setting (fathom_modbus_next_is_blind) is the third step alone: for a device whose responses cannot be
+ * understood. The one after it is not blind, however this one ends.
  *
  * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING.
  */
 typedef struct fathom_modbus_setting fathom_modbus_setting_t;
 struct fathom_modbus_setting {
-    /* Asks the device for its present value: called until it is not FATHOM_PENDING, and then with *value where it is
+    /* Reads the present value: called until it is not FATHOM_PENDING, and then with *value where it is
      * FATHOM_READY. NULL: it cannot be read, and the acknowledgement is all there is. */
     fathom_status_t (*read)(const fathom_modbus_setting_t *setting, uint32_t *value);
     void *driver;                       /* for read */
     fathom_modbus_unit_request_t write; /* a command; its id tells the settings of a driver apart */
-    uint32_t value;                     /* what read is to tell in the end */
+    uint32_t value;                     /* what is wanted, as read gives it */
     /* Where the device is once it has taken the value. The settings are kept by the caller as long as the unit. */
     const fathom_line_settings_t *line_settings; /* NULL: as before */
     uint16_t address;                       /* 1..254; 0: as before; 256: address 0 */
@@ -43,25 +43,23 @@ struct fathom_modbus_setting {
 /*
  * To be called after fathom_modbus_unit_poll, both with a setting of the same id until it is not FATHOM_PENDING.
  * unit->is_written tells whether anything was sent that changes the device:
- *   FATHOM_READY            not written: it was so already. Written: it was read back; where there is nothing to read
+ *   FATHOM_READY            not written: it was so already. Written: it was read back; where nothing can be read
  *                           back, it was acknowledged
- *   FATHOM_ERR_IN_USE       somebody answers at the new place already, be it damaged (so noise in that time is taken
- *                           for somebody, to be safe); nothing was written
- *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke when it was to be, and then the device could not be
- *                           read, at the new place nor at the old: it is at one of the two. The driver goes on asking
- *                           at the old one. Where there is nothing to read back: it was not acknowledged. Blind: also
- *                           where it was
- *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that nobody is at the new place; nothing was
+ *   FATHOM_ERR_IN_USE       a unit responds at the new place already, or noise comes that may be a damaged response;
+ *                           nothing was written
+ *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke during that, and then the device could be read neither
+ *                           at the new place nor at the old: it is at one of the two, and the driver stays at the old
+ *                           one. Where nothing can be read back: it was not acknowledged. Blind: always
+ *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that the new place is free; nothing was
  *                           written
- *   FATHOM_ERR_DIFFERS      it acknowledged the value, and says afterwards that it has another
+ *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_BUSY         another command or setting is not finished
  *   any other               of fathom_modbus_unit_ask. Not written: nothing was changed. Written: the device refused
- *                           it (exception), or the write failed so and the device says that it has another value
+ *                           it (exception), or the write failed so and another value was read back
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
 
-/* The next setting is blind. FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. Cancelling and power_on forget
- * it. */
+/* The next setting is blind. FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. Cancel and power_on undo it. */
 fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus

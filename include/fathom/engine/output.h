@@ -22,8 +22,8 @@ extern "C" {
 enum {
     FATHOM_OUTPUT_HIGH = 0,
     FATHOM_OUTPUT_LOW = 1,
-    /* High, before anything was low: a pin is set. A TX that no break holds is high anyway; only whether it can be held
-     * low is told. */
+    /* High, before anything was low: a pin is set. Of a TX, which is
+     * high where no break holds it, it is only checked that it can be held low. */
     FATHOM_OUTPUT_REST = 2,
     FATHOM_OUTPUT_FREE = 3 /* a break ends; a pin stays as it is */
 };
@@ -31,7 +31,7 @@ enum {
 typedef struct {
     /*
      * Sets the level, FATHOM_OUTPUT_... FATHOM_READY: it is so now, always where it is a pin. FATHOM_PENDING: the port
-     * still sends, ask again. FATHOM_ERR_UNSUPPORTED: the port has no set_break. FATHOM_ERR_PORT: it is broken. Of a
+     * still sends, call again. FATHOM_ERR_UNSUPPORTED: the port has no set_break. FATHOM_ERR_PORT: it is broken. Of a
      * line: what fathom_line_break returns. NULL: there is no output.
      */
     fathom_status_t (*set)(const void *ctx, uint8_t level);

@@ -28,7 +28,7 @@ extern "C" {
  *   none when the cycle is over, and low     FATHOM_ERR_NO_RESPONSE: no supply, a cut wire; never "nothing in range"
  * The first that is no noise decides; the rest of its cycle is not looked at.
  *
- * What it cannot do: a pulse of somebody else, between noise_us and stuck_us long, looks like the sensor's.
+ * What it cannot do: a pulse of another source, between noise_us and stuck_us long, looks like the sensor's.
  */
 
 /* Zero-valued members of fathom_pulse_config_t mean these. */
@@ -86,23 +86,23 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
  * FATHOM_READY: *reading is new. The next cycle has begun, if it was time.
  * FATHOM_PENDING: nothing new. *reading is untouched, as after every error:
  * FATHOM_ERR_NO_RESPONSE: a cycle without a pulse.
- * FATHOM_ERR_PORT: the capture or the break failed; said by every poll until it works again. Or the UART has refused
- * for a second to begin or to end the break; it is asked on, and that is said once a second.
- * Right across the wrap of the clock, if it is called once in 71 minutes. In a slow loop cycles are longer, and the
+ * FATHOM_ERR_PORT: the capture or the break failed; returned by every poll until it works again. Or the UART has refused
+ * for a second to begin or to end the break; it is tried on, and that is returned once a second.
+ * Correct across the wrap of the clock, if it is called once in 71 minutes. In a slow loop cycles are longer, and the
  * trigger is low until the call after low_us.
  */
 fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_reading_t *reading);
 
 /* How long from now until poll has something to do if no pulse ends, in microseconds; never FATHOM_NO_DEADLINE. The
- * end of a pulse should wake who sleeps so long; if it does not, the reading comes when the cycle is over. */
+ * end of a pulse should wake a program that sleeps so long; if it does not, the reading comes when the cycle is over. */
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
 
 /*
- * Lets the trigger go high again, if a cycle had made it low; the memory is the caller's. To be called again, and not
- * poll, unless it returns
+ * Lets the trigger go high again, if a cycle had made it low; the memory is the caller's. Call it again, and not poll,
+ * unless it returns
  * FATHOM_READY: the trigger is high, always where it is a pin.
  * FATHOM_PENDING: the UART has refused to end the break; the trigger is low until a later call.
- * FATHOM_ERR_PORT: the break failed, or the UART has refused for a second. Where it is given up here it stays low.
+ * FATHOM_ERR_PORT: the break failed, or the UART has refused for a second. If the caller gives up here, it stays low.
  */
 fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter);
 

@@ -24,7 +24,7 @@ extern "C" {
  *  - what comes next shows that it has ended: a byte that begins another frame (FF), or a silence of gap_us.
  * So a frame is given one byte late, or where the line falls silent gap_us late: 5 ms on a microcontroller,
  * 25 ms behind an operating system. fathom_stream_due_us tells when; time_us stays the time of its last byte.
- * A gap_us that is longer than the pauses only means that the next frame decides.
+ * With a gap_us that is longer than the pauses, the next frame decides.
  *
  * The place of a frame is `sure` where silence was seen before it and behind it, or where two frames or more came
  * right before it and it follows in step with them. In any other place that is believed, a frame could still be made of
@@ -54,10 +54,10 @@ enum {
     FATHOM_STREAM_FRAMES = 0,    /* good ones */
     FATHOM_STREAM_MISSED = 1,    /* good ones that a newer one replaced before it was polled */
     FATHOM_STREAM_AMBIGUOUS = 2, /* right sums in a place where another alignment was right too */
-    FATHOM_STREAM_UNSURE = 3,    /* right sums with neither a silence nor an unambiguous frame before them, or
-                                    with something else than a frame or a silence behind them */
-    FATHOM_STREAM_STALES = 4,    /* times that the deadline passed */
-    FATHOM_STREAM_BYTES = 5,     /* all that came */
+    /* right sums with neither a silence nor an unambiguous frame before them, or neither a frame nor a silence behind */
+    FATHOM_STREAM_UNSURE = 3,
+    FATHOM_STREAM_STALES = 4, /* times that the deadline passed */
+    FATHOM_STREAM_BYTES = 5,  /* all that came */
     FATHOM_STREAM_COUNTERS = 6
 };
 
@@ -66,10 +66,10 @@ typedef struct {
     uint8_t *storage; /* FATHOM_STREAM_STORAGE(length) bytes, the stream's alone */
     /* Without a good frame for so long, the stream is stale; up to 2^31 - 1, 35 minutes. 0: 10 s. */
     uint32_t stale_us;
-    uint16_t gap_us; /* a silence of so much starts a frame and ends one; more than a byte takes (1042 us at
-                          9600 baud) and less than the pause between frames; behind an operating system
-                          25000. 0: 5000 */
-    uint8_t length;  /* 4 or 10 */
+    /* A silence of so much starts a frame and ends one; more than a byte takes (1042 us at 9600 baud) and less than the
+     * pause between frames; behind an operating system 25000. 0: 5000. */
+    uint16_t gap_us;
+    uint8_t length; /* 4 or 10 */
 } fathom_stream_config_t;
 
 typedef struct {
@@ -89,7 +89,7 @@ typedef struct {
     uint16_t counters[FATHOM_STREAM_COUNTERS];
     uint8_t *storage; /* the window, which is the last `length` bytes; behind it the newest good frame */
     uint32_t stale_us;
-    uint32_t since_us;     /* the last poll that gave a frame or said that it is stale */
+    uint32_t since_us;     /* the last poll that gave a frame or FATHOM_ERR_STALE */
     uint32_t time_us;      /* of the newest good frame */
     uint32_t candidate_us; /* when its last byte came */
 } fathom_stream_t;
@@ -99,7 +99,7 @@ typedef struct {
 fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_config_t *config,
                                    uint32_t now_us);
 
-/* The same where storage, length, stale_us and listener.gap_us of the stream are set, to what may stand in a config;
+/* The same where storage, length, stale_us and listener.gap_us of the stream are set, to what a config may have;
  * also to begin anew: all that came is forgotten. */
 void fathom_stream_begin(fathom_stream_t *stream, uint32_t now_us);
 
@@ -121,7 +121,7 @@ static inline void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *by
  * To be called when all that came before now_us has been fed: a silence since the last byte ends a frame.
  * FATHOM_READY: fathom_stream_frame is the newest good frame, `length` bytes, to be read before more is fed;
  *   stream->time_us is when it came. Each frame is given once.
- * FATHOM_ERR_STALE: no good frame for stale_us; said once, then the deadline begins again.
+ * FATHOM_ERR_STALE: no good frame for stale_us; returned once, then the deadline begins again.
  * FATHOM_PENDING: neither.
  */
 fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us);
@@ -131,8 +131,7 @@ static inline const uint8_t *fathom_stream_frame(const fathom_stream_t *stream)
     return stream->storage + stream->length;
 }
 
-/* How long until poll will say FATHOM_READY or FATHOM_ERR_STALE if nothing comes; 0 when a frame waits to be
- * polled. */
+/* How long, in us, until poll returns FATHOM_READY or FATHOM_ERR_STALE if nothing comes; 0: a frame waits. */
 uint32_t fathom_stream_due_us(const fathom_stream_t *stream, uint32_t now_us);
 
 #ifdef __cplusplus

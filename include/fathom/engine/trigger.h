@@ -18,11 +18,11 @@ extern "C" {
  * period_us at least from edge to edge. What pulse.h and a16_controlled.h are built on. It never waits; one context
  * only.
  *
- * An output that is busy is asked again by each call. When it has refused for FATHOM_TRIGGER_REFUSED_US to begin or to
- * end a low level that is FATHOM_ERR_PORT, once in as long; less than that is never added up.
+ * Each call tries an output that is busy again. When it has refused for FATHOM_TRIGGER_REFUSED_US to begin or to end a
+ * low level that is FATHOM_ERR_PORT, once in as long; shorter refusals are never added up.
  */
 
-/* A low_us of 0 means this. The datasheet wants an edge and says no time; no input misses 2 ms. */
+/* A low_us of 0 means this. The datasheet wants an edge and gives no time; no input misses 2 ms. */
 #define FATHOM_TRIGGER_DEFAULT_LOW_US 2000u
 
 #define FATHOM_TRIGGER_REFUSED_US 1000000ul
@@ -36,8 +36,8 @@ typedef struct {
 
     /* The engine's; may be read. */
     bool low;            /* held low, or its end is not yet done */
-    bool refused;        /* what the output was asked last */
-    uint32_t refused_us; /* the clock when that began, or was last said */
+    bool refused;        /* the last call of the output was */
+    uint32_t refused_us; /* the clock when that began, or was last reported */
     uint32_t polled_us;  /* the clock at the last look, which an edge is */
     uint32_t left_us;    /* of the period */
 } fathom_trigger_t;

@@ -12,7 +12,7 @@ extern "C" {
 
 /*
  * A05 with UART automatic output (A05 1). 9600 8N1.
- * Nobody asks it: it sends FF, four distances, SUM over and over, of processed or of real-time values. Which of
+ * Without a request it sends FF, four distances, SUM over and over, of processed or of real-time values. Which of
  * them is decided by its RX pin in the first second after power-on, high or open for processed, low for
  * real-time: fathom_a05_auto_select. The datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no
  * frame period. The first Modbus command ends automatic output; power alone brings it back.
@@ -21,27 +21,28 @@ extern "C" {
  * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET,
  * or what the window says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
- *                         noise; stream.counters tell these apart. Said once every stale_us.
+ *                         noise; stream.counters tell these apart. Returned once every stale_us.
  *   FATHOM_ERR_MALFORMED  this probe's value is refused: outside the window, or FFFF. The other probes' samples are
  *                         given, but where the frame's place is not sure (stream.h) and in the frame in which a
  *                         probe turns odd, which may be damaged: then all of it is refused.
  *                         base.measurement.refused_probe and refused_raw tell which; counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again. Or it has refused for a
- *                         second to end the break that selects; it is asked on, that is said once a second, and what
- *                         the sensor sends goes on between
+ *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again. Or it has refused for a
+ *                         second to end the break that selects; it is tried on, that is returned once a second, and
+ *                         samples go on between
  */
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    /* 0: 10 s, as the A16; the datasheet prints no period. Who knows the period of a unit sets less: some 6 frames. Up to
-     * 35 minutes (stream.h). */
+    /* 0: 10 s, as the A16; the datasheet prints no period. Where the period of a unit is known, set less: some 6 frames.
+     * Up to 35 minutes (stream.h). */
     uint32_t stale_us;
-    uint16_t gap_us; /* a silence of so much starts and ends a frame (stream.h); behind an operating
-                            system 25000; 0: 5000 */
+    /* A silence of so much starts and ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
+    uint16_t gap_us;
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    uint8_t probes; /* bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it
-                       gives neither a sample nor an error */
+    /* Bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it gives neither a sample nor an
+     * error. */
+    uint8_t probes;
     /* What drives the module's RX pin, for fathom_a05_auto_select: a pin, or a break of the line whose TX it is
      * (fathom_output_line_break). */
     fathom_output_t select;
@@ -67,9 +68,8 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
 
 /*
  * To be called right before the sensor gets power: sets its RX pin for the values that it is to send. For real-time it
- * is low for 1.5 s, and high again after that, which fathom_poll sees to; else
- * it is high. The deadline for a frame begins anew.
- * FATHOM_READY: do switch it on now.
+ * is low for 1.5 s, after which fathom_poll makes it high again; else it is high. The deadline for a frame begins anew.
+ * FATHOM_READY: switch the power on now.
  * FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: real-time values without `select`, or a port
  * that cannot hold its TX low.
  * FATHOM_ERR_BUSY: something is being sent on the line, or the break of a power-on before has not ended; try again.
@@ -78,11 +78,11 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
 fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_value_t value);
 
 /*
- * Stops listening and lets RX go high, if it is still held low; the memory is the caller's again. To be called again,
- * and not poll, unless it returns
+ * Stops listening and lets RX go high, if it is still held low; the memory is the caller's again. Call it again, and
+ * not poll, unless it returns
  * FATHOM_READY: RX is high, always where it is a pin.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Where it is given up here TX stays low, and the
- * line sends nothing until that is FATHOM_READY.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
+ * the line sends nothing until that is FATHOM_READY.
  */
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 

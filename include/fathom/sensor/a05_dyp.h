@@ -16,7 +16,7 @@ extern "C" {
 #endif
 
 /*
- * A05 on RS-485, asked with the frames 55 AA of its "DYP protocol" (A05 2). 9600 8N1. One command measures all
+ * A05 on RS-485 with the 55 AA frames of its "DYP protocol" (A05 2). 9600 8N1. One command measures all
  * four probes (200..210 ms) or one (65..75 ms).
  *
  * The same unit speaks Modbus on the same wires (a05_modbus.h), and Modbus is to be preferred: its checksum has 16
@@ -34,12 +34,12 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults: the two periods above, and a time-out of 500 ms for all
  * probes, 200 ms for one, which is twice the datasheet's and more. */
 typedef struct {
-    /* its transport is made by fathom_dyp_client; no address_zero: the protocol has 1..254 (A05 2(3)2) */
+    /* Its transport is made by fathom_dyp_client; no address_zero: the protocol has 1..254 (A05 2(3)2). */
     fathom_modbus_config_t modbus;
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    uint8_t probes; /* bit probe - 1: wanted; 0: all four. One bit alone: that probe is measured alone,
-                                   which is faster; else all are */
+    /* Bit probe - 1: wanted; 0: all four. One bit alone: that probe is measured alone, which is faster; else all are. */
+    uint8_t probes;
 } fathom_a05_dyp_config_t;
 
 typedef struct {
@@ -53,7 +53,7 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_d
 /* Cancels what is under way; the memory is the caller's again. */
 void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor);
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests were answered, and how many not. */
+/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
 static inline const fathom_modbus_unit_t *fathom_a05_dyp_unit(const fathom_a05_dyp_t *sensor)
 {
     return &sensor->base.unit;
@@ -70,12 +70,12 @@ void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
  * one unit on the line; where there are several, fathom_a05_modbus_set_address reaches one of them.
  *
  * Call it, with the loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. First the
- * driver's own address is asked, then the new one whether somebody is there; the command is sent once; then the new
- * address is asked. Some 2 s.
- *   FATHOM_READY            the device was read at the address, where the driver asks from now on
+ * driver's own address is read, then the new one, where no unit may respond; the command is sent once; then the new
+ * address is read. Some 2 s.
+ *   FATHOM_READY            the device was read at the address, where the driver is from now on
  *   FATHOM_ERR_ARGUMENT     0 or 255
- *   FATHOM_ERR_IN_USE       somebody answers there already; nothing was sent
- *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers at neither address: it is at one of the two
+ *   FATHOM_ERR_IN_USE       a unit responds there already; nothing was sent
+ *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device responds at neither address: it is at one of the two
  *   FATHOM_ERR_BUSY         another command is not finished
  *   others                  of fathom_poll: nothing was changed
  * is_written: has the last command, or the one under way, been handed to the line?
@@ -84,12 +84,12 @@ void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
 fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address);
 bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor);
 
-/* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
+/* Gives up what is under way, also a measurement. An address that was being set may be set or not. */
 void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor);
 
-/* ---- which address does the one A05 on this line have? ---- */
+/* ---- the address of the one A05 on a line ---- */
 
-/* All members are find's own. Set it to zero before the first call. */
+/* In the caller's memory, all zero before the first call. */
 typedef struct {
     fathom_modbus_request_t request;
     uint16_t value;
@@ -97,11 +97,11 @@ typedef struct {
 } fathom_a05_dyp_find_t;
 
 /*
- * Asks whoever is there, at FF, to measure its first probe, which changes nothing, and takes the address from
- * the first response. Call it, with the loop going on in between, until it is not FATHOM_PENDING; it polls the line.
- * FATHOM_READY: *address is where the response came from. Each outcome comes once; the next call asks anew.
- * FATHOM_ERR_NO_RESPONSE: nothing in 200 ms. The datasheet does not say whether a unit answers FF (A05 2(3)2).
- * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several answered at once. Others: as fathom_transaction_t.
+ * Requests of all units, at FF, to measure their first probe, which changes nothing, and takes the address from the
+ * first response. Call it, with the loop going on in between, until it is not FATHOM_PENDING; it polls the line.
+ * FATHOM_READY: *address is where the response came from. Each outcome comes once; the next call begins anew.
+ * FATHOM_ERR_NO_RESPONSE: nothing in 200 ms. The datasheet does not say whether a unit responds to FF (A05 2(3)2).
+ * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several responded at once. Others: as fathom_transaction_t.
  */
 fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *line, uint8_t *address);
 

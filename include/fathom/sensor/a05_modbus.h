@@ -10,19 +10,19 @@ extern "C" {
 #endif
 
 /*
- * A05 asked by Modbus RTU (A05 3): the RS485 variant, and the UART variant, whose automatic output ends with
+ * A05 by Modbus RTU (A05 3): the RS485 variant, and the UART variant, whose automatic output ends with
  * the first request until it is powered off. 9600 8N1. Each read starts a measurement of the probes it names,
  * one after the other, about 100 ms each.
  *
  * A sample a wanted probe and response, with one sequence number and one time: FATHOM_TARGET, or what the window
  * says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. The datasheet documents no
- *                         exceptions: a wrong register may be silence too
- *   FATHOM_ERR_CHECKSUM   its response was damaged
- *   FATHOM_ERR_EXCEPTION  it refused; fathom_a05_modbus_exception has the number
- *   FATHOM_ERR_MALFORMED  it answered something else, or this probe's value is refused: outside the window, or FFFF;
- *                         base.measurement.refused_probe and refused_raw tell which, and it is counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ *                           exceptions: a wrong register may be silence too
+ *   FATHOM_ERR_CHECKSUM     its response was damaged
+ *   FATHOM_ERR_EXCEPTION    it refused; fathom_a05_modbus_exception has the number
+ *   FATHOM_ERR_MALFORMED    it sent something else, or this probe's value is refused: outside the window, or FFFF;
+ *                           base.measurement.refused_probe and refused_raw tell which, and it is counted
+ *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
  */
 
 /* From one request to the next, at least, for each probe that it reads. */
@@ -38,8 +38,8 @@ typedef struct {
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
-    uint8_t probes; /* bit probe - 1: wanted; 0: all four. One read covers the first to the last of
-                                   them, and those between are measured too */
+    /* Bit probe - 1: wanted; 0: all four. One read covers the first to the last of them; those between are measured too. */
+    uint8_t probes;
 } fathom_a05_modbus_config_t;
 
 typedef struct {
@@ -58,40 +58,40 @@ void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor);
 void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
 
 /*
- * The address, register 0x0200 (A05 3(3)), read and set. Each asks the device and returns at once: call it, with the
+ * The address, register 0x0200 (A05 3(3)), read and set. Each function returns at once: call it, with the
  * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. A response takes
- * command_timeout_us (1 s) at most, a change some 3 s, since the new address is asked first whether somebody is there.
+ * command_timeout_us (1 s) at most, a change some 3 s, since a read first shows that no unit is at the new address.
  *
  * address: FATHOM_READY with *address, or an error of fathom_poll.
- * set_address: 1..254. The driver then asks at the new address. FATHOM_READY: the device was read there. Else, with
+ * set_address: 1..254. FATHOM_READY: the device was read at the new address, where the driver is from now on. Else, with
  * the driver at the old address:
  *   FATHOM_ERR_ARGUMENT     0 or 255
- *   FATHOM_ERR_IN_USE       somebody answers there already; nothing was changed
- *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device answers at neither: it is at one of the two
+ *   FATHOM_ERR_IN_USE       a unit responds there already; nothing was changed
+ *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device responds at neither: it is at one of the two
  *   FATHOM_ERR_BUSY         another command is not finished
  *   others                  of fathom_poll: nothing was changed
  * is_written: has the last setting, or the one under way, been handed to the line?
- * Requests of others that wait for the old address end with FATHOM_ERR_CANCELLED.
+ * Other drivers' requests that wait for the old address end with FATHOM_ERR_CANCELLED.
  */
 fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
 bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor);
 
 /* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be found
- * again, since it need not answer there, and what is written to it would be written to all units. The driver reads it
+ * again, since it need not respond there, and what is written to it would be written to all units. The driver reads it
  * there from then on, and sets nothing of it any more. Else as set_address. */
 fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor);
 
-/* Gives up what is under way, also a measurement. An address that was being set may hold or not. */
+/* Gives up what is under way, also a measurement. An address that was being set may be set or not. */
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);
 
-/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the sensor is asked again; 0: it was none. */
+/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the next request; 0: there was none. */
 static inline uint8_t fathom_a05_modbus_exception(const fathom_a05_modbus_t *sensor)
 {
     return fathom_modbus_unit_exception(&sensor->base.unit);
 }
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests were answered, and how many not. */
+/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
 static inline const fathom_modbus_unit_t *fathom_a05_modbus_unit(const fathom_a05_modbus_t *sensor)
 {
     return &sensor->base.unit;

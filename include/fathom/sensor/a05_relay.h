@@ -12,11 +12,11 @@ extern "C" {
 /*
  * A05 with relay output (A05 4): its relay closes when any of its four probes has something nearer than the
  * threshold, 1 m from the factory, and each state lasts about 1 s. The threshold is taught on the board, with a
- * button and a flat target before probe 4 (A05 4(2)); nothing can be asked or set from here. a05_relay_rule.h is
+ * button and a flat target before probe 4 (A05 4(2)); nothing can be read or set from here. a05_relay_rule.h is
  * the same rule in software, for an A05 in any other mode.
  *
- * A sample for the first state and for each new one: FATHOM_NEAR or FATHOM_FAR, without a distance or a probe (which
- * one it was the relay does not tell); time_us is when it was first seen, raw is the level of the pin. The errors of
+ * A sample for the first state and for each new one: FATHOM_NEAR or FATHOM_FAR, without a distance or a probe (the
+ * relay does not tell which); time_us is when it was first seen, raw is the level of the pin. The errors of
  * fathom_poll:
  *   FATHOM_ERR_STALE  the contact has not stood still for settle_us in stale_us: noise, a worn or a loose contact
  *
@@ -41,9 +41,10 @@ typedef enum {
 typedef struct {
     const fathom_pin_t *pin;
     const fathom_clock_t *clock;
-    fathom_contact_timing_t timing; /* contact.h: how long a level stands, how often it is said, and so on */
-    uint8_t wiring;                 /* fathom_a05_relay_wiring_t; 0: normally open */
-    uint8_t level;                  /* fathom_a05_relay_level_t; 0: low while it conducts */
+    fathom_contact_timing_t
+        timing;     /* contact.h: how long a level stands, how often it is repeated, and so on */
+    uint8_t wiring; /* fathom_a05_relay_wiring_t; 0: normally open */
+    uint8_t level;  /* fathom_a05_relay_level_t; 0: low while it conducts */
 } fathom_a05_relay_config_t;
 
 typedef struct {

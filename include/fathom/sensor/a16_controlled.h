@@ -24,14 +24,14 @@ extern "C" {
  * FATHOM_TARGET, or what the window says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of
  * fathom_poll, each of one trigger:
  *   FATHOM_ERR_NO_RESPONSE  nothing came in time: no supply, a cut wire, not in this mode
- *   FATHOM_ERR_CHECKSUM   something came in time, and no good frame among it
- *   FATHOM_ERR_MALFORMED  a good frame with a value that is refused: outside the window, or FFFF; it is in
- *                         response.refused_raw, and counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again. Or it has refused for a
- *                         second to begin or to end the break; it is asked on, and that is said once a second
+ *   FATHOM_ERR_CHECKSUM     something came in time, and no good frame among it
+ *   FATHOM_ERR_MALFORMED    a good frame with a value that is refused: outside the window, or FFFF; it is in
+ *                           measurement.refused_raw, and counted
+ *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again. Or it has refused for
+ *                           a second to begin or to end the break; it is tried on, and that is returned once a second
  *
- * A frame responses if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on either
- * side some for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come at any time
+ * A frame is the response if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on either
+ * side a margin for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come at any time
  * since the poll before, and both ends are stretched by that much. All other frames are counted in `late` and dropped.
  * What cannot be told apart: the response to the trigger before, if it comes 200 ms or more after that.
  */
@@ -81,11 +81,11 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
                                            const fathom_a16_controlled_config_t *config);
 
 /*
- * Stops listening and lets the trigger go high; the memory is the caller's again. To be called again, and not poll,
+ * Stops listening and lets the trigger go high; the memory is the caller's again. Call it again, and not poll,
  * unless it returns
  * FATHOM_READY: the trigger is high, always where it is a pin.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). Where it is given up here TX stays low, and the
- * line sends nothing until that is FATHOM_READY.
+ * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
+ * the line sends nothing until that is FATHOM_READY.
  */
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 

@@ -9,18 +9,18 @@ extern "C" {
 #endif
 
 /*
- * A16 asked by Modbus RTU (A16 6): the RS485 variant, and the RS232 variant, whose automatic output ends with
+ * A16 by Modbus RTU (A16 6): the RS485 variant, and the RS232 variant, whose automatic output ends with
  * the first request and does not come back by itself. 9600 8N1.
  *
  * One sample a response, as often as polling and the pace allow: FATHOM_TARGET, or what the window says that the
  * values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. The datasheet documents no
- *                         exceptions: a wrong register may be silence too
- *   FATHOM_ERR_CHECKSUM   its response was damaged
- *   FATHOM_ERR_EXCEPTION  it refused; fathom_a16_modbus_exception has the number
- *   FATHOM_ERR_MALFORMED  it answered something else, or a value that is refused: outside the window, or FFFF;
- *                         then it is in base.measurement.refused_raw, and counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ *                           exceptions: a wrong register may be silence too
+ *   FATHOM_ERR_CHECKSUM     its response was damaged
+ *   FATHOM_ERR_EXCEPTION    it refused; fathom_a16_modbus_exception has the number
+ *   FATHOM_ERR_MALFORMED    it sent something else, or a value that is refused: outside the window, or FFFF;
+ *                           then it is in base.measurement.refused_raw, and counted
+ *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
  * The other registers are in a16_settings.h.
  */
 
@@ -36,8 +36,8 @@ typedef struct {
     fathom_modbus_config_t modbus;
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
-    uint8_t value; /* fathom_dyp_value_t. Processed: sister models take up to 520 ms to answer; real-time:
-                                   about 120 ms */
+    /* fathom_dyp_value_t. Processed: sister models take up to 520 ms to respond; real-time: about 120 ms. */
+    uint8_t value;
 } fathom_a16_modbus_config_t;
 
 typedef struct {
@@ -55,13 +55,13 @@ void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor);
 /* To be called when the sensor gets power: for start_us its silence is FATHOM_ERR_WARMING_UP. */
 void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor);
 
-/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the sensor is asked again; 0: it was none. */
+/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the next request; 0: there was none. */
 static inline uint8_t fathom_a16_modbus_exception(const fathom_a16_modbus_t *sensor)
 {
     return fathom_modbus_unit_exception(&sensor->base.unit);
 }
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests were answered, and how many not. */
+/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
 static inline const fathom_modbus_unit_t *fathom_a16_modbus_unit(const fathom_a16_modbus_t *sensor)
 {
     return &sensor->base.unit;

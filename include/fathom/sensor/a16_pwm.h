@@ -14,7 +14,7 @@ extern "C" {
 #endif
 
 /*
- * A16 with PWM output (A16 1): each falling edge at its RX pin makes it measure and response with one high pulse on TX,
+ * A16 with PWM output (A16 1): each falling edge at its RX pin makes it measure and respond with one high pulse on TX,
  * whose width is the time of flight. pulse.h does the timing, and has what each width means.
  *
  * One sample a cycle of 221 ms; raw is the width of the pulse in us, time_us its end:
@@ -23,9 +23,9 @@ extern "C" {
  *   FATHOM_FAULT       a longer one, or the line stays high, when raw is 0
  * The errors of fathom_poll:
  *   FATHOM_ERR_NO_RESPONSE  no pulse in the cycle: no supply, a cut wire, not in this mode
- *   FATHOM_ERR_MALFORMED  a distance outside the window; refused and counted
- *   FATHOM_ERR_PORT       the capture or the break failed; said by every poll until it works again
- * In the blind zone, nearer than 50 cm, a module may say anything; the shortest pulse of the datasheet, 3 ms, is 522 mm.
+ *   FATHOM_ERR_MALFORMED    a distance outside the window; refused and counted
+ *   FATHOM_ERR_PORT         the capture or the break failed; returned by every poll until it works again
+ * In the blind zone, nearer than 50 cm, a module may send any value; the shortest pulse of the datasheet, 3 ms, is 522 mm.
  */
 
 /* The longest pulse in the hottest air, 94 ms at 85 degC, in mm and rounded up. */
@@ -55,7 +55,7 @@ typedef struct {
 /* FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm over max_mm; else what fathom_pulse_init returns. */
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
 
-/* Lets the trigger go high; the memory is the caller's again. What it returns, and when it is to be called again:
+/* Lets the trigger go high; the memory is the caller's again. What it returns, and when to call it again: as
  * fathom_pulse_deinit. */
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 

@@ -12,8 +12,8 @@ extern "C" {
 #endif
 
 /*
- * A16 with RS232 output (A16 5): it sends by itself until the first Modbus command, and from then on responses Modbus.
- * Power, or 1 written to register 0x0202, makes it send again; which of the two it does is not kept.
+ * A16 with RS232 output (A16 5): it sends by itself until the first Modbus request, and from then on it only responds.
+ * Power, or 1 written to register 0x0202, makes it send again; which of the two it does is not kept over power-off.
  *
  * Two drivers on one line read it, a16_auto.h and a16_modbus.h. Polling the second is what ends automatic output: the
  * response to its first request may come among frames, which go to the first driver. This here is the way back.
@@ -21,8 +21,8 @@ extern "C" {
 typedef struct {
     fathom_a16_modbus_t *modbus; /* initialised; over the same line */
     fathom_a16_auto_t *automatic;
-    /* How long frames may take to begin after the acknowledgement: init makes it 10 s, and it is the caller's to
-     * change after that. */
+    /* How long frames may take to begin after the acknowledgement: init sets 10 s, which the caller may change
+     * after that. */
     uint32_t return_us;
     uint32_t since_us;
     bool is_listening;
@@ -51,10 +51,10 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  */
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample);
 
-/* Gives that up, whatever it has come to; the next call begins anew. */
+/* Gives that up at any point; the next call begins anew. */
 void fathom_a16_rs232_cancel(fathom_a16_rs232_t *rs232);
 
-/* How long until that function has something to do if no byte comes. */
+/* How long, in us, until that function has something to do if no byte comes. */
 uint32_t fathom_a16_rs232_due_us(const fathom_a16_rs232_t *rs232);
 
 #ifdef __cplusplus

@@ -13,7 +13,7 @@ extern "C" {
 /*
  * The registers of an A16 (A16 6(3)) beside the distance that its driver reads again and again.
  *
- * Each function asks the device and returns at once: call it with the same arguments, with the loop going on in
+ * Each function returns at once: call it with the same arguments, with the loop going on in
  * between, until it is not FATHOM_PENDING. One at a time; fathom_poll rests as long as a setting is being changed.
  * A response takes command_timeout_us (1 s) at most.
  *
@@ -21,15 +21,15 @@ extern "C" {
  *   FATHOM_ERR_NO_RESPONSE, _CHECKSUM, _EXCEPTION, _PORT   as fathom_poll (a16_modbus.h). Where a register is not for
  *                           this variant, silence is likely: the datasheet knows no exceptions
  *   FATHOM_ERR_MALFORMED    a value that the register cannot have
- *   FATHOM_ERR_BUSY         another command is not finished, or nobody has taken its outcome
+ *   FATHOM_ERR_BUSY         another command is not finished, or its outcome was not taken
  * Setting: the value is read first, written only if it is another one (flash wears), and read back.
  * fathom_a16_modbus_is_written tells whether it was written:
  *   FATHOM_READY            it is so; not written: it was so before
  *   FATHOM_ERR_ARGUMENT     out of range; nothing was sent
- *   FATHOM_ERR_DIFFERS      the device acknowledged the value and has another one afterwards
- *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may hold or not
+ *   FATHOM_ERR_DIFFERS      the device acknowledged the value, and it reads back as another
+ *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may be set or not
  *   others                  as reading. Not written: nothing was changed. Written: the device refused it (exception), or
- *                           the write failed so and the device says that it has another value
+ *                           the write failed so and another value was read back
  * Whether a setting outlives power-off is in the datasheet for 0x0202 alone: it does not.
  */
 
@@ -47,14 +47,14 @@ bool fathom_a16_modbus_is_written(const fathom_a16_modbus_t *sensor);
 
 /*
  * The next setting is BLIND: it is written without reading anything before or afterwards, once, and to this unit alone.
- * The address, 0x0200, is FATHOM_ERR_ARGUMENT then. Whatever the setting ends with, the one after it is none:
- * FATHOM_ERR_UNCONFIRMED: it was sent, and may hold or not, also where it was acknowledged; FATHOM_ERR_EXCEPTION: it
+ * The address, 0x0200, is FATHOM_ERR_ARGUMENT then. The setting after it is not blind, however this one ends:
+ * FATHOM_ERR_UNCONFIRMED: it was sent, and may be set or not, also where it was acknowledged; FATHOM_ERR_EXCEPTION: it
  * refused; others: nothing was written.
- * Here: FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. fathom_a16_modbus_cancel and power_on forget it.
+ * Here: FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. fathom_a16_modbus_cancel and power_on undo it.
  */
 fathom_status_t fathom_a16_modbus_next_is_blind(fathom_a16_modbus_t *sensor);
 
-/* Gives up what is under way, also a measurement. A setting that was under way may hold or not. */
+/* Gives up what is under way, also a measurement. A setting that was under way may be set or not. */
 void fathom_a16_modbus_cancel(fathom_a16_modbus_t *sensor);
 
 /* Either distance, once: 0x0100 or 0x0101. *sample is written as by fathom_poll, and errors are as there. */
@@ -62,30 +62,29 @@ fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dy
                                           fathom_sample_t *sample);
 
 /*
- * The address, 0x0200. set: 1..254, from the
- * acknowledgement on. The new address is asked first whether somebody is there, which costs a second:
- * FATHOM_ERR_IN_USE. After FATHOM_READY the driver asks at the new address; after FATHOM_ERR_UNCONFIRMED, as after any
- * other error, at the old one, and the device is at one of the two. Requests of others that wait for the old address
- * end with FATHOM_ERR_CANCELLED.
+ * The address, 0x0200. set: 1..254, from the acknowledgement on. The new address is read first, which costs a second:
+ * FATHOM_ERR_IN_USE, a unit responds there. After FATHOM_READY the driver is at the new address, after any error at the
+ * old one; after FATHOM_ERR_UNCONFIRMED the device is at one of the two. Other drivers' requests that wait for the old
+ * address end with FATHOM_ERR_CANCELLED.
  */
 fathom_status_t fathom_a16_modbus_address(fathom_a16_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a16_modbus_set_address(fathom_a16_modbus_t *sensor, uint8_t address);
 
 /* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be found
- * again, since it need not answer there, and what is written to it would be written to all units. The driver reads it
+ * again, since it need not respond there, and what is written to it would be written to all units. The driver reads it
  * there from then on, and sets nothing of it any more. Else as set_address. */
 fathom_status_t fathom_a16_modbus_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor);
 
 typedef enum {
     FATHOM_A16_CONTROLLED = 0,
-    FATHOM_A16_AUTOMATIC = 1 /* what a Modbus command has ended goes on */
+    FATHOM_A16_AUTOMATIC = 1 /* the output that a Modbus request has ended goes on */
 } fathom_a16_operating_mode_t;
 
 /*
  * The operating mode, 0x0202; WRITE-ONLY, not kept over power-off. The address is read before. It means something only
- * where a Modbus command has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more
- * (FATHOM_ERR_UNCONFIRMED: there was none): whether
- * frames come is heard, not read, since a read would end them again: a16_rs232.h.
+ * where a Modbus request has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more
+ * (FATHOM_ERR_UNCONFIRMED: there was none): whether frames come is heard, not read, since a read would end them again:
+ * a16_rs232.h.
  */
 fathom_status_t fathom_a16_modbus_set_operating_mode(fathom_a16_modbus_t *sensor,
                                                      fathom_a16_operating_mode_t mode);

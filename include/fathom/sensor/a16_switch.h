@@ -17,19 +17,19 @@ extern "C" {
  * it. debounce.h is the same rule in software, for any sensor in any mode.
  *
  * A sample for the first level and for each new one: FATHOM_NEAR or FATHOM_FAR, without a distance; time_us is when
- * the level was first seen, raw is the level. What the level was before the module's first decision the datasheet
- * does not say; nor can a switch say "no response": a cut wire reads as the level that the board pulls it to, so pull
- * it to the harmless one. The errors of fathom_poll:
+ * the level was first seen, raw is the level. The datasheet leaves open what the level is before the module's first
+ * decision. A switch cannot say "no response": a cut wire reads as the level that the board pulls it to, so pull it to
+ * the harmless one. The errors of fathom_poll:
  *   FATHOM_ERR_STALE  no level stood still for settle_us in stale_us: noise, or a line that is never silent
- *   FATHOM_ERR_PORT   the port of the line on the same pins is broken; said by every poll that has no sample
+ *   FATHOM_ERR_PORT   the port of the line on the same pins is broken; returned by every poll that has no sample
  *
  * Threshold and polarity are set by Modbus on the same pins, 9600 8N1 (A16 4(1), 6(3)), with a16_settings.h on a
- * fathom_a16_modbus_t beside this driver, which need not be polled otherwise. RX is the module's ear, and TX carries
- * its responses: with a `guard` in the config (line_pins.h), the level is not looked at while a request is under way
- * there, nor until 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may
- * stand before a response and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They hide from it
- * that it has no echo, so tell it (FATHOM_LINE_ECHO_OFF): there is a wire each way. A UART that reports a break again
- * and again while it lasts makes the line look busy for ever; switch its receiver off while nothing is asked.
+ * fathom_a16_modbus_t beside this driver, which need not be polled otherwise. The module receives on RX and responds on
+ * TX: with a `guard` in the config (line_pins.h), the level does not count while a request is under way there, nor until
+ * 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may stand before a
+ * response and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They keep it from finding out that
+ * it has no echo, so configure FATHOM_LINE_ECHO_OFF: there is a wire each way. A UART that reports a break again and
+ * again while it lasts makes the line look busy for ever; switch its receiver off while no request is under way.
  */
 
 /* Read by init only; what it points to outlives the sensor. Members that are 0 mean their defaults. */
@@ -37,13 +37,14 @@ typedef struct {
     const fathom_pin_t *pin; /* reads TX */
     const fathom_clock_t *clock;
     /* Of the line on the same pins (fathom_contact_line_guard), which this driver polls too. NULL: there is none, and the
-     * module is asked nothing. */
+     * module gets no requests. */
     const fathom_contact_guard_t *guard;
-    fathom_contact_timing_t timing; /* contact.h: how long a level stands, how often it is said, and so on */
+    fathom_contact_timing_t
+        timing; /* contact.h: how long a level stands, how often it is repeated, and so on */
     /* Low is FATHOM_NEAR: register 0x0205 is 0. false: high is, as from the factory, where "less than 1 meter" is a
      * high level (A16 4(2)). */
     bool negative;
-    uint8_t address; /* its Modbus address, which becomes the samples' unit; 0 where nobody asks it */
+    uint8_t address; /* its Modbus address, of the samples; 0: without Modbus */
 } fathom_a16_switch_config_t;
 
 typedef struct {
@@ -55,16 +56,16 @@ fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom
 
 /*
  * Sets the polarity by Modbus: as fathom_a16_modbus_set_switch_polarity of `modbus`, the driver of the same module on
- * the same line, with the same return values; call it until it is not FATHOM_PENDING. Meanwhile the level is not
- * looked at, since it turns somewhere on the way; after FATHOM_READY it is read by the new polarity, after anything
- * else by the one before. FATHOM_ERR_UNCONFIRMED leaves open which it is: ask with fathom_a16_modbus_switch_polarity,
- * and tell.
+ * the same line, with the same return values; call it until it is not FATHOM_PENDING. Meanwhile the level does not
+ * count, since it turns somewhere on the way; after FATHOM_READY it is read by the new polarity, after anything else
+ * by the one before. After FATHOM_ERR_UNCONFIRMED it may be either: read it with fathom_a16_modbus_switch_polarity, and
+ * call fathom_a16_switch_polarity_is.
  */
 fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
                                                fathom_a16_polarity_t polarity);
 
-/* The level is read by this polarity from now on: somebody else has set it, or said what it is; or setting it was
- * given up (fathom_a16_modbus_cancel). */
+/* The level is read by this polarity from now on: it was set or read without this driver; or setting it was given up
+ * (fathom_a16_modbus_cancel). */
 void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
 /* For fathom_poll. There is nothing to undo: forget the sensor when it is no longer polled. */

@@ -18,8 +18,7 @@ extern "C" {
  *
  * The datasheets print distances and no other value. Of sister models it is known that 0xFFFD is no object and
  * 0xFFFE interference by another unit of the same frequency. 0 has been seen with nothing in range and with a hand
- * on the probe, so it is unknown until the user says what it is. Any other value outside the window is none that the
- * sensor can mean.
+ * on the probe, so it is unknown until the config gives it a meaning. Any other value outside the window is refused.
  */
 
 /* Which of its distances a sensor is to give, wherever one can choose. */
@@ -28,7 +27,7 @@ typedef enum {
     FATHOM_REAL_TIME = 1  /* the last measurement */
 } fathom_dyp_value_t;
 
-/* What a value is that is no distance: the kind of its sample. */
+/* What a value that is no distance means: the kind of its sample. */
 typedef enum {
     FATHOM_MEANS_DEFAULT = 0,
     FATHOM_MEANS_UNKNOWN = FATHOM_UNKNOWN,
@@ -60,9 +59,10 @@ typedef struct {
     uint8_t address; /* 0 from a sensor that sends by itself */
     uint8_t first;   /* 1..4 */
     uint8_t left;    /* bit probe - 1: has not been handed over */
+    /* The last value that was refused, and its probe; 0: none yet. They belong to the last FATHOM_ERR_MALFORMED, if that
+     * made `implausible` grow. */
     uint8_t refused_probe;
-    uint16_t refused_raw; /* the last value that was refused, and its probe; 0: none yet. They belong to the
-                             FATHOM_ERR_MALFORMED that was said last, if that made `implausible` grow */
+    uint16_t refused_raw;
     uint16_t sequence;
     uint16_t implausible; /* values that were refused; stops at 65535 */
     fathom_dyp_window_t window;
@@ -89,7 +89,7 @@ static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurem
 /* Byte by byte: of a struct of this size compilers make a call of memcpy. */
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from);
 
-/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: the window is upside down. A max_mm of 0 becomes
+/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm over max_mm. A max_mm of 0 becomes
  * default_max_mm. */
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm);
 

@@ -20,8 +20,8 @@ typedef struct {
 
 /*
  * Makes it ready; then the driver makes the stream's listener that of the line. The caller has set the line, what
- * fathom_stream_begin wants, and values, window, model, unit and first of the response. FATHOM_READY, or
- * FATHOM_ERR_ARGUMENT: no line, or a window that is upside down.
+ * fathom_stream_begin wants, and values, window, model, address and first of the measurement. FATHOM_READY, or
+ * FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm.
  */
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm);
 
@@ -29,12 +29,12 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
 /*
- * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the response, of which probe 1 waits to
- * be handed over. FATHOM_PENDING: none has come. FATHOM_ERR_STALE, FATHOM_ERR_PORT: as a16_auto.h has them.
+ * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the measurement, of which probe 1 waits
+ * to be handed over. FATHOM_PENDING: none has come. FATHOM_ERR_STALE, FATHOM_ERR_PORT: as in a16_auto.h.
  */
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor);
 
-/* How long until take has something to do if no byte comes. */
+/* How long, in us, until take has something to do if no byte comes. */
 uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor);
 
 #ifdef __cplusplus

@@ -10,8 +10,8 @@
 extern "C" {
 #endif
 
-/* What a16_modbus.h and a05_modbus.h are built on: an ultrasonic sensor that is asked for the registers of
- * its probes. Their users need not know it. */
+/* What a16_modbus.h and a05_modbus.h are built on: an ultrasonic sensor whose registers of
+ * distances are read. Their users need not know it. */
 typedef struct {
     uint8_t probes; /* bit probe - 1: wanted of those that are read */
     uint16_t found; /* the register that a command reads */
@@ -29,8 +29,8 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
 #define FATHOM_DYP_DEFAULT_START_US 1500000ul
 
 /* The caller has set first and last of the request, the probes, start_us (0: its default), and values, window, model
- * and first of the response; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.
- * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or a window that is upside down. */
+ * and first of the measurement; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.
+ * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or min_mm over max_mm. */
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
                                        uint32_t timeout_us, uint32_t pace_us);
 
@@ -42,12 +42,11 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 
 /*
  * Commands, to be called until they are not FATHOM_PENDING; of registers that differ in their bits 0 to 3, 8 or 9, as all
- * of A16 and A05 do. get: FATHOM_READY with *value, or the errors of
- * fathom_modbus_unit_ask; address: also FATHOM_ERR_MALFORMED, where the register says more than 255. set: as
- * fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of
+ * of A16 and A05 do. get: FATHOM_READY with *value, or the errors of fathom_modbus_unit_ask; address: also
+ * FATHOM_ERR_MALFORMED, where the register has more than 255. set: as fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of
  * that name of A16 and A05. At address 0 nothing is written: FATHOM_ERR_ARGUMENT, since all units would obey.
- * write: where nothing can be read back; FATHOM_READY is the acknowledgement. The address is read first, from which
- * the line learns whether it echoes, without which an acknowledgement says nothing (line.h).
+ * write: where nothing can be read back; FATHOM_READY is the acknowledgement. The address is read first, which
+ * shows the line whether it echoes: without that an acknowledgement proves nothing (line.h).
  */
 fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
 fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
@@ -72,13 +71,13 @@ typedef struct {
 } fathom_dyp_modbus_find_t;
 
 /*
- * Asks the A16 or A05 that is alone on a line for its address, whatever that is: reads register 0x0200 at 255, "the
+ * Finds the address of the A16 or A05 that is alone on a line: reads register 0x0200 at 255, "the
  * broadcast address" (A16 6(3), A05 3(3)), which changes nothing. Call it, with the loop going on in between, until it is
  * not FATHOM_PENDING; it polls the transport. The line's settings are as they are.
- * FATHOM_READY: *address, 0..254, is where the response came from, or what it says, if that is 255. Each outcome comes
- * once; the next call asks anew. All units are asked nothing further for up to two seconds.
- * FATHOM_ERR_NO_RESPONSE: nothing in a second. The datasheets do not say whether a unit answers there.
- * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several answered at once. FATHOM_ERR_MALFORMED: no address.
+ * FATHOM_READY: *address, 0..254, is where the response came from, or its value, if that is 255. Each outcome comes once;
+ * the next call begins anew. All units are quarantined for up to two seconds.
+ * FATHOM_ERR_NO_RESPONSE: nothing in a second. The datasheets do not say whether a unit responds there.
+ * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several responded at once. FATHOM_ERR_MALFORMED: no address.
  * Others: as fathom_transaction_t.
  */
 fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport,

@@ -13,8 +13,8 @@ extern "C" {
 #endif
 
 /*
- * HPS-167S, infrared time of flight on RS-485, asked by Modbus RTU. From the factory: address 1, 19200 8E1. Here it
- * measures; hps167s_registers.h has what its commands and figures mean, hps167s_info.h what it tells,
+ * HPS-167S, infrared time of flight on RS-485, by Modbus RTU. From the factory: address 1, 19200 8E1. Here it
+ * measures; hps167s_registers.h has what its commands and values mean, hps167s_info.h what can be read,
  * hps167s_settings.h what can be set, hps167s_auto.h listens to unasked frames.
  *
  * Its "registers" are commands, each with one right length; it is no register file, and reading in the wrong
@@ -22,19 +22,19 @@ extern "C" {
  *
  * One sample a response, as often as polling and the pace allow:
  *   FATHOM_TARGET     80..30000 mm (the range is 80 to 18000)
- *   FATHOM_NO_TARGET  out of range or too weak: the device says 65.53 m
+ *   FATHOM_NO_TARGET  out of range or too weak: the device sends 65.53 m
  *   FATHOM_UNKNOWN    1..79 mm, below its range
- *   FATHOM_FAULT      the device says that it has failed, with the abnormal packet of #5: all ones for distance, ambient
- *                     and precision, and magnitude 0. The text says nothing of the exponent, so that any will do
+ *   FATHOM_FAULT      the device reports a failure, with the abnormal packet of #5: all ones for distance, ambient
+ *                     and precision, and magnitude 0. The datasheet leaves the exponent open, so any is taken
  * The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. It is silent for some
- *                         seconds after power-on
- *   FATHOM_ERR_CHECKSUM   its response was damaged
- *   FATHOM_ERR_EXCEPTION  it refused; fathom_hps167s_exception has the number (1..4: table 39)
- *   FATHOM_ERR_MALFORMED  it answered something else, or figures that it cannot mean: those are counted (implausible).
- *                         A distance of all ones in any other packet is one of them
- *   FATHOM_ERR_WARMING_UP one of the first three, or the abnormal packet, so soon after fathom_hps167s_power_on
- *   FATHOM_ERR_PORT       the HAL's port is broken; said by every poll until it works again
+ *                           seconds after power-on
+ *   FATHOM_ERR_CHECKSUM     its response was damaged
+ *   FATHOM_ERR_EXCEPTION    it refused; fathom_hps167s_exception has the number (1..4: table 39)
+ *   FATHOM_ERR_MALFORMED    it sent something else, or values that it cannot mean: those are counted (implausible).
+ *                           A distance of all ones in any other packet is one of them
+ *   FATHOM_ERR_WARMING_UP   one of the first three, or the abnormal packet, so soon after fathom_hps167s_power_on
+ *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
  */
 
 /* From one measurement to the next, at least: 54 a second (table 1). */
@@ -43,20 +43,18 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults: a period of 18519 us, and a time-out of 500 ms, since the
  * slowest rate is 6 a second. The datasheet gives no times of commands. */
 typedef struct {
-    /* the address: 1..32, no address_zero. `settings` also where the baud rate is to be set */
+    /* The address: 1..32, no address_zero. line_settings also where the baud rate is to be set. */
     fathom_modbus_config_t modbus;
     uint8_t warm_up_s; /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
     bool no_warm_up;   /* it was set to 0 s */
 
     /* How to read what the datasheet leaves open; fathom_hps167s_use_limits has more. */
-    uint8_t
-        same_responses; /* the configuration (#2) is believed when so many responses in succession agree: its
-                                   frame has the shape of a measurement's. 1..8; 0: 2. 3 at least for 2 s after
-                                   an unasked frame was heard */
-    /* the temperature (#4) counts in steps of one degree Fahrenheit, by so much finer: 10 for tenths. 0: 1 */
-    uint8_t steps_per_degree;
-    bool low_word_first; /* the reconnect time (#15, #2) has its low word first. False: the high word, as all
-                                   other integers of the device */
+    /* The configuration (#2) is believed when so many responses in succession agree: its frame has the shape of a
+     * measurement's. 1..8; 0: 2. 3 at least for 2 s after an unasked frame was heard. */
+    uint8_t same_responses;
+    uint8_t steps_per_degree; /* of the temperature (#4), degrees Fahrenheit: 10 for tenths; 0: 1 */
+    /* The reconnect time (#15, #2) has its low word first. False: the high word, as all other integers of the device. */
+    bool low_word_first;
 } fathom_hps167s_config_t;
 
 #define FATHOM_HPS167S_NO_RESET_RESPONSE 0xFFFFu
@@ -68,17 +66,17 @@ struct fathom_hps167s {
     uint8_t same_responses;
     uint8_t steps_per_degree;
     bool low_word_first;
-    bool
-        is_outstanding; /* hps167s_info.h: a response to #2 is still to come, something else was taken for it */
+    /* hps167s_info.h: a response to #2 is still to come, another frame was taken for it. */
+    bool is_outstanding;
     bool is_among_unasked; /* an unasked frame was heard lately */
     uint8_t responses;     /* to #2, this time */
     uint8_t agreed;        /* of them, in succession */
     bool is_seeking;       /* hps167s_settings.h: it may be at `other` as well */
     bool is_looked_at;     /* before the factory reset */
     uint16_t sequence;
-    uint16_t implausible;    /* responses that were refused for their figures; stops at 65535 */
-    uint16_t reset_response; /* of the last #6: 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE none, else the
-                              device's error code */
+    uint16_t implausible; /* responses that were refused for their values; stops at 65535 */
+    /* To the last #6: 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE none, else the device's error code. */
+    uint16_t reset_response;
     fathom_modbus_unit_request_t request;
     /* Responses to #2 and to #5 have one shape: neither may be what the other was last. */
     uint16_t measurement[FATHOM_HPS167S_MEASUREMENT_COUNT]; /* to #5 */
@@ -86,9 +84,9 @@ struct fathom_hps167s {
     uint16_t last_measurement[FATHOM_HPS167S_MEASUREMENT_COUNT];
     uint16_t values[FATHOM_HPS167S_MAX_REGISTERS]; /* of all other responses */
     const fathom_hps167s_limits_t *limits;         /* NULL: the defaults */
-    /* Is the response a measurement? NULL: #2 has not been asked yet. */
+    /* Is the response a measurement? NULL: #2 has not been read yet. */
     bool (*is_new)(fathom_hps167s_t *sensor);
-    /* A request has ended; FATHOM_PENDING: the power has come. NULL: the baud rate has never been set. */
+    /* A request has ended; FATHOM_PENDING: power_on was called. NULL: the baud rate has never been set. */
     void (*follow)(fathom_hps167s_t *sensor, fathom_status_t status);
     uint32_t unasked_us; /* the clock when an unasked frame was heard */
     fathom_modbus_unit_t unit;
@@ -114,29 +112,29 @@ void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 
 /*
  * To be called when the sensor gets power: what was under way is forgotten, and for warm_up_s and one time-out (of a
- * request that was asked at the end of it) silence, a damaged response, an exception and the abnormal packet are
- * FATHOM_ERR_WARMING_UP: command #7 says that nothing is measured then, not what is answered. Where nobody can tell
- * when the sensor gets power, leave it out, and they are what they are.
- * A baud rate that was set for the next power-on is now asked at, in turns with the one before, until a response comes.
+ * request that was sent at the end of it) silence, a damaged response, an exception and the abnormal packet are
+ * FATHOM_ERR_WARMING_UP: by #7 nothing is measured then; what is sent is left open. Where the program does not know when
+ * the sensor gets power, leave it out, and they are what they are.
+ * A baud rate that was set for the next power-on is now used, in turns with the one before, until a response comes.
  */
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor);
 
 /* For fathom_poll, which measures (#5) again and again. */
 fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor);
 
-/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the sensor is asked again; 0: it was none. */
+/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the next request; 0: there was none. */
 static inline uint8_t fathom_hps167s_exception(const fathom_hps167s_t *sensor)
 {
     return fathom_modbus_unit_exception(&sensor->unit);
 }
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests were answered, and how many not. */
+/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
 static inline const fathom_modbus_unit_t *fathom_hps167s_unit(const fathom_hps167s_t *sensor)
 {
     return &sensor->unit;
 }
 
-/* Gives up what is under way. A setting may then hold or not; the driver asks where it did before. */
+/* Gives up what is under way. A setting may then be set or not; the driver stays where it was before. */
 void fathom_hps167s_cancel(fathom_hps167s_t *sensor);
 
 #ifdef __cplusplus

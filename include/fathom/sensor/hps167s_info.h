@@ -9,9 +9,9 @@ extern "C" {
 #endif
 
 /*
- * What an HPS-167S tells beside distances: commands #1 to #4. None of them changes anything.
+ * What can be read from an HPS-167S beside distances: commands #1 to #4. None of them changes anything.
  *
- * Each asks the device and returns at once, like everything here: call it, with the loop going on in between, until
+ * Each function returns at once: call it, with the loop going on in between, until
  * it does not return FATHOM_PENDING. On FATHOM_READY *out is written, and only then. A command takes its turn after
  * a measurement that is under way, and until its outcome was taken fathom_poll is FATHOM_PENDING;
  * fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
@@ -20,10 +20,10 @@ extern "C" {
  * A response takes command_timeout_us (1 s) at most.
  */
 
-/* Command #4, table 16: of the analog front end, not of the air. The datasheet says degrees Fahrenheit, and neither
+/* Command #4, table 16: of the analog front end, not of the air. The datasheet gives degrees Fahrenheit, and neither
  * sign nor scale: read as int16_t, in whole degrees (config.steps_per_degree). */
 typedef struct {
-    int16_t fahrenheit;     /* as the device tells it */
+    int16_t fahrenheit;     /* as the device sends it */
     int16_t temperature_dc; /* tenths of a degree Celsius, rounded to the nearest */
 } fathom_hps167s_temperature_t;
 
@@ -33,12 +33,12 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
 /*
  * #2. The response has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
  * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such in
- * succession agree (config.same_responses). Whatever its baud code and reconnect time are.
- * What does not count came unasked. For 2 s after such a frame three responses have to agree, and the requests
- * come at intervals that are no multiple of 18519 us, or they would go in step with what the device sends by itself.
- * It is asked up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for a response,
- * that is said command_timeout_us later, when no response can come any more: it would be taken for the next measurement.
- * Of what can be measured only exactly 255 mm can pass the first test.
+ * succession agree (config.same_responses). Its baud code and reconnect time may have any value.
+ * A frame that does not count came unasked. For 2 s after it three responses have to agree, and the requests come at
+ * intervals that are no multiple of 18519 us, or they would be in step with what the device sends by itself.
+ * It is read up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for a response,
+ * that is returned command_timeout_us later, when no response can come any more: it would be taken for the next
+ * measurement. Of measured distances only exactly 255 mm can pass the first test.
  */
 fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out);
 
@@ -49,8 +49,8 @@ fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_
 fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
 
 /* A frame of the shape of #5's response was heard from the sensor's address that no request of the sensor's waited for,
- * with these registers, at this time of its clock. False: it may be a response to #2 that comes late, so that it is no
- * measurement. hps167s_auto.h says so by itself; other listeners of the line may. */
+ * with these registers, at this time of its clock. False: it may be a late response to #2, and is no measurement.
+ * hps167s_auto.h calls it; other listeners of the line may. */
 bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4], uint32_t time_us);
 
 #ifdef __cplusplus

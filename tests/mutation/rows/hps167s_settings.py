@@ -2,8 +2,8 @@
 ROWS = (
     ('offset-without-sign', 'hps167s_settings.h #12: int16, -15 is FFF1', 'unit/test_hps167s_settings',
      ('src/sensor/hps167s_settings.c', 'fathom_hps167s_set_distance_offset_mm',
-      'return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, UNTOLD);',
-      'return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)(offset_mm < 0 ? -offset_mm : offset_mm), UNTOLD);')),
+      'return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, WRITE_ONLY);',
+      'return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)(offset_mm < 0 ? -offset_mm : offset_mm), WRITE_ONLY);')),
     ('reset-silence-is-done', 'hps167s_settings.h #6: without a word of the device FATHOM_ERR_UNCONFIRMED',
      'unit/test_hps167s_moves',
      ('src/sensor/hps167s_settings.c', 'look_for_reset',

@@ -49,7 +49,7 @@ ROWS = (
       'while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);')),
     ('settings-before-silence', 'line.h: the silence is kept before a request, with its settings',
      'unit/test_line_settings',
-     ('src/engine/line_request.c', 'has_room',
+     ('src/engine/line_request.c', 'may_send',
       'if (line->silent_us < silence_us(line)) return false;',
       'if (line->head != NULL && line->head->line_settings != NULL && line->config->uart->set_line != NULL) '
       '(void)line->config->uart->set_line(line->config->uart->ctx, line->head->line_settings); '
@@ -64,7 +64,7 @@ ROWS = (
       'return transaction->address == unit || transaction->address == FATHOM_LINE_ANY_UNIT;',
       'return (transaction->address ^ unit) <= UINT8_MAX;')),
     ('listener-gets-response', 'line.h: a listener gets what nobody asked for', 'unit/test_line_listener',
-     ('src/engine/line_response.c', 'fathom_line_scan_asking',
+     ('src/engine/line_response.c', 'fathom_line_scan_responses',
       'if (judged >= TAKEN)',
       'if (judged >= TAKEN && line->listener == NULL)')),
     ('noise-drops-all', 'line.h: noise before a response is dropped, the response is found',
@@ -90,7 +90,7 @@ ROWS = (
      'unit/test_line_queue',
      ('src/engine/line_request.c', 'fathom_line_deliver',
       'if (status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) continue;',
-      'if (fathom_line_is_asked(line, unit) && status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) '
+      'if (fathom_line_expects_unit(line, unit) && status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) '
       'continue;')),
     ('overrun-after-a-silence-is-a-gap',
      'stream.h: a frame is believed if it is the first thing after a silence',
