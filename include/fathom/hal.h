@@ -58,11 +58,11 @@ typedef struct {
  *        adapter cannot know better): bytes that were read before it counts still count as a response.
  * leaves_in_us  In how many microseconds from now, at most, the last stop bit of all that was written will have left
  *        the pin: by the bytes that are left, their settings and the clock; less than 2^31. fathom_line_due_us is that
- *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is called then.
- *        0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond.
- *        NULL where the port does not know: the same. Too short costs looks; too long puts off what follows the
- *        request, the end of a broadcast and the beginning of a time-out; neither loses a byte. It may be called at any
- *        time and changes nothing.
+ *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is called
+ *        then. 0: they have left, or should have; as long as `sent` is false all the same, the line looks each
+ *        millisecond. NULL where the port does not know: the same. Too short costs looks; too long puts off what
+ *        follows the request, the end of a broadcast and the beginning of a time-out; neither loses a byte. It may be
+ *        called at any time and changes nothing.
  * set_line  Changes the line settings; what was received is kept. 1: they are in force (at once, if they
  *        were before; it is called before each request that names settings). 0: bytes are still leaving, call
  *        again. < 0: this port cannot reach them within 2.5 %, and nothing changed. NULL where they are fixed.

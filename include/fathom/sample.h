@@ -13,7 +13,7 @@ extern "C" {
 typedef enum {
     FATHOM_TARGET = 1,    /* something is distance_mm away */
     FATHOM_NO_TARGET = 2, /* the device works and sees nothing in range */
-    /* the device reports that it is broken (HPS-167S #5, abnormal packet), or its output does what no working one can */
+    /* the device reports that it is broken (HPS-167S #5), or its output does what that of a working one cannot */
     FATHOM_FAULT = 3,
     FATHOM_NEAR = 4,   /* a switch or a contact: something is nearer than its threshold; no distance */
     FATHOM_FAR = 5,    /* the same: nothing is; no distance */

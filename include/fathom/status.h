@@ -8,7 +8,7 @@ extern "C" {
 
 /*
  * What every call that can be unfinished or fail returns. An error is below zero, so `status < 0` asks
- * for one. None of these is ever a reading: "nothing in range" and "the sensor says that it is broken"
+ * for one. None of these is ever a reading: "nothing in range" and "the sensor reports that it is broken"
  * are samples (sample.h), because the device did respond.
  *
  * The numbers are part of the interface: they fit an int8_t and new ones are only added.
@@ -28,7 +28,7 @@ typedef enum {
     FATHOM_ERR_CANCELLED = -8, /* ended by cancel */
     FATHOM_ERR_BUSY = -9,      /* this object is already at work; try again when it has finished */
     FATHOM_ERR_CAPACITY = -10, /* the memory that the caller gave is too small for this request */
-    /* a write: all that came equals the request; whether that is the response or the line's echo is not known (line.h) */
+    /* a write: all that came equals the request; whether that is the response or an echo is not known (line.h) */
     FATHOM_ERR_ECHO = -11,
     FATHOM_ERR_UNSUPPORTED = -12, /* the port, or what carries the request, cannot do this */
     FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (..._power_on was called) */

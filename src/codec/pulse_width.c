@@ -14,8 +14,8 @@ static uint16_t bounded_mm(uint32_t mm)
 uint16_t fathom_pulse_width_mm(uint32_t width_us) { return bounded_mm((bounded_us(width_us) * 4 + 11) / 23); }
 
 /*
- * The speed v, in units of 0.1 mm/s, is 3313000 and 606 for each tenth of a degree: 3070600 at -40 degC. There and back,
- * 2 * 10^7 of v * us are a mm. That product has up to 41 bits, so it is made in two parts: v = 1000 * v1 + v0.
+ * The speed v, in units of 0.1 mm/s, is 3313000 and 606 for each tenth of a degree: 3070600 at -40 degC. There and
+ * back, 2 * 10^7 of v * us are a mm. That product has up to 41 bits, so it is made in two parts: v = 1000 * v1 + v0.
  */
 uint16_t fathom_pulse_width_mm_in_air(uint32_t width_us, int16_t air_dc)
 {

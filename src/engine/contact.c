@@ -64,7 +64,7 @@ static bool look(fathom_contact_t *contact, uint32_t passed_us)
     return false;
 }
 
-static void say(fathom_contact_t *contact, uint8_t kind, fathom_sample_t *sample)
+static void set_sample(fathom_contact_t *contact, uint8_t kind, fathom_sample_t *sample)
 {
     sample->time_us = kind == contact->last_kind ? contact->sampled_us : contact->since_us;
     sample->magnitude = 0;
@@ -98,7 +98,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     if (look(contact, passed_us)) {
         const uint8_t kind = contact->is_high == contact->near_is_high ? FATHOM_NEAR : FATHOM_FAR;
         if (kind != contact->last_kind || repeats) {
-            say(contact, kind, sample);
+            set_sample(contact, kind, sample);
             return FATHOM_READY;
         }
     } else if (!counted && fathom_count_down(&contact->stale_us, passed_us)) {

@@ -139,8 +139,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 
 uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
 
-/* How long until the port may have sent the request, or may take it; as all here, from the last poll on. The port's own
- * time is from now on. */
+/* How long from the last poll until the port may have sent the request, or may take it. The port counts from now on. */
 static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_uart_t *const uart = line->config->uart;

@@ -7,8 +7,8 @@
 
 /*
  * What the sources of a line share, and no user needs. line.c is every line's, and line_listening.c that of one which
- * only listens. line_request.c has the queue, line_send.c what goes out, line_response.c what comes in. The others are what
- * a config names: line_marks.c, line_find_echo.c, line_count.c.
+ * only listens. line_request.c has the queue, line_send.c what goes out, line_response.c what comes in. The others are
+ * what a config names: line_marks.c, line_find_echo.c, line_count.c.
  */
 
 /* What the line does; and what has gone wrong with the response to the transaction at the head of the queue. */
@@ -36,8 +36,8 @@ enum {
     LATE = 16,     /* since the last byte there has been time for a request: a frame may come any time */
     ONE_UNASKED = 32,
     UNASKED = 96, /* so many bytes since the last response belonged to no transaction */
-    /* There were four, no glitch but the shortest frame of all protocols here: a device sends by itself; forgotten after a
-     * silence of QUIET_US. */
+    /* There were four, no glitch but the shortest frame of all protocols here: a device sends by itself; forgotten
+     * after a silence of QUIET_US. */
     OTHERS_SEND = 128
 };
 

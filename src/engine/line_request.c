@@ -26,8 +26,8 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
 
 /*
  * A response to the transaction on the wire may still come (fathom_line_is_quarantined). What broke off may have been
- * noise, and the response late; what was damaged from end to end hardly was, so that after it the rest of the time-out is
- * enough.
+ * noise, and the response late; what was damaged from end to end hardly was, so that after it the rest of the time-out
+ * is enough.
  */
 static void quarantine(fathom_line_t *line)
 {

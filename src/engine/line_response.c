@@ -13,8 +13,8 @@ void fathom_line_learn(fathom_line_t *line, uint8_t echo)
 }
 
 /*
- * The first `length` bytes were not taken. After its time-out a response that has begun may end, but what begins then is
- * another unit's, or endless noise: the attempt is over.
+ * The first `length` bytes were not taken. After its time-out a response that has begun may end, but what begins then
+ * is another unit's, or endless noise: the attempt is over.
  */
 static void leave(fathom_line_t *line, uint8_t length)
 {

@@ -4,8 +4,8 @@
 #include "line_internal.h"
 
 /*
- * The transaction that is next goes to the front and out. A port that takes nothing, perhaps because of the settings, is
- * tried again by the next poll, for FATHOM_LINE_SEND_US at most.
+ * The transaction that is next goes to the front and out. A port that takes nothing, perhaps because of the settings,
+ * is tried again by the next poll, for FATHOM_LINE_SEND_US at most.
  */
 fathom_status_t fathom_line_send(fathom_line_t *line)
 {

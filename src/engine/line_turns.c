@@ -6,7 +6,7 @@
 static fathom_line_turns_t *turns_of(const fathom_line_t *line) { return (fathom_line_turns_t *)line->kind; }
 
 /* Tells the policy what has happened since the last call. */
-static fathom_line_turns_t *tell(const fathom_line_t *line)
+static fathom_line_turns_t *notify(const fathom_line_t *line)
 {
     fathom_line_turns_t *const turns = turns_of(line);
     uint16_t waiting = 0;
@@ -24,15 +24,15 @@ static fathom_line_turns_t *tell(const fathom_line_t *line)
 
 static fathom_transaction_t *next(const fathom_line_t *line)
 {
-    fathom_line_turns_t *const turns = tell(line);
+    fathom_line_turns_t *const turns = notify(line);
     return turns->next(turns, line);
 }
 
 static fathom_status_t go_on(fathom_line_t *line)
 {
-    fathom_line_turns_t *const turns = tell(line);
+    fathom_line_turns_t *const turns = notify(line);
     const fathom_status_t status = turns->plain->go_on(line);
-    (void)tell(line);
+    (void)notify(line);
     if (line->head != NULL) turns->address = line->head->address;
     turns->polled_us = line->polled_us;
     return status;

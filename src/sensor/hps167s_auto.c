@@ -49,7 +49,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
                     uint32_t time_us)
 {
     fathom_hps167s_auto_t *const sensor = (fathom_hps167s_auto_t *)listener;
-    (void)after_gap; /* the CRC says more */
+    (void)after_gap; /* the CRC decides */
     if (length == 0) sensor->have = 0;
     for (; length != 0; length--) {
         sensor->bytes[sensor->have++] = *bytes++;

@@ -41,8 +41,8 @@ static bool is_new(fathom_hps167s_t *sensor)
     return true;
 }
 
-/* From the first time on that #2 matters, all measurements are compared; what was measured before is still there. Without
- * a response to #2 yet that is all 0, a distance that is refused anyway. */
+/* From the first time on that #2 matters, all measurements are compared; what was measured before is still there.
+ * Without a response to #2 yet that is all 0, a distance that is refused anyway. */
 static void be_wary(fathom_hps167s_t *sensor)
 {
     if (sensor->is_new != NULL) return;

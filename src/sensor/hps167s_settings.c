@@ -3,8 +3,7 @@
 
 #include "hps167s_internal.h"
 
-/* Settings that #2 reads back, those that nothing reads back, and those of all units, whose id has this bit: no command's
- * address has it. */
+/* Kinds of settings. TO_ALL stands in the id too: no command's address has that bit. */
 enum { READ_BACK = 0, WRITE_ONLY = 1, TO_ALL = 0x40 };
 
 /* ---- where it is ---- */
@@ -58,8 +57,8 @@ static bool is_at_home(const fathom_modbus_unit_t *unit)
 }
 
 /*
- * #6 was sent and the device responds to #2: was it reset? It was if it reported success, and if it has moved; it was not
- * if it still has another address than 1. The first call comes before #6.
+ * #6 was sent and the device responds to #2: was it reset? It was if it reported success, and if it has moved; it was
+ * not if it still has another address than 1. The first call comes before #6.
  */
 static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
 {

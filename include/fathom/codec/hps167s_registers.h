@@ -21,7 +21,7 @@ extern "C" {
  */
 
 /* The address of each command. All are read with function 03 up to #6, and written one at a time (06) from #7 on, but
- * for #15 (10). Two of them LOSE SETTINGS: to read #6, with whatever count, and to write FATHOM_HPS167S_FACTORY to #13. */
+ * for #15 (10). Two of them LOSE SETTINGS: a read of #6, with any count, and FATHOM_HPS167S_FACTORY written to #13. */
 enum {
     FATHOM_HPS167S_VERSION = 0x0001,       /* #1 */
     FATHOM_HPS167S_CONFIGURATION = 0x0002, /* #2 */
@@ -177,9 +177,9 @@ fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits);
 bool fathom_hps167s_is_abnormal(const uint16_t registers[4]);
 
 /*
- * Reads the four registers of a measurement's response, also one that came unasked. Sets the members of *sample that come
- * from the device: kind, raw, distance_mm, magnitude, ambient, precision, and interference (false). FATHOM_READY, or
- * FATHOM_ERR_MALFORMED, with nothing written: a distance that it cannot mean, or an exponent over 16. decode_within:
+ * Reads the four registers of a measurement's response, also one that came unasked. Sets the members of *sample that
+ * come from the device: kind, raw, distance_mm, magnitude, ambient, precision, and interference (false). FATHOM_READY,
+ * or FATHOM_ERR_MALFORMED, with nothing written: a distance that it cannot mean, or an exponent over 16. decode_within:
  * with other limits, of which none is 0; NULL: with the defaults.
  */
 fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample);

@@ -27,10 +27,10 @@ enum {
 };
 
 enum {
-    /* A write to it is for all units, and none responds. A read of it is a unit like any other's: A16 and A05 may have
-     * the address 0 (A16 6(3), A05 3(3)). */
+    /* A write to it is for all units, and none responds. A read is for the unit whose address is 0, which A16 and
+     * A05 may have (A16 6(3), A05 3(3)). */
     FATHOM_MODBUS_BROADCAST = 0,
-    /* Not the standard's: A16 and A05 obey it whatever their address is; message.head[0] becomes that of the response. */
+    /* Not the standard's: A16 and A05 obey it at any address of their own, which a response puts in message.head[0]. */
     FATHOM_MODBUS_ANY_UNIT = 255,
     FATHOM_MODBUS_MAX_READ = 125,
     FATHOM_MODBUS_MAX_WRITE = 123,

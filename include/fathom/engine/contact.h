@@ -43,7 +43,7 @@ typedef struct {
     uint32_t stale_us;
 } fathom_contact_timing_t;
 
-/* What else stands on the pin, and when its level means nothing; line_pins.h makes one of a line. Outlives the contact. */
+/* What else uses the pin, and when its level means nothing; line_pins.h makes one of a line. Outlives the contact. */
 typedef struct {
     /* Before each look; FATHOM_PENDING, or the error that the contact's poll returns where it has nothing else. */
     fathom_status_t (*poll)(void *ctx);
@@ -75,12 +75,11 @@ typedef struct {
     bool is_held;
 } fathom_contact_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read. It looks at the pin once. The timing is
- * copied. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read. It reads the pin once, and copies
+ * timing. */
 fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing);
 
-/* What a high level means from now on. The level has to settle anew; if it means the same as before there is no
- * sample. */
+/* What a high level means from now on. The level settles anew; without a new meaning there is no sample. */
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high);
 
 /* While it is held (true) the level does not count: it is about to mean something else. Then it settles anew. */

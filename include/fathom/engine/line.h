@@ -30,16 +30,16 @@ extern "C" {
  *    transaction was cancelled; other units are served meanwhile. A late response is counted and never taken for
  *    another's; it does serve a retry of the same transaction.
  *  - A transaction that has failed with retries left stays in the queue; other units come first.
- *  - Local echo: many RS-485 adapters hand back what they send. The config says whether this one does, or names find_echo:
- *    then the first transaction whose response cannot equal its request, a read, shows it. Until then a single copy of a
- *    write whose response equals its request (Modbus function 06, 55 AA 03) acknowledges nothing: FATHOM_ERR_ECHO. Where
- *    there is echo, such a write needs two copies. With a wrong config reads succeed all the same.
+ *  - Local echo: many RS-485 adapters hand back what they send. The config says whether this one does, or names
+ *    find_echo: then the first transaction whose response cannot equal its request, a read, shows it. Until then a
+ *    single copy of a write whose response equals its request (Modbus function 06, 55 AA 03) acknowledges nothing:
+ *    FATHOM_ERR_ECHO. Where there is echo, such a write needs two copies. With a wrong config reads still succeed.
  *  - Among frames that a device sends by itself, requests leave in the silence right behind a frame. Once four bytes or
  *    more have come that belong to no transaction (those of a late response too), they leave only there: neither behind
  *    a response, for which the device may have delayed a frame, nor later in a silence, where they would meet the next
- *    frame. 65 ms of silence end that. So an HPS-167S that sends every 18.5 ms at 19200 8E1 can be read where bytes come
- *    in at once and silence_us is 2006: 7.4 ms of frame, 2 ms, 4.6 ms of request. Poll the line for 65 ms before the
- *    first request, and it has heard such a device.
+ *    frame. 65 ms of silence end that. So an HPS-167S that sends every 18.5 ms at 19200 8E1 can be read where bytes
+ *    come in at once and silence_us is 2006: 7.4 ms of frame, 2 ms, 4.6 ms of request. Poll the line for 65 ms before
+ *    the first request, and it has heard such a device.
  *
  * The echo of a broadcast belongs to no transaction, and goes where such bytes go.
  *
@@ -71,12 +71,12 @@ typedef struct fathom_line_kind fathom_line_kind_t;
 /*
  * What the line has to know of a protocol: pure functions. `transaction` is one
  * that names this protocol, `frame` the line's memory (frame_size bytes), `have` >= 1 how many received bytes stand at
- * its front. None changes a received byte. The table is const and outlives every line that has spoken it.
+ * its front. None changes a received byte. The table is const and outlives every line that has used it.
  */
 typedef struct {
     /* Writes the request to `frame`; returns its length, 1..255. */
     uint8_t (*encode)(const fathom_transaction_t *transaction, uint8_t *frame);
-    /* The length of the frame that begins here, 0: none does. More than `have`: so many bytes are needed to tell. */
+    /* The length of the frame that begins here, 0: none does. More than `have`: so many bytes are needed to know. */
     uint8_t (*length)(const uint8_t *frame, uint8_t have);
     /* 0: the checksum of the `length` bytes, a whole frame or as many as the request has, is right. */
     uint16_t (*check)(const uint8_t *frame, uint8_t length);
@@ -105,11 +105,12 @@ struct fathom_transaction {
     const fathom_protocol_t *protocol;
     /* Set before the request leaves; NULL: as they are. On a line where one transaction names them, all have to. */
     const fathom_line_settings_t *line_settings;
-    /* From the end of the request to the first byte of the response. To all units: the turnaround, which they need before
-     * the next request, and after which it is READY. Up to 2^31 - 1, 35 minutes: a quarantine lasts twice that. */
+    /* From the end of the request to the first byte of the response. To all units: the turnaround, which they need
+     * before the next request; then it is READY. Up to 2^31 - 1, 35 minutes: a quarantine lasts twice that. */
     uint32_t timeout_us;
-    uint8_t
-        address; /* of the unit; those equal modulo 16 share a quarantine: they delay, never confuse each other */
+    /* Of the unit. Units whose addresses are equal modulo 16 share a quarantine: they may delay, never confuse, each
+     * other. */
+    uint8_t address;
     uint8_t retries; /* further attempts after a failed one; 0..254 */
 
     uint8_t attempts; /* the line's: how often it was sent */
@@ -119,8 +120,7 @@ struct fathom_transaction {
      * FATHOM_ERR_CHECKSUM     a response from the unit was damaged or broke off
      * FATHOM_ERR_MALFORMED    the unit sent something else with a right checksum
      * FATHOM_ERR_EXCEPTION    the unit refused; the number is in the request
-     * FATHOM_ERR_ECHO         one copy of the request came, and whether the line echoes is not known yet; counts as
-     *                         NO_RESPONSE
+     * FATHOM_ERR_ECHO         one copy of the request came, and echo is not known yet; counts as NO_RESPONSE
      * FATHOM_ERR_CANCELLED    by fathom_line_cancel
      * FATHOM_ERR_UNSUPPORTED  the port cannot do line_settings; nothing was sent
      * FATHOM_ERR_PORT         the HAL reported an error or did not send
@@ -184,8 +184,8 @@ typedef struct {
     uint8_t echo; /* FATHOM_LINE_ECHO_OFF or _ON; _AUTO: find_echo finds it out. Read by init */
     /* Kept before a request: FATHOM_T3_5_US(baud, bits) of the slowest settings that are used on the line; 0: 4011. */
     uint16_t silence_us;
-    /* A frame is over when nothing came for so long. At least 1.5 characters, and more than a slow sender or port pauses:
-     * 25000 behind an operating system, whose USB adapters hold bytes back for 16 ms. 0: 5000. */
+    /* A frame is over when nothing came for so long. At least 1.5 characters, and more than a slow sender or port
+     * pauses: 25000 behind an operating system, whose USB adapters hold bytes back for 16 ms. 0: 5000. */
     uint16_t gap_us;
 
     /* fathom_line_find_echo: the line finds out whether it echoes. */
@@ -209,7 +209,7 @@ struct fathom_line {
     const fathom_line_config_t *config;
     fathom_transaction_t *head; /* the queue; the one on the wire is first */
     fathom_listener_t *listener;
-    const fathom_protocol_t *protocol; /* last spoken */
+    const fathom_protocol_t *protocol; /* last used */
     const fathom_line_kind_t *kind;
     uint32_t polled_us;          /* the clock at the last poll */
     uint32_t left_us;            /* of the present time-out */
@@ -259,9 +259,9 @@ void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
 
 /*
  * Holds TX low (true), or lets it go high again: the trigger, or the mode select, of a module whose input is our TX.
- * While it is low nothing is sent and transactions wait in the queue; after it the silence before a request is kept. It is
- * low until its end is FATHOM_READY, whatever fails meanwhile: also where a poll returned FATHOM_ERR_PORT and the port
- * works again, perhaps as another one whose TX is high.
+ * While it is low nothing is sent and transactions wait in the queue; after it the silence before a request is kept. It
+ * is low until its end is FATHOM_READY, whatever fails meanwhile: also where a poll returned FATHOM_ERR_PORT and the
+ * port works again, perhaps as another one whose TX is high.
  * FATHOM_READY: it is so now, also where it was.
  * FATHOM_PENDING: bytes of the port are still leaving; call again, 1 ms later say: no due_us reckons with it.
  * FATHOM_ERR_BUSY: it cannot begin, a transaction is on the wire.
@@ -275,9 +275,9 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
 /*
  * Does all that can be done without waiting: reads what has come (at most 16 reads of the port), ends and
  * begins transactions. Call it often; at the latest every 71 minutes. Several users of one line may each call it.
- * Where a device sends by itself, sleep by due_us, and poll when bytes come: a loop that is slower than the pause behind
- * a frame sends into the next frame; and one in step with the device, whose every call comes right after a frame, sees
- * no silence at all and sends nothing.
+ * Where a device sends by itself, sleep by due_us, and poll when bytes come: a loop that is slower than the pause
+ * behind a frame sends into the next frame; and one in step with the device, whose every call comes right after a
+ * frame, sees no silence at all and sends nothing.
  * FATHOM_PENDING, or FATHOM_ERR_PORT: the port is broken; every queued transaction has ended with that. Go on
  * polling and it works again when the port does.
  */

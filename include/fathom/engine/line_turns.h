@@ -10,8 +10,8 @@ extern "C" {
 
 /* What a line does with what comes, and when: named by its init, so that only a line for requests links what sends. */
 struct fathom_line_kind {
-    /* Takes frames from the front of what was received, and drops what cannot begin one; `over`: nothing more will come
-     * to complete a frame. */
+    /* Takes frames from the front of what was received, and drops what cannot begin one; `over`: the frame will not
+     * be completed. */
     void (*scan)(fathom_line_t *line, bool over);
     /* Time has passed, and what has come was scanned; returns what poll returns. */
     fathom_status_t (*go_on)(fathom_line_t *line);
@@ -25,8 +25,8 @@ struct fathom_line_kind {
 
 /*
  * Who goes next on a line where several wait. A line by itself takes the first in the queue whose unit is not
- * quarantined; here that is left to a policy: fair_share.h is one, and a program may write its own. What a policy sees of the queue
- * is line->head and each link.next; line->polled_us is the time.
+ * quarantined; here that is left to a policy: fair_share.h is one, and a program may write its own. What a policy sees
+ * of the queue is line->head and each link.next; line->polled_us is the time.
  */
 typedef struct fathom_line_turns fathom_line_turns_t;
 struct fathom_line_turns {

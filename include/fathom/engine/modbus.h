@@ -17,8 +17,8 @@ extern "C" {
 /*
  * A request in the caller's memory. Fill in the message (modbus_rtu.h), transaction.timeout_us,
  * transaction.retries and transaction.line_settings (NULL: as the line is), submit it, and leave it alone until
- * transaction.status is no longer FATHOM_PENDING; what it may then be stands at fathom_transaction_t, as does the time of
- * the response, transaction.link.heard_us. The rest of the transaction is the transport's.
+ * transaction.status is no longer FATHOM_PENDING; what it may then be stands at fathom_transaction_t, as does the time
+ * of the response, transaction.link.heard_us. The rest of the transaction is the transport's.
  */
 typedef struct {
     fathom_transaction_t transaction; /* first, so that one pointer is both */
@@ -34,7 +34,7 @@ typedef struct {
  * cancel_unit  The same for every request to this unit that has not ended: it is no longer where it was.
  * poll      Does all that can be done without waiting. FATHOM_PENDING, or FATHOM_ERR_PORT: the transport's port is
  *           broken, and what was under way has ended with that.
- * clock     What the transport tells time by; the drivers over it do too. It outlives them.
+ * clock     The clock of the transport and of the drivers over it, which it outlives.
  * due_us    How long until poll has something to do if no byte comes; FATHOM_NO_DEADLINE.
  */
 typedef struct {

@@ -15,8 +15,8 @@ extern "C" {
  *  1. The value is read. If it is the wanted one, nothing is written: flash wears. But where the last write of this
  *     setting did not read back, it is written: until the next power-on a device may report the value that it works
  *     with, and keep another.
- *  2. Where the setting has an address (the new one, or with new line settings also the present one), a read there shows
- *     whether a unit responds already; that costs a time-out. It also shows whether the port can do the line settings.
+ *  2. Where the setting has an address (the new one, or with new line settings also the present one), a read there
+ *     shows whether a unit responds already, and whether the port can do the line settings; that costs a time-out.
  *  3. The value is written, once: a write is never retried.
  *  4. The driver follows the device to its new address or line settings. Other drivers' requests that wait for the unit
  *     end with FATHOM_ERR_CANCELLED.
@@ -50,8 +50,7 @@ struct fathom_modbus_setting {
  *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke during that, and then the device could be read neither
  *                           at the new place nor at the old: it is at one of the two, and the driver stays at the old
  *                           one. Where nothing can be read back: it was not acknowledged. Blind: always
- *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that the new place is free; nothing was
- *                           written
+ *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that the new place is free: not written
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_BUSY         another command or setting is not finished
  *   any other               of fathom_modbus_unit_ask. Not written: nothing was changed. Written: the device refused
@@ -59,7 +58,8 @@ struct fathom_modbus_setting {
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
 
-/* The next setting is blind. FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. Cancel and power_on undo it. */
+/* The next setting is blind, until a cancel or power_on. FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not
+ * finished. */
 fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus

@@ -103,16 +103,17 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
                                         uint32_t timeout_us, uint32_t pace_us);
 
 /*
- * Lets time pass and the transport work. Each function of a driver that sends requests calls it first, once and not from within
- * others: below it the stack is deepest.
+ * Lets time pass and the transport work. Each function of a driver that sends requests calls it first, once and not
+ * from within others: below it the stack is deepest.
  */
 void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit);
 
 /*
  * Sends the request, or goes on with it, after fathom_modbus_unit_poll: call both, with a request of the same id, until
  * it is not FATHOM_PENDING.
- * FATHOM_READY or the error with which the request ended (fathom_transaction_t), each outcome once: where two callers have
- * the same request, also as the first one of a setting, the one that calls next gets it, and the other begins anew.
+ * FATHOM_READY or the error with which the request ended (fathom_transaction_t), each outcome once: where two callers
+ * have the same request, also as the first one of a setting, the one that calls next gets it, and the other begins
+ * anew.
  * FATHOM_ERR_BUSY: another command or setting is not finished, or its outcome was not taken.
  * FATHOM_ERR_WARMING_UP: so soon after power-on the unit was silent, was not understood or refused.
  * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: the last poll returned

@@ -86,15 +86,16 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
  * FATHOM_READY: *reading is new. The next cycle has begun, if it was time.
  * FATHOM_PENDING: nothing new. *reading is untouched, as after every error:
  * FATHOM_ERR_NO_RESPONSE: a cycle without a pulse.
- * FATHOM_ERR_PORT: the capture or the break failed; returned by every poll until it works again. Or the UART has refused
- * for a second to begin or to end the break; it is tried on, and that is returned once a second.
+ * FATHOM_ERR_PORT: the capture or the break failed; returned by every poll until it works again. Or the UART has
+ * refused for a second to begin or to end the break; it is tried on, and that is returned once a second.
  * Correct across the wrap of the clock, if it is called once in 71 minutes. In a slow loop cycles are longer, and the
  * trigger is low until the call after low_us.
  */
 fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_reading_t *reading);
 
 /* How long from now until poll has something to do if no pulse ends, in microseconds; never FATHOM_NO_DEADLINE. The
- * end of a pulse should wake a program that sleeps so long; if it does not, the reading comes when the cycle is over. */
+ * end of a pulse should wake a program that sleeps so long; if it does not, the reading comes when the cycle is
+ * over. */
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
 
 /*

@@ -54,7 +54,7 @@ enum {
     FATHOM_STREAM_FRAMES = 0,    /* good ones */
     FATHOM_STREAM_MISSED = 1,    /* good ones that a newer one replaced before it was polled */
     FATHOM_STREAM_AMBIGUOUS = 2, /* right sums in a place where another alignment was right too */
-    /* right sums with neither a silence nor an unambiguous frame before them, or neither a frame nor a silence behind */
+    /* right sums without a silence or an unambiguous frame before them, or without a frame or a silence behind */
     FATHOM_STREAM_UNSURE = 3,
     FATHOM_STREAM_STALES = 4, /* times that the deadline passed */
     FATHOM_STREAM_BYTES = 5,  /* all that came */
@@ -77,8 +77,8 @@ typedef struct {
     /* bytes before words: a Cortex-M0+ reaches no others at once */
     uint8_t to_step; /* bytes until the window is right upon the last valid one, plus one; stops at 0 */
     bool gap;        /* the bytes since the last gap began with one that was seen, and none was lost */
-    /* Not 0: the window is a frame, if the next byte begins another one or none comes for gap_us. 1: by the window before
-     * it. 2: the first thing after a gap. 3: its place is sure. */
+    /* Not 0: the window is a frame, if the next byte begins another one or none comes for gap_us. 1: by the window
+     * before it. 2: the first thing after a gap. 3: its place is sure. */
     uint8_t candidate;
     bool fresh; /* the newest good frame has not been polled */
     uint8_t length;

@@ -19,29 +19,28 @@ extern "C" {
  *
  * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
  * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET,
- * or what the window says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll:
+ * or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Returned once every stale_us.
  *   FATHOM_ERR_MALFORMED  this probe's value is refused: outside the window, or FFFF. The other probes' samples are
  *                         given, but where the frame's place is not sure (stream.h) and in the frame in which a
  *                         probe turns odd, which may be damaged: then all of it is refused.
  *                         base.measurement.refused_probe and refused_raw tell which; counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again. Or it has refused for a
- *                         second to end the break that selects; it is tried on, that is returned once a second, and
+ *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again. Or it has refused for
+ *                         a second to end the break that selects; it is tried on, that is returned once a second,
  *                         samples go on between
  */
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    /* 0: 10 s, as the A16; the datasheet prints no period. Where the period of a unit is known, set less: some 6 frames.
-     * Up to 35 minutes (stream.h). */
+    /* 0: 10 s, as the A16; the datasheet prints no period. Where the period of a unit is known, set less: some 6
+     * frames. Up to 35 minutes (stream.h). */
     uint32_t stale_us;
     /* A silence of so much starts and ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
     uint16_t gap_us;
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    /* Bit probe - 1: fitted; 0: all four. A probe that is not fitted has no defined value: it gives neither a sample nor an
-     * error. */
+    /* Bit probe - 1: fitted; 0: all four. A probe that is not fitted gives neither a sample nor an error. */
     uint8_t probes;
     /* What drives the module's RX pin, for fathom_a05_auto_select: a pin, or a break of the line whose TX it is
      * (fathom_output_line_break). */
@@ -87,9 +86,9 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 
 /* For fathom_poll. Where a fitted probe's value is refused, it is refused alone if the place of the frame is sure
- * (stream.h) and the frame before, if there was one, had an odd probe too. Else all of it is refused: out of step the other
- * distances could be permuted, and after frames in which all was well, damage is more likely, of which an 8-bit sum misses
- * one in 256. So one frame is lost when a probe turns odd, and none after it. */
+ * (stream.h) and the frame before, if there was one, had an odd probe too. Else all of it is refused: out of step the
+ * other distances could be permuted, and after frames in which all was well, damage is more likely, of which an 8-bit
+ * sum misses one in 256. So one frame is lost when a probe turns odd, and none after it. */
 fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor);
 
 #ifdef __cplusplus

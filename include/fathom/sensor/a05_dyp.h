@@ -38,7 +38,7 @@ typedef struct {
     fathom_modbus_config_t modbus;
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    /* Bit probe - 1: wanted; 0: all four. One bit alone: that probe is measured alone, which is faster; else all are. */
+    /* Bit probe - 1: wanted; 0: all four. One bit alone: only that probe is measured, which is faster. */
     uint8_t probes;
 } fathom_a05_dyp_config_t;
 

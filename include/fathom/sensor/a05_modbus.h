@@ -15,7 +15,7 @@ extern "C" {
  * one after the other, about 100 ms each.
  *
  * A sample a wanted probe and response, with one sequence number and one time: FATHOM_TARGET, or what the window
- * says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll, each of one attempt:
+ * makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. The datasheet documents no
  *                           exceptions: a wrong register may be silence too
  *   FATHOM_ERR_CHECKSUM     its response was damaged
@@ -38,7 +38,7 @@ typedef struct {
     uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
-    /* Bit probe - 1: wanted; 0: all four. One read covers the first to the last of them; those between are measured too. */
+    /* Bit probe - 1: wanted; 0: all four. One read measures the first to the last of them. */
     uint8_t probes;
 } fathom_a05_modbus_config_t;
 
@@ -63,8 +63,8 @@ void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
  * command_timeout_us (1 s) at most, a change some 3 s, since a read first shows that no unit is at the new address.
  *
  * address: FATHOM_READY with *address, or an error of fathom_poll.
- * set_address: 1..254. FATHOM_READY: the device was read at the new address, where the driver is from now on. Else, with
- * the driver at the old address:
+ * set_address: 1..254. FATHOM_READY: the device was read at the new address, where the driver is from now on. Else,
+ * with the driver at the old address:
  *   FATHOM_ERR_ARGUMENT     0 or 255
  *   FATHOM_ERR_IN_USE       a unit responds there already; nothing was changed
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device responds at neither: it is at one of the two
@@ -77,9 +77,9 @@ fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
 bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor);
 
-/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be found
- * again, since it need not respond there, and what is written to it would be written to all units. The driver reads it
- * there from then on, and sets nothing of it any more. Else as set_address. */
+/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be
+ * found again, since it need not respond there, and what is written to it would be written to all units. The driver
+ * reads it there from then on, and sets nothing of it any more. Else as set_address. */
 fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor);
 
 /* Gives up what is under way, also a measurement. An address that was being set may be set or not. */

@@ -41,10 +41,9 @@ typedef enum {
 typedef struct {
     const fathom_pin_t *pin;
     const fathom_clock_t *clock;
-    fathom_contact_timing_t
-        timing;     /* contact.h: how long a level stands, how often it is repeated, and so on */
-    uint8_t wiring; /* fathom_a05_relay_wiring_t; 0: normally open */
-    uint8_t level;  /* fathom_a05_relay_level_t; 0: low while it conducts */
+    fathom_contact_timing_t timing; /* contact.h: how long a level stands, and so on */
+    uint8_t wiring;                 /* fathom_a05_relay_wiring_t; 0: normally open */
+    uint8_t level;                  /* fathom_a05_relay_level_t; 0: low while it conducts */
 } fathom_a05_relay_config_t;
 
 typedef struct {

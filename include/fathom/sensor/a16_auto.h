@@ -17,7 +17,7 @@ extern "C" {
  * of 2.5 to 7.5 s and of 500 ms for them, and no frame period.
  *
  * One sample a frame, given when the line has been silent for gap_us behind it or the next frame begins;
- * time_us is when its last byte came. FATHOM_TARGET, or what the window says that the values 0, FFFD, FFFE and FFFF are
+ * time_us is when its last byte came. FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF
  * (dyp.h). The errors of fathom_poll:
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Returned once every stale_us.
@@ -29,10 +29,10 @@ extern "C" {
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
     fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    /* What drives the module's RX pin: a pin, or a break of the line whose TX it is (fathom_output_line_break). None: it
-     * is open, or nothing is selected. */
+    /* What drives the module's RX pin: a pin, or a break of the line whose TX it is (fathom_output_line_break). None:
+     * it is open, or nothing is selected. */
     fathom_output_t select;
-    /* 0: 10 s: the datasheet prints no period, and 7.5 s for the processed value to settle. Up to 35 minutes (stream.h). */
+    /* 0: 10 s: the datasheet prints no period, and 7.5 s for the processed value to settle. Up to 35 minutes. */
     uint32_t stale_us;
     /* A silence of so much starts and ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
     uint16_t gap_us;
@@ -56,10 +56,9 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
 /*
  * UART automatic (A16 2(2)) alone: which value the module sends from now on. Its RX pin goes high for the processed
  * one, low for the real-time one, by `select`; during a break of a line nothing can be sent there. Values in the
- * first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; no frame says of which kind it
- * is.
- * FATHOM_READY, always where there is a pin; of a break what fathom_line_break returns, after which the selection is what
- * it was: call again. FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no `select`.
+ * first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; the frames do not show it.
+ * FATHOM_READY, always where there is a pin; of a break what fathom_line_break returns, after which the selection is
+ * what it was: call again. FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no `select`.
  */
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value);
 

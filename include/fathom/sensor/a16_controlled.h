@@ -21,19 +21,19 @@ extern "C" {
  * adapter will do.
  *
  * One sample a response, given when the line has been silent for gap_us behind it; time_us is when its last byte came.
- * FATHOM_TARGET, or what the window says that the values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of
+ * FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of
  * fathom_poll, each of one trigger:
  *   FATHOM_ERR_NO_RESPONSE  nothing came in time: no supply, a cut wire, not in this mode
  *   FATHOM_ERR_CHECKSUM     something came in time, and no good frame among it
  *   FATHOM_ERR_MALFORMED    a good frame with a value that is refused: outside the window, or FFFF; it is in
  *                           measurement.refused_raw, and counted
- *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again. Or it has refused for
- *                           a second to begin or to end the break; it is tried on, and that is returned once a second
+ *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again. Or it has refused
+ *                           for a second to begin or to end the break; it is tried on; that is returned once a second
  *
- * A frame is the response if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on either
- * side a margin for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come at any time
- * since the poll before, and both ends are stretched by that much. All other frames are counted in `late` and dropped.
- * What cannot be told apart: the response to the trigger before, if it comes 200 ms or more after that.
+ * A frame is the response if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on
+ * either side a margin for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come
+ * at any time since the poll before, and both ends are stretched by that much. All other frames are counted in `late`
+ * and dropped. What cannot be told apart: the response to the trigger before, if it comes 200 ms or more after that.
  */
 
 /* Zero-valued members of fathom_a16_controlled_config_t mean these. */

@@ -12,8 +12,8 @@ extern "C" {
  * A16 by Modbus RTU (A16 6): the RS485 variant, and the RS232 variant, whose automatic output ends with
  * the first request and does not come back by itself. 9600 8N1.
  *
- * One sample a response, as often as polling and the pace allow: FATHOM_TARGET, or what the window says that the
- * values 0, FFFD, FFFE and FFFF are (dyp.h). The errors of fathom_poll, each of one attempt:
+ * One sample a response, as often as polling and the pace allow: FATHOM_TARGET, or what the window makes of the
+ * values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll, each of one attempt:
  *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. The datasheet documents no
  *                           exceptions: a wrong register may be silence too
  *   FATHOM_ERR_CHECKSUM     its response was damaged

@@ -25,7 +25,7 @@ extern "C" {
  *   FATHOM_ERR_NO_RESPONSE  no pulse in the cycle: no supply, a cut wire, not in this mode
  *   FATHOM_ERR_MALFORMED    a distance outside the window; refused and counted
  *   FATHOM_ERR_PORT         the capture or the break failed; returned by every poll until it works again
- * In the blind zone, nearer than 50 cm, a module may send any value; the shortest pulse of the datasheet, 3 ms, is 522 mm.
+ * In the blind zone, nearer than 50 cm, a module may send any value; the shortest pulse, 3 ms, is 522 mm.
  */
 
 /* The longest pulse in the hottest air, 94 ms at 85 degC, in mm and rounded up. */

@@ -21,8 +21,7 @@ extern "C" {
 typedef struct {
     fathom_a16_modbus_t *modbus; /* initialised; over the same line */
     fathom_a16_auto_t *automatic;
-    /* How long frames may take to begin after the acknowledgement: init sets 10 s, which the caller may change
-     * after that. */
+    /* How long frames may take to begin after the acknowledgement: 10 s; the caller may change it after init. */
     uint32_t return_us;
     uint32_t since_us;
     bool is_listening;

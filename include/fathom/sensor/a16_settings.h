@@ -28,8 +28,8 @@ extern "C" {
  *   FATHOM_ERR_ARGUMENT     out of range; nothing was sent
  *   FATHOM_ERR_DIFFERS      the device acknowledged the value, and it reads back as another
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may be set or not
- *   others                  as reading. Not written: nothing was changed. Written: the device refused it (exception), or
- *                           the write failed so and another value was read back
+ *   others                  as reading. Not written: nothing was changed. Written: the device refused it (exception),
+ *                           or the write failed so and another value was read back
  * Whether a setting outlives power-off is in the datasheet for 0x0202 alone: it does not.
  */
 
@@ -70,9 +70,9 @@ fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dy
 fathom_status_t fathom_a16_modbus_address(fathom_a16_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a16_modbus_set_address(fathom_a16_modbus_t *sensor, uint8_t address);
 
-/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be found
- * again, since it need not respond there, and what is written to it would be written to all units. The driver reads it
- * there from then on, and sets nothing of it any more. Else as set_address. */
+/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be
+ * found again, since it need not respond there, and what is written to it would be written to all units. The driver
+ * reads it there from then on, and sets nothing of it any more. Else as set_address. */
 fathom_status_t fathom_a16_modbus_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor);
 
 typedef enum {

@@ -25,9 +25,9 @@ extern "C" {
  *
  * Threshold and polarity are set by Modbus on the same pins, 9600 8N1 (A16 4(1), 6(3)), with a16_settings.h on a
  * fathom_a16_modbus_t beside this driver, which need not be polled otherwise. The module receives on RX and responds on
- * TX: with a `guard` in the config (line_pins.h), the level does not count while a request is under way there, nor until
- * 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may stand before a
- * response and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They keep it from finding out that
+ * TX: with a `guard` in the config (line_pins.h), the level does not count while a request is under way there, nor
+ * until 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may stand before
+ * a response and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They keep it from finding out that
  * it has no echo, so configure FATHOM_LINE_ECHO_OFF: there is a wire each way. A UART that reports a break again and
  * again while it lasts makes the line look busy for ever; switch its receiver off while no request is under way.
  */
@@ -36,11 +36,10 @@ extern "C" {
 typedef struct {
     const fathom_pin_t *pin; /* reads TX */
     const fathom_clock_t *clock;
-    /* Of the line on the same pins (fathom_contact_line_guard), which this driver polls too. NULL: there is none, and the
-     * module gets no requests. */
+    /* Of the line on the same pins (fathom_contact_line_guard), which this driver polls too. NULL: there is none, and
+     * the module gets no requests. */
     const fathom_contact_guard_t *guard;
-    fathom_contact_timing_t
-        timing; /* contact.h: how long a level stands, how often it is repeated, and so on */
+    fathom_contact_timing_t timing; /* contact.h: how long a level stands, and so on */
     /* Low is FATHOM_NEAR: register 0x0205 is 0. false: high is, as from the factory, where "less than 1 meter" is a
      * high level (A16 4(2)). */
     bool negative;

@@ -59,8 +59,8 @@ typedef struct {
     uint8_t address; /* 0 from a sensor that sends by itself */
     uint8_t first;   /* 1..4 */
     uint8_t left;    /* bit probe - 1: has not been handed over */
-    /* The last value that was refused, and its probe; 0: none yet. They belong to the last FATHOM_ERR_MALFORMED, if that
-     * made `implausible` grow. */
+    /* The last value that was refused, and its probe; 0: none yet. They belong to the last FATHOM_ERR_MALFORMED, if
+     * that made `implausible` grow. */
     uint8_t refused_probe;
     uint16_t refused_raw;
     uint16_t sequence;
@@ -89,8 +89,7 @@ static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurem
 /* Byte by byte: of a struct of this size compilers make a call of memcpy. */
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from);
 
-/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm over max_mm. A max_mm of 0 becomes
- * default_max_mm. */
+/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm > max_mm. max_mm 0: default_max_mm. */
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm);
 
 /* What a value is: FATHOM_TARGET, a distance of at most the window's max_mm; or a fathom_meaning_t. */

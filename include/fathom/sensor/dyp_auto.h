@@ -29,8 +29,8 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
 /*
- * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the measurement, of which probe 1 waits
- * to be handed over. FATHOM_PENDING: none has come. FATHOM_ERR_STALE, FATHOM_ERR_PORT: as in a16_auto.h.
+ * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the measurement, of which probe 1
+ * waits to be handed over. FATHOM_PENDING: none has come. FATHOM_ERR_STALE, FATHOM_ERR_PORT: as in a16_auto.h.
  */
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor);
 

@@ -41,12 +41,13 @@ void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor);
 void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 
 /*
- * Commands, to be called until they are not FATHOM_PENDING; of registers that differ in their bits 0 to 3, 8 or 9, as all
- * of A16 and A05 do. get: FATHOM_READY with *value, or the errors of fathom_modbus_unit_ask; address: also
- * FATHOM_ERR_MALFORMED, where the register has more than 255. set: as fathom_modbus_set; set_address: the same, for 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of
- * that name of A16 and A05. At address 0 nothing is written: FATHOM_ERR_ARGUMENT, since all units would obey.
- * write: where nothing can be read back; FATHOM_READY is the acknowledgement. The address is read first, which
- * shows the line whether it echoes: without that an acknowledgement proves nothing (line.h).
+ * Commands, to be called until they are not FATHOM_PENDING; of registers that differ in their bits 0 to 3, 8 or 9, as
+ * all of A16 and A05 do. get: FATHOM_READY with *value, or the errors of fathom_modbus_unit_ask; address: also
+ * FATHOM_ERR_MALFORMED, where the register has more than 255. set: as fathom_modbus_set; set_address: the same, for
+ * 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of that name of A16 and A05. At address 0 nothing
+ * is written: FATHOM_ERR_ARGUMENT, since all units would obey. write: where nothing can be read back; FATHOM_READY is
+ * the acknowledgement. The address is read first, which shows the line whether it echoes: without that an
+ * acknowledgement proves nothing (line.h).
  */
 fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
 fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
@@ -55,8 +56,8 @@ fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address);
 fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor);
 
-/* What get and set are made of, without fathom_modbus_unit_poll: look goes on with the read of a register; describe fills
- * in the setting of one to this value, all but its read. */
+/* What get and set are made of, without fathom_modbus_unit_poll: look goes on with the read of a register; describe
+ * fills in the setting of one to this value, all but its read. */
 fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
 void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setting_t *setting,
                                 uint16_t address, uint16_t value);
@@ -72,10 +73,10 @@ typedef struct {
 
 /*
  * Finds the address of the A16 or A05 that is alone on a line: reads register 0x0200 at 255, "the
- * broadcast address" (A16 6(3), A05 3(3)), which changes nothing. Call it, with the loop going on in between, until it is
- * not FATHOM_PENDING; it polls the transport. The line's settings are as they are.
- * FATHOM_READY: *address, 0..254, is where the response came from, or its value, if that is 255. Each outcome comes once;
- * the next call begins anew. All units are quarantined for up to two seconds.
+ * broadcast address" (A16 6(3), A05 3(3)), which changes nothing. Call it, with the loop going on in between, until it
+ * is not FATHOM_PENDING; it polls the transport. The line's settings are as they are.
+ * FATHOM_READY: *address, 0..254, is where the response came from, or its value, if that is 255. Each outcome comes
+ * once; the next call begins anew. All units are quarantined for up to two seconds.
  * FATHOM_ERR_NO_RESPONSE: nothing in a second. The datasheets do not say whether a unit responds there.
  * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several responded at once. FATHOM_ERR_MALFORMED: no address.
  * Others: as fathom_transaction_t.
@@ -86,8 +87,7 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
 /* Gives it up; the memory is the caller's again. */
 void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport);
 
-/* For fathom_poll and fathom_due_us. A value that is not plausible is refused alone: the CRC vouches
- * for its place. */
+/* For fathom_poll and fathom_due_us. A refused value does not affect the others: the CRC vouches for its place. */
 fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor);
 
 #ifdef __cplusplus

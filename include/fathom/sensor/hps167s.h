@@ -53,7 +53,7 @@ typedef struct {
      * measurement's. 1..8; 0: 2. 3 at least for 2 s after an unasked frame was heard. */
     uint8_t same_responses;
     uint8_t steps_per_degree; /* of the temperature (#4), degrees Fahrenheit: 10 for tenths; 0: 1 */
-    /* The reconnect time (#15, #2) has its low word first. False: the high word, as all other integers of the device. */
+    /* The reconnect time (#15, #2) has its low word first. False: the high word, as all integers of the device. */
     bool low_word_first;
 } fathom_hps167s_config_t;
 
@@ -101,20 +101,20 @@ struct fathom_hps167s {
  * same_responses. */
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
 
-/* Other limits of distances than the defaults, from now on. Fills in the defaults where *limits is 0; it is the driver's
- * as long as the sensor. FATHOM_READY, or FATHOM_ERR_ARGUMENT, and the limits are as before: over_range_mm that is 65535
- * or not over max_mm, min_mm over max_mm. */
+/* Other limits of distances than the defaults, from now on. Fills in the defaults where *limits is 0; it is the
+ * driver's as long as the sensor. FATHOM_READY, or FATHOM_ERR_ARGUMENT, and the limits are as before: over_range_mm
+ * that is 65535 or not over max_mm, min_mm over max_mm. */
 fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
 
-/* Cancels what is under way; the memory is the caller's again. After the configuration (#2) was read among unasked frames
- * a response may still be on its way: initialise another driver for the same unit a command's time-out later. */
+/* Cancels what is under way; the memory is the caller's again. After the configuration (#2) was read among unasked
+ * frames a response may still be on its way: initialise another driver for the same unit a command's time-out later. */
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 
 /*
  * To be called when the sensor gets power: what was under way is forgotten, and for warm_up_s and one time-out (of a
  * request that was sent at the end of it) silence, a damaged response, an exception and the abnormal packet are
- * FATHOM_ERR_WARMING_UP: by #7 nothing is measured then; what is sent is left open. Where the program does not know when
- * the sensor gets power, leave it out, and they are what they are.
+ * FATHOM_ERR_WARMING_UP: by #7 nothing is measured then; what is sent is left open. Where the program does not know
+ * when the sensor gets power, leave it out, and they are what they are.
  * A baud rate that was set for the next power-on is now used, in turns with the one before, until a response comes.
  */
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor);

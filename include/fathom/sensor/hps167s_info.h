@@ -32,8 +32,8 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
 
 /*
  * #2. The response has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
- * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such in
- * succession agree (config.same_responses). Its baud code and reconnect time may have any value.
+ * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such
+ * in succession agree (config.same_responses). Its baud code and reconnect time may have any value.
  * A frame that does not count came unasked. For 2 s after it three responses have to agree, and the requests come at
  * intervals that are no multiple of 18519 us, or they would be in step with what the device sends by itself.
  * It is read up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for a response,

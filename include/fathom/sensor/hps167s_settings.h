@@ -16,16 +16,16 @@ extern "C" {
  * An argument is checked before anything is sent: FATHOM_ERR_ARGUMENT. What is written is written once;
  * config.modbus.retries is for reading alone.
  *
- * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one, since
- * flash wears, and it is read again. 17 responses at most, some ms each. fathom_hps167s_is_written tells whether it was
- * written:
+ * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one,
+ * since flash wears, and it is read again. 17 responses at most, some ms each. After it fathom_hps167s_is_written
+ * tells whether it was written:
  *   FATHOM_READY            it was read back; not written: it was so before
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may be set or not
  *   FATHOM_ERR_EXCEPTION    it refused; fathom_hps167s_exception has the number
  *   FATHOM_ERR_BUSY         another command or setting is not finished, or this one with another value
- *   others                  of fathom_poll. Not written: nothing was changed; FATHOM_ERR_MALFORMED: #2 was not believed.
- *                           Written: the write failed so, and another value was read back
+ *   others                  of fathom_poll. Not written: nothing was changed; FATHOM_ERR_MALFORMED: #2 was not
+ *                           believed. Written: the write failed so, and another value was read back
  * WRITE-ONLY (#12, #13, #14): #1 is read first, so that nothing is written to a device that is not there and an echo of
  * the line is known, and then it is written. Nothing can be read back.
  *   FATHOM_READY            it was acknowledged, which is all that can be known
@@ -48,7 +48,8 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
  */
 fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor);
 
-/* #7: seconds after power-on without measuring; in force from the next power-on, and then in fathom_hps167s_power_on. */
+/* #7: seconds after power-on without measuring; in force from the next power-on, and then in
+ * fathom_hps167s_power_on. */
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s);
 
 /*
@@ -110,8 +111,8 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
  * #6: RESETS ALL SETTINGS OF THE INTERFACE: address 1, 19200 baud, warm-up, termination and the others. Nothing else
  * in this library sends the command, which is a read of register 0x0009, and it is sent once.
  *
- * #2 is read first; then, if the device is elsewhere, a read at address 1 and 19200 shows whether a unit is there, which
- * costs a time-out. Where config.modbus.line_settings is NULL the driver follows to the address alone.
+ * #2 is read first; then, if the device is elsewhere, a read at address 1 and 19200 shows whether a unit is there,
+ * which costs a time-out. Where config.modbus.line_settings is NULL the driver follows to the address alone.
  *   FATHOM_READY            it reported success, or has moved; and was read there, where the driver is from now on
  *   FATHOM_ERR_IN_USE       a unit responds at address 1; nothing was sent
  *   FATHOM_ERR_EXCEPTION    it refused: sensor->reset_response has the device's own error code; where that is

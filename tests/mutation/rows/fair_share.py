@@ -22,9 +22,9 @@ ROWS = (
      ('src/engine/fair_share.c', 'next',
       'if (fathom_line_is_quarantined(line, x->address) ||', 'if (')),
     ('asked-when-seen', 'line_turns.h: asked at the time of its submission', 'unit/test_fair_share',
-     ('src/engine/line_turns.c', 'tell',
+     ('src/engine/line_turns.c', 'notify',
       'turns->asked(turns, x->address, turns->polled_us);', 'turns->asked(turns, x->address, line->polled_us);')),
     ('cancel-unseen', 'line_turns.h: an attempt that was cancelled has ended', 'unit/test_fair_share',
-     ('src/engine/line_turns.c', 'tell',
+     ('src/engine/line_turns.c', 'notify',
       'if (turns->is_busy && !is_busy(line))', 'if (turns->is_busy && !is_busy(line) && line->head != NULL)')),
 )
