@@ -77,7 +77,7 @@ fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
 
 /* ---- reading ---- */
 
-/* The first fitted probe, as a bit, whose value is refused; 0: none. */
+/* The first odd probe, as a bit: fitted, and its value is refused; 0: none. */
 static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 {
     const uint16_t *value = sensor->values;

@@ -49,7 +49,7 @@ struct fathom_modbus_setting {
  *                           nothing was written
  *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke during that, and then the device could be read neither
  *                           at the new place nor at the old: it is at one of the two, and the driver stays at the old
- *                           one. Where nothing can be read back: it was not acknowledged. Blind: always
+ *                           one. Where nothing can be read back: it was not acknowledged. Blind: acknowledged or not
  *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that the new place is free: not written
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_BUSY         another command or setting is not finished
@@ -58,8 +58,7 @@ struct fathom_modbus_setting {
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
 
-/* The next setting is blind, until a cancel or power_on. FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not
- * finished. */
+/* Makes the next setting blind; cancel and power_on undo it. FATHOM_READY; FATHOM_ERR_BUSY: one is not finished. */
 fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus

@@ -97,7 +97,7 @@ typedef struct {
 enum { FATHOM_MODBUS_UNIT_IN_SETTING = 8, FATHOM_MODBUS_UNIT_ONCE = 16 };
 
 /* timeout_us and pace_us: the driver's time-out where the config says 0, and its least period. FATHOM_READY, or
- * FATHOM_ERR_ARGUMENT: no transport, or it has no clock; the address is 255, which is all units, or stands beside
+ * FATHOM_ERR_ARGUMENT: no transport, or it has no clock; the address is 255 (any unit), or is set beside
  * address_zero. */
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
                                         uint32_t timeout_us, uint32_t pace_us);

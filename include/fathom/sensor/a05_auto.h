@@ -15,7 +15,7 @@ extern "C" {
  * Without a request it sends FF, four distances, SUM over and over, of processed or of real-time values. Which of
  * them is decided by its RX pin in the first second after power-on, high or open for processed, low for
  * real-time: fathom_a05_auto_select. The datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no
- * frame period. The first Modbus command ends automatic output; power alone brings it back.
+ * frame period. The first Modbus request ends automatic output; only power-on brings it back.
  *
  * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
  * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET,
@@ -23,8 +23,8 @@ extern "C" {
  *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
  *                         noise; stream.counters tell these apart. Returned once every stale_us.
  *   FATHOM_ERR_MALFORMED  this probe's value is refused: outside the window, or FFFF. The other probes' samples are
- *                         given, but where the frame's place is not sure (stream.h) and in the frame in which a
- *                         probe turns odd, which may be damaged: then all of it is refused.
+ *                         given, but where the frame's place is not sure (stream.h) and in the first frame with a
+ *                         refused value, which may be damaged: then all of it is refused.
  *                         base.measurement.refused_probe and refused_raw tell which; counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again. Or it has refused for
  *                         a second to end the break that selects; it is tried on, that is returned once a second,
@@ -86,9 +86,9 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 
 /* For fathom_poll. Where a fitted probe's value is refused, it is refused alone if the place of the frame is sure
- * (stream.h) and the frame before, if there was one, had an odd probe too. Else all of it is refused: out of step the
- * other distances could be permuted, and after frames in which all was well, damage is more likely, of which an 8-bit
- * sum misses one in 256. So one frame is lost when a probe turns odd, and none after it. */
+ * (stream.h) and the frame before, if there was one, had a refused value too. Else all of it is refused: out of step
+ * the other distances could be permuted, and after good frames damage is more likely, of which an 8-bit sum misses one
+ * in 256. So only the first frame with a refused value is lost. */
 fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor);
 
 #ifdef __cplusplus

@@ -20,7 +20,7 @@ extern "C" {
  * four probes (200..210 ms) or one (65..75 ms).
  *
  * The same unit speaks Modbus on the same wires (a05_modbus.h), and Modbus is to be preferred: its checksum has 16
- * bits instead of 8; and one flipped bit in a response (command 01 to 03) makes a command of it that gives its
+ * bits instead of 8; and one flipped bit in a response (command 01 to 03) makes it a request that gives its
  * address to every other A05 that hears it. So use these frames with one A05 on the line.
  *
  * Samples and errors of fathom_poll are those of a05_modbus.h, but for FATHOM_ERR_EXCEPTION, which this protocol
@@ -97,8 +97,8 @@ typedef struct {
 } fathom_a05_dyp_find_t;
 
 /*
- * Requests of all units, at FF, to measure their first probe, which changes nothing, and takes the address from the
- * first response. Call it, with the loop going on in between, until it is not FATHOM_PENDING; it polls the line.
+ * Sends the request to measure the first probe, which changes nothing, to all units (FF), and takes the address from
+ * the first response. Call it, with the loop going on in between, until it is not FATHOM_PENDING; it polls the line.
  * FATHOM_READY: *address is where the response came from. Each outcome comes once; the next call begins anew.
  * FATHOM_ERR_NO_RESPONSE: nothing in 200 ms. The datasheet does not say whether a unit responds to FF (A05 2(3)2).
  * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several responded at once. Others: as fathom_transaction_t.

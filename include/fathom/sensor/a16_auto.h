@@ -11,7 +11,7 @@ extern "C" {
 #endif
 
 /*
- * A16 with automatic output: UART automatic (A16 2) and RS232 (A16 5) before its first Modbus command. 9600 8N1.
+ * A16 with automatic output: UART automatic (A16 2) and RS232 (A16 5) before its first Modbus request. 9600 8N1.
  * Without a request it sends FF H L SUM over and over, of the processed or of the real-time value. Which of them
  * is decided by its RX pin, high or open for processed, low for real-time; the datasheet gives settling times
  * of 2.5 to 7.5 s and of 500 ms for them, and no frame period.

@@ -21,8 +21,8 @@ extern "C" {
  * adapter will do.
  *
  * One sample a response, given when the line has been silent for gap_us behind it; time_us is when its last byte came.
- * FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of
- * fathom_poll, each of one trigger:
+ * FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll,
+ * each of one trigger:
  *   FATHOM_ERR_NO_RESPONSE  nothing came in time: no supply, a cut wire, not in this mode
  *   FATHOM_ERR_CHECKSUM     something came in time, and no good frame among it
  *   FATHOM_ERR_MALFORMED    a good frame with a value that is refused: outside the window, or FFFF; it is in

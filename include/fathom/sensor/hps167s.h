@@ -49,6 +49,7 @@ typedef struct {
     bool no_warm_up;   /* it was set to 0 s */
 
     /* How to read what the datasheet leaves open; fathom_hps167s_use_limits has more. */
+
     /* The configuration (#2) is believed when so many responses in succession agree: its frame has the shape of a
      * measurement's. 1..8; 0: 2. 3 at least for 2 s after an unasked frame was heard. */
     uint8_t same_responses;
@@ -72,7 +73,7 @@ struct fathom_hps167s {
     uint8_t responses;     /* to #2, this time */
     uint8_t agreed;        /* of them, in succession */
     bool is_seeking;       /* hps167s_settings.h: it may be at `other` as well */
-    bool is_looked_at;     /* before the factory reset */
+    bool is_looked_at;     /* #2 was read before the factory reset */
     uint16_t sequence;
     uint16_t implausible; /* responses that were refused for their values; stops at 65535 */
     /* To the last #6: 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE none, else the device's error code. */
@@ -92,7 +93,7 @@ struct fathom_hps167s {
     fathom_modbus_unit_t unit;
     uint32_t next_baud; /* from the next power-on; 0: as now */
     const fathom_line_settings_t *other;
-    fathom_line_settings_t moved[2];                /* the one that holds, and the one that is being set */
+    fathom_line_settings_t moved[2];                /* those in force, and those that are being set */
     fathom_modbus_setting_t setting;                /* the last one, or the one under way */
     uint16_t words[FATHOM_HPS167S_RECONNECT_COUNT]; /* what #15 writes */
 };
@@ -113,7 +114,7 @@ void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 /*
  * To be called when the sensor gets power: what was under way is forgotten, and for warm_up_s and one time-out (of a
  * request that was sent at the end of it) silence, a damaged response, an exception and the abnormal packet are
- * FATHOM_ERR_WARMING_UP: by #7 nothing is measured then; what is sent is left open. Where the program does not know
+ * FATHOM_ERR_WARMING_UP: #7 says that nothing is measured then, not what is sent. Where the program does not know
  * when the sensor gets power, leave it out, and they are what they are.
  * A baud rate that was set for the next power-on is now used, in turns with the one before, until a response comes.
  */

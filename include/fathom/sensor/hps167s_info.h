@@ -11,10 +11,9 @@ extern "C" {
 /*
  * What can be read from an HPS-167S beside distances: commands #1 to #4. None of them changes anything.
  *
- * Each function returns at once: call it, with the loop going on in between, until
- * it does not return FATHOM_PENDING. On FATHOM_READY *out is written, and only then. A command takes its turn after
- * a measurement that is under way, and until its outcome was taken fathom_poll is FATHOM_PENDING;
- * fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
+ * Each function returns at once: call it, with the loop going on in between, until it is not FATHOM_PENDING. *out is
+ * written on FATHOM_READY only. A command takes its turn after a measurement that is under way, and until its outcome
+ * was taken fathom_poll is FATHOM_PENDING; fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
  *   FATHOM_ERR_BUSY       another command or setting is not finished, or its outcome was not taken
  *   FATHOM_ERR_CAPACITY   the line's frame buffer is too small (27 bytes for the details)
  * A response takes command_timeout_us (1 s) at most.
@@ -27,7 +26,7 @@ typedef struct {
     int16_t temperature_dc; /* tenths of a degree Celsius, rounded to the nearest */
 } fathom_hps167s_temperature_t;
 
-/* #1 */
+/* #1: date and number of the interface's version. */
 fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out);
 
 /*

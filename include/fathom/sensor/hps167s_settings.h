@@ -17,8 +17,8 @@ extern "C" {
  * config.modbus.retries is for reading alone.
  *
  * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one,
- * since flash wears, and it is read again. 17 responses at most, some ms each. After it fathom_hps167s_is_written
- * tells whether it was written:
+ * since flash wears, and it is read again. 17 responses at most, some ms each. Then fathom_hps167s_is_written tells
+ * whether it was written:
  *   FATHOM_READY            it was read back; not written: it was so before
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may be set or not
@@ -48,8 +48,7 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
  */
 fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor);
 
-/* #7: seconds after power-on without measuring; in force from the next power-on, and then in
- * fathom_hps167s_power_on. */
+/* #7: seconds after power-on without measuring; from the next fathom_hps167s_power_on. */
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s);
 
 /*
