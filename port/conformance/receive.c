@@ -89,10 +89,10 @@ static uint32_t count_lost(const kit_t *kit, bool *is_marked)
     for (uint16_t i = 0; i != kit->got; i++) {
         uint32_t skipped = 0;
         while (awaited != kit->arrivals[i].byte && skipped != 255) {
-            awaited = (uint8_t)(awaited + (awaited == POISON - 1 ? 2 : 1));
+            awaited = kit_after(awaited);
             skipped++;
         }
-        awaited = (uint8_t)(awaited + (awaited == POISON - 1 ? 2 : 1));
+        awaited = kit_after(awaited);
         lost += skipped;
         if ((skipped != 0) != ((kit->arrivals[i].flags & FATHOM_RX_OVERRUN) != 0)) *is_marked = false;
     }

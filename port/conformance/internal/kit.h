@@ -4,7 +4,7 @@
 
 #include "../fathom_conformance.h"
 
-/* What the items share. In the order in which they are reported. */
+/* kit.c: what the items share. These are in the order in which they are reported. */
 typedef enum {
     CLOCK_RUNS,
     CLOCK_WRAP,
@@ -68,7 +68,10 @@ typedef struct {
     uint16_t beyond; /* bytes that a read returned or wrote beyond its capacity */
 } kit_t;
 
+/* The clock, and as it is without a look at whether it goes back. */
 uint32_t kit_now(kit_t *kit);
+uint32_t kit_raw_now(const kit_t *kit);
+
 void kit_tell(kit_t *kit, item_t item, fathom_verdict_t verdict, uint32_t figure);
 fathom_verdict_t kit_kept_if(bool kept);
 
@@ -88,6 +91,7 @@ void kit_read(kit_t *kit);
 bool kit_await(kit_t *kit, uint16_t count);
 void kit_begin(kit_t *kit);                       /* nothing comes any more; what has come is forgotten */
 uint8_t kit_value(const kit_t *kit, uint16_t at); /* that arrivals[at] should have */
+uint8_t kit_after(uint8_t value);                 /* what is sent after that value */
 
 /* Writes so many of the next bytes, as soon as they are taken, and spoils the memory that they were in. False: they
  * never are. */
@@ -95,6 +99,7 @@ bool kit_send(kit_t *kit, uint8_t length);
 bool kit_await_sent(kit_t *kit); /* without a read */
 bool kit_is_sent(const kit_t *kit);
 
+/* The items, in send.c, receive.c and settings.c. */
 void kit_sending(kit_t *kit);
 void kit_receiving(kit_t *kit);
 void kit_settings(kit_t *kit);
