@@ -4,7 +4,6 @@
 #include <inttypes.h>
 
 #include "fathom/codec/modbus_rtu.h"
-#include "models/models.h"
 
 /* ---- reading ---- */
 
@@ -54,9 +53,8 @@ void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fat
 /* ---- scan ---- */
 
 /* FFFD and FFFE are not in the datasheets; sister models say these. */
-void dyp_print_finding(FILE *to, const scan_finding_t *finding)
+void dyp_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding)
 {
-    const model_t *const model = model_of(finding->model);
     const char *const probe = model->probes > 1 ? "probe 1: " : "";
     if (!finding->has_value) return;
     if (finding->value == 0xFFFD)

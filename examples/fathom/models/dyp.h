@@ -2,10 +2,7 @@
 #ifndef DYP_H
 #define DYP_H
 
-#include "models/decoding.h"
-#include "models/finding.h"
-#include "models/inquiry.h"
-#include "models/setting.h"
+#include "models/model.h"
 
 /* What the A16 and the A05 have in common: DYP makes both. */
 
@@ -36,7 +33,7 @@ void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fat
 /* ---- scan ---- */
 
 /* The distance that it has answered with. */
-void dyp_print_finding(FILE *to, const scan_finding_t *finding);
+void dyp_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding);
 void dyp_print_finding_json(FILE *to, const scan_finding_t *finding);
 
 /* ---- decoding ---- */

@@ -19,7 +19,8 @@ typedef struct {
 enum { MODEL_MODES = 3 };
 
 /* All that the tool knows of a sensor model. What is NULL or 0 it has not. */
-typedef struct {
+typedef struct model model_t;
+struct model {
     const char *name;
     const char *what;
     fathom_model_t id;
@@ -70,7 +71,7 @@ typedef struct {
         /* Instead of `own`: decides by the response to the first read, and what it asks besides. */
         bool (*is_it)(inquiry_t *inquiry);
     } scan;
-    void (*print_finding)(FILE *to, const scan_finding_t *finding);
+    void (*print_finding)(FILE *to, const model_t *model, const scan_finding_t *finding);
     void (*print_finding_json)(FILE *to, const scan_finding_t *finding); /* members, each after a comma */
 
     /* ---- what its frames say ---- */
@@ -81,7 +82,7 @@ typedef struct {
     void (*decode_sum)(decode_frame_t *frame); /* of another of its protocols */
     const char *(*exception_name)(uint8_t code);
     const char *exception_source; /* section of its datasheet */
-} model_t;
+};
 
 /* Can it have this address? */
 bool model_has_address(const model_t *model, uint8_t address);

@@ -72,10 +72,11 @@ static void next_command(const scan_finding_t *finding, const char *port, char t
 
 static void tell_sensor(FILE *to, const scan_finding_t *finding)
 {
+    const model_t *const model = model_of(finding->model);
     if (finding->mode == SCAN_AUTO)
         (void)fputs("sends by itself", to);
     else
-        model_of(finding->model)->print_finding(to, finding);
+        model->print_finding(to, model, finding);
     if (finding->is_double) (void)fputs(", answered twice", to);
 }
 

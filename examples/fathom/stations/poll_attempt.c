@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "stations/poll_attempt.h"
 
+uint64_t poll_now_us(const poll_loop_t *loop) { return loop->host->now_us(loop->host->ctx); }
+
 bool poll_is_done(const poll_loop_t *loop, const station_t *station)
 {
     const uint32_t count = loop->options.count;

@@ -2,7 +2,7 @@
 #ifndef POLL_ATTEMPT_H
 #define POLL_ATTEMPT_H
 
-#include "stations/poll_loop.h"
+#include "stations/poll.h"
 
 /* What the poll loop makes of one station's attempt to read. */
 

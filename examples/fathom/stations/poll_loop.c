@@ -8,8 +8,6 @@
 
 enum { TEXT = 512 };
 
-uint64_t poll_now_us(const poll_loop_t *loop) { return loop->host->now_us(loop->host->ctx); }
-
 static bool is_over(const poll_loop_t *loop)
 {
     const host_t *const host = loop->host;

@@ -2,41 +2,10 @@
 #ifndef POLL_LOOP_H
 #define POLL_LOOP_H
 
-#include "shared/usb_adapter.h"
-#include "stations/advice.h"
-#include "stations/counters_print.h"
-#include "stations/sensor_options.h"
+#include "stations/poll.h"
 
 /* Reads the sensors on one port, all of them in one loop, until the user, the count, the time or a loss ends it: what
  * `fathom read` and `fathom watch` share. */
-typedef struct poll_loop poll_loop_t;
-
-/* What a command does with it. ctx: poll_loop_t.ctx. */
-typedef struct {
-    /* False: it could not be told. */
-    bool (*reading)(void *ctx, const station_t *station, const fathom_sample_t *sample);
-    /* attempt: its number, from 1. Once for each failed part of an attempt. */
-    void (*failure)(void *ctx, const failure_t *failure, const station_t *station);
-    /* What happened to the port, a line of text; is_there: false while it is waited for. */
-    void (*port)(void *ctx, const char *text, bool is_there);
-    /* Called before each sleep. Returns how long it may take at most, in us. */
-    uint32_t (*tick)(void *ctx);
-    /* Ends it. */
-    bool (*is_over)(const void *ctx);
-} poll_loop_user_t;
-
-struct poll_loop {
-    sensor_options_t options;
-    const host_t *host;
-    const poll_loop_user_t *user;
-    void *ctx;
-    channel_t channel;
-    usb_adapter_t adapter;
-    port_counts_t port_counts;
-    uint64_t start_us; /* the program's */
-    uint64_t reconnects;
-    bool is_lost; /* the port */
-};
 
 /* To be called first; all of it is cleared. */
 void poll_loop_begin(poll_loop_t *loop, const host_t *host, const poll_loop_user_t *user, void *ctx);

@@ -19,7 +19,7 @@ extern const setting_t hps167s_settings[];
 void hps167s_decode(decode_frame_t *frame, const uint8_t *request);
 
 bool hps167s_identify(inquiry_t *inquiry);
-void hps167s_print_finding(FILE *to, const scan_finding_t *finding);
+void hps167s_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding);
 void hps167s_print_finding_json(FILE *to, const scan_finding_t *finding);
 
 #endif

@@ -82,8 +82,9 @@ static void print_part(FILE *to, const char *gap, const char *what, part_t part)
     (void)fprintf(to, "%s%s %s of %u-%02u-%02u", gap, what, part.version, part.year, part.month, part.day);
 }
 
-void hps167s_print_finding(FILE *to, const scan_finding_t *finding)
+void hps167s_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding)
 {
+    (void)model;
     if (finding->has_interface) print_part(to, "", "interface", part_of_interface(&finding->interface));
     if (finding->has_details)
         print_part(to, finding->has_interface ? ", " : "", "sensor", part_of_sensor(&finding->details));
