@@ -9,11 +9,6 @@
 
 enum { PROBES = FATHOM_DYP_PROBES, FIRST_PROBE = 0x0106, FIRST_ALIAS = 0x0010, ADDRESS = 0x0200 };
 
-/* The device is the first member. */
-static fathom_sim_a05_t *a05_of(fathom_sim_device_t *device) { return (fathom_sim_a05_t *)(void *)device; }
-
-static uint16_t get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
-
 /* 1..4, or 0 when the register is no probe. */
 static uint8_t probe_at(uint16_t address)
 {
@@ -37,9 +32,9 @@ static void set_address(fathom_sim_device_t *device, uint16_t address)
 
 static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
-    fathom_sim_a05_t *const a05 = a05_of(device);
-    const uint16_t address = get16(message->head + 2);
-    const uint16_t value = get16(message->head + 4);
+    fathom_sim_a05_t *const a05 = fathom_sim_a05_of(device);
+    const uint16_t address = fathom_sim_get16(message->head + 2);
+    const uint16_t value = fathom_sim_get16(message->head + 4);
     const uint8_t probe = probe_at(address);
     uint32_t most_us = a05->settings_us;
     switch (message->head[1]) {
@@ -64,7 +59,7 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
 /* 55 AA. "t2 = 200~210ms", "65~75ms" (A05 2(3)1): the spread is 10 ms. */
 static uint32_t command(fathom_sim_device_t *device, uint8_t address, uint8_t code)
 {
-    const fathom_sim_a05_t *const a05 = a05_of(device);
+    const fathom_sim_a05_t *const a05 = fathom_sim_a05_of(device);
     const uint32_t spread_us = 10000;
     switch (fathom_dyp_55aa_values(code)) {
     case PROBES:
@@ -83,7 +78,7 @@ static uint32_t command(fathom_sim_device_t *device, uint8_t address, uint8_t co
 
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
-    uint8_t probe = probe_at(get16(message->head + 2));
+    uint8_t probe = probe_at(fathom_sim_get16(message->head + 2));
     if (probe == 0) {
         message->values[0] = device->unit;
         return;
@@ -94,7 +89,7 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
 
 static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
-    const bool processed = !a05_of(device)->selected;
+    const bool processed = !fathom_sim_a05_of(device)->selected;
     uint16_t values[PROBES];
     for (uint8_t i = 0; i < PROBES; i++)
         values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(i + 1), processed, now_us);
@@ -104,14 +99,12 @@ static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t n
 /* "The level of the RX input pin will be read and recorded within one second of power-on" (A05 1(1)): here at once. */
 static void power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_a05_t *const a05 = a05_of(device);
+    fathom_sim_a05_t *const a05 = fathom_sim_a05_of(device);
     fathom_sim_device_set_level(device, true, now_us);
     /* The start bits of what the host sends just then are no choice. */
     const uint8_t held = device->rx_held & (FATHOM_SIM_HELD_BY_PIN | FATHOM_SIM_HELD_BY_BREAK);
     a05->selected = a05->real_time || held != 0;
 }
-
-static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
 
 void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config)
 {
@@ -148,12 +141,13 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
     }
     device->answers_broadcast = config->answers_broadcast;
     device->answers_from_new = config->answers_from_new;
-    if (config->mode == FATHOM_SIM_A05_AUTO) device->period_us = or_else(config->period_us, 300000);
-    device->linger_us = or_else(config->linger_us, 150000);
-    a05->probe_us = or_else(config->probe_us, 100000);
-    a05->all_us = or_else(config->all_us, 210000);
-    a05->one_us = or_else(config->one_us, 75000);
-    a05->settings_us = or_else(config->settings_us, 20000);
+    if (config->mode == FATHOM_SIM_A05_AUTO)
+        device->period_us = fathom_sim_or_else(config->period_us, 300000);
+    device->linger_us = fathom_sim_or_else(config->linger_us, 150000);
+    a05->probe_us = fathom_sim_or_else(config->probe_us, 100000);
+    a05->all_us = fathom_sim_or_else(config->all_us, 210000);
+    a05->one_us = fathom_sim_or_else(config->one_us, 75000);
+    a05->settings_us = fathom_sim_or_else(config->settings_us, 20000);
     a05->exceptions = config->exceptions;
     a05->real_time = config->real_time;
 }

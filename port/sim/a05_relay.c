@@ -5,9 +5,6 @@
 
 enum { PROBES = 4, BOUNCE_US = 700 };
 
-/* The device is the first member. */
-static fathom_sim_a05_t *a05_of(fathom_sim_device_t *device) { return (fathom_sim_a05_t *)(void *)device; }
-
 /* What a resistor to the supply makes of the contact that is wired, the other end of which is at ground. */
 static bool is_high(const fathom_sim_a05_t *a05) { return a05->is_closed == a05->normally_closed; }
 
@@ -47,7 +44,7 @@ static void measure(fathom_sim_a05_t *a05, uint32_t now_us)
 
 static void alarm(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_a05_t *const a05 = a05_of(device);
+    fathom_sim_a05_t *const a05 = fathom_sim_a05_of(device);
     if (a05->bounces_left != 0) {
         a05->bounces_left--;
     } else {
@@ -61,15 +58,13 @@ static void alarm(fathom_sim_device_t *device, uint32_t now_us)
 
 static void power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_a05_t *const a05 = a05_of(device);
+    fathom_sim_a05_t *const a05 = fathom_sim_a05_of(device);
     a05->is_closed = a05->is_young = false; /* a relay without power has dropped */
     a05->bounces_left = 0;
     a05->measure_us = now_us + device->start_us + a05->every_us;
     fathom_sim_device_set_level(device, is_high(a05), now_us);
     wait(a05, now_us);
 }
-
-static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
 
 void fathom_sim_a05_relay_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *config)
 {
@@ -83,9 +78,9 @@ void fathom_sim_a05_relay_init(fathom_sim_a05_t *a05, const fathom_sim_a05_confi
     device->settings.stop_bits = 1;
     device->start_us = config->start_us;
     device->random = config->seed;
-    a05->every_us = or_else(config->period_us, 300000);
-    a05->hold_us = or_else(config->hold_us, 1000000);
-    a05->threshold_mm = (uint16_t)or_else(config->threshold_mm, 1000);
+    a05->every_us = fathom_sim_or_else(config->period_us, 300000);
+    a05->hold_us = fathom_sim_or_else(config->hold_us, 1000000);
+    a05->threshold_mm = (uint16_t)fathom_sim_or_else(config->threshold_mm, 1000);
     a05->probes = config->probes != 0 ? config->probes : 0x0F;
     a05->bounces = config->bounces;
     a05->normally_closed = config->normally_closed;

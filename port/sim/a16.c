@@ -18,11 +18,6 @@ enum {
     DATA_TYPE = 0x0207
 };
 
-/* The device is the first member. */
-static fathom_sim_a16_t *a16_of(fathom_sim_device_t *device) { return (fathom_sim_a16_t *)(void *)device; }
-
-static uint16_t get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
-
 /* How long the register takes; 0: there is none. */
 static uint32_t read_us(const fathom_sim_a16_t *a16, uint16_t address)
 {
@@ -90,9 +85,9 @@ static uint8_t write(fathom_sim_a16_t *a16, uint16_t address, uint16_t value)
 
 static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
-    fathom_sim_a16_t *const a16 = a16_of(device);
-    const uint16_t address = get16(message->head + 2);
-    const uint16_t value = get16(message->head + 4);
+    fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
+    const uint16_t address = fathom_sim_get16(message->head + 2);
+    const uint16_t value = fathom_sim_get16(message->head + 4);
     uint32_t most_us = a16->settings_us;
     uint8_t exception;
     switch (message->head[1]) {
@@ -115,17 +110,17 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
 static uint32_t switch_request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
     const uint32_t delay_us = request(device, message);
-    const uint16_t address = get16(message->head + 2);
+    const uint16_t address = fathom_sim_get16(message->head + 2);
     if (message->head[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER && message->exception == 0 &&
         (address == POLARITY || address == THRESHOLD))
-        fathom_sim_a16_switch_obey(a16_of(device));
+        fathom_sim_a16_switch_obey(fathom_sim_a16_of(device));
     return delay_us;
 }
 
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
 {
-    const fathom_sim_a16_t *const a16 = a16_of(device);
-    const uint16_t address = get16(message->head + 2);
+    const fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
+    const uint16_t address = fathom_sim_get16(message->head + 2);
     switch (address) {
     case ADDRESS:
         message->values[0] = device->unit;
@@ -147,7 +142,7 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
 
 static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
-    const fathom_sim_a16_t *const a16 = a16_of(device);
+    const fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     /* A16 2(2): the UART looks at its RX pin; RS232 at register 0x0207 */
     const bool is_selected = a16->mode == FATHOM_SIM_A16_UART && device->rx_held != 0;
     const bool processed = a16->data_type != REAL_TIME && !is_selected;
@@ -159,12 +154,12 @@ static uint8_t automatic(fathom_sim_device_t *device, uint8_t *bytes, uint32_t n
 
 static void power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_device_set_level(device, a16_of(device)->mode != FATHOM_SIM_A16_PWM, now_us);
+    fathom_sim_device_set_level(device, fathom_sim_a16_of(device)->mode != FATHOM_SIM_A16_PWM, now_us);
 }
 
 static void edge(fathom_sim_device_t *device, bool high, uint32_t now_us)
 {
-    fathom_sim_a16_t *const a16 = a16_of(device);
+    fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     const bool is_pwm = a16->mode == FATHOM_SIM_A16_PWM;
     if (high || (!is_pwm && a16->mode != FATHOM_SIM_A16_CONTROLLED)) return;
     if (device->alarms[FATHOM_SIM_ALARM_START].set || device->alarms[FATHOM_SIM_ALARM_REST].set) {
@@ -191,7 +186,7 @@ static uint32_t width_us(fathom_sim_a16_t *a16, uint32_t now_us)
 
 static void alarm(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_a16_t *const a16 = a16_of(device);
+    fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     if (a16->mode != FATHOM_SIM_A16_PWM) {
         uint8_t bytes[FATHOM_DYP_MAX_LENGTH];
         const uint16_t value = fathom_sim_device_ultrasonic(device, 1, false, now_us);
@@ -204,8 +199,6 @@ static void alarm(fathom_sim_device_t *device, uint32_t now_us)
         fathom_sim_device_set_level(device, false, now_us);
     }
 }
-
-static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
 
 void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *config)
 {
@@ -230,7 +223,7 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     memset(a16, 0, sizeof *a16);
     device->model = is_switch ? &switch_model : &model;
     device->tx_is_uart = is_switch;
-    a16->every_us = or_else(config->period_us, 500000);
+    a16->every_us = fathom_sim_or_else(config->period_us, 500000);
     device->faults = config->faults;
     device->scene = config->scene;
     device->processed = config->processed;
@@ -246,16 +239,17 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->answers_broadcast = config->answers_broadcast;
     device->answers_from_new = config->answers_from_new;
     if (config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_UART)
-        device->period_us = or_else(config->period_us, 100000);
-    device->linger_us = or_else(config->linger_us, 150000);
-    a16->realtime_us = or_else(config->realtime_us, 120000);
-    a16->processed_us = or_else(config->processed_us, 520000);
-    a16->settings_us = or_else(config->settings_us, 20000);
+        device->period_us = fathom_sim_or_else(config->period_us, 100000);
+    device->linger_us = fathom_sim_or_else(config->linger_us, 150000);
+    a16->realtime_us = fathom_sim_or_else(config->realtime_us, 120000);
+    a16->processed_us = fathom_sim_or_else(config->processed_us, 520000);
+    a16->settings_us = fathom_sim_or_else(config->settings_us, 20000);
     a16->threshold_mm = config->threshold_mm != 0 ? config->threshold_mm : 1000;
     a16->mode = config->mode;
-    a16->cycle_us = or_else(config->cycle_us, config->mode == FATHOM_SIM_A16_PWM ? 220000 : 120000);
-    a16->pulse_us = or_else(config->pulse_us, 110000);
-    a16->no_target_us = or_else(config->no_target_us, 94000);
+    a16->cycle_us =
+        fathom_sim_or_else(config->cycle_us, config->mode == FATHOM_SIM_A16_PWM ? 220000 : 120000);
+    a16->pulse_us = fathom_sim_or_else(config->pulse_us, 110000);
+    a16->no_target_us = fathom_sim_or_else(config->no_target_us, 94000);
     a16->polarity = POSITIVE;
     a16->data_type = config->real_time ? REAL_TIME : 0;
     a16->exceptions = config->exceptions;

@@ -4,9 +4,6 @@
 /* A16 4(2) */
 enum { NEARER_IN_A_ROW = 3, FARTHER_IN_A_ROW = 5, POSITIVE = 1 };
 
-/* The device is the first member. */
-static fathom_sim_a16_t *a16_of(fathom_sim_device_t *device) { return (fathom_sim_a16_t *)(void *)device; }
-
 static void drive(fathom_sim_a16_t *a16, uint32_t now_us)
 {
     fathom_sim_device_set_level(&a16->device, a16->is_near == (a16->polarity == POSITIVE), now_us);
@@ -39,7 +36,7 @@ static void measure_next(fathom_sim_a16_t *a16)
 
 void fathom_sim_a16_switch_power_on(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_a16_t *const a16 = a16_of(device);
+    fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     a16->is_near = false; /* until it has decided; the datasheet does not say */
     a16->nearer = a16->farther = 0;
     a16->measure_us = now_us + device->start_us + a16->every_us;
@@ -49,7 +46,7 @@ void fathom_sim_a16_switch_power_on(fathom_sim_device_t *device, uint32_t now_us
 
 void fathom_sim_a16_switch_alarm(fathom_sim_device_t *device, uint32_t now_us)
 {
-    fathom_sim_a16_t *const a16 = a16_of(device);
+    fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     if (fathom_sim_until_us(a16->measure_us, now_us) == 0) {
         measure(a16, now_us);
         a16->measure_us += a16->every_us;

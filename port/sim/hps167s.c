@@ -24,8 +24,6 @@ static const fathom_sim_optics_t example_optics = {0xDCB2, 0x07, 0x01, 0x0000};
 
 static uint16_t pair(uint8_t high, uint8_t low) { return (uint16_t)(high * 256u + low); }
 
-static uint16_t get16(const uint8_t *at) { return pair(at[0], at[1]); }
-
 /* The one count that a command allows; 0: no command. */
 static uint16_t length_of(uint16_t address)
 {
@@ -75,11 +73,11 @@ static uint32_t measure_us(const fathom_sim_hps167s_t *hps, fathom_modbus_messag
 
 static uint32_t read(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message, uint32_t reply_us)
 {
-    const uint16_t address = get16(message->head + 2);
+    const uint16_t address = fathom_sim_get16(message->head + 2);
     const uint16_t length = length_of(address);
     if (length == 0) {
         message->exception = FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
-    } else if (get16(message->head + 4) != length) {
+    } else if (fathom_sim_get16(message->head + 4) != length) {
         message->exception = hps->wrong_length;
         if (address == RESET) hps->device.counters.resets_refused++;
     } else if (address == RESET) {
@@ -111,7 +109,7 @@ static uint32_t request(fathom_sim_device_t *device, fathom_modbus_message_t *me
 
 static void put_bytes(uint16_t *values, const uint8_t *bytes, uint8_t count)
 {
-    for (uint8_t i = 0; i < count; i++) values[i] = get16(bytes + 2 * i);
+    for (uint8_t i = 0; i < count; i++) values[i] = fathom_sim_get16(bytes + 2 * i);
 }
 
 /* #12. What is beyond all distances stays: 65530 and up are marks. */
@@ -151,7 +149,7 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
 {
     fathom_sim_hps167s_t *const hps = fathom_sim_hps167s_of(device);
     uint16_t *const values = message->values;
-    switch (get16(message->head + 2)) {
+    switch (fathom_sim_get16(message->head + 2)) {
     case VERSION:
         put_bytes(values, hps->version, 3);
         break;
@@ -191,8 +189,6 @@ void fathom_sim_hps167s_lose(fathom_sim_hps167s_t *hps, bool lost, uint32_t now_
     if (lost) fathom_sim_hps167s_wait_for_data(hps, now_us);
 }
 
-static uint32_t or_else(uint32_t value, uint32_t otherwise) { return value != 0 ? value : otherwise; }
-
 void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s_config_t *config)
 {
     static const fathom_sim_model_t model = {.request = request,
@@ -219,10 +215,10 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
     hps->optics = config->optics != NULL ? config->optics : &example_optics;
     hps->details = config->details != NULL ? config->details : example_details;
     hps->version = config->version != NULL ? config->version : default_version;
-    hps->reconnect_ms = or_else(config->reconnect_ms, FATHOM_SIM_HPS167S_RECONNECT_MS);
+    hps->reconnect_ms = fathom_sim_or_else(config->reconnect_ms, FATHOM_SIM_HPS167S_RECONNECT_MS);
     hps->unasked_us = config->unasked_us;
-    hps->period_us = or_else(config->period_us, 18519);
-    hps->reply_us = or_else(config->reply_us, 2500);
+    hps->period_us = fathom_sim_or_else(config->period_us, 18519);
+    hps->reply_us = fathom_sim_or_else(config->reply_us, 2500);
     hps->temperature_f = config->temperature_f != 0 ? config->temperature_f : 77;
     hps->warm_up_s = config->warm_up_s;
     hps->wrong_length = config->wrong_length != 0 ? config->wrong_length : FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;

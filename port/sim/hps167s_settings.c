@@ -17,8 +17,6 @@ enum { FACTORY_WARM_UP_S = 5, MOST_WARM_UP_S = 255, MOST_UNIT = 32, MOST_BAUD_CO
 enum { OFF = 0x0000, ON = 0x00FF, USER = 0x0000, FACTORY = 0x00FF };
 enum { RECONNECT_STEP_MS = 18 };
 
-static uint16_t get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
-
 static int16_t to_signed(uint16_t value)
 {
     return (int16_t)(value < 0x8000 ? (int32_t)value : (int32_t)value - 0x10000);
@@ -153,11 +151,11 @@ static void obey(fathom_sim_hps167s_t *hps)
 
 void fathom_sim_hps167s_write(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message)
 {
-    const uint16_t address = get16(message->head + HEAD_ADDRESS);
+    const uint16_t address = fathom_sim_get16(message->head + HEAD_ADDRESS);
     if (address != WARM_UP && (address < UNIT || address > FILTER)) {
         message->exception = FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
         if (address == FATHOM_SIM_HPS167S_RESET) hps->device.counters.resets_refused++;
-    } else if (!set(hps, address, get16(message->head + HEAD_VALUE))) {
+    } else if (!set(hps, address, fathom_sim_get16(message->head + HEAD_VALUE))) {
         message->exception = hps->wrong_value;
     } else {
         obey(hps);
@@ -166,14 +164,14 @@ void fathom_sim_hps167s_write(fathom_sim_hps167s_t *hps, fathom_modbus_message_t
 
 void fathom_sim_hps167s_write_many(fathom_sim_hps167s_t *hps, fathom_modbus_message_t *message)
 {
-    const uint16_t address = get16(message->head + HEAD_ADDRESS);
+    const uint16_t address = fathom_sim_get16(message->head + HEAD_ADDRESS);
     if (address != RECONNECT) {
         message->exception = FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
         if (address == FATHOM_SIM_HPS167S_RESET) hps->device.counters.resets_refused++;
         return;
     }
     /* the codec minds a count beyond what is kept here, and one that does not go with the bytes */
-    if (message->exception != 0 || get16(message->head + HEAD_VALUE) != RECONNECT_LENGTH) {
+    if (message->exception != 0 || fathom_sim_get16(message->head + HEAD_VALUE) != RECONNECT_LENGTH) {
         message->exception = hps->wrong_length;
         return;
     }

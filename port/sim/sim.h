@@ -81,7 +81,7 @@ void fathom_sim_detach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
 void fathom_sim_power_cycle(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t off_us,
                             uint32_t now_us);
 
-/* Changes the host's settings; bytes that are on their way keep the old ones. */
+/* Changes the host's settings, to a rate that wire.h allows; bytes that are on their way keep the old ones. */
 void fathom_sim_set_line(fathom_sim_line_t *line, const fathom_line_settings_t *settings, uint32_t now_us);
 
 /* Host to devices: the bytes leave from now on (or behind those that still do) without a gap. Returns how

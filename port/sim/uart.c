@@ -139,6 +139,9 @@ static int set_break(void *ctx, bool on)
 static int set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     const fathom_sim_uart_t *const uart = (const fathom_sim_uart_t *)ctx;
+    if (settings->baud < FATHOM_SIM_LEAST_BAUD || settings->baud > FATHOM_SIM_MOST_BAUD ||
+        settings->parity > FATHOM_PARITY_ODD || settings->stop_bits < 1 || settings->stop_bits > 2)
+        return -1;
     if (!sent(ctx)) return 0;
     fathom_sim_set_line(uart->line, settings, uart->clock->now_us);
     return 1;

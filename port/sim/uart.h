@@ -58,7 +58,8 @@ fathom_clock_t fathom_sim_clock(fathom_sim_clock_t *clock);
 
 /*
  * A UART at the host's end of a line. write takes all or, until the last one has left the pin, nothing;
- * sent is exact. set_break holds the RX pins of the devices low. read reports what is in `knows` (FATHOM_RX_..., all of
+ * sent is exact. set_line refuses other rates than FATHOM_SIM_LEAST_BAUD to FATHOM_SIM_MOST_BAUD (wire.h). set_break
+ * holds the RX pins of the devices low. read reports what is in `knows` (FATHOM_RX_..., all of
  * them after init): set it to 0 to be a port that knows nothing. None of them moves the time.
  */
 typedef struct {

@@ -25,13 +25,18 @@ enum {
     FATHOM_SIM_PAUSES = 6       /* in what a device sends at a time */
 };
 
+/* The rates of a line: beyond them the longest frame takes too long, or a bit less than the microsecond in which time
+ * is counted here. */
+#define FATHOM_SIM_LEAST_BAUD UINT32_C(1200)
+#define FATHOM_SIM_MOST_BAUD  UINT32_C(1000000)
+
 /* Silence before byte `at` of what is being sent. */
 typedef struct {
     uint32_t us;
     uint16_t at;
 } fathom_sim_pause_t;
 
-/* What `characters` (0..256) last in a row, rounded up to a whole us. baud: 1200 and up. */
+/* What `characters` (0..256) last in a row, rounded up to a whole us. */
 uint32_t fathom_sim_span_us(const fathom_line_settings_t *settings, uint16_t characters);
 
 /* t1.5 and t3.5 (MODBUS over Serial Line 2.5.1.1; HPS-167S 2.2.3): of the real character up to 19200 baud,

@@ -260,7 +260,8 @@ static int rig_set_line(void *ctx, const fathom_line_settings_t *line)
     uint8_t bytes[255];
     fathom_rx_t rx;
     if (rig.held != NULL) return 0;
-    if (line->baud < 1200 || line->baud > 1000000) return rig.fault == LINE_OF_ANY_RATE ? 1 : -1;
+    if (line->baud < FATHOM_SIM_LEAST_BAUD || line->baud > FATHOM_SIM_MOST_BAUD)
+        return rig.fault == LINE_OF_ANY_RATE ? 1 : rig.real.set_line(rig.real.ctx, line);
     if (fathom_sim_same_settings(line, &rig.line.settings)) return 1;
     if (rig.fault == LINE_AT_ONCE) {
         fathom_sim_set_line(&rig.line, line, rig.time.now_us);

@@ -68,6 +68,37 @@ TEST(write_takes_all_or_nothing_and_sent_tells_when)
     assert_int_equal(lines[2].counters.from_host, 8);
 }
 
+static int set_hps_line(uint32_t baud, uint8_t parity, uint8_t stop_bits)
+{
+    const fathom_line_settings_t settings = {baud, parity, stop_bits};
+    return uarts[2].set_line(uarts[2].ctx, &settings);
+}
+
+TEST(settings_that_no_line_has_are_refused_and_those_before_hold)
+{
+    static const fathom_line_settings_t wrong[] = {
+        {0, FATHOM_PARITY_EVEN, 1},          {1199, FATHOM_PARITY_EVEN, 1}, {1000001, FATHOM_PARITY_EVEN, 1},
+        {UINT32_MAX, FATHOM_PARITY_EVEN, 1}, {57600, 3 /* none such */, 1}, {57600, FATHOM_PARITY_EVEN, 0},
+        {57600, FATHOM_PARITY_EVEN, 3}};
+    assert_int_equal(write_to_hps(8), 8); /* refused at once, also while bytes leave */
+    for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++)
+        assert_int_equal(set_hps_line(wrong[i].baud, wrong[i].parity, wrong[i].stop_bits), -1);
+    assert_int_equal(set_hps_line(57600, FATHOM_PARITY_NONE, 2), 0);
+    assert_int_equal(hps_leaves_in_us(), 4584); /* 8 characters of 11 bits at 19200 baud */
+    fathom_sim_clock_advance(&desk_clock, 4584);
+    assert_int_equal(set_hps_line(1199, FATHOM_PARITY_NONE, 1), -1);
+    assert_int_equal(write_to_hps(8), 8);
+    assert_int_equal(hps_leaves_in_us(), 4584);
+    fathom_sim_clock_advance(&desk_clock, 4584);
+    assert_int_equal(set_hps_line(1200, FATHOM_PARITY_ODD, 2), 1);
+    assert_int_equal(write_to_hps(8), 8);
+    assert_int_equal(hps_leaves_in_us(), 80000); /* 8 * 12 bits */
+    fathom_sim_clock_advance(&desk_clock, 80000);
+    assert_int_equal(set_hps_line(1000000, FATHOM_PARITY_NONE, 1), 1);
+    assert_int_equal(write_to_hps(8), 8);
+    assert_int_equal(hps_leaves_in_us(), 80); /* 8 * 10 bits */
+}
+
 TEST(read_gives_only_what_has_arrived_and_when)
 {
     fathom_sim_clock_advance(&desk_clock, 102 * MS);

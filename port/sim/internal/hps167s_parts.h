@@ -3,6 +3,7 @@
 #define FATHOM_SIM_HPS167S_PARTS_H
 
 #include "../hps167s.h"
+#include "values.h"
 
 /* hps167s.c reads and measures, and uses hps167s_settings.c, which changes and keeps. */
 
