@@ -12,8 +12,8 @@ extern "C" {
 #endif
 
 /*
- * Does a HAL keep what fathom/hal.h says? Link the C files of this folder with it, join TX
- * and RX (an RS-485 transceiver hears itself where its receiver stays on), and look at what is reported.
+ * Does a HAL keep what fathom/hal.h says? Link the C files of this folder with it, but host.c, which is a program for
+ * Linux; join TX and RX (an RS-485 transceiver hears itself where its receiver stays on), and look at what is reported.
  *
  * It can be seen so that bytes are lost, early, late, torn or put in another order. A loop-back has the same rate and
  * the same parity at both ends, so it cannot show that the rate is the right one, nor what another's wrong parity does:
@@ -41,8 +41,8 @@ typedef struct {
     const fathom_uart_t *uart;
     const fathom_clock_t *clock;
     fathom_line_settings_t line; /* that hold now, and afterwards */
-    fathom_line_settings_t
-        other;       /* that the port can be set to: at least 20 % faster or slower. baud 0: none */
+    /* That the port can be set to: at least 20 % faster or slower. baud 0: none. */
+    fathom_line_settings_t other;
     uint8_t longest; /* bytes that one write may have, 8..255 */
     uint8_t marks;   /* FATHOM_RX_... that the port tells of */
 

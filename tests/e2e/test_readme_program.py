@@ -38,6 +38,18 @@ class Gate(e2e.Case):
                        check=True)
         self.start([gate, str(self.sim('hps167s --distance 2083'))]).expect('^2083 mm$')
 
+    def test_the_line_that_compiles_the_one_for_a_microcontroller_does(self):
+        with open(os.path.join(e2e.ROOT, 'README.md'), encoding='utf-8') as file:
+            text = file.read()
+        source, image = self.path('near.c'), self.path('near.elf')
+        with open(source, 'w', encoding='utf-8') as file:
+            file.write(re.findall(r'(?sm)^```c\n(.*?)^```$', text)[1])
+        line = re.search(r'(?ms)^avr-gcc .*? -o near\.elf$', text)[0]
+        line = line.replace('near.c', shlex.quote(source)).replace('-o near.elf', '-o ' + shlex.quote(image))
+        subprocess.run(line, cwd=e2e.ROOT, shell=True, check=True)
+        with open(image, 'rb') as file:
+            self.assertEqual(file.read(20)[18:], b'\x53\0')  # e_machine 83: AVR
+
     def test_after_a_silence_it_goes_on(self):
         gate = self.gate(self.sim('hps167s --distance 2083 --fault silence=1@2'))
         gate.expect('^2083 mm$')
