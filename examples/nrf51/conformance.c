@@ -9,27 +9,17 @@
 #include "fathom_conformance.h"
 #include "nrf51.h"
 #include "semihosting.h"
-
-static void write_number(uint32_t number)
-{
-    char digits[11];
-    unsigned at = sizeof digits - 1;
-    digits[at] = '\0';
-    do {
-        digits[--at] = (char)('0' + number % 10);
-        number /= 10;
-    } while (number != 0);
-    semihosting_write(digits + at);
-}
+#include "tell.h"
 
 static void report(void *ctx, const fathom_finding_t *finding)
 {
+    char digits[TELL_DIGITS];
     (void)ctx;
     semihosting_write(finding->name);
     semihosting_write(": ");
     semihosting_write(fathom_verdict_name(finding->verdict));
     semihosting_write(", ");
-    write_number(finding->figure);
+    semihosting_write(tell_digits(digits, finding->figure));
     semihosting_write(" ");
     semihosting_write(finding->of);
     semihosting_write("\n");

@@ -14,16 +14,21 @@ static void add(line_t *line, const char *text)
     line->text[line->length] = '\0';
 }
 
-static void add_number(line_t *line, unsigned number)
+const char *tell_digits(char digits[TELL_DIGITS], uint32_t number)
 {
-    char digits[12];
-    uint8_t at = sizeof digits - 1;
+    uint8_t at = TELL_DIGITS - 1;
     digits[at] = '\0';
     do {
         digits[--at] = (char)('0' + number % 10);
         number /= 10;
     } while (number != 0);
-    add(line, digits + at);
+    return digits + at;
+}
+
+static void add_number(line_t *line, unsigned number)
+{
+    char digits[TELL_DIGITS];
+    add(line, tell_digits(digits, number));
 }
 
 void tell_sample(const char *name, const fathom_sample_t *sample)

@@ -14,4 +14,8 @@
 void tell_sample(const char *name, const fathom_sample_t *sample);
 void tell_error(const char *name, fathom_status_t status);
 
+/* A number as text, which begins somewhere in `digits`. */
+enum { TELL_DIGITS = 11 };
+const char *tell_digits(char digits[TELL_DIGITS], uint32_t number);
+
 #endif

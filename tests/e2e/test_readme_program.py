@@ -24,13 +24,18 @@ class Gate(e2e.Case):
         gate.expect(f'^{words}$')
         gate.expect(f'^{words}$')
 
-    def test_the_line_that_compiles_it_does(self):
-        """As it is printed, with this build's compiler and folder."""
+    def save(self, number, name):
+        """Of the page's programs the one with this number, from 0. Returns the page, and where it is."""
         with open(os.path.join(e2e.ROOT, 'README.md'), encoding='utf-8') as file:
             text = file.read()
-        source, gate = self.path('gate.c'), self.path('gate')
-        with open(source, 'w', encoding='utf-8') as file:
-            file.write(re.search(r'(?sm)^```c\n(.*?)^```$', text)[1])
+        with open(self.path(name), 'w', encoding='utf-8') as file:
+            file.write(re.findall(r'(?sm)^```c\n(.*?)^```$', text)[number])
+        return text, self.path(name)
+
+    def test_the_line_that_compiles_it_does(self):
+        """As it is printed, with this build's compiler and folder."""
+        text, source = self.save(0, 'gate.c')
+        gate = self.path('gate')
         line = re.search(r'(?m)^cc (.*) gate\.c (.*) -o gate$', text)
         build = os.environ['FATHOM_BUILD'] + '/'
         subprocess.run([os.environ['CC'], *shlex.split(os.environ['CFLAGS']), *line[1].split(), source,
@@ -39,11 +44,8 @@ class Gate(e2e.Case):
         self.start([gate, str(self.sim('hps167s --distance 2083'))]).expect('^2083 mm$')
 
     def test_the_line_that_compiles_the_one_for_a_microcontroller_does(self):
-        with open(os.path.join(e2e.ROOT, 'README.md'), encoding='utf-8') as file:
-            text = file.read()
-        source, image = self.path('near.c'), self.path('near.elf')
-        with open(source, 'w', encoding='utf-8') as file:
-            file.write(re.findall(r'(?sm)^```c\n(.*?)^```$', text)[1])
+        text, source = self.save(1, 'near.c')
+        image = self.path('near.elf')
         line = re.search(r'(?ms)^avr-gcc .*? -o near\.elf$', text)[0]
         line = line.replace('near.c', shlex.quote(source)).replace('-o near.elf', '-o ' + shlex.quote(image))
         subprocess.run(line, cwd=e2e.ROOT, shell=True, check=True)
