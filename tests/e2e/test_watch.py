@@ -79,7 +79,7 @@ class Picture(Case):
                             ('a05:2 probe 4', '   5.0 m')):
             self.assertTrue(rows_of(screen, name)[1].startswith(scale))
         self.assertIn('s ago', screen.text())
-        self.assertIn('- no target ~ interference s stale x no response ! bad data F fault P port lost',
+        self.assertIn('- no target ~ interference s stale x no response ! unusable F fault P port lost',
                       lines)
         # What is no distance is to be seen in the plot, over its whole height.
         for name, mark in (('a05:2 probe 2', '-'), ('hps167s:7', 'F'), ('a16:9', 'x')):
@@ -149,7 +149,7 @@ class Picture(Case):
         it.wait(lambda screen: '3.000 m' in screen.text())
         device.write(e2e.frame(1000, 2000, 40000, 4000))
         for probe in range(1, 5):
-            it.wait(lambda screen, which=probe: re.search(rf'(?m)^a05 probe {which} +bad data .* lost 1 of \d$',
+            it.wait(lambda screen, which=probe: re.search(rf'(?m)^a05 probe {which} +unusable .* lost 1 of \d$',
                                                           screen.text()))
 
     def test_a_refused_value_is_its_probes_alone(self):
@@ -157,8 +157,8 @@ class Picture(Case):
         it = self.watch(f'a05:1 --port {device}')
         device.read(8)
         device.write(e2e.registers(1, 1000, 40000, 3000, 4000))
-        it.wait(lambda screen: 'bad data  ' in screen.text())
-        for words in ('probe 1 +1.000 m ', 'probe 2 +bad data ', 'probe 3 +3.000 m ', 'probe 4 +4.000 m ',
+        it.wait(lambda screen: 'unusable  ' in screen.text())
+        for words in ('probe 1 +1.000 m ', 'probe 2 +unusable ', 'probe 3 +3.000 m ', 'probe 4 +4.000 m ',
                       'probe 2 .* lost 1 of 1$'):
             self.assertRegex(it.screen.text(), f'(?m)^a05:1 {words}')
 

@@ -25,7 +25,7 @@ static const struct {
     [MARK_TOO_NEAR] = {'n', false, "too near"},
     [MARK_STALE] = {'s', true, "stale"},
     [MARK_NO_RESPONSE] = {'x', true, "no response"},
-    [MARK_BAD_RESPONSE] = {'!', true, "bad data"},
+    [MARK_BAD_RESPONSE] = {'!', true, "unusable"},
     [MARK_FAULT] = {'F', false, "fault"},
     [MARK_PORT] = {'P', true, "port lost"},
 };
