@@ -136,7 +136,7 @@ static void read_bus(bus_t *bus, uint32_t until_us, fathom_idle_t idle, void *id
 static void tell(const bus_t *bus)
 {
     for (int i = 0; i != SENSORS; i++)
-        (void)printf("%-8s responses %u, failures %u, silences in a row %u, left alone for %.1f s\n",
+        (void)printf("%-8s responses %u, failures %u, time-outs in a row %u, left alone for %.1f s\n",
                      names[i], fathom_modbus_unit_responses(bus->units[i]),
                      fathom_modbus_unit_failures(bus->units[i]), bus->units[i]->timeouts_in_row,
                      bus->units[i]->backoff_left_us / 1000000.0);

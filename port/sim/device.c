@@ -145,7 +145,7 @@ static bool deaf(const fathom_sim_device_t *device, bool full_duplex)
 void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
 {
     /* Several bytes may be on the line at once: they garble each other, which the line reports at their end. */
-    device->carriers++;
+    device->others_on_wire++;
     if (device->model->strict_gap && device->alarms[SILENCE].set &&
         fathom_elapsed_us(now_us, device->heard_us) > fathom_sim_gap_us(&device->settings))
         device->is_invalid = true;
@@ -154,7 +154,7 @@ void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
 void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
                                 uint8_t byte, bool good, bool full_duplex, uint32_t now_us)
 {
-    device->carriers--;
+    device->others_on_wire--;
     if (deaf(device, full_duplex)) {
         device->counters.unheard++;
         /* what was heard of a frame before is no frame any more */
@@ -299,7 +299,7 @@ void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us)
 /* A frame does not end while a byte is arriving, and nothing leaves before the last frame has. */
 static bool held(const fathom_sim_device_t *device, uint8_t alarm)
 {
-    if (alarm == SILENCE) return device->carriers != 0;
+    if (alarm == SILENCE) return device->others_on_wire != 0;
     return (alarm == RESPONSE || alarm == AUTOMATIC) && !fathom_sim_sender_idle(&device->sender);
 }
 

@@ -206,7 +206,7 @@ struct fathom_sim_device {
     uint16_t values[FATHOM_SIM_REGISTERS];
     uint32_t heard_us; /* end of the last byte */
     uint32_t leave_us; /* with `leaving`: when automatic output ends */
-    uint8_t carriers;  /* bytes on the wire now, of others */
+    uint8_t others_on_wire;  /* bytes on the wire now, of others */
     uint8_t length;    /* bytes of the frame that is being heard */
     bool is_invalid;   /* that frame is to be dropped */
     uint16_t own;      /* bytes at the sender that are the device's; the rest is another device's */

@@ -29,7 +29,7 @@ static void arrive(fathom_sim_line_t *line, const fathom_sim_sender_t *sender, u
         line->lost = true;
         return;
     }
-    if (sender->spoiled || !fathom_sim_same_settings(&line->settings, &sender->settings)) {
+    if (sender->corrupted || !fathom_sim_same_settings(&line->settings, &sender->settings)) {
         flags |= FATHOM_RX_FRAMING;
         byte = garbled(byte);
     }
@@ -56,8 +56,8 @@ static void notice_quiet(fathom_sim_line_t *line)
 static void collide(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fathom_sim_sender_t *other)
 {
     if (sender == other || !other->on_wire) return;
-    sender->spoiled = true;
-    other->spoiled = true;
+    sender->corrupted = true;
+    other->corrupted = true;
     line->counters.collisions++;
 }
 
@@ -77,7 +77,7 @@ static void hold_rx(const fathom_sim_line_t *line, uint8_t by, bool low)
 static void byte_begins(fathom_sim_line_t *line, fathom_sim_sender_t *sender,
                         const fathom_sim_device_t *device)
 {
-    sender->spoiled = false;
+    sender->corrupted = false;
     notice_quiet(line);
     sender->after_silence = line->quiet;
     if (!line->full_duplex) {
@@ -102,7 +102,7 @@ static void byte_ends(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fath
     for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next)
         if (hears(line, at, device))
             fathom_sim_device_hear_end(at, &sender->settings, byte,
-                                       !sender->spoiled && (mark & BYTE_ERRORS) == 0, line->full_duplex,
+                                       !sender->corrupted && (mark & BYTE_ERRORS) == 0, line->full_duplex,
                                        line->now_us);
     if (device == NULL) hold_rx(line, FATHOM_SIM_HELD_BY_BYTE, false);
     if (device != NULL) fathom_sim_device_sent(device, line->now_us);
@@ -190,14 +190,14 @@ void fathom_sim_attach(fathom_sim_line_t *line, fathom_sim_device_t *device, uin
     while (*end != NULL) end = &(*end)->next;
     *end = device;
     device->next = NULL;
-    device->carriers = 0;
+    device->others_on_wire = 0;
     /* a sender that is active now is in the middle of a byte, whose end will be counted too */
     fathom_sim_device_power_on(device, line->now_us);
     fathom_sim_device_hold_rx(device, FATHOM_SIM_HELD_BY_BYTE, line->host.on_wire, line->now_us);
     fathom_sim_device_hold_rx(device, FATHOM_SIM_HELD_BY_BREAK, line->in_break, line->now_us);
-    if (line->host.on_wire || line->in_break) device->carriers++;
+    if (line->host.on_wire || line->in_break) device->others_on_wire++;
     for (const fathom_sim_device_t *at = line->devices; at != device; at = at->next)
-        if (at->sender.on_wire && !line->full_duplex) device->carriers++;
+        if (at->sender.on_wire && !line->full_duplex) device->others_on_wire++;
 }
 
 /* Nothing is heard of the byte that it is sending. */
@@ -205,7 +205,7 @@ static void cut_off(fathom_sim_line_t *line, const fathom_sim_device_t *device)
 {
     if (!device->sender.on_wire || line->full_duplex) return;
     for (fathom_sim_device_t *other = line->devices; other != NULL; other = other->next)
-        if (other != device) other->carriers--;
+        if (other != device) other->others_on_wire--;
 }
 
 void fathom_sim_power_cycle(fathom_sim_line_t *line, fathom_sim_device_t *device, uint32_t off_us,

@@ -129,12 +129,12 @@ class Dead(e2e.Case):
         # 16.
         self.assertIn(requests[2], (4, 5, 6))
         dead = units[2]
-        self.assertEqual(dead['silences'], dead['failures'])
+        self.assertEqual(dead['timeouts_in_row'], dead['failures'])
         self.assertEqual((dead['responses'], dead['readings'], dead['response_us']), (0, 0, None))
         self.assertTrue(0 <= dead['backoff_left_us'] <= 4000000)
         for address in (1, 3):
             one = units[address]
-            self.assertEqual((one['silences'], one['backoff_left_us'], one['failed']), (0, 0, 0))
+            self.assertEqual((one['timeouts_in_row'], one['backoff_left_us'], one['failed']), (0, 0, 0))
             self.assertGreater(one['response_us']['min'], 0)
         # 120 ms and 400 ms are their periods; of eight seconds the dead one took 3 s at most.
         self.assertGreaterEqual(requests[1], 10)
@@ -149,15 +149,15 @@ class Dead(e2e.Case):
         self.assertEqual(requests, {1: 4, 2: 4, 3: 4})
         self.assertRegex(done.err, r'(?m)^fathom: a16:1: attempts 4, failed 0, readings 4, responses 4, '
                                    r'failures 0, '
-                                   r'silences in a row 0, left alone for 0\.0 s, time to answer: shortest '
+                                   r'time-outs in a row 0, left alone for 0\.0 s, time to answer: shortest '
                                    r'[\d.]+ ms')
         self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, responses 0, '
-                                   r'failures 4, silences in a row 4, left alone for 0\.[78] s$')
+                                   r'failures 4, time-outs in a row 4, left alone for 0\.[78] s$')
         self.assertRegex(done.err, '(?m)^fathom: a05:3: attempts 4, failed 0, readings 16, ')
 
     def test_the_last_words_name_it_too(self):
         done, _ = self.read('--count 3 --timeout 400')
-        self.assertRegex(done.err, '(?m)^fathom: a16:2: attempts 3, failed 3, readings 0, silences in a row '
+        self.assertRegex(done.err, '(?m)^fathom: a16:2: attempts 3, failed 3, readings 0, time-outs in a row '
                                    '3, left alone for')
         self.assertRegex(done.err, '(?m)^fathom: a16:1: attempts 3, failed 0, readings 3$')
 
@@ -237,11 +237,11 @@ class Example(e2e.Case):
         self.assertGreaterEqual(before.count('HPS-167S probe'), 45)
         # 600 ms of time-out, once more until its late response can no longer come; left alone after the third,
         # for 0.6 s
-        failures = re.search(r'A05 +responses \d+, failures (\d+), silences in a row (\d+), left alone for '
+        failures = re.search(r'A05 +responses \d+, failures (\d+), time-outs in a row (\d+), left alone for '
                              r'([\d.]+) s', between)
         self.assertEqual(failures[1], failures[2])
         self.assertGreaterEqual(int(failures[1]), 3)
-        self.assertRegex(after, r'A05 +responses \d+, failures \d+, silences in a row 0, left alone for 0\.0 s')
+        self.assertRegex(after, r'A05 +responses \d+, failures \d+, time-outs in a row 0, left alone for 0\.0 s')
         self.assertRegex(after, r'A16 +responses \d+, failures 0, ')
         self.assertRegex(after, r'HPS-167S responses \d+, failures 0, ')
 

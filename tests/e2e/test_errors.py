@@ -143,7 +143,7 @@ class Noise(e2e.Case):
                                                          'bytes were heard, but no frame of a16'),
         a_wrong_sum_is_no_reading=('a05', bytes((*FRAME_OF_FOUR[:-1], FRAME_OF_FOUR[-1] ^ 1)),
                                    'bytes were heard, but no frame of a05'))
-    def spoilt(self, sensor, data, until):
+    def corrupted(self, sensor, data, until):
         _, reader = self.feed(sensor, data, until)
         self.assertEqual(self.ends(reader.end(), 1).rows, [])
 

@@ -35,15 +35,15 @@ class Sending(e2e.Case):
         a_dropped_byte=lambda frame: frame[:2] + frame[3:],
         an_added_byte=lambda frame: frame[:2] + b'\x33' + frame[2:],
         a_truncated_frame=lambda frame: frame[:-1])
-    def spoilt(self, spoil):
-        """A spoilt frame, a good one, and so on: the good ones are shown. Only spoilt ones: nothing is, and
+    def corrupted(self, corrupt):
+        """A corrupted frame, a good one, and so on: the good ones are shown. Only corrupted ones: nothing is, and
         it is told."""
         for sensor, values in VALUES.items():
             good = e2e.frame(*values)
-            done = self.stream(sensor, [spoil(good), good])
+            done = self.stream(sensor, [corrupt(good), good])
             self.assertEqual((self.shown(done, values), done.code), (4 * len(values), 0), done)
             self.assertRegex(done.err, r'line: frames \d+, ')
-            done = self.stream(sensor, [spoil(good)], count=1, timeout=500)
+            done = self.stream(sensor, [corrupt(good)], count=1, timeout=500)
             self.assertEqual((self.shown(done, values), done.code), (0, 1), done)
             self.assertIn('attempt 1: bytes were heard, but no frame of', done.err)
 

@@ -208,7 +208,7 @@ class Pace(e2e.Case):
         self.assertGreaterEqual(last['sequence'] - first['sequence'], 4)
         self.assertGreater(int(re.search(r'line: frames (\d+)', done.err)[1]), 5)
 
-    def test_a_frame_of_four_probes_is_one_attempt_and_never_torn_by_an_interval(self):
+    def test_a_frame_of_four_probes_is_one_attempt_and_never_split_by_an_interval(self):
         sim = self.sim('a05 --distance 1000,2000,1953,3562')
         objects = self.read_json(f'a05 --port {sim} --count 2 --interval 700')
         self.assertEqual([one['probe'] for one in objects], [1, 2, 3, 4, 1, 2, 3, 4])

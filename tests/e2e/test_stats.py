@@ -66,7 +66,7 @@ class Stats(e2e.Case):
             'responses 0, exceptions 0, responses that do not fit 0, late responses 0, unasked frames 0, '
             'bad bytes 0', 'fathom: unit: responses 1, failures 1'])
         self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, responses 1, failures '
-                                   r'1, silences in a row 1, left alone for 0\.0 s, '
+                                   r'1, time-outs in a row 1, left alone for 0\.0 s, '
                                    r'time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')
         self.assertEqual(len(lines), 6)
 

@@ -147,11 +147,11 @@ TEST(retries_are_sent_and_then_it_has_failed)
     rig_expect_sent(NULL, 0);
 }
 
-/* What is said instead of a response leads to that outcome within that time, and to no values. */
-static void expect_outcome(const uint8_t *said, size_t length, uint32_t in_us, int outcome)
+/* What comes instead of a response leads to that outcome within that time, and to no values. */
+static void expect_outcome(const uint8_t *instead, size_t length, uint32_t in_us, int outcome)
 {
     rig_ask(0);
-    rig_say(said, length);
+    rig_say(instead, length);
     rig_run_fine(in_us);
     assert_int_equal(status(), outcome);
     assert_int_equal(rig.port.gateway_exception, 0);
@@ -172,7 +172,7 @@ TEST(another_function_is_malformed)
     expect_outcome(wrong, sizeof wrong, RIG_TIMEOUT_US + 1000, FATHOM_ERR_MALFORMED);
 }
 
-/* Six bytes of registers are said, four are there: by its header the frame is whole. */
+/* Six bytes of registers are instead, four are there: by its header the frame is whole. */
 static const uint8_t too_short[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
 
 TEST(a_byte_count_that_is_not_the_headers_is_no_response_and_nothing_gets_out_of_step)

@@ -13,7 +13,7 @@
 
 #include "suite.h"
 
-enum { NOBODY = 65534, WATCHDOG_S = 60 };
+enum { UNPRIVILEGED = 65534, WATCHDOG_S = 60 };
 
 void posix_pty_open(posix_pty_t *pty)
 {
@@ -84,7 +84,7 @@ int posix_run_unprivileged(int (*body)(void *), void *arg)
     assert_true(child >= 0);
     if (child == 0) {
         (void)alarm(WATCHDOG_S); /* a child does not inherit it */
-        if (geteuid() == 0 && (setgroups(0, NULL) != 0 || setgid(NOBODY) != 0 || setuid(NOBODY) != 0))
+        if (geteuid() == 0 && (setgroups(0, NULL) != 0 || setgid(UNPRIVILEGED) != 0 || setuid(UNPRIVILEGED) != 0))
             _exit(254);
         _exit(body(arg));
     }

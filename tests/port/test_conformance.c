@@ -79,7 +79,7 @@ static struct {
     uint8_t half[255], held_length;
     uint8_t injected, mark; /* bytes that the far end still has to send */
 
-    unsigned told, verdicts[4];
+    unsigned findings, verdicts[4];
     const char *names[FATHOM_CONFORMANCE_ITEMS];
     fathom_verdict_t each[FATHOM_CONFORMANCE_ITEMS];
     const char *not_kept[NAMES];
@@ -201,7 +201,7 @@ static int read_injected(uint8_t *bytes, fathom_rx_t *rx)
     return count;
 }
 
-static void spoil(uint8_t *bytes, int *count, fathom_rx_t *rx)
+static void corrupt(uint8_t *bytes, int *count, fathom_rx_t *rx)
 {
     switch (rig.fault) {
     case READ_SWAPS:
@@ -241,7 +241,7 @@ static int rig_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
     if (rig.fault == READ_BEYOND && capacity < 255) capacity++;
     if (rig.fault == READ_MAKES_SILENCE && capacity > 3) capacity = 3;
     int count = rig.real.read(rig.real.ctx, bytes, capacity, rx);
-    if (count > 0) spoil(bytes, &count, rx);
+    if (count > 0) corrupt(bytes, &count, rx);
     if (rig.fault == READ_SPANS_SILENCE && count > 0) {
         const uint8_t flags = rx->flags;
         count += rig.real.read(rig.real.ctx, bytes + count, capacity - (size_t)count, rx);
@@ -285,9 +285,9 @@ static int rig_set_break(void *ctx, bool on)
 static void report(void *ctx, const fathom_finding_t *finding)
 {
     assert_in_range(finding->verdict, FATHOM_KEPT, FATHOM_NOT_SEEN);
-    assert_in_range(rig.told, 0, FATHOM_CONFORMANCE_ITEMS - 1);
-    rig.each[rig.told] = finding->verdict;
-    rig.names[rig.told++] = finding->name;
+    assert_in_range(rig.findings, 0, FATHOM_CONFORMANCE_ITEMS - 1);
+    rig.each[rig.findings] = finding->verdict;
+    rig.names[rig.findings++] = finding->name;
     rig.verdicts[finding->verdict]++;
     if (getenv("FATHOM_TELL") != NULL)
         (void)printf("%2d %-8s %-16s %lu %s\n", rig.fault, fathom_verdict_name(finding->verdict),
@@ -333,7 +333,7 @@ static void run_on(fault_t fault, const kind_t *kind)
                                        .damage = damage,
                                        .report = report};
     const unsigned failed = fathom_conformance_run(&rig.bench);
-    assert_int_equal(rig.told, FATHOM_CONFORMANCE_ITEMS);
+    assert_int_equal(rig.findings, FATHOM_CONFORMANCE_ITEMS);
     assert_int_equal(failed, rig.verdicts[FATHOM_NOT_KEPT]);
 }
 
@@ -470,7 +470,7 @@ TEST(the_posix_port_keeps_what_can_be_seen_on_a_pseudo_terminal)
     assert_int_equal(waitpid(child, NULL, 0), child);
     fathom_posix_close(&port);
     posix_pty_close(&pty);
-    assert_int_equal(rig.told, FATHOM_CONFORMANCE_ITEMS);
+    assert_int_equal(rig.findings, FATHOM_CONFORMANCE_ITEMS);
     unsigned at = 0;
     for (unsigned i = 0; i != FATHOM_CONFORMANCE_ITEMS; i++) {
         if (rig.each[i] == FATHOM_KEPT) continue;

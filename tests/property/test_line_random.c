@@ -10,7 +10,7 @@
 
 /*
  * Five units on a bad line, in simulated time: responses that come late (up to twice the time-out, which is as
- * late as can be told apart), that are damaged, torn, or lost, and noise at any time. Every response carries the
+ * late as can be told apart), that are damaged, truncated or lost, and noise at any time. Every response carries the
  * number of the request that it answers, so a response that is taken for another request's is seen. The loop
  * comes round at random, up to 25 ms apart, and the port hands bytes over in random pieces.
  */

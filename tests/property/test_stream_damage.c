@@ -64,7 +64,7 @@ static void send(const run_t *run, damage_t damage, unsigned hit, unsigned place
 typedef struct {
     unsigned runs, right, wrong;
     unsigned due; /* by the formula above, how many should be wrong */
-} tally_t;
+} counts_t;
 
 static fathom_stream_config_t config;
 static struct receiver {
@@ -114,11 +114,11 @@ static void receive(const run_t *run, unsigned from, unsigned end)
     }
 }
 
-static void add_to(tally_t *tally)
+static void add_to(counts_t *counts)
 {
-    tally->runs++;
-    tally->right += receiver.right;
-    tally->wrong += receiver.wrong;
+    counts->runs++;
+    counts->right += receiver.right;
+    counts->wrong += receiver.wrong;
 }
 
 /* Is what then begins the frame's bytes a right frame with FF behind it, and not the one that was sent? */
@@ -131,16 +131,16 @@ static bool is_due(const uint8_t *frame, uint8_t length, unsigned place, uint8_t
     return rig_is_valid(bytes, length) && bytes[length] == 0xFF && memcmp(bytes, frame, length) != 0;
 }
 
-static void lose(tally_t *tally, const run_t *run, unsigned hit, unsigned place)
+static void lose(counts_t *counts, const run_t *run, unsigned hit, unsigned place)
 {
     send(run, LOST, hit, place);
     start(run);
     receive(run, 0, wire.count);
-    add_to(tally);
+    add_to(counts);
 }
 
 /* With every other byte in this place. What stands before it is received once for all. */
-static void damage_with_each(tally_t *tally, const run_t *run, damage_t damage, unsigned hit, unsigned place)
+static void damage_with_each(counts_t *counts, const run_t *run, damage_t damage, unsigned hit, unsigned place)
 {
     const uint8_t *const frame = run->sent + hit * run->length;
     send(run, damage, hit, place);
@@ -152,27 +152,27 @@ static void damage_with_each(tally_t *tally, const run_t *run, damage_t damage, 
         wire.bytes[wire.hit] = (uint8_t)byte;
         receiver = before;
         receive(run, wire.hit, wire.count);
-        add_to(tally);
-        if (damage == ADDED) tally->due += is_due(frame, run->length, place, (uint8_t)byte);
+        add_to(counts);
+        if (damage == ADDED) counts->due += is_due(frame, run->length, place, (uint8_t)byte);
     }
 }
 
-static void lose_each(tally_t *tally, const run_t *run)
+static void lose_each(counts_t *counts, const run_t *run)
 {
-    for (unsigned i = 0; i != RUN * run->length; i++) lose(tally, run, i / run->length, i % run->length);
+    for (unsigned i = 0; i != RUN * run->length; i++) lose(counts, run, i / run->length, i % run->length);
 }
 
-static void change_each(tally_t *tally, const run_t *run)
+static void change_each(counts_t *counts, const run_t *run)
 {
     for (unsigned i = 0; i != RUN * run->length; i++)
-        damage_with_each(tally, run, CHANGED, i / run->length, i % run->length);
+        damage_with_each(counts, run, CHANGED, i / run->length, i % run->length);
 }
 
-static void add_each(tally_t *tally, const run_t *run)
+static void add_each(counts_t *counts, const run_t *run)
 {
     for (unsigned hit = 0; hit != RUN; hit++)
         for (unsigned place = 0; place <= run->length; place++)
-            damage_with_each(tally, run, ADDED, hit, place);
+            damage_with_each(counts, run, ADDED, hit, place);
 }
 
 /* ---- the runs ---- */
@@ -180,7 +180,7 @@ static void add_each(tally_t *tally, const run_t *run)
 /* Two that are held still, and so many that move; of those there are more with FATHOM_LONG. */
 static unsigned run_count(void) { return 2 + (suite_is_long ? 40 : 10); }
 
-typedef void damage_each_t(tally_t *, const run_t *);
+typedef void damage_each_t(counts_t *, const run_t *);
 
 /* The first two of a length are an example of a datasheet and the frame that can be read out of step, held still
  * (A16 2(4), 511 mm; A05 1(3), 1000 2000 2047 1339 mm); in the others every frame is another, 250 to 4500 mm. */
@@ -200,19 +200,19 @@ enum { OF_FOUR = 0, OF_TEN = 1, LENGTHS = 2 };
 static const uint8_t lengths[LENGTHS] = {FATHOM_DYP_A16_LENGTH, FATHOM_DYP_A05_LENGTH};
 
 /* All runs of one length. */
-static tally_t damage_all(damage_each_t *each, unsigned which, bool gaps)
+static counts_t damage_all(damage_each_t *each, unsigned which, bool gaps)
 {
-    tally_t tally = {0, 0, 0, 0};
+    counts_t counts = {0, 0, 0, 0};
     rig_seed(7);
     for (unsigned number = 0; number != run_count(); number++) {
         uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
         make_run(sent, lengths[which], number);
-        each(&tally, &(run_t){sent, lengths[which], gaps});
+        each(&counts, &(run_t){sent, lengths[which], gaps});
     }
     print_message("  %2u bytes, gaps %s: %u runs, %u right readings, %u wrong, %u by the formula\n",
-                  lengths[which], gaps ? "seen" : "not seen", tally.runs, tally.right, tally.wrong,
-                  tally.due);
-    return tally;
+                  lengths[which], gaps ? "seen" : "not seen", counts.runs, counts.right, counts.wrong,
+                  counts.due);
+    return counts;
 }
 
 /* How many bytes the runs of one length have. */
@@ -221,20 +221,20 @@ static unsigned bytes_of(unsigned which) { return run_count() * RUN * lengths[wh
 TEST(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else)
 {
     for (unsigned which = 0; which != LENGTHS; which++) {
-        const tally_t tally = damage_all(lose_each, which, true);
-        assert_int_equal(tally.wrong, 0);
-        assert_int_equal(tally.runs, bytes_of(which));
-        assert_int_equal(tally.right, tally.runs * (RUN - 1));
+        const counts_t counts = damage_all(lose_each, which, true);
+        assert_int_equal(counts.wrong, 0);
+        assert_int_equal(counts.runs, bytes_of(which));
+        assert_int_equal(counts.right, counts.runs * (RUN - 1));
     }
 }
 
 TEST(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else)
 {
     for (unsigned which = 0; which != LENGTHS; which++) {
-        const tally_t tally = damage_all(change_each, which, true);
-        assert_int_equal(tally.wrong, 0);
-        assert_int_equal(tally.runs, 255 * bytes_of(which));
-        assert_int_equal(tally.right, tally.runs * (RUN - 1));
+        const counts_t counts = damage_all(change_each, which, true);
+        assert_int_equal(counts.wrong, 0);
+        assert_int_equal(counts.runs, 255 * bytes_of(which));
+        assert_int_equal(counts.right, counts.runs * (RUN - 1));
     }
 }
 
@@ -252,11 +252,11 @@ TEST(with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF)
             make_run(sent, lengths[which], number);
             for (unsigned i = 1; i <= RUN; i++) ends_in_FF += sent[i * lengths[which] - 1] == 0xFF;
         }
-        const tally_t tally = damage_all(add_each, which, true);
-        assert_int_equal(tally.wrong, tally.due);
-        assert_in_range(tally.wrong, which == OF_FOUR ? 2 * RUN : 0, ends_in_FF * (lengths[which] - 1u));
-        assert_int_equal(tally.runs, 256 * frames * (lengths[which] + 1u));
-        assert_in_range(tally.right, tally.runs * (RUN - 1), tally.runs * RUN);
+        const counts_t counts = damage_all(add_each, which, true);
+        assert_int_equal(counts.wrong, counts.due);
+        assert_in_range(counts.wrong, which == OF_FOUR ? 2 * RUN : 0, ends_in_FF * (lengths[which] - 1u));
+        assert_int_equal(counts.runs, 256 * frames * (lengths[which] + 1u));
+        assert_in_range(counts.right, counts.runs * (RUN - 1), counts.runs * RUN);
     }
 }
 
@@ -265,7 +265,7 @@ TEST(of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes)
 {
     for (unsigned which = 0; which != LENGTHS; which++) {
         uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
-        tally_t added = {0, 0, 0, 0};
+        counts_t added = {0, 0, 0, 0};
         make_run(sent, lengths[which], 0);
         add_each(&added, &(run_t){sent, lengths[which], true});
         assert_int_equal(added.wrong, 0);
@@ -287,17 +287,17 @@ TEST(with_gaps_seen_513_of_all_bytes_added_to_all_frames_of_an_A16_pass)
     enum { PASS = 2 + 256 + 255 };
     static const uint16_t example = 1953;
     uint8_t sent[RUN * FATHOM_DYP_A16_LENGTH];
-    tally_t tally = {0, 0, 0, 0};
+    counts_t counts = {0, 0, 0, 0};
     for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 4, 4, &example);
     for (unsigned high = 0; high != 256; high++) {
         const uint16_t value = (uint16_t)(high * 256 + (256 - high) % 256);
         rig_make_frame(sent + 4, 4, &value);
         assert_int_equal(sent[7], 0xFF);
         for (unsigned place = 0; place <= 4; place++)
-            damage_with_each(&tally, &(run_t){sent, 4, true}, ADDED, 1, place);
+            damage_with_each(&counts, &(run_t){sent, 4, true}, ADDED, 1, place);
     }
-    assert_int_equal(tally.runs, 256 * 5 * 256);
-    assert_int_equal(tally.wrong, PASS);
+    assert_int_equal(counts.runs, 256 * 5 * 256);
+    assert_int_equal(counts.wrong, PASS);
 }
 
 /* 1000 2000 1953 3465 mm: FF + 03 + E8 + 07 + D0 + 07 + A1 + 0D + 89 = 3FF. All but 89 and the sum make 376, so X =
@@ -306,25 +306,25 @@ TEST(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass)
 {
     static const uint16_t values[4] = {1000, 2000, 1953, 3465};
     uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
-    tally_t tally = {0, 0, 0, 0};
+    counts_t counts = {0, 0, 0, 0};
     for (unsigned frame = 0; frame != RUN; frame++) rig_make_frame(sent + frame * 10, 10, values);
     assert_int_equal(sent[9], 0xFF);
-    add_each(&tally, &(run_t){sent, 10, true});
-    assert_int_equal(tally.runs, RUN * 11 * 256);
-    assert_int_equal(tally.wrong, RUN * 8);
+    add_each(&counts, &(run_t){sent, 10, true});
+    assert_int_equal(counts.runs, RUN * 11 * 256);
+    assert_int_equal(counts.wrong, RUN * 8);
 }
 
 TEST(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading)
 {
     for (unsigned which = 0; which != LENGTHS; which++) {
-        tally_t tally = damage_all(lose_each, which, false);
-        assert_int_equal(tally.wrong, 0);
-        assert_int_equal(tally.runs, bytes_of(which));
-        assert_true(tally.right > tally.runs / 2);
-        tally = damage_all(change_each, which, false);
-        assert_int_equal(tally.wrong, 0);
-        assert_int_equal(tally.runs, 255 * bytes_of(which));
-        assert_true(tally.right > tally.runs / 2);
+        counts_t counts = damage_all(lose_each, which, false);
+        assert_int_equal(counts.wrong, 0);
+        assert_int_equal(counts.runs, bytes_of(which));
+        assert_true(counts.right > counts.runs / 2);
+        counts = damage_all(change_each, which, false);
+        assert_int_equal(counts.wrong, 0);
+        assert_int_equal(counts.runs, 255 * bytes_of(which));
+        assert_true(counts.right > counts.runs / 2);
     }
 }
 
@@ -339,10 +339,10 @@ TEST(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_val
 {
     enum { ADDED_FF = 5 };
     for (unsigned which = 0; which != LENGTHS; which++) {
-        const tally_t tally = damage_all(add_each, which, false);
-        assert_int_equal(tally.wrong, which == OF_FOUR ? ADDED_FF : 0);
-        assert_int_equal(tally.runs, 256 * run_count() * RUN * (lengths[which] + 1));
-        assert_true(tally.right > tally.runs / 2);
+        const counts_t counts = damage_all(add_each, which, false);
+        assert_int_equal(counts.wrong, which == OF_FOUR ? ADDED_FF : 0);
+        assert_int_equal(counts.runs, 256 * run_count() * RUN * (lengths[which] + 1));
+        assert_true(counts.right > counts.runs / 2);
     }
 }
 
@@ -351,22 +351,22 @@ TEST(without_gaps_only_an_FF_after_the_first_511_mm_held_still_shows_another_val
  *   FF 03 E8 07 D0 07 FF 05 3B 07   FF 03 E9 07 D0 07 FF 05 3B 08
  * Out of step by six the first two are valid, and the second with the third would be if it were one less:
  * FF + 05 + 3B + 07 + FF + 03 + E9 + 07 + D0 = 408, and 07 ends it. So one wrong bit of the second, 05 -> 04, 3B ->
- * 3A or 07 -> 06, spoils the right frame and makes a second one out of step, ten bytes behind the first. Without
+ * 3A or 07 -> 06, damages the right frame and makes a second one out of step, ten bytes behind the first. Without
  * gaps that one is not shown because the first overlapped a right frame.
  */
 TEST(without_gaps_a_wrong_bit_does_not_permute_the_probes_of_a_frame_out_of_step)
 {
     static const uint16_t values[2][4] = {{1000, 2000, 2047, 1339}, {1001, 2000, 2047, 1339}};
     uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
-    tally_t tally = {0, 0, 0, 0};
+    counts_t counts = {0, 0, 0, 0};
     for (unsigned i = 0; i != RUN; i++) rig_make_frame(sent + i * 10, 10, values[i / 2]);
-    change_each(&tally, &(run_t){sent, 10, false});
-    assert_int_equal(tally.runs, 255 * RUN * 10);
-    assert_int_equal(tally.wrong, 0);
-    tally = (tally_t){0, 0, 0, 0};
-    change_each(&tally, &(run_t){sent, 10, true});
-    assert_int_equal(tally.runs, 255 * RUN * 10);
-    assert_int_equal(tally.wrong, 0);
+    change_each(&counts, &(run_t){sent, 10, false});
+    assert_int_equal(counts.runs, 255 * RUN * 10);
+    assert_int_equal(counts.wrong, 0);
+    counts = (counts_t){0, 0, 0, 0};
+    change_each(&counts, &(run_t){sent, 10, true});
+    assert_int_equal(counts.runs, 255 * RUN * 10);
+    assert_int_equal(counts.wrong, 0);
 }
 
 /*
@@ -385,20 +385,20 @@ TEST(without_gaps_one_lost_byte_in_511_passes_before_a_frame_with_no_target)
     static const uint16_t example = 1953;
     static const uint16_t no_target = 0xFFFD;
     uint8_t sent[RUN * FATHOM_DYP_A16_LENGTH];
-    tally_t tally = {0, 0, 0, 0};
-    tally_t with_gaps = {0, 0, 0, 0};
+    counts_t counts = {0, 0, 0, 0};
+    counts_t with_gaps = {0, 0, 0, 0};
     rig_make_frame(sent, 4, &example);
     for (unsigned frame = 2; frame != RUN; frame++) rig_make_frame(sent + frame * 4, 4, &no_target);
     for (unsigned mm = 0; mm != 65536; mm++) {
         const uint16_t value = (uint16_t)mm;
         rig_make_frame(sent + 4, 4, &value);
         for (unsigned place = 0; place != 4; place++) {
-            lose(&tally, &(run_t){sent, 4, false}, 1, place);
+            lose(&counts, &(run_t){sent, 4, false}, 1, place);
             lose(&with_gaps, &(run_t){sent, 4, true}, 1, place);
         }
     }
-    assert_int_equal(tally.runs, 4 * 65536);
-    assert_int_equal(tally.wrong, PASS);
+    assert_int_equal(counts.runs, 4 * 65536);
+    assert_int_equal(counts.wrong, PASS);
     assert_int_equal(with_gaps.runs, 4 * 65536);
     assert_int_equal(with_gaps.wrong, 0);
 }

@@ -102,7 +102,7 @@ static void read_registers(second_device_t *d, const job_t *job)
     uint16_t reg = word_at(job->bytes + 2), count = word_at(job->bytes + 4);
     uint8_t expected = reg < sizeof counts ? counts[reg] : 0;
     uint8_t frame[32] = {job->reply_address, READ, (uint8_t)(2 * expected)}, *data = frame + 3;
-    const hps_settings_t *told = chosen(d, CHOICE_hps_reported) == 0 ? &d->hps.set : &d->hps.used;
+    const hps_settings_t *reported = chosen(d, CHOICE_hps_reported) == 0 ? &d->hps.set : &d->hps.used;
     int64_t how = RESPONSE_TAKEN;
     if (expected == 0)
         how = chosen(d, CHOICE_hps_unknown_register);
@@ -121,11 +121,11 @@ static void read_registers(second_device_t *d, const job_t *job)
         memcpy(data, d->hps.version, 6);
         break;
     case CONFIGURATION:
-        data[0] = told->termination;
-        data[1] = told->auto_out;
-        data[2] = told->warm_s;
-        put_reconnect(d, data + 3, told->reconnect_ms);
-        data[7] = told->baud_code;
+        data[0] = reported->termination;
+        data[1] = reported->auto_out;
+        data[2] = reported->warm_s;
+        put_reconnect(d, data + 3, reported->reconnect_ms);
+        data[7] = reported->baud_code;
         break;
     case DETAILS:
         memcpy(data, d->hps.details, sizeof d->hps.details);

@@ -181,17 +181,17 @@ static fathom_status_t explained(void)
     return FATHOM_ERR_NO_RESPONSE;
 }
 
-void judge_told(told_t told, wanted_t wanted)
+void judge_report(report_t report, wanted_t wanted)
 {
     bool wrote = judge.rig->writes != judge.writes_begin;
-    bool says = told.not_written || told.not_confirmed || told.otherwise || told.refused;
-    fathom_status_t status = told.made            ? FATHOM_READY
-                             : told.not_confirmed ? FATHOM_ERR_UNCONFIRMED
-                             : told.otherwise     ? FATHOM_ERR_DIFFERS
-                             : told.refused       ? FATHOM_ERR_EXCEPTION
+    bool says = report.not_written || report.not_confirmed || report.otherwise || report.refused;
+    fathom_status_t status = report.made            ? FATHOM_READY
+                             : report.not_confirmed ? FATHOM_ERR_UNCONFIRMED
+                             : report.otherwise     ? FATHOM_ERR_DIFFERS
+                             : report.refused       ? FATHOM_ERR_EXCEPTION
                                                   : explained();
-    if (!told.made && !says) judge_finding("it does not say what was written", status);
-    judge_set(status, told.not_written ? false : says ? true : wrote, wanted);
+    if (!report.made && !says) judge_finding("it does not say what was written", status);
+    judge_set(status, report.not_written ? false : says ? true : wrote, wanted);
 }
 
 void judge_done(bool is_good, bool is_right)

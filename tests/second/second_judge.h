@@ -80,8 +80,8 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted);
 /* The same of a program that tells it in words. */
 typedef struct {
     bool made, not_written, not_confirmed, otherwise, refused;
-} told_t;
-void judge_told(told_t told, wanted_t wanted);
+} report_t;
+void judge_report(report_t report, wanted_t wanted);
 /* ... and of one that tells whether all went well, and what it was told. */
 void judge_done(bool is_good, bool is_right);
 /* Was this sent as a measured value since the command began? */

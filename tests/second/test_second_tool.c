@@ -99,9 +99,9 @@ typedef struct {
     wanted_t wanted;
 } tool_set_t;
 
-static told_t told(void)
+static report_t report(void)
 {
-    return (told_t){.made = run->status == 0,
+    return (report_t){.made = run->status == 0,
                     .not_written =
                         says("nothing was written") || says("nothing was sent") || says("unchanged, it had"),
                     .not_confirmed = says("not confirmed") || says("was sent"),
@@ -114,7 +114,7 @@ static void set(const char *sensor, const char *mode, const tool_set_t *rows, si
     for (size_t i = 0; i < count; i++) {
         begin(rows[i].words);
         tool("set", sensor, mode, rows[i].words);
-        judge_told(told(), rows[i].wanted);
+        judge_report(report(), rows[i].wanted);
     }
 }
 
@@ -179,7 +179,7 @@ static void hps167s(void)
     ask("watch hps167s", "watch", "hps167s", "", "--duration 2");
     begin("reset hps167s");
     tool("reset", "hps167s", "", "--yes-restore-factory-settings");
-    judge_told(told(), ACKNOWLEDGED(0x10, 1));
+    judge_report(report(), ACKNOWLEDGED(0x10, 1));
 }
 
 static void live(second_kind_t kind, void (*life)(void), unsigned good_of_100)

@@ -4,7 +4,7 @@
 
 /* What the tests of the faults share: the bench with one sensor of any mode, and faults, and that sensor's frame. */
 
-#include "talk.h"
+#include "sim_bench.h"
 
 typedef enum { A16_AUTO, A16_MODBUS, A05_AUTO, A05_DYP, HPS167S, SETTINGS, A05_MODBUS = SETTINGS } setting_t;
 

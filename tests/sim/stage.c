@@ -187,7 +187,7 @@ bool same_place(void)
     return unit->address == bench.device->unit && settings->baud == bench.device->settings.baud;
 }
 
-uint32_t told(void)
+uint32_t kept_commands(void)
 {
     const fathom_sim_counters_t *const counters = &bench.device->counters;
     return counters->resets > counters->writes ? counters->resets : counters->writes;

@@ -2,7 +2,7 @@
 #ifndef FATHOM_TESTS_SIM_STAGE_H
 #define FATHOM_TESTS_SIM_STAGE_H
 
-/* The drivers at the sensors on the bench (talk.h): the host's half of it, with a loop that sleeps as long as it may, or
+/* The drivers at the sensors on the bench (sim_bench.h): the host's half of it, with a loop that sleeps as long as it may, or
  * that comes round so often. */
 
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "fathom/fathom.h"
 #include "sim/pin.h"
 #include "sim/uart.h"
-#include "talk.h"
+#include "sim_bench.h"
 
 enum { SECOND = 1000000, LOOPS = 4 };
 static const uint32_t loops_us[LOOPS] = {0, 20 * MS, 1 * MS, 300 * MS}; /* 0: it sleeps as long as it may */
@@ -109,7 +109,7 @@ void rest(uint32_t by_us);
 bool same_place(void);
 
 /* How often the device was told something that it keeps, or was reset (by #6, which is a read; #13 is both). */
-uint32_t told(void);
+uint32_t kept_commands(void);
 
 /* Something that is to be carried out, while an application measures in the same loop: until it has ended. */
 fathom_status_t carry_out(fathom_status_t (*command)(void));

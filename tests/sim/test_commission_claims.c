@@ -20,7 +20,7 @@ static void with_a_second(const job_t *first, const job_t *second)
     assert_int_equal(status, FATHOM_READY);
     assert_true(refused != 0);
     assert_int_equal(first->has(), first->wanted);
-    assert_int_equal(told(), first->kind == READS ? 0 : 1);
+    assert_int_equal(kept_commands(), first->kind == READS ? 0 : 1);
     assert_int_not_equal(second->call(), FATHOM_ERR_BUSY); /* its turn now */
 }
 
@@ -48,7 +48,7 @@ static void one_of_the_two(const job_t *first, const job_t *second)
         assert_ends(start_us);
         pass();
     }
-    assert_int_equal(told(), expected);
+    assert_int_equal(kept_commands(), expected);
 }
 
 /* Two starts: none of these is about the time that there is; the wrap has a test of its own. */
@@ -106,7 +106,7 @@ TEST(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands)
         const uint32_t start_us = s.clock.now_us;
         assert_int_equal(carry_out(jobs[j].call), FATHOM_ERR_NO_RESPONSE);
         assert_true(since_us(start_us) <= 3 * SECOND);
-        assert_int_equal(told(), 0);
+        assert_int_equal(kept_commands(), 0);
         /* Back again: a command finds it at once, and with its response the measurement goes on as before. */
         attach(bench.device);
         rest(2 * SECOND);

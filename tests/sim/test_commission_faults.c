@@ -12,7 +12,7 @@ static unsigned problems;
 
 #define BIT(kind) FATHOM_SIM_FAULT_BIT(FATHOM_SIM_FAULT_##kind)
 /* What can look like a response at an address where nobody is, or talk into the request there. */
-#define WHAT_TALKS                                                                                           \
+#define ALL_THAT_SEND                                                                                           \
     (BIT(UNASKED) | BIT(NOISE) | BIT(DUPLICATE) | BIT(BREAK) | BIT(LATE) | BIT(DELAY) | BIT(TRAILING) |      \
      BIT(UNIT) | BIT(ECHO))
 
@@ -36,8 +36,8 @@ static bool is_fit(uint8_t kind)
 static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, const char *what)
 {
     const uint32_t has = job->has();
-    const uint32_t writes = told();
-    if (writes > 1) problem("told %u times", (unsigned)writes);
+    const uint32_t writes = kept_commands();
+    if (writes > 1) problem("%u commands kept", (unsigned)writes);
     if (has != job->before && has != job->wanted) problem("has %u", (unsigned)has);
     switch (status) {
     case FATHOM_READY:
@@ -48,7 +48,7 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
         if (job->kind == READS) problem("unconfirmed");
         break;
     case FATHOM_ERR_IN_USE:
-        if (job->kind != MOVES || writes != 0 || (kinds & WHAT_TALKS) == 0) problem("in use");
+        if (job->kind != MOVES || writes != 0 || (kinds & ALL_THAT_SEND) == 0) problem("in use");
         break;
     case FATHOM_ERR_NO_RESPONSE:
     case FATHOM_ERR_CHECKSUM:

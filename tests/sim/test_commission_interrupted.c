@@ -17,7 +17,7 @@ static const char *const act_names[] = {"given up",    "power-on",         "canc
 static void judge(const job_t *job, fathom_status_t status, const char *what)
 {
     const uint32_t has = job->has();
-    if (told() > 1) problem("told %u times", (unsigned)told());
+    if (kept_commands() > 1) problem("%u commands kept", (unsigned)kept_commands());
     if (has != job->before && has != job->wanted) problem("has %u", (unsigned)has);
     if (status == FATHOM_READY && has != job->wanted) problem("READY, but it is not so");
     if (status == FATHOM_READY || status == FATHOM_ERR_UNCONFIRMED) return;
@@ -50,14 +50,14 @@ static void expect_works(const job_t *job, bool may_move, const char *what)
     /* The warm-up too: so long silence at a new place does not prove that nobody is there. */
     rest(8 * SECOND);
     if (!same_place() && !(s.model == HPS && s.driver.hps.is_seeking)) {
-        if (job->kind != MOVES || !may_move || told() == 0) problem("driver and device apart");
+        if (job->kind != MOVES || !may_move || kept_commands() == 0) problem("driver and device apart");
         return;
     }
     if (!recovers()) problem("does not work afterwards");
     const fathom_status_t again = carry_out(job->call);
     if (again != FATHOM_READY) problem("then %d", (int)again);
     if (job->kind == KEPT && job->has() != job->wanted) problem("then not so");
-    if (told() > (job->kind == KEPT ? 1u : 2u)) problem("told %u times", (unsigned)told());
+    if (kept_commands() > (job->kind == KEPT ? 1u : 2u)) problem("%u commands kept", (unsigned)kept_commands());
     if (!recovers()) problem("set again, then it does not work");
 }
 

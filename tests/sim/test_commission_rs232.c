@@ -89,12 +89,12 @@ TEST(settings_are_changed_while_it_sends_and_it_sends_again_afterwards)
             pass_us(later_us);
             assert_int_equal(set_threshold(750), FATHOM_READY);
             assert_int_equal(bench.a16.threshold_mm, 750);
-            assert_int_equal(told(), 1);
+            assert_int_equal(kept_commands(), 1);
             assert_false(is_sending());
             assert_int_equal(return_to_automatic(), FATHOM_READY);
             assert_true(is_sending());
             assert_int_equal(set_threshold(750), FATHOM_READY); /* it is so already */
-            assert_int_equal(told(), 2);                        /* with 0x0202 */
+            assert_int_equal(kept_commands(), 2);                        /* with 0x0202 */
         }
 }
 
@@ -104,7 +104,7 @@ static void with_fault(uint8_t kind, uint32_t frame, uint32_t loop_us)
     hear_for(350 * MS);
     assert_non_null(fathom_sim_fault_add(&bench.fault, kind, ALWAYS, bench.fault.frames + frame));
     const fathom_status_t is_set = set_threshold(750);
-    assert_true(told() <= 1);
+    assert_true(kept_commands() <= 1);
     const uint16_t has = bench.a16.threshold_mm;
     assert_true(has == 750 || (has == 1000 && is_set != FATHOM_READY));
     if (is_set != FATHOM_READY && is_set != FATHOM_ERR_UNCONFIRMED && kind != FATHOM_SIM_FAULT_EXCEPTION)

@@ -5,7 +5,7 @@
  * sends real-time values from then on; in loops of any length, and with Modbus on the same line. */
 
 static fathom_a05_auto_t automatic;
-static fathom_a05_modbus_t *const asking = &s.driver.a05;
+static fathom_a05_modbus_t *const driver = &s.driver.a05;
 static fathom_pin_t rx;
 
 static void set_up_start(uint32_t loop_us, bool by_pin)
@@ -115,10 +115,10 @@ TEST(what_was_asked_meanwhile_is_sent_afterwards)
         set_up_start(loops_us[l], false);
         power(FATHOM_REAL_TIME, 0);
         uint8_t address = 0;
-        const fathom_sensor_t both[] = {s.sensor, fathom_a05_modbus_sensor(asking)};
+        const fathom_sensor_t both[] = {s.sensor, fathom_a05_modbus_sensor(driver)};
         fathom_status_t status;
         const uint32_t start_us = s.clock.now_us;
-        while ((status = fathom_a05_modbus_address(asking, &address)) == FATHOM_PENDING) {
+        while ((status = fathom_a05_modbus_address(driver, &address)) == FATHOM_PENDING) {
             while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY)
                 assert_int_equal(s.sample.distance_mm, bench.fixed.value[s.sample.probe - 1]);
             if (bench.line.in_break) COUNTED(.requests = NONE);
@@ -136,10 +136,10 @@ TEST(while_a_request_is_on_its_way_it_is_busy_and_nothing_changes)
     uint8_t address = 0;
     set_up_start(1 * MS, false);
     for (pass_us(20 * MS); s.line.head == NULL || s.line.head->attempts == 0; pass_us(1 * MS))
-        assert_int_equal(fathom_a05_modbus_address(asking, &address), FATHOM_PENDING);
+        assert_int_equal(fathom_a05_modbus_address(driver, &address), FATHOM_PENDING);
     assert_int_equal(fathom_a05_auto_select(&automatic, FATHOM_REAL_TIME), FATHOM_ERR_BUSY);
     assert_false(bench.line.in_break);
-    fathom_a05_modbus_cancel(asking);
+    fathom_a05_modbus_cancel(driver);
     power(FATHOM_REAL_TIME, 0);
     assert_true(bench.line.in_break);
     assert_int_equal(first_probe_mm(), 1000);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 #define DEFAULTS ((a05_config_t){0})
 /* the probes of the examples in A05 3(4)1 */
@@ -42,7 +42,7 @@ TEST(the_first_command_ends_automatic_output_until_power_off)
 {
     set_a05(FATHOM_SIM_A05_AUTO, EXAMPLE, DEFAULTS);
     wait_ms(250);
-    talk("01 03 01 06 00 01 65 F7", 300,
+    transact("01 03 01 06 00 01 65 F7", 300,
          "FF 01 3C 00 FA 02 93 09 7A 4E" /* at 300 ms, lingering */
          "01 03 02 01 3C B9 C5");        /* 3(4)1 example 1 */
     hear(5000, "");
@@ -77,23 +77,23 @@ TEST(a_response_and_a_frame_that_are_due_together_follow_each_other)
 TEST(reads_are_those_of_a05_3_4_1)
 {
     set_a05(FATHOM_SIM_A05_MODBUS, FIXED(316, 2331, 0, 0), DEFAULTS);
-    talk("01 03 01 06 00 01 65 F7", 150, "01 03 02 01 3C B9 C5"); /* example 1 */
-    talk("01 03 01 07 00 01 34 37", 150, "01 03 02 09 1B FE 1F"); /* example 2 */
+    transact("01 03 01 06 00 01 65 F7", 150, "01 03 02 01 3C B9 C5"); /* example 1 */
+    transact("01 03 01 07 00 01 34 37", 150, "01 03 02 09 1B FE 1F"); /* example 2 */
     bench.fixed = EXAMPLE;
-    talk("01 03 01 07 00 03 B5 F6", 350, "01 03 06 00 FA 02 93 09 7A 8F 47"); /* example 3 */
+    transact("01 03 01 07 00 03 B5 F6", 350, "01 03 06 00 FA 02 93 09 7A 8F 47"); /* example 3 */
     COUNTED(.measurements = 5);
 }
 
 TEST(the_fourth_probe_is_at_0109_though_the_table_calls_it_the_third)
 {
-    talk("01 03 01 09 00 01 55 F4", 150, "01 03 02 09 7A 3F F7");
-    talk("01 03 00 13 00 01 75 CF", 150, "01 03 02 09 7A 3F F7"); /* and at its other address */
+    transact("01 03 01 09 00 01 55 F4", 150, "01 03 02 09 7A 3F F7");
+    transact("01 03 00 13 00 01 75 CF", 150, "01 03 02 09 7A 3F F7"); /* and at its other address */
 }
 
 TEST(all_four_come_in_one_read_at_either_address)
 {
-    talk("01 03 01 06 00 04 A5 F4", 450, "01 03 08 01 3C 00 FA 02 93 09 7A 06 2A");
-    talk("01 03 00 10 00 04 45 CC", 450, "01 03 08 01 3C 00 FA 02 93 09 7A 06 2A");
+    transact("01 03 01 06 00 04 A5 F4", 450, "01 03 08 01 3C 00 FA 02 93 09 7A 06 2A");
+    transact("01 03 00 10 00 04 45 CC", 450, "01 03 08 01 3C 00 FA 02 93 09 7A 06 2A");
 }
 
 TEST(a_read_takes_about_100_ms_a_probe)
@@ -112,24 +112,24 @@ TEST(what_it_does_not_know_is_silence)
     ask("01 03 01 06 00 05 64 34", 450);
     ask("01 03 01 06 00 00 A4 37", 450); /* none at all */
     ask("01 03 01 05 00 01 95 F7", 450); /* before the first */
-    talk("01 04 01 00 00 01 30 36", 450, "");
+    transact("01 04 01 00 00 01 30 36", 450, "");
     COUNTED(.unserved = 6, .measurements = NONE);
     set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, (a05_config_t){.exceptions = true});
-    talk("01 03 01 05 00 01 95 F7", 450, "01 83 02 C0 F1");
-    talk("01 03 01 09 00 02 15 F5", 450, "01 83 03 01 31");
+    transact("01 03 01 05 00 01 95 F7", 450, "01 83 02 C0 F1");
+    transact("01 03 01 09 00 02 15 F5", 450, "01 83 03 01 31");
 }
 
 TEST(set_address_is_echoed_and_obeyed_a05_3_4_2)
 {
     echoed("01 06 02 00 00 05 48 71", 50);
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
-    talk("01 03 02 00 00 01 85 B2", 50, "");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact("01 03 02 00 00 01 85 B2", 50, "");
 }
 
 TEST(a_broadcast_is_obeyed_without_a_response)
 {
     ask("FF 06 02 00 00 05 5D AF", 300);
-    talk("FF 03 01 06 00 01 70 29", 300, "");
+    transact("FF 03 01 06 00 01 70 29", 300, "");
     assert_int_equal(bench.a05.device.unit, 5);
     COUNTED(.requests = 2);
 }
@@ -137,8 +137,8 @@ TEST(a_broadcast_is_obeyed_without_a_response)
 TEST(it_is_deaf_and_silent_until_it_is_up)
 {
     set_a05(FATHOM_SIM_A05_MODBUS, EXAMPLE, (a05_config_t){.start_us = 900 * MS});
-    talk("01 03 01 06 00 01 65 F7", 880, "");
+    transact("01 03 01 06 00 01 65 F7", 880, "");
     COUNTED(.unheard = 8);
     wait_ms(20);
-    talk("01 03 01 06 00 01 65 F7", 150, "01 03 02 01 3C B9 C5");
+    transact("01 03 01 06 00 01 65 F7", 150, "01 03 02 01 3C B9 C5");
 }

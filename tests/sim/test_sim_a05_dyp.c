@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 /* The 55 AA protocol of the A05 (A05 2(3)). 55 + AA is FF, so a sum is that of the rest less 1. */
 
@@ -11,25 +11,25 @@ static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(all_probes_are_those_of_a05_2_3_3_whose_sum_is_62_not_60)
 {
-    talk("55 AA 01 01 01", 300, "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62");
+    transact("55 AA 01 01 01", 300, "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62");
     COUNTED(.measurements = 4, .requests = 1, .answered = 1);
 }
 
 TEST(one_probe_is_that_of_a05_2_3_4_and_the_others_follow)
 {
     set_a05(FATHOM_SIM_A05_DYP, FIXED(1953, 2000, 1000, 3562), DEFAULTS);
-    talk("55 AA 01 10 10", 150, "55 AA 01 10 07 A1 B8");
-    talk("55 AA 01 11 11", 150, "55 AA 01 11 07 D0 E8"); /* 01 + 11 + 07 + D0 - 1 */
-    talk("55 AA 01 12 12", 150, "55 AA 01 12 03 E8 FD"); /* 01 + 12 + 03 + E8 - 1 */
-    talk("55 AA 01 13 13", 150, "55 AA 01 13 0D EA 0A"); /* 01 + 13 + 0D + EA - 1 = 10A */
+    transact("55 AA 01 10 10", 150, "55 AA 01 10 07 A1 B8");
+    transact("55 AA 01 11 11", 150, "55 AA 01 11 07 D0 E8"); /* 01 + 11 + 07 + D0 - 1 */
+    transact("55 AA 01 12 12", 150, "55 AA 01 12 03 E8 FD"); /* 01 + 12 + 03 + E8 - 1 */
+    transact("55 AA 01 13 13", 150, "55 AA 01 13 0D EA 0A"); /* 01 + 13 + 0D + EA - 1 = 10A */
     COUNTED(.measurements = 4);
 }
 
 TEST(no_target_and_interference_are_sent_as_in_the_other_modes)
 {
     set_a05(FATHOM_SIM_A05_DYP, FIXED(FATHOM_SIM_NO_TARGET, FATHOM_SIM_INTERFERENCE, 1, 2), DEFAULTS);
-    talk("55 AA 01 10 10", 150, "55 AA 01 10 FF FD 0C"); /* 01 + 10 + FF + FD - 1 = 20C */
-    talk("55 AA 01 11 11", 150, "55 AA 01 11 FF FE 0E"); /* 01 + 11 + FF + FE - 1 = 20E */
+    transact("55 AA 01 10 10", 150, "55 AA 01 10 FF FD 0C"); /* 01 + 10 + FF + FD - 1 = 20C */
+    transact("55 AA 01 11 11", 150, "55 AA 01 11 FF FE 0E"); /* 01 + 11 + FF + FE - 1 = 20E */
 }
 
 /* The spread of the first byte's end less its own 1042 us, over many seeds. */
@@ -69,7 +69,7 @@ TEST(it_measures_when_it_answers_and_is_deaf_until_then)
 {
     ask("55 AA 01 10 10", 30);
     bench.fixed.value[0] = 1953;
-    talk("55 AA 01 11 11", 200, "55 AA 01 10 07 A1 B8");
+    transact("55 AA 01 11 11", 200, "55 AA 01 10 07 A1 B8");
     COUNTED(.unheard = 5);
 }
 
@@ -77,10 +77,10 @@ TEST(set_address_is_answered_with_its_own_bytes_a05_2_3_5)
 {
     echoed("55 AA 05 03 07", 50);
     COUNTED(.writes = 1);
-    talk("55 AA 01 10 10", 300, ""); /* the old one */
+    transact("55 AA 01 10 10", 300, ""); /* the old one */
     COUNTED(.others = 1);
-    talk("55 AA 05 11 15", 300, "55 AA 05 11 07 D0 EC");         /* 05 + 11 + 07 + D0 - 1 */
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87"); /* and in Modbus */
+    transact("55 AA 05 11 15", 300, "55 AA 05 11 07 D0 EC");         /* 05 + 11 + 07 + D0 - 1 */
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87"); /* and in Modbus */
     echoed("55 AA FE 03 00", 50);                                /* the highest: FE + 03 - 1 = 100 */
     assert_int_equal(bench.a05.device.unit, 0xFE);
 }
@@ -104,7 +104,7 @@ TEST(every_unit_that_hears_set_address_obeys_it)
 TEST(addresses_00_and_ff_are_refused_in_silence)
 {
     ask("55 AA 00 03 02", 300);
-    talk("55 AA FF 03 01", 300, "");
+    transact("55 AA FF 03 01", 300, "");
     assert_int_equal(bench.a05.device.unit, 1);
     COUNTED(.writes = NONE, .unserved = 2);
 }
@@ -112,12 +112,12 @@ TEST(addresses_00_and_ff_are_refused_in_silence)
 TEST(ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to)
 {
     set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.unit = 7});
-    talk("55 AA FF 11 0F", 300, "55 AA 07 11 07 D0 EE"); /* 07 + 11 + 07 + D0 - 1 */
-    talk("FF 03 01 06 00 01 70 29", 300, "");            /* Modbus has its own option */
+    transact("55 AA FF 11 0F", 300, "55 AA 07 11 07 D0 EE"); /* 07 + 11 + 07 + D0 - 1 */
+    transact("FF 03 01 06 00 01 70 29", 300, "");            /* Modbus has its own option */
     set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.unit = 7, .dyp_silent_broadcast = true});
-    talk("55 AA FF 11 0F", 300, "");
+    transact("55 AA FF 11 0F", 300, "");
     COUNTED(.requests = 1, .unserved = NONE);
-    talk("55 AA 07 11 17", 300, "55 AA 07 11 07 D0 EE");
+    transact("55 AA 07 11 17", 300, "55 AA 07 11 07 D0 EE");
 }
 
 TEST(what_it_does_not_know_is_silence_and_counted)
@@ -139,16 +139,16 @@ TEST(what_it_does_not_know_is_silence_and_counted)
     expect("");
     assert_int_equal(bench.a05.device.unit, 1);
     COUNTED(.measurements = NONE);
-    talk("55 AA 01 10 10", 300, "55 AA 01 10 03 E8 FB"); /* 01 + 10 + 03 + E8 - 1 */
+    transact("55 AA 01 10 10", 300, "55 AA 01 10 03 E8 FB"); /* 01 + 10 + 03 + E8 - 1 */
 }
 
 TEST(it_speaks_modbus_at_the_same_time)
 {
     set_a05(FATHOM_SIM_A05_DYP, FIXED(316, 250, 659, 2426), DEFAULTS);
-    talk("01 03 01 07 00 03 B5 F6", 450, "01 03 06 00 FA 02 93 09 7A 8F 47");
-    talk("55 AA 01 11 11", 300, "55 AA 01 11 00 FA 0B"); /* 01 + 11 + FA - 1 = 10B */
+    transact("01 03 01 07 00 03 B5 F6", 450, "01 03 06 00 FA 02 93 09 7A 8F 47");
+    transact("55 AA 01 11 11", 300, "55 AA 01 11 00 FA 0B"); /* 01 + 11 + FA - 1 = 10B */
     echoed("01 06 02 00 00 05 48 71", 50);
-    talk("55 AA 05 11 15", 300, "55 AA 05 11 00 FA 0F");
+    transact("55 AA 05 11 15", 300, "55 AA 05 11 00 FA 0F");
 }
 
 TEST(the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself)
@@ -156,7 +156,7 @@ TEST(the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself)
     hear(5000, "");
     set_a05(FATHOM_SIM_A05_MODBUS, ALL, DEFAULTS);
     ask("55 AA 01 01 01", 300);
-    talk("55 AA 05 03 07", 300, "");
+    transact("55 AA 05 03 07", 300, "");
     COUNTED(.crc_errors = 2);
     assert_int_equal(bench.a05.device.unit, 1);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the A05 keeps, and what it looks at when power comes: A05 1(1), 2(3)5, 3(4)2. */
-#include "talk.h"
+#include "sim_bench.h"
 
 static void set(uint8_t mode, a05_config_t config)
 {
@@ -38,8 +38,8 @@ TEST(the_level_counts_when_power_comes_and_not_later)
 
 TEST(what_is_asked_for_is_real_time_whatever_was_selected)
 {
-    talk("01 03 01 06 00 04 A5 F4", 450, "01 03 08 03 E8 07 D0 07 A1 0D EA A8 20");
-    talk("55 AA 01 01 01", 250,
+    transact("01 03 01 06 00 04 A5 F4", 450, "01 03 08 03 E8 07 D0 07 A1 0D EA A8 20");
+    transact("55 AA 01 01 01", 250,
          "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62"); /* 2(3)3; the printed sum of the response is wrong */
 }
 
@@ -54,10 +54,10 @@ TEST(the_address_is_kept_whichever_protocol_set_it)
 {
     echoed("55 AA 05 03 07", 50); /* 2(3)5 */
     cycle_power(100, 101);
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
     echoed("05 06 02 00 00 09 49 F0", 50);
     cycle_power(100, 101);
-    talk("55 AA 09 10 18", 100, "55 AA 09 10 03 E8 03"); /* 55 + AA + 09 + 10 = 118, + 03 + E8 = 203 */
+    transact("55 AA 09 10 18", 100, "55 AA 09 10 03 E8 03"); /* 55 + AA + 09 + 10 = 118, + 03 + E8 = 203 */
     COUNTED(.writes = 2, .flash_writes = 2);
 }
 
@@ -76,16 +76,16 @@ TEST(what_it_does_not_obey_is_counted)
     ask("01 10 02 00 00 01 02 00 05 45 93", 50);
     ask("55 AA 00 03 02", 50); /* 00 and FF are no addresses */
     ask("55 AA FF 03 01", 50);
-    talk("55 AA 05 03 00 00 07", 50, ""); /* another length */
+    transact("55 AA 05 03 00 00 07", 50, ""); /* another length */
     assert_int_equal(bench.a05.device.unit, 1);
     COUNTED(.writes_refused = 7, .writes = NONE, .flash_writes = NONE);
     ask("55 AA 01 14 14", 100); /* refused, but no write */
-    talk("01 03 01 0A 00 01 A5 F4", 100, "");
+    transact("01 03 01 0A 00 01 A5 F4", 100, "");
     COUNTED(.writes_refused = 7);
 }
 
 TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     set(FATHOM_SIM_A05_MODBUS, (a05_config_t){.answers_from_new = true});
-    talk("01 06 02 00 00 05 48 71", 50, "05 06 02 00 00 05 49 F5");
+    transact("01 06 02 00 00 05 48 71", 50, "05 06 02 00 00 05 49 F5");
 }

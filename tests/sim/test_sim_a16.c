@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 #define DEFAULTS ((a16_config_t){0})
 
@@ -72,7 +72,7 @@ TEST(the_first_command_ends_automatic_output_with_frames_around_the_response)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
     wait_ms(50);
-    talk(A16_ASKED, 300,
+    transact(A16_ASKED, 300,
          A16_FRAME           /* at 100 ms, nobody stopped it yet */
              A16_RESPONSE    /* the response, A16 6(4) example 2, about 175 ms */
                  A16_FRAME); /* at 200 ms, within the 150 ms */
@@ -84,14 +84,14 @@ TEST(without_lingering_the_command_is_the_end)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
     hear(105, A16_FRAME);
-    talk(A16_ASKED, 1000, A16_RESPONSE);
+    transact(A16_ASKED, 1000, A16_RESPONSE);
 }
 
 TEST(a_command_is_heard_while_a_frame_leaves_on_two_wires_each_way)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
     wait_ms(95); /* the request lasts from 95 to 103.3 ms, the frame from 100 to 104.2 */
-    talk(A16_ASKED, 1000, A16_FRAME A16_RESPONSE);
+    transact(A16_ASKED, 1000, A16_FRAME A16_RESPONSE);
 }
 
 TEST(only_a_command_for_it_ends_automatic_output)
@@ -119,7 +119,7 @@ TEST(a_uart_module_takes_no_command)
 TEST(power_makes_it_automatic_again)
 {
     set_a16(FATHOM_SIM_A16_AUTO, 751, (a16_config_t){.linger_us = 1});
-    talk(A16_ASKED, 500, A16_RESPONSE);
+    transact(A16_ASKED, 500, A16_RESPONSE);
     fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us);
     fathom_sim_detach(&bench.line, &bench.a16.device, bench.now_us); /* twice is no error */
     hear(500, "");
@@ -133,23 +133,23 @@ TEST(reads_are_those_of_a16_6_4)
 {
     set_a16(FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
     hear(10000, "");
-    talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1, 0x0100 */
+    transact("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1, 0x0100 */
     bench.fixed.value[0] = 751;
-    talk(A16_ASKED, 600, A16_RESPONSE); /* example 2, 0x0101 */
+    transact(A16_ASKED, 600, A16_RESPONSE); /* example 2, 0x0101 */
     bench.fixed.value[0] = FATHOM_SIM_NO_TARGET;
-    talk(A16_ASKED, 600, "01 03 02 FF FD 38 35");
+    transact(A16_ASKED, 600, "01 03 02 FF FD 38 35");
     bench.fixed.value[0] = FATHOM_SIM_INTERFERENCE;
-    talk(A16_ASKED, 600, "01 03 02 FF FE 78 34");
+    transact(A16_ASKED, 600, "01 03 02 FF FE 78 34");
     COUNTED(.requests = 4, .answered = 4, .measurements = 4);
 }
 
 TEST(settings_read_as_from_the_factory)
 {
     set_a16(FATHOM_SIM_A16_MODBUS, 754, DEFAULTS);
-    talk("01 03 02 00 00 01 85 B2", 30, "01 03 02 00 01 79 84");
-    talk("01 03 02 05 00 01 95 B3", 30, "01 03 02 00 01 79 84");
-    talk("01 03 02 06 00 01 65 B3", 30, "01 03 02 03 E8 B8 FA");
-    talk("01 03 02 07 00 01 34 73", 30, "01 03 02 00 00 B8 44");
+    transact("01 03 02 00 00 01 85 B2", 30, "01 03 02 00 01 79 84");
+    transact("01 03 02 05 00 01 95 B3", 30, "01 03 02 00 01 79 84");
+    transact("01 03 02 06 00 01 65 B3", 30, "01 03 02 03 E8 B8 FA");
+    transact("01 03 02 07 00 01 34 73", 30, "01 03 02 00 00 B8 44");
     COUNTED(.measurements = NONE);
 }
 
@@ -192,31 +192,31 @@ TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 {
     echoed("01 06 02 00 00 05 48 71", 50);
     COUNTED(.writes = 1);
-    talk(A16_ASKED, 300, "");
-    talk("05 03 01 01 00 01 D5 B2", 300, "05 03 02 02 EF 09 68");
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact(A16_ASKED, 300, "");
+    transact("05 03 01 01 00 01 D5 B2", 300, "05 03 02 02 EF 09 68");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
 TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
 {
-    talk("01 06 02 00 00 FF C8 32", 300, "");
+    transact("01 06 02 00 00 FF C8 32", 300, "");
     assert_int_equal(bench.a16.device.unit, 1);
     COUNTED(.writes = NONE);
 }
 
 TEST(a_broadcast_is_obeyed_without_a_response)
 {
-    talk("FF 06 02 00 00 05 5D AF", 300, "");
+    transact("FF 06 02 00 00 05 5D AF", 300, "");
     assert_int_equal(bench.a16.device.unit, 5);
     COUNTED(.writes = 1);
-    talk("FF 03 01 01 00 01 C1 E8", 300, "");
+    transact("FF 03 01 01 00 01 C1 E8", 300, "");
     COUNTED(.requests = 2, .answered = NONE);
 }
 
 TEST(a_broadcast_is_answered_from_its_own_address_as_an_option)
 {
     set_a16(FATHOM_SIM_A16_MODBUS, 751, (a16_config_t){.unit = 5, .answers_broadcast = true});
-    talk("FF 03 01 01 00 01 C1 E8", 300, "05 03 02 02 EF 09 68");
+    transact("FF 03 01 01 00 01 C1 E8", 300, "05 03 02 02 EF 09 68");
 }
 
 TEST(what_it_does_not_know_is_silence)
@@ -224,15 +224,15 @@ TEST(what_it_does_not_know_is_silence)
     ask("01 03 01 02 00 01 24 36", 600);      /* unknown register */
     ask("01 03 01 00 00 02 C5 F7", 600);      /* two at once */
     ask("01 03 02 02 00 01 24 72", 600);      /* write-only */
-    talk("01 04 01 00 00 01 30 36", 600, ""); /* unknown function */
+    transact("01 04 01 00 00 01 30 36", 600, ""); /* unknown function */
     COUNTED(.requests = 4, .unserved = 4);
 }
 
 TEST(exceptions_are_an_option)
 {
     set_a16(FATHOM_SIM_A16_MODBUS, 751, (a16_config_t){.exceptions = true});
-    talk("01 03 01 02 00 01 24 36", 100, "01 83 02 C0 F1");
-    talk("01 03 01 00 00 02 C5 F7", 100, "01 83 03 01 31");
-    talk("01 04 01 00 00 01 30 36", 100, "01 84 01 82 C0");
+    transact("01 03 01 02 00 01 24 36", 100, "01 83 02 C0 F1");
+    transact("01 03 01 00 00 02 C5 F7", 100, "01 83 03 01 31");
+    transact("01 04 01 00 00 01 30 36", 100, "01 84 01 82 C0");
     COUNTED(.exceptions = 3);
 }

@@ -298,7 +298,7 @@ TEST(a_level_that_falls_on_a_uarts_pin_is_a_break_to_the_host)
     assert_int_equal(edges, 3);
 }
 
-TEST(a_break_spoils_the_frame_that_a_device_hears)
+TEST(a_break_damages_the_frame_that_a_device_hears)
 {
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xD4, 0x36}; /* A16 6(4) */
     const fathom_uart_t uart = s.uart;

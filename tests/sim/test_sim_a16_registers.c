@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The registers of the A16 that are written: A16 6(3), 6(4). */
-#include "talk.h"
+#include "sim_bench.h"
 
 /* 751 mm, or processed 754 mm: examples 1 and 2. */
 static void set(uint8_t mode, a16_config_t config)
@@ -24,11 +24,11 @@ static void is_kept(const char *read, const char *write, const char *value, cons
 {
     set(FATHOM_SIM_A16_MODBUS, DEFAULTS);
     echoed(write, 50);
-    talk(read, 50, value);
+    transact(read, 50, value);
     cycle_power(100, 101);
-    talk(read, 50, value);
+    transact(read, 50, value);
     echoed(write_other, 50);
-    talk(read, 50, other);
+    transact(read, 50, other);
 }
 
 TEST(polarity_of_example_6_is_echoed_read_back_and_kept)
@@ -54,10 +54,10 @@ TEST(data_type_of_example_5_is_echoed_read_back_and_kept)
 
 TEST(processed_and_real_time_values_are_two)
 {
-    talk("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
-    talk(A16_ASKED, 200, A16_RESPONSE);                           /* example 2 */
+    transact("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
+    transact(A16_ASKED, 200, A16_RESPONSE);                           /* example 2 */
     bench.a16.device.processed.distance = NULL;                   /* then they are one */
-    talk("01 03 01 00 00 01 85 F6", 600, A16_RESPONSE);
+    transact("01 03 01 00 00 01 85 F6", 600, A16_RESPONSE);
 }
 
 TEST(automatic_frames_say_the_value_of_the_data_type)
@@ -88,12 +88,12 @@ TEST(a_uart_module_says_what_the_level_of_rx_selects_2_2)
 TEST(automatic_output_returns_with_the_command_of_example_4)
 {
     set(FATHOM_SIM_A16_AUTO, DEFAULTS);
-    talk("01 03 02 00 00 01 85 B2", 2000, "01 03 02 00 01 79 84");
+    transact("01 03 02 00 00 01 85 B2", 2000, "01 03 02 00 01 79 84");
     echoed("01 06 02 02 00 01 E8 72", 98);
     wait_ms(210);
     ASSERT_ANSWERED_IN(100 * MS + 1041, 100 * MS + 1043);
     expect(AUTO_PROCESSED AUTO_PROCESSED AUTO_PROCESSED);
-    talk("01 03 02 00 00 01 85 B2", 1000, "01 03 02 00 01 79 84"); /* and ends again */
+    transact("01 03 02 00 00 01 85 B2", 1000, "01 03 02 00 01 79 84"); /* and ends again */
     COUNTED(.writes = 1, .flash_writes = NONE);
 }
 
@@ -111,7 +111,7 @@ TEST(the_controlled_mode_stays_and_no_mode_is_kept)
     echoed("01 06 02 02 00 00 29 B2", 1000);
     cycle_power(100, 101);
     hear(105, AUTO_PROCESSED);
-    talk("01 03 02 02 00 01 24 72", 1000, ""); /* write-only: no response, and it ends the output */
+    transact("01 03 02 02 00 01 24 72", 1000, ""); /* write-only: no response, and it ends the output */
 }
 
 TEST(rs485_has_no_automatic_mode_to_return_to)
@@ -142,11 +142,11 @@ TEST(a_value_that_a_register_does_not_have_is_silence_or_exception_3)
     refuse_all();
     expect(REFUSED REFUSED REFUSED REFUSED REFUSED REFUSED REFUSED REFUSED);
     ask("01 06 01 00 00 01 49 F6", 50); /* a distance, and between the registers */
-    talk("01 06 02 03 00 01 B9 B2", 50, "01 86 02 C3 A1 01 86 02 C3 A1");
-    talk("01 10 02 06 00 01 02 07 D0 86 5A", 50, "01 90 01 8D C0"); /* no function 16 */
+    transact("01 06 02 03 00 01 B9 B2", 50, "01 86 02 C3 A1 01 86 02 C3 A1");
+    transact("01 10 02 06 00 01 02 07 D0 86 5A", 50, "01 90 01 8D C0"); /* no function 16 */
     ask("01 03 02 05 00 01 95 B3", 50);
     ask("01 03 02 06 00 01 65 B3", 50);
-    talk("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84 01 03 02 03 E8 B8 FA 01 03 02 00 00 B8 44");
+    transact("01 03 02 07 00 01 34 73", 50, "01 03 02 00 01 79 84 01 03 02 03 E8 B8 FA 01 03 02 00 00 B8 44");
 }
 
 TEST(flash_wears_with_each_setting_that_is_kept)
@@ -159,22 +159,22 @@ TEST(flash_wears_with_each_setting_that_is_kept)
     COUNTED(.flash_writes = 4, .writes = 4);
     forget();
     cycle_power(100, 101);
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
 TEST(a_broadcast_is_obeyed_without_a_response)
 {
-    talk("FF 06 02 06 07 D0 7E 01", 50, "");
-    talk("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
+    transact("FF 06 02 06 07 D0 7E 01", 50, "");
+    transact("01 03 02 06 00 01 65 B3", 50, "01 03 02 07 D0 BB E8");
 }
 
 TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.answers_from_new = true});
-    talk("01 06 02 00 00 05 48 71", 50, "05 06 02 00 00 05 49 F5");
+    transact("01 06 02 00 00 05 48 71", 50, "05 06 02 00 00 05 49 F5");
     echoed("05 06 02 06 07 D0 6A 5B", 50);
     set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.answers_from_new = true, .answers_broadcast = true});
-    talk("FF 06 02 00 00 06 1D AE", 50, "06 06 02 00 00 06 09 C7");
+    transact("FF 06 02 00 00 06 1D AE", 50, "06 06 02 00 00 06 09 C7");
     set(FATHOM_SIM_A16_MODBUS, (a16_config_t){.answers_broadcast = true});
-    talk("FF 06 02 00 00 06 1D AE", 50, "01 06 02 00 00 06 08 70");
+    transact("FF 06 02 00 00 06 1D AE", 50, "01 06 02 00 00 06 08 70");
 }

@@ -197,13 +197,13 @@ TEST(count_is_one_less_or_more_where_there_is_one)
     set_faulty(A05_MODBUS, 0);
     bench.fixed = FIXED(250, 659, 2426, 316);
     FAULT(COUNT, ALWAYS, 0);
-    talk("01 03 01 06 00 04 A5 F4", 450, "01 03 06 00 FA 02 93 09 7A 8F 47");
-    talk("01 03 01 06 00 02 25 F6", 450, "01 03 02 00 FA 38 07"); /* two asked, one answered */
+    transact("01 03 01 06 00 04 A5 F4", 450, "01 03 06 00 FA 02 93 09 7A 8F 47");
+    transact("01 03 01 06 00 02 25 F6", 450, "01 03 02 00 FA 38 07"); /* two asked, one answered */
     ask("01 06 02 00 00 05 48 71", 50);
     expect_sealed("01 06 02 00 00 05 00", 9); /* what has no values gets a byte more */
     set_faulty(A05_DYP, 0);
     FAULT(COUNT, ALWAYS, 0);
-    talk("55 AA 05 03 07", 50, "55 AA 05 03 00 07");
+    transact("55 AA 05 03 07", 50, "55 AA 05 03 00 07");
 }
 
 TEST(exception_is_of_the_code_given_or_any)

@@ -106,7 +106,7 @@ TEST(marks_move_with_their_bytes)
     }
 }
 
-TEST(another_device_takes_a_marked_byte_for_spoiled)
+TEST(another_device_takes_a_marked_byte_for_damaged)
 {
     fathom_sim_a16_t other;
     set_faulty(A16_MODBUS, 1);

@@ -81,7 +81,7 @@ TEST(delay_and_late_come_later_by_so_much)
         FAULT(LATE, ALWAYS, 4)->us = 700 * MS;
         fathom_sim_fault_enable(&bench.fault, is_hit != 0);
         for (size_t i = 0; i < 5; i++) {
-            talk(A16_ASKED, 2000, A16_RESPONSE);
+            transact(A16_ASKED, 2000, A16_RESPONSE);
             if (is_hit == 0) plain_us[i] = bench.end_us[0];
             assert_int_equal(bench.end_us[0] - plain_us[i], is_hit != 0 ? by_us[i] : 0);
         }
@@ -95,9 +95,9 @@ TEST(a_late_response_keeps_the_device_deaf_and_an_automatic_frame_may_be_late_to
 {
     set_faulty(A16_MODBUS, 0);
     FAULT(LATE, ALWAYS, 1)->us = 700 * MS;
-    talk(A16_ASKED, 400, "");
+    transact(A16_ASKED, 400, "");
     const uint32_t asked_us = bench.asked_us;
-    talk(A16_ASKED, 500, A16_RESPONSE); /* the host asks again, in vain */
+    transact(A16_ASKED, 500, A16_RESPONSE); /* the host asks again, in vain */
     ASSERT_SPAN(bench.end_us[0], asked_us, 805 * MS, 822 * MS);
     hear(2000, "");
     COUNTED(.requests = 1, .unheard = 8);
@@ -112,11 +112,11 @@ TEST(silence_keeps_the_frame_back_and_the_device_is_free)
 {
     set_faulty(A16_MODBUS, 0);
     FAULT(SILENCE, ALWAYS, 2);
-    talk(A16_ASKED, 150, A16_RESPONSE);
-    talk(A16_ASKED, 130, "");
+    transact(A16_ASKED, 150, A16_RESPONSE);
+    transact(A16_ASKED, 130, "");
     COUNTED(.answered = 2);
     assert_int_equal(HITS(SILENCE), 1);
-    talk(A16_ASKED, 150, A16_RESPONSE);
+    transact(A16_ASKED, 150, A16_RESPONSE);
 }
 
 TEST(power_cycle_cuts_the_frame_and_the_device_starts_anew)
@@ -150,7 +150,7 @@ TEST(without_power_a_device_is_deaf_and_then_begins_in_its_first_mode)
     ask(A16_ASKED, 500);
     assert_in_range(bench.heard, 0, 6);
     forget();
-    talk(A16_ASKED, 300, "");
+    transact(A16_ASKED, 300, "");
     COUNTED(.unheard = 8);
     wait_ms(600);
     assert_true(bench.heard >= 4);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 /* What a hook is to do with the next frames. */
 typedef struct {
@@ -56,25 +56,25 @@ static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(a_hook_that_does_nothing_changes_nothing)
 {
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(out.seen, 1);
     assert_false(out.last_automatic);
     assert_int_equal(out.copied, 7);
     faults.outgoing = NULL;
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(out.seen, 1);
 }
 
 TEST(a_bit_can_be_flipped)
 {
     out.flip = 0x10;
-    talk(A16_ASKED, 200, "01 03 02 12 EF F8 A8");
+    transact(A16_ASKED, 200, "01 03 02 12 EF F8 A8");
 }
 
 TEST(a_response_can_be_shorter_or_longer)
 {
     out.length = 4;
-    talk(A16_ASKED, 200, "01 03 02 02");
+    transact(A16_ASKED, 200, "01 03 02 02");
     out.length = 0;
     out.longer = true;
     for (int i = 0; i < 4; i++) {
@@ -139,13 +139,13 @@ TEST(a_request_can_be_missed_or_heard_wrong)
     faults.incoming = incoming;
     faults.ctx = &in;
     in.drop = true;
-    talk(A16_ASKED, 200, "");
+    transact(A16_ASKED, 200, "");
     assert_int_equal(bench.a16.device.counters.requests + bench.a16.device.counters.crc_errors, 0);
     in.drop = false;
     in.flip = 0x80;
-    talk(A16_ASKED, 200, "");
+    transact(A16_ASKED, 200, "");
     COUNTED(.crc_errors = 1);
     in.flip = 0;
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
     assert_int_equal(in.seen, 3);
 }

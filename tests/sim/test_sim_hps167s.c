@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 #define DEFAULTS ((hps_config_t){0})
 #define MEASURE  "01 03 00 08 00 04 C5 CB" /* table 17 */
@@ -9,45 +9,45 @@ static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
 TEST(single_measurement_is_that_of_command_5)
 {
-    talk(MEASURE, 20, "01 03 08 08 23 DC B2 07 01 00 00 FD 41"); /* table 17 */
+    transact(MEASURE, 20, "01 03 08 08 23 DC B2 07 01 00 00 FD 41"); /* table 17 */
     COUNTED(.measurements = 1);
 }
 
 TEST(the_misprinted_crc_of_the_abnormal_response_is_no_request)
 {
-    talk("01 03 00 08 00 04 C5 C8", 50, "");
+    transact("01 03 00 08 00 04 C5 C8", 50, "");
     COUNTED(.crc_errors = 1, .requests = NONE);
 }
 
 TEST(sensor_details_are_those_of_command_3)
 {
-    talk("01 03 00 03 00 0B F4 0D", 30,
+    transact("01 03 00 03 00 0B F4 0D", 30,
          "01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC"); /* table 13 */
 }
 
 TEST(version_configuration_and_temperature_response_tables_9_11_15)
 {
     set_hps(2083, (hps_config_t){.temperature_f = -10});
-    talk("01 03 00 01 00 03 54 0B", 30, "01 03 06 14 09 1B 02 01 00 58 D4");
+    transact("01 03 00 01 00 03 54 0B", 30, "01 03 06 14 09 1B 02 01 00 58 D4");
     ask("01 03 00 02 00 04 E5 C9", 30);
     /* FF termination, FF automatic, warm-up 0 s, reconnect 180 ms, rate 1 */
     expect("01 03 08 FF FF 00 00 00 00 B4 01 63 1C");
-    talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 FF F6 79 F2");
+    transact("01 03 00 04 00 01 C5 CB", 30, "01 03 02 FF F6 79 F2");
     bench.hps.temperature_f = 77;
-    talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
+    transact("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
     COUNTED(.measurements = NONE);
 }
 
 TEST(no_target_is_65530_with_little_light)
 {
     set_hps(FATHOM_SIM_NO_TARGET, DEFAULTS);
-    talk(MEASURE, 30, "01 03 08 FF FA 00 10 00 01 00 00 10 DF");
+    transact(MEASURE, 30, "01 03 08 FF FA 00 10 00 01 00 00 10 DF");
 }
 
 TEST(a_fault_is_the_abnormal_packet_of_command_5)
 {
     set_hps(FATHOM_SIM_FAULT, DEFAULTS);
-    talk(MEASURE, 30, "01 03 08 FF FF 00 00 00 FF FF FF E4 5C");
+    transact(MEASURE, 30, "01 03 08 FF FF 00 00 00 FF FF FF E4 5C");
 }
 
 TEST(the_first_response_comes_at_once_and_the_next_a_period_later)
@@ -101,13 +101,13 @@ TEST(it_says_nothing_unless_asked)
 
 TEST(a_command_with_another_length_is_exception_2)
 {
-    talk("01 03 00 08 00 03 84 09", 30, "01 83 02 C0 F1"); /* the datasheet's own example */
-    talk("01 03 00 08 00 05 04 0B", 30, "01 83 02 C0 F1");
-    talk("01 03 00 08 00 00 C4 08", 30, "01 83 02 C0 F1");
-    talk("01 03 00 08 01 04 C4 5B", 30, "01 83 02 C0 F1"); /* 260, not 4 */
+    transact("01 03 00 08 00 03 84 09", 30, "01 83 02 C0 F1"); /* the datasheet's own example */
+    transact("01 03 00 08 00 05 04 0B", 30, "01 83 02 C0 F1");
+    transact("01 03 00 08 00 00 C4 08", 30, "01 83 02 C0 F1");
+    transact("01 03 00 08 01 04 C4 5B", 30, "01 83 02 C0 F1"); /* 260, not 4 */
     COUNTED(.exceptions = 4, .measurements = NONE);
     set_hps(2083, (hps_config_t){.wrong_length = 3});
-    talk("01 03 00 08 00 03 84 09", 30, "01 83 03 01 31");
+    transact("01 03 00 08 00 03 84 09", 30, "01 83 03 01 31");
 }
 
 TEST(every_length_but_the_right_one_is_refused_at_every_address)
@@ -134,19 +134,19 @@ TEST(every_length_but_the_right_one_is_refused_at_every_address)
 
 TEST(an_unknown_function_is_exception_1_whatever_its_length)
 {
-    talk("01 04 00 08 00 04 70 0B", 30, "01 84 01 82 C0");
-    talk("01 11 C0 2C", 30, "01 91 01 8C 50");
-    talk("01 83 02 C0 F1", 30, ""); /* but a response is no request */
+    transact("01 04 00 08 00 04 70 0B", 30, "01 84 01 82 C0");
+    transact("01 11 C0 2C", 30, "01 91 01 8C 50");
+    transact("01 83 02 C0 F1", 30, ""); /* but a response is no request */
 }
 
 TEST(factory_reset_is_that_of_tables_19_and_20_and_is_counted)
 {
     set_hps(2083, (hps_config_t){.unit = 2, .no_termination = true});
-    talk("02 03 00 09 00 01 54 3B", 30, "02 03 02 00 01 3D 84");
+    transact("02 03 00 09 00 01 54 3B", 30, "02 03 02 00 01 3D 84");
     COUNTED(.resets = 1);
     /* address 1 again, termination on, warm-up 5 s */
-    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
-    talk("01 03 00 09 00 01 54 08", 30, "01 03 02 00 01 79 84");
+    transact("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
+    transact("01 03 00 09 00 01 54 08", 30, "01 03 02 00 01 79 84");
     COUNTED(.resets = 2);
 }
 
@@ -156,31 +156,31 @@ TEST(it_works_at_the_rates_of_command_9_and_leaves_them_after_the_response_to_a_
     for (uint8_t code = 1; code <= 4; code++) {
         set_hps(2083, (hps_config_t){.baud_code = code});
         at_rate(baud[code - 1], FATHOM_PARITY_EVEN);
-        talk(MEASURE, 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
+        transact(MEASURE, 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
         ask("01 03 00 02 00 04 E5 C9", 30);
         assert_int_equal(bench.bytes[10], code);
         forget();
-        talk("01 03 00 09 00 01 54 08", 30, "01 03 02 00 01 79 84");
+        transact("01 03 00 09 00 01 54 08", 30, "01 03 02 00 01 79 84");
         at_rate(19200, FATHOM_PARITY_EVEN);
-        talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
+        transact("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
     }
 }
 
 TEST(nothing_else_resets_it)
 {
-    talk("01 03 00 09 00 02 14 09", 30, "01 83 02 C0 F1");
-    talk("01 03 00 09 00 00 95 C8", 30, "01 83 02 C0 F1");
-    talk("01 03 00 09 01 01 55 98", 30, "01 83 02 C0 F1");
-    talk("01 03 00 08 00 02 45 C9", 30, "01 83 02 C0 F1"); /* reads on past 0x0009 */
-    talk("02 03 00 09 00 01 54 3B", 30, "");               /* another unit's */
+    transact("01 03 00 09 00 02 14 09", 30, "01 83 02 C0 F1");
+    transact("01 03 00 09 00 00 95 C8", 30, "01 83 02 C0 F1");
+    transact("01 03 00 09 01 01 55 98", 30, "01 83 02 C0 F1");
+    transact("01 03 00 08 00 02 45 C9", 30, "01 83 02 C0 F1"); /* reads on past 0x0009 */
+    transact("02 03 00 09 00 01 54 3B", 30, "");               /* another unit's */
     COUNTED(.resets = NONE, .resets_refused = 3);
-    talk("00 03 00 09 00 01 55 D9", 30, ""); /* to all: done, not answered */
+    transact("00 03 00 09 00 01 55 D9", 30, ""); /* to all: done, not answered */
     COUNTED(.resets = 1);
 }
 
 TEST(a_broadcast_is_not_answered)
 {
-    talk("00 03 00 08 00 04 C4 1A", 30, "");
+    transact("00 03 00 08 00 04 C4 1A", 30, "");
     COUNTED(.requests = 1);
     /* and does not make it busy */
     ask(MEASURE, 30);
@@ -189,19 +189,19 @@ TEST(a_broadcast_is_not_answered)
 
 TEST(another_unit_is_not_meant)
 {
-    talk("02 03 00 08 00 04 C5 F8", 30, "");
+    transact("02 03 00 08 00 04 C5 F8", 30, "");
     COUNTED(.others = 1);
     set_hps(2083, (hps_config_t){.unit = 2});
-    talk("02 03 00 08 00 04 C5 F8", 30, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
+    transact("02 03 00 08 00 04 C5 F8", 30, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
 }
 
 TEST(while_it_warms_up_it_measures_nothing_but_responses_the_rest)
 {
     set_hps(2083, (hps_config_t){.warm_up_s = 5});
     wait_ms(4900);
-    talk(MEASURE, 30, "");
+    transact(MEASURE, 30, "");
     COUNTED(.unserved = 1);
-    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
+    transact("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
     wait_ms(70);
     ask(MEASURE, 30);
     assert_int_equal(bench.heard, 13);
@@ -235,8 +235,8 @@ TEST(a_gap_up_to_t15_is_none_and_a_longer_one_drops_the_request)
 
 TEST(a_request_behind_another_one_without_a_silence_is_none)
 {
-    talk("01 03 00 04 00 01 C5 CB" /* and at once */ MEASURE, 50, "");
+    transact("01 03 00 04 00 01 C5 CB" /* and at once */ MEASURE, 50, "");
     COUNTED(.crc_errors = 1);
-    talk("FF 01 03 00 08 00 04 C5 CB", 50, ""); /* noise before it */
+    transact("FF 01 03 00 08 00 04 C5 CB", 50, ""); /* noise before it */
     COUNTED(.crc_errors = 2);
 }

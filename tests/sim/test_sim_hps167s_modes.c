@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What the HPS-167S does unasked, while it warms up, and without data from inside: all of them options. */
-#include "talk.h"
+#include "sim_bench.h"
 
 /* The response to #5 of the datasheet's example, the abnormal packet, and an exception to 03. */
 #define EXAMPLE    "01 03 08 08 23 DC B2 07 01 00 00 FD 41"
@@ -98,7 +98,7 @@ TEST(a_measurement_that_is_asked_for_is_not_sent_unasked_as_well)
     set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
     wait_ms(98); /* the request ends at 102.6 ms, when a frame is on the wire */
     hear(11, EXAMPLE);
-    talk(MEASURE, 30, EXAMPLE); /* 109 to 113.6 ms; the next is ready at 118.5 */
+    transact(MEASURE, 30, EXAMPLE); /* 109 to 113.6 ms; the next is ready at 118.5 */
     ASSERT_ANSWERED_IN(118519 - 113584 + CHARACTER_US - 1, 118519 - 113584 + CHARACTER_US + 1);
 }
 
@@ -159,19 +159,19 @@ TEST(the_warm_up_is_silence_an_exception_or_the_abnormal_packet)
             if (says == FATHOM_SIM_HPS167S_SILENCE) expect("");
             if (says == FATHOM_SIM_HPS167S_EXCEPTION) expect(EXCEPTION);
             if (says == FATHOM_SIM_HPS167S_ABNORMAL) expect(ABNORMAL);
-            talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71"); /* the rest is answered */
+            transact("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71"); /* the rest is answered */
             wait_ms(4700);
         }
         COUNTED(.measurements = NONE);
         wait_ms(200);
-        talk(MEASURE, 30, EXAMPLE);
+        transact(MEASURE, 30, EXAMPLE);
         fathom_sim_power_cycle(&bench.line, &bench.hps.device, 100 * MS, bench.now_us);
         wait_ms(5000); /* 4.9 s after power came: it is kept */
         ask(MEASURE, 30);
         COUNTED(.measurements = 1);
         wait_ms(100);
         forget();
-        talk(MEASURE, 30, EXAMPLE);
+        transact(MEASURE, 30, EXAMPLE);
     }
 }
 
@@ -220,7 +220,7 @@ TEST(a_request_without_data_waits_for_the_reconnect_time)
     ask(MEASURE, 30);
     ASSERT_ANSWERED_IN(2187 + CHARACTER_US - 1, 2500 + CHARACTER_US);
     expect(ABNORMAL);
-    talk(READ_2, 30,
+    transact(READ_2, 30,
          "01 03 08 FF FF 00 00 00 01 68 01 6A 1C"); /* the interface itself is well; 360 is 0x168 */
     /* power begins the time anew */
     cycle_power(0, 0);
@@ -229,13 +229,13 @@ TEST(a_request_without_data_waits_for_the_reconnect_time)
     ASSERT_SPAN(bench.end_us[0], power_us, 360 * MS + CHARACTER_US - 1, 360 * MS + CHARACTER_US + 1);
     expect(ABNORMAL);
     lose(false);
-    talk(MEASURE, 30, EXAMPLE);
+    transact(MEASURE, 30, EXAMPLE);
 }
 
 TEST(a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most)
 {
     set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
-    talk("01 10 00 20 00 02 04 FF FF FF FC B0 22", 30,
+    transact("01 10 00 20 00 02 04 FF FF FF FC B0 22", 30,
          "01 10 00 20 00 02 40 02"); /* the largest multiple of 18 */
     lose(true);
     wait_us(UINT32_C(1790000000));

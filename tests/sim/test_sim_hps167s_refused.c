@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* What the HPS-167S does not take of #6 to #15, what all of them do, and what it counts. */
-#include "talk.h"
+#include "sim_bench.h"
 
 #define DEFAULTS ((hps_config_t){0})
 
 /* #2 says that all is as it was; its response has 13 bytes at the address that was. */
 static void expect_factory(void)
 {
-    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 00 00 00 00 B4 01 63 1C");
+    transact("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 00 00 00 00 B4 01 63 1C");
     assert_int_equal(bench.hps.sensor.offset_mm, 0);
     assert_int_equal(bench.hps.sensor.filter, 0);
     COUNTED(.writes = NONE, .flash_writes = NONE, .resets = NONE);
@@ -40,29 +40,29 @@ TEST(a_value_that_a_command_does_not_have_is_exception_3)
 TEST(which_exception_a_wrong_value_is_is_an_option)
 {
     set_hps(2083, (hps_config_t){.wrong_value = 4});
-    talk("01 06 00 10 00 21 48 17", 30, "01 86 04 43 A3");
-    talk("01 10 00 20 00 02 04 00 00 00 11 31 BB", 30, "01 90 04 4D C3");
-    talk("01 06 00 17 00 00 39 CE", 30, "01 86 02 C3 A1"); /* no such address: as ever */
+    transact("01 06 00 10 00 21 48 17", 30, "01 86 04 43 A3");
+    transact("01 10 00 20 00 02 04 00 00 00 11 31 BB", 30, "01 90 04 4D C3");
+    transact("01 06 00 17 00 00 39 CE", 30, "01 86 02 C3 A1"); /* no such address: as ever */
     expect_factory();
 }
 
 TEST(a_reconnect_time_is_a_multiple_of_18_in_two_registers)
 {
-    talk("01 10 00 20 00 02 04 00 00 01 69 30 09", 30, "01 90 03 0C 01"); /* 361 */
-    talk("01 10 00 20 00 02 04 00 00 01 71 30 03", 30, "01 90 03 0C 01"); /* 369, of 9 */
-    talk("01 10 00 20 00 02 04 FF FF FF FF F0 23", 30,
+    transact("01 10 00 20 00 02 04 00 00 01 69 30 09", 30, "01 90 03 0C 01"); /* 361 */
+    transact("01 10 00 20 00 02 04 00 00 01 71 30 03", 30, "01 90 03 0C 01"); /* 369, of 9 */
+    transact("01 10 00 20 00 02 04 FF FF FF FF F0 23", 30,
          "01 90 03 0C 01");                                         /* 2^32 - 1 is 3 more than a multiple */
-    talk("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 02 CD C1"); /* another length */
-    talk("01 10 00 20 00 03 06 00 00 01 68 00 00 67 CA", 30, "01 90 02 CD C1");
-    talk("01 10 00 20 00 03 04 00 00 01 68 F0 18", 30,
+    transact("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 02 CD C1"); /* another length */
+    transact("01 10 00 20 00 03 06 00 00 01 68 00 00 67 CA", 30, "01 90 02 CD C1");
+    transact("01 10 00 20 00 03 04 00 00 01 68 F0 18", 30,
          "01 90 02 CD C1"); /* its count and its bytes disagree */
-    talk("01 10 00 20 00 02 06 00 00 01 68 00 00 A6 06", 30, "01 90 02 CD C1");
-    talk("01 10 00 20 01 02 04 00 00 01 68 E1 09", 30, "01 90 02 CD C1"); /* 258 registers, not 2 */
+    transact("01 10 00 20 00 02 06 00 00 01 68 00 00 A6 06", 30, "01 90 02 CD C1");
+    transact("01 10 00 20 01 02 04 00 00 01 68 E1 09", 30, "01 90 02 CD C1"); /* 258 registers, not 2 */
     COUNTED(.writes_refused = 8);
     expect_factory();
     set_hps(2083, (hps_config_t){.wrong_length = 3});
-    talk("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 03 0C 01");
-    talk("01 10 00 21 00 02 04 00 00 01 68 30 05", 30,
+    transact("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 03 0C 01");
+    transact("01 10 00 21 00 02 04 00 00 01 68 30 05", 30,
          "01 90 02 CD C1"); /* another address is no wrong length */
     expect_factory();
 }
@@ -98,7 +98,7 @@ TEST(function_16_has_the_address_of_15_and_no_other)
         ask_sealed(bytes, 9, 50);
         expect("01 90 02 CD C1");
     }
-    talk("01 10 01 20 00 02 04 00 00 01 68 FC 59", 30, "01 90 02 CD C1");
+    transact("01 10 01 20 00 02 04 00 00 01 68 FC 59", 30, "01 90 02 CD C1");
     COUNTED(.resets_refused = 1, .writes_refused = 64);
     expect_factory();
 }
@@ -130,7 +130,7 @@ TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
     ask("00 06 00 0A 00 07 E9 DB", 30);
     ask("00 06 00 14 FF F1 48 6B", 30);
     ask("00 10 00 20 00 02 04 00 00 01 68 F5 35", 30);
-    talk("00 06 00 12 00 01 E9 DE", 30, ""); /* refused in silence */
+    transact("00 06 00 12 00 01 E9 DE", 30, ""); /* refused in silence */
     assert_int_equal(bench.hps.warm_up_s, 7);
     assert_int_equal(other.warm_up_s, 7);
     assert_int_equal(bench.hps.sensor.offset_mm, -15);
@@ -140,10 +140,10 @@ TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
     assert_true(other.auto_output);
     COUNTED_BY(&other.device, .writes = 3, .writes_refused = 1);
     ask("00 06 00 11 00 03 98 1F", 30); /* and the rate, at once */
-    talk("02 03 00 04 00 01 C5 F8", 30, "");
+    transact("02 03 00 04 00 01 C5 F8", 30, "");
     at_rate(115200, FATHOM_PARITY_EVEN);
-    talk("02 03 00 04 00 01 C5 F8", 30, "02 03 02 00 4D 3C 71");
-    talk("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
+    transact("02 03 00 04 00 01 C5 F8", 30, "02 03 02 00 4D 3C 71");
+    transact("01 03 00 04 00 01 C5 CB", 30, "01 03 02 00 4D 78 71");
     assert_int_equal(other.device.counters.answered, 1);
 }
 
@@ -169,12 +169,12 @@ TEST(the_reset_of_the_interface_brings_back_all_but_12_and_14)
     ask("01 10 00 20 00 02 04 00 00 01 68 F1 C9", 30);
     ask("01 06 00 10 00 09 48 09", 30);
     forget();
-    talk("09 03 00 02 00 04 E4 81", 30, "09 03 08 00 00 07 00 00 01 68 01 01 C0");
-    talk("09 03 00 09 00 01 55 40", 30, "09 03 02 00 01 98 45");
-    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
+    transact("09 03 00 02 00 04 E4 81", 30, "09 03 08 00 00 07 00 00 01 68 01 01 C0");
+    transact("09 03 00 09 00 01 55 40", 30, "09 03 02 00 01 98 45");
+    transact("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
     assert_int_equal(bench.hps.sensor.offset_mm, -15);
     assert_int_equal(bench.hps.sensor.filter, 50);
     COUNTED(.resets = 1);
     cycle_power(0, 0); /* and it is kept */
-    talk("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
+    transact("01 03 00 02 00 04 E5 C9", 30, "01 03 08 FF FF 05 00 00 00 B4 01 63 49");
 }

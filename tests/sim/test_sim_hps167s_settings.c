@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Commands #7 to #15 of the HPS-167S: what each takes, responses, changes and keeps. */
-#include "talk.h"
+#include "sim_bench.h"
 
 #define DEFAULTS ((hps_config_t){0})
 
@@ -37,7 +37,7 @@ static void acts_from_the_next_power_on(const char *write, uint32_t warm_up_s)
     cycle_power(100, 150); /* 50 ms ago it came */
     assert_int_equal(configuration()[WARM_UP], warm_up_s);
     wait_ms(warm_up_s * 1000 - 150);
-    talk("01 03 00 08 00 04 C5 CB", 10, "");
+    transact("01 03 00 08 00 04 C5 CB", 10, "");
     wait_ms(100);
     assert_int_equal(distance(), 2083);
 }
@@ -54,18 +54,18 @@ TEST(the_longest_warm_up_is_255_s) { acts_from_the_next_power_on("01 06 00 0A 00
 TEST(a_new_address_counts_at_once_and_is_acknowledged_from_the_old_one)
 {
     echoed("01 06 00 10 00 05 48 0C", 30);
-    talk("01 03 00 04 00 01 C5 CB", 30, "");
-    talk("05 03 00 04 00 01 C4 4F", 30, "05 03 02 00 4D 89 B1");
+    transact("01 03 00 04 00 01 C5 CB", 30, "");
+    transact("05 03 00 04 00 01 C4 4F", 30, "05 03 02 00 4D 89 B1");
     cycle_power(100, 150);
-    talk("05 03 00 04 00 01 C4 4F", 30, "05 03 02 00 4D 89 B1");
+    transact("05 03 00 04 00 01 C4 4F", 30, "05 03 02 00 4D 89 B1");
 }
 
 TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     set_hps(2083, (hps_config_t){.answers_from_new = true});
-    talk("01 06 00 10 00 20 89 D7", 30, "20 06 00 10 00 20 8F 66"); /* 32, the highest */
+    transact("01 06 00 10 00 20 89 D7", 30, "20 06 00 10 00 20 8F 66"); /* 32, the highest */
     echoed("20 06 00 0A 00 05 6F 7A", 30);                          /* other responses are as ever */
-    talk("20 03 00 09 00 01 52 B9", 30, "01 03 02 00 01 79 84");    /* #6 makes it 1 */
+    transact("20 03 00 09 00 01 52 B9", 30, "01 03 02 00 01 79 84");    /* #6 makes it 1 */
 }
 
 /* ---- #9 ---- */
@@ -87,7 +87,7 @@ TEST(a_new_rate_counts_from_behind_its_acknowledgement)
         at_rate(baud[from], FATHOM_PARITY_EVEN);
         echoed(write[to], 30); /* at the old rate */
         if (from != to) {
-            talk("01 03 00 04 00 01 C5 CB", 30, "");
+            transact("01 03 00 04 00 01 C5 CB", 30, "");
             assert_true(bench.hps.device.counters.wrong_settings != 0);
         }
         at_rate(baud[to], FATHOM_PARITY_EVEN);
@@ -128,9 +128,9 @@ TEST(a_lost_acknowledgement_leaves_it_at_the_new_rate)
     set_faults(1);
     FAULT(SILENCE, ALWAYS, 2);
     assert_int_equal(configuration()[BAUD], 1); /* frame 1 */
-    talk("01 06 00 11 00 03 99 CE", 30, "");
+    transact("01 06 00 11 00 03 99 CE", 30, "");
     assert_int_equal(bench.fault.counters[FATHOM_SIM_FAULT_SILENCE], 1);
-    talk("01 03 00 02 00 04 E5 C9", 30, "");
+    transact("01 03 00 02 00 04 E5 C9", 30, "");
     at_rate(115200, FATHOM_PARITY_EVEN);
     assert_int_equal(configuration()[BAUD], 3);
     COUNTED(.answered = 3); /* as it believes */
@@ -230,7 +230,7 @@ TEST(an_offset_moves_distances_and_nothing_else)
         assert_int_equal(distance(), mark);
     }
     bench.fixed.value[0] = FATHOM_SIM_FAULT;
-    talk("01 03 00 08 00 04 C5 CB", 30, "01 03 08 FF FF 00 00 00 FF FF FF E4 5C");
+    transact("01 03 00 08 00 04 C5 CB", 30, "01 03 08 FF FF 00 00 00 FF FF FF E4 5C");
     ask("01 06 00 14 00 0F 89 CA", 30);
     forget();
     bench.fixed.value[0] = 65529;
@@ -274,12 +274,12 @@ TEST(settings_are_loaded_from_the_user_or_from_the_factory)
 
 TEST(reconnect_time_is_acknowledged_as_in_table_38_with_its_high_word_first)
 {
-    talk("01 10 00 20 00 02 04 00 00 01 68 F1 C9", 30, "01 10 00 20 00 02 40 02"); /* 360 ms */
+    transact("01 10 00 20 00 02 04 00 00 01 68 F1 C9", 30, "01 10 00 20 00 02 40 02"); /* 360 ms */
     assert_true(is_hex(configuration() + RECONNECT, "00 00 01 68"));
-    talk("01 10 00 20 00 02 04 00 01 00 02 21 B6", 30, "01 10 00 20 00 02 40 02"); /* 65538 = 3641 * 18 */
+    transact("01 10 00 20 00 02 04 00 01 00 02 21 B6", 30, "01 10 00 20 00 02 40 02"); /* 65538 = 3641 * 18 */
     assert_true(is_hex(configuration() + RECONNECT, "00 01 00 02"));
     cycle_power(100, 150);
     assert_true(is_hex(configuration() + RECONNECT, "00 01 00 02"));
-    talk("01 10 00 20 00 02 04 00 00 00 00 F1 B7", 30, "01 10 00 20 00 02 40 02");
+    transact("01 10 00 20 00 02 04 00 00 00 00 F1 B7", 30, "01 10 00 20 00 02 40 02");
     assert_true(is_hex(configuration() + RECONNECT, "00 00 00 00"));
 }

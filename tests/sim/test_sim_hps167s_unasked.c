@@ -7,7 +7,7 @@ enum { TARGET_MM = 2083 };
 
 static fathom_hps167s_t *const hps = &s.driver.hps;
 static fathom_hps167s_auto_t hears;
-static fathom_sensor_t asking;
+static fathom_sensor_t measuring;
 static unsigned heard, wrong;
 
 static fathom_hps167s_version_t version;
@@ -34,7 +34,7 @@ static void begin(uint32_t loop_us, uint32_t unasked_us, bool is_asked)
     stage_begin(&bench_19200, false, loop_us);
     bench.fixed = FIXED(TARGET_MM);
     init_driver(&s.driver, HPS, 1, NULL);
-    asking = sensor_of(&s.driver, HPS);
+    measuring = sensor_of(&s.driver, HPS);
     add_hps((hps_config_t){.unasked_us = unasked_us});
     const fathom_hps167s_auto_config_t config = {.line = &s.line};
     assert_int_equal(fathom_hps167s_auto_init(&hears, &config), FATHOM_READY);
@@ -46,7 +46,7 @@ static void begin(uint32_t loop_us, uint32_t unasked_us, bool is_asked)
 
 static void step(bool asks)
 {
-    const fathom_sensor_t both[] = {s.sensor, asking};
+    const fathom_sensor_t both[] = {s.sensor, measuring};
     const fathom_status_t status = fathom_poll(&s.sensor, &s.sample);
     heard += status == FATHOM_READY;
     wrong += status == FATHOM_READY &&

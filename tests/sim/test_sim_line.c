@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 static void set(uint8_t mode)
 {
@@ -21,10 +21,10 @@ TEST(every_flipped_bit_is_met_with_silence)
     }
     expect("");
     COUNTED(.crc_errors = 64);
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
 }
 
-TEST(every_torn_off_request_is_met_with_silence)
+TEST(every_truncated_request_is_met_with_silence)
 {
     uint8_t bytes[8];
     from_hex(A16_ASKED, bytes, 8);
@@ -46,14 +46,14 @@ TEST(garbage_of_any_length_is_met_with_silence)
     }
     expect("");
     COUNTED(.crc_errors = 255, .truncated = 1); /* 256 bytes are longer than any frame */
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
 }
 
 TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
     ask("01 03 01 01 00 01 00 36 5F", 200); /* 9 bytes */
     ask(A16_RESPONSE, 200);                 /* a response, 7 bytes */
-    talk("01 83 02 C0 F1", 200, "");        /* an exception */
+    transact("01 83 02 C0 F1", 200, "");        /* an exception */
     COUNTED(.unserved = 3, .measurements = NONE);
 }
 
@@ -87,7 +87,7 @@ TEST(a_device_hears_nothing_while_it_serves_a_request)
     COUNTED(.requests = 1);
 }
 
-TEST(a_frame_that_ends_before_the_response_does_not_open_its_ears)
+TEST(a_frame_that_ends_before_the_response_does_not_let_it_listen)
 {
     set(FATHOM_SIM_A16_AUTO);
     bench.line.full_duplex = true;
@@ -130,7 +130,7 @@ TEST(an_automatic_frame_deafens_a_device_on_two_wires)
 TEST(the_host_hears_itself_only_with_echo)
 {
     bench.line.echo = true;
-    talk(A16_ASKED, 200, A16_ASKED A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_ASKED A16_RESPONSE);
 }
 
 TEST(sent_turns_true_with_the_last_stop_bit)
@@ -191,7 +191,7 @@ TEST(it_works_for_hours_across_every_wrap)
 {
     for (int i = 0; i < 30; i++) { /* 12.5 hours, 10 wraps */
         wait_us(UINT32_C(1500000000));
-        talk(A16_ASKED, 200, A16_RESPONSE);
+        transact(A16_ASKED, 200, A16_RESPONSE);
     }
 }
 
@@ -241,10 +241,10 @@ TEST(at_another_rate_or_parity_nobody_understands)
     at_rate(19200, FATHOM_PARITY_EVEN);
     ask(A16_ASKED, 200);
     at_rate(9600, FATHOM_PARITY_EVEN);
-    talk(A16_ASKED, 200, "");
+    transact(A16_ASKED, 200, "");
     COUNTED(.wrong_settings = 16, .truncated = 2);
     at_rate(9700, FATHOM_PARITY_NONE);
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
 }
 
 TEST(a_stream_at_another_rate_is_garbage_with_framing_errors)
@@ -274,10 +274,10 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     add_hps((hps_config_t){.unit = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
     for (int round = 0; round < 3; round++) {
-        talk(A16_ASKED, 200, A16_RESPONSE);
-        talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+        transact(A16_ASKED, 200, A16_RESPONSE);
+        transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
         at_rate(19200, FATHOM_PARITY_EVEN);
-        talk("01 03 00 08 00 04 C5 CB", 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
+        transact("01 03 00 08 00 04 C5 CB", 30, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
         at_rate(9600, FATHOM_PARITY_NONE);
     }
     assert_int_equal(bench.line.counters.collisions, 0);
@@ -293,14 +293,14 @@ TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
     wait_us(3600);
     add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
     hear(200, A16_RESPONSE);
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
     say(A16_ASKED);
     while (bench.heard < 3) wait_us(100); /* and once more, in a response */
     wait_us(300);
     fathom_sim_detach(&bench.line, &bench.a05.device, bench.now_us);
     attach(&bench.a05.device);
     hear(50, A16_RESPONSE);
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }
 
 TEST(a_device_that_is_taken_off_in_mid_response_leaves_the_others_hearing)
@@ -313,8 +313,8 @@ TEST(a_device_that_is_taken_off_in_mid_response_leaves_the_others_hearing)
     wait_ms(50);
     assert_int_equal(bench.heard, 3);
     forget();
-    talk(A16_ASKED, 200, A16_RESPONSE);
+    transact(A16_ASKED, 200, A16_RESPONSE);
     /* and it comes back as from power-on */
     attach(&bench.a05.device);
-    talk("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
+    transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
 }

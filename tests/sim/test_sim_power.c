@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A power cycle at any moment: what it interrupts, and that a line works on. What is kept stands with each
  * sensor's tests. */
-#include "talk.h"
+#include "sim_bench.h"
 
 /* An A16 at 1 that needs `start_us`, an A05 at 5, on one pair. */
 static void set(uint32_t start_us)
@@ -23,10 +23,10 @@ static void cycle(uint32_t off_us)
 static void expect_both_work(void)
 {
     forget();
-    talk(OTHER, 200, OTHERS);
-    talk(A16_ASKED, 200, A16_RESPONSE);
-    assert_int_equal(bench.a16.device.carriers, 0);
-    assert_int_equal(bench.a05.device.carriers, 0);
+    transact(OTHER, 200, OTHERS);
+    transact(A16_ASKED, 200, A16_RESPONSE);
+    assert_int_equal(bench.a16.device.others_on_wire, 0);
+    assert_int_equal(bench.a05.device.others_on_wire, 0);
 }
 
 EACH_BEGINS(set(0))
@@ -35,7 +35,7 @@ static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 TEST(without_power_it_hears_and_says_nothing)
 {
     cycle(1000 * MS);
-    for (int i = 0; i < 4; i++) talk(A16_ASKED, 200, ""); /* 833 ms */
+    for (int i = 0; i < 4; i++) transact(A16_ASKED, 200, ""); /* 833 ms */
     COUNTED(.unheard = 32, .requests = NONE);
     wait_ms(168);
     expect_both_work();
@@ -100,7 +100,7 @@ TEST(a_wire_each_way_is_cut_off_as_well)
     cycle(50 * MS);
     hear(145, ""); /* 97 ms with power */
     hear(10, "FF FF FD FB");
-    assert_int_equal(bench.a16.device.carriers, 0);
+    assert_int_equal(bench.a16.device.others_on_wire, 0);
 }
 
 TEST(a_neighbour_with_wires_of_its_own_never_heard_it)
@@ -112,14 +112,14 @@ TEST(a_neighbour_with_wires_of_its_own_never_heard_it)
     wait_ms(102);
     cycle(1000 * MS);
     forget();
-    talk(OTHER, 200, OTHERS);
+    transact(OTHER, 200, OTHERS);
 }
 
 TEST(half_an_hour_is_the_longest)
 {
     cycle(UINT32_C(1800000000));
     wait_us(UINT32_C(1799900000));
-    talk(A16_ASKED, 50, "");
+    transact(A16_ASKED, 50, "");
     wait_ms(100);
     expect_both_work();
 }
@@ -134,7 +134,7 @@ TEST(an_accident_in_an_acknowledgement_keeps_what_was_set)
     assert_int_equal(bench.fault.counters[FATHOM_SIM_FAULT_POWER_CYCLE], 1);
     forget();
     at_rate(115200, FATHOM_PARITY_EVEN);
-    talk("01 03 00 02 00 04 E5 C9", 50, "01 03 08 FF FF 00 00 00 00 B4 03 E2 DD");
+    transact("01 03 00 02 00 04 E5 C9", 50, "01 03 08 FF FF 00 00 00 00 B4 03 E2 DD");
 }
 
 static void in_steps(uint32_t us, uint32_t step_us)

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "sim/pty.h"
-#include "talk.h"
+#include "sim_bench.h"
 
 /* In real time: every wait is for an event and has an end. Lower bounds of times are exact, upper ones leave
  * room for a loaded machine. */

@@ -87,7 +87,7 @@ TEST(a_contact_may_bounce)
     assert_false(level());
 }
 
-TEST(the_relay_has_no_ears_and_no_voice)
+TEST(the_relay_neither_receives_nor_sends)
 {
     set(999, AS_IT_IS);
     say("01 03 01 06 00 01 65 F7"); /* A05 3(4) example 1 */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Several sensors at one address of one pair: all response, and what they say together nobody understands. */
 #include "fathom/codec/crc16.h"
-#include "talk.h"
+#include "sim_bench.h"
 
 static fathom_sim_hps167s_t twin;
 
@@ -52,10 +52,10 @@ TEST(two_that_response_within_each_others_answer_are_not_understood)
 TEST(one_that_loses_power_leaves_the_other_understood)
 {
     fathom_sim_power_cycle(&bench.line, &twin.device, 1000 * MS, bench.now_us);
-    talk(MEASURE, 50, FIRST);
+    transact(MEASURE, 50, FIRST);
     fathom_sim_detach(&bench.line, &bench.hps.device, bench.now_us);
     wait_ms(1000);
-    talk(MEASURE, 50, SECOND);
+    transact(MEASURE, 50, SECOND);
 }
 
 TEST(a_new_address_for_one_is_one_for_both)
@@ -70,7 +70,7 @@ TEST(a_new_address_for_one_is_one_for_both)
 TEST(one_at_another_rate_is_no_twin)
 {
     twin.device.settings.baud = 115200;
-    talk(MEASURE, 50, FIRST);
+    transact(MEASURE, 50, FIRST);
     assert_int_equal(twin.device.counters.requests, 0);
     assert_true(twin.device.counters.wrong_settings != 0);
 }
@@ -86,7 +86,7 @@ TEST(two_models_collide_as_well)
     assert_true(bench.line.counters.collisions != 0);
     assert_false(is_understood("01 03 02 00 01 79 84"));
     forget();
-    talk("01 03 01 06 00 01 65 F7", 200, "01 03 02 FF FD 38 35"); /* a register that only one of them has */
+    transact("01 03 01 06 00 01 65 F7", 200, "01 03 02 FF FD 38 35"); /* a register that only one of them has */
 }
 
 TEST(the_address_command_of_55_aa_makes_two_of_one_address_that_garble_each_other)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "talk.h"
+#include "sim_bench.h"
 
 static int32_t at(fathom_sim_scene_t scene, uint8_t probe, uint32_t us)
 {

@@ -41,9 +41,9 @@ uint32_t rig_recovery_us(const rig_unit_t *unit)
     if (facts->proof == SOAK_NO_GAP) return FRAMES_WITHOUT_GAP * facts->period_us + slack_us;
     /* The request that is out may be lost, and then the unit owes, or is left alone after several. */
     uint32_t wait_us = facts->timeout_us;
-    const uint32_t silences = unit->silences + 1;
-    if (silences >= PATIENCE) {
-        const uint32_t doublings = silences - PATIENCE < MAX_DOUBLINGS ? silences - PATIENCE : MAX_DOUBLINGS;
+    const uint32_t timeouts_in_row = unit->timeouts_in_row + 1;
+    if (timeouts_in_row >= PATIENCE) {
+        const uint32_t doublings = timeouts_in_row - PATIENCE < MAX_DOUBLINGS ? timeouts_in_row - PATIENCE : MAX_DOUBLINGS;
         wait_us <<= doublings;
         if (wait_us > longest_backoff_us(unit)) wait_us = longest_backoff_us(unit);
         if (wait_us < facts->timeout_us) wait_us = facts->timeout_us;
@@ -93,7 +93,7 @@ static void account_stream(rig_unit_t *unit)
     if (soak_facts[unit->setting].proof == SOAK_NO_GAP)
         seen += (uint32_t)counters[FATHOM_STREAM_AMBIGUOUS] + counters[FATHOM_STREAM_UNSURE];
     differ(unit, counters[FATHOM_STREAM_FRAMES], read + counters[FATHOM_STREAM_MISSED]);
-    differ(unit, unit->rig->bytes_read + unit->rig->overruns_told,
+    differ(unit, unit->rig->bytes_read + unit->rig->overruns_reported,
            (uint64_t)counters[FATHOM_STREAM_BYTES] + of_line[FATHOM_LINE_BAD_BYTES] +
                of_line[FATHOM_LINE_DROPPED_BYTES]);
     exceed(unit, unit->clean_lost, seen);

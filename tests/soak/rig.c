@@ -96,9 +96,9 @@ static int port_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
 {
     rig_t *const rig = ctx;
     const int n = rig->inner.read(rig->inner.ctx, bytes, capacity, rx);
-    const uint8_t told = rx->flags & (FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN);
+    const uint8_t marks = rx->flags & (FATHOM_RX_PARITY | FATHOM_RX_FRAMING | FATHOM_RX_OVERRUN);
     if (n > 0) rig->bytes_read += (uint32_t)n;
-    if (told == FATHOM_RX_OVERRUN) rig->overruns_told++;
+    if (marks == FATHOM_RX_OVERRUN) rig->overruns_reported++;
     return n;
 }
 
@@ -248,7 +248,7 @@ static void outcome(rig_unit_t *unit, fathom_status_t status, bool is_value, con
         if (unit->is_open) unit->responses++;
         unit->is_open = false;
         unit->samples++;
-        unit->silences = 0;
+        unit->timeouts_in_row = 0;
         if (status != FATHOM_READY) {
             unit->totals.errors++;
             unit->refused++;
@@ -260,7 +260,7 @@ static void outcome(rig_unit_t *unit, fathom_status_t status, bool is_value, con
     }
     unit->totals.errors++;
     if (!is_asked) return;
-    unit->silences = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO ? unit->silences + 1 : 0;
+    unit->timeouts_in_row = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO ? unit->timeouts_in_row + 1 : 0;
     unit->failures++;
     if (!unit->is_open) unit->totals.unaccounted++; /* an outcome of nothing */
     unit->is_open = false;

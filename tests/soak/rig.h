@@ -53,7 +53,7 @@ typedef struct {
     uint32_t refused;        /* of these, the latter */
     uint32_t outcome_us;     /* when the last one came */
     uint32_t right_us;       /* when the last right reading came */
-    uint32_t silences;       /* outcomes in a row without any response */
+    uint32_t timeouts_in_row;       /* outcomes in a row without any response */
     uint32_t trouble_end_us; /* until then what a fault has begun goes on */
     uint32_t watched;        /* streams: frames that were looked at for their loss */
     uint32_t clean_lost;     /* of them, not read though neither they nor their neighbours were hit */
@@ -84,7 +84,7 @@ typedef struct rig {
     soak_options_t options;
     uint32_t first_look;    /* at the scene */
     uint32_t bytes_read;    /* from the port */
-    uint32_t overruns_told; /* by the port, with bytes that are good */
+    uint32_t overruns_reported; /* by the port, with bytes that are good */
 } rig_t;
 
 /* An empty line for sensors like `setting`. knows: fathom_sim_uart_t.knows. */

@@ -47,7 +47,7 @@ truth_entry_t *truth_leaves(truth_t *truth, uint32_t now_us)
     memset(entry, 0, sizeof *entry);
     entry->measured_us = now_us;
     for (uint8_t i = 0; i < TRUTH_PROBES; i++) {
-        entry->said[i] = truth->current[i];
+        entry->values[i] = truth->current[i];
         truth->current[i] = TRUTH_NOTHING;
     }
     truth->any = false;
@@ -85,12 +85,12 @@ static uint32_t oldest(const truth_t *truth)
 
 void truth_forget(truth_entry_t *entry)
 {
-    for (uint8_t i = 0; i < TRUTH_PROBES; i++) entry->said[i] = TRUTH_NOTHING;
+    for (uint8_t i = 0; i < TRUTH_PROBES; i++) entry->values[i] = TRUTH_NOTHING;
 }
 
 static bool says(const truth_entry_t *entry, const fathom_sample_t *sample)
 {
-    return entry->said[sample->probe - 1] == (uint16_t)sample->raw;
+    return entry->values[sample->probe - 1] == (uint16_t)sample->raw;
 }
 
 /* Frame n, if it says that and was measured in time; else NULL. */
@@ -157,6 +157,6 @@ bool truth_said(const truth_t *truth, uint16_t raw)
 {
     for (uint32_t n = truth->count; n-- > oldest(truth);)
         for (uint8_t i = 0; i < TRUTH_PROBES; i++)
-            if (truth->log[n % TRUTH_ROOM].said[i] == raw) return true;
+            if (truth->log[n % TRUTH_ROOM].values[i] == raw) return true;
     return false;
 }

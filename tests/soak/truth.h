@@ -17,7 +17,7 @@ enum { TRUTH_ROOM = 64, TRUTH_PROBES = 4, TRUTH_NOTHING = -1 };
 
 typedef struct {
     uint32_t measured_us;
-    int32_t said[TRUTH_PROBES]; /* the 16 bits of each probe; TRUTH_NOTHING: not in this frame */
+    int32_t values[TRUTH_PROBES]; /* the 16 bits of each probe; TRUTH_NOTHING: not in this frame */
     bool is_hit;                /* something may have kept it from arriving as it was */
     bool is_twice; /* it may be read more than once: it comes so, or says what another frame says */
     bool is_read;  /* a sample of it was seen */

@@ -29,7 +29,7 @@ static int fake_write(void *ctx, const uint8_t *bytes, size_t length)
     fake_t *const fake = ctx;
     if (fake->write_fails) return -1;
     if (fake->write_busy) return 0;
-    if (fake->write_torn) return (int)length - 1;
+    if (fake->write_too_short) return (int)length - 1;
     assert(length >= 1 && length <= 255 && fake->written < FAKE_WRITES);
     const fake_write_t *const before = fake->written != 0 ? &fake->writes[fake->written - 1] : NULL;
     const size_t used = before != NULL ? (size_t)(before->bytes - fake->write_bytes) + before->length : 0;

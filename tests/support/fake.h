@@ -57,7 +57,7 @@ typedef struct {
     bool read_fails;
     bool write_fails;
     bool write_busy;
-    bool write_torn;
+    bool write_too_short;
     bool never_sent;
     uint32_t unsupported_baud;
     int refusals;       /* of a break, one each; < 0: without end */

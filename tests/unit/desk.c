@@ -50,9 +50,9 @@ void desk_response(const row_t *row)
 
 void desk_says(uint16_t value)
 {
-    static uint16_t said;
-    said = value;
-    fake_modbus_response(&fake, &said, 1);
+    static uint16_t reg;
+    reg = value;
+    fake_modbus_response(&fake, &reg, 1);
 }
 
 void desk_part(fathom_status_t (*command)(void), const row_t *rows, unsigned count)

@@ -72,7 +72,7 @@ void hps_is_silent(fathom_status_t as);
     }
 
 #define OK     FATHOM_READY
-#define NOBODY FATHOM_ERR_NO_RESPONSE
+#define SILENT FATHOM_ERR_NO_RESPONSE
 
 /* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */
 enum { HPS_ROUNDS = 4 };

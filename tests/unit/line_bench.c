@@ -16,7 +16,7 @@ const uint8_t dyp_first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 const uint8_t auto_frame[] = {0xFF, 0x07, 0xA1, 0xA7};
 
 bench_t bench;
-ear_t ear;
+bench_listener_t bench_listener;
 
 int set_up(void **state)
 {
@@ -238,27 +238,27 @@ void expect_hex(size_t which, const char *hex)
 static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
                  uint32_t time_us)
 {
-    assert_ptr_equal(listener, &ear.listener);
-    assert_true(ear.length + count <= sizeof ear.bytes);
-    if (count == 0) ear.losses++, ear.lost_at = ear.length;
-    if (after_gap) ear.gaps++, ear.gap_at = ear.length;
-    memcpy(ear.bytes + ear.length, bytes, count);
-    ear.length += count;
-    ear.calls++;
-    ear.time_us = time_us;
+    assert_ptr_equal(listener, &bench_listener.base);
+    assert_true(bench_listener.length + count <= sizeof bench_listener.bytes);
+    if (count == 0) bench_listener.losses++, bench_listener.lost_at = bench_listener.length;
+    if (after_gap) bench_listener.gaps++, bench_listener.gap_at = bench_listener.length;
+    memcpy(bench_listener.bytes + bench_listener.length, bytes, count);
+    bench_listener.length += count;
+    bench_listener.calls++;
+    bench_listener.time_us = time_us;
 }
 
 void listen_for(uint16_t gap_us)
 {
-    memset(&ear, 0, sizeof ear);
-    ear.listener.receive = hear;
-    ear.listener.gap_us = gap_us;
-    fathom_line_listen(&bench.line, &ear.listener);
+    memset(&bench_listener, 0, sizeof bench_listener);
+    bench_listener.base.receive = hear;
+    bench_listener.base.gap_us = gap_us;
+    fathom_line_listen(&bench.line, &bench_listener.base);
 }
 
 void expect_heard(const uint8_t *bytes, size_t length, const uint8_t *more, size_t more_length)
 {
-    assert_int_equal(ear.length, length + more_length);
-    assert_memory_equal(ear.bytes, bytes, length);
-    assert_memory_equal(ear.bytes + length, more, more_length);
+    assert_int_equal(bench_listener.length, length + more_length);
+    assert_memory_equal(bench_listener.bytes, bytes, length);
+    assert_memory_equal(bench_listener.bytes + length, more, more_length);
 }

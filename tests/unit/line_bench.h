@@ -164,10 +164,10 @@ typedef struct {
     unsigned losses;
     size_t lost_at; /* of the last one */
     uint32_t time_us;
-} ear_t;
+} bench_listener_t;
 
-/* An ear that hears nothing yet, and listens to the line from now on. */
-extern ear_t ear;
+/* A listener that has heard nothing yet, and listens to the line from now on. */
+extern bench_listener_t bench_listener;
 void listen_for(uint16_t gap_us);
 
 /* It has heard these bytes, and after them those. */

@@ -313,7 +313,7 @@ TEST(after_deinit_a_response_changes_nothing)
 
 /* ---- which address has the one A05 on this line? ---- */
 
-static const uint8_t ask_anyone[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* FF + FF + 10 = 20E */
+static const uint8_t ask_any[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* FF + FF + 10 = 20E */
 /* 1953 mm from 5: FF + 05 + 10 + 07 + A1 = 1BC; from 254: FF + FE + 10 + 07 + A1 = 2B5. */
 static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
 static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
@@ -343,8 +343,8 @@ static void until_asked(size_t written)
         assert_true(i < 5000);
         finds_within(STEP_US, FATHOM_PENDING);
     }
-    assert_int_equal(rig.fake.writes[written - 1].length, sizeof ask_anyone);
-    assert_memory_equal(rig.fake.writes[written - 1].bytes, ask_anyone, sizeof ask_anyone);
+    assert_int_equal(rig.fake.writes[written - 1].length, sizeof ask_any);
+    assert_memory_equal(rig.fake.writes[written - 1].bytes, ask_any, sizeof ask_any);
     finds_within(70000, FATHOM_PENDING);
     assert_int_equal(rig.fake.written, written);
 }
@@ -402,7 +402,7 @@ TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
     rig.line_config.echo = FATHOM_LINE_ECHO_AUTO;
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
     while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
-    fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_anyone, sizeof ask_anyone);
+    fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_any, sizeof ask_any);
     fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
     finds_within(100000, FATHOM_READY);
     assert_int_equal(address, 5);

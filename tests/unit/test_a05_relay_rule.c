@@ -286,21 +286,21 @@ TEST(a_config_without_sense_is_refused)
 enum { NEARER, FARTHER, EQUAL, MISSING, MEASUREMENTS = 256 };
 
 /* The level after a measurement of all probes. */
-static uint8_t refer(uint8_t before, uint8_t probes, unsigned said)
+static uint8_t refer(uint8_t before, uint8_t probes, unsigned kinds)
 {
     unsigned count[4] = {0, 0, 0, 0};
-    for (unsigned i = 0; i != 4; i++) count[said >> 2 * i & 3] += probes >> i & 1;
+    for (unsigned i = 0; i != 4; i++) count[kinds >> 2 * i & 3] += probes >> i & 1;
     if (count[NEARER] != 0) return FATHOM_NEAR;
     if (count[MISSING] != 0 || count[EQUAL] != 0) return before;
     return FATHOM_FAR;
 }
 
-static void measure_all(unsigned said)
+static void measure_all(unsigned kinds)
 {
     static const uint16_t mm[] = {999, 1001, 1000};
     begin_after(HALF_S);
     for (unsigned i = 0; i != 4; i++)
-        if ((said >> 2 * i & 3) != MISSING) give((uint8_t)(i + 1), FATHOM_TARGET, mm[said >> 2 * i & 3]);
+        if ((kinds >> 2 * i & 3) != MISSING) give((uint8_t)(i + 1), FATHOM_TARGET, mm[kinds >> 2 * i & 3]);
 }
 
 TEST(every_two_measurements_with_every_mask_are_right)

@@ -19,7 +19,7 @@ static int set_up(void **state)
 static const suite_t suite = {.set_up = set_up};
 
 #define OK     FATHOM_READY
-#define NOBODY FATHOM_ERR_NO_RESPONSE
+#define SILENT FATHOM_ERR_NO_RESPONSE
 
 /* ---- one register a row, in the caller's own variable, which keeps what no device has told until FATHOM_READY ---- */
 
@@ -123,7 +123,7 @@ TEST(a_value_that_a_register_cannot_have_is_refused)
 
 TEST(while_it_is_asked_and_when_that_fails_it_is_left_alone)
 {
-    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT,
+    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT,
                                              FATHOM_ERR_EXCEPTION};
     forget();
     for (unsigned i = 0; i != GETS; i++) {
@@ -184,7 +184,7 @@ TEST(the_address_is_read_and_followed_when_it_is_set)
     desk.argument = 5;
     PLAY(desk_poll, OK, READ(1, 0x0100, OK, 1000));
     assert_int_equal(desk.sample.address, 1);
-    PLAY(set_address, OK, READ(1, 0x0200, OK, 1), READ(5, 0x0200, NOBODY, 0), /* is somebody there? */
+    PLAY(set_address, OK, READ(1, 0x0200, OK, 1), READ(5, 0x0200, SILENT, 0), /* is somebody there? */
          WRITE(1, 0x0200, 5, OK), READ(5, 0x0200, OK, 5));
     PLAY(desk_poll, OK, READ(5, 0x0100, OK, 754));
     assert_int_equal(desk.sample.address, 5);
@@ -202,7 +202,7 @@ TEST(each_setting_can_be_written_blind_but_the_address)
     PLAY(set_polarity, OK, READ(1, 0x0205, OK, 1)); /* that was the last one */
     assert_false(fathom_a16_modbus_is_written(&a16));
     assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
-    PLAY(set_mode, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0202, 1, NOBODY));
+    PLAY(set_mode, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0202, 1, SILENT));
     assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
     assert_int_equal(set_address(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
@@ -216,7 +216,7 @@ TEST(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is)
 
 TEST(the_operating_mode_of_one_that_does_not_answer_is_not_written)
 {
-    PLAY(set_mode, NOBODY, READ(1, 0x0200, NOBODY, 0));
+    PLAY(set_mode, SILENT, READ(1, 0x0200, SILENT, 0));
 }
 
 /* ---- a distance asked once ---- */

@@ -181,15 +181,15 @@ TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
  * tell: the bytes of a break are noise before the response. */
 TEST(garbage_with_framing_errors_around_a_response_or_unmarked_before_it_is_dropped_and_counted)
 {
-    static const uint32_t spoilt_us[] = {2 * MS, 30 * MS, 31 * MS, 31 * MS + 9 * BYTE_US};
+    static const uint32_t damaged_us[] = {2 * MS, 30 * MS, 31 * MS, 31 * MS + 9 * BYTE_US};
     for (unsigned marked = 0; marked != 2; marked++) {
         const fathom_rx_t rx = {0, marked != 0 ? FATHOM_RX_FRAMING : 0};
         start(false);
         asks(threshold_2000);
         for (unsigned i = marked != 0 ? 0 : 2; i != 3; i++)
-            fake_receive_rx(&pins.fake, spoilt_us[i], &nothing, 1, rx);
+            fake_receive_rx(&pins.fake, damaged_us[i], &nothing, 1, rx);
         fake_trickle(&pins.fake, 31 * MS, BYTE_US, threshold_2000, 8);
-        if (marked != 0) fake_receive_rx(&pins.fake, spoilt_us[3], &nothing, 1, rx);
+        if (marked != 0) fake_receive_rx(&pins.fake, damaged_us[3], &nothing, 1, rx);
         pins_run(100 * MS, 1000);
         assert_int_equal(status(), FATHOM_READY);
         assert_int_equal(counters[FATHOM_LINE_BAD_BYTES], 4 * marked);

@@ -207,7 +207,7 @@ TEST_IN(finding, what_the_transport_refuses_is_said)
 
 /* ---- the drivers ---- */
 
-enum { OK = FATHOM_READY, NOBODY = FATHOM_ERR_NO_RESPONSE };
+enum { OK = FATHOM_READY, SILENT = FATHOM_ERR_NO_RESPONSE };
 
 static fathom_a16_modbus_t a16;
 static fathom_a05_modbus_t a05;
@@ -225,14 +225,14 @@ static int set_up_drivers(void **state)
 
 static const suite_t driving = {.set_up = set_up_drivers};
 
-static uint8_t told;
-static fathom_status_t get_a16(void) { return fathom_a16_modbus_address(&a16, &told); }
+static uint8_t read_address;
+static fathom_status_t get_a16(void) { return fathom_a16_modbus_address(&a16, &read_address); }
 static fathom_status_t move_a16(void) { return fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&a16); }
 static fathom_status_t move_a05(void) { return fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&a05); }
 
 TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
 {
-    told = 0xA5;
+    read_address = 0xA5;
     fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus, .modbus.address_zero = true};
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
@@ -243,7 +243,7 @@ TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
     assert_int_equal(move_a16(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
     PLAY(get_a16, OK, READ(0, 0x0200, OK, 0));
-    assert_int_equal(told, 0);
+    assert_int_equal(read_address, 0);
 
     config.modbus.address = 1;
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_ERR_ARGUMENT);
@@ -257,10 +257,10 @@ TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
 TEST_IN(driving, the_address_is_set_to_0_by_a_function_that_says_what_may_come_of_it)
 {
     assert_int_equal(fathom_a16_modbus_set_address(&a16, 0), FATHOM_ERR_ARGUMENT);
-    PLAY(move_a16, OK, READ(1, 0x0200, OK, 1), READ(0, 0x0200, NOBODY, 0), WRITE(1, 0x0200, 0, OK),
+    PLAY(move_a16, OK, READ(1, 0x0200, OK, 1), READ(0, 0x0200, SILENT, 0), WRITE(1, 0x0200, 0, OK),
          READ(0, 0x0200, OK, 0));
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
-    PLAY(move_a05, FATHOM_ERR_UNCONFIRMED, READ(1, 0x0200, OK, 1), READ(0, 0x0200, NOBODY, 0),
-         WRITE(1, 0x0200, 0, OK), READ(0, 0x0200, NOBODY, 0), READ(1, 0x0200, NOBODY, 0));
+    PLAY(move_a05, FATHOM_ERR_UNCONFIRMED, READ(1, 0x0200, OK, 1), READ(0, 0x0200, SILENT, 0),
+         WRITE(1, 0x0200, 0, OK), READ(0, 0x0200, SILENT, 0), READ(1, 0x0200, SILENT, 0));
     PLAY(move_a05, FATHOM_ERR_IN_USE, READ(1, 0x0200, OK, 1), READ(0, 0x0200, OK, 0));
 }

@@ -343,13 +343,13 @@ enum { LOOKS = 14 };
 /* The kind that is said at look `n`, or 0: from all levels seen so far, anew each time. */
 static uint8_t refer(unsigned levels, unsigned n, uint32_t step_us)
 {
-    uint8_t said = 0;
+    uint8_t last = 0;
     for (unsigned at = 0; at <= n; at++) {
         unsigned from = at;
         while (from != 0 && (levels >> (from - 1) & 1) == (levels >> at & 1)) from--;
         const uint8_t kind = (levels >> at & 1) != 0 ? FATHOM_NEAR : FATHOM_FAR;
-        const bool says = (at - from) * step_us >= SETTLE_US && kind != said;
-        if (says) said = kind;
+        const bool says = (at - from) * step_us >= SETTLE_US && kind != last;
+        if (says) last = kind;
         if (at == n) return says ? kind : 0;
     }
     return 0;

@@ -224,7 +224,7 @@ TEST(a_response_to_another_command_is_malformed_unless_the_right_one_follows)
     }
 }
 
-/* One bit makes the command 03 of 01, and 1H = 03 the right sum of what is then a whole frame. Every other bit spoils
+/* One bit makes the command 03 of 01, and 1H = 03 the right sum of what is then a whole frame. Every other bit damages
  * the sum or the shape. */
 TEST(a_response_with_one_wrong_bit_is_never_taken)
 {

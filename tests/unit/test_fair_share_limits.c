@@ -44,9 +44,9 @@ TEST(how_soon_one_asked_again_stops_at_65535_us)
 /* "from the silence before the request on": that of the config. */
 TEST(the_silence_before_a_request_is_used_time)
 {
-    static const uint16_t silences_us[] = {T3_5_US, 0};
-    for (size_t i = 0; i != COUNT_OF(silences_us); i++) {
-        bench.config.silence_us = silences_us[i];
+    static const uint16_t gaps_us[] = {T3_5_US, 0};
+    for (size_t i = 0; i != COUNT_OF(gaps_us); i++) {
+        bench.config.silence_us = gaps_us[i];
         run(20000);
         ask_1(0);
         run(100);

@@ -13,7 +13,7 @@ static uint32_t loop_us;
 static fathom_hps167s_auto_t hps;
 static fathom_hps167s_auto_config_t config;
 static fathom_modbus_t modbus;
-static fathom_hps167s_t asking;
+static fathom_hps167s_t driver;
 
 /* The example of #5, and its CRC. */
 static const uint8_t example[LENGTH] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
@@ -58,8 +58,8 @@ static void ask_too(void)
 {
     modbus = fathom_modbus_client(&rig.line);
     const fathom_hps167s_config_t asked = {.modbus.transport = &modbus, .modbus.timeout_us = 300000};
-    assert_int_equal(fathom_hps167s_init(&asking, &asked), FATHOM_READY);
-    fathom_hps167s_auto_beside(&hps, &asking);
+    assert_int_equal(fathom_hps167s_init(&driver, &asked), FATHOM_READY);
+    fathom_hps167s_auto_beside(&hps, &driver);
 }
 
 /* ---- frames ---- */
@@ -200,19 +200,19 @@ TEST(a_request_of_another_is_due_before_it_is_stale)
 {
     fathom_sample_t sample;
     ask_too();
-    const fathom_sensor_t measuring = fathom_hps167s_sensor(&asking);
+    const fathom_sensor_t measuring = fathom_hps167s_sensor(&driver);
     rig_run(10000, 1000);
     PENDS(fathom_poll(&measuring, &sample));
     assert_in_range(fathom_due_us(&rig.sensor, 1), 0, 300000);
 }
 
-/* ---- beside asking ---- */
+/* ---- beside driver ---- */
 
 TEST(its_address_is_that_of_the_driver_that_asks)
 {
     ask_too();
     hears(FATHOM_READY, 1, 1000, 0, 0, 0);
-    asking.unit.address = 7;
+    driver.unit.address = 7;
     hears(FATHOM_PENDING, 1, 1000, 0, 0, 0);
     hears(FATHOM_READY, 7, 1000, 0, 0, 0);
     assert_int_equal(rig.sample.address, 7);
@@ -235,10 +235,10 @@ static fathom_status_t run_both(uint32_t for_us, fathom_status_t (*command)(void
 }
 
 static fathom_hps167s_configuration_t is;
-static fathom_status_t ask_2(void) { return fathom_hps167s_configuration(&asking, &is); }
+static fathom_status_t ask_2(void) { return fathom_hps167s_configuration(&driver, &is); }
 
 static fathom_hps167s_version_t version;
-static fathom_status_t ask_1(void) { return fathom_hps167s_interface_version(&asking, &version); }
+static fathom_status_t ask_1(void) { return fathom_hps167s_interface_version(&driver, &version); }
 
 TEST(a_response_to_2_that_comes_by_itself_is_no_measurement)
 {
@@ -256,10 +256,10 @@ TEST(a_response_to_2_that_comes_by_itself_is_no_measurement)
 
 TEST(what_was_told_last_is_no_measurement_at_any_time)
 {
-    static const uint16_t told[4] = {LOOKS_LIKE_2};
+    static const uint16_t registers[4] = {LOOKS_LIKE_2};
     ask_too();
     hears(FATHOM_READY, 1, 1000, 0, 0, 0);
-    memcpy(asking.last_configuration, told, sizeof told);
+    memcpy(driver.last_configuration, registers, sizeof registers);
     hears(FATHOM_PENDING, 1, LOOKS_LIKE_2);
     assert_int_equal(hps.implausible, 1);
     hears(FATHOM_READY, 1, 0x00FF, 0x0500, 0x0000, 0xB402);
@@ -278,11 +278,11 @@ TEST(a_held_value_is_never_taken_for_the_configuration)
         status = run_both(100000, ask_2);
     }
     assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&asking)), 8);
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)), 8);
 }
 
 /* Command #5: "If a sensor failure occurs during continuous measurement, an abnormal data packet will be returned". */
-TEST(a_faulted_sensor_that_talks_never_yields_a_configuration)
+TEST(a_faulted_sensor_that_sends_never_yields_a_configuration)
 {
     uint8_t frame[LENGTH];
     fathom_status_t status = FATHOM_PENDING;
@@ -293,7 +293,7 @@ TEST(a_faulted_sensor_that_talks_never_yields_a_configuration)
         status = run_both(100000, ask_2);
     }
     assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&asking)), 8);
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)), 8);
 }
 
 TEST(commands_are_answered_while_frames_arrive)

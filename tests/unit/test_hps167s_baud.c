@@ -16,19 +16,19 @@ TEST(the_driver_follows_the_device_to_its_rate)
     for (uint8_t i = 0; i != 3; i++) {
         const uint8_t code = (uint8_t)(i + 2);
         PLAY_AT(1, &hps_factory, (int32_t)bauds[i], set_baud, OK, IS(1, 1, 19200),
-                TWO(1, NOBODY, 0, bauds[i]), RATE(1, code, OK, 19200), IS(1, code, bauds[i]));
+                TWO(1, SILENT, 0, bauds[i]), RATE(1, code, OK, 19200), IS(1, code, bauds[i]));
         assert_int_equal(hps.next_baud, 0);
         assert_int_equal(fake.cancelled_unit, 1);
         hps_asks(1, bauds[i]);
         hps_responses();
         desk.argument = 19200; /* and back */
-        PLAY(set_baud, OK, IS(1, code, bauds[i]), TWO(1, NOBODY, 0, 19200), RATE(1, 1, OK, bauds[i]),
+        PLAY(set_baud, OK, IS(1, code, bauds[i]), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, bauds[i]),
              IS(1, 1, 19200));
         hps_asks(1, 19200);
         assert_true(hps.unit.line_settings == &hps.moved[0] || hps.unit.line_settings == &hps.moved[1]);
         hps_responses();
         desk.argument = (int32_t)bauds[i]; /* and there again */
-        PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, NOBODY, 0, bauds[i]), RATE(1, code, OK, 19200),
+        PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, SILENT, 0, bauds[i]), RATE(1, code, OK, 19200),
              IS(1, code, bauds[i]));
         hps_asks(1, bauds[i]);
     }
@@ -55,15 +55,15 @@ TEST(the_rate_that_it_has_is_not_written)
 /* Table 12 has no encoding of the rate: with a code that #9 does not have, where it answers says more. */
 TEST(a_code_that_is_not_ours_keeps_no_rate_from_being_set_or_found)
 {
-    PLAY_AT(1, &hps_factory, 115200, set_baud, OK, IS(1, 0, 19200), TWO(1, NOBODY, 0, 115200),
+    PLAY_AT(1, &hps_factory, 115200, set_baud, OK, IS(1, 0, 19200), TWO(1, SILENT, 0, 115200),
             RATE(1, 3, OK, 19200), IS(1, 0x73, 115200));
     hps_asks(1, 115200);
     hps_responses();
     desk.argument = 19200;
-    PLAY(set_baud, OK, IS(1, 5, 115200), TWO(1, NOBODY, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 0, 19200));
+    PLAY(set_baud, OK, IS(1, 5, 115200), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 0, 19200));
     PLAY(set_baud, OK, IS(1, 0, 19200)); /* it is so already */
-    PLAY_AT(1, &hps_factory, 115200, set_baud, FATHOM_ERR_DIFFERS, IS(1, 0, 19200), TWO(1, NOBODY, 0, 115200),
-            RATE(1, 3, OK, 19200), TWO(1, NOBODY, 0, 115200), IS(1, 0, 19200));
+    PLAY_AT(1, &hps_factory, 115200, set_baud, FATHOM_ERR_DIFFERS, IS(1, 0, 19200), TWO(1, SILENT, 0, 115200),
+            RATE(1, 3, OK, 19200), TWO(1, SILENT, 0, 115200), IS(1, 0, 19200));
 }
 
 /* #9: 01 is 19200, and "the others are all 19200bps"; it answers at 115200. */
@@ -83,7 +83,7 @@ TEST(a_rate_that_was_written_blind_is_sought_at_both)
     assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
     PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, RATE(1, 2, OK, 19200));
     hps_asks(1, 19200);
-    hps_is_silent(NOBODY);
+    hps_is_silent(SILENT);
     hps_asks(1, 57600);
     hps_responses();
 }
@@ -96,7 +96,7 @@ FOLLOWS(a_rate_where_somebody_answers_is_in_use, 3, 19200, 3, &hps_factory, 5760
         FATHOM_ERR_IN_USE, IS(3, 1, 19200), IS(3, 2, 57600))
 
 #define LATER(code, baud)                                                                                    \
-    IS(1, 1, 19200), TWO(1, NOBODY, 0, baud), RATE(1, code, OK, 19200), TWO(1, NOBODY, 0, baud),             \
+    IS(1, 1, 19200), TWO(1, SILENT, 0, baud), RATE(1, code, OK, 19200), TWO(1, SILENT, 0, baud),             \
         IS(1, code, 19200)
 
 TEST(a_rate_from_the_next_power_on_is_asked_at_then)
@@ -111,7 +111,7 @@ TEST(a_rate_from_the_next_power_on_is_asked_at_then)
     hps_responses();
     for (unsigned i = 0; i != 3; i++) { /* and it stays there */
         hps_asks(1, 115200);
-        hps_is_silent(NOBODY);
+        hps_is_silent(SILENT);
     }
 }
 
@@ -133,7 +133,7 @@ TEST(after_power_on_both_rates_are_asked_in_turns_until_it_answers)
     hps_asks(1, 19200);
     hps_responses();
     hps_asks(1, 19200);
-    hps_is_silent(NOBODY);
+    hps_is_silent(SILENT);
     hps_asks(1, 19200);
 }
 
@@ -153,7 +153,7 @@ TEST(any_word_of_the_device_tells_where_it_is)
                                       : i == 1 ? FATHOM_ERR_WARMING_UP
                                                : FATHOM_ERR_MALFORMED);
         hps_asks(1, 115200);
-        hps_is_silent(NOBODY);
+        hps_is_silent(SILENT);
         hps_asks(1, 115200);
     }
 }
@@ -171,14 +171,14 @@ TEST(a_rate_that_waits_for_power_on_is_known_from_the_device)
 }
 
 #define LOST                                                                                                 \
-    IS(1, 1, 19200), TWO(1, NOBODY, 0, 57600), RATE(1, 2, NOBODY, 19200), TWO(1, NOBODY, 0, 57600),          \
-        TWO(1, NOBODY, 0, 19200)
+    IS(1, 1, 19200), TWO(1, SILENT, 0, 57600), RATE(1, 2, SILENT, 19200), TWO(1, SILENT, 0, 57600),          \
+        TWO(1, SILENT, 0, 19200)
 
 TEST(an_unconfirmed_rate_is_looked_for_at_both)
 {
     PLAY_AT(1, &hps_factory, 57600, set_baud, FATHOM_ERR_UNCONFIRMED, LOST);
     hps_asks(1, 19200);
-    hps_is_silent(NOBODY);
+    hps_is_silent(SILENT);
     hps_asks(1, 57600);
     hps_responses();
     hps_asks(1, 57600);
@@ -189,8 +189,8 @@ TEST(a_setting_waits_until_the_device_is_found)
 {
     PLAY_AT(1, &hps_factory, 57600, set_baud, FATHOM_ERR_UNCONFIRMED, LOST);
     desk.argument = 230400;
-    PLAY(set_baud, NOBODY, HPS_1(1, NOBODY, 19200));
-    PLAY(set_baud, OK, HPS_1(1, OK, 57600), IS(1, 2, 57600), TWO(1, NOBODY, 0, 230400), RATE(1, 4, OK, 57600),
+    PLAY(set_baud, SILENT, HPS_1(1, SILENT, 19200));
+    PLAY(set_baud, OK, HPS_1(1, OK, 57600), IS(1, 2, 57600), TWO(1, SILENT, 0, 230400), RATE(1, 4, OK, 57600),
          IS(1, 4, 230400));
     hps_asks(1, 230400);
 }
@@ -198,9 +198,9 @@ TEST(a_setting_waits_until_the_device_is_found)
 TEST(an_unconfirmed_code_at_the_same_rate_is_not_looked_for_elsewhere)
 {
     PLAY_AT(1, &hps_factory, 19200, set_baud, FATHOM_ERR_UNCONFIRMED, IS(1, 3, 19200), RATE(1, 1, OK, 19200),
-            TWO(1, NOBODY, 0, 19200));
+            TWO(1, SILENT, 0, 19200));
     hps_asks(1, 19200);
-    hps_is_silent(NOBODY);
+    hps_is_silent(SILENT);
     hps_asks(1, 19200);
 }
 
@@ -213,5 +213,5 @@ TEST(another_setting_does_not_touch_the_rate_that_is_being_set)
     assert_int_equal(fathom_hps167s_set_termination(&hps, true), FATHOM_ERR_BUSY);
     fathom_hps167s_cancel(&hps);
     desk.argument = 57600;
-    PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, NOBODY, 0, 57600), RATE(1, 2, OK, 19200), IS(1, 2, 57600));
+    PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, SILENT, 0, 57600), RATE(1, 2, OK, 19200), IS(1, 2, 57600));
 }

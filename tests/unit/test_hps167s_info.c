@@ -106,20 +106,20 @@ TEST(after_a_frame_that_nobody_asked_for_three_responses_have_to_agree_for_2_s)
 /* The same bytes by themselves and as a response: 255 mm that hold, or a response that comes late. */
 TEST(what_is_heard_unasked_between_two_responses_takes_away_their_agreement)
 {
-    static const uint16_t told[4] = {RATE_1};
+    static const uint16_t registers[4] = {RATE_1};
     PART(configuration, HPS_2(1, OK, 0, RATE_1));
     PENDS(configuration());
-    assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
+    assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
     /* but not the one response that is still to come, where a measurement was taken for it */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
-    assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
+    assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1));
     /* and only one: what comes after it takes it away */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
-    for (unsigned i = 0; i != 2; i++) assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
+    for (unsigned i = 0; i != 2; i++) assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
 }
 
@@ -182,13 +182,13 @@ TEST(what_cannot_be_a_response_to_2_never_counts)
 
 TEST(an_error_ends_it_and_the_next_time_begins_anew)
 {
-    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION};
+    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION};
     for (unsigned i = 0; i != 3; i++)
         PLAY(configuration, errors[i], HPS_2(1, OK, 0, RATE_1), HPS_2(1, errors[i], 0, 2));
     PLAY(configuration, OK, TELLS(RATE_1));
     const row_t none = HPS_2(1, OK, 0, MEASURES);
-    const row_t eighth = HPS_2(1, NOBODY, 0, 2);
-    PLAY(configuration, NOBODY, none, none, none, none, none, none, none, eighth);
+    const row_t eighth = HPS_2(1, SILENT, 0, 2);
+    PLAY(configuration, SILENT, none, none, none, none, none, none, none, eighth);
 }
 
 /* A target at exactly 255 mm with just these figures, sent unasked: it was measured just before. */
@@ -210,14 +210,14 @@ TEST(what_was_measured_last_is_no_configuration)
  * off; or 255 mm. */
 TEST(what_was_told_last_is_no_measurement)
 {
-    /* what lies behind the four registers, as 255 mm do behind what was told, is none of them */
-    static const uint16_t told[5] = {0x00FF, 0x0500, 0x0000, 0xB401, 0x00FF};
+    /* what lies behind the four registers, as 255 mm do behind what was registers, is none of them */
+    static const uint16_t registers[5] = {0x00FF, 0x0500, 0x0000, 0xB401, 0x00FF};
     PLAY(configuration, OK, TELLS(0x00FF, 0x0500, 0x0000, 0xB401));
     PLAY(desk_poll, FATHOM_ERR_MALFORMED, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB401));
     assert_int_equal(hps.implausible, 1);
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB402));
     assert_int_equal(desk.sample.distance_mm, 255);
-    assert_false(fathom_hps167s_heard(&hps, told, fake.now_us));
+    assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
 }
 
 TEST(the_configuration_given_up_begins_anew)

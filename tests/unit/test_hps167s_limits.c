@@ -97,7 +97,7 @@ TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
         fake_modbus_send(&fake);
         PENDS(desk_poll());
         fake.now_us += 500000;
-        hps_is_silent(NOBODY);
+        hps_is_silent(SILENT);
         assert_int_equal(due_us(), n < 3 ? 0 : n == 3 ? 500000 : 700000);
         fake.now_us += due_us();
     }
@@ -133,8 +133,8 @@ TEST(a_configuration_that_is_not_answered_puts_nothing_off)
     fake_modbus_send(&fake);
     PENDS(configuration());
     fake.now_us += 1000000;
-    fake_modbus_fail(&fake, NOBODY);
-    assert_int_equal(configuration(), NOBODY);
+    fake_modbus_fail(&fake, SILENT);
+    assert_int_equal(configuration(), SILENT);
     assert_int_equal(due_us(), 0);
 }
 
@@ -182,12 +182,12 @@ TEST(calls_before_the_next_request_do_not_change_the_rate)
     hps_config.modbus.backoff_us = 1; /* else it is left alone for longer than hps_asks() waits */
     hps_start();
     PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200},
-         {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200}, {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 115200},
-         {{1, 6, 0, 0x11, 0, 3}, NOBODY, {0}, 19200}, {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 115200},
-         {{1, 3, 0, 2, 0, 4}, NOBODY, {0}, 19200});
+         {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200}, {{1, 3, 0, 2, 0, 4}, SILENT, {0}, 115200},
+         {{1, 6, 0, 0x11, 0, 3}, SILENT, {0}, 19200}, {{1, 3, 0, 2, 0, 4}, SILENT, {0}, 115200},
+         {{1, 3, 0, 2, 0, 4}, SILENT, {0}, 19200});
     for (unsigned n = 0; n != 4; n++) {
         hps_asks(1, n % 2 == 0 ? 19200 : 115200);
-        hps_is_silent(NOBODY);
+        hps_is_silent(SILENT);
         for (unsigned calls = 0; calls != n; calls++) PENDS(desk_poll());
     }
 }

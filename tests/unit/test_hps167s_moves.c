@@ -18,7 +18,7 @@ HPS_SUITE;
 
 TEST(the_driver_follows_the_device_to_its_address)
 {
-    PLAY_AT(1, NULL, 32, set_address, OK, HPS_1(1, OK, 0), HPS_1(32, NOBODY, 0), MOVE(1, 32, OK),
+    PLAY_AT(1, NULL, 32, set_address, OK, HPS_1(1, OK, 0), HPS_1(32, SILENT, 0), MOVE(1, 32, OK),
             HPS_1(32, OK, 0));
     assert_int_equal(fake.unit_cancels, 1);
     assert_int_equal(fake.cancelled_unit, 1);
@@ -45,17 +45,17 @@ FOLLOWS(an_address_where_somebody_answers_is_in_use, 1, 0, 1, NULL, 5, set_addre
 
 /* It may acknowledge from the new address, where nobody was asked. */
 FOLLOWS(an_acknowledgement_from_the_new_address_is_as_good, 5, 0, 1, NULL, 5, set_address, OK,
-        HPS_1(1, OK, 0), HPS_1(5, NOBODY, 0), MOVE(1, 5, NOBODY), HPS_1(5, OK, 0))
+        HPS_1(1, OK, 0), HPS_1(5, SILENT, 0), MOVE(1, 5, SILENT), HPS_1(5, OK, 0))
 
 FOLLOWS(a_device_that_answers_at_neither_address_is_unconfirmed, 1, 0, 1, NULL, 5, set_address,
-        FATHOM_ERR_UNCONFIRMED, HPS_1(1, OK, 0), HPS_1(5, NOBODY, 0), MOVE(1, 5, OK), HPS_1(5, NOBODY, 0),
-        HPS_1(1, NOBODY, 0))
+        FATHOM_ERR_UNCONFIRMED, HPS_1(1, OK, 0), HPS_1(5, SILENT, 0), MOVE(1, 5, OK), HPS_1(5, SILENT, 0),
+        HPS_1(1, SILENT, 0))
 
 /* ---- #6 ---- */
 
 TEST(a_reset_device_is_followed_to_address_1)
 {
-    PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, NOBODY, 0, 0), HPS_6(7, OK, 1, 0), IS(1, 1, 0));
+    PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, SILENT, 0, 0), HPS_6(7, OK, 1, 0), IS(1, 1, 0));
     assert_int_equal(hps.reset_response, 1);
     assert_int_equal(fake.cancelled_unit, 7);
     hps_asks(1, 0);
@@ -63,11 +63,11 @@ TEST(a_reset_device_is_followed_to_address_1)
 
 TEST(a_reset_device_is_followed_to_19200)
 {
-    PLAY_AT(7, &fast, 0, reset, OK, IS(7, 3, 115200), TWO(1, NOBODY, 0, 19200), HPS_6(7, OK, 1, 115200),
+    PLAY_AT(7, &fast, 0, reset, OK, IS(7, 3, 115200), TWO(1, SILENT, 0, 19200), HPS_6(7, OK, 1, 115200),
             IS(1, 1, 19200));
     assert_int_equal(hps.next_baud, 0);
     hps_asks(1, 19200);
-    PLAY_AT(1, &fast, 0, reset, OK, IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200), HPS_6(1, OK, 1, 115200),
+    PLAY_AT(1, &fast, 0, reset, OK, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200), HPS_6(1, OK, 1, 115200),
             IS(1, 1, 19200));
     hps_asks(1, 19200);
 }
@@ -77,13 +77,13 @@ TEST(where_it_is_at_home_already_its_word_and_a_reading_are_enough)
     PLAY_AT(1, &hps_factory, 0, reset, OK, IS(1, 1, 19200), HPS_6(1, OK, 1, 19200), IS(1, 1, 19200));
     hps_asks(1, 19200);
     PLAY_AT(1, &hps_factory, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 1, 19200), HPS_6(1, OK, 1, 19200),
-            TWO(1, NOBODY, 0, 19200));
+            TWO(1, SILENT, 0, 19200));
 }
 
 TEST(a_reset_whose_rate_waits_for_power_on_is_followed_then)
 {
-    PLAY_AT(1, &fast, 0, reset, OK, IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200), HPS_6(1, OK, 1, 115200),
-            TWO(1, NOBODY, 0, 19200), IS(1, 1, 115200));
+    PLAY_AT(1, &fast, 0, reset, OK, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200), HPS_6(1, OK, 1, 115200),
+            TWO(1, SILENT, 0, 19200), IS(1, 1, 115200));
     assert_int_equal(hps.next_baud, 19200);
     hps_asks(1, 115200);
     fathom_hps167s_power_on(&hps);
@@ -102,7 +102,7 @@ TEST(the_devices_own_error_code_is_kept)
 {
     static const uint16_t codes[] = {0, 2, 0x00FF, 0x0100};
     for (unsigned i = 0; i != 4; i++) {
-        PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(7, 1, 0), TWO(1, NOBODY, 0, 0),
+        PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(7, 1, 0), TWO(1, SILENT, 0, 0),
                 HPS_6(7, OK, codes[i], 0));
         assert_int_equal(hps.reset_response, codes[i]);
         hps_asks(7, 0);
@@ -120,28 +120,28 @@ TEST(a_modbus_exception_is_told_from_that)
 
 TEST(a_reset_without_a_response_shows_in_where_the_device_is)
 {
-    PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, NOBODY, 0, 0), HPS_6(7, NOBODY, 0, 0), IS(1, 1, 0));
+    PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, SILENT, 0, 0), HPS_6(7, SILENT, 0, 0), IS(1, 1, 0));
     hps_asks(1, 0);
-    PLAY_AT(7, NULL, 0, reset, NOBODY, IS(7, 1, 0), TWO(1, NOBODY, 0, 0), HPS_6(7, NOBODY, 0, 0),
-            TWO(1, NOBODY, 0, 0), IS(7, 1, 0));
+    PLAY_AT(7, NULL, 0, reset, SILENT, IS(7, 1, 0), TWO(1, SILENT, 0, 0), HPS_6(7, SILENT, 0, 0),
+            TWO(1, SILENT, 0, 0), IS(7, 1, 0));
     hps_asks(7, 0);
-    PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(7, 1, 0), TWO(1, NOBODY, 0, 0),
-            HPS_6(7, NOBODY, 0, 0), TWO(1, NOBODY, 0, 0), TWO(7, NOBODY, 0, 0));
+    PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(7, 1, 0), TWO(1, SILENT, 0, 0),
+            HPS_6(7, SILENT, 0, 0), TWO(1, SILENT, 0, 0), TWO(7, SILENT, 0, 0));
     hps_asks(7, 0);
 }
 
 FOLLOWS(a_reset_without_a_response_shows_in_its_rate_too, 1, 19200, 1, &fast, 0, reset, OK, IS(1, 3, 115200),
-        TWO(1, NOBODY, 0, 19200), HPS_6(1, NOBODY, 0, 115200), IS(1, 1, 19200))
+        TWO(1, SILENT, 0, 19200), HPS_6(1, SILENT, 0, 115200), IS(1, 1, 19200))
 
 /* It is where it was, which shows nothing. */
 TEST(a_reset_without_a_response_at_address_1_is_unconfirmed)
 {
-    PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 1, 0), HPS_6(1, NOBODY, 0, 0), IS(1, 1, 0));
-    PLAY_AT(1, &fast, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 3, 115200), TWO(1, NOBODY, 0, 19200),
-            HPS_6(1, NOBODY, 0, 115200), TWO(1, NOBODY, 0, 19200), IS(1, 3, 115200));
+    PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 1, 0), HPS_6(1, SILENT, 0, 0), IS(1, 1, 0));
+    PLAY_AT(1, &fast, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200),
+            HPS_6(1, SILENT, 0, 115200), TWO(1, SILENT, 0, 19200), IS(1, 3, 115200));
 }
 
-TEST(a_device_that_is_not_there_is_not_reset) { PLAY_AT(1, NULL, 0, reset, NOBODY, TWO(1, NOBODY, 0, 0)); }
+TEST(a_device_that_is_not_there_is_not_reset) { PLAY_AT(1, NULL, 0, reset, SILENT, TWO(1, SILENT, 0, 0)); }
 
 TEST(a_reset_is_never_retried_and_can_be_done_again)
 {

@@ -32,7 +32,7 @@ HPS_SUITE;
 TEST(silence_damage_refusal_and_the_abnormal_packet_are_warming_up)
 {
     fathom_hps167s_power_on(&hps);
-    assert_int_equal(ends_after(10000, NOBODY), FATHOM_ERR_WARMING_UP);
+    assert_int_equal(ends_after(10000, SILENT), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(10000, FATHOM_ERR_CHECKSUM), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(10000, FATHOM_ERR_EXCEPTION), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(10000, FATHOM_ERR_PORT), FATHOM_ERR_PORT);
@@ -45,7 +45,7 @@ TEST(silence_damage_refusal_and_the_abnormal_packet_are_warming_up)
 
 TEST(without_power_on_they_are_what_they_are)
 {
-    assert_int_equal(ends_after(10000, NOBODY), NOBODY);
+    assert_int_equal(ends_after(10000, SILENT), SILENT);
     assert_int_equal(ends_after(10000, FATHOM_ERR_EXCEPTION), FATHOM_ERR_EXCEPTION);
     assert_int_equal(says(hps_abnormal), OK);
     assert_int_equal(desk.sample.kind, FATHOM_FAULT);
@@ -63,8 +63,8 @@ TEST(the_warm_up_is_an_option_and_its_last_request_counts)
             hps_config.modbus.timeout_us = rows[i][1];
             hps_start();
             fathom_hps167s_power_on(&hps);
-            assert_int_equal(ends_after(rows[i][2] - 1 + late, NOBODY),
-                             late == 0 ? FATHOM_ERR_WARMING_UP : NOBODY);
+            assert_int_equal(ends_after(rows[i][2] - 1 + late, SILENT),
+                             late == 0 ? FATHOM_ERR_WARMING_UP : SILENT);
             assert_int_equal(says(hps_abnormal), OK);
             assert_int_equal(desk.sample.kind, FATHOM_FAULT);
         }
@@ -85,8 +85,8 @@ TEST(a_warm_up_of_0_s_can_be_told_and_can_be_set)
         if (is_set == 1) PLAY(none, OK, WARMS_UP(5), HPS_WRITE(1, 0x0A, 0, OK, 0), WARMS_UP(0));
         fake.now_us += 20000;
         fathom_hps167s_power_on(&hps);
-        assert_int_equal(ends_after(499999, NOBODY), FATHOM_ERR_WARMING_UP);
-        assert_int_equal(ends_after(1, NOBODY), NOBODY);
+        assert_int_equal(ends_after(499999, SILENT), FATHOM_ERR_WARMING_UP);
+        assert_int_equal(ends_after(1, SILENT), SILENT);
     }
 }
 
@@ -100,12 +100,12 @@ TEST(a_warm_up_that_was_set_counts_from_then_on)
     PLAY(nine, OK, WARMS_UP(1), HPS_WRITE(1, 0x0A, 9, OK, 0), WARMS_UP(9));
     fake.now_us += 20000;
     fathom_hps167s_power_on(&hps);
-    assert_int_equal(ends_after(9000000, NOBODY), FATHOM_ERR_WARMING_UP);
+    assert_int_equal(ends_after(9000000, SILENT), FATHOM_ERR_WARMING_UP);
     PLAY(reset, OK, WARMS_UP(9), HPS_6(1, OK, 1, 0), WARMS_UP(5));
     fake.now_us += 20000;
     fathom_hps167s_power_on(&hps);
-    assert_int_equal(ends_after(5400000, NOBODY), FATHOM_ERR_WARMING_UP);
-    assert_int_equal(ends_after(100000, NOBODY), NOBODY);
+    assert_int_equal(ends_after(5400000, SILENT), FATHOM_ERR_WARMING_UP);
+    assert_int_equal(ends_after(100000, SILENT), SILENT);
 }
 
 TEST(power_forgets_what_was_under_way)

@@ -32,7 +32,7 @@ static void assert_warm_up(uint32_t warm_up_s)
     fathom_hps167s_power_on(&hps);
     PENDS(desk_poll());
     fake.now_us += warm_up_s * 1000000u + 500000;
-    hps_is_silent(NOBODY);
+    hps_is_silent(SILENT);
 }
 
 HPS_SUITE;
@@ -48,7 +48,7 @@ TEST(a_warm_up_that_was_refused_does_not_count)
 TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
 {
     PLAY_AT(1, &hps_factory, 115200, set_baud, FATHOM_ERR_EXCEPTION, IS_OF(1, 5, 1, 19200),
-            TWO_OF(1, NOBODY, 5, 1, 115200), HPS_WRITE(1, 0x11, 3, EXCEPTION, 19200));
+            TWO_OF(1, SILENT, 5, 1, 115200), HPS_WRITE(1, 0x11, 3, EXCEPTION, 19200));
     assert_int_equal(hps.next_baud, 0);
     fathom_hps167s_power_on(&hps);
     hps_asks(1, 19200);
@@ -60,7 +60,7 @@ TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
 TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_nobody)
 {
     PLAY_AT(1, &hps_factory, 19200, set_baud, FATHOM_ERR_UNCONFIRMED, IS_OF(1, 5, 3, 19200),
-            HPS_WRITE(1, 0x11, 1, OK, 19200), TWO_OF(1, NOBODY, 5, 1, 19200));
+            HPS_WRITE(1, 0x11, 1, OK, 19200), TWO_OF(1, SILENT, 5, 1, 19200));
     PLAY(set_warm_up, OK, IS_OF(1, 200, 1, 19200));
 }
 
@@ -69,10 +69,10 @@ TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_nobod
 TEST(nothing_is_reset_before_a_device_that_is_sought_has_answered)
 {
     PLAY_AT(1, &hps_factory, 57600, set_baud, FATHOM_ERR_UNCONFIRMED, IS_OF(1, 5, 1, 19200),
-            TWO_OF(1, NOBODY, 5, 1, 57600), HPS_WRITE(1, 0x11, 2, NOBODY, 19200),
-            TWO_OF(1, NOBODY, 5, 1, 57600), TWO_OF(1, NOBODY, 5, 1, 19200));
-    PLAY(reset, NOBODY, HPS_1(1, NOBODY, 19200));
-    PLAY(reset, OK, HPS_1(1, OK, 57600), IS_OF(1, 5, 2, 57600), TWO_OF(1, NOBODY, 5, 1, 19200),
+            TWO_OF(1, SILENT, 5, 1, 57600), HPS_WRITE(1, 0x11, 2, SILENT, 19200),
+            TWO_OF(1, SILENT, 5, 1, 57600), TWO_OF(1, SILENT, 5, 1, 19200));
+    PLAY(reset, SILENT, HPS_1(1, SILENT, 19200));
+    PLAY(reset, OK, HPS_1(1, OK, 57600), IS_OF(1, 5, 2, 57600), TWO_OF(1, SILENT, 5, 1, 19200),
          HPS_6(1, OK, 1, 57600), IS_OF(1, 5, 1, 19200));
     hps_asks(1, 19200);
 }
@@ -83,7 +83,7 @@ TEST(after_a_reset_that_was_refused_rate_and_warm_up_are_as_before)
     hps_start_at(1, &fast);
     hps_config.warm_up_s = 9;
     hps_start();
-    PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 9, 3, 115200), TWO_OF(1, NOBODY, 9, 1, 19200),
+    PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 9, 3, 115200), TWO_OF(1, SILENT, 9, 1, 19200),
          HPS_6(1, EXCEPTION, 4, 115200));
     assert_int_equal(hps.next_baud, 0);
     assert_warm_up(9);
@@ -102,7 +102,7 @@ TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
 /* "if the device is elsewhere, address 1 at 19200 is asked whether somebody is there": it is not elsewhere by now. */
 TEST(a_device_that_was_moved_to_address_1_is_reset_without_looking_there)
 {
-    PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, NOBODY, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
+    PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
             HPS_1(1, OK, 0));
     PLAY(reset, OK, IS_OF(1, 5, 1, 0), HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));
 }
@@ -112,7 +112,7 @@ TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before
 {
     static const uint16_t is[4] = {0xFFFF, 0x0500, 0x0000, 0xB401};
     fathom_hps167s_configuration_t configuration;
-    PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, NOBODY, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
+    PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
             HPS_1(1, OK, 0));
     for (unsigned n = 0; n != 2; n++) {
         PENDS(fathom_hps167s_configuration(&hps, &configuration));
@@ -133,11 +133,11 @@ static fathom_status_t set_baud_until_the_port_breaks(void)
 TEST(a_device_is_sought_at_both_rates_when_the_port_breaks_while_the_new_one_is_confirmed)
 {
     PLAY_AT(1, &hps_factory, 57600, set_baud_until_the_port_breaks, FATHOM_ERR_UNCONFIRMED,
-            IS_OF(1, 5, 1, 19200), TWO_OF(1, NOBODY, 5, 1, 57600), HPS_WRITE(1, 0x11, 2, OK, 19200),
+            IS_OF(1, 5, 1, 19200), TWO_OF(1, SILENT, 5, 1, 57600), HPS_WRITE(1, 0x11, 2, OK, 19200),
             TWO_OF(1, FATHOM_ERR_PORT, 5, 1, 57600));
     fake.transport = FATHOM_PENDING;
     hps_asks(1, 19200);
-    hps_is_silent(NOBODY);
+    hps_is_silent(SILENT);
     hps_asks(1, 57600);
     hps_responses();
 }

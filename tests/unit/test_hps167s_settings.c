@@ -113,15 +113,15 @@ TEST(a_write_is_not_retried_and_the_readings_are)
 TEST(what_goes_wrong_is_told_as_it_is)
 {
     desk.argument = 9;
-    PLAY(warm_up, NOBODY, FAILS(NOBODY));
+    PLAY(warm_up, SILENT, FAILS(SILENT));
     assert_false(fathom_hps167s_is_written(&hps));
     PLAY(warm_up, FATHOM_ERR_EXCEPTION, FACTORY, PUTS(0x0A, 9, FATHOM_ERR_EXCEPTION));
     assert_int_equal(fathom_hps167s_exception(&hps), 2);
     PLAY(warm_up, FATHOM_ERR_DIFFERS, FACTORY, PUTS(0x0A, 9, OK), FACTORY);
     assert_true(fathom_hps167s_is_written(&hps));
     PLAY(warm_up, FATHOM_ERR_UNCONFIRMED, FACTORY, PUTS(0x0A, 9, OK), FAILS(FATHOM_ERR_CHECKSUM));
-    PLAY(warm_up, NOBODY, FACTORY, PUTS(0x0A, 9, NOBODY), FACTORY);
-    PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 9, NOBODY), TELLS(0xFFFF, 0x0900, 0x0000, 0xB401));
+    PLAY(warm_up, SILENT, FACTORY, PUTS(0x0A, 9, SILENT), FACTORY);
+    PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 9, SILENT), TELLS(0xFFFF, 0x0900, 0x0000, 0xB401));
 }
 
 /* modbus_setting.h, 1: where one was written and did not read so, that is no word of another. */
@@ -319,14 +319,14 @@ TEST(a_device_that_is_not_there_is_told_nothing)
     for (unsigned i = 0; i != COUNT(commands); i++) {
         PLAY(filter, OK, ASK_1, PUTS(0x16, 0xFFF1, OK));
         assert_true(fathom_hps167s_is_written(&hps));
-        PLAY(commands[i], NOBODY, HPS_1(1, NOBODY, 0));
+        PLAY(commands[i], SILENT, HPS_1(1, SILENT, 0));
         assert_false(fathom_hps167s_is_written(&hps));
     }
 }
 
 TEST(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again)
 {
-    static const fathom_status_t errors[] = {FATHOM_ERR_EXCEPTION, NOBODY, FATHOM_ERR_CHECKSUM,
+    static const fathom_status_t errors[] = {FATHOM_ERR_EXCEPTION, SILENT, FATHOM_ERR_CHECKSUM,
                                              FATHOM_ERR_ECHO, FATHOM_ERR_MALFORMED};
     for (unsigned i = 0; i != 5; i++) {
         hps_set_up(NULL);

@@ -81,10 +81,10 @@ TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
         hold(true);
         run(silent_us);
         hold(false);
-        assert_int_equal(ear.length, 0);
+        assert_int_equal(bench_listener.length, 0);
         deliver(response_1_754, 7);
-        assert_int_equal(ear.length, 7);
-        assert_int_equal(ear.gaps, silent_us == 5000);
+        assert_int_equal(bench_listener.length, 7);
+        assert_int_equal(bench_listener.gaps, silent_us == 5000);
     }
 }
 
@@ -94,17 +94,17 @@ TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
     listen_for(500);
     ask_1_and_send(0);
     expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(ear.length, 0);
+    assert_int_equal(bench_listener.length, 0);
     receive_hex("55 01 03 02");
     run(1000);
     assert_int_equal(bench.line.have, 3);
-    assert_int_equal(ear.length, 1);
-    assert_int_equal(ear.gaps, 1);
+    assert_int_equal(bench_listener.length, 1);
+    assert_int_equal(bench_listener.gaps, 1);
     hold(true);
     hold(false);
     run(GAP_US + 1000);
-    assert_int_equal(ear.length, 4);
-    assert_int_equal(ear.gaps, 1);
+    assert_int_equal(bench_listener.length, 4);
+    assert_int_equal(bench_listener.gaps, 1);
 }
 
 /* ---- a port that refuses ---- */

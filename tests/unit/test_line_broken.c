@@ -66,7 +66,7 @@ TEST(a_port_that_cannot_write_is_broken_at_the_first_try)
 
 TEST(a_port_that_takes_a_part_of_a_request_is_broken_at_the_first_try)
 {
-    bench.fake.write_torn = true;
+    bench.fake.write_too_short = true;
     ask(&bench.request, 1, &bench.value, 0);
     assert_int_equal(after(T3_5_US), FATHOM_ERR_PORT);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);

@@ -67,9 +67,9 @@ TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence)
     run(10000);
     receive_rx(rest, sizeof rest, FATHOM_RX_OVERRUN);
     run(100);
-    assert_int_equal(ear.length, sizeof rest);
-    assert_int_equal(ear.losses, 1);
-    assert_int_equal(ear.gaps, 0);
+    assert_int_equal(bench_listener.length, sizeof rest);
+    assert_int_equal(bench_listener.losses, 1);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 static uint8_t storage[20];

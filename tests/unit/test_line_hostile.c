@@ -238,7 +238,7 @@ TEST(a_port_that_cannot_write_or_tears_a_request_ends_the_transaction)
 {
     ask_while(state, &bench.fake.write_fails, 5000);
     expect(FATHOM_ERR_PORT);
-    ask_while(state, &bench.fake.write_torn, 5000);
+    ask_while(state, &bench.fake.write_too_short, 5000);
     expect(FATHOM_ERR_PORT);
 }
 

@@ -43,7 +43,7 @@ TEST_IN(asked, a_silence_behind_bytes_that_are_held_back_is_none_before_them)
     run(100);
     expect_mm(754);
     expect_heard(response_1_754, 4, NULL, 0);
-    assert_int_equal(ear.gaps, 0);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
@@ -65,14 +65,14 @@ TEST(a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen)
     run(2000);
     receive(auto_frame, 2); /* only 2 ms of silence have been seen */
     run(1000);
-    assert_int_equal(ear.gaps, 0);
+    assert_int_equal(bench_listener.gaps, 0);
     receive(auto_frame + 2, 2);
     run(6000);
     deliver(auto_frame, 4);
     expect_heard(auto_frame, 4, auto_frame, 4);
-    assert_int_equal(ear.gaps, 1);
-    assert_int_equal(ear.gap_at, 4);
-    assert_int_equal(ear.time_us, bench.fake.now_us);
+    assert_int_equal(bench_listener.gaps, 1);
+    assert_int_equal(bench_listener.gap_at, 4);
+    assert_int_equal(bench_listener.time_us, bench.fake.now_us);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
 }
 
@@ -84,8 +84,8 @@ TEST(a_pause_between_polls_is_no_gap)
     run_in_steps(20000, 20000);
     receive(auto_frame + 2, 2); /* may have followed at once; nobody looked */
     run_in_steps(20000, 20000);
-    assert_int_equal(ear.length, 4);
-    assert_int_equal(ear.gaps, 0);
+    assert_int_equal(bench_listener.length, 4);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST(a_silence_that_the_port_saw_is_a_gap)
@@ -93,7 +93,7 @@ TEST(a_silence_that_the_port_saw_is_a_gap)
     listen_for(5000);
     receive_rx(auto_frame, 4, FATHOM_RX_SILENCE);
     run(100);
-    assert_int_equal(ear.gaps, 1);
+    assert_int_equal(bench_listener.gaps, 1);
 }
 
 TEST(after_a_broken_port_no_silence_is_known)
@@ -103,7 +103,7 @@ TEST(after_a_broken_port_no_silence_is_known)
     break_port();
     deliver(auto_frame + 2, 2);
     expect_heard(auto_frame, 2, auto_frame + 2, 2);
-    assert_int_equal(ear.gaps, 0);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST(unasked_bytes_around_a_response_go_to_the_listener_and_the_response_does_not)
@@ -126,10 +126,10 @@ TEST(only_the_first_of_unasked_bytes_during_a_transaction_is_after_the_gap)
     run(6000);
     receive(auto_frame, 4); /* given one by one: each might have begun a response */
     run(2 * GAP_US);
-    assert_int_equal(ear.length, 4);
-    assert_int_equal(ear.calls, 4);
-    assert_int_equal(ear.gaps, 1);
-    assert_int_equal(ear.gap_at, 0);
+    assert_int_equal(bench_listener.length, 4);
+    assert_int_equal(bench_listener.calls, 4);
+    assert_int_equal(bench_listener.gaps, 1);
+    assert_int_equal(bench_listener.gap_at, 0);
 }
 
 TEST(our_own_request_is_no_silence)
@@ -138,8 +138,8 @@ TEST(our_own_request_is_no_silence)
     ask_1_and_send(0); /* 8 ms of it */
     receive(auto_frame, 4);
     run(2 * GAP_US);
-    assert_int_equal(ear.length, 4);
-    assert_int_equal(ear.gaps, 0);
+    assert_int_equal(bench_listener.length, 4);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST(whole_foreign_frames_go_to_the_listener)
@@ -148,12 +148,12 @@ TEST(whole_foreign_frames_go_to_the_listener)
     ask_1_and_send(0);
     receive_response(2, 222);
     run(200);
-    assert_int_equal(ear.length, 7);
-    assert_int_equal(ear.calls, 1);
+    assert_int_equal(bench_listener.length, 7);
+    assert_int_equal(bench_listener.calls, 1);
     fathom_line_listen(&bench.line, NULL);
     receive_response(2, 222);
     run(200);
-    assert_int_equal(ear.length, 7);
+    assert_int_equal(bench_listener.length, 7);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
 }
 
@@ -170,9 +170,9 @@ TEST(a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one)
         receive_rx(auto_frame, 3, flags[i]);
         deliver(auto_frame + 2, 2);
         expect_heard(auto_frame, 2, auto_frame + 2, 2);
-        assert_int_equal(ear.losses, 1);
-        assert_int_equal(ear.lost_at, 2);
-        assert_int_equal(ear.gaps, 0);
+        assert_int_equal(bench_listener.losses, 1);
+        assert_int_equal(bench_listener.lost_at, 2);
+        assert_int_equal(bench_listener.gaps, 0);
         expect_count(FATHOM_LINE_BAD_BYTES, 3);
         expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
     }
@@ -185,8 +185,8 @@ TEST(a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before)
     receive_rx(auto_frame + 2, 2, FATHOM_RX_OVERRUN);
     run(100);
     expect_heard(auto_frame, 1, auto_frame + 2, 2);
-    assert_int_equal(ear.losses, 1);
-    assert_int_equal(ear.lost_at, 1);
+    assert_int_equal(bench_listener.losses, 1);
+    assert_int_equal(bench_listener.lost_at, 1);
     expect_count(FATHOM_LINE_BAD_BYTES, 1);
 }
 
@@ -196,12 +196,12 @@ TEST(what_a_transaction_held_back_goes_to_the_listener_before_the_loss)
     listen_for(5000);
     ask_1_and_send(0);
     deliver(response_1_754, 4);
-    assert_int_equal(ear.length, 0);
+    assert_int_equal(bench_listener.length, 0);
     receive_rx(auto_frame, 4, FATHOM_RX_OVERRUN);
     run(100);
     run(2 * GAP_US);
     expect_heard(response_1_754, 4, auto_frame, 4);
-    assert_int_equal(ear.lost_at, 4);
+    assert_int_equal(bench_listener.lost_at, 4);
     expect(FATHOM_ERR_CHECKSUM);
 }
 

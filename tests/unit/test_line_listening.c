@@ -39,9 +39,9 @@ TEST(a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it)
     deliver_all(auto_frame);
     deliver_all(exception_1_2);
     expect_heard(auto_frame, sizeof auto_frame, exception_1_2, sizeof exception_1_2);
-    assert_int_equal(ear.gaps, 1);
-    assert_int_equal(ear.gap_at, 0);
-    assert_int_equal(ear.time_us, bench.fake.now_us);
+    assert_int_equal(bench_listener.gaps, 1);
+    assert_int_equal(bench_listener.gap_at, 0);
+    assert_int_equal(bench_listener.time_us, bench.fake.now_us);
     assert_true(fathom_line_is_idle(&bench.line));
 }
 
@@ -59,8 +59,8 @@ TEST(a_line_that_only_listens_tells_of_lost_bytes_once)
     listen_for(5000);
     receive_rx(auto_frame, sizeof auto_frame, FATHOM_RX_FRAMING);
     run(100);
-    assert_int_equal(ear.calls, 1);
-    assert_int_equal(ear.losses, 1);
+    assert_int_equal(bench_listener.calls, 1);
+    assert_int_equal(bench_listener.losses, 1);
 }
 
 TEST(what_comes_to_no_listener_is_forgotten)

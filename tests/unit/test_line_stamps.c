@@ -146,7 +146,7 @@ TEST(the_silence_before_a_request_is_counted_from_a_byte_that_came_after_the_loo
     }
 }
 
-TEST(a_frame_is_not_torn_where_its_first_bytes_came_after_the_look_at_the_clock)
+TEST(a_frame_is_not_split_where_its_first_bytes_came_after_the_look_at_the_clock)
 {
     for (unsigned i = 0; i != 2; i++) {
         (void)set_up_late(state);

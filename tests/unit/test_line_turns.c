@@ -15,28 +15,28 @@ static struct {
     char what;
     uint8_t unit;
     uint32_t ms; /* from the start */
-} told[8];
-static size_t tolds;
+} calls[8];
+static size_t call_count;
 
 static void tell(char what, uint8_t unit, uint32_t at_us)
 {
-    assert_true(tolds != COUNT_OF(told));
-    told[tolds].what = what;
-    told[tolds].unit = unit;
-    told[tolds++].ms = (at_us - start_us) / 1000;
+    assert_true(call_count != COUNT_OF(calls));
+    calls[call_count].what = what;
+    calls[call_count].unit = unit;
+    calls[call_count++].ms = (at_us - start_us) / 1000;
 }
 
 /* The next thing that it was told. */
 static size_t looked_at;
-static void expect_told(char what, uint8_t unit, uint32_t ms)
+static void expect_call(char what, uint8_t unit, uint32_t ms)
 {
-    assert_true(looked_at != tolds);
-    assert_int_equal(told[looked_at].what, what);
-    assert_int_equal(told[looked_at].unit, unit);
-    assert_int_equal(told[looked_at++].ms, ms);
+    assert_true(looked_at != call_count);
+    assert_int_equal(calls[looked_at].what, what);
+    assert_int_equal(calls[looked_at].unit, unit);
+    assert_int_equal(calls[looked_at++].ms, ms);
 }
 
-#define expect_no_more() assert_int_equal(looked_at, tolds)
+#define expect_no_more() assert_int_equal(looked_at, call_count)
 
 static void asked(fathom_line_turns_t *policy, uint8_t unit, uint32_t at_us)
 {
@@ -71,7 +71,7 @@ static int begin(void **state)
     turns.ended = ended;
     fathom_line_take_turns(&bench.line, &turns);
     holds_1 = false;
-    tolds = looked_at = 0;
+    call_count = looked_at = 0;
     start_us = bench.fake.now_us;
     return 0;
 }
@@ -89,10 +89,10 @@ TEST(the_policy_says_who_goes_next_and_hears_who_asked_and_who_has_ended)
     run(REQUEST_US);
     expect_unit(1, 1);
     response_1(754);
-    expect_told(ASKED, 1, 0);
-    expect_told(ASKED, 9, 0);
-    expect_told(ENDED, 9, 18);
-    expect_told(ENDED, 1, 30); /* 3.6 ms of silence and 8.3 of request later */
+    expect_call(ASKED, 1, 0);
+    expect_call(ASKED, 9, 0);
+    expect_call(ENDED, 9, 18);
+    expect_call(ENDED, 1, 30); /* 3.6 ms of silence and 8.3 of request later */
     expect_no_more();
 }
 
@@ -119,8 +119,8 @@ TEST(an_attempt_that_ends_and_is_tried_again_has_ended_too)
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
     expect(FATHOM_PENDING);
-    expect_told(ASKED, 1, 0);
-    expect_told(ENDED, 1, 112);
+    expect_call(ASKED, 1, 0);
+    expect_call(ENDED, 1, 112);
     expect_no_more();
     expect_due(bench.line.quarantine_left_us);
     run(TIMEOUT_US + REQUEST_US);
@@ -128,7 +128,7 @@ TEST(an_attempt_that_ends_and_is_tried_again_has_ended_too)
     break_port();
     expect(FATHOM_ERR_PORT);
     poll_line();
-    expect_told(ENDED, 1, 225); /* where the port was seen to be broken: 112.5 and 112.4 ms */
+    expect_call(ENDED, 1, 225); /* where the port was seen to be broken: 112.5 and 112.4 ms */
     expect_no_more();
 }
 
@@ -138,11 +138,11 @@ TEST(what_is_cancelled_on_the_wire_has_ended_and_what_only_waits_has_not)
     ask_other(9);
     cancel(&bench.other);
     poll_line();
-    expect_told(ASKED, 1, 0);
+    expect_call(ASKED, 1, 0);
     expect_no_more();
     cancel(&bench.request);
     poll_line();
-    expect_told(ENDED, 1, 12);
+    expect_call(ENDED, 1, 12);
     expect_no_more();
 }
 
@@ -154,8 +154,8 @@ TEST(a_request_that_is_cancelled_before_the_next_poll_has_been_on_the_wire)
     expect_written(1);
     cancel(&bench.request);
     poll_line();
-    expect_told(ASKED, 1, 0);
-    expect_told(ENDED, 1, 3);
+    expect_call(ASKED, 1, 0);
+    expect_call(ENDED, 1, 3);
     expect_no_more();
 }
 
@@ -169,8 +169,8 @@ TEST(each_that_asks_is_told_once)
     ask_other(15);
     ask(&third, 16, &value, 0);
     run(T3_5_US + 1000);
-    expect_told(ASKED, 14, 0);
-    expect_told(ASKED, 15, 0);
-    expect_told(ASKED, 16, 0);
+    expect_call(ASKED, 14, 0);
+    expect_call(ASKED, 15, 0);
+    expect_call(ASKED, 16, 0);
     expect_no_more();
 }

@@ -8,12 +8,12 @@
 /* CRCs that no datasheet prints were worked out apart, bit by bit, and stand here as bytes. Every prefix and
  * every damaged byte of the datasheets' frames: tests/golden/test_corruption.c. */
 
-enum { READ = 0x03, WRITE = 0x06, WRITE_MANY = 0x10, GUARD = 0xA5, ROOM = 300, VALUES = 130 };
+enum { READ = 0x03, WRITE = 0x06, WRITE_MANY = 0x10, GUARD = 0xA5, CAPACITY = 300, VALUES = 130 };
 enum { GUARD16 = 0xA5A5 };
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 static fathom_modbus_message_t message;
-static uint8_t frame[ROOM];
+static uint8_t frame[CAPACITY];
 static uint16_t values[VALUES];
 
 static int set_up(void **state)
@@ -87,7 +87,7 @@ TEST(a_read_of_every_count_is_8_bytes)
         ask(READ, (uint8_t)n);
         assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 8);
         assert_memory_equal(frame, head, sizeof head);
-        assert_untouched_from(frame, 8, ROOM);
+        assert_untouched_from(frame, 8, CAPACITY);
     }
 }
 
@@ -153,7 +153,7 @@ static void assert_pattern(const uint8_t *bytes, unsigned count, uint8_t crc_low
     }
     assert_int_equal(bytes[0], crc_low);
     assert_int_equal(bytes[1], crc_high);
-    assert_untouched_from(frame, (size_t)(bytes + 2 - frame), ROOM);
+    assert_untouched_from(frame, (size_t)(bytes + 2 - frame), CAPACITY);
     memset(values, GUARD, sizeof values);
 }
 
@@ -353,7 +353,7 @@ TEST(the_refusal_of_a_read_of_0_registers_fits_in_8_bytes)
     static const uint8_t request[] = {0x01, 0x03, 0x00, 0x20, 0x00, 0};
     expect_request(request, 4, FATHOM_ERR_EXCEPTION);
     assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 5);
-    assert_untouched_from(frame, 8, ROOM);
+    assert_untouched_from(frame, 8, CAPACITY);
 }
 
 /* ---- which bytes begin like the request itself? ---- */

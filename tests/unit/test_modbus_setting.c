@@ -55,7 +55,7 @@ static fathom_status_t set(void)
 }
 
 #define OK            FATHOM_READY
-#define NOBODY        FATHOM_ERR_NO_RESPONSE
+#define SILENT        FATHOM_ERR_NO_RESPONSE
 #define IS(at, value) READ(at, REGISTER, OK, value)
 #define FAILS(at, as) READ(at, REGISTER, as, 2)
 #define PUT(ends)     WRITE(HERE, REGISTER, NEW, ends)
@@ -96,7 +96,7 @@ TEST(a_value_is_read_written_once_and_read_back_and_can_be_set_again)
 
 TEST(what_cannot_be_looked_at_is_not_written)
 {
-    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
+    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
                                              FATHOM_ERR_EXCEPTION, FATHOM_ERR_PORT};
     for (size_t i = 0; i != COUNT(errors); i++) {
         SETS(errors[i], HERE, FAILS(HERE, errors[i]));
@@ -150,22 +150,22 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
 {
     SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
     want(OLD); /* what it tells now, and may not keep; so without an acknowledgement that proves nothing */
-    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, NOBODY));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, SILENT));
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     was_written(true);
     SETS(OK, HERE, IS(HERE, OLD));
     was_written(false);
     want(NEW); /* nor is one believed whose acknowledgement was lost */
-    SETS(NOBODY, HERE, IS(HERE, OLD), PUT(NOBODY), IS(HERE, OLD));
+    SETS(SILENT, HERE, IS(HERE, OLD), PUT(SILENT), IS(HERE, OLD));
     want(OLD);
     SETS(FATHOM_ERR_EXCEPTION, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, FATHOM_ERR_EXCEPTION));
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     want(NEW); /* or of which nothing could be read */
-    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, NOBODY));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, SILENT));
     want(OLD);
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     want(NEW);
-    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, NOBODY));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), PUT(OK), FAILS(HERE, SILENT));
     SETS(OK, HERE, IS(HERE, NEW)); /* but what it said otherwise before, was given and says now, it has */
     was_written(false);
     want(OLD);
@@ -179,8 +179,8 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
     want(OLD); /* nor does a blind write that was lost take anything back: it said OLD all the time */
     assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
-    SETS(FATHOM_ERR_UNCONFIRMED, HERE, WRITE(HERE, REGISTER, OLD, NOBODY));
-    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, NOBODY));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, WRITE(HERE, REGISTER, OLD, SILENT));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, SILENT));
     fathom_modbus_unit_power_on(&unit, 0);
     want(NEW);
     SETS(OK, HERE, IS(HERE, NEW)); /* what it tells now, it keeps */
@@ -211,7 +211,7 @@ TEST(a_value_that_has_shown_is_not_doubted_after_another_setting)
 TEST(where_a_device_is_is_not_doubted)
 {
     setting.address = THERE;
-    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), FAILS(THERE, NOBODY), PUT(OK), IS(THERE, OLD),
+    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), FAILS(THERE, SILENT), PUT(OK), IS(THERE, OLD),
          IS(HERE, OLD));
     want(OLD);
     SETS(OK, HERE, IS(HERE, OLD));
@@ -220,26 +220,26 @@ TEST(where_a_device_is_is_not_doubted)
 
 TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
 {
-    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
+    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
                                              FATHOM_ERR_ECHO};
     for (size_t i = 0; i != COUNT(errors); i++) SETS(OK, HERE, IS(HERE, OLD), PUT(errors[i]), IS(HERE, NEW));
 }
 
 TEST(a_write_that_was_not_heard_is_told_as_it_failed)
 {
-    SETS(NOBODY, HERE, IS(HERE, OLD), PUT(NOBODY), IS(HERE, OLD));
+    SETS(SILENT, HERE, IS(HERE, OLD), PUT(SILENT), IS(HERE, OLD));
     was_written(true);
 }
 
 SETTING(without_a_reading_afterwards_it_is_unconfirmed, 0, FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD),
-        PUT(OK), FAILS(HERE, NOBODY))
+        PUT(OK), FAILS(HERE, SILENT))
 
 TEST(what_cannot_be_read_is_acknowledged_or_unconfirmed_or_refused)
 {
     setting.read = NULL;
     SETS(OK, HERE, PUT(OK));
     SETS(FATHOM_ERR_EXCEPTION, HERE, PUT(FATHOM_ERR_EXCEPTION));
-    SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(NOBODY));
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(SILENT));
     was_written(true);
 }
 
@@ -247,7 +247,7 @@ TEST(what_cannot_be_read_is_acknowledged_or_unconfirmed_or_refused)
 
 TEST(a_blind_setting_is_written_once_and_nothing_is_read)
 {
-    static const fathom_status_t ends[] = {OK, NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
+    static const fathom_status_t ends[] = {OK, SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
                                            FATHOM_ERR_PORT};
     for (size_t i = 0; i != COUNT(ends); i++) {
         setting.address = i % 2 != 0 ? THERE : 0;
@@ -285,7 +285,7 @@ TEST(cancelling_and_power_forget_that_the_next_is_blind)
 TEST(an_address_is_looked_at_first_and_followed)
 {
     setting.address = THERE;
-    PART(set, IS(HERE, OLD), FAILS(THERE, NOBODY), PUT(OK));
+    PART(set, IS(HERE, OLD), FAILS(THERE, SILENT), PUT(OK));
     assert_int_equal(fake.unit_cancels, 0);
     SETS(OK, THERE, IS(THERE, NEW));
     assert_int_equal(fake.unit_cancels, 1);
@@ -305,15 +305,15 @@ SETTING(a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed, THE
         IS(HERE, OLD), FAILS(THERE, FATHOM_ERR_PORT))
 
 SETTING(an_address_that_was_not_taken_is_found_at_the_old_one, THERE, FATHOM_ERR_CHECKSUM, HERE,
-        IS(HERE, OLD), FAILS(THERE, NOBODY), PUT(FATHOM_ERR_CHECKSUM), FAILS(THERE, NOBODY), IS(HERE, OLD))
+        IS(HERE, OLD), FAILS(THERE, SILENT), PUT(FATHOM_ERR_CHECKSUM), FAILS(THERE, SILENT), IS(HERE, OLD))
 
 SETTING(a_device_that_answers_at_neither_is_at_one_of_the_two, THERE, FATHOM_ERR_UNCONFIRMED, HERE,
-        IS(HERE, OLD), FAILS(THERE, NOBODY), PUT(OK), FAILS(THERE, NOBODY), FAILS(HERE, NOBODY))
+        IS(HERE, OLD), FAILS(THERE, SILENT), PUT(OK), FAILS(THERE, SILENT), FAILS(HERE, SILENT))
 
 /* ---- to other line settings ---- */
 
 static const row_t is_fast = {{HERE, 3, HIGH(REGISTER), LOW(REGISTER), 0, 1}, OK, {NEW}, 57600};
-static const row_t not_fast = {{HERE, 3, HIGH(REGISTER), LOW(REGISTER), 0, 1}, NOBODY, {0}, 57600};
+static const row_t not_fast = {{HERE, 3, HIGH(REGISTER), LOW(REGISTER), 0, 1}, SILENT, {0}, 57600};
 
 TEST(line_settings_are_followed_without_a_look_at_the_new_ones)
 {
@@ -347,7 +347,7 @@ TEST(measurements_rest_and_other_commands_are_refused_meanwhile)
 }
 
 /* The application asks for the same register as the setting does: the response is the setting's. */
-TEST(the_outcome_of_a_settings_own_question_is_kept_for_it)
+TEST(the_outcome_of_a_settings_own_request_is_kept_for_it)
 {
     PART(set, IS(HERE, OLD));
     assert_int_equal(asks(&look), FATHOM_ERR_BUSY);
@@ -397,7 +397,7 @@ TEST(what_is_given_up_in_the_middle_leaves_the_driver_where_it_was)
 
 TEST(after_power_on_silence_refusal_and_damage_are_warming_up)
 {
-    static const fathom_status_t errors[] = {NOBODY, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
+    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION,
                                              FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT};
     for (size_t i = 0; i != COUNT(errors); i++) {
         set_up(state);
@@ -416,7 +416,7 @@ TEST(a_unit_that_warms_up_is_not_left_alone)
     for (unsigned i = 0; i != 10; i++) {
         PENDS(asks(&measure));
         assert_int_equal(fake.submits, i + 1);
-        fake_modbus_fail(&fake, NOBODY);
+        fake_modbus_fail(&fake, SILENT);
         assert_int_equal(asks(&measure), FATHOM_ERR_WARMING_UP);
     }
 }

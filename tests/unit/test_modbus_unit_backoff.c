@@ -69,7 +69,7 @@ static void silence(void) { end_with(&measure, FATHOM_ERR_NO_RESPONSE); }
 
 static void ask_first(void) { assert_paused_for(0); }
 
-/* So many silences in a row, with these pauses after them, the last of which goes on. */
+/* So many time-outs in a row, with these pauses after them, the last of which goes on. */
 static void timeouts_in_row(unsigned count, const uint32_t *pauses_us, unsigned known)
 {
     ask_first();
@@ -124,13 +124,13 @@ CAP(the_longest_pause_is_half_the_clock, 300000000, 0x80000000u, PACE_US, 0, 0, 
 
 TEST(the_first_thing_that_it_says_ends_that)
 {
-    static const fathom_status_t said[] = {FATHOM_READY, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
+    static const fathom_status_t outcomes[] = {FATHOM_READY, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
                                            FATHOM_ERR_MALFORMED};
-    for (unsigned i = 0; i != COUNT(said); i++)
+    for (unsigned i = 0; i != COUNT(outcomes); i++)
         for (unsigned before = 1; before != 8; before++) {
             set_up(state);
             timeouts_in_row(before, time_outs_us, COUNT(time_outs_us));
-            end_with(&measure, said[i]);
+            end_with(&measure, outcomes[i]);
             assert_paused_for(0);
             silence(); /* and the count begins anew */
             assert_paused_for(0);

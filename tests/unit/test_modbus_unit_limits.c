@@ -112,7 +112,7 @@ TEST(after_power_on_a_unit_that_was_left_alone_is_asked_at_once)
     assert_int_equal(fake.submits, 4);
 }
 
-TEST(after_power_on_three_silences_in_a_row_are_needed_again)
+TEST(after_power_on_three_time_outs_in_a_row_are_needed_again)
 {
     for (unsigned n = 0; n != 3; n++) {
         assert_int_equal(ask_after(0), FATHOM_PENDING);

@@ -179,7 +179,7 @@ TEST(a_waiting_command_that_was_told_of_a_broken_port_keeps_no_turn)
     assert_int_equal(fake.submits, 2);
 }
 
-TEST(a_waiting_command_keeps_its_turn_when_another_question_is_told_of_a_broken_port)
+TEST(a_waiting_command_keeps_its_turn_when_another_request_ends_with_the_broken_port)
 {
     ask_and_send(&measure);
     pending_after(0, &version);

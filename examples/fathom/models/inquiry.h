@@ -13,7 +13,7 @@ struct inquiry {
     bool (*ask)(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us,
                 uint8_t silence_tries);
     fathom_status_t status;  /* of the last response; at first of the one to model_t.scan.first */
-    const uint16_t *values;  /* of that answer */
+    const uint16_t *values;  /* of that response */
     scan_finding_t *finding; /* to be filled */
 };
 

@@ -32,14 +32,14 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
     };
 }
 
-bool reader_was_answered_wrong(const reader_t *reader)
+bool reader_got_unexpected_response(const reader_t *reader)
 {
     return reader->unit != NULL && reader->unit->request.transaction.status == FATHOM_ERR_MALFORMED;
 }
 
 uint8_t reader_refused_probe(const reader_t *reader)
 {
-    return reader->response != NULL && !reader_was_answered_wrong(reader) ? reader->response->refused_probe
+    return reader->response != NULL && !reader_got_unexpected_response(reader) ? reader->response->refused_probe
                                                                           : 0;
 }
 

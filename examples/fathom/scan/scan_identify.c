@@ -35,23 +35,23 @@ typedef struct {
     const scan_request_t *request; /* the first one: to whom, with which settings */
     scan_response_t response;
     fathom_status_t failed; /* FATHOM_READY, or why it cannot go on */
-} asking_t;
+} identification_t;
 
 static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us, uint8_t silence_tries)
 {
-    asking_t *const asking = (asking_t *)inquiry;
-    scan_request_t request = *asking->request;
+    identification_t *const identification = (identification_t *)inquiry;
+    scan_request_t request = *identification->request;
     request.first = first;
     request.count = count;
     request.linger_us = 0;
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
-    for (uint8_t tries = DAMAGED_TRIES; tries != 0 && asking->failed == FATHOM_READY; tries--) {
-        scan_ask(asking->wire, &request, &asking->response);
-        const fathom_status_t status = asking->response.status;
+    for (uint8_t tries = DAMAGED_TRIES; tries != 0 && identification->failed == FATHOM_READY; tries--) {
+        scan_ask(identification->wire, &request, &identification->response);
+        const fathom_status_t status = identification->response.status;
         inquiry->status = status;
-        inquiry->values = asking->response.values;
+        inquiry->values = identification->response.values;
         if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_READY;
-        if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) asking->failed = status;
+        if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) identification->failed = status;
         if (status != FATHOM_ERR_CHECKSUM && status != FATHOM_ERR_MALFORMED && --silence_tries == 0) break;
     }
     return false;
@@ -89,10 +89,10 @@ static const model_t *tell_apart(inquiry_t *inquiry, uint16_t first)
     return NULL;
 }
 
-static const model_t *find_model(asking_t *asking)
+static const model_t *find_model(identification_t *identification)
 {
-    const scan_request_t *const request = asking->request;
-    inquiry_t *const inquiry = &asking->base;
+    const scan_request_t *const request = identification->request;
+    inquiry_t *const inquiry = &identification->base;
     const model_t *model = likely(request->line, request->address);
     if (model->scan.is_it != NULL) {
         if (model->scan.is_it(inquiry)) return model;
@@ -108,7 +108,7 @@ static const model_t *find_model(asking_t *asking)
 fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *request,
                               const scan_response_t *first, scan_finding_t *finding)
 {
-    asking_t asking = {
+    identification_t identification = {
         .base = {.ask = ask, .status = first->status, .values = first->values, .finding = finding},
         .wire = wire,
         .request = request,
@@ -118,8 +118,8 @@ fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *req
     finding->address = request->address;
     finding->mode = SCAN_MODBUS;
     finding->is_double = first->evidence.fitting >= 2;
-    const model_t *const model = find_model(&asking);
+    const model_t *const model = find_model(&identification);
     finding->kind = model != NULL ? SCAN_SENSOR : SCAN_OTHER;
     if (model != NULL) finding->model = (uint8_t)model->id;
-    return asking.failed;
+    return identification.failed;
 }

@@ -57,7 +57,7 @@ static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
 static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, scan_response_t *response)
 {
     uint8_t *const state = &walk->states[request->address];
-    uint8_t silences = 0;
+    uint8_t timeouts = 0;
     uint8_t troubles = 0;
     bool has_checksum = false;
     for (;;) {
@@ -71,9 +71,9 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, s
             troubles++;
             if (status == FATHOM_ERR_CHECKSUM) has_checksum = true;
         } else {
-            silences++;
+            timeouts++;
         }
-        if (silences + troubles > repeats(walk, troubles)) break;
+        if (timeouts + troubles > repeats(walk, troubles)) break;
     }
     /* Once may be noise, and more may be what a device sends by itself. */
     *state = SILENT;

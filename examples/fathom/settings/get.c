@@ -10,7 +10,7 @@
 
 static session_t session;
 
-/* Is it perhaps just this one that is not told? */
+/* Is it perhaps just this one that is not printed? */
 static bool is_of_one(fathom_status_t status)
 {
     return status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_EXCEPTION ||
@@ -56,13 +56,13 @@ static void begin(void)
                      station->address, line);
 }
 
-static bool can_be_told(const setting_t *setting)
+static bool can_be_printed(const setting_t *setting)
 {
     return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
 }
 
 /* False: nothing further can be told, for a reason that was said. */
-static bool tell_one(const setting_t *setting, bool *is_known, unsigned *told)
+static bool print_one(const setting_t *setting, bool *is_known, unsigned *printed)
 {
     char text[SETTING_TEXT];
     const fathom_status_t status = session_get(&session, setting, text);
@@ -75,7 +75,7 @@ static bool tell_one(const setting_t *setting, bool *is_known, unsigned *told)
     }
     if (!*is_known) begin();
     *is_known = true;
-    *told += status == FATHOM_READY;
+    *printed += status == FATHOM_READY;
     if (session.is_json)
         print_json(setting, status, text);
     else
@@ -88,11 +88,11 @@ static int tell(const setting_t *settings, size_t count)
 {
     bool is_known = false;
     bool is_good = true;
-    unsigned told = 0;
+    unsigned printed = 0;
     unsigned all = 0;
     for (size_t i = 0; i != count && settings[i].name != NULL; i++) {
-        if (!can_be_told(&settings[i])) continue;
-        if (is_good) is_good = tell_one(&settings[i], &is_known, &told);
+        if (!can_be_printed(&settings[i])) continue;
+        if (is_good) is_good = print_one(&settings[i], &is_known, &printed);
         all++;
     }
     if (is_known && session.is_json) (void)puts("}");
@@ -100,9 +100,9 @@ static int tell(const setting_t *settings, size_t count)
         (void)fputs("fathom: the output cannot be written\n", stderr);
         is_good = false;
     }
-    if (is_known && told != all)
-        (void)fprintf(stderr, "fathom: %u of %u values could not be read\n", all - told, all);
-    return is_good && told == all ? STATUS_OK : STATUS_FAILED;
+    if (is_known && printed != all)
+        (void)fprintf(stderr, "fathom: %u of %u values could not be read\n", all - printed, all);
+    return is_good && printed == all ? STATUS_OK : STATUS_FAILED;
 }
 
 static void help(FILE *to, bool is_info)
@@ -124,7 +124,7 @@ static void help(FILE *to, bool is_info)
     (void)fputs(
         "\nThe first request ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
         "until\npower-off, for an A16 `fathom set a16 automatic-output on` brings it back.\n"
-        "Exit status: 0 when all of it was told, 1 when some of it was not, 2 for wrong usage.\n\n"
+        "Exit status: 0 when all of it was printed, 1 when some of it was not, 2 for wrong usage.\n\n"
         "examples:\n",
         to);
     (void)fputs(is_info ? "  fathom info hps167s:7 --port /dev/ttyUSB0\n"

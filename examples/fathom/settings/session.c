@@ -199,7 +199,7 @@ void session_explain(session_t *session, fathom_status_t status)
     listener_judge(&session->channel.listener, station->address, &failure.evidence);
     if (status == FATHOM_ERR_CANCELLED)
         (void)fputs("ended before the response came", stderr);
-    else if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(&station->reader))
+    else if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(&station->reader))
         (void)fprintf(
             stderr, "its responses cannot be that%s; check that it is %s, and alone at this address",
             station->model->has_unasked != NULL ? ", or what it sends unasked stands between them" : "",

@@ -16,8 +16,8 @@ static int listener_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t
     listener_t *const listener = tap->now != NULL ? tap->now : ctx;
     const int n = tap->inner.read(tap->inner.ctx, bytes, capacity, rx);
     if (n <= 0) return n;
-    const size_t room = sizeof listener->window - listener->have;
-    const size_t kept = (size_t)n < room ? (size_t)n : room;
+    const size_t space = sizeof listener->window - listener->have;
+    const size_t kept = (size_t)n < space ? (size_t)n : space;
     memcpy(listener->window + listener->have, bytes, kept);
     listener->have = (uint16_t)(listener->have + kept);
     listener->bytes += (uint32_t)n;

@@ -76,7 +76,7 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
         {"unserved", counters->unserved},
         {"others", counters->others},
         {"crc_errors", counters->crc_errors},
-        {"torn", counters->truncated},
+        {"truncated", counters->truncated},
         {"unheard", counters->unheard},
         {"wrong_settings", counters->wrong_settings},
         {"automatic", counters->automatic},

@@ -301,7 +301,7 @@ void advice_print(FILE *to, const failure_t *failure)
         break;
     case FATHOM_ERR_MALFORMED:
         if (print_unasked(to, failure)) break;
-        if (reader_was_answered_wrong(failure->reader))
+        if (reader_got_unexpected_response(failure->reader))
             (void)fprintf(to,
                           "address %u answered something else than was asked; check that it is %s, and alone "
                           "at this address",

@@ -81,7 +81,7 @@ void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0
 void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
 {
     size_t kind = (size_t)-status;
-    if (status == FATHOM_ERR_MALFORMED && !reader_was_answered_wrong(reader)) kind = FAILURE_VALUE;
+    if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(reader)) kind = FAILURE_VALUE;
     if (kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL) kind = FAILURE_KINDS - 1;
     counters->failures[kind]++;
 }

@@ -90,7 +90,7 @@ static void print_attempts(const counters_t *counters, FILE *to, const char *of,
 }
 
 /* Before the port was there, there is no unit. */
-static unsigned silences(const station_t *station)
+static unsigned timeouts_in_row(const station_t *station)
 {
     return station->reader.unit != NULL ? station->reader.unit->timeouts_in_row : 0u;
 }
@@ -100,10 +100,10 @@ static uint32_t backoff_left_us(const station_t *station)
     return station->reader.unit != NULL ? station->reader.unit->backoff_left_us : 0u;
 }
 
-/* Silences in a row, and for how long the driver leaves it alone because of them. */
+/* Time-outs in a row, and for how long the driver leaves it alone because of them. */
 static void print_back_off(const station_t *station, FILE *to)
 {
-    (void)fprintf(to, ", silences in a row %u, left alone for %.1f s", silences(station),
+    (void)fprintf(to, ", time-outs in a row %u, left alone for %.1f s", timeouts_in_row(station),
                   backoff_left_us(station) / 1000000.0);
 }
 
@@ -115,7 +115,7 @@ void counters_print(const account_t *account, FILE *to)
     for (size_t i = 0; i != account->station_count && account->station_count > 1; i++) {
         const station_t *const station = &account->stations[i];
         print_attempts(&station->counters, to, station->name, ": ");
-        if (silences(station) != 0) print_back_off(station, to);
+        if (timeouts_in_row(station) != 0) print_back_off(station, to);
         (void)fputs("\n", to);
     }
     bool is_empty = print(to, total->stream, stream_names, FATHOM_STREAM_COUNTERS, true);
@@ -225,8 +225,8 @@ static void print_json_unit(const station_t *station, FILE *to)
     print_json_attempts(&station->counters, to);
     (void)fprintf(to,
                   ",\"responses\":%" PRIu64 ",\"failures\":%" PRIu64
-                  ",\"silences\":%u,\"backoff_left_us\":%" PRIu32,
-                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], silences(station), backoff_left_us(station));
+                  ",\"timeouts_in_row\":%u,\"backoff_left_us\":%" PRIu32,
+                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], timeouts_in_row(station), backoff_left_us(station));
     print_json_time(&station->counters, to);
     (void)fputs("}", to);
 }

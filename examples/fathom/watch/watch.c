@@ -31,7 +31,7 @@ typedef struct {
     uint64_t next_us;      /* when the next picture or line is due */
     char message[MESSAGE]; /* the last failure, or what has happened to the port */
     uint64_t message_end_us;
-    fathom_status_t told[MAX_STATIONS]; /* for lines: what has been said of each sensor's last failure */
+    fathom_status_t reported[MAX_STATIONS]; /* for lines: what was printed of each sensor's last failure */
     bool draws;                         /* pictures, else lines */
     bool wants_all;   /* of the next picture, because something else may have written to the terminal */
     int output_error; /* errno */
@@ -48,7 +48,7 @@ static bool take_reading(void *ctx, const station_t *station, const fathom_sampl
     watch_t *const watch = ctx;
     lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_reading(&watch->lanes, station, sample);
-    watch->told[station - watch->loop.options.stations] = FATHOM_READY;
+    watch->reported[station - watch->loop.options.stations] = FATHOM_READY;
     return true;
 }
 
@@ -66,14 +66,14 @@ static void get_advice(char text[MESSAGE], const failure_t *failure, const stati
 static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
 {
     watch_t *const watch = ctx;
-    fathom_status_t *const told = &watch->told[station - watch->loop.options.stations];
+    fathom_status_t *const reported = &watch->reported[station - watch->loop.options.stations];
     char text[MESSAGE] = "";
     lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_failure(&watch->lanes, failure, station);
     get_advice(text, failure, station);
     say(watch, text, MESSAGE_US);
-    if (!watch->draws && *told != failure->status) (void)fprintf(stderr, "fathom: %s\n", text);
-    *told = failure->status;
+    if (!watch->draws && *reported != failure->status) (void)fprintf(stderr, "fathom: %s\n", text);
+    *reported = failure->status;
 }
 
 static void take_port(void *ctx, const char *text, bool is_there)

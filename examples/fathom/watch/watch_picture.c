@@ -142,7 +142,7 @@ static void draw_legend(picture_t *picture, const lanes_t *lanes, uint16_t row)
     }
 }
 
-/* How many lanes have no room, at the right end of the title. */
+/* How many lanes have no height_of_all, at the right end of the title. */
 static void draw_hidden(picture_t *picture, size_t count)
 {
     char text[32];
@@ -182,17 +182,17 @@ void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lan
     const bool has_footer = picture->rows >= LEAST_FOR_FOOTER;
     const uint16_t footer = (uint16_t)(picture->rows >= LEAST_FOR_TWO ? 4 : 3);
     const uint16_t end = (uint16_t)(picture->rows - (has_footer ? footer : 0));
-    const uint16_t room = (uint16_t)(end - 1);
-    const size_t shown = lanes->count < room ? lanes->count : room;
+    const uint16_t height_of_all = (uint16_t)(end - 1);
+    const size_t shown = lanes->count < height_of_all ? lanes->count : height_of_all;
     uint16_t row = 1;
     for (size_t i = 0; i != shown; i++) {
-        const uint16_t height = (uint16_t)(room / shown + (i < room % shown ? 1 : 0));
+        const uint16_t height = (uint16_t)(height_of_all / shown + (i < height_of_all % shown ? 1 : 0));
         draw_lane(picture, lanes, &lanes->lane[i], row, height);
         row = (uint16_t)(row + height);
     }
     draw_hidden(picture, lanes->count - shown);
     if (!has_footer) return;
-    draw_axis(picture, lanes, end, room == shown ? NARROW : GUTTER);
+    draw_axis(picture, lanes, end, height_of_all == shown ? NARROW : GUTTER);
     draw_legend(picture, lanes, (uint16_t)(end + 1));
     draw_message(picture, message, (uint16_t)(end + 2));
 }

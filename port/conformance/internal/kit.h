@@ -93,7 +93,7 @@ void kit_begin(kit_t *kit);                       /* nothing comes any more; wha
 uint8_t kit_value(const kit_t *kit, uint16_t at); /* that arrivals[at] should have */
 uint8_t kit_after(uint8_t value);                 /* what is sent after that value */
 
-/* Writes so many of the next bytes, as soon as they are taken, and spoils the memory that they were in. False: they
+/* Writes so many of the next bytes, as soon as they are taken, and overwrites the memory that they were in. False: they
  * never are. */
 bool kit_send(kit_t *kit, uint8_t length);
 bool kit_await_sent(kit_t *kit); /* without a read */

@@ -136,7 +136,7 @@ TEST(distances_arrive_as_they_were_sent)
     expect_reading(65535);
 }
 
-TEST(a_loop_of_20_ms_talks_into_the_responses)
+TEST(a_loop_of_20_ms_sends_into_the_responses)
 {
     begin("hps_probe", true, false);
     board_run_us(2 * A_SECOND_US);

@@ -231,7 +231,7 @@ static void on_driver(void *ctx, bool high)
     if (!high) board.driver_off_cycle = edge.cycle;
     if (!high && board.usart.shifting && board.usart.end_cycle > edge.cycle) {
         board.cut_bytes++;
-        if (board.line != NULL) board.line->host.spoiled = true;
+        if (board.line != NULL) board.line->host.corrupted = true;
     }
     look_at_break();
 }

@@ -22,7 +22,7 @@ static uint16_t settled_stack_pointer(const avr_t *avr)
     return profile.settled_pointer;
 }
 
-static void tally(profile_cost_t *cost, uint32_t cycles, uint16_t stack)
+static void add_call(profile_cost_t *cost, uint32_t cycles, uint16_t stack)
 {
     if (cost->calls == 0 || cycles < cost->shortest_cycles) cost->shortest_cycles = cycles;
     if (cycles > cost->longest_cycles) cost->longest_cycles = cycles;
@@ -67,7 +67,7 @@ static void charge_main(uint32_t cycles, uint16_t pointer)
         if (pointer < function->deepest) function->deepest = pointer;
         if (pointer <= function->stack_pointer) continue; /* it has not returned */
         function->running = false;
-        tally(&function->cost, function->cycles,
+        add_call(&function->cost, function->cycles,
               (uint16_t)(function->stack_pointer + RETURN_ADDRESS - function->deepest));
     }
 }
@@ -92,7 +92,7 @@ static void after(void)
     const int left = profile.running + (profile.entered ? 1 : 0) - avr->interrupts.running_ptr;
     if (left == 1 && profile.depth != 0) {
         const profile_frame_t *const frame = &profile.nested[--profile.depth];
-        tally(&profile.interrupts[frame->vector], frame->cycles,
+        add_call(&profile.interrupts[frame->vector], frame->cycles,
               (uint16_t)(frame->stack_pointer + RETURN_ADDRESS - frame->deepest));
     }
     if (!profile.entered) return;

@@ -67,7 +67,7 @@ DAMAGED(a_late_response_is_recognised, ORDER_HPS167S, {FATHOM_SIM_FAULT_LATE, FA
         .late_us = 130000, .requests = 40, .no_responses = 3, .late = 3)
 
 /* On one pair of wires a late response hits what goes on between the others; it delays its own unit alone. */
-TEST(a_late_response_among_others_spoils_what_it_hits_and_nothing_else)
+TEST(a_late_response_among_others_damages_what_it_hits_and_nothing_else)
 {
     desk_start(ORDER_HPS167S | ORDER_TWO_UNITS, 0);
     for (uint32_t frame = 5; frame <= 15; frame += 5)

@@ -22,7 +22,7 @@ enum { BYTE_CYCLES = 1430 };
 /* Odd steps, so that edges and the timer's ticks fall on each other in every way. */
 enum { STEP_CYCLES = MS + 37, SPREAD_CYCLES = 3 * MS + 1013 };
 
-enum { BY_ICP1 = 1, BY_INT0 = 2, TOLD_BYTES = 9 };
+enum { BY_ICP1 = 1, BY_INT0 = 2, REPORT_BYTES = 9 };
 enum { TCCR1B = 0x81, ICES1 = 0x40 }; /* ATmega328P 36, 16.11.2 */
 enum { READY_US = 1000, PATIENCE_US = 40000, GLITCH_US = 200 };
 enum { PERIOD_CYCLES = 65536 * 8 }; /* of Timer1 */
@@ -42,7 +42,7 @@ static struct {
 typedef struct {
     uint32_t us[3], end_us[3];
     uint8_t missed; /* edges, by either, so far */
-} told_t;
+} pulse_report_t;
 
 static void drive(bool high)
 {
@@ -112,33 +112,33 @@ static void traffic(void) { avr_cycle_timer_register(board.avr, BYTE_CYCLES, byt
 
 /* One pulse, beginning at this cycle or, if that has passed, at once. Fails the test unless each way tells one pulse
  * of it. */
-static told_t pulse(uint64_t at_cycle, uint64_t width_cycles)
+static pulse_report_t pulse(uint64_t at_cycle, uint64_t width_cycles)
 {
     avr_t *const avr = board.avr;
     const uint64_t begin = at_cycle > avr->cycle ? at_cycle : avr->cycle + 1;
     rig.fall_at_cycle = begin + width_cycles;
     avr_cycle_timer_register(avr, begin - avr->cycle, rise, NULL);
 
-    told_t told = {0};
+    pulse_report_t report = {0};
     bool has[3] = {false}; /* by BY_ICP1 and by BY_INT0 */
     const uint64_t us = (rig.fall_at_cycle - avr->cycle) / BOARD_CYCLES_PER_US + PATIENCE_US;
     while (!has[BY_ICP1] || !has[BY_INT0]) {
         const board_record_t *const record = board_next_record(us);
         assert_non_null(record);
-        assert_int_equal(record->length, TOLD_BYTES);
+        assert_int_equal(record->length, REPORT_BYTES);
         if (board_number(record->bytes, 4) < rig.passed_over_us) continue;
         assert_in_range(record->kind, BY_ICP1, BY_INT0);
         assert_false(has[record->kind]);
         has[record->kind] = true;
-        told.us[record->kind] = board_number(record->bytes, 4);
-        told.end_us[record->kind] = board_number(record->bytes + 4, 4);
-        told.missed = (uint8_t)(told.missed + record->bytes[8]);
+        report.us[record->kind] = board_number(record->bytes, 4);
+        report.end_us[record->kind] = board_number(record->bytes + 4, 4);
+        report.missed = (uint8_t)(report.missed + record->bytes[8]);
     }
     rig.passed_over_us = 0;
-    return told;
+    return report;
 }
 
-/* A glitch that may be told or not, beginning then: pulse() passes over pulses that are told with less than GLITCH_US. */
+/* A glitch that may be report or not, beginning then: pulse() passes over pulses that are report with less than GLITCH_US. */
 static void glitch(uint64_t at_cycle, uint64_t width_cycles)
 {
     for (int high = 1; high >= 0; high--) {
@@ -149,7 +149,7 @@ static void glitch(uint64_t at_cycle, uint64_t width_cycles)
     rig.passed_over_us = GLITCH_US;
 }
 
-/* The error of a width, in cycles: told less true. */
+/* The error of a width, in cycles: report less true. */
 static int64_t error_of(uint32_t told_us)
 {
     return (int64_t)told_us * BOARD_CYCLES_PER_US - (int64_t)(rig.fall_cycle - rig.rise_cycle);
@@ -182,15 +182,15 @@ static void keep(int64_t *largest, int64_t error)
 /* When it ended, by input capture. */
 static uint32_t measure(errors_t *errors, uint64_t at_cycle, uint64_t width_cycles)
 {
-    const told_t told = pulse(at_cycle, width_cycles);
-    assert_int_equal(told.missed, 0);
+    const pulse_report_t report = pulse(at_cycle, width_cycles);
+    assert_int_equal(report.missed, 0);
     errors->pulses++;
     if (rig.masked) errors->masked++;
-    keep(&errors->icp1, error_of(told.us[BY_ICP1]));
-    keep(rig.masked ? &errors->int0_masked : &errors->int0, error_of(told.us[BY_INT0]));
+    keep(&errors->icp1, error_of(report.us[BY_ICP1]));
+    keep(rig.masked ? &errors->int0_masked : &errors->int0, error_of(report.us[BY_INT0]));
     /* The ends agree to what INT0 may be late. */
-    assert_in_range(told.end_us[BY_INT0] - told.end_us[BY_ICP1], 0, 1 + longest_cycles() / US);
-    return told.end_us[BY_ICP1];
+    assert_in_range(report.end_us[BY_INT0] - report.end_us[BY_ICP1], 0, 1 + longest_cycles() / US);
+    return report.end_us[BY_ICP1];
 }
 
 static void check(const errors_t *errors, const char *what)

@@ -55,9 +55,9 @@ static uint16_t read_all(uint8_t *bytes, uint8_t capacity)
 /* One read of so many bytes at most: it gives those of the pattern, with these flags. */
 static void assert_read(uint8_t capacity, uint8_t flags, const uint8_t *expected, int count)
 {
-    uint8_t got[64], told;
-    assert_int_equal(remote_read(got, capacity, &told), count);
-    assert_int_equal(told, flags);
+    uint8_t got[64], got_flags;
+    assert_int_equal(remote_read(got, capacity, &got_flags), count);
+    assert_int_equal(got_flags, flags);
     assert_memory_equal(got, expected, (size_t)count);
 }
 

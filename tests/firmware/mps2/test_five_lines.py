@@ -60,7 +60,7 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         done = self.end_well(self.five_lines(ports, 60, GATE))
         self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 60)
 
-    def nobody_responses(self, name, error, count):
+    def none_answers(self, name, error, count):
         """On that line. The others go on after it was noticed; the image ends when three of them have `count`."""
         ports = self.far_ends()
         ports[name] = self.device().port
@@ -74,10 +74,10 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
             self.assertIn(f'{other} probe 1 ', ''.join(image.lines()[before:]), 'it has not gone on')
 
     def test_four_go_on_beside_an_a05_that_does_not_answer(self):
-        self.nobody_responses('bumper', 'NO_RESPONSE', 24)
+        self.none_answers('bumper', 'NO_RESPONSE', 24)
 
     def test_four_go_on_beside_an_a16_that_does_not_send(self):
-        self.nobody_responses('silo', 'STALE', 24)
+        self.none_answers('silo', 'STALE', 24)
 
     def response_to_the_end(self, image, device, request, response):
         """The last request may be cut off by the end of the image."""

@@ -139,7 +139,7 @@ for (const [first, bits] of [[2, 10], [3, 26]])
     assert.deepStrictEqual(go(bench, 400), Array(3).fill(says(1953)));
   });
 
-test('a byte that the UART marks spoils its frame and no other', () => {
+test('a byte that the UART marks damages its frame and no other', () => {
   for (const flag of [PE, FE])
     for (const index of [0, 1, 3]) {
       const bench = start(IMAGE);

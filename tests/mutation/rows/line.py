@@ -35,7 +35,7 @@ ROWS = (
      ('src/engine/line.c', 'look',
       'const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);',
       'const uint32_t passed_us = now_us > line->polled_us ? now_us - line->polled_us : 0;')),
-    ('marked-bytes-joined', 'line.h: what had begun before lost bytes is torn', 'unit/test_line_listener',
+    ('marked-bytes-joined', 'line.h: what had begun before lost bytes is truncated', 'unit/test_line_listener',
      ('src/engine/line_marks.c', 'fathom_line_marks',
       'line->kind->scan(line, true);',
       'if (came != 0) return (flags & BAD) != 0 ? 0 : came;')),

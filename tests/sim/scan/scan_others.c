@@ -44,13 +44,13 @@ const uint8_t hps_response[13] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
 const uint8_t a16_request[8] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6};
 const uint8_t junk[6] = {0x02, 0x84, 0x31, 0x90, 0x11, 0xE7};
 
-static const uint8_t *said;
-static uint8_t said_length;
+static const uint8_t *speech;
+static uint8_t speech_length;
 
 static uint8_t speak(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)
 {
-    memcpy(bytes, said, said_length);
-    return said_length;
+    memcpy(bytes, speech, speech_length);
+    return speech_length;
 }
 
 static bool speaker_hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us);
@@ -71,8 +71,8 @@ fathom_sim_device_t *begin_speaker(const fathom_line_settings_t *line, uint32_t 
     static const fathom_sim_model_t model = {.automatic = speak};
     static fathom_sim_device_t device;
     memset(&device, 0, sizeof device);
-    said = bytes;
-    said_length = length;
+    speech = bytes;
+    speech_length = length;
     device.model = &model;
     device.settings = *line;
     device.period_us = period_us;

@@ -22,16 +22,16 @@ static bool ask_four(inquiry_t *inquiry, uint16_t first, uint16_t four[FOUR])
  * a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {
-    uint16_t told[FOUR];
+    uint16_t configuration[FOUR];
     uint16_t again[FOUR];
     uint16_t measured[FOUR];
-    if (!ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, told) ||
+    if (!ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, configuration) ||
         !ask_four(inquiry, FATHOM_HPS167S_MEASUREMENT, measured) ||
-        !ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, again) || memcmp(told, again, sizeof told) != 0 ||
-        memcmp(told, measured, sizeof told) == 0 || !fathom_hps167s_may_be_configuration(told))
+        !ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, again) || memcmp(configuration, again, sizeof configuration) != 0 ||
+        memcmp(configuration, measured, sizeof configuration) == 0 || !fathom_hps167s_may_be_configuration(configuration))
         return false;
     fathom_hps167s_configuration_t is;
-    fathom_hps167s_decode_configuration(told, false, &is);
+    fathom_hps167s_decode_configuration(configuration, false, &is);
     inquiry->finding->has_termination = is.termination;
     return true;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef FATHOM_TESTS_SIM_TALK_H
-#define FATHOM_TESTS_SIM_TALK_H
+#ifndef FATHOM_TESTS_SIM_SIM_BENCH_H
+#define FATHOM_TESTS_SIM_SIM_BENCH_H
 
 /* What the tests of the simulator share: a bench with a host at the near end of a line, which notes each byte, what its
  * UART says of it and the time of its last bit, and with sensors at the far end. Frames are bytes in hexadecimal, from
@@ -87,8 +87,8 @@ void ask(const char *hex, uint32_t by_ms);
 #define expect(hex) bench_expect((hex), "", __FILE__, __LINE__)
 #define hear(by_ms, hex)                                                                                     \
     (wait_ms(by_ms), bench_expect((hex), "", __FILE__, __LINE__)) /* when so much time has passed */
-#define echoed(asked, by_ms)    talk((asked), (by_ms), (asked))
-#define talk(asked, by_ms, hex) (ask((asked), (by_ms)), bench_expect((hex), (asked), __FILE__, __LINE__))
+#define echoed(asked, by_ms)    transact((asked), (by_ms), (asked))
+#define transact(asked, by_ms, hex) (ask((asked), (by_ms)), bench_expect((hex), (asked), __FILE__, __LINE__))
 
 /* The first bytes of it, and the others so long after the last bit of those. */
 void ask_in_two(const char *hex, size_t first, uint32_t gap_us);

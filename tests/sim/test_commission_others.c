@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "stage.h"
 
-/* Every command and setting in company: another driver asks the same unit, others fill the queue, 55 AA and Modbus are
+/* Every command and setting with other senders: another driver asks the same unit, others fill the queue, 55 AA and Modbus are
  * on one line, an HPS-167S sends what nobody asked for. */
 
 /* What one that measures beside it may say. */
@@ -12,7 +12,7 @@ static bool is_fair(fathom_status_t status, bool moves)
 }
 
 /* `command` until its end, with two sensors that are read meanwhile. Returns how many readings `beside` had. */
-static unsigned in_company(fathom_status_t (*command)(void), fathom_sensor_t beside, fathom_sensor_t other,
+static unsigned with_others(fathom_status_t (*command)(void), fathom_sensor_t beside, fathom_sensor_t other,
                            bool moves, fathom_status_t *status)
 {
     const fathom_sensor_t both[] = {beside, other};
@@ -40,11 +40,11 @@ static void beside_another_driver(const job_t *job, uint32_t loop_us, uint8_t ec
     set_up_for(job, loop_us, echo);
     init_driver(&other, job->model, job->unit, &s.settings);
     const fathom_sensor_t beside = sensor_of(&other, job->model);
-    const unsigned readings = in_company(job->call, beside, s.sensor, job->kind == MOVES, &status);
+    const unsigned readings = with_others(job->call, beside, s.sensor, job->kind == MOVES, &status);
     if (status != FATHOM_READY)
         fail_msg("%s, loop %u: %s", job->name, (unsigned)loop_us, fathom_status_name(status));
     assert_int_equal(job->has(), job->wanted);
-    assert_int_equal(told(), job->kind == READS ? 0 : 1);
+    assert_int_equal(kept_commands(), job->kind == READS ? 0 : 1);
     assert_true(readings != 0 || loop_us == 300 * MS);
     assert_true(recovers());
 }
@@ -89,7 +89,7 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
         if (status != FATHOM_READY)
             fail_msg("%s, loop %u: %s", job->name, (unsigned)s.loop_us, fathom_status_name(status));
         assert_int_equal(job->has(), job->wanted);
-        assert_int_equal(told(), job->kind == READS ? 0 : 1);
+        assert_int_equal(kept_commands(), job->kind == READS ? 0 : 1);
     }
 }
 
@@ -108,11 +108,11 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         assert_int_equal(fathom_a05_modbus_init(&second, &config), FATHOM_READY);
         const fathom_sensor_t modbus = fathom_a05_modbus_sensor(&second);
         const unsigned readings =
-            in_company(dyp_sets ? set_by_dyp : set_by_modbus, dyp_sets ? modbus : s.sensor,
+            with_others(dyp_sets ? set_by_dyp : set_by_modbus, dyp_sets ? modbus : s.sensor,
                        dyp_sets ? s.sensor : modbus, true, &status);
         assert_int_equal(status, FATHOM_READY);
         assert_int_equal(bench.device->unit, 5);
-        assert_int_equal(told(), 1);
+        assert_int_equal(kept_commands(), 1);
         assert_true(readings >= 4);
     }
 }
@@ -132,7 +132,7 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     while ((status = round_of(job->call)) == FATHOM_PENDING)
         if (fathom_poll(&heard, &s.sample) == FATHOM_READY) assert_int_equal(s.sample.distance_mm, 1234);
     const uint32_t has = job->has();
-    assert_true(told() <= 1);
+    assert_true(kept_commands() <= 1);
     assert_true(has == job->before || has == job->wanted);
     if (status == FATHOM_READY) assert_int_equal(has, job->wanted);
     if (status < 0 && status != FATHOM_ERR_UNCONFIRMED && job->kind != WRITE_ONLY)
@@ -165,6 +165,6 @@ TEST(a_rate_for_the_next_power_on_is_followed_then)
         fathom_hps167s_power_on(&s.driver.hps);
         assert_true(recovers()); /* also where it has not had its power cut after all */
         assert_true(same_place());
-        assert_int_equal(told(), 1);
+        assert_int_equal(kept_commands(), 1);
     }
 }

@@ -122,7 +122,7 @@ TEST(a_glitch_before_a_long_silence_is_forgotten)
     expect_written_after(200, 1);
 }
 
-TEST(eight_bytes_at_once_are_company_as_four_are)
+TEST(eight_bytes_at_once_are_another_sender_as_four_are)
 {
     deliver(unasked, 8);
     run(T3_5_US + 200);
@@ -131,7 +131,7 @@ TEST(eight_bytes_at_once_are_company_as_four_are)
 }
 
 /* It owes nothing that comes later in the silence: the next request leaves as on any line. */
-TEST(what_is_left_of_a_damaged_response_is_nobodys_company)
+TEST(what_is_left_of_a_damaged_response_is_no_other_sender)
 {
     ask_1(0);
     run(REQUEST_US);
