@@ -46,7 +46,7 @@ typedef struct {
     bool unit_zero;         /* its address is 0, and it answers there; `unit` means nothing */
     uint8_t mode;           /* fathom_sim_a05_mode_t; must be given */
     bool exceptions;        /* responses 01, 02 or 03 where the default is silence */
-    bool answers_broadcast; /* responses 0xFF in Modbus, from its own address */
+    bool answers_broadcast; /* answers 0xFF in Modbus, from its own address */
     /* acknowledges a new address from itself; default: from the old. In 55 AA it does so anyway (A05 2(3)5) */
     bool answers_from_new;
     /* RX is low in the first second after power-on (A05 1(1)), also where neither its pin (pin.h) nor a break of the

@@ -58,7 +58,7 @@ typedef struct {
     bool unit_zero;                    /* its address is 0, and it answers there; `unit` means nothing */
     uint8_t mode;                      /* fathom_sim_a16_mode_t; must be given */
     bool exceptions;                   /* responses 01, 02 or 03 where the default is silence */
-    bool answers_broadcast;            /* responses 0xFF, from its own address */
+    bool answers_broadcast;            /* answers 0xFF, from its own address */
     bool answers_from_new;             /* a new address is acknowledged from itself; default: from the old */
     bool real_time;                    /* 0x0207 is 1; UART: RX is held low (A16 2(2)) */
     uint16_t threshold_mm;             /* register 0x0206; default 1000 (A16 4(2)) */

@@ -204,14 +204,14 @@ struct fathom_sim_device {
     uint8_t command;                       /* that request, in 55 AA */
     fathom_line_settings_t reply_settings;
     uint16_t values[FATHOM_SIM_REGISTERS];
-    uint32_t heard_us; /* end of the last byte */
-    uint32_t leave_us; /* with `leaving`: when automatic output ends */
-    uint8_t others_on_wire;  /* bytes on the wire now, of others */
-    uint8_t length;    /* bytes of the frame that is being heard */
-    bool is_invalid;   /* that frame is to be dropped */
-    uint16_t own;      /* bytes at the sender that are the device's; the rest is another device's */
-    uint32_t off_us;   /* without power for so long when the sender is idle */
-    bool busy;         /* between a request and the end of its response */
+    uint32_t heard_us;      /* end of the last byte */
+    uint32_t leave_us;      /* with `leaving`: when automatic output ends */
+    uint8_t others_on_wire; /* bytes on the wire now, of others */
+    uint8_t length;         /* bytes of the frame that is being heard */
+    bool is_invalid;        /* that frame is to be dropped */
+    uint16_t own;           /* bytes at the sender that are the device's; the rest is another device's */
+    uint32_t off_us;        /* without power for so long when the sender is idle */
+    bool busy;              /* between a request and the end of its response */
     bool leaving;
     bool tx_high;    /* the level of its TX pin where no byte is leaving */
     bool tx_is_uart; /* the model's: a TX pin that falls is a break to the host's UART, which is on it too */

@@ -57,7 +57,7 @@ typedef struct {
     uint16_t length;                 /* bytes to send in all */
     uint16_t sent;                   /* so many of them have left */
     bool on_wire;                    /* bytes[sent] is leaving now */
-    bool corrupted;                    /* another device sent at the same time */
+    bool corrupted;                  /* another device sent at the same time */
     bool after_silence;              /* t3.5 had passed before it */
     uint8_t paused;                  /* used of `pauses` */
     bool marked;                     /* `marks` has any */

@@ -58,7 +58,7 @@ class Builder:
         self.machine.build(self.empty, *self.machine.link, *here('empty.c'))
 
     def link(self, row):
-        """Links a row; returns its path and the library's functions that nobody calls but the user would."""
+        """Links a row; returns its path and the library's functions that only a user would call."""
         elf = os.path.join(self.work, row + '.elf')
         arguments, roots = ['-g', *self.machine.link, *self.machine.registers], []
         if row in CODECS:

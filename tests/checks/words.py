@@ -24,7 +24,7 @@ TABLE = [  # the word, as it is in names (None: allowed there), as it is in pros
     ('spoilt', r'spoil(t|ed|s)?', r'spoil(t|ed|s)?', 'corrupt, damaged'),
     ('answered wrong', r'answered wrong', r'answered wrong', 'unexpected response'),
     ('alone_us', r'alone us', None, 'backoff_left_us'),
-    ('silences', r'silences', None, 'timeouts_in_row'),
+    ('silences', r'(^|unit )silences$', None, 'timeouts_in_row'),
     ('seam', r'seams?', r'seams?', 'transport'),
     ('carrier', r'carriers?', r'carriers?', 'transport'),
     ('room', r'^room$', None, 'frame_size; space'),
@@ -35,7 +35,7 @@ TABLE = [  # the word, as it is in names (None: allowed there), as it is in pros
     ('talk', r'talks?', None, 'session'),
     ('tally', r'tally|tallies', r'tally|tallies', 'counters'),
     ('scenery', r'scenery', r'scenery', 'scene'),
-    ('plug', r'plug', None, 'usb_adapter'),
+    ('plug', r'plug(?! in\b)', None, 'usb_adapter'),
     ('dyp_frame', r'dyp frame', None, 'dyp_stream'),
     ('dyp_protocol', r'dyp protocol', None, 'dyp_55aa'),
     ('told', r'^told$', None, 'last_configuration; what was reported'),
@@ -44,10 +44,10 @@ TABLE = [  # the word, as it is in names (None: allowed there), as it is in pros
     ('asking', r'asking', None, 'driver'),
     ('somebody', r'(some|any|no)(body|one)s?|whoever', r"(some|any)(body|one)('s)?|no(body|-one)('s)?|whoever",
      "the subject's name"),
-    ('question', r'questions?', r'questions?', 'request'),
+    ('question', r'questions?(?! mark)', r'questions?(?! mark)', 'request'),
     ('exchange', r'exchanges?', r'exchanges?|exchanged', 'transaction'),
     ('company', r'company', r'company', 'other units on the line, other drivers of the unit'),
-    # FATHOM_ERR_NO_ANSWER is a name, and "no answer" its text; the verb is left alone
+    # the verb is left alone
     ('answer', None, r'(an?|the|its|late|whole|first|good) answers?', 'response'),
 ]
 # The one definition of quarantine may say what a unit owes.
@@ -167,7 +167,8 @@ def self_check():
             raise SystemExit(f'the row {word!r} does not find its word')
     allowed = ['/* The years, a hearing, an early end: seamless. */', '/* It was told so, and said it. */',
                'int fathom_early, fathom_talked, untold;', '/* Quarantine: it still owes a response. */',
-               'int a; /* two silences */', 'const char *a = "it answers";']
+               'void plug_in(int a_question_mark, int two_silences_are_told);', 'int a; /* two silences */',
+               'const char *a = "it answers";']
     for line in allowed:
         code = code_of(line)
         prose = prose_of(line, code)

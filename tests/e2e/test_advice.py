@@ -47,7 +47,7 @@ class Asked(e2e.Case):
         bytes_without_a_frame_at_other_settings_offer_the_factorys=(
             NOISE, ['(now 57600 8N1), try without them (19200 8E1, as from the factory)'], ', 115200',
             'hps167s --baud 57600 --parity none'),
-        another_units_answer_names_its_address=(
+        another_units_response_names_its_address=(
             e2e.registers(7, 754), ['address 7', 'try --address 7'], '--baud'),
         another_units_exception_names_its_address_too=(e2e.adu(9, 0x83, 2), ['try --address 9'], '--baud'),
         # it asks address 5 for four registers of an HPS-167S, and that one answers

@@ -90,7 +90,7 @@ class Read(e2e.Case):
 class Dead(e2e.Case):
     """One of three does not answer."""
 
-    def response(self, device, stop, requests):
+    def answer(self, device, stop, requests):
         """As an A16 at address 1 and an A05 at 3 do; no unit is at address 2."""
         while not stop.is_set():
             if device.is_silent(0.02):
@@ -104,7 +104,7 @@ class Dead(e2e.Case):
         device = self.device()
         requests = []
         stop = threading.Event()
-        thread = threading.Thread(target=self.response, args=(device, stop, requests))
+        thread = threading.Thread(target=self.answer, args=(device, stop, requests))
         thread.start()
         try:
             done = self.run_fathom(f'read a16:1 a16:2 a05:3 --port {device} {options}')
@@ -119,7 +119,7 @@ class Dead(e2e.Case):
             if 'attempt ' in line:
                 self.assertRegex(line, r'^fathom: a16:2: attempt \d+: no response from address 2: ')
         # The first attempt may come before any unit has answered.
-        self.ends(done, 1, 'nothing was heard of it, while others on this line response; check its supply')
+        self.ends(done, 1, 'nothing was heard of it, while others on this line answer; check its supply')
         stats, = done.told
         self.assertEqual([(one['sensor'], one['mode'], one['address']) for one in stats['units']],
                          [('a16', 'modbus', 1), ('a16', 'modbus', 2), ('a05', 'modbus', 3)])
@@ -168,7 +168,7 @@ class Dead(e2e.Case):
         self.assertLessEqual(one['backoff_left_us'], 1)
 
     def test_a_late_response_explains_the_failure_of_its_unit_alone(self):
-        """Address 2 responses when its time is over, while address 3, where no unit is, is being asked."""
+        """Address 2 answers when its time is over, while address 3, where no unit is, is being asked."""
         device, reader = self.beside('read a16:2 a16:3 --timeout 400 --count 2')
         for _ in range(4):
             if device.read(8)[0] == 2:

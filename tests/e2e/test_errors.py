@@ -251,7 +251,7 @@ class Signals(e2e.Case):
         _, reader = self.beside('read a16 --timeout 600000', env=self.preload('signal_shim.c'))
         self.ends(reader, 0, out='')
 
-    def test_while_nobody_reads_the_output(self):
+    def test_while_the_output_is_not_read(self):
         sim = self.sim('hps167s --distance 754')
         out, pipe = os.pipe()
         self.addCleanup(os.close, out)

@@ -20,7 +20,7 @@ SUBJECTS = {
     'hps167s': ('hps167s', [1234], 300),
 }
 FRAMES = 4
-# Longest: every attempt waits for its time-out and for what is owed, twice that; late responses and a power
+# Longest: every attempt waits for its time-out and for the quarantine, twice that; late responses and a power
 # cycle 2 s.
 SECONDS = 12
 

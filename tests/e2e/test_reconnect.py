@@ -28,7 +28,7 @@ class Plug(e2e.Case):
         return self.fathom(f'read {sensor} --port {self.port} --timeout 400 --format csv --reconnect '
                            f'{options}')
 
-    def response(self, device, *values):
+    def answer(self, device, *values):
         for value in values:
             device.asked(e2e.ASK_A16, e2e.registers(1, value))
 
@@ -41,7 +41,7 @@ class Plug(e2e.Case):
         """A reader whose port is lost in an attempt, after these readings."""
         device = self.plug_in()
         reader = self.begin(options)
-        self.response(device, *values)
+        self.answer(device, *values)
         device.asked(e2e.ASK_A16)
         self.pull(device, reader)
         return reader
@@ -51,7 +51,7 @@ class Plug(e2e.Case):
 
     def test_a_sensor_that_is_asked_is_read_on_and_the_count_goes_on(self):
         reader = self.lose('--count 5', 1111, 1112)
-        self.response(self.plug_in(), 1113, 1114)
+        self.answer(self.plug_in(), 1113, 1114)
         done = self.ends(reader, 1, f'fathom: {self.port}: it is back; reading goes on\n',
                          'attempts 5, failed 1, readings 4\n')
         # one header, sequence numbers that do not begin again, one failed attempt
@@ -89,7 +89,7 @@ class Plug(e2e.Case):
         reader = self.lose('--stats', 1000)
         for mm in (1001, 1002):
             device = self.plug_in()
-            self.response(device, mm)
+            self.answer(device, mm)
             device.asked(e2e.ASK_A16)
             self.pull(device, reader)
         done = self.ends(reader.end(signal.SIGINT), 1, 'attempts 6, failed 3, readings 3\n', 'reconnects 2\n',
@@ -110,7 +110,7 @@ class Plug(e2e.Case):
     def test_a_port_that_is_not_there_yet_is_waited_for(self):
         reader = self.begin('--count 1')
         reader.expect('port: no such device.*; waiting until it is there$', 'err')
-        self.response(self.plug_in(), 1111)
+        self.answer(self.plug_in(), 1111)
         self.assertEqual(self.rows(self.ends(reader, 0, ': it is there; reading begins\n')), [(1, 1111)])
 
     def test_a_port_that_never_comes_can_be_given_up(self):
@@ -163,7 +163,7 @@ class Plug(e2e.Case):
         reader.expect('still waiting: .*in use by another program', 'err')
         time.sleep(1.2)  # two more tries, and not a word
         fcntl.flock(device.slave, fcntl.LOCK_UN)
-        self.response(device, 1113)
+        self.answer(device, 1113)
         done = reader.finish()
         self.assertEqual(self.rows(done), [(1, 1111), (2, 1113)])
         self.assertEqual(done.err.count('still waiting'), 1)

@@ -232,7 +232,7 @@ class Trouble(Case):
     def test_two_with_one_address_are_told(self):
         sim = self.sim('hps167s:3 hps167s:3 hps167s:4 --counters')
         self.scan(sim, f'--address 2-4 --baud 19200 {PATIENT}',
-                  'answers at address 3 (19200 8E1) are damaged: two sensors with one address?')
+                  'responses at address 3 (19200 8E1) are damaged: two sensors with one address?')
         self.assertEqual({one['address']: one['kind'] for one in self.found}, {3: 'damaged', 4: 'sensor'})
         self.expect_unharmed(sim)
 

@@ -123,7 +123,7 @@ class Change(Settings):
         self.ends(f'get hps167s --port {sim} baud', 1, 'no response')
 
     def test_without_confirmation_both_baud_rates_are_named(self):
-        # frames 1 and 2 response #2 for the user, 3 and 4 the driver; nothing is at 115200 yet; 5 acknowledges
+        # frames 1 and 2 answer #2 for the user, 3 and 4 the driver; nothing is at 115200 yet; 5 acknowledges
         # the writing, and from then on all is lost
         sim = self.sim(f'hps167s --counters {lost(5, 30)}')
         self.told(f'set hps167s --port {sim} baud 115200',

@@ -141,12 +141,12 @@ class Port(Case):
             seen.append(distances)
         self.assertGreater(seen[1][0], seen[0][0])
 
-    def test_it_sleeps_when_nobody_asks(self):
+    def test_it_sleeps_without_requests(self):
         sim = self.sim('hps167s')
         self.assertFalse(sim.has_ended(1.9))
         self.assertLess(sim.end().cpu, 0.2)
 
-    def test_it_goes_on_when_nobody_reads_its_stdout(self):
+    def test_it_goes_on_when_its_stdout_is_not_read(self):
         out, pipe = os.pipe()
         sim = self.fathom('sim a16 --distance 754', stdout=pipe)
         os.close(pipe)
@@ -165,7 +165,7 @@ class Bus(Case):
 
 
 class Several(Bus):
-    def test_three_models_response_each_at_its_own_address_and_rate(self):
+    def test_three_models_answer_each_at_its_own_address_and_rate(self):
         sim = self.sim(f'{BUS} --distance 1@754 --distance 2@316 --distance 3@2083 --counters')
         self.assertEqual([self.mm(sim, sensor) for sensor in (HPS, A16, A05)], [2083, 754, 316])
         told = self.counters(sim, 'device', 'sensor', 'mode', 'address', 'baud', 'requests', 'answered',
@@ -189,7 +189,7 @@ class Several(Bus):
         self.fails(sim, HPS)
         self.assertEqual(self.counters(sim, 'requests', 'answered'), [(1, 1)] * 2)
 
-    def test_two_units_with_one_address_response_into_each_other(self):
+    def test_two_units_with_one_address_answer_into_each_other(self):
         sim = self.sim('hps167s hps167s --distance 1@2083 --distance 2@1000 --counters')
         sim.expect('devices 1 and 2 have the address 1 both', 'err')
         garbled = self.ask(self.open(sim), ASK_HPS, 13)
@@ -272,7 +272,7 @@ class Power(Bus):
             self.assertLess(time.monotonic() - began, e2e.PATIENCE)
         port.timeout = e2e.PATIENCE
 
-    def test_nothing_responses_without_power_and_what_is_kept_is_there_afterwards(self):
+    def test_nothing_answers_without_power_and_what_is_kept_is_there_afterwards(self):
         sim = self.sim('a16:1:modbus hps167s:7 --distance 754 --counters')
         port = self.open(sim)
         for request, baud in ((e2e.adu(1, 6, 2, 0, 0, 5), 9600), (e2e.adu(7, 6, 0, 0x10, 0, 9), 19200)):

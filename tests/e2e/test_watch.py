@@ -311,7 +311,7 @@ class Lines(Case):
         self.assertEqual(it.finish(), 0)
         self.assertNotIn(b'\x1b', it.bytes)
 
-    def test_output_that_nobody_reads_ends_it(self):
+    def test_output_that_is_not_read_ends_it(self):
         sim = self.sim('hps167s --distance 2500')
         out, pipe = os.pipe()
         watch = self.fathom(f'watch hps167s --port {sim}', stdout=pipe)

@@ -77,7 +77,7 @@ TEST(every_single_byte_error_in_a_modbus_frame_is_refused)
     assert_int_equal(for_each_error(false, refuse), (uint32_t)255 * ALL_BYTES);
 }
 
-/* Whoever looks for requests on the line sees responses too, and one of their damaged beginnings in 65536 has a
+/* Who looks for requests on the line sees responses too, and one of their damaged beginnings in 65536 has a
  * right CRC by chance. In this table it is this one. */
 static unsigned found;
 

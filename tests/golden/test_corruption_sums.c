@@ -57,7 +57,7 @@ static bool hears_a_request(const vector_t *sent, const uint8_t *bytes, uint8_t 
     return false;
 }
 
-/* Whoever takes FF frames knows how long they are. */
+/* A receiver of FF frames knows how long they are. */
 static bool takes_its_frame(const vector_t *sent, const uint8_t *bytes, uint8_t have)
 {
     (void)sent;
@@ -249,7 +249,7 @@ TEST(of_two_wrong_bytes_behind_the_start_of_an_FF_frame_one_in_255_passes)
 }
 
 /*
- * Whoever asked knows four bytes of the response. The others, data and sum, are 9 of the 13 bytes with four distances
+ * The client knows four bytes of the response. The others, data and sum, are 9 of the 13 bytes with four distances
  * and 3 of the 7 with one: 9 * 8 / 2 and 3 * 2 / 2 pairs. A response to set-address has one that is not known, and
  * no two wrong bytes pass.
  */

@@ -8,8 +8,8 @@
 #include "fathom/sensor/a05_modbus.h"
 
 /* The misprints in the datasheet of the A05, one test each: what is printed is refused, what is right is taken. Of the
- * A16 the start byte is in test_frames.c; that the two speeds of sound of A16 1(4) differ is in tests/property, with the pulse; the HPS-167S has a file of its
- * own. */
+ * A16 the start byte is in test_frames.c; that the two speeds of sound of A16 1(4) differ is in tests/property, with
+ * the pulse; the HPS-167S has a file of its own. */
 
 TEST(a05_2_3_3_prints_60_as_the_sum_of_the_response_which_is_62)
 {

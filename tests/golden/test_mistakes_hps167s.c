@@ -85,8 +85,9 @@ TEST(our_crc_is_that_of_the_polynomial_for_every_pair_of_bytes)
     }
 }
 
-/* Its main() calls crc16 under "Implementation_1" and CRC16 under "Implementation_2", which are the second and the first
- * in the text above, and prints FF69 BEE5 ... for the former: that is the order on the wire. The register has 69FF. */
+/* Its main() calls crc16 under "Implementation_1" and CRC16 under "Implementation_2", which are the second and the
+ * first in the text above, and prints FF69 BEE5 ... for the former: that is the order on the wire. The register has
+ * 69FF. */
 TEST(the_appendix_prints_the_results_of_its_implementations_the_wrong_way_round)
 {
     static const uint16_t registers[] = {0x69FF, 0xE5BE, 0x617F, 0x4523, 0x8576, 0x0DF4, 0xF102};

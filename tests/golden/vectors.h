@@ -14,7 +14,7 @@ enum { VECTOR_REQUEST = 1, VECTOR_RESPONSE = 2, VECTOR_BOTH = VECTOR_REQUEST | V
 
 enum { VECTOR_BYTES = 27, VECTOR_VALUES = 11 };
 
-/* How many rows there are: nobody can lose one unseen. */
+/* How many rows there are: none can be lost unseen. */
 enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8, PRINTED_TABLE_ENTRIES = 197 };
 
 typedef struct {

@@ -37,7 +37,7 @@ class LibmodbusTcp(interop.Tcp, interop.LibmodbusServer, Servers, interop.Case):
     unit_0 = '0001'
 
     def test_another_unit_is_not_there_and_the_right_one_is(self):
-        """Over TCP libmodbus responses for every unit."""
+        """Over TCP libmodbus answers for every unit."""
         self.assertEqual(self.run_steps([1], 'unit:7', 'read:0:1', 'unit:8', 'read:0:1', unit=7),
                          ['0001', '0001'])
 

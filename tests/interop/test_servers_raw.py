@@ -48,7 +48,7 @@ class Raw(e2e.Case):
         """So many of the scripts give a reading."""
         line = f'read {self.sensor} --mode modbus --timeout {timeout * 1000:.0f} --format csv {options}'
         done = self.play(line, self.request(), *scripts)
-        # each attempt takes its time-out, and as long again for what is owed
+        # each attempt takes its time-out, and as long again for the quarantine
         self.assertLess(done.elapsed, 2 + 2 * len(scripts) * timeout)
         self.assertEqual(done.mm, READ[self.sensor] * good, done)
         bad = len(scripts) - good
@@ -68,7 +68,7 @@ class Raw(e2e.Case):
         garbage_that_looks_like_the_beginning_of_a_response=lambda right: [b'\x01\x03' + right],
         a_response_of_another_unit_before_the_own=lambda right: [e2e.registers(2, 1, 2, 3, 4) + right],
         trailing_bytes=lambda right: [right + b'\x00\xFE\x55'],
-        # The second copy comes before the next request and belongs to nobody.
+        # The second copy comes before the next request and belongs to none.
         a_response_twice=lambda right: [right * 2])
     def good(self, make):
         done = self.plays([make(self.right()), make(self.right()), [self.right()]], 3, 0)

@@ -29,7 +29,7 @@ class Pymodbus(interop.PymodbusServer, Tcp, interop.Case):
 
 class Libmodbus(interop.LibmodbusServer, Tcp, interop.Case):
     def test_a_unit_that_is_not_there_is_silent(self):
-        """Over TCP libmodbus responses for every unit, with the unit that was asked."""
+        """Over TCP libmodbus answers for every unit, with the unit that was asked."""
         row, = self.read('hps167s', 8, DATASHEET, '--address 2', count=1).rows
         self.assertEqual((row['address'], row['distance_mm']), ('2', '2083'))
 

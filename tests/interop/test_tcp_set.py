@@ -24,7 +24,7 @@ class Servers:
         self.ends(f'set hps167s --port {port} baud 115200', 1,
                   "nothing was written: the settings of this port's line cannot be changed")
 
-    def test_nobody_there_is_exit_status_1(self):
+    def test_no_server_there_is_exit_status_1(self):
         self.ends(f'set a16 --port tcp:127.0.0.1:1 {NAME} 1200', 1,
                   'tcp:127.0.0.1:1: Connection refused: nothing serves this port', out='')
 

@@ -27,7 +27,7 @@ static void expect_broken(fathom_libmodbus_error_t error)
     rig_expect_none();
 }
 
-/* After a new connection requests are answered; the unit may still owe a response. */
+/* After a new connection requests are answered; the unit may still be quarantined. */
 static void expect_to_go_on(void)
 {
     rig_connect();

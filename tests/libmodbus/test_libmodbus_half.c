@@ -66,7 +66,7 @@ static bool wakes(void)
     return n != 0;
 }
 
-TEST(half_a_response_wakes_nobody_a_second_time_and_the_rest_does)
+TEST(half_a_response_does_not_wake_a_second_time_and_the_rest_does)
 {
     for (size_t cut = 1; cut != sizeof first; cut++) {
         if (cut != 1) assert_int_equal(rig_tear_down(NULL) + set_up(NULL), 0);
@@ -93,7 +93,7 @@ TEST(after_a_header_alone_it_waits_for_all_that_the_header_tells)
     say_and_arrive(first, 3, 3);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first + 3, HEADER - 3, HEADER);
-    assert_true(wakes()); /* until then nobody knew how long it is */
+    assert_true(wakes()); /* until then its length was not known */
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first + HEADER, sizeof first - HEADER - 1, sizeof first - 1);
     assert_false(wakes());

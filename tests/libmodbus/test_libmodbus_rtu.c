@@ -99,8 +99,8 @@ TEST(a_damaged_response_is_a_checksum_error)
     }
 }
 
-/* 05 03 02 12 34 and its CRC: unit 5's, which nobody asked. */
-TEST(another_units_answer_is_not_taken)
+/* 05 03 02 12 34 and its CRC: unit 5's, which was not asked. */
+TEST(another_units_response_is_not_taken)
 {
     static const uint8_t other[] = {0x05, 0x03, 0x02, 0x12, 0x34, 0x44, 0xF3};
     ask(0);
@@ -114,13 +114,13 @@ TEST(a_late_response_serves_the_retry_that_waits)
 {
     ask(1);
     rig_run_fine(RIG_TIMEOUT_US + SILENCE_US);
-    rig_expect_sent(NULL, 0); /* it owes a response */
+    rig_expect_sent(NULL, 0); /* it is quarantined */
     answered();
     assert_int_equal(rig.request.transaction.attempts, 1);
     assert_int_equal(rig.port.counters[FATHOM_LINE_LATE_RESPONSES], 1);
 }
 
-TEST(a_unit_that_owes_is_asked_after_twice_the_time_out)
+TEST(a_quarantined_unit_is_asked_after_twice_the_time_out)
 {
     ask(1);
     rig_run_fine(2 * RIG_TIMEOUT_US - SILENCE_US);
@@ -185,7 +185,7 @@ TEST(a_port_that_hangs_up_is_broken_and_works_again_when_it_is_back)
     rig_hang_up();
     rig_expect_broken(FATHOM_LIBMODBUS_ERR_HUNG_UP);
     rig_connect();
-    rig_run_fine(2 * RIG_TIMEOUT_US); /* what it owes */
+    rig_run_fine(2 * RIG_TIMEOUT_US); /* its quarantine */
     ask(0);
     answered();
     assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_OK);
@@ -218,7 +218,7 @@ TEST(a_modbus_t_that_is_not_connected_is_a_broken_port)
     rig_run_fine(SLOW_US);
     rig_expect_broken(FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
     assert_true(rig.port.uart.write(rig.port.uart.ctx, request, sizeof request) < 0);
-    assert_true(rig.port.uart.sent(rig.port.uart.ctx)); /* nobody waits for it */
+    assert_true(rig.port.uart.sent(rig.port.uart.ctx)); /* the line does not wait for it */
 }
 
 TEST(a_full_port_is_busy_and_nothing_waits)

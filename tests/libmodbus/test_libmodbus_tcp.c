@@ -112,7 +112,7 @@ TEST(responses_glued_together_are_told_apart)
     rig_expect_three();
 }
 
-TEST(many_late_answers_at_once_do_not_hide_the_right_one)
+TEST(many_late_responses_at_once_do_not_hide_the_right_one)
 {
     rig_ask(0);
     for (int i = 0; i != 100; i++) rig_say((const uint8_t[]){OTHER(0)}, sizeof other_1);
@@ -127,7 +127,7 @@ TEST(a_late_response_serves_the_retry_that_waits)
     rig_ask(1);
     rig_run_fine(RIG_TIMEOUT_US + 1000);
     assert_int_equal(status(), FATHOM_PENDING);
-    rig_expect_sent(NULL, 0); /* its unit owes a response */
+    rig_expect_sent(NULL, 0); /* its unit is quarantined */
     rig_answered(1);
     assert_int_equal(rig.request.transaction.attempts, 1);
     assert_int_equal(rig.port.counters[FATHOM_LINE_LATE_RESPONSES], 1);
@@ -159,7 +159,7 @@ static void expect_outcome(const uint8_t *instead, size_t length, uint32_t in_us
 }
 
 /* Unit 2 does not hide behind the right transaction. */
-TEST(another_units_answer_is_not_taken)
+TEST(another_units_response_is_not_taken)
 {
     static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 9, 2, 0x03, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
     expect_outcome(wrong, sizeof wrong, RIG_TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
@@ -172,7 +172,7 @@ TEST(another_function_is_malformed)
     expect_outcome(wrong, sizeof wrong, RIG_TIMEOUT_US + 1000, FATHOM_ERR_MALFORMED);
 }
 
-/* Six bytes of registers are instead, four are there: by its header the frame is whole. */
+/* Six bytes of registers are announced, four are there: by its header the frame is whole. */
 static const uint8_t too_short[] = {0xF0, 1, 0, 0, 0, 7, 1, 0x03, 6, 0x00, 0xFA, 0x02, 0x93};
 
 TEST(a_byte_count_that_is_not_the_headers_is_no_response_and_nothing_gets_out_of_step)

@@ -78,7 +78,7 @@ TEST(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_t
     rig_expect_sent(to_1, sizeof to_1);
 }
 
-TEST(a_cancelled_request_is_nobodys_and_its_response_too)
+TEST(a_cancelled_request_is_forgotten_and_its_response_too)
 {
     rig_ask(0);
     rig.transport.cancel(rig.transport.ctx, &rig.request);

@@ -84,7 +84,8 @@ int posix_run_unprivileged(int (*body)(void *), void *arg)
     assert_true(child >= 0);
     if (child == 0) {
         (void)alarm(WATCHDOG_S); /* a child does not inherit it */
-        if (geteuid() == 0 && (setgroups(0, NULL) != 0 || setgid(UNPRIVILEGED) != 0 || setuid(UNPRIVILEGED) != 0))
+        if (geteuid() == 0 &&
+            (setgroups(0, NULL) != 0 || setgid(UNPRIVILEGED) != 0 || setuid(UNPRIVILEGED) != 0))
             _exit(254);
         _exit(body(arg));
     }

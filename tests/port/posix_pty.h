@@ -35,7 +35,7 @@ bool posix_wait_for(int fd, short events);
 /* Open file descriptors of this process. */
 unsigned posix_count_fds(void);
 
-/* Runs `body` in a child, as nobody when this is root, and returns its exit status; 255: it did not exit. */
+/* Runs `body` in a child, without privileges when this is root, and returns its exit status; 255: it did not exit. */
 int posix_run_unprivileged(int (*body)(void *), void *arg);
 
 /* Ends the program with a signal when a test hangs. */

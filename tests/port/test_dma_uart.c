@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What examples/rp2040/dma_uart.c counts where its interrupts have priorities of their own, and one comes within another:
- * rp2040js cannot place that to an instruction. The registers are memory, which the test reads and sets. */
+/* What examples/rp2040/dma_uart.c counts where its interrupts have priorities of their own, and one comes within
+ * another: rp2040js cannot place that to an instruction. The registers are memory, which the test reads and sets. */
 #include <string.h>
 
 #include "suite.h"

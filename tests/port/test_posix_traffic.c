@@ -90,7 +90,7 @@ TEST(a_port_that_is_lost_in_the_middle_of_a_request_says_so)
         assert_int_equal(port_rig_write("abc", 3), 3);
         driver.write_error = EIO;
         if (by == 0) assert_true(port_rig_read_one() < 0);
-        if (by == 1) assert_true(port_rig_sent());                     /* so that nobody waits for it */
+        if (by == 1) assert_true(port_rig_sent()); /* so that the line does not wait for it */
         if (by == 2) fathom_posix_wait(&rig.port, FATHOM_NO_DEADLINE); /* returns */
         assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
         assert_true(port_rig_write("abc", 3) < 0);
@@ -131,7 +131,7 @@ TEST(sent_does_without_a_transmitter_state_where_there_is_none)
     assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_OK);
 }
 
-TEST(sent_on_a_lost_port_does_not_let_anybody_wait)
+TEST(sent_on_a_lost_port_does_not_let_the_line_wait)
 {
     port_rig_open();
     let_it_leave();

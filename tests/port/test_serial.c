@@ -134,8 +134,8 @@ TEST(a_request_is_kept_and_handed_out_byte_by_byte)
     }
 }
 
-/* A character of 8E1 has 11 bits, 572.92 us at 19200 baud. Of a UART that holds two, the first two bytes that it is given
- * have not left when it takes the third. */
+/* A character of 8E1 has 11 bits, 572.92 us at 19200 baud. Of a UART that holds two, the first two bytes that it is
+ * given have not left when it takes the third. */
 TEST(a_request_has_left_after_the_bytes_that_wait_and_those_that_the_uart_holds)
 {
     static const uint8_t bytes[SIZE] = {0};

@@ -94,8 +94,8 @@ TEST(without_gaps_no_value_is_shown_wrongly_and_four_are_not_shown)
     assert_int_equal(hidden, TWO_READINGS);
 }
 
-/* The four probes of an A05, held still at values that are often in request; with gaps seen from one of the ten bytes,
- * another one for the next values, and with FATHOM_LONG from each. */
+/* The four probes of an A05, held still at values that hide where a frame begins; with gaps seen from one of the ten
+ * bytes, another one for the next values, and with FATHOM_LONG from each. */
 TEST(frames_of_four_probes_are_never_shown_out_of_step)
 {
     static const uint16_t values[] = {0x0000, 0x00FF, 0x01FF, 0x03E8, 0x07D0, 0x07FF, 0x053B,

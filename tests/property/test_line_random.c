@@ -212,15 +212,15 @@ TEST(on_a_bad_line_no_response_is_taken_for_another_requests)
     assert_int_equal(world.overlaps, 0);
     assert_in_range(outcome.ready, TRANSACTIONS / 2, TRANSACTIONS);
     assert_true(outcome.failed > TRANSACTIONS / 20); /* the weather was bad */
-    /* Every transaction ends. One deadline serves all units that owe, so in such weather the failures of some put
+    /* Every transaction ends. One deadline serves all units in quarantine, so in such weather the failures of some put
      * off the turn of others; never for long. */
     assert_in_range(outcome.longest_us, 0, 5000000);
 }
 
 /*
- * Noise that begins like a response and goes on otherwise is a damaged response: the unit owes for what is left of the
- * time-out alone (line.h), and one that is late beyond that is asked while it is busy. Forty seeds had 15 of those in
- * 10^6 requests, this one has 2, and none made a reading wrong.
+ * Noise that begins like a response and goes on otherwise is a damaged response: the unit is quarantined for what is
+ * left of the time-out alone (line.h), and one that is late beyond that is asked while it is busy. Forty seeds had 15
+ * of those in 10^6 requests, this one has 2, and none made a reading wrong.
  */
 TEST(retries_make_up_for_what_is_lost_and_still_nothing_is_wrong)
 {

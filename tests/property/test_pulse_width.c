@@ -73,8 +73,8 @@ static uint64_t numerator(uint32_t us, int16_t air_dc)
 
 enum { DENOMINATOR = 20000000 };
 
-/* Every temperature and every width, but of each temperature one width in eight, other ones at the next; with FATHOM_LONG
- * each with each. */
+/* Every temperature and every width, but of each temperature one width in eight, other ones at the next; with
+ * FATHOM_LONG each with each. */
 TEST(every_tenth_of_a_degree_and_width_is_the_nearest_mm_and_so_within_1_mm_at_15_m)
 {
     const uint32_t step_us = suite_is_long ? 1 : 8;
@@ -83,7 +83,8 @@ TEST(every_tenth_of_a_degree_and_width_is_the_nearest_mm_and_so_within_1_mm_at_1
             assert_nearest_half_up(fathom_pulse_width_mm_in_air(us, dc), numerator(us, dc), DENOMINATOR);
 }
 
-/* 331.3 + 12.12 = 343.42 m/s: 10000 us are 1717.1 mm. 331.3 - 24.24 = 307.06: 1535.3. 331.3 + 51.51 = 382.81: 1914.05 */
+/* 331.3 + 12.12 = 343.42 m/s: 10000 us are 1717.1 mm. 331.3 - 24.24 = 307.06: 1535.3. 331.3 + 51.51 = 382.81:
+ * 1914.05 */
 TEST(temperatures_by_hand)
 {
     assert_int_equal(fathom_pulse_width_mm_in_air(10000, 200), 1717);

@@ -6,11 +6,11 @@
 #include "stream_rig.h"
 
 /*
- * One byte of a run of frames is lost, changed, or one too many: every byte, every value, so doubled ones too. With gaps seen a
- * frame that is a byte short or has one other byte is refused. Of one byte too many the sensor's last byte is left
- * over, its sum, and a frame is believed only if FF or a silence follows it: so only where the sum is FF can it pass.
- * Then the sum of what stands before it is compared with the last byte of the data, d. FF + all the data but d + the
- * new byte X = d has one solution X, wherever X stands between the start and d: a frame of L bytes has L - 2 such
+ * One byte of a run of frames is lost, changed, or one too many: every byte, every value, so doubled ones too. With
+ * gaps seen a frame that is a byte short or has one other byte is refused. Of one byte too many the sensor's last byte
+ * is left over, its sum, and a frame is believed only if FF or a silence follows it: so only where the sum is FF can it
+ * pass. Then the sum of what stands before it is compared with the last byte of the data, d. FF + all the data but d +
+ * the new byte X = d has one solution X, wherever X stands between the start and d: a frame of L bytes has L - 2 such
  * places, and in each of them one in 256 passes, of one frame in 256. X in front of the start can be taken for it if X
  * is FF, and X in front of the sum for the sum if it is the same; then the frame is right.
  */
@@ -86,8 +86,8 @@ static bool is_frame(const run_t *run, const uint8_t *frame, unsigned which)
     return memcmp(frame, run->sent + which * run->length, run->length) == 0;
 }
 
-/* A poll after byte i. A reading is right, with gaps, if it is the frame whose byte that is; without, if it is one whose
- * bytes had all come before it. Right ones come in order, each once. */
+/* A poll after byte i. A reading is right, with gaps, if it is the frame whose byte that is; without, if it is one
+ * whose bytes had all come before it. Right ones come in order, each once. */
 static void poll(const run_t *run, unsigned i, uint32_t now_us)
 {
     const uint8_t *const frame = fathom_stream_frame(&receiver.stream);
@@ -140,7 +140,8 @@ static void lose(counts_t *counts, const run_t *run, unsigned hit, unsigned plac
 }
 
 /* With every other byte in this place. What stands before it is received once for all. */
-static void damage_with_each(counts_t *counts, const run_t *run, damage_t damage, unsigned hit, unsigned place)
+static void damage_with_each(counts_t *counts, const run_t *run, damage_t damage, unsigned hit,
+                             unsigned place)
 {
     const uint8_t *const frame = run->sent + hit * run->length;
     send(run, damage, hit, place);

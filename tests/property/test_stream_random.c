@@ -72,7 +72,7 @@ static int world_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
 static int world_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     (void)ctx, (void)bytes, (void)length;
-    return -1; /* nobody asks an automatic sensor anything */
+    return -1; /* an automatic sensor is not asked anything */
 }
 
 static bool world_sent(void *ctx) { return (void)ctx, true; }

@@ -87,7 +87,7 @@ typedef enum {
     SECOND_EVENT_REFUSED,  /* raw: the request; exception 0: silence, 9: echoed, not taken */
     SECOND_EVENT_RESET,    /* factory reset */
     SECOND_EVENT_NOISE,    /* a byte that was not understood: raw[0]; new_value: 1 taken in, 0 dropped */
-    SECOND_EVENT_DISCARDED /* bytes that made no frame for anybody: raw, old_value their number */
+    SECOND_EVENT_DISCARDED /* bytes that made no frame: raw, old_value their number */
 } second_event_kind_t;
 
 typedef struct {

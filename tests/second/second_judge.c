@@ -189,7 +189,7 @@ void judge_report(report_t report, wanted_t wanted)
                              : report.not_confirmed ? FATHOM_ERR_UNCONFIRMED
                              : report.otherwise     ? FATHOM_ERR_DIFFERS
                              : report.refused       ? FATHOM_ERR_EXCEPTION
-                                                  : explained();
+                                                    : explained();
     if (!report.made && !says) judge_finding("it does not say what was written", status);
     judge_set(status, report.not_written ? false : says ? true : wrote, wanted);
 }

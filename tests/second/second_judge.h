@@ -65,8 +65,8 @@ void judge_read(fathom_status_t status, bool is_right);
 void judge_sample(const fathom_sample_t *sample);
 void judge_measured(fathom_status_t status, const fathom_sample_t *sample);
 
-/* What a setting is to come to: it holds; or it is acknowledged, which is all that can be known; or it is sent, which is
- * FATHOM_ERR_UNCONFIRMED. */
+/* What a setting is to come to: it holds; or it is acknowledged, which is all that can be known; or it is sent, which
+ * is FATHOM_ERR_UNCONFIRMED. */
 typedef struct {
     uint16_t reg;
     int64_t value;

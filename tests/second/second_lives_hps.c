@@ -55,12 +55,14 @@ static void info(rig_t *rig)
     judge_begin("hps167s_configuration");
     JUDGE_RUN(status, h.any, fathom_hps167s_configuration(&h.sensor, &c));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
-    const hps_settings_t *reported = second_choice(&rig->device, CHOICE_hps_reported) == 0 ? &d->set : &d->used;
+    const hps_settings_t *reported =
+        second_choice(&rig->device, CHOICE_hps_reported) == 0 ? &d->set : &d->used;
     uint32_t ms = reported->reconnect_ms;
     if (second_choice(&rig->device, CHOICE_hps_reconnect_order) == 1) ms = __builtin_bswap32(ms);
     judge_read(status, c.baud == rates[reported->baud_code < 5 ? reported->baud_code : 0] &&
                            c.warm_up_s == reported->warm_s && c.termination == (reported->termination != 0) &&
-                           c.reconnect_time_ms == ms && c.measures_after_power_on == (reported->auto_out != 0));
+                           c.reconnect_time_ms == ms &&
+                           c.measures_after_power_on == (reported->auto_out != 0));
     judge_begin("hps167s_details");
     JUDGE_RUN(status, h.any, fathom_hps167s_details(&h.sensor, &details));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);

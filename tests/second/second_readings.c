@@ -41,7 +41,7 @@ static const char *wrong_ultrasonic(const fathom_sample_t *s, const second_event
         judge.from_device++; /* the value for nothing looks like a distance */
         return NULL;
     case FATHOM_NO_TARGET:
-        if (s->raw != 0xFFFD && s->raw != 0xFFFE) return "no target, and nobody says so";
+        if (s->raw != 0xFFFD && s->raw != 0xFFFE) return "no target, and the device does not say so";
         return mm == SECOND_NOTHING || e->not_ready ? NULL : "no target, and there is one";
     case FATHOM_UNKNOWN:
         return s->raw == 0 ? NULL : "unknown, and it is not";
@@ -65,7 +65,7 @@ static const char *wrong_hps(const fathom_sample_t *s, const second_event_t *e)
     case FATHOM_FAULT: /* the abnormal packet, or its very bytes */
         for (size_t i = 3; i < 11; i++) {
             uint8_t expected = i == 5 || i == 6 ? 0x00 : 0xFF;
-            if (i != 7 && e->raw[i] != expected) return "'failed', and nobody says so";
+            if (i != 7 && e->raw[i] != expected) return "'failed', and the device does not say so";
         }
         return NULL;
     case FATHOM_UNKNOWN:

@@ -213,7 +213,7 @@ TEST(a05_request_behind_noise)
     }
 }
 
-/* Three sensors on one pair: each responses its own address, and all take a 55 AA address. */
+/* Three sensors on one pair: each answers at its own address, and all take a 55 AA address. */
 TEST(three_on_a_pair)
 {
     for (uint64_t seed = 0; seed <= 100; seed++) {

@@ -83,7 +83,7 @@ TEST(all_seeds_keep_the_wire_in_order)
 }
 
 /* A request for a measurement is answered, whatever the seed, when the text says so. */
-TEST(all_seeds_response_a_plain_request)
+TEST(all_seeds_answer_a_plain_request)
 {
     for (int kind = SECOND_A16_CONTROLLED; kind < SECOND_TALKERS; kind++) {
         for (uint64_t seed = 1; seed <= 300; seed++) {

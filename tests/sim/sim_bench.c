@@ -198,7 +198,7 @@ void bench_counted(const fathom_sim_counters_t *counters, const fathom_sim_count
                    const char *file, int line)
 {
     static const char *const names[] = {"requests",       "answered",   "exceptions",     "unserved",
-                                        "others",         "crc_errors", "truncated",           "unheard",
+                                        "others",         "crc_errors", "truncated",      "unheard",
                                         "wrong_settings", "automatic",  "writes",         "writes_refused",
                                         "flash_writes",   "resets",     "resets_refused", "measurements"};
     enum { COUNTERS = sizeof(fathom_sim_counters_t) / sizeof(uint32_t) };

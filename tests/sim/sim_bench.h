@@ -87,7 +87,7 @@ void ask(const char *hex, uint32_t by_ms);
 #define expect(hex) bench_expect((hex), "", __FILE__, __LINE__)
 #define hear(by_ms, hex)                                                                                     \
     (wait_ms(by_ms), bench_expect((hex), "", __FILE__, __LINE__)) /* when so much time has passed */
-#define echoed(asked, by_ms)    transact((asked), (by_ms), (asked))
+#define echoed(asked, by_ms)        transact((asked), (by_ms), (asked))
 #define transact(asked, by_ms, hex) (ask((asked), (by_ms)), bench_expect((hex), (asked), __FILE__, __LINE__))
 
 /* The first bytes of it, and the others so long after the last bit of those. */

@@ -2,8 +2,8 @@
 #ifndef FATHOM_TESTS_SIM_STAGE_H
 #define FATHOM_TESTS_SIM_STAGE_H
 
-/* The drivers at the sensors on the bench (sim_bench.h): the host's half of it, with a loop that sleeps as long as it may, or
- * that comes round so often. */
+/* The drivers at the sensors on the bench (sim_bench.h): the host's half of it, with a loop that sleeps as long as it
+ * may, or that comes round so often. */
 
 #include <stdio.h>
 

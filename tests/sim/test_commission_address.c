@@ -44,7 +44,7 @@ TEST(an_address_that_is_set_is_followed_and_not_set_twice_also_where_the_line_ec
 
 /* Not in the datasheets, and known of sister models: a sensor whose address was just changed may acknowledge that from
  * the old address or from the new one. Either will do, since a reading at the new one decides. An acknowledgement from
- * the new address is taken for the late response to the request whether somebody is there, which was put to it before. */
+ * the new address is taken for the late response to the probe of that address that was sent before. */
 TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
 {
     for (unsigned from_new = 0; from_new != 2; from_new++) FOR_ALL_MODELS
@@ -60,7 +60,7 @@ TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
         }
 }
 
-TEST(an_address_at_which_another_responses_is_not_given)
+TEST(an_address_at_which_another_answers_is_not_given)
 {
     FOR_ALL_MODELS
     {
@@ -73,7 +73,7 @@ TEST(an_address_at_which_another_responses_is_not_given)
     }
 }
 
-/* Its first frame responses the first look; from the second on, the acknowledgement, nothing comes. */
+/* Its first frame answers the first look; from the second on, the acknowledgement, nothing comes. */
 TEST(without_confirmation_it_is_at_one_of_the_two)
 {
     FOR_ALL_MODELS
@@ -111,7 +111,7 @@ TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
         set_up(model, OLD, 0, FATHOM_LINE_ECHO_AUTO);
         const fathom_sim_device_t *const other = add_other(9);
         const fathom_status_t status = carry_out(set_new);
-        /* in 55 AA what it reads from two devices at once is anybody's guess */
+        /* in 55 AA what it reads from two devices at once cannot be known */
         if (model == A05) assert_int_equal(status, FATHOM_READY);
         assert_int_equal(bench.device->unit, NEW);
         assert_int_equal(other->unit, model == A05 ? 9 : NEW);

@@ -97,12 +97,12 @@ TEST(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands)
         set_up_for(&jobs[j], 0, FATHOM_LINE_ECHO_AUTO);
         fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
         for (unsigned n = 0; n != 3; n++) (void)time_of_next_outcome_us(FATHOM_ERR_NO_RESPONSE);
-        /* An owed response is waited for meanwhile: two time-outs from one request to the next at least. */
+        /* The quarantine is waited for meanwhile: two time-outs from one request to the next at least. */
         for (uint32_t alone = 1; alone <= 16; alone *= 2) {
             const uint32_t took_us = time_of_next_outcome_us(FATHOM_ERR_NO_RESPONSE);
             assert_in_range(took_us, (alone + 1) * timeout_us, (alone + 1) * timeout_us + 50 * MS);
         }
-        /* A command is asked at once; nobody is there. */
+        /* A command is asked at once; no device is there. */
         const uint32_t start_us = s.clock.now_us;
         assert_int_equal(carry_out(jobs[j].call), FATHOM_ERR_NO_RESPONSE);
         assert_true(since_us(start_us) <= 3 * SECOND);

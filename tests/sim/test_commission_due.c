@@ -72,7 +72,7 @@ TEST(a_request_behind_part_of_a_late_response_is_due_when_that_has_broken_off)
     set_desk();
     ask();
     pass(100 * MS);
-    assert_int_equal(request.transaction.status, FATHOM_ERR_NO_RESPONSE); /* the unit owes a response */
+    assert_int_equal(request.transaction.status, FATHOM_ERR_NO_RESPONSE); /* the unit is quarantined */
     come(10 * MS, LITERAL(0x01, 0x03, 0x02));
     fathom_modbus_read_holding_registers(&other.message, 2, 0x0101, 1, &value);
     assert_int_equal(fathom_modbus_client_submit(&line, &other), FATHOM_PENDING);

@@ -11,13 +11,13 @@ static unsigned problems;
     (print_error("%s, %s: ", job->name, what), print_error(__VA_ARGS__), print_error("\n"), problems++)
 
 #define BIT(kind) FATHOM_SIM_FAULT_BIT(FATHOM_SIM_FAULT_##kind)
-/* What can look like a response at an address where nobody is, or talk into the request there. */
-#define ALL_THAT_SEND                                                                                           \
+/* What can look like a response at an address where no device is, or run into the request there. */
+#define ALL_THAT_SEND                                                                                        \
     (BIT(UNASKED) | BIT(NOISE) | BIT(DUPLICATE) | BIT(BREAK) | BIT(LATE) | BIT(DELAY) | BIT(TRAILING) |      \
      BIT(UNIT) | BIT(ECHO))
 
 /*
- * Is it a fault to be tried here? What is measured is no setting. An A16 sends no Modbus frame that nobody asked for,
+ * Is it a fault to be tried here? What is measured is no setting. An A16 sends no unsolicited Modbus frame,
  * and one with a distance cannot be told from one with a setting: each has one register.
  */
 static bool is_fit(uint8_t kind)
@@ -147,7 +147,7 @@ TEST(many_faults_at_once_make_no_outcome_untrue)
             const uint8_t kind = (uint8_t)(1 + any(FATHOM_SIM_FAULT_END - 1));
             if (!is_fit(kind)) continue;
             fathom_sim_fault_rule_t *const rule = fathom_sim_fault_add(&bench.fault, kind, 300000, 0);
-            /* A copy that comes later is a frame that nobody asked for. */
+            /* A copy that comes later is an unsolicited frame. */
             if (rule != NULL && kind != FATHOM_SIM_FAULT_DUPLICATE && any(2) != 0)
                 rule->us = 1 + any(300 * MS);
             kinds |= FATHOM_SIM_FAULT_BIT(kind);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "stage.h"
 
-/* Every command and setting, interrupted after each of its steps: given up, by power-on, by somebody who cancels all
- * requests to the unit, by a port that breaks for a while, by a device that loses its power. */
+/* Every command and setting, interrupted after each of its steps: given up, by power-on, by another driver that cancels
+ * all requests to the unit, by a port that breaks for a while, by a device that loses its power. */
 
 static unsigned problems;
 /* Of `job`, after `what`. */
@@ -47,7 +47,7 @@ static fathom_status_t go_on(const job_t *job, unsigned broken)
 static void expect_works(const job_t *job, bool may_move, const char *what)
 {
     s.broken = 0;
-    /* The warm-up too: so long silence at a new place does not prove that nobody is there. */
+    /* The warm-up too: so long silence at a new place does not prove that no device is there. */
     rest(8 * SECOND);
     if (!same_place() && !(s.model == HPS && s.driver.hps.is_seeking)) {
         if (job->kind != MOVES || !may_move || kept_commands() == 0) problem("driver and device apart");
@@ -57,7 +57,8 @@ static void expect_works(const job_t *job, bool may_move, const char *what)
     const fathom_status_t again = carry_out(job->call);
     if (again != FATHOM_READY) problem("then %d", (int)again);
     if (job->kind == KEPT && job->has() != job->wanted) problem("then not so");
-    if (kept_commands() > (job->kind == KEPT ? 1u : 2u)) problem("%u commands kept", (unsigned)kept_commands());
+    if (kept_commands() > (job->kind == KEPT ? 1u : 2u))
+        problem("%u commands kept", (unsigned)kept_commands());
     if (!recovers()) problem("set again, then it does not work");
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "stage.h"
 
-/* Every command and setting with other senders: another driver asks the same unit, others fill the queue, 55 AA and Modbus are
- * on one line, an HPS-167S sends what nobody asked for. */
+/* Every command and setting with other senders: another driver asks the same unit, others fill the queue, 55 AA and
+ * Modbus are on one line, an HPS-167S sends unasked. */
 
 /* What one that measures beside it may say. */
 static bool is_fair(fathom_status_t status, bool moves)
@@ -13,7 +13,7 @@ static bool is_fair(fathom_status_t status, bool moves)
 
 /* `command` until its end, with two sensors that are read meanwhile. Returns how many readings `beside` had. */
 static unsigned with_others(fathom_status_t (*command)(void), fathom_sensor_t beside, fathom_sensor_t other,
-                           bool moves, fathom_status_t *status)
+                            bool moves, fathom_status_t *status)
 {
     const fathom_sensor_t both[] = {beside, other};
     const uint32_t start_us = s.clock.now_us;
@@ -109,7 +109,7 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         const fathom_sensor_t modbus = fathom_a05_modbus_sensor(&second);
         const unsigned readings =
             with_others(dyp_sets ? set_by_dyp : set_by_modbus, dyp_sets ? modbus : s.sensor,
-                       dyp_sets ? s.sensor : modbus, true, &status);
+                        dyp_sets ? s.sensor : modbus, true, &status);
         assert_int_equal(status, FATHOM_READY);
         assert_int_equal(bench.device->unit, 5);
         assert_int_equal(kept_commands(), 1);

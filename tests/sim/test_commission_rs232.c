@@ -8,7 +8,8 @@ static fathom_a16_auto_t automatic;
 static fathom_a16_rs232_t rs232;
 static unsigned heard; /* good readings of the stream, which is s.sensor */
 
-/* 301: in a loop of whole periods of 100 ms each look may come within the 4 ms after a frame, in which nothing is sent. */
+/* 301: in a loop of whole periods of 100 ms each look may come within the 4 ms after a frame, in which nothing is
+ * sent. */
 static const uint32_t serial_loops_us[LOOPS] = {0, 1 * MS, 20 * MS, 301 * MS};
 
 static void set_up_serial(uint32_t loop_us)
@@ -94,7 +95,7 @@ TEST(settings_are_changed_while_it_sends_and_it_sends_again_afterwards)
             assert_int_equal(return_to_automatic(), FATHOM_READY);
             assert_true(is_sending());
             assert_int_equal(set_threshold(750), FATHOM_READY); /* it is so already */
-            assert_int_equal(kept_commands(), 2);                        /* with 0x0202 */
+            assert_int_equal(kept_commands(), 2);               /* with 0x0202 */
         }
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "stage.h"
 
-/* An A05 with automatic output gets power (A05 1(1)): the driver holds RX low, by a pin or by a break of the line, and it
- * sends real-time values from then on; in loops of any length, and with Modbus on the same line. */
+/* An A05 with automatic output gets power (A05 1(1)): the driver holds RX low, by a pin or by a break of the line, and
+ * it sends real-time values from then on; in loops of any length, and with Modbus on the same line. */
 
 static fathom_a05_auto_t automatic;
 static fathom_a05_modbus_t *const driver = &s.driver.a05;

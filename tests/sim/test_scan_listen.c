@@ -97,7 +97,7 @@ TEST(test_another_master_is_told)
     hear(SCAN_MASTER, 1);
 }
 
-TEST(test_what_nobody_understands_is_a_sender_and_a_few_bytes_are_noise)
+TEST(test_what_is_not_understood_is_a_sender_and_a_few_bytes_are_noise)
 {
     begin_speaker(&scan_dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
     hear(SCAN_SENDER, 0);

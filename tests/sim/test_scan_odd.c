@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "scan_others.h"
 
-/* What `fathom scan` makes of responses that are not as they should be: two units with one address, other devices, other
- * protocols, another master. */
+/* What `fathom scan` makes of responses that are not as they should be: two units with one address, other devices,
+ * other protocols, another master. */
 
 EACH_BEGINS(rig_begin(0))
 static const suite_t suite = {.set_up = begins};
@@ -91,7 +91,7 @@ static void expect_other(stranger_t with, const fathom_line_settings_t *line)
     assert_int_equal(rig_find(9)->kind, SCAN_OTHER);
 }
 
-TEST(test_whoever_answers_everything_or_nothing_is_another_modbus_device)
+TEST(test_a_device_that_answers_everything_or_nothing_is_another_modbus_device)
 {
     const fathom_line_settings_t *const lines[] = {&scan_dyp_line, &scan_hps167s_line};
     const uint16_t values[] = {0, 9, 0xFFFF, 0xB00B, 0x0909}; /* the last is a date */
@@ -103,7 +103,7 @@ TEST(test_whoever_answers_everything_or_nothing_is_another_modbus_device)
     }
 }
 
-TEST(test_whoever_has_another_address_in_0200_than_its_own_is_no_a16)
+TEST(test_a_device_with_another_address_in_0200_than_its_own_is_no_a16)
 {
     stranger_t with = {.value = 754, .address = 9, .only = {0x0200, 0x0101}};
     begin_with(with, &scan_dyp_line);
@@ -112,7 +112,7 @@ TEST(test_whoever_has_another_address_in_0200_than_its_own_is_no_a16)
     for (with.address = 10; with.address != 12; with.address++) expect_other(with, &scan_dyp_line);
 }
 
-TEST(test_whoever_has_no_date_in_0001_is_no_hps167s)
+TEST(test_a_device_without_a_date_in_0001_is_no_hps167s)
 {
     /* #3 begins with the right byte; in #1 the month is 0, 13 or 32, or the day is 0 */
     const uint16_t versions[] = {0x1400, 0x140D, 0x0020, 0x0009};
@@ -120,7 +120,7 @@ TEST(test_whoever_has_no_date_in_0001_is_no_hps167s)
         expect_other((stranger_t){.value = 0xB000, .version = versions[i]}, &scan_hps167s_line);
 }
 
-TEST(test_whoever_has_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
+TEST(test_a_device_with_a_date_in_0001_and_zeros_elsewhere_is_no_hps167s)
 {
     /* #2 has two switches and is the same twice, but so is what it measures */
     expect_other((stranger_t){.version = 0x0909}, &scan_hps167s_line);

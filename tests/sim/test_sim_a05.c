@@ -43,8 +43,8 @@ TEST(the_first_command_ends_automatic_output_until_power_off)
     set_a05(FATHOM_SIM_A05_AUTO, EXAMPLE, DEFAULTS);
     wait_ms(250);
     transact("01 03 01 06 00 01 65 F7", 300,
-         "FF 01 3C 00 FA 02 93 09 7A 4E" /* at 300 ms, lingering */
-         "01 03 02 01 3C B9 C5");        /* 3(4)1 example 1 */
+             "FF 01 3C 00 FA 02 93 09 7A 4E" /* at 300 ms, lingering */
+             "01 03 02 01 3C B9 C5");        /* 3(4)1 example 1 */
     hear(5000, "");
     fathom_sim_detach(&bench.line, &bench.a05.device, bench.now_us);
     attach(&bench.a05.device);

@@ -81,7 +81,7 @@ TEST(set_address_is_answered_with_its_own_bytes_a05_2_3_5)
     COUNTED(.others = 1);
     transact("55 AA 05 11 15", 300, "55 AA 05 11 07 D0 EC");         /* 05 + 11 + 07 + D0 - 1 */
     transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87"); /* and in Modbus */
-    echoed("55 AA FE 03 00", 50);                                /* the highest: FE + 03 - 1 = 100 */
+    echoed("55 AA FE 03 00", 50);                                    /* the highest: FE + 03 - 1 = 100 */
     assert_int_equal(bench.a05.device.unit, 0xFE);
 }
 

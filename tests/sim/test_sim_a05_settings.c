@@ -40,7 +40,7 @@ TEST(what_is_asked_for_is_real_time_whatever_was_selected)
 {
     transact("01 03 01 06 00 04 A5 F4", 450, "01 03 08 03 E8 07 D0 07 A1 0D EA A8 20");
     transact("55 AA 01 01 01", 250,
-         "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62"); /* 2(3)3; the printed sum of the response is wrong */
+             "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62"); /* 2(3)3; the printed sum of the response is wrong */
 }
 
 TEST(without_processed_values_of_their_own_they_are_the_real_time_ones)

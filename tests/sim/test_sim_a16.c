@@ -73,9 +73,9 @@ TEST(the_first_command_ends_automatic_output_with_frames_around_the_response)
     set_a16(FATHOM_SIM_A16_AUTO, 751, DEFAULTS);
     wait_ms(50);
     transact(A16_ASKED, 300,
-         A16_FRAME           /* at 100 ms, nobody stopped it yet */
-             A16_RESPONSE    /* the response, A16 6(4) example 2, about 175 ms */
-                 A16_FRAME); /* at 200 ms, within the 150 ms */
+             A16_FRAME           /* at 100 ms, not stopped yet */
+                 A16_RESPONSE    /* the response, A16 6(4) example 2, about 175 ms */
+                     A16_FRAME); /* at 200 ms, within the 150 ms */
     hear(60000, "");
     assert_int_equal(fathom_sim_due_us(&bench.line, bench.now_us), FATHOM_NO_DEADLINE);
 }
@@ -221,9 +221,9 @@ TEST(a_broadcast_is_answered_from_its_own_address_as_an_option)
 
 TEST(what_it_does_not_know_is_silence)
 {
-    ask("01 03 01 02 00 01 24 36", 600);      /* unknown register */
-    ask("01 03 01 00 00 02 C5 F7", 600);      /* two at once */
-    ask("01 03 02 02 00 01 24 72", 600);      /* write-only */
+    ask("01 03 01 02 00 01 24 36", 600);          /* unknown register */
+    ask("01 03 01 00 00 02 C5 F7", 600);          /* two at once */
+    ask("01 03 02 02 00 01 24 72", 600);          /* write-only */
     transact("01 04 01 00 00 01 30 36", 600, ""); /* unknown function */
     COUNTED(.requests = 4, .unserved = 4);
 }

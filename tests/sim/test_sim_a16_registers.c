@@ -56,7 +56,7 @@ TEST(processed_and_real_time_values_are_two)
 {
     transact("01 03 01 00 00 01 85 F6", 600, "01 03 02 02 F2 38 A1"); /* example 1 */
     transact(A16_ASKED, 200, A16_RESPONSE);                           /* example 2 */
-    bench.a16.device.processed.distance = NULL;                   /* then they are one */
+    bench.a16.device.processed.distance = NULL;                       /* then they are one */
     transact("01 03 01 00 00 01 85 F6", 600, A16_RESPONSE);
 }
 

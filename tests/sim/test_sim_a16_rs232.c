@@ -85,7 +85,7 @@ TEST(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back)
 TEST(a_frame_from_before_the_command_confirms_nothing)
 {
     set(FATHOM_SIM_A16_AUTO, 0);
-    for (unsigned i = 0; i != 300; i++) { /* a frame comes and nobody takes it */
+    for (unsigned i = 0; i != 300; i++) { /* a frame comes and is not taken */
         pass_us(1 * MS);
         (void)fathom_line_poll(&s.line);
     }

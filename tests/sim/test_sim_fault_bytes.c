@@ -166,7 +166,7 @@ TEST(unit_answers_from_another_address)
     replaced(A05_DYP, FATHOM_SIM_FAULT_UNIT, 2, 1, 254);
 }
 
-TEST(function_responses_to_another_function_or_command)
+TEST(function_answers_to_another_function_or_command)
 {
     replaced(A16_MODBUS, FATHOM_SIM_FAULT_FUNCTION, 1, 1, 127);
     replaced(HPS167S, FATHOM_SIM_FAULT_FUNCTION, 1, 1, 127);

@@ -21,11 +21,12 @@ TEST(the_misprinted_crc_of_the_abnormal_response_is_no_request)
 
 TEST(sensor_details_are_those_of_command_3)
 {
-    transact("01 03 00 03 00 0B F4 0D", 30,
-         "01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC"); /* table 13 */
+    transact(
+        "01 03 00 03 00 0B F4 0D", 30,
+        "01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC"); /* table 13 */
 }
 
-TEST(version_configuration_and_temperature_response_tables_9_11_15)
+TEST(version_configuration_and_temperature_are_those_of_tables_9_11_15)
 {
     set_hps(2083, (hps_config_t){.temperature_f = -10});
     transact("01 03 00 01 00 03 54 0B", 30, "01 03 06 14 09 1B 02 01 00 58 D4");
@@ -195,7 +196,7 @@ TEST(another_unit_is_not_meant)
     transact("02 03 00 08 00 04 C5 F8", 30, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
 }
 
-TEST(while_it_warms_up_it_measures_nothing_but_responses_the_rest)
+TEST(while_it_warms_up_it_measures_nothing_but_answers_the_rest)
 {
     set_hps(2083, (hps_config_t){.warm_up_s = 5});
     wait_ms(4900);

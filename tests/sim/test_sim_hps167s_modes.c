@@ -137,7 +137,7 @@ TEST(a_frame_between_a_new_rate_and_its_acknowledgement_has_the_old_one)
     assert_true(between > 10);
 }
 
-TEST(a_fault_sends_one_more_of_them_though_nobody_has_asked_yet)
+TEST(a_fault_sends_one_more_of_them_before_the_first_request)
 {
     set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
     set_faults(1);
@@ -221,7 +221,7 @@ TEST(a_request_without_data_waits_for_the_reconnect_time)
     ASSERT_ANSWERED_IN(2187 + CHARACTER_US - 1, 2500 + CHARACTER_US);
     expect(ABNORMAL);
     transact(READ_2, 30,
-         "01 03 08 FF FF 00 00 00 01 68 01 6A 1C"); /* the interface itself is well; 360 is 0x168 */
+             "01 03 08 FF FF 00 00 00 01 68 01 6A 1C"); /* the interface itself is well; 360 is 0x168 */
     /* power begins the time anew */
     cycle_power(0, 0);
     const uint32_t power_us = bench.now_us;
@@ -236,7 +236,7 @@ TEST(a_reconnect_time_that_was_set_counts_and_half_an_hour_is_the_most)
 {
     set_hps(2083, (hps_config_t){.unasked_us = 100 * MS});
     transact("01 10 00 20 00 02 04 FF FF FF FC B0 22", 30,
-         "01 10 00 20 00 02 40 02"); /* the largest multiple of 18 */
+             "01 10 00 20 00 02 40 02"); /* the largest multiple of 18 */
     lose(true);
     wait_us(UINT32_C(1790000000));
     expect("");

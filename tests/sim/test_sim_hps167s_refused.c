@@ -51,11 +51,11 @@ TEST(a_reconnect_time_is_a_multiple_of_18_in_two_registers)
     transact("01 10 00 20 00 02 04 00 00 01 69 30 09", 30, "01 90 03 0C 01"); /* 361 */
     transact("01 10 00 20 00 02 04 00 00 01 71 30 03", 30, "01 90 03 0C 01"); /* 369, of 9 */
     transact("01 10 00 20 00 02 04 FF FF FF FF F0 23", 30,
-         "01 90 03 0C 01");                                         /* 2^32 - 1 is 3 more than a multiple */
+             "01 90 03 0C 01"); /* 2^32 - 1 is 3 more than a multiple */
     transact("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 02 CD C1"); /* another length */
     transact("01 10 00 20 00 03 06 00 00 01 68 00 00 67 CA", 30, "01 90 02 CD C1");
     transact("01 10 00 20 00 03 04 00 00 01 68 F0 18", 30,
-         "01 90 02 CD C1"); /* its count and its bytes disagree */
+             "01 90 02 CD C1"); /* its count and its bytes disagree */
     transact("01 10 00 20 00 02 06 00 00 01 68 00 00 A6 06", 30, "01 90 02 CD C1");
     transact("01 10 00 20 01 02 04 00 00 01 68 E1 09", 30, "01 90 02 CD C1"); /* 258 registers, not 2 */
     COUNTED(.writes_refused = 8);
@@ -63,7 +63,7 @@ TEST(a_reconnect_time_is_a_multiple_of_18_in_two_registers)
     set_hps(2083, (hps_config_t){.wrong_length = 3});
     transact("01 10 00 20 00 01 02 01 68 A1 4E", 30, "01 90 03 0C 01");
     transact("01 10 00 21 00 02 04 00 00 01 68 30 05", 30,
-         "01 90 02 CD C1"); /* another address is no wrong length */
+             "01 90 02 CD C1"); /* another address is no wrong length */
     expect_factory();
 }
 

@@ -64,7 +64,7 @@ TEST(a_new_address_is_acknowledged_from_itself_as_an_option)
 {
     set_hps(2083, (hps_config_t){.answers_from_new = true});
     transact("01 06 00 10 00 20 89 D7", 30, "20 06 00 10 00 20 8F 66"); /* 32, the highest */
-    echoed("20 06 00 0A 00 05 6F 7A", 30);                          /* other responses are as ever */
+    echoed("20 06 00 0A 00 05 6F 7A", 30);                              /* other responses are as ever */
     transact("20 03 00 09 00 01 52 B9", 30, "01 03 02 00 01 79 84");    /* #6 makes it 1 */
 }
 

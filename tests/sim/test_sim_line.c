@@ -53,7 +53,7 @@ TEST(a_right_crc_does_not_make_a_request_of_another_length)
 {
     ask("01 03 01 01 00 01 00 36 5F", 200); /* 9 bytes */
     ask(A16_RESPONSE, 200);                 /* a response, 7 bytes */
-    transact("01 83 02 C0 F1", 200, "");        /* an exception */
+    transact("01 83 02 C0 F1", 200, "");    /* an exception */
     COUNTED(.unserved = 3, .measurements = NONE);
 }
 
@@ -227,7 +227,7 @@ TEST(what_it_does_not_know_it_neither_tells_nor_minds)
     expect_read(250 * MS, 64, 0, 8, 0);
 }
 
-TEST(bytes_that_nobody_reads_are_lost_and_told)
+TEST(unread_bytes_are_lost_and_reported)
 {
     set(FATHOM_SIM_A16_AUTO);
     expect_read(6550 * MS, 512, FATHOM_RX_OVERRUN, 256, 0); /* 65 frames, 260 bytes */
@@ -236,7 +236,7 @@ TEST(bytes_that_nobody_reads_are_lost_and_told)
     expect_read(6650 * MS, 512, FATHOM_RX_OVERRUN, 4, FATHOM_RX_OVERRUN);
 }
 
-TEST(at_another_rate_or_parity_nobody_understands)
+TEST(at_another_rate_or_parity_no_device_understands)
 {
     at_rate(19200, FATHOM_PARITY_EVEN);
     ask(A16_ASKED, 200);
@@ -281,7 +281,7 @@ TEST(three_devices_share_a_line_each_at_its_address_and_rate)
         at_rate(9600, FATHOM_PARITY_NONE);
     }
     assert_int_equal(bench.line.counters.collisions, 0);
-    /* on two wires each hears the others' responses too: three from the A05 are frames for somebody else, and
+    /* on two wires each hears the others' responses too: three from the A05 are frames for another, and
      * so are three of its requests */
     COUNTED_BY(&bench.a16.device, .others = 6, .requests = 3);
     COUNTED(.others = NONE); /* those were at another rate */

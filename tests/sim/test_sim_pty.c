@@ -116,7 +116,7 @@ TEST(a_client_gets_a_response_in_true_time)
     transaction_at(fathom_sim_pty_path(&pty));
 }
 
-TEST(the_port_is_raw_before_anyone_makes_it_so)
+TEST(the_port_is_raw_before_a_client_makes_it_so)
 {
     uint8_t byte;
     set_sending(FATHOM_SIM_A16_MODBUS);
@@ -146,7 +146,7 @@ TEST(clients_come_and_go)
     uint8_t byte;
     set_sending(FATHOM_SIM_A16_MODBUS);
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(pump(-1, &byte, 1, 20), 0); /* nobody is there: no error, no spinning */
+        assert_int_equal(pump(-1, &byte, 1, 20), 0); /* no client is there: no error, no spinning */
         transaction_at(link_path);
     }
     /* one that leaves before its response */
@@ -203,7 +203,7 @@ TEST(a_device_hears_its_own_rate_only)
     close(client);
 }
 
-TEST(what_nobody_reads_does_not_pile_up)
+TEST(unread_bytes_do_not_pile_up)
 {
     static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_NONE, 1};
     uint8_t bytes[4096];

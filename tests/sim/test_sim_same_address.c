@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Several sensors at one address of one pair: all response, and what they say together nobody understands. */
+/* Several sensors at one address of one pair: all answer, and what they send together is not understood. */
 #include "fathom/codec/crc16.h"
 #include "sim_bench.h"
 
@@ -31,7 +31,7 @@ static bool is_understood(const char *response)
 EACH_BEGINS(set(3))
 static const suite_t suite = {BENCH_ROUNDS, .set_up = begins};
 
-TEST(two_that_response_within_each_others_answer_are_not_understood)
+TEST(two_that_answer_within_each_others_response_are_not_understood)
 {
     for (uint32_t seed = 0; seed < 50; seed++) { /* together, or up to 0.3 ms apart, of 7.4 */
         set(seed);
@@ -86,7 +86,8 @@ TEST(two_models_collide_as_well)
     assert_true(bench.line.counters.collisions != 0);
     assert_false(is_understood("01 03 02 00 01 79 84"));
     forget();
-    transact("01 03 01 06 00 01 65 F7", 200, "01 03 02 FF FD 38 35"); /* a register that only one of them has */
+    transact("01 03 01 06 00 01 65 F7", 200,
+             "01 03 02 FF FD 38 35"); /* a register that only one of them has */
 }
 
 TEST(the_address_command_of_55_aa_makes_two_of_one_address_that_garble_each_other)

@@ -47,7 +47,8 @@ TEST(by_a_fair_share_each_has_a_third_of_the_time)
     expect_wait(A16, 2 * (550 + 130) + 19 + 435);
 }
 
-/* A loop of 5 ms sees the HPS-167S's response up to 5 ms late, and asks it up to 5 later: 28.5 ms at most instead of 18.5. */
+/* A loop of 5 ms sees the HPS-167S's response up to 5 ms late, and asks it up to 5 later: 28.5 ms at most instead of
+ * 18.5. */
 TEST(in_a_slower_loop_too)
 {
     run((mix_t){.processed = true, .fair = true, .loop_us = 5 * MS});

@@ -67,8 +67,8 @@ TEST(sensors_with_different_settings_are_read_on_one_pair)
     }
 }
 
-/* Without it, whoever has other settings hears noise and stays silent. */
-TEST(without_their_settings_only_those_of_the_line_response)
+/* Without them a device with other settings hears noise and stays silent. */
+TEST(without_their_settings_only_those_of_the_line_answer)
 {
     begin(NULL, NULL, false);
     run(20 * SECOND);

@@ -192,7 +192,7 @@ TEST(any_advance_is_lived_through)
     assert_int_equal(bench.a05.device.counters.automatic, 14000);
 }
 
-TEST(a_line_that_nobody_polls_keeps_up_with_a_stepping_clock)
+TEST(a_line_that_is_not_polled_keeps_up_with_a_stepping_clock)
 {
     set(100 * MS);
     for (int i = 0; i < 60000; i++) (void)hal_clock.now_us(hal_clock.ctx); /* 100 minutes */

@@ -143,7 +143,7 @@ TEST(a_polarity_that_could_not_be_set_changes_nothing)
     assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 20000), FATHOM_ERR_NO_RESPONSE);
     run(1000 * MS, 20000);
     expect_kinds("FN");
-    /* it can be told what somebody else has done */
+    /* it can be told what another driver has done */
     fathom_a16_switch_polarity_is(&a16, FATHOM_A16_NEGATIVE);
     run(100 * MS, 20000);
     expect_kinds("FNF");

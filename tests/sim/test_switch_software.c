@@ -113,8 +113,8 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
     assert_int_equal(errors, 0);
 }
 
-/* First contact 3: probe 3 says 7000 mm, which none can measure; probe 1 is near, then it is not, and what stands before
- * probe 3 stays unknown. */
+/* First contact 3: probe 3 says 7000 mm, which none can measure; probe 1 is near, then it is not, and what stands
+ * before probe 3 stays unknown. */
 TEST(an_odd_probe_neither_hides_one_that_is_near_nor_keeps_the_level_for_ever)
 {
     static const uint8_t levels[] = {FATHOM_NEAR, FATHOM_UNKNOWN};

@@ -39,11 +39,12 @@ uint32_t rig_recovery_us(const rig_unit_t *unit)
     /* what ends a frame there is a silence */
     if (facts->proof == SOAK_GAP) return facts->period_us + FATHOM_STREAM_DEFAULT_GAP_US + slack_us;
     if (facts->proof == SOAK_NO_GAP) return FRAMES_WITHOUT_GAP * facts->period_us + slack_us;
-    /* The request that is out may be lost, and then the unit owes, or is left alone after several. */
+    /* The request that is out may be lost, and then the unit is quarantined, or left alone after several. */
     uint32_t wait_us = facts->timeout_us;
     const uint32_t timeouts_in_row = unit->timeouts_in_row + 1;
     if (timeouts_in_row >= PATIENCE) {
-        const uint32_t doublings = timeouts_in_row - PATIENCE < MAX_DOUBLINGS ? timeouts_in_row - PATIENCE : MAX_DOUBLINGS;
+        const uint32_t doublings =
+            timeouts_in_row - PATIENCE < MAX_DOUBLINGS ? timeouts_in_row - PATIENCE : MAX_DOUBLINGS;
         wait_us <<= doublings;
         if (wait_us > longest_backoff_us(unit)) wait_us = longest_backoff_us(unit);
         if (wait_us < facts->timeout_us) wait_us = facts->timeout_us;

@@ -8,8 +8,8 @@ enum { CHUNK = 3000, LOOPS = 3, PORTS = 2 };
 
 const uint32_t cell_rates_ppm[CELL_RATES] = {1000, 10000, 100000, 300000};
 
-/* Six fifths of the time-out: the response is late for certain, and with the longest response of an A05 (400 ms + 720 ms,
- * and its 13 bytes) within twice the time-out. A stream is just late. */
+/* Six fifths of the time-out: the response is late for certain, and with the longest response of an A05 (400 ms + 720
+ * ms, and its 13 bytes) within twice the time-out. A stream is just late. */
 static uint32_t late_in_time_us(uint8_t setting)
 {
     return soak_is_asked(setting) ? soak_facts[setting].timeout_us / 5 * 6 : 1500000;

@@ -24,7 +24,7 @@ void plan_singles(const plan_t *plan, uint8_t setting, uint64_t transactions);
  * kind with all that come after it, and for each pair that breaks a rule. */
 void plan_pairs(const plan_t *plan, uint8_t setting, uint64_t transactions);
 
-/* All kinds at once, at low rates; and the same without those that nobody can tell apart. */
+/* All kinds at once, at low rates; and the same without those that cannot be told apart. */
 void plan_mixtures(const plan_t *plan, uint8_t setting, uint64_t transactions);
 
 /* These kinds alone, at each rate. */

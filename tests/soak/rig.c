@@ -75,7 +75,7 @@ static void outgoing(void *ctx, fathom_sim_frame_t *frame)
         if (!soak_is_asked(unit->setting)) entry->measured_us += frame->delay_us;
         if ((kinds & disguising) != 0) truth_forget(entry);
     }
-    /* What nobody asked for was measured just now, as well. */
+    /* An unsolicited frame was measured just now, as well. */
     entry = truth_leaves(&unit->truth, frame->now_us);
     if (entry != NULL) entry->is_hit = entry->is_twice = true;
     unit->under_way_us = end_us;
@@ -260,7 +260,8 @@ static void outcome(rig_unit_t *unit, fathom_status_t status, bool is_value, con
     }
     unit->totals.errors++;
     if (!is_asked) return;
-    unit->timeouts_in_row = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO ? unit->timeouts_in_row + 1 : 0;
+    unit->timeouts_in_row =
+        status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO ? unit->timeouts_in_row + 1 : 0;
     unit->failures++;
     if (!unit->is_open) unit->totals.unaccounted++; /* an outcome of nothing */
     unit->is_open = false;

@@ -46,19 +46,19 @@ typedef struct {
     /* asked: the transaction that is open, and the response that is being handed over */
     bool is_open;
     uint32_t open_us, response_us;
-    uint32_t requests;       /* written */
-    uint32_t responses;      /* outcomes with samples */
-    uint32_t failures;       /* outcomes without */
-    uint32_t samples;        /* handed over or refused for their value */
-    uint32_t refused;        /* of these, the latter */
-    uint32_t outcome_us;     /* when the last one came */
-    uint32_t right_us;       /* when the last right reading came */
-    uint32_t timeouts_in_row;       /* outcomes in a row without any response */
-    uint32_t trouble_end_us; /* until then what a fault has begun goes on */
-    uint32_t watched;        /* streams: frames that were looked at for their loss */
-    uint32_t clean_lost;     /* of them, not read though neither they nor their neighbours were hit */
-    uint32_t under_way_us;   /* until then what left last is on its way */
-    uint32_t last_damage;    /* kinds of the frame before */
+    uint32_t requests;        /* written */
+    uint32_t responses;       /* outcomes with samples */
+    uint32_t failures;        /* outcomes without */
+    uint32_t samples;         /* handed over or refused for their value */
+    uint32_t refused;         /* of these, the latter */
+    uint32_t outcome_us;      /* when the last one came */
+    uint32_t right_us;        /* when the last right reading came */
+    uint32_t timeouts_in_row; /* outcomes in a row without any response */
+    uint32_t trouble_end_us;  /* until then what a fault has begun goes on */
+    uint32_t watched;         /* streams: frames that were looked at for their loss */
+    uint32_t clean_lost;      /* of them, not read though neither they nor their neighbours were hit */
+    uint32_t under_way_us;    /* until then what left last is on its way */
+    uint32_t last_damage;     /* kinds of the frame before */
     bool last_full;
     int32_t wrong_sequence; /* of the last wrong sample; -1: none yet */
     uint32_t idle_turns;    /* in a row with due_us 0 and nothing coming of it */
@@ -82,8 +82,8 @@ typedef struct rig {
     uint8_t count;
     uint32_t loop_us;
     soak_options_t options;
-    uint32_t first_look;    /* at the scene */
-    uint32_t bytes_read;    /* from the port */
+    uint32_t first_look;        /* at the scene */
+    uint32_t bytes_read;        /* from the port */
     uint32_t overruns_reported; /* by the port, with bytes that are good */
 } rig_t;
 

@@ -11,13 +11,13 @@ import subprocess
 import sys
 
 TABLE = [  # program, what is off, where it matters, in how many transactions, and what has to show
-    ('no_quarantine', 'a unit that owes a response is asked at once', 'a16-real-time:late', 4000, 'old'),
+    ('no_quarantine', 'a quarantined unit is asked at once', 'a16-real-time:late', 4000, 'old'),
     ('no_crc', 'the CRC of a response is not computed', 'a16-real-time:flip-byte', 4000, 'wrong'),
-    ('no_unit', 'nobody looks whose response it is', 'a16-real-time:unit', 4000, 'wrong'),
+    ('no_unit', 'it is not looked whose response it is', 'a16-real-time:unit', 4000, 'wrong'),
     ('no_successor', 'whatever follows a frame ends it', 'a16-tight:drop', 60000, 'wrong'),
     ('no_successor', 'whatever follows a frame ends it', 'a16-auto:insert', 60000, 'wrong'),
     ('no_deadline', 'a silent stream is never stale', 'a16-auto:power-cycle', 4000, 'stuck'),
-    ('no_debt_due', 'fathom_due_us forgets when a debt ends', 'a16-processed:unit', 4000, 'stuck'),
+    ('no_quarantine_due', 'fathom_due_us forgets when a quarantine ends', 'a16-processed:unit', 4000, 'stuck'),
 ]
 COLUMNS = ('transactions', 'readings', 'wrong', 'old', 'most', 'stuck')
 

@@ -6,8 +6,8 @@
 #include "plan.h"
 #include "theory.h"
 
-/* The short form: 5 * 10^4 transactions and some more, the same each time; with FATHOM_LONG in the environment twice as many.
- * program/soak.c is the long one. */
+/* The short form: 5 * 10^4 transactions and some more, the same each time; with FATHOM_LONG in the environment twice as
+ * many. program/soak.c is the long one. */
 enum { SINGLES = 5000, PAIRS = 4000, MIXTURES = 1000, SEED = 1 };
 static uint32_t so_many(uint32_t transactions) { return suite_is_long ? transactions : transactions / 2; }
 

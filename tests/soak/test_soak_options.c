@@ -38,7 +38,7 @@ TEST(without_its_deadline_a_silent_stream_is_stuck)
     assert_true(defence_matters(&result));
 }
 
-TEST(an_echo_that_is_denied_acknowledges_writes_to_nobody)
+TEST(an_echo_that_is_denied_acknowledges_writes_to_an_absent_unit)
 {
     run("echo found out");
     assert_int_equal(result.with, 0);

@@ -70,7 +70,7 @@ uint64_t theory_most(double expected)
 
 const theory_alike_t theory_alike[THEORY_ALIKE] = {
     {SOAK_SETTINGS, FATHOM_SIM_FAULT_UNASKED, 0,
-     "a frame that nobody asked for, of the very shape of the response, while the next one is waited for"},
+     "an unsolicited frame, of the very shape of the response, while the next one is waited for"},
     {SOAK_SETTINGS, FATHOM_SIM_FAULT_LATE, 0,
      "a response that comes later than twice its time-out, while the next one is waited for"},
     {SOAK_SETTINGS, FATHOM_SIM_FAULT_CLOCK_JUMP, FATHOM_SIM_FAULT_LATE,

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What checksums must let pass, and what nobody can tell apart. */
+/* What checksums must let pass, and what cannot be told apart. */
 
 /* Frames that pass though a fault of this kind has hit them, at most, in 65536 of them. */
 uint32_t theory_pass(uint8_t setting, uint8_t kind);

@@ -18,7 +18,7 @@ enum { TRUTH_ROOM = 64, TRUTH_PROBES = 4, TRUTH_NOTHING = -1 };
 typedef struct {
     uint32_t measured_us;
     int32_t values[TRUTH_PROBES]; /* the 16 bits of each probe; TRUTH_NOTHING: not in this frame */
-    bool is_hit;                /* something may have kept it from arriving as it was */
+    bool is_hit;                  /* something may have kept it from arriving as it was */
     bool is_twice; /* it may be read more than once: it comes so, or says what another frame says */
     bool is_read;  /* a sample of it was seen */
 } truth_entry_t;
@@ -37,7 +37,7 @@ typedef struct {
 
 typedef enum {
     TRUTH_RIGHT,
-    TRUTH_DAMAGED,  /* nobody has said that */
+    TRUTH_DAMAGED,  /* no unit has said that */
     TRUTH_STALE,    /* it has said that, but earlier */
     TRUTH_PERMUTED, /* another probe has said that */
     TRUTH_FOREIGN,  /* another unit has said that */

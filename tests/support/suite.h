@@ -21,7 +21,8 @@
 typedef struct {
     int (*set_up)(void **state);    /* before each test; may be NULL */
     int (*tear_down)(void **state); /* after each test; may be NULL */
-    /* Called before each of `rounds` runs of all tests, with 0, 1, ...: where the clock starts, how slow the loop is. */
+    /* Called before each of `rounds` runs of all tests, with 0, 1, ...: where the clock starts, how slow the loop
+     * is. */
     void (*begin_round)(unsigned round);
     unsigned rounds;      /* 0: one */
     unsigned long_rounds; /* where suite_is_long, if that is more */
@@ -54,8 +55,8 @@ extern bool suite_ends_at_failure; /* false from the start */
 /* FATHOM_LONG is in the environment: what is thinned out, because most of it looks at the same again, runs in full. */
 extern bool suite_is_long;
 
-/* Runs the suites of these files, or all when count is 0. Returns how many tests failed, and one more for each file that
- * there is not. */
+/* Runs the suites of these files, or all when count is 0. Returns how many tests failed, and one more for each file
+ * that there is not. */
 int suite_run(int count, char *const *names);
 
 #define SUITE_ADD(of, name, function, row)                                                                   \

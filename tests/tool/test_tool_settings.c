@@ -91,7 +91,7 @@ TEST(of_a_setting_that_was_refused_nothing_is_claimed)
     assert_int_equal(counters()->writes, 0);
 }
 
-/* Frames 1 and 2 response #2 for the user, 3 and 4 for the driver; 5 acknowledges. */
+/* Frames 1 and 2 answer #2 for the user, 3 and 4 for the driver; 5 acknowledges. */
 TEST(what_cannot_be_read_afterwards_is_not_confirmed)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 5, 60);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* An HPS-167S that sends measurements by itself, as tables 12 and 18 and #10 allow, 54 a second: every command works all
- * the same, and says nothing false. */
+/* An HPS-167S that sends measurements by itself, as tables 12 and 18 and #10 allow, 54 a second: every command works
+ * all the same, and says nothing false. */
 #include "tool_bench.h"
 
 #include <string.h>

@@ -34,8 +34,8 @@ typedef struct {
     uint64_t took_us; /* of the device's time */
 } tool_run_t;
 
-/* What comes after "fathom" on a command line, as printf has it; blanks divide the words. What is returned is there until
- * the next run. A command that is not over after two hours of the device's time fails the test. */
+/* What comes after "fathom" on a command line, as printf has it; blanks divide the words. What is returned is there
+ * until the next run. A command that is not over after two hours of the device's time fails the test. */
 const tool_run_t *tool_run(const tool_line_t *line, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -42,7 +42,8 @@ fathom_status_t rig_poll(void);
  * advises. */
 void rig_run(uint32_t for_us, uint32_t step_us);
 
-/* Calls a driver in a loop of 1 ms until it has ended: it sends exactly this request, and the response comes after 300 ms. */
+/* Calls a driver in a loop of 1 ms until it has ended: it sends exactly this request, and the response comes after 300
+ * ms. */
 fathom_status_t rig_transaction(fathom_status_t (*call)(void), const uint8_t *request, size_t request_length,
                                 const uint8_t *response, size_t length);
 

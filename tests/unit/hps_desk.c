@@ -43,7 +43,7 @@ void hps_asks(uint8_t unit, uint32_t baud)
     assert_int_equal(settings != NULL ? settings->baud : 0, baud);
 }
 
-void hps_responses(void)
+void hps_answers(void)
 {
     fake_modbus_response(&fake, hps_measured, 4);
     assert_int_equal(desk_poll(), FATHOM_READY);

@@ -20,10 +20,10 @@ int hps_set_up(void **state);
 void hps_start(void);
 void hps_start_at(uint8_t address, const fathom_line_settings_t *settings);
 
-/* The next measurement is asked of this unit at this rate, 3 s later; 0: no settings are named. Then it is answered with
- * the example of command #5, or not at all, which fathom_poll tells like this. */
+/* The next measurement is asked of this unit at this rate, 3 s later; 0: no settings are named. Then it is answered
+ * with the example of command #5, or not at all, which fathom_poll tells like this. */
 void hps_asks(uint8_t unit, uint32_t baud);
-void hps_responses(void);
+void hps_answers(void);
 void hps_is_silent(fathom_status_t as);
 
 /* Requests of commands #1, #2, #5 and #6 (tables 9, 11, 17, 19), for rows of desk.h. */

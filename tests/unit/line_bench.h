@@ -47,7 +47,7 @@ extern const uint8_t set_36_ms[13];
 extern const uint8_t set_ms_done[8];
 extern const uint8_t response_1_three[11];
 
-/* A05 2(3)3 with its sum put right, 2(3)4; A16 2(4): 1953 mm, which nobody has asked for. */
+/* A05 2(3)3 with its sum put right, 2(3)4; A16 2(4): 1953 mm, unsolicited. */
 extern const uint8_t dyp_four[13];
 extern const uint8_t dyp_first_1953[7];
 extern const uint8_t auto_frame[4];
@@ -81,7 +81,7 @@ void ask_other(uint8_t unit);
 /* Asks unit 1 and runs until the last stop bit has left, which was at most 400 us ago. */
 void ask_1_and_send(uint8_t retries);
 
-/* Before each test or in its loop: a new bench, and unit 1 was asked, without retries; and it owes the response. */
+/* Before each test or in its loop: a new bench, and unit 1 was asked, without retries; and it is quarantined. */
 int set_up_asked(void **state);
 int set_up_quarantined(void **state);
 

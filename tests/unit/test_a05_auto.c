@@ -145,7 +145,7 @@ TEST(every_choice_of_probes_gives_samples_of_those_alone)
 
 /* ---- First contact 3: one odd probe does not blind the others ---- */
 
-TEST(between_silences_an_odd_probe_is_refused_alone_and_told)
+TEST(between_silences_an_odd_probe_is_refused_alone_and_reported)
 {
     config.window = (fathom_dyp_window_t){.min_mm = 250, .max_mm = 4500};
     for (unsigned i = 0; i != 5; i++) {
@@ -225,8 +225,8 @@ TEST(a_silence_behind_the_second_frame_alone_makes_no_place_sure)
     assert_int_equal(rig.samples, 0);
 }
 
-/* 7000 2000 2047 1459 mm, the first odd: FF + 1B + 58 + 07 + D0 + 07 + FF + 05 + B3 = 407. Six bytes on it reads 1459 2047
- * 7000 2000 with a right sum, as test_probes_permuted.c explains. */
+/* 7000 2000 2047 1459 mm, the first odd: FF + 1B + 58 + 07 + D0 + 07 + FF + 05 + B3 = 407. Six bytes on it reads 1459
+ * 2047 7000 2000 with a right sum, as test_probes_permuted.c explains. */
 static const uint8_t permutable[] = {0xFF, 0x1B, 0x58, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0xB3, 0x07};
 
 TEST(probes_with_an_odd_one_are_never_permuted_wherever_listening_begins)

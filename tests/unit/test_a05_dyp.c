@@ -177,7 +177,8 @@ TEST(a_value_that_cannot_be_is_refused_alone)
 
 /* ---- time ---- */
 
-/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the responses are instant. */
+/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the responses are
+ * instant. */
 static void assert_period(uint32_t expected_us)
 {
     uint32_t last_us = 0;
@@ -245,13 +246,13 @@ TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
     for (unsigned n = 0; n != 8; n++) {
         const uint32_t at_us = until_written(n);
         assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_RESPONSE);
-        /* 200 ms of time-out and as much of owing; from the third on the pause: 200, then 300 ms after it. */
+        /* 200 ms of time-out and as much of quarantine; from the third on the pause: 200, then 300 ms after it. */
         if (n >= 4) assert_true(at_us - rig.fake.writes[n - 1].at_us >= 500000);
         if (n >= 1) assert_true(at_us - rig.fake.writes[n - 1].at_us <= 520000);
     }
 }
 
-/* 1.5 s, or as the config says, and then a time-out and a debt. */
+/* 1.5 s, or as the config says, and then a time-out and a quarantine. */
 TEST(after_power_on_silence_is_warming_up)
 {
     static const uint32_t starts_us[][2] = {{0, 1500000}, {700000, 700000}};
@@ -417,7 +418,7 @@ TEST_IN(finding, it_can_be_given_up)
         assert_null(rig.line.head);
     }
     finds_within(2 * 200000 - 75000, FATHOM_PENDING);
-    assert_int_equal(rig.fake.written, 1); /* all owe a response */
+    assert_int_equal(rig.fake.written, 1); /* all are quarantined */
     finds(2, from_5, 5);
 }
 
@@ -436,8 +437,9 @@ TEST_IN(finding, a_line_without_room_says_so)
     assert_null(rig.line.head);
 }
 
-/* ---- 55 AA 03 gives its address to every A05 on the line (A05 2(3)5). Whoever has the driver's transport to the line can
- * send it at no time: not before the driver sets an address, not between the calls that set it, and not afterwards ---- */
+/* ---- 55 AA 03 gives its address to every A05 on the line (A05 2(3)5). Who has the driver's transport to the line can
+ * send it at no time: not before the driver sets an address, not between the calls that set it, and not afterwards
+ * ---- */
 
 /* A write of the address register, as a program would send it that has taken the transport for Modbus. */
 static void assert_refused(void)
@@ -453,12 +455,12 @@ static void assert_refused(void)
 
 static fathom_status_t set_7(void) { return fathom_a05_dyp_set_every_address(&a05, 7); }
 
-/* 55 AA 01 10 and 0x75B mm: 55 + AA + 01 + 10 + 07 + 5B = 172, so that the sum is 72; and at address 7: 78. 55 + AA + 07
- * + 03 = 109. */
+/* 55 AA 01 10 and 0x75B mm: 55 + AA + 01 + 10 + 07 + 5B = 172, so that the sum is 72; and at address 7: 78. 55 + AA +
+ * 07 + 03 = 109. */
 static const struct {
     uint8_t address, command, length, response[7];
 } steps[] = {{0x01, 0x10, 7, {0x55, 0xAA, 0x01, 0x10, 0x07, 0x5B, 0x72}},
-             {0x07, 0x10, 0, {0}}, /* is somebody there? */
+             {0x07, 0x10, 0, {0}}, /* is a device there? */
              {0x07, 0x03, 5, {0x55, 0xAA, 0x07, 0x03, 0x09}},
              {0x07, 0x10, 7, {0x55, 0xAA, 0x07, 0x10, 0x07, 0x5B, 0x78}}};
 

@@ -82,8 +82,8 @@ TEST(all_probes_have_500_ms_and_one_has_200)
     is_silent_for(123456, measure);
 }
 
-/* FATHOM_A05_DYP_ALL_PROBES_US, FATHOM_A05_DYP_ONE_PROBE_US: "from one command to the next, at least", and no longer. The
- * pace counts from the poll in which the request went out. */
+/* FATHOM_A05_DYP_ALL_PROBES_US, FATHOM_A05_DYP_ONE_PROBE_US: "from one command to the next, at least", and no longer.
+ * The pace counts from the poll in which the request went out. */
 static void is_asked_every(uint32_t us, const uint8_t *response, size_t length)
 {
     start();
@@ -125,8 +125,8 @@ TEST(a_command_has_1_s_or_what_the_config_says)
     is_silent_for(345678, set_address);
 }
 
-/* The command itself is acknowledged at once or not at all: the time of one probe is enough. Address 1 responses with 1953
- * mm, 7 does not, and then 7 is set. */
+/* The command itself is acknowledged at once or not at all: the time of one probe is enough. Address 1 answers with
+ * 1953 mm, 7 does not, and then 7 is set. */
 TEST(setting_the_address_is_waited_for_as_one_probe_is)
 {
     static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};

@@ -97,7 +97,7 @@ TEST(a_sample_is_told_5_ms_after_its_last_byte)
 }
 
 /* What begins in time and ends too late is damaged as far as it came: CHECKSUM. */
-TEST(a_frame_responses_80_to_130_ms_after_the_edge_and_is_late_else)
+TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
 {
     static const struct {
         uint32_t after_us;

@@ -5,7 +5,8 @@
 
 #include "suite.h"
 
-/* a16_controlled.h: its defaults to the microsecond and to the millimetre, when it is due, and whose hands it keeps off. */
+/* a16_controlled.h: its defaults to the microsecond and to the millimetre, when it is due, and whose hands it keeps
+ * off. */
 
 static const suite_t suite = {.set_up = controlled_set_up};
 
@@ -43,7 +44,7 @@ static fathom_status_t answered_after(uint32_t us, const uint8_t frame[4])
 /* ---- the defaults ---- */
 
 /* "earliest_us; 0: 80 ms", "latest_us; 0: 130 ms". */
-TEST(a_frame_responses_from_80_to_130_ms_after_the_edge)
+TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
 {
     static const struct {
         uint32_t after_us;

@@ -184,7 +184,7 @@ TEST(the_address_is_read_and_followed_when_it_is_set)
     desk.argument = 5;
     PLAY(desk_poll, OK, READ(1, 0x0100, OK, 1000));
     assert_int_equal(desk.sample.address, 1);
-    PLAY(set_address, OK, READ(1, 0x0200, OK, 1), READ(5, 0x0200, SILENT, 0), /* is somebody there? */
+    PLAY(set_address, OK, READ(1, 0x0200, OK, 1), READ(5, 0x0200, SILENT, 0), /* is a device there? */
          WRITE(1, 0x0200, 5, OK), READ(5, 0x0200, OK, 5));
     PLAY(desk_poll, OK, READ(5, 0x0100, OK, 754));
     assert_int_equal(desk.sample.address, 5);
@@ -247,7 +247,7 @@ TEST(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one)
     desk_waits(0);
     PENDS(measure());
     assert_int_equal(fake.submits, 1);
-    PLAY(measure, OK, READ(1, 0x0100, OK, 1111), /* to the repeated request, which nobody takes */
+    PLAY(measure, OK, READ(1, 0x0100, OK, 1111), /* to the repeated request, which is not taken */
          READ(1, 0x0100, OK, 2222));
     assert_int_equal(desk.sample.distance_mm, 2222);
 }

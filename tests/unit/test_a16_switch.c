@@ -177,8 +177,8 @@ TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
     after_ms(100, 1, FATHOM_FAR);
 }
 
-/* To the host's UART a low level is a break: 00 without a stop bit, before the response and after it. A port that cannot
- * tell: the bytes of a break are noise before the response. */
+/* To the host's UART a low level is a break: 00 without a stop bit, before the response and after it. A port that
+ * cannot tell: the bytes of a break are noise before the response. */
 TEST(garbage_with_framing_errors_around_a_response_or_unmarked_before_it_is_dropped_and_counted)
 {
     static const uint32_t damaged_us[] = {2 * MS, 30 * MS, 31 * MS, 31 * MS + 9 * BYTE_US};
@@ -212,7 +212,7 @@ TEST(a_response_after_its_time_out_is_no_change_either)
     assert_int_equal(pins.stales, 0);
 }
 
-/* The unit owes a response, so the next request waits for it; the pin is free. */
+/* The unit is quarantined, so the next request waits; the pin is free. */
 TEST(a_request_that_waits_does_not_hide_the_level)
 {
     asks(threshold_2000);

@@ -23,7 +23,7 @@ TEST(a_read_of_unit_0_is_answered_by_unit_0)
         receive_response(0, (uint16_t)(100 + i));
         run(100);
         expect_mm((uint16_t)(100 + i));
-        run(T3_5_US); /* and nobody owes anything */
+        run(T3_5_US); /* and no unit is quarantined */
     }
 }
 
@@ -42,7 +42,7 @@ TEST(no_other_unit_answers_for_unit_0)
     }
 }
 
-TEST(nor_does_unit_0_response_for_another)
+TEST(nor_does_unit_0_answer_for_another)
 {
     static const uint8_t others[] = {1, 240};
     for (unsigned i = 0; i != COUNT_OF(others); i++) {
@@ -65,7 +65,7 @@ TEST(a_frame_of_unit_0_is_noise_where_it_has_not_been_asked)
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
 }
 
-/* 239 and 241 owe by another bit than 0 does, modulo 16. */
+/* 239 and 241 are quarantined by another bit than 0 is, modulo 16. */
 TEST(a_late_response_of_another_unit_is_taken_while_unit_0_is_asked)
 {
     static const uint8_t others[] = {1, 239, 241};
@@ -92,7 +92,7 @@ TEST(what_is_written_to_unit_0_is_a_broadcast_as_ever)
     expect_after(TIMEOUT_US + 1000, FATHOM_READY); /* that is the time that the units need */
 }
 
-TEST(a_unit_0_that_does_not_answer_owes_and_is_asked_again)
+TEST(a_unit_0_that_does_not_answer_is_quarantined_and_asked_again)
 {
     ask(&bench.request, 0, &bench.value, 1);
     run(REQUEST_US + TIMEOUT_US);
@@ -185,7 +185,7 @@ TEST_IN(finding, each_outcome_of_finding_comes_once)
     seek(0);
     run(1000000 + 1000);
     assert_int_equal(find(), FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(find(), FATHOM_PENDING); /* asked anew, once nobody owes */
+    assert_int_equal(find(), FATHOM_PENDING); /* asked anew, once no unit is quarantined */
     run(1000000);
     expect_written(2);
     fathom_dyp_modbus_find_cancel(&sought, &client);

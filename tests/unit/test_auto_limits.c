@@ -176,8 +176,8 @@ TEST(an_a16_without_a_line_is_refused_before_anything_is_selected)
 
 /* ---- beside a transaction ---- */
 
-/* "FATHOM_ERR_STALE: no good frame for stale_us": a part of a response, which the line holds back, is no frame that waits
- * for its end. */
+/* "FATHOM_ERR_STALE: no good frame for stale_us": a part of a response, which the line holds back, is no frame that
+ * waits for its end. */
 TEST(it_is_stale_while_the_line_holds_a_part_of_a_response)
 {
     static const uint8_t part[] = {0x01, 0x03, 0x02, 0x02};

@@ -114,7 +114,7 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-/* The device at address 1 responses, with the registers of the factory's configuration, and nobody else does. */
+/* The device at address 1 answers, with the registers of the factory's configuration, and no other does. */
 static void device(bool is_there)
 {
     static const uint16_t registers[11] = {0xFFFF, 0x0500, 0x0000, 0xB401};

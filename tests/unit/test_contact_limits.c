@@ -47,7 +47,8 @@ TEST(without_a_level_that_counts_it_is_stale_after_2_s)
     assert_int_equal(poll_after(1), FATHOM_ERR_STALE);
 }
 
-/* "FATHOM_READY: a sample: the first level that counts", whatever the memory held: of a sample that was FATHOM_NEAR, too. */
+/* "FATHOM_READY: a sample: the first level that counts", whatever the memory held: of a sample that was FATHOM_NEAR,
+ * too. */
 TEST(the_first_level_is_told_whatever_stood_in_the_memory)
 {
     static const uint8_t fills[] = {FATHOM_NEAR, FATHOM_FAR, 0xFF, true}; /* held, too */
@@ -94,8 +95,8 @@ TEST(a_pin_that_cannot_be_read_is_no_contact)
     assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
 }
 
-/* "time_us is the look at which it was first seen to stand, or the present one when it repeats"; and due_us: "in interval_us
- * at the latest", or when it repeats. */
+/* "time_us is the look at which it was first seen to stand, or the present one when it repeats"; and due_us: "in
+ * interval_us at the latest", or when it repeats. */
 TEST(a_level_that_repeats_has_the_time_of_its_look)
 {
     timing.period_us = 70000;
@@ -150,8 +151,8 @@ TEST(the_next_look_is_due_look_us_after_the_last_one)
     assert_int_equal(due_us(), 0);
 }
 
-/* "the level is not looked at ... until 5 ms after the last byte". The first look at which it is looked at is at 5000 us,
- * and with a settle_us of 1 the next look 1 us later is enough. */
+/* "the level is not looked at ... until 5 ms after the last byte". The first look at which it is looked at is at 5000
+ * us, and with a settle_us of 1 the next look 1 us later is enough. */
 TEST(a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
 {
     static const uint8_t byte[] = {0x00};

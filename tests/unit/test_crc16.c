@@ -62,8 +62,8 @@ static void fill(uint8_t *bytes, unsigned length)
 
 TEST(the_definition_gives_the_published_examples)
 {
-    /* MODBUS over Serial Line V1.02, 6.2.2: 02 07 gives 1241. The catalogues' check value: 4B37. A16 6(4) ex 1: 01 03 01
-     * 00 00 01 is followed by 85 F6. HPS-167S appendix: AA BB CC gives 4523. */
+    /* MODBUS over Serial Line V1.02, 6.2.2: 02 07 gives 1241. The catalogues' check value: 4B37. A16 6(4) ex 1: 01 03
+     * 01 00 00 01 is followed by 85 F6. HPS-167S appendix: AA BB CC gives 4523. */
     static const uint8_t request[] = {0x01, 0x03, 0x01, 0x00, 0x00, 0x01};
     static const uint8_t data4[] = {0xAA, 0xBB, 0xCC};
     static const uint8_t message[] = {0x02, 0x07};

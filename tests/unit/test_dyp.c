@@ -50,8 +50,8 @@ static void expect_mm(uint8_t probe, uint16_t mm)
     assert_int_equal(sample.distance_mm, mm);
 }
 
-/* The rule, stated apart: 0 is unknown, FFFD is no object, FFFE is no object and interference, FFFF is refused, the window
- * is a target, everything else is refused too. */
+/* The rule, stated apart: 0 is unknown, FFFD is no object, FFFE is no object and interference, FFFF is refused, the
+ * window is a target, everything else is refused too. */
 typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE, UNKNOWN } meaning_t;
 
 static meaning_t meaning_of(uint32_t value, unsigned min_mm, unsigned max_mm)

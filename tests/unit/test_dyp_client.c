@@ -341,7 +341,7 @@ TEST(a_late_response_of_another_unit_serves_no_retry)
 {
     ask_dyp(&bench.other, 1, 1, &bench.other_value);
     run(REQUEST_US);
-    cancel(&bench.other); /* unit 1 owes its response for 200 ms */
+    cancel(&bench.other); /* unit 1 is quarantined for 200 ms */
     fill(2, 0x0106, 1);
     bench.request.transaction.retries = 1;
     expect_submitted(FATHOM_PENDING);

@@ -2,8 +2,8 @@
 #include "fathom/engine/dyp_client.h"
 #include "line_bench.h"
 
-/* Frames 55 AA that break off, are another master's, or stand one behind the other, on a line that does not know whether
- * it echoes. SUM is the low byte of the sum of all before it, and 55 + AA = FF. */
+/* Frames 55 AA that break off, are another master's, or stand one behind the other, on a line that does not know
+ * whether it echoes. SUM is the low byte of the sum of all before it, and 55 + AA = FF. */
 
 static uint16_t values[4];
 
@@ -29,7 +29,8 @@ static void ask_all(void)
     run(5 * BYTE_US);
 }
 
-/* Another master asks the unit for its first probe: a response of 7 bytes could begin like that, but not this request. */
+/* Another master asks the unit for its first probe: a response of 7 bytes could begin like that, but not this
+ * request. */
 TEST(another_masters_request_to_the_unit_is_no_echo)
 {
     static const uint8_t others[] = {0x55, 0xAA, 0x01, 0x10, 0x10};
@@ -41,8 +42,8 @@ TEST(another_masters_request_to_the_unit_is_no_echo)
 }
 
 /* 0101, 0202, 0303, 0404 mm: FF + 01 + 01 + 2 * (1 + 2 + 3 + 4) = 115 hexadecimal. What follows the first five bytes
- * stands in the line's memory when the same response comes again and breaks off; fathom_protocol_t: "on a response it writes
- * the results ..., and only then". */
+ * stands in the line's memory when the same response comes again and breaks off; fathom_protocol_t: "on a response it
+ * writes the results ..., and only then". */
 TEST(a_response_that_breaks_off_writes_nothing_though_the_same_came_before)
 {
     static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x01, 0x01, 0x02,
@@ -65,8 +66,8 @@ TEST(a_response_that_breaks_off_writes_nothing_though_the_same_came_before)
     }
 }
 
-/* line.h: "the first transaction whose response cannot equal its request, a read, shows the echo". A write does not, though
- * both copies may come in one read. */
+/* line.h: "the first transaction whose response cannot equal its request, a read, shows the echo". A write does not,
+ * though both copies may come in one read. */
 TEST(two_copies_of_a_set_address_in_one_read_show_no_echo)
 {
     static const uint8_t copies[] = {0x55, 0xAA, 0x05, 0x03, 0x07, 0x55, 0xAA, 0x05, 0x03, 0x07};

@@ -157,7 +157,8 @@ TEST(a_choice_of_256_is_refused)
     assert_int_equal(fake.submits, 0);
 }
 
-/* dyp_modbus.h: "of registers that differ in their bits 0 to 3, 8 or 9"; one is under way, and the other has to wait. */
+/* dyp_modbus.h: "of registers that differ in their bits 0 to 3, 8 or 9"; one is under way, and the other has to
+ * wait. */
 TEST(commands_of_two_registers_are_told_apart)
 {
     static const uint16_t registers[] = {0x0010, 0x0011, 0x0110, 0x0210};

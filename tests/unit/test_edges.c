@@ -170,7 +170,7 @@ TEST(a_fall_seen_twice_is_one_and_the_first_counts)
     expect_none();
 }
 
-/* The level was high at 1000 and again at 5000: when it was low in between nobody knows, so neither 10000 nor 6000 us
+/* The level was high at 1000 and again at 5000: when it was low in between is not known, so neither 10000 nor 6000 us
  * may be said. */
 TEST(a_fall_that_was_missed_makes_no_pulse_of_two)
 {

@@ -39,7 +39,8 @@ TEST(new_edges_hold_no_pulse_and_have_lost_none)
     }
 }
 
-/* "FATHOM_EDGES_PULSES that wait to be taken": from the very first, with or without arm, which forgets those before it. */
+/* "FATHOM_EDGES_PULSES that wait to be taken": from the very first, with or without arm, which forgets those before
+ * it. */
 TEST(four_pulses_wait_to_be_taken_from_the_first_on)
 {
     for (unsigned i = 0; i != FILLS; i++)

@@ -4,7 +4,7 @@
 #include "fathom/codec/crc16.h"
 #include "fathom/engine/fair_share.h"
 
-/* Units that response so long after a request, and are asked again so long after that. */
+/* Units that answer so long after a request, and are asked again so long after that. */
 typedef struct {
     uint8_t unit;
     uint32_t works_us;
@@ -19,7 +19,7 @@ typedef struct {
     bool has_left;
     uint32_t sent_us;
     uint32_t ask_at_us;
-    uint32_t free_us; /* it has waited since; it owed something before */
+    uint32_t free_us; /* it has waited since; it was quarantined before */
     unsigned left;    /* requests */
     uint32_t line_us; /* from the silence before a request to its end */
     uint32_t longest_us;
@@ -135,9 +135,9 @@ TEST(those_that_take_as_long_go_in_turn)
     assert_in_range(a->left - b->left + 1, 0, 2);
 }
 
-/* The slow one takes 3.6 ms of silence, 8.3 of request and 400 of work. The fast one takes 8.3 and 2, and rests for 4 ms,
- * the silence among them, in which the slow one could begin: 14.3 ms, up to 15 in this loop. 412 is 27.5 to 28.8 times
- * that. */
+/* The slow one takes 3.6 ms of silence, 8.3 of request and 400 of work. The fast one takes 8.3 and 2, and rests for 4
+ * ms, the silence among them, in which the slow one could begin: 14.3 ms, up to 15 in this loop. 412 is 27.5 to 28.8
+ * times that. */
 TEST(a_fast_one_is_asked_many_times_between_two_requests_of_a_slow_one)
 {
     asker_t *const fast = add(7, 2 * MS, 4 * MS);
@@ -237,8 +237,9 @@ TEST(how_soon_one_asks_again_counts_from_its_submission)
     assert_in_range(share.units[7].again_us, 10 * MS, 11 * MS);
 }
 
-/* Its time-out is 20 ms, and it owes for as long again: the slow one leaves at once, since the line has been silent. */
-TEST(for_one_that_owes_nothing_is_held_back)
+/* Its time-out is 20 ms, and its quarantine as long again: the slow one leaves at once, since the line has been
+ * silent. */
+TEST(for_a_quarantined_unit_nothing_is_held_back)
 {
     asker_t *const fast = add(7, 0, MS);
     asker_t *const slow = add(2, 400 * MS, 0);
@@ -297,9 +298,9 @@ TEST(an_idle_line_is_not_what_the_last_unit_used)
     assert_in_range(share.units[1].ahead_us, 62 * MS, 63 * MS);
 }
 
-/* ---- silence, debts, broadcasts, cancels ---- */
+/* ---- silence, quarantine, broadcasts, cancels ---- */
 
-/* 600 ms of time-out are its use; it owes for as long again, and is asked by its turn after that. */
+/* 600 ms of time-out are its use; its quarantine is as long again, and it is asked by its turn after that. */
 TEST(one_that_is_dead_has_used_its_time_outs_and_takes_no_more_than_its_share)
 {
     asker_t *const dead = add(3, 0, 0);
@@ -312,7 +313,7 @@ TEST(one_that_is_dead_has_used_its_time_outs_and_takes_no_more_than_its_share)
     assert_true(fast->left > 2500);
 }
 
-TEST(where_all_owe_it_is_due_when_that_is_forgotten)
+TEST(where_all_are_quarantined_it_is_due_when_that_ends)
 {
     asker_t *const dead = add(3, 0, 0);
     dead->is_dead = true;
@@ -338,7 +339,7 @@ TEST(a_broadcast_is_used_time_of_unit_0)
     assert_true(fast->left > 600);
 }
 
-/* What was on the wire when it was cancelled has been used until then; the unit owes, and is not waited for. */
+/* What was on the wire when it was cancelled has been used until then; the unit is quarantined, and not waited for. */
 TEST(a_request_that_is_cancelled_has_used_its_time)
 {
     asker_t *const a = add(1, 300 * MS, 4 * MS);

@@ -4,7 +4,7 @@
 #include "fathom/sensor/hps167s_auto.h"
 #include "fathom/sensor/hps167s_info.h"
 
-/* Frames that nobody asked for, on a line; test_driver_contract.c has what every listener promises. */
+/* Unsolicited frames on a line; test_driver_contract.c has what every listener promises. */
 
 enum { LENGTH = RIG_HPS_LENGTH };
 
@@ -191,7 +191,7 @@ TEST(the_deadline_is_an_option_and_due_tells_it)
     rig_run(20000, 20000);
     assert_int_equal(rig.stales, 1);
     fake_receive(&rig.fake, 0, example, LENGTH);
-    fathom_line_poll(&rig.line); /* somebody else's poll brings a frame */
+    fathom_line_poll(&rig.line); /* another driver's poll brings a frame */
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     assert_int_equal(rig_poll(), FATHOM_READY);
 }
@@ -206,7 +206,7 @@ TEST(a_request_of_another_is_due_before_it_is_stale)
     assert_in_range(fathom_due_us(&rig.sensor, 1), 0, 300000);
 }
 
-/* ---- beside driver ---- */
+/* ---- beside a driver that asks ---- */
 
 TEST(its_address_is_that_of_the_driver_that_asks)
 {
@@ -243,7 +243,7 @@ static fathom_status_t ask_1(void) { return fathom_hps167s_interface_version(&dr
 TEST(a_response_to_2_that_comes_by_itself_is_no_measurement)
 {
     ask_too();
-    hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* 255 mm, while nobody asks */
+    hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* 255 mm, while no driver asks */
     assert_int_equal(run_both(2000000, ask_2), FATHOM_ERR_NO_RESPONSE);
     hears(FATHOM_PENDING, 1, LOOKS_LIKE_2); /* asked and not answered: this may be the response */
     assert_int_equal(hps.implausible, 1);

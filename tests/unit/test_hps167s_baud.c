@@ -20,13 +20,13 @@ TEST(the_driver_follows_the_device_to_its_rate)
         assert_int_equal(hps.next_baud, 0);
         assert_int_equal(fake.cancelled_unit, 1);
         hps_asks(1, bauds[i]);
-        hps_responses();
+        hps_answers();
         desk.argument = 19200; /* and back */
         PLAY(set_baud, OK, IS(1, code, bauds[i]), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, bauds[i]),
              IS(1, 1, 19200));
         hps_asks(1, 19200);
         assert_true(hps.unit.line_settings == &hps.moved[0] || hps.unit.line_settings == &hps.moved[1]);
-        hps_responses();
+        hps_answers();
         desk.argument = (int32_t)bauds[i]; /* and there again */
         PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, SILENT, 0, bauds[i]), RATE(1, code, OK, 19200),
              IS(1, code, bauds[i]));
@@ -58,7 +58,7 @@ TEST(a_code_that_is_not_ours_keeps_no_rate_from_being_set_or_found)
     PLAY_AT(1, &hps_factory, 115200, set_baud, OK, IS(1, 0, 19200), TWO(1, SILENT, 0, 115200),
             RATE(1, 3, OK, 19200), IS(1, 0x73, 115200));
     hps_asks(1, 115200);
-    hps_responses();
+    hps_answers();
     desk.argument = 19200;
     PLAY(set_baud, OK, IS(1, 5, 115200), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 0, 19200));
     PLAY(set_baud, OK, IS(1, 0, 19200)); /* it is so already */
@@ -85,14 +85,14 @@ TEST(a_rate_that_was_written_blind_is_sought_at_both)
     hps_asks(1, 19200);
     hps_is_silent(SILENT);
     hps_asks(1, 57600);
-    hps_responses();
+    hps_answers();
 }
 
 FOLLOWS(a_rate_that_the_port_cannot_do_is_not_set, 1, 19200, 1, &hps_factory, 230400, set_baud,
         FATHOM_ERR_UNSUPPORTED, IS(1, 1, 19200), TWO(1, FATHOM_ERR_UNSUPPORTED, 0, 230400))
 
 /* Another device of this address at the new rate. */
-FOLLOWS(a_rate_where_somebody_answers_is_in_use, 3, 19200, 3, &hps_factory, 57600, set_baud,
+FOLLOWS(a_rate_where_a_device_answers_is_in_use, 3, 19200, 3, &hps_factory, 57600, set_baud,
         FATHOM_ERR_IN_USE, IS(3, 1, 19200), IS(3, 2, 57600))
 
 #define LATER(code, baud)                                                                                    \
@@ -104,11 +104,11 @@ TEST(a_rate_from_the_next_power_on_is_asked_at_then)
     PLAY_AT(1, &hps_factory, 115200, set_baud, OK, LATER(3, 115200));
     assert_int_equal(hps.next_baud, 115200);
     hps_asks(1, 19200);
-    hps_responses();
+    hps_answers();
     fathom_hps167s_power_on(&hps);
     assert_int_equal(hps.next_baud, 0);
     hps_asks(1, 115200);
-    hps_responses();
+    hps_answers();
     for (unsigned i = 0; i != 3; i++) { /* and it stays there */
         hps_asks(1, 115200);
         hps_is_silent(SILENT);
@@ -131,7 +131,7 @@ TEST(after_power_on_both_rates_are_asked_in_turns_until_it_answers)
     fake_modbus_fail(&fake, FATHOM_ERR_CANCELLED); /* tells nothing */
     assert_int_equal(desk_poll(), FATHOM_ERR_CANCELLED);
     hps_asks(1, 19200);
-    hps_responses();
+    hps_answers();
     hps_asks(1, 19200);
     hps_is_silent(SILENT);
     hps_asks(1, 19200);
@@ -180,7 +180,7 @@ TEST(an_unconfirmed_rate_is_looked_for_at_both)
     hps_asks(1, 19200);
     hps_is_silent(SILENT);
     hps_asks(1, 57600);
-    hps_responses();
+    hps_answers();
     hps_asks(1, 57600);
 }
 

@@ -85,7 +85,7 @@ TEST(a_measurement_in_its_place_is_passed_over_and_then_three_responses_have_to_
 }
 
 /* "for 2 s", and if more are asked for, more. */
-TEST(after_a_frame_that_nobody_asked_for_three_responses_have_to_agree_for_2_s)
+TEST(after_an_unsolicited_frame_three_responses_have_to_agree_for_2_s)
 {
     static const row_t four[] = {TELLS(RATE_1), TELLS(RATE_1)};
     static const uint16_t frame[4] = {MEASURES};
@@ -138,8 +138,8 @@ TEST(after_eight_responses_without_agreement_it_gives_up)
     PLAY(configuration, OK, TELLS(RATE_2));
 }
 
-/* The one response that is still to come has a measurement's shape: until the command's time-out (1 s) has passed there is
- * no outcome, and nothing is asked. */
+/* The one response that is still to come has a measurement's shape: until the command's time-out (1 s) has passed there
+ * is no outcome, and nothing is asked. */
 TEST(where_unasked_frames_were_taken_for_it_it_gives_up_when_no_response_can_come_any_more)
 {
     const row_t row = HPS_2(1, OK, 0, MEASURES);
@@ -206,11 +206,11 @@ TEST(what_was_measured_last_is_no_configuration)
     PLAY(configuration, FATHOM_ERR_MALFORMED, next, next, next, next, next, next, next, next);
 }
 
-/* An unasked frame was taken for the response, and the response comes when a measurement is being waited for: termination
- * off; or 255 mm. */
+/* An unasked frame was taken for the response, and the response comes when a measurement is being waited for:
+ * termination off; or 255 mm. */
 TEST(what_was_told_last_is_no_measurement)
 {
-    /* what lies behind the four registers, as 255 mm do behind what was registers, is none of them */
+    /* what lies behind the four registers, as 255 mm do behind what was reported, is none of them */
     static const uint16_t registers[5] = {0x00FF, 0x0500, 0x0000, 0xB401, 0x00FF};
     PLAY(configuration, OK, TELLS(0x00FF, 0x0500, 0x0000, 0xB401));
     PLAY(desk_poll, FATHOM_ERR_MALFORMED, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB401));

@@ -23,7 +23,7 @@ TEST(the_driver_follows_the_device_to_its_address)
     assert_int_equal(fake.unit_cancels, 1);
     assert_int_equal(fake.cancelled_unit, 1);
     hps_asks(32, 0);
-    hps_responses();
+    hps_answers();
     assert_int_equal(desk.sample.address, 32);
 }
 
@@ -40,10 +40,10 @@ TEST(addresses_are_1_to_32)
 
 TEST(the_address_that_it_has_is_not_written) { PLAY_AT(1, NULL, 1, set_address, OK, HPS_1(1, OK, 0)); }
 
-FOLLOWS(an_address_where_somebody_answers_is_in_use, 1, 0, 1, NULL, 5, set_address, FATHOM_ERR_IN_USE,
+FOLLOWS(an_address_where_a_device_answers_is_in_use, 1, 0, 1, NULL, 5, set_address, FATHOM_ERR_IN_USE,
         HPS_1(1, OK, 0), HPS_1(5, OK, 0))
 
-/* It may acknowledge from the new address, where nobody was asked. */
+/* It may acknowledge from the new address, where no device was asked. */
 FOLLOWS(an_acknowledgement_from_the_new_address_is_as_good, 5, 0, 1, NULL, 5, set_address, OK,
         HPS_1(1, OK, 0), HPS_1(5, SILENT, 0), MOVE(1, 5, SILENT), HPS_1(5, OK, 0))
 
@@ -90,7 +90,7 @@ TEST(a_reset_whose_rate_waits_for_power_on_is_followed_then)
     hps_asks(1, 19200);
 }
 
-TEST(nobody_else_may_be_at_address_1)
+TEST(no_other_device_may_be_at_address_1)
 {
     PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_IN_USE, IS(7, 1, 0), IS(1, 1, 0));
     assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);

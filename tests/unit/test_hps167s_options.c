@@ -188,7 +188,7 @@ TEST(a_value_below_its_range_is_in_raw_and_is_no_distance)
     assert_int_equal(hps.implausible, 0);
 }
 
-/* Each differs from the abnormal packet (#5, table 18) in one thing: nobody has said that the sensor has failed. */
+/* Each differs from the abnormal packet (#5, table 18) in one thing: it does not say that the sensor has failed. */
 TEST(all_ones_without_the_full_pattern_are_malformed_and_no_fault)
 {
     static const uint16_t packets[][4] = {{0xFFFF, 0x0001, 0x00FF, 0xFFFF}, {0xFFFF, 0x0100, 0x00FF, 0xFFFF},

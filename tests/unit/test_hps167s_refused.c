@@ -57,7 +57,7 @@ TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
 }
 
 /* The rate is the one that the driver is at, so there is no other one to look for it. */
-TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_nobody)
+TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_no_device)
 {
     PLAY_AT(1, &hps_factory, 19200, set_baud, FATHOM_ERR_UNCONFIRMED, IS_OF(1, 5, 3, 19200),
             HPS_WRITE(1, 0x11, 1, OK, 19200), TWO_OF(1, SILENT, 5, 1, 19200));
@@ -99,7 +99,7 @@ TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
     assert_warm_up(200);
 }
 
-/* "if the device is elsewhere, address 1 at 19200 is asked whether somebody is there": it is not elsewhere by now. */
+/* Address 1 at 19200 is probed if the device is elsewhere: it is not elsewhere by now. */
 TEST(a_device_that_was_moved_to_address_1_is_reset_without_looking_there)
 {
     PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
@@ -139,7 +139,7 @@ TEST(a_device_is_sought_at_both_rates_when_the_port_breaks_while_the_new_one_is_
     hps_asks(1, 19200);
     hps_is_silent(SILENT);
     hps_asks(1, 57600);
-    hps_responses();
+    hps_answers();
 }
 
 /* #15. 01000008 hexadecimal = 16777224 = 18 * 932068. */

@@ -208,7 +208,7 @@ TEST(what_goes_to_all_units_is_sent_once_and_not_confirmed)
         PLAY(termination_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x13, is_on * 0xFF, OK, 0));
         assert_true(fathom_hps167s_is_written(&hps));
         hps_asks(1, 0); /* the driver is where it was */
-        hps_responses();
+        hps_answers();
         fake.submits = 0;
     }
 }

@@ -254,7 +254,7 @@ TEST(a_transaction_cancelled_before_it_is_sent_is_never_sent)
     expect_unit(0, 2);
 }
 
-TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_nobody_takes)
+TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_is_not_taken)
 {
     cancel(&bench.request);
     expect(FATHOM_ERR_CANCELLED);
@@ -267,7 +267,7 @@ TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_nobody_t
     response_other(1, 751);
 }
 
-TEST(a_transaction_cancelled_while_it_leaves_owes_no_longer_than_any_other)
+TEST(a_transaction_cancelled_while_it_leaves_quarantines_no_longer_than_any_other)
 {
     bench.fake.never_sent = true;
     ask_1(0);
@@ -278,7 +278,7 @@ TEST(a_transaction_cancelled_while_it_leaves_owes_no_longer_than_any_other)
     expect_sent(2 * TIMEOUT_US - 1000, 2000);
 }
 
-TEST(a_request_that_the_port_has_not_taken_owes_nothing_when_cancelled)
+TEST(a_request_that_the_port_has_not_taken_quarantines_none_when_cancelled)
 {
     bench.fake.write_busy = true;
     ask_1(0);
@@ -324,7 +324,7 @@ TEST(due_says_when_something_can_happen_without_new_bytes)
     expect(FATHOM_ERR_CHECKSUM);
     expect_due(FATHOM_NO_DEADLINE);
     ask_1(0);
-    expect_due(2 * TIMEOUT_US - GAP_US); /* owes */
+    expect_due(2 * TIMEOUT_US - GAP_US); /* quarantined */
     bench.fake.now_us += 2 * TIMEOUT_US;
     expect_due(0);
 }

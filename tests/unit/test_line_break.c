@@ -88,7 +88,7 @@ TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
     }
 }
 
-/* Unit 1 still owes; of its late response a part has come, right behind a byte of noise. */
+/* Unit 1 is still quarantined; of its late response a part has come, right behind a byte of noise. */
 TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
 {
     listen_for(500);

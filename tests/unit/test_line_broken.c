@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* line.h, FATHOM_ERR_PORT: "the port is broken; every queued transaction has ended with that. Go on polling and it works
- * again when the port does." */
+/* line.h, FATHOM_ERR_PORT: "the port is broken; every queued transaction has ended with that. Go on polling and it
+ * works again when the port does." */
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -20,7 +20,7 @@ static void break_and_repair(void)
     bench.fake.read_fails = false;
 }
 
-TEST(a_unit_whose_request_the_port_had_not_taken_owes_nothing)
+TEST(a_unit_whose_request_the_port_had_not_taken_is_not_quarantined)
 {
     bench.fake.write_busy = true;
     ask(&bench.request, 1, &bench.value, 0);
@@ -34,7 +34,7 @@ TEST(a_unit_whose_request_the_port_had_not_taken_owes_nothing)
 }
 
 /* It may have gone out. */
-TEST(a_unit_whose_request_was_leaving_owes_a_response)
+TEST(a_unit_whose_request_was_leaving_is_quarantined)
 {
     bench.fake.never_sent = true;
     ask(&bench.request, 1, &bench.value, 0);

@@ -73,7 +73,7 @@ TEST(one_on_its_way_to_another_is_answered)
     expect_due(FATHOM_NO_DEADLINE);
 }
 
-TEST(a_request_to_everybody_or_to_anybody_is_no_units_own)
+TEST(a_request_to_all_or_to_any_is_no_units_own)
 {
     static const uint8_t units[4] = {5, 6, 7, 8};
     ask_all(units);
@@ -89,6 +89,7 @@ TEST(a_unit_of_which_nothing_was_asked_changes_nothing)
     fathom_line_cancel_unit(&bench.line, 4);
     ask_all(units);
     fathom_line_cancel_unit(&bench.line, 4);
-    fathom_line_cancel_unit(&bench.line, 18); /* 2, but for a bit that the debts of units do not tell */
+    fathom_line_cancel_unit(&bench.line,
+                            18); /* 2, but for a bit that the quarantine of units does not tell */
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING);
 }

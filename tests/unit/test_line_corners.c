@@ -37,7 +37,7 @@ TEST(a_refused_set_address_leaves_the_response_of_a_read_under_way_alone)
 }
 
 /* line.h: "A late response does serve a retry of the same transaction." */
-TEST(a_late_response_serves_the_retry_of_a_request_to_anyone)
+TEST(a_late_response_serves_the_retry_of_a_request_to_unit_255)
 {
     bench.request.transaction.retries = 1;
     ask_dyp(&bench.request, 255, 1, values);
@@ -48,8 +48,9 @@ TEST(a_late_response_serves_the_retry_of_a_request_to_anyone)
     expect(FATHOM_READY);
 }
 
-/* line.h: FATHOM_LINE_ANY_UNIT: "the first response is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast address. */
-TEST(modbus_to_unit_255_takes_any_units_answer)
+/* line.h: FATHOM_LINE_ANY_UNIT: "the first response is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast
+ * address. */
+TEST(modbus_to_unit_255_takes_any_units_response)
 {
     ask(&bench.request, 255, &bench.value, 0);
     run_until_written(1, 100);
@@ -110,18 +111,19 @@ static void write_with_echo(void)
     come_all(0, set_address_5);
 }
 
-/* line.h: cancel: "the unit then owes a response, which no later transaction takes for its own". The echo is no response. */
-TEST(the_echo_of_a_cancelled_write_is_not_the_response_that_is_owed)
+/* line.h: cancel: the unit is then quarantined, and no later transaction takes its response. The echo is no
+ * response. */
+TEST(the_echo_of_a_cancelled_write_is_not_its_late_response)
 {
     write_with_echo();
     cancel(&bench.request);
     run(9 * BYTE_US);
     ask_to_write(&bench.other, 1);
-    expect_written_after(20000, 1); /* the unit still owes */
+    expect_written_after(20000, 1); /* the unit is still quarantined */
 }
 
-/* After the echo the next copy is the response that is owed. */
-TEST(the_response_after_the_echo_of_a_cancelled_write_lifts_the_debt)
+/* After the echo the next copy is the late response. */
+TEST(the_response_after_the_echo_of_a_cancelled_write_ends_the_quarantine)
 {
     write_with_echo();
     run(9 * BYTE_US);
@@ -175,9 +177,9 @@ TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
     expect(FATHOM_ERR_PORT);
 }
 
-/* two A05 response FF; the second one's response, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the response to
+/* two A05 answer FF; the second one's response, 10 ms later (A05 2(3)1: 65..75 ms), is taken for the response to
  * the next request. */
-TEST(the_second_response_to_anyone_is_not_the_next_requests)
+TEST(the_second_response_to_unit_255_is_not_the_next_requests)
 {
     ask_dyp(&bench.request, 255, 1, values);
     run_until_written(1, 100);

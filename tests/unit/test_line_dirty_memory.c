@@ -35,7 +35,8 @@ TEST(a_new_line_knows_of_nothing)
     }
 }
 
-/* 16 is the unit whose bit is the lowest; no unit owes, so each is due after the silence, before any poll too. */
+/* 16 is the unit whose bit is the lowest; no unit is quarantined, so each is due after the silence, before any poll
+ * too. */
 TEST(the_first_request_waits_for_one_silence_and_nothing_else)
 {
     static const uint8_t units[] = {1, 15, 16};
@@ -66,7 +67,7 @@ TEST(the_first_response_is_complete_with_its_last_byte_and_shows_that_there_is_n
 }
 
 /* "until twice the time-out has passed since the request": the second half of it after the time-out. */
-TEST(the_first_debt_ends_in_its_time)
+TEST(the_first_quarantine_ends_in_its_time)
 {
     for (unsigned i = 0; i != FILLS; i++) {
         set_up_on(fills[i]);

@@ -119,7 +119,7 @@ TEST(an_echo_that_begins_like_a_response_is_an_echo)
         }
 }
 
-/* line.h: "The echo of a request to all units belongs to nobody, and goes where such bytes go." */
+/* line.h: the echo of a request to all units is of no unit, and goes where such bytes go. */
 TEST(the_echo_of_a_request_to_all_units_shows_nothing)
 {
     static const uint8_t write_0[8] = {0x00, 0x06, 0x02, 0x00, 0x00, 0x05, 0x49, 0xA0};
@@ -133,7 +133,7 @@ TEST(the_echo_of_a_request_to_all_units_shows_nothing)
     expect_count(FATHOM_LINE_DROPPED_BYTES, 8);
 }
 
-/* A frame with a right CRC that nobody asked for, of the unit or of another, came before the response. */
+/* An unsolicited frame with a right CRC, of the unit or of another, came before the response. */
 TEST(a_response_behind_an_unasked_frame_shows_that_there_is_no_echo)
 {
     static const uint8_t of_1[] = {0x01, 0x03, 0x04, 0x02, 0xF2, 0x02, 0xF2, 0xDA, 0x9D};
@@ -237,7 +237,7 @@ TEST(a_response_that_anything_precedes_shows_nothing)
     }
 }
 
-TEST(another_units_answer_shows_nothing)
+TEST(another_units_response_shows_nothing)
 {
     set_up_with(FATHOM_LINE_ECHO_AUTO);
     send_1(0, 100);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 
-/* line.h, local echo, where something goes wrong besides. The request is a write whose response equals it (A16 6(5)). */
+/* line.h, local echo, where something goes wrong besides. The request is a write whose response equals it (A16
+ * 6(5)). */
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -44,8 +45,8 @@ TEST(another_response_behind_one_copy_is_malformed)
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_MALFORMED);
 }
 
-/* FATHOM_ERR_ECHO: "one copy of the request came, and the line does not know yet whether it echoes". Bytes that the port
- * marked before it do not tell. */
+/* FATHOM_ERR_ECHO: "one copy of the request came, and the line does not know yet whether it echoes". Bytes that the
+ * port marked before it do not tell. */
 TEST(one_copy_behind_marked_bytes_is_no_acknowledgement)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING};
@@ -68,8 +69,8 @@ TEST(one_copy_behind_an_overrun_is_no_acknowledgement)
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_ECHO);
 }
 
-/* The echo belongs to the transaction: fathom_listener_t takes "the bytes that belong to no transaction", and DROPPED_BYTES
- * counts what "belonged to no frame". */
+/* The echo belongs to the transaction: fathom_listener_t takes "the bytes that belong to no transaction", and
+ * DROPPED_BYTES counts what "belonged to no frame". */
 static unsigned heard;
 
 static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,

@@ -35,8 +35,8 @@ static const probe_t probes[] = {
      {0x55, 0xAA, 0x01, 0x01, 0x01},
      13,
      {0x55, 0xAA, 0x01, 0x01, 0x01, 0x55, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0xCD}},
-    /* Echo and response glued: the 12 bytes 55 AA 01 01 01 55 AA 01 01 03 E8 07 have the sum FF + 03 + FF + 02 + 03 + E8
-     * + 07 = 2F5, and F5 is the 13th, so that they look like one response. 62 - D0 + F5 = 87. */
+    /* Echo and response glued: the 12 bytes 55 AA 01 01 01 55 AA 01 01 03 E8 07 have the sum FF + 03 + FF + 02 + 03 +
+     * E8 + 07 = 2F5, and F5 is the 13th, so that they look like one response. 62 - D0 + F5 = 87. */
     {4,
      {1000, 2037, 1953, 3562},
      {0x55, 0xAA, 0x01, 0x01, 0x01},

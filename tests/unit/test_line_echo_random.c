@@ -2,7 +2,7 @@
 #include "echo_bench.h"
 
 /*
- * Random traffic with one unit, on lines with and without echo that nobody told of: reads and writes in both
+ * Random traffic with one unit, on lines with and without echo, which the driver is not told: reads and writes in both
  * protocols, with retries; echoes and responses with a wrong bit, responses that are late or missing. Whatever comes:
  *  - a write is READY only if the unit has answered it,
  *  - a read is READY only with the unit's value,
@@ -113,7 +113,7 @@ static void transaction(bool echoes, uint32_t step_us)
         ready[kind]++;
     }
     if (echoes) assert_int_not_equal(known_echo(), FATHOM_LINE_ECHO_OFF);
-    run_in_steps(4 * TIMEOUT_US, 1000); /* all debts are over */
+    run_in_steps(4 * TIMEOUT_US, 1000); /* all quarantines are over */
 }
 
 static const suite_t suite = {.set_up = set_up};

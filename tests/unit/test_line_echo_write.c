@@ -111,7 +111,7 @@ TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
     expect_after(30000, FATHOM_READY);
 }
 
-TEST(a_write_that_nothing_responses_is_no_response_whatever_is_known)
+TEST(a_write_that_nothing_answers_is_no_response_whatever_is_known)
 {
     for (size_t w = 0; w != COUNT_OF(writes); w++)
         for (size_t m = 0; m != COUNT_OF(modes); m++) {

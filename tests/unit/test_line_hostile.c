@@ -23,7 +23,7 @@ TEST_IN(asked, noise_that_looks_like_the_start_of_a_long_response_costs_one_gap_
     expect_mm(754);
 }
 
-TEST_IN(asked, another_units_answer_is_a_stray_and_the_wait_goes_on)
+TEST_IN(asked, another_units_response_is_a_stray_and_the_wait_goes_on)
 {
     receive_response(2, 222);
     run(1000);
@@ -66,7 +66,7 @@ TEST(a_damaged_response_counts_although_the_port_says_late_that_the_request_has_
     run(GAP_US + 400);
     expect_count(FATHOM_LINE_CHECKSUM_ERRORS, 1);
     expect_sent(2 * TIMEOUT_US - GAP_US - 1500,
-                2000); /* it might have been noise: owes for twice the time-out */
+                2000); /* it might have been noise: quarantined for twice the time-out */
 }
 
 TEST(a_response_that_breaks_off_is_a_checksum_error)
@@ -119,13 +119,13 @@ TEST(a_late_response_is_never_the_reading_of_the_next_request)
     }
 }
 
-TEST_IN(quarantined, a_unit_that_owes_a_response_is_asked_again_after_twice_the_time_out)
+TEST_IN(quarantined, a_quarantined_unit_is_asked_again_after_twice_the_time_out)
 {
     ask_other(1);
     expect_sent(TIMEOUT_US - 1000, 1500);
 }
 
-TEST_IN(quarantined, other_units_are_asked_while_one_owes)
+TEST_IN(quarantined, other_units_are_asked_while_one_is_quarantined)
 {
     ask_1(0);
     ask_other(2);
@@ -155,7 +155,7 @@ TEST(a_late_response_serves_the_retry_that_waits_for_it)
     expect_count(FATHOM_LINE_RESPONSES, 1);
 }
 
-TEST(a_damaged_response_owes_for_what_is_left_of_the_time_out)
+TEST(a_damaged_response_quarantines_for_what_is_left_of_the_time_out)
 {
     ask_1_and_send(1);
     receive_damaged();
@@ -165,7 +165,7 @@ TEST(a_damaged_response_owes_for_what_is_left_of_the_time_out)
 }
 
 /* What broke off may have been noise, and the response come late. */
-TEST(a_response_that_broke_off_owes_for_twice_the_time_out)
+TEST(a_response_that_broke_off_quarantines_for_twice_the_time_out)
 {
     ask_1_and_send(1);
     receive(response_1_754, 5);
@@ -204,7 +204,7 @@ TEST_IN(asked, a_port_that_cannot_be_read_ends_every_transaction_and_recovers)
     response_other(2, 222);
 }
 
-TEST_IN(asked, a_unit_that_was_asked_when_the_port_broke_still_owes)
+TEST_IN(asked, a_unit_that_was_asked_when_the_port_broke_is_still_quarantined)
 {
     break_port();
     ask_1(0);
@@ -268,7 +268,7 @@ TEST(what_comes_while_the_port_refuses_the_request_is_no_response)
     expect_failed(FATHOM_PENDING);
 }
 
-TEST(a_request_that_the_port_never_took_is_not_owed_when_it_breaks)
+TEST(a_request_that_the_port_never_took_quarantines_none_when_it_breaks)
 {
     ask_while(state, &bench.fake.write_busy, 50000);
     break_port();

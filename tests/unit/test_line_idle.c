@@ -34,7 +34,7 @@ TEST(it_is_busy_from_the_request_to_the_response)
     expect_idle(true);
 }
 
-TEST_IN(asked, a_unit_that_owes_a_response_does_not_keep_it_busy)
+TEST_IN(asked, a_quarantined_unit_does_not_keep_it_busy)
 {
     expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
     expect_idle(true);

@@ -31,8 +31,8 @@ static bool goes_out(void)
     return bench.fake.written != before;
 }
 
-/* "One deadline, the latest, serves all units that owe." 2 owes for 300 ms after its time-out, 3 for 10 ms. */
-TEST(a_short_debt_of_another_unit_does_not_end_a_long_one)
+/* One deadline, the latest, serves all units in quarantine: 2 for 300 ms after its time-out, 3 for 10 ms. */
+TEST(a_short_quarantine_of_another_unit_does_not_end_a_long_one)
 {
     ask_and_send(&bench.request, 2, &bench.value, 300000);
     run(300000);
@@ -47,8 +47,8 @@ TEST(a_short_debt_of_another_unit_does_not_end_a_long_one)
     assert_int_equal(bench.fake.written, 3);
 }
 
-/* 2 owes for 80 ms, and when 3 has been silent for 60 ms it owes for as long again. */
-TEST(a_long_debt_outlasts_a_short_one_that_was_there_before)
+/* 2 is quarantined for 80 ms, and when 3 has been silent for 60 ms it is so for as long again. */
+TEST(a_long_quarantine_outlasts_a_short_one_that_was_there_before)
 {
     ask_and_send(&bench.request, 2, &bench.value, 80000);
     run(80000);
@@ -57,15 +57,15 @@ TEST(a_long_debt_outlasts_a_short_one_that_was_there_before)
     run(60000);
     assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_RESPONSE);
     ask(&bench.other, 3, &bench.other_value, 0);
-    run(50000); /* by then what 2 owed is over */
+    run(50000); /* by then the quarantine of 2 is over */
     assert_int_equal(bench.fake.written, 2);
     run(20000);
     assert_int_equal(bench.fake.written, 3);
 }
 
-/* "LATE_RESPONSES: from a unit that owed one"; "STRAYS: whole frames" that were not asked for. Unit 9 has its bit in the
+/* LATE_RESPONSES: from a quarantined unit; STRAYS: whole frames that were not asked for. Unit 9 has its bit in the
  * upper byte. */
-TEST(a_frame_of_a_unit_that_owes_nothing_is_a_stray_and_leaves_the_debt_of_another)
+TEST(a_frame_of_a_unit_not_quarantined_is_a_stray_and_leaves_the_quarantine_of_another)
 {
     ask_and_send(&bench.request, 9, &bench.value, TIMEOUT_US);
     run(TIMEOUT_US);
@@ -78,8 +78,8 @@ TEST(a_frame_of_a_unit_that_owes_nothing_is_a_stray_and_leaves_the_debt_of_anoth
     assert_false(goes_out());
 }
 
-/* cancel: "the unit then owes a response". The first copy of the request is its echo, the second the response. */
-TEST(after_the_echo_of_a_cancelled_write_its_response_is_late_and_lifts_the_debt)
+/* cancel: the unit is then quarantined. The first copy of the request is its echo, the second the response. */
+TEST(after_the_echo_of_a_cancelled_write_its_response_is_late_and_ends_the_quarantine)
 {
     set_up_echo(FATHOM_LINE_ECHO_AUTO);
     start_write();
@@ -120,7 +120,8 @@ TEST(after_the_next_request_no_echo_of_a_cancelled_one_is_expected)
     assert_true(goes_out());
 }
 
-/* "A late response does serve a retry of the same transaction": then it is a response, and none of its bytes is left over. */
+/* "A late response does serve a retry of the same transaction": then it is a response, and none of its bytes is left
+ * over. */
 static unsigned heard;
 
 static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
@@ -135,7 +136,7 @@ static void serve_a_retry(fathom_listener_t *listener)
     heard = 0;
     ask_1_and_send(1);
     run(TIMEOUT_US);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING); /* the retry waits for the debt */
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING); /* the retry waits for the quarantine */
     assert_int_equal(bench.fake.written, 1);
     fathom_line_listen(&bench.line, listener);
     receive(response_1_754, sizeof response_1_754);

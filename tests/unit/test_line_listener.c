@@ -59,7 +59,7 @@ TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
 
 /* ---- the listener ---- */
 
-TEST(a_listener_gets_what_nobody_asked_for_with_the_gaps_that_were_seen)
+TEST(a_listener_gets_unsolicited_bytes_with_the_gaps_that_were_seen)
 {
     listen_for(5000);
     run(2000);
@@ -82,7 +82,7 @@ TEST(a_pause_between_polls_is_no_gap)
     poll_line();
     receive(auto_frame, 2);
     run_in_steps(20000, 20000);
-    receive(auto_frame + 2, 2); /* may have followed at once; nobody looked */
+    receive(auto_frame + 2, 2); /* may have followed at once; the line was not polled */
     run_in_steps(20000, 20000);
     assert_int_equal(bench_listener.length, 4);
     assert_int_equal(bench_listener.gaps, 0);

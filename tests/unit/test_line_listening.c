@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* A line that only listens, and one that is told nothing but what it cannot do without: no marks, no counters, no search
- * for an echo. */
+/* A line that only listens, and one that is told nothing but what it cannot do without: no marks, no counters, no
+ * search for an echo. */
 
 static void keep_only_what_is_needed(void)
 {
@@ -165,8 +165,8 @@ TEST_IN(bare, a_client_without_unit_0_does_not_read_it)
     expect_written(0);
 }
 
-/* A 55 AA frame of unit 1, which owes a response to Modbus: it is late, and not that answer, though it is one to a read of
- * the same register. */
+/* A 55 AA frame of unit 1, which is quarantined after a request in Modbus: it is late, and not that response, though
+ * it is one to a read of the same register. */
 TEST_IN(bare, a_late_frame_of_another_protocol_is_not_the_response)
 {
     ask_dyp(&bench.other, 1, 1, &bench.other_value);

@@ -81,7 +81,8 @@ TEST(what_is_sent_unasked_is_forgotten_after_65_ms_of_silence)
     expect_sent(T3_5_US - 200, 400);
 }
 
-/* A driver that lets go of an RS-485 pair leaves a byte or two there. Only what is sent between two responses adds up. */
+/* A driver that lets go of an RS-485 pair leaves a byte or two there. Only what is sent between two responses adds
+ * up. */
 TEST(a_glitch_behind_each_response_delays_nothing)
 {
     for (unsigned i = 0; i != 4; i++) {
@@ -130,7 +131,7 @@ TEST(eight_bytes_at_once_are_another_sender_as_four_are)
     expect_behind_the_next_frame(0);
 }
 
-/* It owes nothing that comes later in the silence: the next request leaves as on any line. */
+/* It is not quarantined for what comes later in the silence: the next request leaves as on any line. */
 TEST(what_is_left_of_a_damaged_response_is_no_other_sender)
 {
     ask_1(0);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* What line.h promises a protocol that is not from here: fathom_protocol_t. This one asks with one byte, '?'. A response is
- * its unit (1..15), a count and so many bytes; there is no checksum but that FF as the last byte is wrong. */
+/* What line.h promises a protocol that is not from here: fathom_protocol_t. This one asks with one byte, '?'. A
+ * response is its unit (1..15), a count and so many bytes; there is no checksum but that FF as the last byte is
+ * wrong. */
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -115,7 +116,8 @@ TEST(another_units_frame_is_not_shown_to_the_transaction)
     assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
 }
 
-/* "more than have: so many bytes are needed to tell": it is looked at again with each byte, and is over with the last. */
+/* "more than have: so many bytes are needed to tell": it is looked at again with each byte, and is over with the
+ * last. */
 TEST(a_response_that_comes_byte_by_byte_is_over_with_the_last)
 {
     static const uint8_t response[] = {1, 4, 0xF1, 0xF2, 0xF3, 0xF4};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* Transactions that wait: for their turn, for a retry, for what is owed; and how long that is. */
+/* Transactions that wait: for their turn, for a retry, for the end of a quarantine; and how long that is. */
 
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
@@ -14,10 +14,10 @@ TEST_IN(asked, one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wi
     expect_other(FATHOM_ERR_CANCELLED);
     expect(FATHOM_PENDING);
     response_1(754);
-    ask_other(2); /* it was never asked, so it owes nothing */
+    ask_other(2); /* it was never asked, so it is not quarantined */
     expect_written_after(REQUEST_US, 2);
     receive_response(2, 222);
-    ask_1(0); /* nor does the one that has answered */
+    ask_1(0); /* nor is the one that has answered */
     expect_written_after(T3_5_US + 400, 3);
 }
 
@@ -37,8 +37,8 @@ TEST(one_in_the_middle_of_the_queue_can_be_cancelled)
     assert_int_equal(third_value, 333);
 }
 
-/* From the unit that owes one, but three registers instead of one. */
-TEST(a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more)
+/* From the quarantined unit, but three registers instead of one. */
+TEST(a_late_frame_that_does_not_answer_the_retry_ends_the_quarantine_and_no_more)
 {
     ask_1_and_send(1);
     run(TIMEOUT_US + 200);
@@ -46,12 +46,12 @@ TEST(a_late_frame_that_does_not_answer_the_retry_clears_the_debt_and_no_more)
     expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_count(FATHOM_LINE_DROPPED_BYTES, sizeof response_1_three);
     expect_failed(FATHOM_PENDING);
-    expect_written_after(REQUEST_US, 2); /* it owes nothing any more */
+    expect_written_after(REQUEST_US, 2); /* it is quarantined no more */
     response_1(111);
 }
 
-/* The long debt of unit 2 was paid; what is left of its time is not unit 1's. */
-TEST(a_debt_lasts_no_longer_because_of_one_that_was_paid)
+/* The long quarantine of unit 2 has ended; what is left of its time is not unit 1's. */
+TEST(a_quarantine_lasts_no_longer_because_of_one_that_has_ended)
 {
     ask_other(2);
     bench.other.transaction.timeout_us = 10 * TIMEOUT_US;
@@ -87,7 +87,7 @@ TEST(after_a_long_silence_a_request_is_due_at_once)
     expect_due(1000); /* while it leaves */
 }
 
-TEST_IN(quarantined, what_only_waits_for_a_debt_is_due_when_that_is_forgotten)
+TEST_IN(quarantined, what_only_waits_for_a_quarantine_is_due_when_that_ends)
 {
     ask_1(0);
     const uint32_t due_us = due();

@@ -129,7 +129,7 @@ TEST(retries_do_not_help_against_settings_that_the_port_cannot_do)
     assert_int_equal(poll_line(), FATHOM_PENDING);
     expect(FATHOM_ERR_UNSUPPORTED);
     assert_int_equal(bench.fake.set_lines, 1);
-    ask_1_with(0, &n9600); /* nothing was sent, so nothing is owed */
+    ask_1_with(0, &n9600); /* nothing was sent, so no unit is quarantined */
     expect_written_after(1000, 1);
 }
 
@@ -165,7 +165,7 @@ TEST(a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free)
     expect_written_with(0, 1, &e19200);
 }
 
-TEST(a_transaction_that_waits_for_its_settings_can_be_cancelled_and_owes_nothing)
+TEST(a_transaction_that_waits_for_its_settings_can_be_cancelled_and_quarantines_none)
 {
     bench.fake.never_sent = true;
     ask_1_with(0, &e19200);

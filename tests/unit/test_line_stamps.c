@@ -210,7 +210,7 @@ TEST(the_time_that_a_read_takes_counts_against_the_time_out)
     }
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
     assert_in_range(bench.fake.now_us - left_us, TIMEOUT_US - 400, TIMEOUT_US + 2 * BYTE_US);
-    /* and against what the unit owes: another time-out from here */
+    /* and against the quarantine: another time-out from here */
     assert_in_range(bench.line.quarantine_left_us, TIMEOUT_US - 2 * BYTE_US, TIMEOUT_US);
     for (unsigned i = 0; i != TIMEOUT_US / (2 * BYTE_US) + 1; i++) {
         assert_true(bench.line.quarantined != 0);

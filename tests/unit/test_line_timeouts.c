@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* The longest time-out is 2^31 - 1 us, 35 minutes: twice that, which a unit may owe its response, fits the clock. */
+/* The longest time-out is 2^31 - 1 us, 35 minutes: twice that, the quarantine, fits the clock. */
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -15,7 +15,7 @@ static fathom_status_t ask_for(uint32_t timeout_us)
     return fathom_modbus_client_submit(&bench.line, &bench.request);
 }
 
-TEST(a_unit_owes_its_response_for_twice_the_longest_time_out)
+TEST(a_unit_is_quarantined_for_twice_the_longest_time_out)
 {
     assert_int_equal(ask_for(LONGEST_US), FATHOM_PENDING);
     run(T3_5_US + 200);

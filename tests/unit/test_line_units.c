@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* The two units with a meaning of their own: 255, whoever answers first, and 0, all are told. */
+/* The two units with a meaning of their own: 255, the one that answers first, and 0, all of them. */
 
 /* FF + FF + 10 = 20E. */
 
@@ -36,7 +36,7 @@ TEST(any_unit_may_answer_who_asked_them_all)
     }
 }
 
-TEST(what_is_damaged_is_nobodys_response)
+TEST(what_is_damaged_is_no_units_response)
 {
     ask_any();
     receive_first_probe(9, 0xA1, 5);
@@ -45,7 +45,7 @@ TEST(what_is_damaged_is_nobodys_response)
     assert_int_equal(bench.request.message.head[0], 255);
 }
 
-TEST(after_a_request_to_anyone_nobody_is_asked_until_twice_its_time_out)
+TEST(after_a_request_to_unit_255_none_is_asked_until_twice_its_time_out)
 {
     for (unsigned unit = 1; unit != 255; unit++) {
         set_up(state);
@@ -58,13 +58,13 @@ TEST(after_a_request_to_anyone_nobody_is_asked_until_twice_its_time_out)
     }
 }
 
-TEST_IN(quarantined, nobody_is_asked_for_anyone_while_somebody_owes)
+TEST_IN(quarantined, unit_255_is_not_asked_while_a_unit_is_quarantined)
 {
     ask_dyp(&bench.other, 255, 1, &bench.other_value);
     expect_sent(TIMEOUT_US - 1000, 1500);
 }
 
-TEST(a_late_response_to_a_request_to_anyone_is_no_other_requests)
+TEST(a_late_response_to_a_request_to_unit_255_is_no_other_requests)
 {
     ask_any();
     run(TIMEOUT_US + 200);
@@ -77,7 +77,7 @@ TEST(a_late_response_to_a_request_to_anyone_is_no_other_requests)
     expect_other(FATHOM_PENDING);
 }
 
-TEST(a_cancelled_request_to_anyone_is_owed_by_all)
+TEST(a_cancelled_request_to_unit_255_quarantines_all)
 {
     ask_any();
     cancel(&bench.request);
@@ -85,7 +85,7 @@ TEST(a_cancelled_request_to_anyone_is_owed_by_all)
     expect_sent(2 * TIMEOUT_US - 1000, 2000);
 }
 
-TEST(what_all_are_told_none_owes_a_response_to)
+TEST(a_request_to_all_quarantines_none)
 {
     ask_to_write(&bench.request, 0);
     run(REQUEST_US);
@@ -98,7 +98,7 @@ TEST(what_all_are_told_none_owes_a_response_to)
     assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES) + counter(FATHOM_LINE_RESPONSES), 0);
 }
 
-TEST(a_cancelled_broadcast_is_owed_by_none)
+TEST(a_cancelled_broadcast_quarantines_none)
 {
     ask_to_write(&bench.request, 0);
     run(REQUEST_US);

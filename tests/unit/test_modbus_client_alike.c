@@ -38,7 +38,8 @@ static void send(void)
 
 /*
  * Two registers from 0410 are asked for with 01 03 04 10 00 02, and 1000, 02FF are told with 01 03 04 10 00 02 FF. With
- * one other byte it is no echo. (The third byte of the response is its size and stays; so the request has the other one.)
+ * one other byte it is no echo. (The third byte of the response is its size and stays; so the request has the other
+ * one.)
  */
 typedef struct {
     uint16_t first;

@@ -231,7 +231,7 @@ TEST(a_response_to_any_unit_says_whose_it_is)
     }
 }
 
-/* Responses with a right CRC that response something else. */
+/* Responses with a right CRC that answer something else. */
 typedef struct {
     uint8_t function;
     fathom_status_t status;

@@ -2,8 +2,8 @@
 #include "desk.h"
 #include "fathom/engine/modbus_setting.h"
 
-/* A device with a setting in register 0x020F, as a driver sees it; the transport plays the device. The id of the write has
- * the last of the 16 doubts. */
+/* A device with a setting in register 0x020F, as a driver sees it; the transport plays the device. The id of the write
+ * has the last of the 16 doubts. */
 enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, REGISTER = 0x020F };
 
 static fathom_modbus_unit_t unit;
@@ -359,7 +359,7 @@ TEST(the_outcome_of_a_settings_own_request_is_kept_for_it)
     SETS(OK, HERE, IS(HERE, NEW));
 }
 
-TEST(a_setting_waits_for_no_command_of_somebody_else)
+TEST(a_setting_waits_for_no_command_of_another_driver)
 {
     PENDS(asks(&command));
     assert_int_equal(set(), FATHOM_ERR_BUSY);

@@ -6,7 +6,8 @@
 #include "fake_modbus.h"
 #include "fathom/engine/modbus_setting.h"
 
-/* modbus_setting.h, beside other requests to the same unit and after another setting. The value is in register 0x0206. */
+/* modbus_setting.h, beside other requests to the same unit and after another setting. The value is in register
+ * 0x0206. */
 enum { HERE = 1, THERE = 5, OLD = 1000, NEW = 2000, PACE_US = 100000 };
 
 static fake_modbus_t fake;
@@ -70,8 +71,8 @@ static void asks(uint8_t address, const fathom_line_settings_t *settings)
     assert_ptr_equal(fake.request->transaction.line_settings, settings);
 }
 
-/* modbus_unit.h, FATHOM_ERR_BUSY: "another command or setting is not finished". It would be asked at the new address, and
- * its outcome taken for the setting's. */
+/* modbus_unit.h, FATHOM_ERR_BUSY: "another command or setting is not finished". It would be asked at the new address,
+ * and its outcome taken for the setting's. */
 TEST(between_two_steps_of_a_setting_its_own_command_is_busy_for_others)
 {
     setting.address = THERE;

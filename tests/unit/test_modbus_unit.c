@@ -290,7 +290,7 @@ TEST(cancel_ends_a_request_under_way_once_and_keeps_the_pace)
     GO(ASKED_IN(PACE_US, measure, 2));
 }
 
-TEST(cancel_forgets_an_outcome_that_nobody_took)
+TEST(cancel_forgets_an_outcome_that_was_not_taken)
 {
     GO(ON_WIRE(version, 1), ANSWERED, P(10, measure, 1));
     fathom_modbus_unit_cancel(&unit);

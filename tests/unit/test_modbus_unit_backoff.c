@@ -125,7 +125,7 @@ CAP(the_longest_pause_is_half_the_clock, 300000000, 0x80000000u, PACE_US, 0, 0, 
 TEST(the_first_thing_that_it_says_ends_that)
 {
     static const fathom_status_t outcomes[] = {FATHOM_READY, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
-                                           FATHOM_ERR_MALFORMED};
+                                               FATHOM_ERR_MALFORMED};
     for (unsigned i = 0; i != COUNT(outcomes); i++)
         for (unsigned before = 1; before != 8; before++) {
             set_up(state);
@@ -191,7 +191,7 @@ TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
     assert_int_equal(fake.submits, before + 1);
 }
 
-TEST(a_command_that_nobody_answers_counts_too)
+TEST(a_command_that_no_unit_answers_counts_too)
 {
     silent_for(2);
     PENDS(read_after(0, &version));

@@ -529,7 +529,7 @@ TEST(a_frame_that_waits_when_the_deadline_passes_is_still_shown)
     expect_frame(2003000, mm_1953, 1998000);
 }
 
-/* The frame ended long ago, and nobody has polled since: it is shown before the deadline is told. */
+/* The frame ended long ago, and it was not polled since: it is shown before the deadline is told. */
 TEST(a_frame_whose_silence_has_passed_comes_before_the_deadline)
 {
     feed_frame(10);

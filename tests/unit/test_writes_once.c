@@ -6,8 +6,8 @@
 #include "fathom/sensor/a05_modbus.h"
 #include "fathom/sensor/a16_settings.h"
 
-/* config.modbus.retries is for reading alone: what is written goes out once, whatever becomes of it. Flash wears, and every
- * A05 on the line obeys 55 AA 03. */
+/* config.modbus.retries is for reading alone: what is written goes out once, whatever becomes of it. Flash wears, and
+ * every A05 on the line obeys 55 AA 03. */
 
 enum { RETRIES = 2, SECOND_US = 1000000 };
 
@@ -58,7 +58,7 @@ TEST(over_modbus_reads_are_repeated_and_writes_are_not)
             if (fake.request->message.head[0] == 1)
                 fake_modbus_response(&fake, one, 1);
             else
-                fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE); /* nobody at the new address */
+                fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE); /* no device at the new address */
         }
         assert_int_equal(retries[3], RETRIES);
         assert_int_equal(retries[6], 0);

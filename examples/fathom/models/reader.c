@@ -39,8 +39,9 @@ bool reader_got_unexpected_response(const reader_t *reader)
 
 uint8_t reader_refused_probe(const reader_t *reader)
 {
-    return reader->response != NULL && !reader_got_unexpected_response(reader) ? reader->response->refused_probe
-                                                                          : 0;
+    return reader->response != NULL && !reader_got_unexpected_response(reader)
+               ? reader->response->refused_probe
+               : 0;
 }
 
 bool reader_has_more(const reader_t *reader)

@@ -184,7 +184,7 @@ static void advise_on_nothing(const scan_t *scan)
             stderr);
     else if (heard->echoes != 0)
         (void)fputs("only the tool's own requests came back, so the adapter works and echoes, but no sensor "
-                    "responses behind it; check the wiring behind the adapter (A, B, ground) and the supply",
+                    "answers behind it; check the wiring behind the adapter (A, B, ground) and the supply",
                     stderr);
     else
         (void)fputs("nothing was heard at all; check the supply, and A and B (or RX and TX) swapped", stderr);

@@ -179,10 +179,11 @@ void scan_print_advice(FILE *to, const scan_finding_t *finding)
     char line[LINE_TEXT];
     (void)line_text(&finding->line, line);
     if (finding->kind == SCAN_DAMAGED)
-        (void)fprintf(to,
-                      "fathom: answers at address %u (%s) are damaged: two sensors with one address? Connect "
-                      "one at a time; if it is alone, check --parity, the cable and its termination\n",
-                      finding->address, line);
+        (void)fprintf(
+            to,
+            "fathom: responses at address %u (%s) are damaged: two sensors with one address? Connect "
+            "one at a time; if it is alone, check --parity, the cable and its termination\n",
+            finding->address, line);
     else if (finding->kind == SCAN_NOT_MODBUS)
         (void)fprintf(
             to,

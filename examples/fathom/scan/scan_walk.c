@@ -128,7 +128,7 @@ static void judge_damaged(const scan_walk_t *walk, const fathom_line_settings_t 
     }
 }
 
-/* One A05 that speaks 55 AA responses this whatever its address is. Several response at once, and damage each other. */
+/* One A05 that speaks 55 AA answers this whatever its address is. Several answer at once, and damage each other. */
 static fathom_status_t ask_any_a05(scan_walk_t *walk)
 {
     const scan_request_t request = {.line = &scan_dyp_line,

@@ -17,7 +17,7 @@ void sim_help(FILE *to)
         "\nThe first mode is the default, the address from the factory is 1. Up to 64 sensors hang on the "
         "one\n"
         "line, as on an RS485 pair; one of them at most may send by itself (mode auto). Two with the same\n"
-        "address response into each other, as real ones do.\n\n"
+        "address answer into each other, as real ones do.\n\n"
         "  --link PATH       makes a link to the port, for a name that stays; removed at the end. Replaces "
         "nothing\n"
         "                    but a link that a killed `fathom sim` has left behind\n"

@@ -18,9 +18,9 @@ typedef struct {
 
 static const trait_t traits[DEVICE_TRAITS] = {
     [DEVICE_EXCEPTIONS] = {"exceptions", NULL, 0, "refuses by exception instead of silence"},
-    [DEVICE_RESPONSES_BROADCAST] = {"broadcast", NULL, 0, "responses what goes to address FF"},
+    [DEVICE_ANSWERS_BROADCAST] = {"broadcast", NULL, 0, "answers what goes to address FF"},
     [DEVICE_REAL_TIME] = {"real-time", NULL, 0, "sends real-time values by itself"},
-    [DEVICE_RESPONSES_FROM_NEW] = {"new-address", NULL, 0, "responses from the new address when it is set"},
+    [DEVICE_ANSWERS_FROM_NEW] = {"new-address", NULL, 0, "answers from the new address when it is set"},
     [DEVICE_WARM_UP] = {"warm-up", "S", 255, "measures nothing for so long after power-on"},
     [DEVICE_WARM_UP_REFUSES] = {"warm-up-04", NULL, 0, "says exception 04 meanwhile; else silence"},
     [DEVICE_WARM_UP_ABNORMAL] = {"warm-up-ff", NULL, 0, "sends the abnormal packet meanwhile"},

@@ -160,7 +160,7 @@ static void print_no_response(FILE *to, const failure_t *failure)
         print_tcp(to, failure);
     } else if (is_only_echo(evidence)) {
         (void)fputs("only the tool's own request came back, so the adapter works and echoes, but no sensor "
-                    "responses behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
+                    "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
                     "supply, and --address",
                     to);
     } else if (evidence->own != 0) {
@@ -171,11 +171,11 @@ static void print_no_response(FILE *to, const failure_t *failure)
         (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->reader->protocol);
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
-    } else if (failure->others_response) {
+    } else if (failure->others_answer) {
         char settings[LINE_TEXT];
         (void)fprintf(
             to,
-            "nothing was heard of it, while others on this line response; check its supply, its wires, "
+            "nothing was heard of it, while others on this line answer; check its supply, its wires, "
             "its address and its settings (asked at %s)",
             line_text(failure->line, settings));
     } else {

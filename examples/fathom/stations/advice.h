@@ -18,9 +18,9 @@ typedef struct {
     const char *shared;                 /* its name on a line with others; NULL: it is alone */
     evidence_t evidence;                /* of this attempt */
     uint8_t address;
-    bool others_response; /* on this line */
-    bool waits;           /* for a lost port, which is opened again */
-    bool is_whole;        /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
+    bool others_answer; /* on this line */
+    bool waits;         /* for a lost port, which is opened again */
+    bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
 } failure_t;
 
 /* What happened and what to try, without a line feed: the cause as far as the evidence tells it. */

@@ -226,7 +226,8 @@ static void print_json_unit(const station_t *station, FILE *to)
     (void)fprintf(to,
                   ",\"responses\":%" PRIu64 ",\"failures\":%" PRIu64
                   ",\"timeouts_in_row\":%u,\"backoff_left_us\":%" PRIu32,
-                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], timeouts_in_row(station), backoff_left_us(station));
+                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], timeouts_in_row(station),
+                  backoff_left_us(station));
     print_json_time(&station->counters, to);
     (void)fputs("}", to);
 }

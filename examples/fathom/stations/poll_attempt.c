@@ -46,7 +46,7 @@ void poll_take_late(poll_loop_t *loop)
 }
 
 /* Has another sensor of this line answered? */
-static bool others_response(const poll_loop_t *loop, const station_t *station)
+static bool others_answer(const poll_loop_t *loop, const station_t *station)
 {
     const sensor_options_t *const options = &loop->options;
     for (size_t i = 0; i != options->station_count; i++)
@@ -93,7 +93,7 @@ static void report_failure(poll_loop_t *loop, station_t *station, fathom_status_
         .line = &station->line,
         .shared = poll_is_shared(loop) ? station->name : NULL,
         .address = station->address,
-        .others_response = others_response(loop, station),
+        .others_answer = others_answer(loop, station),
         .waits = loop->options.reconnect && has_more_to_do(loop, station),
         .is_whole = is_first && !reader_has_more(&station->reader) && has_probes(loop, station),
     };

@@ -32,7 +32,7 @@ typedef struct {
     char message[MESSAGE]; /* the last failure, or what has happened to the port */
     uint64_t message_end_us;
     fathom_status_t reported[MAX_STATIONS]; /* for lines: what was printed of each sensor's last failure */
-    bool draws;                         /* pictures, else lines */
+    bool draws;                             /* pictures, else lines */
     bool wants_all;   /* of the next picture, because something else may have written to the terminal */
     int output_error; /* errno */
 } watch_t;

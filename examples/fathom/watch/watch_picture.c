@@ -142,7 +142,7 @@ static void draw_legend(picture_t *picture, const lanes_t *lanes, uint16_t row)
     }
 }
 
-/* How many lanes have no height_of_all, at the right end of the title. */
+/* How many lanes have no space, at the right end of the title. */
 static void draw_hidden(picture_t *picture, size_t count)
 {
     char text[32];

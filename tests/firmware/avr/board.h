@@ -33,9 +33,9 @@
  *
  * Where simavr 1.6 is not the chip it is mended here: usart.h is in the place of its USART; the 4 cycles of interrupt
  * entry, which it leaves out (ATmega328P 7.7.1), are added; of several interrupts that wait none is lost; writing a one
- * to a flag of Timer1 clears that flag alone; a flag that stands interrupts when it is enabled; sei holds interrupts back
- * for one instruction, not two. Left as they are: 4 more cycles out of sleep; external inputs without their synchroniser
- * (2 cycles) and the noise canceller.
+ * to a flag of Timer1 clears that flag alone; a flag that stands interrupts when it is enabled; sei holds interrupts
+ * back for one instruction, not two. Left as they are: 4 more cycles out of sleep; external inputs without their
+ * synchroniser (2 cycles) and the noise canceller.
  */
 enum { BOARD_HZ = 16000000, BOARD_CYCLES_PER_US = 16, BOARD_ENTRY_CYCLES = 4 };
 enum { BOARD_RECORD = 32, BOARD_RECORDS = 64, BOARD_BYTES = 4096, BOARD_EDGES = 512, BOARD_LINE = 80 };

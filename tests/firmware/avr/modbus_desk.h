@@ -42,7 +42,7 @@ void desk_run(uint32_t reports);
 
 /*
  * All that is on the wire, of which the log has everything: each request begins at least t3.5 after whatever was
- * before it, its bytes are back to back, and the driver is on around it and off before anybody else may talk.
+ * before it, its bytes are back to back, and the driver is on around it and off before another may send.
  * Returns how many requests there were; silence_cycles: the shortest that was kept before one.
  */
 uint32_t desk_assert_wire(uint64_t *silence_cycles);

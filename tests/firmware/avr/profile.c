@@ -68,7 +68,7 @@ static void charge_main(uint32_t cycles, uint16_t pointer)
         if (pointer <= function->stack_pointer) continue; /* it has not returned */
         function->running = false;
         add_call(&function->cost, function->cycles,
-              (uint16_t)(function->stack_pointer + RETURN_ADDRESS - function->deepest));
+                 (uint16_t)(function->stack_pointer + RETURN_ADDRESS - function->deepest));
     }
 }
 
@@ -93,7 +93,7 @@ static void after(void)
     if (left == 1 && profile.depth != 0) {
         const profile_frame_t *const frame = &profile.nested[--profile.depth];
         add_call(&profile.interrupts[frame->vector], frame->cycles,
-              (uint16_t)(frame->stack_pointer + RETURN_ADDRESS - frame->deepest));
+                 (uint16_t)(frame->stack_pointer + RETURN_ADDRESS - frame->deepest));
     }
     if (!profile.entered) return;
     if (profile.depth == PROFILE_NESTED || profile.vector >= PROFILE_VECTORS)

@@ -24,7 +24,8 @@ uint32_t remote_now_us(void);
 void remote_idle(uint32_t max_us);
 
 /* Begins or ends to read the clock over and over, each time after `masked` * 1024 cycles with interrupts off (0: they
- * stay on). A REMOTE_MARK record comes just before each reading, and a REMOTE_CLOCK record with its 4 bytes after it. */
+ * stay on). A REMOTE_MARK record comes just before each reading, and a REMOTE_CLOCK record with its 4 bytes after
+ * it. */
 void remote_watch_clock(bool on, uint8_t masked);
 
 /* Begins a call and does not wait for its end. REMOTE_READ and REMOTE_PIN make a REMOTE_MARK record just before they

@@ -145,7 +145,7 @@ TEST(receive_complete_interrupts_as_long_as_a_byte_waits)
 }
 
 /* A16 1: S[cm] = T[us] / 57.5, so 1739 mm are 9999 us. The loop of the image sees an edge within 40 cycles. */
-TEST(a_device_on_the_pins_responses_the_trigger_with_its_pulse)
+TEST(a_device_on_the_pins_answers_the_trigger_with_its_pulse)
 {
     fathom_sim_a16_t a16;
     fathom_sim_line_t line;

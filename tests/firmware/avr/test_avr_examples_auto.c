@@ -15,7 +15,7 @@ static fathom_sim_a05_t a05;
 static fathom_sim_fixed_t a16_scene, a05_scene;
 static unsigned turns;
 
-/* What the line has brought while nobody listened is gone. */
+/* What the line has brought while no driver listened is gone. */
 static void forget(fathom_sim_line_t *line)
 {
     uint8_t bytes[16];

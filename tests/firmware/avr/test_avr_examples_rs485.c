@@ -153,7 +153,7 @@ TEST(a_single_damaged_response_is_no_error)
 {
     assert_true(board_run_us(6000000));
     for (int i = 0; i < 10; i++) {
-        /* A byte that nobody sent, somewhere in the cycle. */
+        /* A byte of noise, somewhere in the cycle. */
         usart_arrive(&board.usart, 0x55, FATHOM_RX_PARITY);
         changed_cycle = 0;
         assert_true(board_run_us(101000));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* HPS-167S over RS-485 when things go wrong: no reading is wrong, everything is told and counted, and the next transaction
- * is as before. */
+/* HPS-167S over RS-485 when things go wrong: no reading is wrong, everything is told and counted, and the next
+ * transaction is as before. */
 #include "suite.h"
 
 #include "fathom/status.h"
@@ -103,7 +103,7 @@ TEST(damage_of_every_kind_never_makes_a_reading)
     assert_true(desk.samples[1] > 150);
 }
 
-/* Somebody else talks for 100 bytes while the main loop is away for 60 ms: the ring is full after 63. */
+/* Another device sends 100 bytes while the main loop is away for 60 ms: the ring is full after 63. */
 TEST(a_full_ring_is_counted_and_the_next_transaction_is_as_before)
 {
     static uint8_t babble[100];

@@ -138,7 +138,8 @@ static pulse_report_t pulse(uint64_t at_cycle, uint64_t width_cycles)
     return report;
 }
 
-/* A glitch that may be report or not, beginning then: pulse() passes over pulses that are report with less than GLITCH_US. */
+/* A glitch that may be reported or not, beginning then: pulse() passes over pulses that are reported with less than
+ * GLITCH_US. */
 static void glitch(uint64_t at_cycle, uint64_t width_cycles)
 {
     for (int high = 1; high >= 0; high--) {
@@ -149,7 +150,7 @@ static void glitch(uint64_t at_cycle, uint64_t width_cycles)
     rig.passed_over_us = GLITCH_US;
 }
 
-/* The error of a width, in cycles: report less true. */
+/* The error of a width, in cycles: reported less true. */
 static int64_t error_of(uint32_t told_us)
 {
     return (int64_t)told_us * BOARD_CYCLES_PER_US - (int64_t)(rig.fall_cycle - rig.rise_cycle);
@@ -232,8 +233,8 @@ TEST(a_pulse_of_1_to_94_ms_is_measured_by_input_capture_within_1_us_while_bytes_
     assert_true(errors.pulses - errors.masked > 20);
 }
 
-/* The rise, then the fall of pulses at each cycle around the overflow, or at each so many (odd, for the ticks of 8): from well before it, so that
- * it comes while the interrupts of the edge wait or run, to behind it. */
+/* The rise, then the fall of pulses at each cycle around the overflow, or at each so many (odd, for the ticks of 8):
+ * from well before it, so that it comes while the interrupts of the edge wait or run, to behind it. */
 static void sweep_overflow(errors_t *errors, int step, bool rising)
 {
     enum { BEFORE_CYCLES = 300, AFTER_CYCLES = 100, WIDTH_CYCLES = 5 * MS, NEAR_CYCLES = 24 };

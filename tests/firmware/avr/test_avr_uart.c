@@ -5,7 +5,8 @@
 #include "remote.h"
 
 /* The driver-enable pin falls in an interrupt, which has to be over within a bit of 115200 baud, 138 cycles, whatever
- * else the processor does; the next talker waits for 28 of them. A receive interrupt before it has its 60, and its entry. */
+ * else the processor does; the next talker waits for 28 of them. A receive interrupt before it has its 60, and its
+ * entry. */
 enum { MOST_AFTER_STOP_BIT = 80, MOST_OF_RECEIVE = 64 };
 
 static const fathom_line_settings_t at_19200 = {19200, FATHOM_PARITY_EVEN, 1};
@@ -143,8 +144,8 @@ TEST(the_driver_stays_on_through_a_pause_that_other_interrupts_make)
 
 static bool first_has_begun(void *ctx) { return board.bytes_seen != 0; }
 
-/* The interrupt that gives the second byte is late by a character, so that the first one ends at any cycle of it: before
- * the byte is given transmit complete comes of that, and means nothing. */
+/* The interrupt that gives the second byte is late by a character, so that the first one ends at any cycle of it:
+ * before the byte is given transmit complete comes of that, and means nothing. */
 TEST(a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_on)
 {
     int pauses = 0;

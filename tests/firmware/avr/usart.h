@@ -45,7 +45,7 @@ typedef struct {
     usart_frame_t frames[USART_BUFFER];
     uint8_t waiting;
     bool lost;         /* before the next frame */
-    uint32_t overruns; /* frames lost because nobody read */
+    uint32_t overruns; /* frames lost because none was read in time */
 } usart_t;
 
 /* After avr_init. false: this simavr has no such USART. */

@@ -2,7 +2,7 @@
 """What the tests with QEMU share: an image is booted with programs, or the test itself, at the far ends of its UARTs,
 and ends by itself with an exit status. What it says by semihosting is the program's stdout, traces are its stderr.
 
-QEMU has no bits on its wires, and its time is the time of this machine: on a busy one the far ends response late. So
+QEMU has no bits on its wires, and its time is the time of this machine: on a busy one the far ends answer late. So
 nothing here is judged by how long it takes, and an attempt may fail for that; what must not be is a wrong reading."""
 import os
 import re

@@ -57,10 +57,10 @@ class Hps167s {
     const transaction = {start: frame[0].start, end: character.end, answered: null, characters: frame};
     this.transactions.push(transaction);
     const {after, errors} = this.responses.length > 1 ? this.responses.shift() : this.responses[0];
-    if (after !== undefined) this.machine.after(after, () => this.response(transaction, errors || {}));
+    if (after !== undefined) this.machine.after(after, () => this.answer(transaction, errors || {}));
   }
 
-  response(transaction, errors) {
+  answer(transaction, errors) {
     RESPONSE.forEach((value, i) => this.machine.after((i + 1) * CHARACTER_NS / US, () => {
       this.uart.receive(value, errors[i]);
       if (i === RESPONSE.length - 1) transaction.answered = this.machine.clock.nanos;

@@ -11,7 +11,7 @@ function test(name, body) {
   if (tests.push({name, body}) === 1) setImmediate(run);
 }
 
-// A measured value that somebody may want to keep.
+// A measured value that may be worth keeping.
 function figure(name, value, unit) {
   console.log(`figure ${name} ${value} ${unit}`);
 }

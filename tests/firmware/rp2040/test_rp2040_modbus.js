@@ -83,7 +83,7 @@ test('the line is 19200 8E1: divider, format and pins', () => {
 });
 
 test('no response and a late one are errors, and no reading is made of them', () => {
-  // The time-out of a measurement is 500 ms; the unit is owed its late response and asked nothing until it has come.
+  // The time-out of a measurement is 500 ms; the unit is quarantined until its late response has come.
   const bench = start(EXAMPLE, [MEASURING, NEVER, {after: 620000}, MEASURING]);
   const said = lines(bench, 4, 6000);
   assert.deepStrictEqual(said, [READING, NO_RESPONSE, NO_RESPONSE, READING]);

@@ -35,7 +35,7 @@ function assertReadings({readings}, least, most) {
   assert.ok(readings >= least && readings <= most, `${readings} readings, not ${least} to ${most}`);
 }
 
-// From now on: the lamp changes every 250 ms, as if nobody else were there.
+// From now on: the lamp changes every 250 ms, as if it were alone.
 function assertBlinks({lamp}, ms) {
   const changes = lamp.filter(({at}, i) => i > 0 && lamp[i - 1].high !== lamp[i].high);
   assert.ok(changes.length >= Math.floor(ms / 250) - 1, `${changes.length} changes`);

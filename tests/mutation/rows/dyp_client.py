@@ -4,7 +4,7 @@ ROWS = (
      ('src/engine/line_request.c', 'fathom_line_deliver',
       'x->attempts == 0 || !is_of(x, unit) ||',
       'x->attempts == 0 ||')),
-    ('echo-is-an-response', 'dyp_client.h: the echo of a read of all probes, with a response behind it, is none',
+    ('echo-is-a-response', 'dyp_client.h: the echo of a read of all probes, with a response behind it, is none',
      'unit/test_line_echo_more',
      ('src/engine/dyp_client.c', 'check',
       'fathom_dyp_55aa_valid(frame, NEXT)', 'frame[NEXT] != frame[0]')),

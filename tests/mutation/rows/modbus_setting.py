@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 ROWS = (
-    ('broken-port-is-nobody', 'modbus_setting.h: any other error: nothing was written',
+    ('broken-port-is-silence', 'modbus_setting.h: any other error: nothing was written',
      'unit/test_modbus_setting',
      ('src/engine/modbus_setting.c', 'new_was_probed',
       'if (status == FATHOM_ERR_NO_RESPONSE) return FATHOM_PENDING;',

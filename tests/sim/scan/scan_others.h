@@ -23,7 +23,8 @@ void begin_stranger(uint8_t unit, const fathom_line_settings_t *line);
 fathom_sim_device_t *begin_speaker(const fathom_line_settings_t *line, uint32_t period_us,
                                    const uint8_t *bytes, uint8_t length);
 
-/* HPS-167S #5, the example's response; A16 6, the first example: it asks address 1 for 0100; and what is no protocol. */
+/* HPS-167S #5, the example's response; A16 6, the first example: it asks address 1 for 0100; and what is no
+ * protocol. */
 extern const uint8_t hps_response[13];
 extern const uint8_t a16_request[8];
 extern const uint8_t junk[6];

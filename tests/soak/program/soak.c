@@ -169,7 +169,7 @@ static uint32_t soak_all(void)
         rows += share->rows;
     }
     print_row(stdout, "all", "all", &sum);
-    (void)printf("\nold values that nobody can tell from new ones (%d causes):\n", THEORY_ALIKE);
+    (void)printf("\nold values that cannot be told from new ones (%d causes):\n", THEORY_ALIKE);
     for (uint8_t i = 0; i < THEORY_ALIKE; i++) (void)printf("  %s\n", theory_alike[i].why);
     (void)printf("\n%" PRIu64 " transactions, %" PRIu64 " readings, %" PRIu64
                  " wrong (at most %.1f expected), %" PRIu64 " stuck, %" PRIu64 " s; %" PRIu32

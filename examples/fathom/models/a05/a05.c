@@ -55,8 +55,8 @@ static void simulate(device_t *device, const device_settings_t *settings, uint8_
                                             .unit_zero = settings->address == 0,
                                             .mode = mode,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
-                                            .answers_broadcast = traits[DEVICE_RESPONSES_BROADCAST] != 0,
-                                            .answers_from_new = traits[DEVICE_RESPONSES_FROM_NEW] != 0,
+                                            .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
+                                            .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
                                             .real_time = traits[DEVICE_REAL_TIME] != 0,
                                             .seed = settings->seed,
                                             .scene = settings->scene};
@@ -96,8 +96,8 @@ const model_t model_a05 = {
     .max_mm = FATHOM_A05_MAX_MM,
     .near_mm = 250,
     .far_mm = 4500,
-    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_RESPONSES_BROADCAST | 1u << DEVICE_REAL_TIME |
-              1u << DEVICE_RESPONSES_FROM_NEW,
+    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |
+              1u << DEVICE_ANSWERS_FROM_NEW,
     /* Probe 1. */
     .scan = {.first = DYP_ADDRESS, .count = 1, .frame_length = FATHOM_DYP_A05_LENGTH, .own = 0x0106},
     .print_finding = dyp_print_finding,

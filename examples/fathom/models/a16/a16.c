@@ -63,8 +63,8 @@ static void simulate(device_t *device, const device_settings_t *settings, uint8_
                                             .unit_zero = settings->address == 0,
                                             .mode = mode,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
-                                            .answers_broadcast = traits[DEVICE_RESPONSES_BROADCAST] != 0,
-                                            .answers_from_new = traits[DEVICE_RESPONSES_FROM_NEW] != 0,
+                                            .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
+                                            .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
                                             .real_time = traits[DEVICE_REAL_TIME] != 0,
                                             .seed = settings->seed,
                                             .scene = settings->scene};
@@ -105,8 +105,8 @@ const model_t model_a16 = {
     .max_mm = FATHOM_A16_MAX_MM,
     .near_mm = 500,
     .far_mm = 5000,
-    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_RESPONSES_BROADCAST | 1u << DEVICE_REAL_TIME |
-              1u << DEVICE_RESPONSES_FROM_NEW,
+    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |
+              1u << DEVICE_ANSWERS_FROM_NEW,
     /* The last measurement (0x0101), and where that is not there the processed distance (0x0100). */
     .scan = {.first = DYP_ADDRESS,
              .count = 1,

@@ -75,7 +75,7 @@ static void simulate_modbus(device_t *device, const device_settings_t *settings)
         .offset_adds = traits[DEVICE_OFFSET_ADDS] != 0,
         .reconnect_ms = traits[DEVICE_RECONNECT],
         .no_baud_code = traits[DEVICE_NO_BAUD_CODE] != 0,
-        .answers_from_new = traits[DEVICE_RESPONSES_FROM_NEW] != 0,
+        .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
         .unasked_us = traits[DEVICE_UNASKED],
         .seed = settings->seed,
         .scene = settings->scene};
@@ -115,7 +115,7 @@ const model_t model_hps167s = {
     .has_optics = true,
     .near_mm = 500,
     .far_mm = 12000,
-    .traits = 1u << DEVICE_RESPONSES_FROM_NEW | 1u << DEVICE_WARM_UP | 1u << DEVICE_WARM_UP_REFUSES |
+    .traits = 1u << DEVICE_ANSWERS_FROM_NEW | 1u << DEVICE_WARM_UP | 1u << DEVICE_WARM_UP_REFUSES |
               1u << DEVICE_WARM_UP_ABNORMAL | 1u << DEVICE_UNASKED | 1u << DEVICE_NO_OUTPUT |
               1u << DEVICE_NO_TERMINATION | 1u << DEVICE_BAUD_LATER | 1u << DEVICE_OFFSET_ADDS |
               1u << DEVICE_RECONNECT | 1u << DEVICE_NO_BAUD_CODE | 1u << DEVICE_COUNT_EXCEPTION,

@@ -27,8 +27,10 @@ static bool ask_configuration(inquiry_t *inquiry)
     uint16_t measured[FOUR];
     if (!ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, configuration) ||
         !ask_four(inquiry, FATHOM_HPS167S_MEASUREMENT, measured) ||
-        !ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, again) || memcmp(configuration, again, sizeof configuration) != 0 ||
-        memcmp(configuration, measured, sizeof configuration) == 0 || !fathom_hps167s_may_be_configuration(configuration))
+        !ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, again) ||
+        memcmp(configuration, again, sizeof configuration) != 0 ||
+        memcmp(configuration, measured, sizeof configuration) == 0 ||
+        !fathom_hps167s_may_be_configuration(configuration))
         return false;
     fathom_hps167s_configuration_t is;
     fathom_hps167s_decode_configuration(configuration, false, &is);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What the bench itself is tested with (../test_avr_bench.c): instructions whose cycles the instruction set manual has. */
+/* What the bench itself is tested with (../test_avr_bench.c): instructions whose cycles the instruction set manual
+ * has. */
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -66,7 +67,7 @@ int main(void)
     while ((UCSR0A & _BV(TXC0)) == 0) continue;
     GPIOR1 = 't';
 
-    GPIOR1 = '3'; /* bytes come here that nobody reads */
+    GPIOR1 = '3'; /* bytes come here that are not read */
     while ((PIND & _BV(PIND4)) == 0) continue;
     while ((UCSR0A & _BV(RXC0)) != 0) {
         GPIOR0 = UCSR0A;

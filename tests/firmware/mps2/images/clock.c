@@ -15,8 +15,8 @@ static uint32_t ticks_in_100_ms(void) { return counted_in_us(&systick, &fathom_m
 
 static uint32_t slept(uint32_t max_us)
 {
-    fathom_mps2_idle_t nobody = {0, 0};
-    return slept_us(&fathom_mps2_clock, fathom_mps2_idle, &nobody, max_us);
+    fathom_mps2_idle_t no_wake = {0, 0};
+    return slept_us(&fathom_mps2_clock, fathom_mps2_idle, &no_wake, max_us);
 }
 
 int main(void)

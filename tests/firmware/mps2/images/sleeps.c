@@ -8,7 +8,7 @@ void timer0_interrupt(void) { fathom_mps2_timer0_interrupt(); }
 
 int main(void)
 {
-    fathom_mps2_idle_t nobody = {0, 0};
+    fathom_mps2_idle_t no_wake = {0, 0};
     fathom_mps2_clock_begin();
-    return check_short_sleeps(fathom_mps2_idle, &nobody);
+    return check_short_sleeps(fathom_mps2_idle, &no_wake);
 }

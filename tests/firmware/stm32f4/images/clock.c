@@ -17,8 +17,8 @@ static uint32_t ticks_in_50_ms(void) { return counted_in_us(&systick, &fathom_st
 
 static uint32_t slept(uint32_t max_us)
 {
-    fathom_stm32f4_idle_t nobody = {0, 0};
-    return slept_us(&fathom_stm32f4_clock, fathom_stm32f4_idle, &nobody, max_us);
+    fathom_stm32f4_idle_t no_wake = {0, 0};
+    return slept_us(&fathom_stm32f4_clock, fathom_stm32f4_idle, &no_wake, max_us);
 }
 
 int main(void)
