@@ -89,7 +89,6 @@ TEST(a_unit_of_which_nothing_was_asked_changes_nothing)
     fathom_line_cancel_unit(&bench.line, 4);
     ask_all(units);
     fathom_line_cancel_unit(&bench.line, 4);
-    fathom_line_cancel_unit(&bench.line,
-                            18); /* 2, but for a bit that the quarantine of units does not tell */
+    fathom_line_cancel_unit(&bench.line, 18); /* 2, but for a bit that quarantine does not tell */
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING);
 }
