@@ -155,7 +155,7 @@ void expect_hex(size_t which, const char *hex);
 /* ---- a listener ---- */
 
 typedef struct {
-    fathom_listener_t listener;
+    fathom_listener_t base;
     uint8_t bytes[256];
     size_t length;
     unsigned calls;
