@@ -175,14 +175,14 @@ static int simulated(bus_t *bus)
     fathom_sim_uart_t end;
     fathom_sim_clock_init(&time, 0, 0);
     fathom_sim_line_init(&wire, &ultrasonic, time.now_us);
-    fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.unit = 1,
+    fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.address = 1,
                                                          .mode = FATHOM_SIM_A16_MODBUS,
                                                          .scene = fathom_sim_fixed(&tank)});
-    fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.unit = 2,
+    fathom_sim_a05_init(&a05, &(fathom_sim_a05_config_t){.address = 2,
                                                          .mode = FATHOM_SIM_A05_MODBUS,
                                                          .scene = fathom_sim_fixed(&bumper)});
     fathom_sim_hps167s_init(&hps,
-                            &(fathom_sim_hps167s_config_t){.unit = 7, .scene = fathom_sim_fixed(&gate)});
+                            &(fathom_sim_hps167s_config_t){.address = 7, .scene = fathom_sim_fixed(&gate)});
     fathom_sim_attach(&wire, &a16.device, time.now_us);
     fathom_sim_attach(&wire, &a05.device, time.now_us);
     fathom_sim_attach(&wire, &hps.device, time.now_us);

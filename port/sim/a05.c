@@ -25,7 +25,7 @@ static uint32_t refuse(fathom_sim_a05_t *a05, fathom_modbus_message_t *message, 
 
 static void set_address(fathom_sim_device_t *device, uint16_t address)
 {
-    device->unit = (uint8_t)address;
+    device->address = (uint8_t)address;
     device->counters.writes++;
     device->counters.flash_writes++;
 }
@@ -80,7 +80,7 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
 {
     uint8_t probe = probe_at(fathom_sim_get16(message->head + 2));
     if (probe == 0) {
-        message->values[0] = device->unit;
+        message->values[0] = device->address;
         return;
     }
     for (uint8_t i = 0; i < message->head[5]; i++, probe++)
@@ -130,8 +130,8 @@ void fathom_sim_a05_init(fathom_sim_a05_t *a05, const fathom_sim_a05_config_t *c
     device->settings.stop_bits = 1;
     device->start_us = config->start_us;
     device->random = config->seed;
-    device->unit = config->unit != 0 ? config->unit : 1;
-    if (config->unit_zero) device->unit = 0;
+    device->address = config->address != 0 ? config->address : 1;
+    if (config->address_zero) device->address = 0;
     device->listens = true;
     device->dyp_silent_broadcast = config->dyp_silent_broadcast;
     device->protocols[0] = &fathom_sim_modbus;

@@ -58,7 +58,7 @@ static uint8_t write(fathom_sim_a16_t *a16, uint16_t address, uint16_t value)
     switch (address) {
     case ADDRESS:
         if (value > 0xFE) return FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
-        device->unit = (uint8_t)value;
+        device->address = (uint8_t)value;
         break;
     case MODE:
         if (value > AUTOMATIC) return FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
@@ -123,7 +123,7 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
     const uint16_t address = fathom_sim_get16(message->head + 2);
     switch (address) {
     case ADDRESS:
-        message->values[0] = device->unit;
+        message->values[0] = device->address;
         break;
     case POLARITY:
         message->values[0] = a16->polarity;
@@ -231,8 +231,8 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->settings.stop_bits = 1;
     device->start_us = config->start_us;
     device->random = config->seed;
-    device->unit = config->unit != 0 ? config->unit : 1;
-    if (config->unit_zero) device->unit = 0;
+    device->address = config->address != 0 ? config->address : 1;
+    if (config->address_zero) device->address = 0;
     device->protocols[0] = &fathom_sim_modbus;
     device->listens =
         config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_MODBUS || is_switch;

@@ -54,8 +54,8 @@ typedef enum {
 
 /* Zero means the default. Copied by init; what the scene and the faults point at stays the caller's. */
 typedef struct {
-    uint8_t unit;                      /* Modbus address; default 1 */
-    bool unit_zero;                    /* its address is 0, and it answers there; `unit` means nothing */
+    uint8_t address;                   /* Modbus address; default 1 */
+    bool address_zero;                 /* its address is 0, and it answers there; `address` means nothing */
     uint8_t mode;                      /* fathom_sim_a16_mode_t; must be given */
     bool exceptions;                   /* responses 01, 02 or 03 where the default is silence */
     bool answers_broadcast;            /* answers 0xFF, from its own address */

@@ -194,7 +194,7 @@ struct fathom_sim_device {
     bool answers_broadcast;          /* in Modbus, from its own address */
     bool dyp_silent_broadcast;       /* in 55 AA none answers */
     bool answers_from_new;           /* what changes its address, in Modbus */
-    uint8_t unit;
+    uint8_t address;
     const fathom_sim_protocol_t *protocols[FATHOM_SIM_PROTOCOLS]; /* looked at in this order; NULL: none */
 
     fathom_sim_alarm_t alarms[FATHOM_SIM_ALARMS];

@@ -17,7 +17,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
     const uint8_t command = frame[COMMAND];
     const bool to_all = frame[ADDRESS] == FATHOM_DYP_ANY_ADDRESS;
     /* 03 has the new address and no other, so it is for every device that receives it (A05 2(3)5). */
-    if (!to_all && frame[ADDRESS] != device->unit && command != FATHOM_DYP_SET_ADDRESS) {
+    if (!to_all && frame[ADDRESS] != device->address && command != FATHOM_DYP_SET_ADDRESS) {
         device->counters.others++;
         return true;
     }
@@ -45,7 +45,7 @@ static uint8_t measure(fathom_sim_device_t *device, uint8_t command, uint8_t *by
         command == FATHOM_DYP_ALL_PROBES ? 1 : (uint8_t)(command - FATHOM_DYP_FIRST_PROBE + 1);
     for (uint8_t i = 0; i < count; i++)
         values[i] = fathom_sim_device_ultrasonic(device, (uint8_t)(first + i), false, now_us);
-    return fathom_dyp_55aa_encode_response(bytes, device->unit, command, values);
+    return fathom_dyp_55aa_encode_response(bytes, device->address, command, values);
 }
 
 static uint8_t response(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now_us)

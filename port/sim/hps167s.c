@@ -208,7 +208,7 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
     device->settings.parity = FATHOM_PARITY_EVEN; /* 8E1 (HPS-167S 2.2.2, table 6) */
     device->settings.stop_bits = 1;
     device->random = config->seed;
-    device->unit = config->unit != 0 ? config->unit : FATHOM_SIM_HPS167S_UNIT;
+    device->address = config->address != 0 ? config->address : FATHOM_SIM_HPS167S_UNIT;
     device->protocols[0] = &fathom_sim_modbus;
     device->listens = true;
     device->answers_from_new = config->answers_from_new;

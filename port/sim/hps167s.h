@@ -65,7 +65,7 @@ typedef struct {
 /* Zero means the default. Copied by init; what the scene, the faults, the optics and the details point at
  * stays the caller's and may be changed. */
 typedef struct {
-    uint8_t unit;         /* 1..32; default 1 */
+    uint8_t address;      /* 1..32; default 1 */
     uint8_t baud_code;    /* as #9 has it: 1 = 19200 (default), 2 = 57600, 3, 4 = 230400 */
     uint8_t warm_up_s;    /* as #7 has it; default none (the factory's is 5); #2 reports it */
     uint8_t warm_up_says; /* fathom_sim_hps167s_warm_up_t; default silence */

@@ -70,7 +70,7 @@ void fathom_sim_hps167s_power_on(fathom_sim_device_t *device, uint32_t now_us)
  * and #9; what acts from the next power-on does so here too. */
 void fathom_sim_hps167s_reset(fathom_sim_hps167s_t *hps)
 {
-    hps->device.unit = FATHOM_SIM_HPS167S_UNIT;
+    hps->device.address = FATHOM_SIM_HPS167S_UNIT;
     hps->baud_code = FATHOM_SIM_HPS167S_BAUD_CODE;
     fathom_sim_hps167s_set_rate(hps);
     hps->warm_up_s = FACTORY_WARM_UP_S;
@@ -125,7 +125,7 @@ static bool set(fathom_sim_hps167s_t *hps, uint16_t address, uint16_t value)
         return true;
     case UNIT:
         if (value == 0 || value > MOST_UNIT) return false;
-        hps->device.unit = (uint8_t)value;
+        hps->device.address = (uint8_t)value;
         return true;
     case BAUD:
         return set_baud(hps, value);

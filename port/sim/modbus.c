@@ -41,7 +41,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
         return true;
     }
     const bool to_all = frame[UNIT] == device->model->broadcast;
-    if (!to_all && frame[UNIT] != device->unit) {
+    if (!to_all && frame[UNIT] != device->address) {
         device->counters.others++;
         return true;
     }
@@ -52,11 +52,11 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
     if (fits(frame, length)) {
         message->values = device->values;
         (void)fathom_modbus_rtu_parse_request(message, frame, FATHOM_SIM_REGISTERS);
-        const uint8_t unit = device->unit;
+        const uint8_t unit = device->address;
         device->reply_settings = device->settings;
         delay_us = device->model->request(device, message);
         if (device->answers_from_new)
-            message->head[UNIT] = device->unit;
+            message->head[UNIT] = device->address;
         else if (to_all && device->answers_broadcast)
             message->head[UNIT] = unit;
         /* whatever a write was for: a refused one was sent all the same */
@@ -83,7 +83,7 @@ static uint8_t unasked(fathom_sim_device_t *device, uint8_t *bytes, uint32_t now
 {
     uint16_t values[FATHOM_SIM_REGISTERS];
     fathom_modbus_message_t message;
-    fathom_modbus_read_holding_registers(&message, device->unit, device->model->reading[0],
+    fathom_modbus_read_holding_registers(&message, device->address, device->model->reading[0],
                                          (uint8_t)device->model->reading[1], values);
     message.exception = 0;
     device->model->fill(device, &message, now_us);

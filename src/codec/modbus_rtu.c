@@ -54,33 +54,33 @@ static uint8_t seal(uint8_t *frame, const uint8_t *end)
     return length;
 }
 
-static void set(fathom_modbus_message_t *message, uint8_t unit, uint8_t function, uint16_t first,
+static void set(fathom_modbus_message_t *message, uint8_t address, uint8_t function, uint16_t first,
                 uint16_t last)
 {
-    message->head[UNIT] = unit;
+    message->head[UNIT] = address;
     message->head[FUNCTION] = function;
     put16(message->head + FIRST, first);
     put16(message->head + COUNT_HIGH, last);
     message->exception = 0;
 }
 
-void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint8_t unit, uint16_t first,
+void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                           uint8_t count, uint16_t *values)
 {
-    set(message, unit, READ, first, count);
+    set(message, address, READ, first, count);
     message->values = values;
 }
 
-void fathom_modbus_write_single_register(fathom_modbus_message_t *message, uint8_t unit, uint16_t address,
+void fathom_modbus_write_single_register(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                          uint16_t value)
 {
-    set(message, unit, WRITE, address, value);
+    set(message, address, WRITE, first, value);
 }
 
-void fathom_modbus_write_multiple_registers(fathom_modbus_message_t *message, uint8_t unit, uint16_t first,
+void fathom_modbus_write_multiple_registers(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                             uint8_t count, const uint16_t *values)
 {
-    set(message, unit, WRITE_MANY, first, count);
+    set(message, address, WRITE_MANY, first, count);
     message->values = (uint16_t *)values; /* a write only reads them */
 }
 

@@ -73,9 +73,9 @@ static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
 static inline bool expects_response(const fathom_line_t *line) { return line->sent != 0; }
 
 /* The bits of `quarantined` for a unit; all of them for any unit. */
-static inline uint16_t quarantine_bits(uint8_t unit)
+static inline uint16_t quarantine_bits(uint8_t address)
 {
-    return (uint16_t)(unit == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : 1u << (unit & 15));
+    return (uint16_t)(address == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : 1u << (address & 15));
 }
 
 /* A device sends by itself, and there has been time for a request. */
@@ -113,7 +113,7 @@ fathom_status_t fathom_line_send(fathom_line_t *line);
 void fathom_line_scan_responses(fathom_line_t *line, bool over);
 
 /* Is a response of this unit waited for? */
-bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t unit);
+bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t address);
 
 /*
  * A whole frame: is it taken? By the transaction on the wire as its response; or, from a quarantined unit, by a

@@ -63,28 +63,28 @@ void fathom_line_end_attempt(fathom_line_t *line)
 /* ---- what comes in ---- */
 
 /* Does a frame of `unit` concern the transaction? */
-static bool is_of(const fathom_transaction_t *transaction, uint8_t unit)
+static bool is_of(const fathom_transaction_t *transaction, uint8_t address)
 {
-    return transaction->address == unit || transaction->address == FATHOM_LINE_ANY_UNIT;
+    return transaction->address == address || transaction->address == FATHOM_LINE_ANY_UNIT;
 }
 
-bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t unit)
+bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t address)
 {
-    return expects_response(line) && is_of(line->head, unit);
+    return expects_response(line) && is_of(line->head, address);
 }
 
 bool fathom_line_deliver(fathom_line_t *line)
 {
     const fathom_protocol_t *const protocol = line->protocol;
     const uint8_t *const frame = line->config->frame;
-    const uint8_t unit = frame[protocol->address_at];
+    const uint8_t address = frame[protocol->address_at];
     uint8_t before = NOISY;
-    if (fathom_line_expects_unit(line, unit)) {
+    if (fathom_line_expects_unit(line, address)) {
         if (line->head->address == FATHOM_LINE_ANY_UNIT) quarantine(line);
         before = line->state & (uint8_t) ~(PHASE | RESPONSE_UNEXPECTED);
         line->state |= RESPONSE_UNEXPECTED;
     } else {
-        const uint16_t quarantined = line->quarantined & (uint16_t)~quarantine_bits(unit);
+        const uint16_t quarantined = line->quarantined & (uint16_t)~quarantine_bits(address);
         const bool is_outstanding = quarantined != line->quarantined && (line->known & ECHO_DUE) == 0;
         line->known &= (uint8_t)~ECHO_DUE;
         count(line, is_outstanding ? FATHOM_LINE_LATE_RESPONSES : FATHOM_LINE_STRAYS, 1);
@@ -92,7 +92,7 @@ bool fathom_line_deliver(fathom_line_t *line)
         line->quarantined = quarantined;
     }
     for (fathom_transaction_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
-        if (x->attempts == 0 || !is_of(x, unit) || x->protocol->parse_response != protocol->parse_response)
+        if (x->attempts == 0 || !is_of(x, address) || x->protocol->parse_response != protocol->parse_response)
             continue;
         const fathom_status_t status = protocol->parse_response(x, frame);
         if (status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) continue;
@@ -194,11 +194,11 @@ void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction)
     fathom_line_finish(line, link, FATHOM_ERR_CANCELLED);
 }
 
-void fathom_line_cancel_unit(fathom_line_t *line, uint8_t unit)
+void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
 {
     for (fathom_transaction_t *x = line->head, *next; x != NULL; x = next) {
         next = x->link.next;
-        if (x->address == unit) fathom_line_cancel(line, x);
+        if (x->address == address) fathom_line_cancel(line, x);
     }
 }
 

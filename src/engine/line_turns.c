@@ -58,7 +58,7 @@ void fathom_line_take_turns(fathom_line_t *line, fathom_line_turns_t *turns)
     line->kind = &turns->kind;
 }
 
-bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t unit)
+bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t address)
 {
-    return (line->quarantined & quarantine_bits(unit)) != 0;
+    return (line->quarantined & quarantine_bits(address)) != 0;
 }

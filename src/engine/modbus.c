@@ -6,7 +6,7 @@ static void cancel(void *ctx, fathom_modbus_request_t *request)
     fathom_line_cancel(ctx, &request->transaction);
 }
 
-static void cancel_unit(void *ctx, uint8_t unit) { fathom_line_cancel_unit(ctx, unit); }
+static void cancel_unit(void *ctx, uint8_t address) { fathom_line_cancel_unit(ctx, address); }
 
 static fathom_status_t poll(void *ctx) { return fathom_line_poll(ctx); }
 

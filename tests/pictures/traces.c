@@ -104,7 +104,7 @@ static void begin_quarantine(void)
     for (uint8_t i = 0; i < UNITS; i++) {
         const uint8_t unit = (uint8_t)(i + 1);
         fathom_sim_hps167s_init(
-            &devices[i], &(fathom_sim_hps167s_config_t){.unit = unit, .scene = fathom_sim_fixed(&scene)});
+            &devices[i], &(fathom_sim_hps167s_config_t){.address = unit, .scene = fathom_sim_fixed(&scene)});
         fathom_sim_attach(&wire, &devices[i].device, now.now_us);
         fathom_hps167s_init(&drivers[i], &(fathom_hps167s_config_t){.modbus.transport = &transport,
                                                                     .modbus.address = unit,

@@ -50,7 +50,7 @@ ASKS(a16_0101, fathom_sample_t, WITH(.distance_mm = 9),
      fathom_a16_modbus_measure(a16, FATHOM_REAL_TIME, &out), out.distance_mm == 1234 && out.address == 1,
      out.distance_mm == 9 && out.address == 0)
 
-static uint32_t a16_unit(void) { return bench.a16.device.unit; }
+static uint32_t a16_unit(void) { return bench.a16.device.address; }
 static uint32_t a16_polarity(void) { return bench.a16.polarity; }
 static uint32_t a16_threshold(void) { return bench.a16.threshold_mm; }
 static uint32_t a16_automatic(void) { return bench.a16.data_type; }
@@ -60,7 +60,7 @@ static uint32_t a16_automatic(void) { return bench.a16.data_type; }
 static fathom_status_t a05_set_0200(void) { return fathom_a05_modbus_set_address(a05, 5); }
 ASKS(a05_0200, uint8_t, 99, fathom_a05_modbus_address(a05, &out), out == 1, out == 99)
 static fathom_status_t dyp_03(void) { return fathom_a05_dyp_set_every_address(dyp, 5); }
-static uint32_t a05_unit(void) { return bench.a05.device.unit; }
+static uint32_t a05_unit(void) { return bench.a05.device.address; }
 
 /* ---- HPS-167S (3, #1 to #15) ---- */
 
@@ -90,7 +90,7 @@ static fathom_status_t hps_15(void)
     return fathom_hps167s_set_reconnect_time_ms(hps, 90000);
 } /* two words */
 
-static uint32_t hps_unit(void) { return bench.hps.device.unit; }
+static uint32_t hps_unit(void) { return bench.hps.device.address; }
 static uint32_t hps_warm_up(void) { return bench.hps.warm_up_s; }
 static uint32_t hps_code(void) { return bench.hps.baud_code; }
 static uint32_t hps_output(void) { return bench.hps.auto_output; }

@@ -82,10 +82,10 @@ void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS]
     fathom_sim_clock_init(&seen.clock, 0, 0);
     fathom_sim_line_init(&seen.wire, &ultrasonic, seen.clock.now_us);
     const fathom_sim_a16_config_t a16_is = {
-        .unit = 1, .mode = FATHOM_SIM_A16_MODBUS, .scene = fathom_sim_fixed(&scene)};
+        .address = 1, .mode = FATHOM_SIM_A16_MODBUS, .scene = fathom_sim_fixed(&scene)};
     const fathom_sim_a05_config_t a05_is = {
-        .unit = 2, .mode = FATHOM_SIM_A05_MODBUS, .scene = fathom_sim_fixed(&scene)};
-    const fathom_sim_hps167s_config_t hps_is = {.unit = 7, .scene = fathom_sim_fixed(&scene)};
+        .address = 2, .mode = FATHOM_SIM_A05_MODBUS, .scene = fathom_sim_fixed(&scene)};
+    const fathom_sim_hps167s_config_t hps_is = {.address = 7, .scene = fathom_sim_fixed(&scene)};
     fathom_sim_a16_init(&sim_a16, &a16_is);
     fathom_sim_a05_init(&sim_a05, &a05_is);
     fathom_sim_hps167s_init(&sim_hps, &hps_is);

@@ -96,10 +96,10 @@ void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
     s.model = model;
     init_driver(&s.driver, model, unit, &s.settings);
     s.sensor = sensor_of(&s.driver, model);
-    if (model == HPS) add_hps((hps_config_t){.unit = unit});
-    if (model == A16) add_a16(FATHOM_SIM_A16_MODBUS, (a16_config_t){.unit = unit});
-    if (model == A05) add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = unit});
-    if (model == A05_DYP) add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.unit = unit});
+    if (model == HPS) add_hps((hps_config_t){.address = unit});
+    if (model == A16) add_a16(FATHOM_SIM_A16_MODBUS, (a16_config_t){.address = unit});
+    if (model == A05) add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.address = unit});
+    if (model == A05_DYP) add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.address = unit});
     set_faults(1);
     bench.fault.clock = &s.clock;
 }
@@ -109,12 +109,12 @@ fathom_sim_device_t *add_other(uint8_t unit)
     const fathom_sim_scene_t scene = fathom_sim_fixed(&bench.fixed);
     const uint8_t mode = s.model == A05 ? FATHOM_SIM_A05_MODBUS : FATHOM_SIM_A05_DYP;
     if (s.model == HPS)
-        fathom_sim_hps167s_init(&s.other.hps, &(hps_config_t){.unit = unit, .scene = scene});
+        fathom_sim_hps167s_init(&s.other.hps, &(hps_config_t){.address = unit, .scene = scene});
     else if (s.model == A16)
         fathom_sim_a16_init(&s.other.a16,
-                            &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .unit = unit, .scene = scene});
+                            &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .address = unit, .scene = scene});
     else
-        fathom_sim_a05_init(&s.other.a05, &(a05_config_t){.mode = mode, .unit = unit, .scene = scene});
+        fathom_sim_a05_init(&s.other.a05, &(a05_config_t){.mode = mode, .address = unit, .scene = scene});
     attach(&s.other.a16.device); /* all have it first */
     return &s.other.a16.device;
 }
@@ -165,7 +165,7 @@ bool recovers(void)
 {
     const uint32_t start_us = s.clock.now_us;
     while (since_us(start_us) < 60 * SECOND) {
-        if (measure() == FATHOM_READY) return s.sample.address == bench.device->unit;
+        if (measure() == FATHOM_READY) return s.sample.address == bench.device->address;
         pass();
     }
     return false;
@@ -184,7 +184,7 @@ bool same_place(void)
     const fathom_modbus_unit_t *const unit = unit_of();
     const fathom_line_settings_t *const settings =
         unit->line_settings != NULL ? unit->line_settings : &s.settings;
-    return unit->address == bench.device->unit && settings->baud == bench.device->settings.baud;
+    return unit->address == bench.device->address && settings->baud == bench.device->settings.baud;
 }
 
 uint32_t kept_commands(void)

@@ -34,7 +34,7 @@ TEST(an_address_that_is_set_is_followed_and_not_set_twice_also_where_the_line_ec
     FOR_ALL_MODELS
     {
         assert_int_equal(carry_out(set_new), FATHOM_READY);
-        assert_int_equal(bench.device->unit, NEW);
+        assert_int_equal(bench.device->address, NEW);
         COUNTED(.writes = 1);
         assert_measures(NEW, 1234);
         assert_int_equal(carry_out(set_new), FATHOM_READY); /* and once more: it is so already */
@@ -52,7 +52,7 @@ TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
             if (s.model == A05_DYP || bench.line.echo) continue;
             bench.device->answers_from_new = from_new != 0;
             assert_int_equal(carry_out(set_new), FATHOM_READY);
-            assert_int_equal(bench.device->unit, NEW);
+            assert_int_equal(bench.device->address, NEW);
             COUNTED(.writes = 1);
             assert_int_equal(s.counters[FATHOM_LINE_LATE_RESPONSES], from_new);
             assert_int_equal(s.counters[FATHOM_LINE_STRAYS], 0);
@@ -66,7 +66,7 @@ TEST(an_address_at_which_another_answers_is_not_given)
     {
         const fathom_sim_device_t *const other = add_other(NEW);
         assert_int_equal(carry_out(set_new), FATHOM_ERR_IN_USE);
-        assert_int_equal(bench.device->unit, OLD);
+        assert_int_equal(bench.device->address, OLD);
         COUNTED(.writes = NONE);
         COUNTED_BY(other, .writes = NONE);
         assert_measures(OLD, 1234);
@@ -80,7 +80,7 @@ TEST(without_confirmation_it_is_at_one_of_the_two)
     {
         silence_from(2, 1000);
         assert_int_equal(carry_out(set_new), FATHOM_ERR_UNCONFIRMED);
-        assert_int_equal(bench.device->unit, NEW);
+        assert_int_equal(bench.device->address, NEW);
         COUNTED(.writes = 1);
         assert_int_equal(measure(), FATHOM_ERR_NO_RESPONSE); /* the driver is where it was */
     }
@@ -113,8 +113,8 @@ TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
         const fathom_status_t status = carry_out(set_new);
         /* in 55 AA what it reads from two devices at once cannot be known */
         if (model == A05) assert_int_equal(status, FATHOM_READY);
-        assert_int_equal(bench.device->unit, NEW);
-        assert_int_equal(other->unit, model == A05 ? 9 : NEW);
+        assert_int_equal(bench.device->address, NEW);
+        assert_int_equal(other->address, model == A05 ? 9 : NEW);
     }
 }
 
@@ -210,7 +210,7 @@ TEST(address_0_is_set_read_and_found)
             uint8_t address = 0xA5;
             bench.device->answers_from_new = from_new != 0;
             assert_int_equal(carry_out(set_to_0), FATHOM_READY);
-            assert_int_equal(bench.device->unit, 0);
+            assert_int_equal(bench.device->address, 0);
             COUNTED(.writes = 1);
             assert_measures(0, 1234);
             assert_int_equal(set_address(NEW), FATHOM_ERR_ARGUMENT); /* which every unit would obey */

@@ -111,7 +111,7 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
             with_others(dyp_sets ? set_by_dyp : set_by_modbus, dyp_sets ? modbus : s.sensor,
                         dyp_sets ? s.sensor : modbus, true, &status);
         assert_int_equal(status, FATHOM_READY);
-        assert_int_equal(bench.device->unit, 5);
+        assert_int_equal(bench.device->address, 5);
         assert_int_equal(kept_commands(), 1);
         assert_true(readings >= 4);
     }
@@ -123,7 +123,7 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     fathom_hps167s_auto_t listener;
     set_up_for(job, loop_us, FATHOM_LINE_ECHO_AUTO);
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
-    add_hps((hps_config_t){.unit = job->unit, .unasked_us = unasked_us});
+    add_hps((hps_config_t){.address = job->unit, .unasked_us = unasked_us});
     const fathom_hps167s_auto_config_t config = {.line = &s.line};
     assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_READY);
     fathom_hps167s_auto_beside(&listener, &s.driver.hps);

@@ -12,11 +12,11 @@ static void begin_eight(uint32_t start_us)
     const uint8_t a16s[] = {1, 2, 9};
     const uint8_t a05s[] = {3, 5};
     const uint8_t hpss[] = {6, 7, 8};
-    for (unsigned i = 0; i != sizeof a16s; i++) rig_a16((a16_config_t){.unit = a16s[i], .seed = a16s[i]});
-    rig_a05((a05_config_t){.unit = a05s[0], .seed = 3});
-    rig_a05((a05_config_t){.unit = a05s[1], .mode = FATHOM_SIM_A05_DYP, .seed = 5});
+    for (unsigned i = 0; i != sizeof a16s; i++) rig_a16((a16_config_t){.address = a16s[i], .seed = a16s[i]});
+    rig_a05((a05_config_t){.address = a05s[0], .seed = 3});
+    rig_a05((a05_config_t){.address = a05s[1], .mode = FATHOM_SIM_A05_DYP, .seed = 5});
     for (unsigned i = 0; i != sizeof hpss; i++)
-        rig_hps((hps_config_t){.unit = hpss[i], .seed = hpss[i], .no_termination = i == 0});
+        rig_hps((hps_config_t){.address = hpss[i], .seed = hpss[i], .no_termination = i == 0});
 }
 
 /* Address 4 is the dead one. */
@@ -83,8 +83,8 @@ TEST(test_an_echo_alone_is_no_device_at_any_address)
     rig_begin(0);
     rig.sim_line.echo = true;
     rig.plan.last = 254;
-    rig_a16((a16_config_t){.unit = 83});
-    rig_a05((a05_config_t){.unit = 147});
+    rig_a16((a16_config_t){.address = 83});
+    rig_a05((a05_config_t){.address = 147});
     rig_finds(2);
     rig_expect(83, FATHOM_A16);
     rig_expect(147, FATHOM_A05);
@@ -178,7 +178,7 @@ TEST(test_a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tri
     rig.plan.settings[6] = (fathom_line_settings_t){57600, FATHOM_PARITY_EVEN, 1}; /* the factory's first */
     rig.plan.settings[7] = (fathom_line_settings_t){57600, FATHOM_PARITY_NONE, 1};
     rig.plan.last = 32;
-    rig_hps((hps_config_t){.unit = 12, .baud_code = 2});
+    rig_hps((hps_config_t){.address = 12, .baud_code = 2});
     rig_finds(1);
     rig_expect_sensor(12, FATHOM_HPS167S, SCAN_MODBUS, &fast);
     assert_int_equal(rig.probed[2][FATHOM_PARITY_EVEN], 32);
@@ -193,7 +193,7 @@ TEST(test_a_port_that_cannot_do_a_rate_leaves_it_out_and_goes_on)
     rig.plan.settings[1] = (fathom_line_settings_t){230400, FATHOM_PARITY_EVEN, 1};
     rig.plan.setting_count = 3;
     rig.refused_baud = 230400;
-    rig_hps((hps_config_t){.unit = 1});
+    rig_hps((hps_config_t){.address = 1});
     rig_walk();
     assert_int_equal(rig.unsupported, 1);
     rig_expect(1, FATHOM_HPS167S);
@@ -203,8 +203,8 @@ TEST(test_one_that_answers_late_is_found_all_the_same)
 {
     /* 220 to 250 ms, where 150 are waited for: it answers while the next address is asked. */
     rig_begin(UINT32_C(0xFFF00000));
-    rig_a16((a16_config_t){.unit = 3, .settings_us = 250000});
-    rig_a16((a16_config_t){.unit = 5});
+    rig_a16((a16_config_t){.address = 3, .settings_us = 250000});
+    rig_a16((a16_config_t){.address = 5});
     rig_finds(2);
     rig_expect(3, FATHOM_A16);
     rig_expect(5, FATHOM_A16);
@@ -212,7 +212,7 @@ TEST(test_one_that_answers_late_is_found_all_the_same)
 
 TEST(test_an_a05_that_speaks_55_aa_is_found_at_an_address_that_was_not_asked)
 {
-    rig_a05((a05_config_t){.unit = 100, .mode = FATHOM_SIM_A05_DYP});
+    rig_a05((a05_config_t){.address = 100, .mode = FATHOM_SIM_A05_DYP});
     rig_finds(1);
     rig_expect_sensor(100, FATHOM_A05, SCAN_DYP, &scan_dyp_line);
     rig_expect_unharmed();

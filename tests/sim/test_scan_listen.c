@@ -19,7 +19,7 @@ static const suite_t suite = {.set_up = begins};
 TEST(test_a_quiet_line_is_listened_to_for_just_that_long)
 {
     rig_begin(UINT32_C(0xFFF00000));
-    rig_a16((a16_config_t){.unit = 1});
+    rig_a16((a16_config_t){.address = 1});
     listen_for_3_s();
     assert_false(unasked.is_heard);
     assert_int_equal(rig.passed_us, 3000000);
@@ -57,7 +57,7 @@ TEST(test_an_a16_and_an_a05_that_send_are_named_and_nothing_is_sent)
 TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devices)
 {
     rig.sim_line.full_duplex = true;
-    rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_AUTO});
+    rig_a16((a16_config_t){.address = 7, .mode = FATHOM_SIM_A16_AUTO});
     listen_for_3_s();
     rig.walk.has_sender = unasked.is_heard;
     rig_finds(1);
@@ -66,7 +66,7 @@ TEST(test_one_that_sends_is_asked_when_that_is_wanted_and_its_frames_are_no_devi
     /* and one that hears nothing, and sends on */
     rig_begin(0);
     rig.sim_line.full_duplex = true;
-    rig_a16((a16_config_t){.unit = 7, .mode = FATHOM_SIM_A16_UART});
+    rig_a16((a16_config_t){.address = 7, .mode = FATHOM_SIM_A16_UART});
     rig.walk.has_sender = true;
     rig_finds(0);
 }
@@ -114,7 +114,7 @@ TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
         .line = &scan_hps167s_line, .timeout_us = 100000, .first = 0x0009, .address = 1};
     scan_response_t response;
     rig_begin(0);
-    rig_hps((hps_config_t){.unit = 1});
+    rig_hps((hps_config_t){.address = 1});
     for (uint8_t count = 1; count <= SCAN_REGISTERS; count++) {
         request.count = count;
         scan_ask(&rig.wire, &request, &response);

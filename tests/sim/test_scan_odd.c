@@ -11,12 +11,12 @@ TEST(test_two_units_with_one_address_are_told_and_their_neighbours_found)
 {
     for (uint32_t seed = 0; seed != 8; seed++) {
         rig_begin(0);
-        rig_a16((a16_config_t){.unit = 1, .seed = seed});
-        rig_a05((a05_config_t){.unit = 1, .seed = seed + 100});
-        rig_a16((a16_config_t){.unit = 2});
-        rig_hps((hps_config_t){.unit = 4, .seed = seed});
-        rig_hps((hps_config_t){.unit = 4, .seed = seed + 100});
-        rig_hps((hps_config_t){.unit = 5});
+        rig_a16((a16_config_t){.address = 1, .seed = seed});
+        rig_a05((a05_config_t){.address = 1, .seed = seed + 100});
+        rig_a16((a16_config_t){.address = 2});
+        rig_hps((hps_config_t){.address = 4, .seed = seed});
+        rig_hps((hps_config_t){.address = 4, .seed = seed + 100});
+        rig_hps((hps_config_t){.address = 5});
         rig_finds(4);
         assert_int_equal(rig_find(1)->kind, SCAN_DAMAGED);
         assert_int_equal(rig_find(1)->line.baud, 9600);
@@ -31,8 +31,8 @@ TEST(test_two_units_with_one_address_are_told_and_their_neighbours_found)
 TEST(test_two_responses_to_one_request_are_told)
 {
     /* One answers 0200 after 17.5 to 20 ms, the other after 35 to 40: both responses are whole. */
-    rig_a16((a16_config_t){.unit = 6});
-    rig_a16((a16_config_t){.unit = 6, .settings_us = 40000});
+    rig_a16((a16_config_t){.address = 6});
+    rig_a16((a16_config_t){.address = 6, .settings_us = 40000});
     rig_finds(1);
     assert_true(rig_find(6)->is_double);
 }
@@ -53,7 +53,7 @@ TEST(test_responses_that_are_no_modbus_are_told_once)
 {
     rig_begin(UINT32_C(0xFFF00000));
     begin_speaker(&scan_hps167s_line, 0, junk, sizeof junk);
-    rig_a16((a16_config_t){.unit = 3});
+    rig_a16((a16_config_t){.address = 3});
     rig_finds(2);
     rig_expect(3, FATHOM_A16);
     assert_int_equal(rig.findings[1].kind, SCAN_NOT_MODBUS);
@@ -67,7 +67,7 @@ TEST(test_no_modbus_at_one_address_of_two_is_a_damaged_response_and_at_the_only_
 {
     for (uint8_t last = 3; last <= 4; last++) {
         rig_begin(0);
-        begin_speaker(&scan_dyp_line, 0, junk, sizeof junk)->unit = 3;
+        begin_speaker(&scan_dyp_line, 0, junk, sizeof junk)->address = 3;
         rig.plan.first = 3;
         rig.plan.last = last;
         rig_finds(1);
@@ -137,7 +137,7 @@ TEST(test_an_a16_that_answers_0100_alone_is_known)
 TEST(test_an_a05_whose_measurement_is_lost_once_is_known)
 {
     static fathom_sim_fault_t fault;
-    rig_a05((a05_config_t){.unit = 9});
+    rig_a05((a05_config_t){.address = 9});
     fathom_sim_fault_init(&fault, 1);
     /* its first response is that of 0200 */
     assert_non_null(fathom_sim_fault_add(&fault, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 2));
@@ -172,8 +172,8 @@ TEST(test_another_master_that_begins_later_is_noted)
 
 TEST(test_measurements_may_take_longer_than_the_first_response)
 {
-    rig_a16((a16_config_t){.unit = 1, .realtime_us = 290000});
-    rig_a05((a05_config_t){.unit = 2, .probe_us = 290000});
+    rig_a16((a16_config_t){.address = 1, .realtime_us = 290000});
+    rig_a05((a05_config_t){.address = 2, .probe_us = 290000});
     rig_finds(2);
     rig_expect(1, FATHOM_A16);
     rig_expect(2, FATHOM_A05);
@@ -181,9 +181,9 @@ TEST(test_measurements_may_take_longer_than_the_first_response)
 
 TEST(test_sensors_that_refuse_instead_of_being_silent_are_known_all_the_same)
 {
-    rig_a16((a16_config_t){.unit = 1, .exceptions = true});
-    rig_a05((a05_config_t){.unit = 2, .exceptions = true});
-    rig_hps((hps_config_t){.unit = 3, .wrong_length = FATHOM_MODBUS_ILLEGAL_DATA_VALUE});
+    rig_a16((a16_config_t){.address = 1, .exceptions = true});
+    rig_a05((a05_config_t){.address = 2, .exceptions = true});
+    rig_hps((hps_config_t){.address = 3, .wrong_length = FATHOM_MODBUS_ILLEGAL_DATA_VALUE});
     rig_finds(3);
     rig_expect(1, FATHOM_A16);
     rig_expect(2, FATHOM_A05);

@@ -130,7 +130,7 @@ TEST(a_broadcast_is_obeyed_without_a_response)
 {
     ask("FF 06 02 00 00 05 5D AF", 300);
     transact("FF 03 01 06 00 01 70 29", 300, "");
-    assert_int_equal(bench.a05.device.unit, 5);
+    assert_int_equal(bench.a05.device.address, 5);
     COUNTED(.requests = 2);
 }
 

@@ -82,7 +82,7 @@ TEST(set_address_is_answered_with_its_own_bytes_a05_2_3_5)
     transact("55 AA 05 11 15", 300, "55 AA 05 11 07 D0 EC");         /* 05 + 11 + 07 + D0 - 1 */
     transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87"); /* and in Modbus */
     echoed("55 AA FE 03 00", 50);                                    /* the highest: FE + 03 - 1 = 100 */
-    assert_int_equal(bench.a05.device.unit, 0xFE);
+    assert_int_equal(bench.a05.device.address, 0xFE);
 }
 
 TEST(every_unit_that_hears_set_address_obeys_it)
@@ -90,11 +90,11 @@ TEST(every_unit_that_hears_set_address_obeys_it)
     fathom_sim_a05_t other;
     set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.settings_us = 20 * MS});
     fathom_sim_a05_init(&other,
-                        &(a05_config_t){.unit = 2, .mode = FATHOM_SIM_A05_DYP, .settings_us = 60 * MS});
+                        &(a05_config_t){.address = 2, .mode = FATHOM_SIM_A05_DYP, .settings_us = 60 * MS});
     attach(&other.device);
     ask("55 AA 05 03 07", 70);
-    assert_int_equal(bench.a05.device.unit, 5);
-    assert_int_equal(other.device.unit, 5);
+    assert_int_equal(bench.a05.device.address, 5);
+    assert_int_equal(other.device.address, 5);
     expect("55 AA 05 03 07 55 AA 05 03 07");
     /* the second response is a request again to the first unit, which was no longer deaf */
     hear(25, "55 AA 05 03 07");
@@ -105,16 +105,16 @@ TEST(addresses_00_and_ff_are_refused_in_silence)
 {
     ask("55 AA 00 03 02", 300);
     transact("55 AA FF 03 01", 300, "");
-    assert_int_equal(bench.a05.device.unit, 1);
+    assert_int_equal(bench.a05.device.address, 1);
     COUNTED(.writes = NONE, .unserved = 2);
 }
 
 TEST(ff_is_obeyed_and_answered_from_its_own_address_unless_told_not_to)
 {
-    set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.unit = 7});
+    set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.address = 7});
     transact("55 AA FF 11 0F", 300, "55 AA 07 11 07 D0 EE"); /* 07 + 11 + 07 + D0 - 1 */
     transact("FF 03 01 06 00 01 70 29", 300, "");            /* Modbus has its own option */
-    set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.unit = 7, .dyp_silent_broadcast = true});
+    set_a05(FATHOM_SIM_A05_DYP, ALL, (a05_config_t){.address = 7, .dyp_silent_broadcast = true});
     transact("55 AA FF 11 0F", 300, "");
     COUNTED(.requests = 1, .unserved = NONE);
     transact("55 AA 07 11 17", 300, "55 AA 07 11 07 D0 EE");
@@ -137,7 +137,7 @@ TEST(what_it_does_not_know_is_silence_and_counted)
     ask("55 AA 02 01 02", 300); /* another unit */
     COUNTED(.others = 1);
     expect("");
-    assert_int_equal(bench.a05.device.unit, 1);
+    assert_int_equal(bench.a05.device.address, 1);
     COUNTED(.measurements = NONE);
     transact("55 AA 01 10 10", 300, "55 AA 01 10 03 E8 FB"); /* 01 + 10 + 03 + E8 - 1 */
 }
@@ -158,5 +158,5 @@ TEST(the_other_modes_do_not_speak_it_and_this_one_sends_nothing_by_itself)
     ask("55 AA 01 01 01", 300);
     transact("55 AA 05 03 07", 300, "");
     COUNTED(.crc_errors = 2);
-    assert_int_equal(bench.a05.device.unit, 1);
+    assert_int_equal(bench.a05.device.address, 1);
 }

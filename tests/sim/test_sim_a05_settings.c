@@ -77,7 +77,7 @@ TEST(what_it_does_not_obey_is_counted)
     ask("55 AA 00 03 02", 50); /* 00 and FF are no addresses */
     ask("55 AA FF 03 01", 50);
     transact("55 AA 05 03 00 00 07", 50, ""); /* another length */
-    assert_int_equal(bench.a05.device.unit, 1);
+    assert_int_equal(bench.a05.device.address, 1);
     COUNTED(.writes_refused = 7, .writes = NONE, .flash_writes = NONE);
     ask("55 AA 01 14 14", 100); /* refused, but no write */
     transact("01 03 01 0A 00 01 A5 F4", 100, "");

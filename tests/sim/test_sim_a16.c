@@ -200,14 +200,14 @@ TEST(set_address_is_echoed_and_obeyed_a16_6_4_example_3)
 TEST(address_ff_is_for_the_broadcast_and_cannot_be_set)
 {
     transact("01 06 02 00 00 FF C8 32", 300, "");
-    assert_int_equal(bench.a16.device.unit, 1);
+    assert_int_equal(bench.a16.device.address, 1);
     COUNTED(.writes = NONE);
 }
 
 TEST(a_broadcast_is_obeyed_without_a_response)
 {
     transact("FF 06 02 00 00 05 5D AF", 300, "");
-    assert_int_equal(bench.a16.device.unit, 5);
+    assert_int_equal(bench.a16.device.address, 5);
     COUNTED(.writes = 1);
     transact("FF 03 01 01 00 01 C1 E8", 300, "");
     COUNTED(.requests = 2, .answered = NONE);
@@ -215,7 +215,7 @@ TEST(a_broadcast_is_obeyed_without_a_response)
 
 TEST(a_broadcast_is_answered_from_its_own_address_as_an_option)
 {
-    set_a16(FATHOM_SIM_A16_MODBUS, 751, (a16_config_t){.unit = 5, .answers_broadcast = true});
+    set_a16(FATHOM_SIM_A16_MODBUS, 751, (a16_config_t){.address = 5, .answers_broadcast = true});
     transact("FF 03 01 01 00 01 C1 E8", 300, "05 03 02 02 EF 09 68");
 }
 

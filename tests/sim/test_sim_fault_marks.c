@@ -110,7 +110,7 @@ TEST(another_device_takes_a_marked_byte_for_damaged)
 {
     fathom_sim_a16_t other;
     set_faulty(A16_MODBUS, 1);
-    fathom_sim_a16_init(&other, &(a16_config_t){.unit = 2, .mode = FATHOM_SIM_A16_MODBUS});
+    fathom_sim_a16_init(&other, &(a16_config_t){.address = 2, .mode = FATHOM_SIM_A16_MODBUS});
     attach(&other.device);
     FAULT(FRAMING, ALWAYS, 2);
     next(A16_MODBUS);

@@ -142,7 +142,7 @@ TEST(an_unknown_function_is_exception_1_whatever_its_length)
 
 TEST(factory_reset_is_that_of_tables_19_and_20_and_is_counted)
 {
-    set_hps(2083, (hps_config_t){.unit = 2, .no_termination = true});
+    set_hps(2083, (hps_config_t){.address = 2, .no_termination = true});
     transact("02 03 00 09 00 01 54 3B", 30, "02 03 02 00 01 3D 84");
     COUNTED(.resets = 1);
     /* address 1 again, termination on, warm-up 5 s */
@@ -192,7 +192,7 @@ TEST(another_unit_is_not_meant)
 {
     transact("02 03 00 08 00 04 C5 F8", 30, "");
     COUNTED(.others = 1);
-    set_hps(2083, (hps_config_t){.unit = 2});
+    set_hps(2083, (hps_config_t){.address = 2});
     transact("02 03 00 08 00 04 C5 F8", 30, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
 }
 

@@ -44,7 +44,7 @@ static void set(uint32_t loop_us, hps_config_t config, const fathom_line_setting
     s.model = HPS;
     const fathom_hps167s_config_t driver = {.modbus.transport = &s.modbus,
                                             .modbus.line_settings = at,
-                                            .modbus.address = config.unit != 0 ? config.unit : 1,
+                                            .modbus.address = config.address != 0 ? config.address : 1,
                                             .modbus.timeout_us = 100 * MS};
     assert_int_equal(fathom_hps167s_init(hps, &driver), FATHOM_READY);
     s.sensor = sensor_of(&s.driver, HPS);
@@ -229,11 +229,11 @@ TEST(a_reset_device_is_followed_home)
 {
     static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
     for (unsigned n = 0; n != 4; n++) {
-        set(loops_us[n % 2], (hps_config_t){.unit = 7, .baud_code = 3, .answers_from_new = n > 1}, &fast);
+        set(loops_us[n % 2], (hps_config_t){.address = 7, .baud_code = 3, .answers_from_new = n > 1}, &fast);
         assert_measures(7, TARGET_MM);
         assert_int_equal(carry_out(six), FATHOM_READY);
         COUNTED(.resets = 1, .resets_refused = NONE);
-        assert_int_equal(bench.device->unit, 1);
+        assert_int_equal(bench.device->address, 1);
         assert_int_equal(bench.device->settings.baud, 19200);
         assert_measures(1, TARGET_MM);
     }
@@ -243,7 +243,7 @@ TEST(a_reset_is_not_sent_where_another_is_at_address_1)
 {
     IN_BOTH_LOOPS
     {
-        set(loops_us[l], (hps_config_t){.unit = 7}, NULL);
+        set(loops_us[l], (hps_config_t){.address = 7}, NULL);
         const fathom_sim_device_t *const other = add_other(1);
         assert_int_equal(carry_out(six), FATHOM_ERR_IN_USE);
         COUNTED(.resets = NONE);
@@ -256,11 +256,11 @@ TEST(a_reset_whose_confirmation_is_lost_is_unconfirmed_and_sent_once)
 {
     IN_BOTH_LOOPS
     {
-        set(loops_us[l], (hps_config_t){.unit = 7}, NULL);
+        set(loops_us[l], (hps_config_t){.address = 7}, NULL);
         silence_from(3, 1000);
         assert_int_equal(carry_out(six), FATHOM_ERR_UNCONFIRMED);
         COUNTED(.resets = 1);
-        assert_int_equal(bench.device->unit, 1);
+        assert_int_equal(bench.device->address, 1);
     }
 }
 

@@ -41,7 +41,7 @@ TEST(it_fills_the_line_with_54_frames_a_second)
 
 TEST(what_it_sends_is_the_scene)
 {
-    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .unit = 2});
+    set_hps(2083, (hps_config_t){.unasked_us = 100 * MS, .address = 2});
     hear(110, "02 03 08 08 23 DC B2 07 01 00 00 F2 05");
     bench.fixed.value[0] = FATHOM_SIM_FAULT;
     hear(100, "02 03 08 FF FF 00 00 00 FF FF FF EB 18");

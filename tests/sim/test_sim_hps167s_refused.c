@@ -125,7 +125,7 @@ TEST(the_longest_write_of_many_is_refused_and_does_no_harm)
 TEST(a_broadcast_is_obeyed_by_all_and_answered_by_none)
 {
     fathom_sim_hps167s_t other;
-    fathom_sim_hps167s_init(&other, &(hps_config_t){.unit = 2, .seed = 9});
+    fathom_sim_hps167s_init(&other, &(hps_config_t){.address = 2, .seed = 9});
     attach(&other.device);
     ask("00 06 00 0A 00 07 E9 DB", 30);
     ask("00 06 00 14 FF F1 48 6B", 30);

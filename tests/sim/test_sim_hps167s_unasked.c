@@ -105,7 +105,7 @@ static void assert_carried_out(void)
     assert_int_equal(version.year, 2020);
     assert_int_equal(details.year, 2019);
     assert_int_equal(temperature.temperature_dc, 250);
-    assert_int_equal(bench.device->unit, 5);
+    assert_int_equal(bench.device->address, 5);
     assert_int_equal(ask_for(two), FATHOM_READY);
     assert_int_equal(is.baud, 19200);
     assert_int_equal(is.warm_up_s, 9);

@@ -271,8 +271,9 @@ TEST(a_read_ends_with_a_byte_that_was_heard_wrong)
 TEST(three_devices_share_a_line_each_at_its_address_and_rate)
 {
     fathom_sim_fixed_t second = FIXED(2083);
-    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
-    add_hps((hps_config_t){.unit = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.address = 5});
+    add_hps(
+        (hps_config_t){.address = 1, .scene = fathom_sim_fixed(&second)}); /* the A16's, at another rate */
     for (int round = 0; round < 3; round++) {
         transact(A16_ASKED, 200, A16_RESPONSE);
         transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
@@ -291,7 +292,7 @@ TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 {
     say(A16_ASKED);
     wait_us(3600);
-    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.address = 5});
     hear(200, A16_RESPONSE);
     transact("05 03 02 00 00 01 84 36", 50, "05 03 02 00 05 89 87");
     say(A16_ASKED);
@@ -305,7 +306,7 @@ TEST(a_device_that_comes_in_the_middle_of_a_byte_hears_the_next_request)
 
 TEST(a_device_that_is_taken_off_in_mid_response_leaves_the_others_hearing)
 {
-    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.address = 5});
     ask("05 03 02 00 00 01 84 36", 5);
     while (bench.heard < 3) wait_us(100);
     wait_us(300);

@@ -8,7 +8,7 @@ static void set(uint32_t start_us)
 {
     bench_begin(&bench_9600, false);
     bench.fixed = FIXED(751);
-    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.unit = 5});
+    add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.address = 5});
     add_a16(FATHOM_SIM_A16_MODBUS, (a16_config_t){.start_us = start_us});
 }
 
@@ -107,7 +107,7 @@ TEST(a_neighbour_with_wires_of_its_own_never_heard_it)
 {
     fathom_sim_a16_t other;
     set_a16(FATHOM_SIM_A16_AUTO, FATHOM_SIM_NO_TARGET, (a16_config_t){0});
-    fathom_sim_a16_init(&other, &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .unit = 5});
+    fathom_sim_a16_init(&other, &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .address = 5});
     attach(&other.device);
     wait_ms(102);
     cycle(1000 * MS);

@@ -63,8 +63,8 @@ TEST(a_new_address_for_one_is_one_for_both)
     ask("01 06 00 10 00 05 48 0C", 50);
     assert_false(is_understood("01 06 00 10 00 05 48 0C"));
     assert_int_equal(bench.heard, 16);
-    assert_int_equal(bench.hps.device.unit, 5);
-    assert_int_equal(twin.device.unit, 5);
+    assert_int_equal(bench.hps.device.address, 5);
+    assert_int_equal(twin.device.address, 5);
 }
 
 TEST(one_at_another_rate_is_no_twin)
@@ -94,11 +94,11 @@ TEST(the_address_command_of_55_aa_makes_two_of_one_address_that_garble_each_othe
 {
     fathom_sim_a05_t second;
     set_a05(FATHOM_SIM_A05_DYP, FIXED(0), (a05_config_t){0});
-    fathom_sim_a05_init(&second, &(a05_config_t){.mode = FATHOM_SIM_A05_DYP, .unit = 2, .seed = 1});
+    fathom_sim_a05_init(&second, &(a05_config_t){.mode = FATHOM_SIM_A05_DYP, .address = 2, .seed = 1});
     attach(&second.device);
     ask("55 AA 05 03 07", 50); /* A05 2(3)5 */
     assert_int_equal(bench.heard, 10);
     assert_false(is_understood("55 AA 05 03 07"));
-    assert_int_equal(bench.a05.device.unit, 5);
-    assert_int_equal(second.device.unit, 5);
+    assert_int_equal(bench.a05.device.address, 5);
+    assert_int_equal(second.device.address, 5);
 }

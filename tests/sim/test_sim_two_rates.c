@@ -21,8 +21,8 @@ static void begin(const fathom_line_settings_t *slow, const fathom_line_settings
     scenes[1] = probes;
     scenes[2] = FIXED(HPS_MM);
     add_a16(FATHOM_SIM_A16_MODBUS, (a16_config_t){.scene = fathom_sim_fixed(&scenes[0])});
-    add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.unit = 2, .scene = fathom_sim_fixed(&scenes[1])});
-    add_hps((hps_config_t){.unit = 3, .scene = fathom_sim_fixed(&scenes[2])});
+    add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.address = 2, .scene = fathom_sim_fixed(&scenes[1])});
+    add_hps((hps_config_t){.address = 3, .scene = fathom_sim_fixed(&scenes[2])});
     const fathom_a16_modbus_config_t a16 = {
         .modbus.transport = &s.modbus, .modbus.line_settings = slow, .value = FATHOM_REAL_TIME};
     const fathom_hps167s_config_t hps = {.modbus.transport = &s.modbus,

@@ -25,7 +25,7 @@ const soak_facts_t soak_facts[SOAK_SETTINGS] = {
 bool soak_is_asked(uint8_t setting) { return soak_facts[setting].proof >= SOAK_CRC; }
 
 /* A period of 1 ms is less than a frame: one after the other. */
-#define COMMON   .unit = address, .seed = seed, .scene = *scene
+#define COMMON   .address = address, .seed = seed, .scene = *scene
 #define TIGHT(s) .period_us = setting == (s) ? 1000 : 0
 
 fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, uint8_t address,

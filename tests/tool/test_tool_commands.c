@@ -81,7 +81,7 @@ TEST(info_prints_the_settings_of_an_a16)
 
 TEST(info_prints_the_settings_of_an_a05)
 {
-    bench_a05((fathom_sim_a05_config_t){.unit = 9});
+    bench_a05((fathom_sim_a05_config_t){.address = 9});
     EXPECT_OUT(tool_run(&bench.tool, "info a05:9 --port line"), "\naddress                    9\n");
     assert_int_equal(bench.a05.device.counters.writes, 0);
 }
@@ -99,7 +99,7 @@ TEST(set_moves_an_a16_to_another_address_where_it_is_read_then)
 {
     bench_a16(any_a16);
     ASSERT_RUN(0, "set a16 address 200 --port line");
-    assert_int_equal(bench.a16.device.unit, 200);
+    assert_int_equal(bench.a16.device.address, 200);
     assert_int_equal(bench.a16.device.counters.writes, 1);
     ASSERT_RUN(1, "get a16 address --port line");
     EXPECT_OUT(tool_run(&bench.tool, "get a16:200 address --port line"), "200\n");
@@ -109,7 +109,7 @@ TEST(set_moves_an_a05_to_another_address_where_it_is_read_then)
 {
     bench_a05(any_a05);
     ASSERT_RUN(0, "set a05 address 2 --port line");
-    assert_int_equal(bench.a05.device.unit, 2);
+    assert_int_equal(bench.a05.device.address, 2);
     ASSERT_RUN(0, "read a05:2:modbus --count 1 --port line");
 }
 
@@ -123,9 +123,9 @@ TEST(set_switches_the_termination_of_an_hps167s_off)
 
 TEST(reset_gives_an_hps167s_its_factory_settings)
 {
-    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 7, .no_termination = true});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .no_termination = true});
     ASSERT_RUN(0, "reset hps167s:7 --yes-restore-factory-settings --port line");
-    assert_int_equal(bench.hps167s.device.unit, 1);
+    assert_int_equal(bench.hps167s.device.address, 1);
     assert_true(bench.hps167s.termination);
 }
 
@@ -148,7 +148,7 @@ static int read_unless_deaf(void *ctx, uint8_t *bytes, size_t capacity, fathom_r
 static const char *reset_unheard(const char *option)
 {
     bench_begin();
-    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 7});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7});
     is_deaf = false;
     bench.tool.uart.write = write_and_be_deaf;
     bench.tool.uart.read = read_unless_deaf;
@@ -169,9 +169,9 @@ TEST(a_reset_that_is_not_acknowledged_says_what_is_not_known)
 
 TEST(scan_finds_one_of_each_sensor_on_a_line)
 {
-    bench_a16((fathom_sim_a16_config_t){.unit = 2});
-    bench_a05((fathom_sim_a05_config_t){.unit = 3});
-    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 32});
+    bench_a16((fathom_sim_a16_config_t){.address = 2});
+    bench_a05((fathom_sim_a05_config_t){.address = 3});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 32});
     const tool_run_t *const run = tool_run(&bench.tool, "scan --port line");
     assert_int_equal(run->status, 0);
     EXPECT_OUT(run, "a16      address 2  ", "a05      address 3  ", "hps167s  address 32 ");

@@ -164,7 +164,7 @@ TEST(all_units_are_told_once_and_only_with_yes)
                                           "set hps167s distance-offset 5 --all-units --yes",
                                           "set hps167s termination off --blind --all-units --yes",
                                           "set a16 switch-threshold 5 --all-units --yes"};
-    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 9});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 9});
     for (size_t i = 0; i != sizeof refused / sizeof refused[0]; i++) says(2, "--all-units", refused[i]);
     assert_int_equal(counters()->requests, 0);
     says(0, "all units: termination off: sent, not confirmed\n",

@@ -22,7 +22,7 @@ static int set_up(void **state)
 {
     set_to_two = set_to_one = 0;
     bench_begin();
-    bench_hps167s((fathom_sim_hps167s_config_t){.unit = 3});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 3});
     bench.hps167s.device.settings = (fathom_line_settings_t){19200, FATHOM_PARITY_NONE, 2};
     assert_ptr_equal(bench.tool.uart.ctx, &bench.uart);
     bench.tool.uart.set_line = set_line;

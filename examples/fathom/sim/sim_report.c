@@ -89,7 +89,7 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
         {"line_collisions", line->counters.collisions},
     };
     (void)fprintf(to, "{\"device\":%" PRIu32 ",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u", i + 1,
-                  options->devices[i].model->name, options->devices[i].mode->name, device->unit);
+                  options->devices[i].model->name, options->devices[i].mode->name, device->address);
     for (size_t f = 0; f != sizeof fields / sizeof fields[0]; f++)
         (void)fprintf(to, ",\"%s\":%" PRIu32, fields[f].name, fields[f].value);
     (void)fprintf(to, "}\n");

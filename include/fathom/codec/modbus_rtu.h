@@ -57,14 +57,14 @@ typedef struct {
 
 /*
  * Fill in a request. The caller owns `values` and keeps it until the response is there.
- * unit: 0..255. count: 1..125 to read, 1..123 to write. Nothing is checked here: fathom_modbus_rtu_frame_size()
+ * address: of the unit, 0..255. first: of the first register. count: 1..125 to read, 1..123 to write. Nothing is checked here: fathom_modbus_rtu_frame_size()
  * finds a count out of range, and to submit such a request is FATHOM_ERR_ARGUMENT.
  */
-void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint8_t unit, uint16_t first,
+void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                           uint8_t count, uint16_t *values);
-void fathom_modbus_write_single_register(fathom_modbus_message_t *message, uint8_t unit, uint16_t address,
+void fathom_modbus_write_single_register(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                          uint16_t value);
-void fathom_modbus_write_multiple_registers(fathom_modbus_message_t *message, uint8_t unit, uint16_t first,
+void fathom_modbus_write_multiple_registers(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                             uint8_t count, const uint16_t *values);
 
 /* ---- the client's side ---- */

@@ -245,7 +245,7 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *tr
 void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction);
 
 /* The same for every transaction with this unit. */
-void fathom_line_cancel_unit(fathom_line_t *line, uint8_t unit);
+void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address);
 
 /* Is it queued or in flight? */
 bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction);

@@ -39,9 +39,9 @@ struct fathom_line_turns {
      */
     fathom_transaction_t *(*next)(fathom_line_turns_t *turns, const fathom_line_t *line);
     /* A request of this unit was submitted at that time, while none of it (modulo 16) was in the queue. */
-    void (*asked)(fathom_line_turns_t *turns, uint8_t unit, uint32_t at_us);
+    void (*asked)(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us);
     /* The attempt that was on the wire, of this unit, has ended by that time. */
-    void (*ended)(fathom_line_turns_t *turns, uint8_t unit, uint32_t at_us);
+    void (*ended)(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us);
     uint32_t wait_us;
 
     /* the line's */
@@ -62,7 +62,7 @@ void fathom_line_take_turns(fathom_line_t *line, fathom_line_turns_t *turns);
  * left. After a response that was damaged, but whole, it is what is left of the time-out. One deadline, the latest,
  * serves all units; those whose addresses are equal modulo 16 share a quarantine.
  */
-bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t unit);
+bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t address);
 
 #ifdef __cplusplus
 }

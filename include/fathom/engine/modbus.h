@@ -40,7 +40,7 @@ typedef struct {
 typedef struct {
     fathom_status_t (*submit)(void *ctx, fathom_modbus_request_t *request);
     void (*cancel)(void *ctx, fathom_modbus_request_t *request);
-    void (*cancel_unit)(void *ctx, uint8_t unit);
+    void (*cancel_unit)(void *ctx, uint8_t address);
     fathom_status_t (*poll)(void *ctx);
     uint32_t (*due_us)(void *ctx);
     const fathom_clock_t *clock;

@@ -37,7 +37,7 @@ struct fathom_modbus_setting {
     uint32_t value;                     /* what is wanted, as read gives it */
     /* Where the device is once it has taken the value. The settings are kept by the caller as long as the unit. */
     const fathom_line_settings_t *line_settings; /* NULL: as before */
-    uint16_t address;                       /* 1..254; 0: as before; 256: address 0 */
+    uint16_t address;                            /* 1..254; 0: as before; 256: address 0 */
 };
 
 /*

@@ -41,7 +41,7 @@ void desk_start(uint8_t orders, uint32_t clock_us)
     fathom_sim_line_init(&desk.line, &settings, board.clock.now_us);
     for (uint8_t i = 0; i < 2; i++) {
         const fathom_sim_hps167s_config_t config = {
-            .unit = (uint8_t)(1 + i),
+            .address = (uint8_t)(1 + i),
             .baud_code = desk.baud == 115200 ? 3 : 1,
             .seed = i,
             .scene = {measure, &desk.measured[i]},

@@ -33,7 +33,7 @@ void begin_stranger(uint8_t unit, const fathom_line_settings_t *line)
     memset(&device, 0, sizeof device);
     device.model = &model;
     device.settings = *line;
-    device.unit = unit;
+    device.address = unit;
     device.listens = true;
     device.protocols[0] = &fathom_sim_modbus;
     rig_attach(&device);
@@ -59,7 +59,7 @@ static const fathom_sim_protocol_t speaker_protocol = {speaker_hear, speak, NULL
 
 static bool speaker_hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us)
 {
-    if (device->unit != 0 && frame[0] != device->unit) return true;
+    if (device->address != 0 && frame[0] != device->address) return true;
     device->reply_settings = device->settings;
     fathom_sim_device_reply(device, &speaker_protocol, 5000);
     return true;

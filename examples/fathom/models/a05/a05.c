@@ -51,8 +51,8 @@ static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings
 static void simulate(device_t *device, const device_settings_t *settings, uint8_t mode)
 {
     const uint32_t *const traits = settings->traits;
-    const fathom_sim_a05_config_t config = {.unit = settings->address,
-                                            .unit_zero = settings->address == 0,
+    const fathom_sim_a05_config_t config = {.address = settings->address,
+                                            .address_zero = settings->address == 0,
                                             .mode = mode,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
                                             .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,

@@ -59,8 +59,8 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
 static void simulate(device_t *device, const device_settings_t *settings, uint8_t mode)
 {
     const uint32_t *const traits = settings->traits;
-    const fathom_sim_a16_config_t config = {.unit = settings->address,
-                                            .unit_zero = settings->address == 0,
+    const fathom_sim_a16_config_t config = {.address = settings->address,
+                                            .address_zero = settings->address == 0,
                                             .mode = mode,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
                                             .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,

@@ -64,7 +64,7 @@ static void simulate_modbus(device_t *device, const device_settings_t *settings)
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_hps167s_config_t config = {
-        .unit = settings->address,
+        .address = settings->address,
         .baud_code = fathom_hps167s_baud_code(settings->baud),
         .warm_up_s = (uint8_t)traits[DEVICE_WARM_UP],
         .warm_up_says = warm_up_says(traits),
