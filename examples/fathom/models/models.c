@@ -14,8 +14,8 @@ const model_t *const models[MODELS] = {&model_a16, &model_a05, &model_hps167s};
 
 const model_t *model_of(uint8_t id)
 {
-    size_t i = 0;
-    while (models[i]->id != id) i++;
+    size_t i = MODELS - 1;
+    while (i != 0 && models[i]->id != id) i--;
     return models[i];
 }
 
