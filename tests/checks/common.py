@@ -51,6 +51,7 @@ def run(command, root):
 def plant(root, path, old, new):
     """Replaces the first `old` (None: the end) of a file, which is made if need be."""
     target = os.path.join(root, path)
+    os.makedirs(os.path.dirname(target), exist_ok=True)
     text = read(root, path) if os.path.exists(target) else ''
     if old is None:
         text += new

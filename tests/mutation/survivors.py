@@ -20,7 +20,7 @@ ROWS = [
      'src/engine/line_request.c | quarantine | relational: < -> <= | if (line->quarantined == 0 || line->quarantine_left_us < longest_us)',
      'src/engine/fair_share.c | count | relational: > -> >= | if (fathom_elapsed_us(now_us, share->since_us) > silence_us)',
      'src/engine/trigger.c | fathom_trigger_drive | relational: < -> <= | if (trigger->left_us < trigger->low_us)'),
-    ('a scan of no bytes does nothing; the question is there for speed',
+    ('a scan of no bytes does nothing; the condition is there for speed',
      'src/engine/line.c | fathom_line_poll | logical: line->have != 0 && line->silent_us >= gap_us(line) -> '
      'line->silent_us >= gap_us(line) | if (line->have != 0 && line->silent_us >= gap_us(line))',
      'src/engine/line.c | fathom_line_drop | constant: 0 -> 1 | line->need = 0',
@@ -132,7 +132,7 @@ ROWS = [
     ('nothing but init may follow',
      'src/engine/pulse.c | fathom_pulse_deinit | statement dropped: it -> nothing | meter->waiting = false',
      'src/engine/pulse.c | fathom_pulse_deinit | constant: false -> true | meter->waiting = false'),
-    ('writes a value behind the last, which nobody reads; the bounds check of the sanitizer builds ends there',
+    ('writes a value behind the last, which no code reads; the bounds check of the sanitizer builds ends there',
      'src/sensor/a16_controlled.c | judge | constant: 1 -> 2 | fathom_dyp_stream_decode(fathom_stream_frame(& '
      'sensor->stream), response->values, 1)'),
     ('the end of these 71 minutes is not told; it is due 1 us earlier',
@@ -170,7 +170,7 @@ ROWS = [
     ('looked at only while it listens, and is set when that begins',
      'src/sensor/a16_rs232.c | fathom_a16_rs232_init | statement dropped: it -> nothing | rs232->since_us = 0',
      'src/sensor/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->since_us = 0'),
-    ('half the range of the clock is 35 minutes, and nobody waits so long',
+    ('half the range of the clock is 35 minutes, and no program waits so long',
      'src/sensor/a16_rs232.c | is_since | relational: <= -> < | return fathom_elapsed_us(time_us, rs232->since_us) <= '
      'INT32_MAX',
      'src/sensor/a16_rs232.c | is_since | constant: INT32_MAX -> (INT32_MAX + 1) | return fathom_elapsed_us(time_us, '
