@@ -5,8 +5,8 @@
  *
  *   PD1 (TXD), PD0 (RXD)   DI and RO of a transceiver for 5 V, as the MAX485
  *   PD2, Arduino 2         DE and /RE together: no echo. 10 kOhm to ground keep it quiet until this runs
- *   A, B of it             white and green of the sensor, which has a terminating resistor, as from the factory. 560 Ohm
- *                          from A to 5 V and from B to ground: else a MAX485 may receive noise on an idle pair
+ *   A, B of it             white and green of the sensor, which has a terminating resistor, as from the factory.
+ *                          560 Ohm from A to 5 V and from B to ground: else a MAX485 may receive noise on an idle pair
  *   PB0, Arduino 8         LED "near", from the supply: a low pin lights it. A relay board with low inputs does, too
  *   PB1, Arduino 9         LED "far", the same
  *   PB2, Arduino 10        LED "error", the same

@@ -28,8 +28,8 @@ enum {
 };
 
 enum {
-    /* A transfer ends after so many bytes, and the next one begins. It could be 2^32 - 1 as well; then that would happen
-     * for the first time after a month in the field. */
+    /* A transfer ends after so many bytes, and the next one begins. It could be 2^32 - 1 as well; then that would
+     * happen for the first time after a month in the field. */
     TRANSFER = 1024,
     IDLE_BITS = 32, /* as the UART's own time-out has it: three characters */
     MARGIN = 4,     /* bytes that may come while the ring is read */
@@ -117,7 +117,8 @@ void dma_uart_look(dma_uart_t *uart)
 
 /* ---- the HAL's view ---- */
 
-/* The oldest mark at `taken` or behind it; NULL: there is none. Of those that are remembered one may be written anew. */
+/* The oldest mark at `taken` or behind it; NULL: there is none. Of those that are remembered one may be written
+ * anew. */
 static const volatile dma_uart_mark_t *next_mark(dma_uart_t *uart)
 {
     const uint8_t marked = uart->marked;

@@ -9,10 +9,10 @@
 
 /*
  * An HPS-167S on a battery: it has power, by GPIO 7, for one reading every BATTERY_MINUTES, and most of that is its
- * warm-up of 5 s. GPIO 7 is the input of a switch for the sensor's 5 to 15 V. Wired as in hps167s_rs485.c otherwise; the
- * transceiver keeps its power, since GPIO 4, which idles high, would feed one without through its input. The core sleeps
- * all the time but for the bytes and a look at the clock once a minute. WFI alone leaves the clocks on; who stops them too
- * has to keep TIMER going, or to start again from the top of main.
+ * warm-up of 5 s. GPIO 7 is the input of a switch for the sensor's 5 to 15 V. Wired as in hps167s_rs485.c otherwise;
+ * the transceiver keeps its power, since GPIO 4, which idles high, would feed one without through its input. The core
+ * sleeps all the time but for the bytes and a look at the clock once a minute. WFI alone leaves the clocks on; who
+ * stops them too has to keep TIMER going, or to start again from the top of main.
  */
 #ifndef BATTERY_MINUTES
 #define BATTERY_MINUTES 10

@@ -8,9 +8,9 @@
 #include "vectors.h"
 
 /*
- * An HPS-167S with its factory settings, address 1 and 19200 8E1, behind an RS-485 transceiver for 3.3 V, as the MAX3485
- * (a pin does not stand 5 V): DI at GPIO 4, RO at GPIO 5, DE and /RE at GPIO 6. Readings go out as text on GPIO 0,
- * 115200 8N1. The core sleeps between the bytes.
+ * An HPS-167S with its factory settings, address 1 and 19200 8E1, behind an RS-485 transceiver for 3.3 V, as the
+ * MAX3485 (a pin does not stand 5 V): DI at GPIO 4, RO at GPIO 5, DE and /RE at GPIO 6. Readings go out as text on GPIO
+ * 0, 115200 8N1. The core sleeps between the bytes.
  */
 enum { DI = 4, RO = 5, DE = 6, TEXT_TX = 0, TEXT_RX = 1, DE_ALARM = 0, IDLE_ALARM = 3 };
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * An HPS-167S behind an RS-485 transceiver for 3.3 V, as the MAX3485, 19200 8E1: USART2, TX (DI) on PA2, RX (RO) on PA3,
- * DE and /RE on PA1, with 10 kOhm to ground that keep it quiet until this runs. The loop ends after 10 readings so that
- * it can be tested; a machine's does not.
+ * An HPS-167S behind an RS-485 transceiver for 3.3 V, as the MAX3485, 19200 8E1: USART2, TX (DI) on PA2, RX (RO) on
+ * PA3, DE and /RE on PA1, with 10 kOhm to ground that keep it quiet until this runs. The loop ends after 10 readings so
+ * that it can be tested; a machine's does not.
  */
 #include "board.h"
 #include "fathom/fathom.h"

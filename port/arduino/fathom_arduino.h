@@ -12,14 +12,15 @@
  * its examples/ are where to start.
  *
  * What has been seen: the AVR core 1.8 on an ATmega328P at 16 MHz, simulated to the cycle; for a Mega and a Leonardo it
- * compiles. Not seen on hardware, nor with another core. What else is said of "AVR" here was read in that core's sources.
+ * compiles. Not seen on hardware, nor with another core. What else is said of "AVR" here was read in that core's
+ * sources.
  *
  * All functions return at once, but for what SoftwareSerial does by itself (below). They belong to setup() and loop();
  * those for interrupts say so. Objects are the caller's, may be global, do nothing before begin(), and may not be
  * moved or copied afterwards.
  *
- * What is compiled in: src/codec/crc16_small.c, the CRC with 16 entries. An AVR keeps const tables in RAM, where 256 entries
- * take 512 bytes of 2048; 16 take 32. It takes more time a byte, which none of these baud rates shows.
+ * What is compiled in: src/codec/crc16_small.c, the CRC with 16 entries. An AVR keeps const tables in RAM, where 256
+ * entries take 512 bytes of 2048; 16 take 32. It takes more time a byte, which none of these baud rates shows.
  */
 namespace fathom
 {
@@ -53,8 +54,8 @@ fathom_pin_t input(uint8_t pin, bool pull_up = false);
  *         capture = echo.capture();
  *
  * On an AVR at 16 MHz a width is off by the 4 us steps of micros(), and at either edge by another interrupt that runs
- * when it comes: 7 us by Timer0's, 5 by Serial's. Of those that wait the pin's is first, so there is one such delay: 4 us
- * mostly, 0.7 mm, and 11 us, 1.9 mm, at worst (seen: 6). What else there is adds itself: 20 us or so of another
+ * when it comes: 7 us by Timer0's, 5 by Serial's. Of those that wait the pin's is first, so there is one such delay:
+ * 4 us mostly, 0.7 mm, and 11 us, 1.9 mm, at worst (seen: 6). What else there is adds itself: 20 us or so of another
  * pulse_input, 1 ms of a byte of SoftwareSerial. port/avr does better, with the capture hardware of Timer1.
  * Where interrupt functions have to lie in RAM (ESP8266, ESP32), fathom_edges_feed does not.
  */

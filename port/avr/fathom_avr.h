@@ -22,7 +22,7 @@ extern "C" {
  *   int0.c    INT0 (PD2)                                  edges with the time at which the interrupt ran
  *   idle.c    Timer1's compare match B                    sleep until bytes come or time is up
  *   pin.c                                                 triggers, selects, switch and relay contacts
- *   crc16.c                                               instead of src/codec/crc16.c: without a table, 30 cycles a byte
+ *   crc16.c                                               for src/codec/crc16.c: without a table, 30 cycles a byte
  *   crc16_table.c                                         instead of that: 512 bytes of flash, 24 cycles a byte
  *
  * F_CPU is the chip's clock in Hz: 16000000 or 8000000, so that Timer1 divides it by 8 and counts 0.5 or 1 us. Of a
@@ -37,8 +37,8 @@ extern "C" {
 /* Timer1 runs from here on, from 0; the program uses it for nothing else. Called before all the others. */
 void fathom_avr_clock_begin(void);
 
-/* us since then; wraps as hal.h has it. Right as long as interrupts are never off for longer than half a period of Timer1:
- * 16 ms at 16 MHz, 32 ms at 8 MHz. */
+/* us since then; wraps as hal.h has it. Right as long as interrupts are never off for longer than half a period of
+ * Timer1: 16 ms at 16 MHz, 32 ms at 8 MHz. */
 extern const fathom_clock_t fathom_avr_clock;
 
 /* A pin: the PORT register and the bit. */
@@ -53,8 +53,8 @@ fathom_pin_t fathom_avr_output(const fathom_avr_pin_t *pin);
 fathom_pin_t fathom_avr_input(const fathom_avr_pin_t *pin, bool pull_up);
 
 enum {
-    /* Bytes that wait for the main loop, less one: 5.5 ms of them at 115200 baud. A power of two, 128 at most: two bytes
-     * each, and their indices are single bytes. */
+    /* Bytes that wait for the main loop, less one: 5.5 ms of them at 115200 baud. A power of two, 128 at most: two
+     * bytes each, and their indices are single bytes. */
     FATHOM_AVR_RX_RING = 64
 };
 
@@ -82,7 +82,8 @@ typedef struct {
  *             drives `driver` from before that until the last stop bit has left (transmit complete), in the interrupt.
  * sent        is exact.
  * leaves_in_us  counts bytes, and is two characters too long at most.
- * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; at 8 MHz no 115200 either; < 0 beyond.
+ * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; at 8 MHz no 115200 either; < 0
+ *             beyond.
  * set_break   the transmitter lets go of TXD (PD1), which is driven low; `driver` is high as long.
  * Cost: a receive interrupt of at most 60 cycles, see tests/bench/README.md.
  */

@@ -64,7 +64,8 @@ void fathom_mps2_uart_interrupt(fathom_mps2_uart_t *uart);
  * write      takes 1 to request_size bytes; of none or more it returns < 0. It begins with the first byte at once.
  * sent       one character of time after the last byte has left the buffer: no flag shows more. Up to one character
  *            late.
- * set_line   8N1, the clock divided by 16 or more: 24..1562500 baud, within 2.5 %; < 0 beyond, and for parity or 2 stop bits.
+ * set_line   8N1, the clock divided by 16 or more: 24..1562500 baud, within 2.5 %; < 0 beyond, and for parity or 2 stop
+ *            bits.
  * set_break  NULL: it has none. An RS-485 transceiver has to switch over by itself.
  */
 fathom_uart_t fathom_mps2_uart(fathom_mps2_uart_t *uart);

@@ -154,8 +154,8 @@ typedef struct {
     /* A command of the 55 AA protocol, to this device or to all. Returns as `request` does. */
     uint32_t (*command)(fathom_sim_device_t *device, uint8_t address, uint8_t command);
     /* Power has come: what is not kept is as at the beginning, what acts from the next power-on acts. Sets the level at
-     * which its TX pin rests, and takes what it notices at its RX pin; where there is no such function TX rests high, as
-     * a UART does. */
+     * which its TX pin rests, and takes what it notices at its RX pin; where there is no such function TX rests high,
+     * as a UART does. */
     void (*power_on)(fathom_sim_device_t *device, uint32_t now_us);
     /* The level at its RX pin has changed. Not called without power. */
     void (*edge)(fathom_sim_device_t *device, bool high, uint32_t now_us);

@@ -37,7 +37,8 @@ uint32_t fathom_sim_pty_now_us(void)
 
 /* ---- the link ---- */
 
-/* Was it left behind by a pty that was killed? Then it leads to a terminal that is gone, or whose number is this one's. */
+/* Was it left behind by a pty that was killed? Then it leads to a terminal that is gone, or whose number is this
+ * one's. */
 static bool is_left_behind(const char *link, const char *path)
 {
     char to[FATHOM_SIM_PTY_PATH];

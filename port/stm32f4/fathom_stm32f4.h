@@ -24,15 +24,15 @@ extern "C" {
  *   pin.c                                              triggers, selects, switch and relay contacts
  *
  * What has run, on QEMU's netduinoplus2, where the tests run it: the USART's reception by interrupts, its transmission
- * by the same code (QEMU 7.2 raises no interrupt for it, so that the test has to), TIM2 as the clock, the sleep (whose end QEMU
- * 7.2 delays).
+ * by the same code (QEMU 7.2 raises no interrupt for it, so that the test has to), TIM2 as the clock, the sleep (whose
+ * end QEMU 7.2 delays).
  * What has NEVER run but on a test's memory in place of the registers, since no simulator here has it: the capture, all
  * pins and with them the driver-enable and the break, parity, framing and overrun errors, and the line settings on a
  * wire. Not seen on a board.
  *
  * Registers and sections: RM0090. The bits in RCC that these peripherals and pins need are set by the begin functions;
- * the clocks themselves are the application's. All functions but the interrupts belong to the main loop. The priorities of
- * the interrupts stay what they are, 0 after reset; under an RTOS set them to what its calls from interrupts want.
+ * the clocks themselves are the application's. All functions but the interrupts belong to the main loop. The priorities
+ * of the interrupts stay what they are, 0 after reset; under an RTOS set them to what its calls from interrupts want.
  */
 
 /* A pin: {'A', 2} is PA2. */

@@ -11,7 +11,7 @@ import os
 import re
 import sys
 
-from common import ROOT, code_of, main, read
+from common import ROOT, code_of, files, main, read
 
 FOLDERS = ('include', 'src', 'port', 'examples', 'tests')
 C = ('.c', '.h', '.cpp', '.ino')
@@ -50,6 +50,8 @@ TABLE = [  # the word, as it is in names (None: allowed there), as it is in pros
     # the verb is left alone
     ('answer', None, r'(an?|the|its|late|whole|first|good) answers?', 'response'),
 ]
+CHANGES = 'CHANGELOG.md'
+RENAMED = re.compile(r'^\| `(fathom/\w+\.h|\w+)` \| `(fathom[\w/.]+|FATHOM_\w+)` \|$', re.M)
 # The one definition of quarantine may say what a unit owes.
 DEFINITION = ('owes', 'quarantine')
 
@@ -123,8 +125,23 @@ def prose_of(line, code):
     return ' '.join(re.findall(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'|/\*.*?(?:\*/|$)|//.*|^.*?\*/', line))
 
 
+def renamed(root):
+    """Of the table of names in CHANGELOG.md: no old one is left in a header, and each new one is there."""
+    if not os.path.exists(os.path.join(root, CHANGES)):
+        return
+    headers = files(root, 'include', 'port', ends='.h')
+    names = {name for path in headers for name in NAME.findall(code_of(read(root, path)))}
+    names |= {path[len('include/'):] for path in headers}
+    for old, new in RENAMED.findall(read(root, CHANGES)):
+        if old in names:
+            yield f'{CHANGES}: {old} has become {new}, and is there still'
+        if new not in names:
+            yield f'{CHANGES}: {old} has become {new}, which is in no header'
+
+
 def check(root, only):
-    return [f'{path}:{number}: {found!r}: use {instead}' for path, number, _, found, instead in findings(root, only)]
+    return [f'{path}:{number}: {found!r}: use {instead}' for path, number, _, found, instead
+            in findings(root, only)] + list(renamed(root))
 
 
 def folder_of(path):
@@ -155,6 +172,8 @@ FAULTS = [
     (LINE, None, '/* see planted_exchange_t */\n', "'planted_exchange_t': use transaction"),
     ('port/sim/planted_tally.c', None, 'int a;\n', "'planted_tally': use counters"),
     ('README.md', None, 'The planted seam.\n', "'seam': use transport"),
+    (CHANGES, None, '| `fathom_old` | `fathom_nowhere` |\n', 'fathom_nowhere, which is in no header'),
+    (CHANGES, None, '| `fathom_old` | `fathom_line_poll` |\n| `fathom_poll` | `fathom_line_poll` |\n', 'is there still'),
     ('port/planted.py', None, '# for somebody\n', "'somebody': use the subject"),
 ]
 

@@ -13,7 +13,8 @@
  * Real traces for the pictures: drivers of the library at simulated sensors, in simulated time.
  *
  *     picture_traces quarantine     two HPS-167S on one line, one of which answers after the response time-out
- *     picture_traces resync-SCENE   an A05 that sends by itself, a byte of which is lost. SCENE: silence, none, repeated
+ *     picture_traces resync-SCENE   an A05 that sends by itself, a byte of which is lost. SCENE: silence, none,
+ * repeated
  *
  * A line of what it prints is BEGIN_US,END_US,WHAT,TEXT. WHAT is `sent` or `came`, a byte on the wire; else what the
  * library made of it, at the time when the program was told.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // An HPS-167S behind an RS-485 transceiver: DI to TX, RO to RX, which has 10 kOhm to the supply as well, since RO
 // floats while bytes leave; DE and /RE together to pin 2, A and B to white and green. The transceiver has the board's
-// own voltage, 5 V or 3.3 V. 19200 8E1, as it comes from the factory. The LED is lit while something is nearer than 1 m,
-// and blinks while the sensor does not answer.
+// own voltage, 5 V or 3.3 V. 19200 8E1, as it comes from the factory. The LED is lit while something is nearer than 1
+// m, and blinks while the sensor does not answer.
 //
 // On a board with a second hardware serial (Mega, Leonardo, Zero) the sensor has Serial1, and Serial prints. An Uno has
 // one, and the sensor takes it: so there is nothing to print to, and while the board is programmed the transceiver has

@@ -77,7 +77,8 @@ struct model {
     /* ---- what its frames say ---- */
 
     uint8_t protocols; /* DECODE_... */
-    /* A Modbus frame. A response to a read may have no request (NULL); the bytes of a request are those of the frame. */
+    /* A Modbus frame. A response to a read may have no request (NULL); the bytes of a request are those of the
+     * frame. */
     void (*decode)(decode_frame_t *frame, const uint8_t *request);
     void (*decode_sum)(decode_frame_t *frame); /* of another of its protocols */
     const char *(*exception_name)(uint8_t code);

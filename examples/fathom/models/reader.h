@@ -69,7 +69,8 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
 /* reader_t.protocol. */
 extern const char reader_modbus[];
 
-/* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the response that did not fit, and not a value in it? */
+/* Of an attempt that has ended with FATHOM_ERR_MALFORMED: was it the response that did not fit, and not a value in
+ * it? */
 bool reader_got_unexpected_response(const reader_t *reader);
 
 /* The same, where a value of A16 or A05 was refused: of which probe? 0: it was not that. */

@@ -52,8 +52,8 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
 /* "9600 8N1", at which the sensor is asked; of a connection "Modbus TCP". */
 const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
 
-/* What has gone wrong with the last call, and what to try, without a line feed. A response that cannot be what was asked
- * for is no distance here. */
+/* What has gone wrong with the last call, and what to try, without a line feed. A response that cannot be what was
+ * asked for is no distance here. */
 void session_explain(session_t *session, fathom_status_t status);
 
 /* The help of the options. */

@@ -13,8 +13,8 @@
 
 #include "fathom/hal.h"
 
-/* A byte in this pipe ends every sleep, also one that begins just after the signal; those of signals that do not end the
- * command are taken out again. */
+/* A byte in this pipe ends every sleep, also one that begins just after the signal; those of signals that do not end
+ * the command are taken out again. */
 static int wake[2];
 static volatile sig_atomic_t ended;
 static volatile sig_atomic_t noted; /* the one that events_note has named */

@@ -14,8 +14,8 @@
  * a clock that moves while a command sleeps, and runs command after command: none of them keeps anything.
  */
 typedef struct {
-    /* Opens the serial port `path` and sets *uart. False: *port has the error and its text. Where there is no tty, *port
-     * stands in for what there is, as tcp.h has it. */
+    /* Opens the serial port `path` and sets *uart. False: *port has the error and its text. Where there is no tty,
+     * *port stands in for what there is, as tcp.h has it. */
     bool (*open)(void *ctx, const char *path, const fathom_line_settings_t *settings,
                  fathom_posix_uart_t *port, fathom_uart_t *uart);
     void (*close)(void *ctx, fathom_posix_uart_t *port);

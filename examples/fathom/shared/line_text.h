@@ -19,8 +19,8 @@ const char *parity_name(uint8_t parity);
 bool parity_parse(const char *text, uint8_t *parity);
 bool baud_parse(const char *text, uint32_t *baud);
 
-/* What of a sensor's line has to be told because it is not the factory's, as options: " --baud 57600", "". In a buffer of
- * the caller's. */
+/* What of a sensor's line has to be told because it is not the factory's, as options: " --baud 57600", "". In a buffer
+ * of the caller's. */
 enum { LINE_OPTIONS = 64 };
 const char *line_options(const fathom_line_settings_t *line, const fathom_line_settings_t *factory,
                          char text[LINE_OPTIONS]);

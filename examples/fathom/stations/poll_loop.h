@@ -19,8 +19,8 @@ bool poll_loop_run(poll_loop_t *loop);
 
 void poll_loop_close(poll_loop_t *loop);
 
-/* Has nothing failed, and has each sensor given a reading that is not unknown? One that has said nothing is forgiven where
- * the user ended it, or the port was still waited for. */
+/* Has nothing failed, and has each sensor given a reading that is not unknown? One that has said nothing is forgiven
+ * where the user ended it, or the port was still waited for. */
 bool poll_loop_is_good(const poll_loop_t *loop);
 
 /* Takes and adds up all counters. */

@@ -57,8 +57,8 @@ typedef struct {
 
 /*
  * Fill in a request. The caller owns `values` and keeps it until the response is there.
- * address: of the unit, 0..255. first: of the first register. count: 1..125 to read, 1..123 to write. Nothing is checked here: fathom_modbus_rtu_frame_size()
- * finds a count out of range, and to submit such a request is FATHOM_ERR_ARGUMENT.
+ * address: the unit's, 0..255. first: the first register's. count: 1..125 to read, 1..123 to write. Nothing is checked
+ * here: fathom_modbus_rtu_frame_size() finds a count out of range, and to submit such a request is FATHOM_ERR_ARGUMENT.
  */
 void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint8_t address, uint16_t first,
                                           uint8_t count, uint16_t *values);

@@ -18,8 +18,8 @@ static bool ask_four(inquiry_t *inquiry, uint16_t first, uint16_t four[FOUR])
     return true;
 }
 
-/* The response of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ from
- * a measurement between them. */
+/* The response of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ
+ * from a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {
     uint16_t configuration[FOUR];
