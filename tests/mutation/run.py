@@ -49,7 +49,8 @@ def processor_s():
 
 def module_of(mutant):
     """Its file; of a port's the folder."""
-    return '/'.join(mutant.file.split('/')[:2])
+    parts = mutant.file.split('/')
+    return '/'.join(parts[:2]) if parts[0] == 'port' else mutant.file
 
 
 def digest(path):
