@@ -51,6 +51,7 @@ static void tell_byte(uint32_t begin_us, uint32_t end_us, const char *what, uint
 /* A byte at a time, so that each has its own time. */
 static int read_one(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
+    (void)ctx;
     const int count = inner.read(inner.ctx, bytes, capacity < 1 ? capacity : 1, rx);
     if (count == 1)
         tell_byte(rx->last_us - fathom_sim_span_us(&wire.settings, 1), rx->last_us, "came", *bytes);
@@ -59,6 +60,7 @@ static int read_one(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 
 static int write_all(void *ctx, const uint8_t *bytes, size_t length)
 {
+    (void)ctx;
     const int count = inner.write(inner.ctx, bytes, length);
     for (uint16_t i = 0; i < count; i++)
         tell_byte(now.now_us + fathom_sim_span_us(&wire.settings, i),

@@ -90,7 +90,7 @@ ROWS = (
      'unit/test_line_queue',
      ('src/engine/line_request.c', 'fathom_line_deliver',
       'if (status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) continue;',
-      'if (fathom_line_expects_unit(line, unit) && status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) '
+      'if (fathom_line_expects_unit(line, address) && status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) '
       'continue;')),
     ('overrun-after-a-silence-is-a-gap',
      'stream.h: a frame is believed if it is the first thing after a silence',
