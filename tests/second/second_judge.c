@@ -153,7 +153,9 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
         }
         reason = why_different(&f, wanted);
         if (reason == BECAUSE_NOTHING) reason = judge_why(FATHOM_ERR_NO_RESPONSE);
-        if (reason == BECAUSE_NOTHING && !wanted.acknowledged) reason = judge_why(FATHOM_ERR_MALFORMED);
+        /* What is only acknowledged is not read back; what a reset has done is. */
+        if (reason == BECAUSE_NOTHING && (!wanted.acknowledged || f.reset))
+            reason = judge_why(FATHOM_ERR_MALFORMED);
         break;
     case FATHOM_ERR_EXCEPTION:
         if (f.settings > 0) judge_finding("'refused', and it was taken", status);
