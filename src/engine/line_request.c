@@ -62,7 +62,7 @@ void fathom_line_end_attempt(fathom_line_t *line)
 
 /* ---- what comes in ---- */
 
-/* Does a frame of `unit` concern the transaction? */
+/* Does a frame from this address concern the transaction? */
 static bool is_of(const fathom_transaction_t *transaction, uint8_t address)
 {
     return transaction->address == address || transaction->address == FATHOM_LINE_ANY_UNIT;
