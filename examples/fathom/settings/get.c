@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "commands.h"
-#include "settings/session.h"
-#include "settings/setting_text.h"
 #include "shared/line_text.h"
+#include "stations/session.h"
+#include "stations/setting_text.h"
 
 /* fathom info and fathom get: all that a device tells, or some of it. */
 

@@ -3,8 +3,8 @@
 
 #include "commands.h"
 #include "fathom/sensor/hps167s_settings.h"
-#include "settings/session.h"
 #include "shared/line_text.h"
+#include "stations/session.h"
 
 /* fathom reset: the two commands of an HPS-167S that throw settings away.
  * Nothing else of the tool sends them. */

@@ -3,7 +3,7 @@
 
 #include "commands.h"
 #include "settings/set_report.h"
-#include "settings/setting_text.h"
+#include "stations/setting_text.h"
 
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
 

@@ -2,7 +2,7 @@
 #ifndef SET_REPORT_H
 #define SET_REPORT_H
 
-#include "settings/session.h"
+#include "stations/session.h"
 
 /* What `fathom set` was asked to change. */
 typedef struct {

@@ -35,9 +35,14 @@ bool station_parse(station_t *station, const char *command, const char *text, co
         return false;
     station->address = (uint8_t)number;
     if (!sensor_text_address(&sensor, command, station->mode, &station->address)) return false;
+    station_name(station);
+    return true;
+}
+
+void station_name(station_t *station)
+{
     (void)snprintf(station->name, sizeof station->name, station->mode->is_asked ? "%s:%u" : "%s",
                    station->model->name, station->address);
-    return true;
 }
 
 static bool is_same_line(const station_t *one, const station_t *other)

@@ -34,6 +34,9 @@ typedef struct {
 bool station_parse(station_t *station, const char *command, const char *text, const char *address,
                    const char *mode, bool is_shared);
 
+/* Its name, by its model, mode and address. */
+void station_name(station_t *station);
+
 /* Can these be read on one line? has_settings: a line where each is asked at its own settings; not so behind a
  * gateway. False after a usage error. */
 bool stations_check(const station_t *stations, size_t count, const char *command, bool has_settings);

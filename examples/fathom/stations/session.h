@@ -6,7 +6,7 @@
 #include "shared/line_text.h"
 #include "stations/sensor_options.h"
 
-/* A session with one sensor on a port: what `fathom info`, `get`, `set` and `reset` share. */
+/* A session with one sensor on a port: what all commands share that ask for, or change, more than distances. */
 typedef struct {
     sensor_options_t options;
     station_t *station; /* the only one */
@@ -42,6 +42,10 @@ const setting_t *session_settings(const session_t *session);
 /* False after saying why. */
 bool session_open(session_t *session, const host_t *host);
 void session_close(session_t *session);
+
+/* On the open port from now on the sensor is asked at this address, at these line settings: another one, or the same
+ * one that has been moved. What was under way is given up. False after saying why. */
+bool session_move(session_t *session, uint8_t address, const fathom_line_settings_t *line);
 
 /* Calls until it is not FATHOM_PENDING, waiting as long as it may. A signal ends it: FATHOM_ERR_CANCELLED. */
 typedef fathom_status_t (*session_call_t)(reader_t *reader, void *ctx);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "settings/setting_text.h"
+#include "stations/setting_text.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "settings/session.h"
+#include "stations/session.h"
 
 #include <string.h>
 
@@ -80,7 +80,8 @@ static void listen(session_t *session)
     }
 }
 
-bool session_open(session_t *session, const host_t *host)
+/* Its driver, from the beginning. */
+static bool begin(session_t *session)
 {
     const sensor_options_t *const options = &session->options;
     station_t *const station = session->station;
@@ -90,6 +91,15 @@ bool session_open(session_t *session, const host_t *host)
                                         .backoff_us = READER_BACKOFF_US,
                                         .address = station->address,
                                         .retries = options->retries};
+    if (!station_begin(station, &session->channel, &settings)) return false;
+    if (session->channel.tcp == NULL && station->model->listen_unasked != NULL)
+        station->model->listen_unasked(&station->reader);
+    return true;
+}
+
+bool session_open(session_t *session, const host_t *host)
+{
+    const sensor_options_t *const options = &session->options;
     session->channel.echo = options->echo;
     if (!host->begin(host->ctx)) return false;
     if (!channel_open(&session->channel, host, options->port, &options->line)) {
@@ -97,14 +107,22 @@ bool session_open(session_t *session, const host_t *host)
         return false;
     }
     counters_begin_port(&session->port_counts, &session->channel);
-    if (!station_begin(station, &session->channel, &settings)) {
+    if (!begin(session)) {
         channel_close(&session->channel);
         return false;
     }
-    if (session->channel.tcp != NULL) return true;
-    if (station->model->listen_unasked != NULL) station->model->listen_unasked(&station->reader);
-    listen(session);
+    if (session->channel.tcp == NULL) listen(session);
     return true;
+}
+
+bool session_move(session_t *session, uint8_t address, const fathom_line_settings_t *line)
+{
+    station_t *const station = session->station;
+    fathom_modbus_unit_cancel(station->reader.unit);
+    station->address = address;
+    station->line = *line;
+    station_name(station);
+    return begin(session);
 }
 
 void session_close(session_t *session) { channel_close(&session->channel); }
