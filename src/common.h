@@ -36,6 +36,14 @@ static inline void clear(void *object, size_t size)
     while (size-- != 0) *at++ = 0;
 }
 
+/* All bytes of one into another, which may be the same; volatile for the same reason. */
+static inline void copy(void *to, const void *from, size_t size)
+{
+    volatile uint8_t *at = to;
+    const uint8_t *of = from;
+    while (size-- != 0) *at++ = *of++;
+}
+
 static inline fathom_sensor_t sensor_of(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),
                                         uint32_t (*due_us)(void *ctx), void *driver)
 {

@@ -30,6 +30,11 @@
 #include "fathom/sensor/hps167s_info.h"     /* what can be read: commands #1 to #4 */
 #include "fathom/sensor/hps167s_settings.h" /* what can be set: commands #6 to #15 */
 
+/* What is made of their readings */
+#include "fathom/sensor/alarm.h"  /* thresholds, hold times, and a safe side where the distance is not known */
+#include "fathom/sensor/level.h"  /* a tank's level and volume */
+#include "fathom/sensor/median.h" /* a median, and a gate that drops spikes */
+
 /* What goes with them */
 #include "fathom/engine/debounce.h"      /* a switch made of distances, by the A16's rule */
 #include "fathom/engine/edges.h"         /* pulses by a pin interrupt, without capture hardware */

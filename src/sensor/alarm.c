@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/alarm.h"
+
+#include "../common.h"
+
+/* Beside FATHOM_ALARM_ON and FATHOM_ALARM_OFF, what alarm->side may be. */
+enum { BETWEEN = 0, NOT_KNOWN = FATHOM_ALARM_UNKNOWN };
+
+static bool is_side(uint8_t state) { return state == FATHOM_ALARM_ON || state == FATHOM_ALARM_OFF; }
+
+/* The two thresholds by where they are, whichever of them switches on. */
+static uint16_t nearer_mm(const fathom_alarm_config_t *config)
+{
+    return config->when == FATHOM_NEAR ? config->on_mm : config->off_mm;
+}
+
+static uint16_t farther_mm(const fathom_alarm_config_t *config)
+{
+    return config->when == FATHOM_NEAR ? config->off_mm : config->on_mm;
+}
+
+fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config)
+{
+    clear(alarm, sizeof *alarm);
+    copy(&alarm->config, config, sizeof alarm->config);
+    alarm->config.unknown_us = or_default(config->unknown_us, FATHOM_ALARM_DEFAULT_UNKNOWN_US);
+    alarm->state = FATHOM_ALARM_UNKNOWN;
+    alarm->was = config->if_unknown;
+    return (config->when == FATHOM_NEAR || config->when == FATHOM_FAR) && is_side(config->if_unknown) &&
+                   is_side(config->if_no_response) && nearer_mm(config) <= farther_mm(config)
+               ? FATHOM_READY
+               : FATHOM_ERR_ARGUMENT;
+}
+
+/* The side on which a sample is; NOT_KNOWN: it tells no distance. */
+static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_t *sample)
+{
+    uint8_t kind = sample->kind;
+    if (kind == FATHOM_NO_TARGET && !config->no_target_is_unknown) kind = FATHOM_FAR;
+    if (kind == FATHOM_TARGET) {
+        if (sample->distance_mm < nearer_mm(config))
+            kind = FATHOM_NEAR;
+        else if (sample->distance_mm > farther_mm(config))
+            kind = FATHOM_FAR;
+        else
+            return BETWEEN;
+    }
+    if (kind != FATHOM_NEAR && kind != FATHOM_FAR) return NOT_KNOWN;
+    return kind == config->when ? FATHOM_ALARM_ON : FATHOM_ALARM_OFF;
+}
+
+/* Is it unknown_us and more since the last sample that counted? */
+static bool is_too_long(fathom_alarm_t *alarm, uint32_t now_us)
+{
+    if (alarm->side == NOT_KNOWN) return true; /* it has been once, and none has come since */
+    if (!alarm->is_fed) alarm->fed_us = now_us;
+    alarm->is_fed = true;
+    const uint32_t passed_us = fathom_elapsed_us(now_us, alarm->fed_us);
+    /* Half a turn of the clock and more: it is a time before the sample. */
+    return passed_us > alarm->config.unknown_us && passed_us <= INT32_MAX;
+}
+
+static void look_at_time(fathom_alarm_t *alarm, uint32_t now_us)
+{
+    if (!is_too_long(alarm, now_us)) return;
+    alarm->side = NOT_KNOWN;
+    alarm->state = alarm->responds ? FATHOM_ALARM_UNKNOWN : FATHOM_ALARM_NO_RESPONSE;
+}
+
+bool fathom_alarm_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us)
+{
+    const uint8_t before = alarm->state;
+    if (status != FATHOM_PENDING)
+        alarm->responds = status == FATHOM_READY || status == FATHOM_ERR_MALFORMED ||
+                          status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_WARMING_UP;
+    look_at_time(alarm, now_us);
+    return alarm->state != before;
+}
+
+bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
+{
+    const uint32_t now_us = sample->time_us;
+    const uint8_t before = alarm->state;
+    const uint8_t side = side_of(&alarm->config, sample);
+    if (side == NOT_KNOWN) return fathom_alarm_status(alarm, FATHOM_READY, now_us);
+    look_at_time(alarm, now_us); /* by what came before this sample */
+    alarm->fed_us = now_us;
+    alarm->responds = true;
+    if (alarm->side != side) alarm->since_us = now_us;
+    alarm->side = side;
+    const uint32_t hold_us = side == FATHOM_ALARM_ON ? alarm->config.on_hold_us : alarm->config.off_hold_us;
+    if (side == BETWEEN)
+        alarm->state = alarm->was;
+    else if (fathom_elapsed_us(now_us, alarm->since_us) >= hold_us)
+        alarm->state = alarm->was = side;
+    return alarm->state != before;
+}
+
+bool fathom_alarm_is_on(const fathom_alarm_t *alarm)
+{
+    uint8_t state = alarm->state;
+    if (state == FATHOM_ALARM_UNKNOWN) state = alarm->config.if_unknown;
+    if (state == FATHOM_ALARM_NO_RESPONSE) state = alarm->config.if_no_response;
+    return state == FATHOM_ALARM_ON;
+}

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/sensor/median.h"
+
+#include "../common.h"
+
+/* In the window each sample is its millimetres, and what is no distance stands at one of the ends. */
+enum { NEARER = 0 };
+#define FARTHER UINT16_MAX
+
+fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_config_t *config)
+{
+    fathom_median_config_t *const own = &median->config;
+    clear(median, sizeof *median);
+    copy(own, config, sizeof *own);
+    own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
+    if (own->gate_row == 0) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
+    return own->window == NULL || own->count < FATHOM_MEDIAN_MIN_COUNT || own->count > FATHOM_MEDIAN_MAX_COUNT
+               ? FATHOM_ERR_ARGUMENT
+               : FATHOM_READY;
+}
+
+static bool is_full(const fathom_median_t *median) { return median->have == median->config.count; }
+
+static bool is_spike(const fathom_median_t *median, uint16_t mm)
+{
+    const uint32_t gate_mm = median->config.gate_mm;
+    const uint16_t value = median->value;
+    if (gate_mm == 0 || !is_full(median)) return false;
+    return (mm == FARTHER) != (value == FARTHER) || mm > value + gate_mm || value > mm + gate_mm;
+}
+
+/* The one of a full window before which there are less than half, and after which there are not more than half. */
+static uint16_t middle_of(const fathom_median_t *median)
+{
+    const uint8_t count = median->config.count;
+    const uint8_t before = (uint8_t)((count - 1) / 2);
+    for (const uint16_t *at = median->config.window;; at++) {
+        uint8_t nearer = 0;
+        uint8_t as_near = 0;
+        for (uint8_t i = 0; i != count; i++) {
+            if (median->config.window[i] < *at) nearer++;
+            if (median->config.window[i] <= *at) as_near++;
+        }
+        if (nearer <= before && as_near > before) return *at; /* of one of them it is so */
+    }
+}
+
+bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
+{
+    const uint32_t passed_us = fathom_elapsed_us(now_us, median->fed_us);
+    /* Half a turn of the clock and more: it is a time before the sample. */
+    if (median->have == 0 || passed_us <= median->config.unknown_us || passed_us > INT32_MAX) return false;
+    median->have = 0;
+    return true;
+}
+
+/* A sample that counts. Is there a median with it? */
+static bool take(fathom_median_t *median, uint16_t mm, uint32_t time_us)
+{
+    (void)fathom_median_time(median, time_us);
+    median->fed_us = time_us;
+    if (is_spike(median, mm)) {
+        if (median->row != median->config.gate_row) {
+            median->row++;
+            count_one(&median->dropped);
+            return false;
+        }
+        median->have = 0;
+    }
+    median->row = 0;
+    median->config.window[median->next++] = mm;
+    if (median->next == median->config.count) median->next = 0;
+    if (!is_full(median)) median->have++;
+    if (!is_full(median)) return false;
+    median->value = middle_of(median);
+    return true;
+}
+
+bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out)
+{
+    uint16_t mm = NEARER;
+    uint8_t kind = FATHOM_TARGET;
+    if (sample->kind == FATHOM_TARGET)
+        mm = sample->distance_mm;
+    else if (sample->kind == FATHOM_NO_TARGET || sample->kind == FATHOM_FAR)
+        mm = FARTHER;
+    else if (sample->kind != FATHOM_NEAR)
+        return false;
+    if (!take(median, mm, sample->time_us)) return false;
+    mm = median->value;
+    if (mm == NEARER) kind = FATHOM_NEAR;
+    if (mm == FARTHER) {
+        kind = FATHOM_NO_TARGET;
+        mm = 0;
+    }
+    copy(out, sample, sizeof *out);
+    if (out->kind != kind) out->interference = false;
+    out->kind = kind;
+    out->distance_mm = mm;
+    return true;
+}
