@@ -17,8 +17,8 @@ uint32_t fathom_tank_upright(const fathom_level_config_t *tank, uint16_t level_m
     return share(tank->capacity, level_mm, tank->height_mm);
 }
 
-#define ONE  65536ul
-#define HALF 32768ul
+#define ONE  UINT32_C(65536)
+#define HALF UINT32_C(32768)
 
 /*
  * x: the level's part of the diameter, in 1/65536; the upper half is the lower one upside down. The part of the area is
@@ -88,6 +88,6 @@ fathom_status_t fathom_level(const fathom_level_config_t *config, uint16_t dista
     out->volume = config->volume(config, inside_mm);
     out->level_mm = level_mm;
     /* 64 times both: or GCC sees that a signed division will do, of which a Cortex-M0+ has no other use: 484 bytes. */
-    out->per_mille = (uint16_t)to_nearest(64000ul * inside_mm, 64ul * height_mm);
+    out->per_mille = (uint16_t)to_nearest(UINT32_C(64000) * inside_mm, UINT32_C(64) * height_mm);
     return FATHOM_READY;
 }

@@ -38,8 +38,9 @@ typedef uint32_t (*fathom_tank_volume_t)(const fathom_level_config_t *tank, uint
 uint32_t fathom_tank_upright(const fathom_level_config_t *tank, uint16_t level_mm);
 
 /*
- * It lies, with flat ends; height_mm is its inner diameter. Within 0.05 per mille of the capacity, and half a unit; empty
- * is 0, and full and half full are exact. (The ends of a real tank are rarely flat: those bulge, and a table is nearer.)
+ * It lies, with flat ends; height_mm is its inner diameter. The error is at most 0.045 per mille of the capacity and half
+ * a unit, at any height and level; empty is 0, and half full and full are exact. (Where the ends bulge, as those of
+ * most tanks, a table is nearer.)
  */
 uint32_t fathom_tank_horizontal_cylinder(const fathom_level_config_t *tank, uint16_t level_mm);
 
@@ -67,8 +68,8 @@ struct fathom_level_config {
 
 typedef struct {
     uint32_t volume; /* in the unit of the config */
-    int32_t
-        level_mm; /* from the bottom; below 0 and over height_mm: the sensor sees farther or nearer than that */
+    /* from the bottom; below 0 and over height_mm: the sensor sees farther or nearer than that */
+    int32_t level_mm;
     uint16_t per_mille; /* of height_mm, to the nearest, 0..1000 */
 } fathom_level_t;
 
