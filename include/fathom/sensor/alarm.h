@@ -37,8 +37,8 @@ extern "C" {
  * leads out after its hold time, until which they stay; one between the thresholds leads at once to the state before
  * them, or where there was none to FATHOM_ALARM_ON if that is what if_unknown says, else OFF.
  *
- * A hold time runs from the first sample beyond the threshold to the sample that ends it: time alone switches neither on
- * nor off. A distance that is not beyond the threshold begins it anew, and so does unknown_us without a distance; a
+ * A hold time runs from the first sample beyond the threshold to the sample that ends it: time alone switches neither
+ * on nor off. A distance that is not beyond the threshold begins it anew, and so does unknown_us without a distance; a
  * shorter time without one does not.
  *
  * FATHOM_NO_TARGET and FATHOM_FAR are farther than every threshold, FATHOM_NEAR is nearer; with no_target_is_unknown
