@@ -1,0 +1,489 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "suite.h"
+
+#include "fathom/sensor/alarm.h"
+
+enum {
+    ON = FATHOM_ALARM_ON,
+    OFF = FATHOM_ALARM_OFF,
+    UNKNOWN = FATHOM_ALARM_UNKNOWN,
+    NONE = FATHOM_ALARM_NO_RESPONSE
+};
+enum { S = 1000000 };
+
+static fathom_alarm_config_t config;
+static fathom_alarm_t alarm;
+static uint32_t start_us;
+
+static void start(void)
+{
+    memset(&alarm, 0x5A, sizeof alarm);
+    assert_int_equal(fathom_alarm_init(&alarm, &config), FATHOM_READY);
+    assert_int_equal(alarm.state, UNKNOWN);
+}
+
+/* A bumper: on under 500 mm, off over 600 mm, no hold times. */
+static int set_up(void **state)
+{
+    static const fathom_alarm_config_t bumper = {
+        .when = FATHOM_NEAR, .on_mm = 500, .off_mm = 600, .if_unknown = OFF, .if_no_response = OFF};
+    config = bumper;
+    start_us = UINT32_MAX - 1500000; /* every test goes through the wrap */
+    start();
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+/* So long after the start this comes, and then this is the state. The call returns whether it is another one. */
+static void expect_kind(uint32_t at_us, uint8_t kind, uint16_t mm, uint8_t state)
+{
+    const fathom_sample_t sample = {.time_us = start_us + at_us, .kind = kind, .distance_mm = mm};
+    const uint8_t before = alarm.state;
+    assert_int_equal(fathom_alarm_sample(&alarm, &sample), state != before);
+    assert_int_equal(alarm.state, state);
+}
+
+static void expect_mm(uint32_t at_us, uint16_t mm, uint8_t state)
+{
+    expect_kind(at_us, FATHOM_TARGET, mm, state);
+}
+
+static void expect_status(uint32_t at_us, fathom_status_t status, uint8_t state)
+{
+    const uint8_t before = alarm.state;
+    assert_int_equal(fathom_alarm_status(&alarm, status, start_us + at_us), state != before);
+    assert_int_equal(alarm.state, state);
+}
+
+static void expect_nothing(uint32_t at_us, uint8_t state) { expect_status(at_us, FATHOM_PENDING, state); }
+
+/* ---- thresholds ---- */
+
+typedef struct {
+    uint8_t when, kind;
+    uint16_t on_mm, off_mm, mm;
+    uint8_t state; /* with this sample after OFF; BETWEEN: it holds, ON and OFF alike */
+} side_row_t;
+
+enum { BETWEEN = 0 };
+
+static const side_row_t sides[] = {
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 600, 499, ON},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 600, 500, BETWEEN},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 600, 501, BETWEEN},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 600, 599, BETWEEN},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 600, 600, BETWEEN},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 600, 601, OFF},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 500, 499, ON},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 500, 500, BETWEEN},
+    {FATHOM_NEAR, FATHOM_TARGET, 500, 500, 501, OFF},
+    {FATHOM_FAR, FATHOM_TARGET, 600, 500, 601, ON},
+    {FATHOM_FAR, FATHOM_TARGET, 600, 500, 600, BETWEEN},
+    {FATHOM_FAR, FATHOM_TARGET, 600, 500, 599, BETWEEN},
+    {FATHOM_FAR, FATHOM_TARGET, 600, 500, 501, BETWEEN},
+    {FATHOM_FAR, FATHOM_TARGET, 600, 500, 500, BETWEEN},
+    {FATHOM_FAR, FATHOM_TARGET, 600, 500, 499, OFF},
+    {FATHOM_FAR, FATHOM_TARGET, 500, 500, 501, ON},
+    {FATHOM_FAR, FATHOM_TARGET, 500, 500, 500, BETWEEN},
+    {FATHOM_FAR, FATHOM_TARGET, 500, 500, 499, OFF},
+    /* what is no distance is beyond every threshold, also those that no distance passes */
+    {FATHOM_NEAR, FATHOM_NEAR, 0, 0, 0, ON},
+    {FATHOM_NEAR, FATHOM_TARGET, 0, 0, 0, BETWEEN},
+    {FATHOM_NEAR, FATHOM_TARGET, 65535, 65535, 65535, BETWEEN},
+    {FATHOM_NEAR, FATHOM_NO_TARGET, 65535, 65535, 0, OFF},
+    {FATHOM_NEAR, FATHOM_FAR, 65535, 65535, 0, OFF},
+    {FATHOM_FAR, FATHOM_NEAR, 0, 0, 0, OFF},
+    {FATHOM_FAR, FATHOM_NO_TARGET, 65535, 65535, 0, ON},
+    {FATHOM_FAR, FATHOM_FAR, 65535, 65535, 0, ON},
+};
+
+TEST(nearer_farther_and_between_are_what_the_header_says)
+{
+    for (unsigned i = 0; i != sizeof sides / sizeof *sides; i++) {
+        const side_row_t *const row = &sides[i];
+        config.when = row->when;
+        config.on_mm = row->on_mm;
+        config.off_mm = row->off_mm;
+        for (uint8_t before = ON; before <= OFF; before++) {
+            start();
+            expect_kind(0, (before == ON) == (row->when == FATHOM_NEAR) ? FATHOM_NEAR : FATHOM_FAR, 0,
+                        before);
+            expect_kind(S, row->kind, row->mm, row->state == BETWEEN ? before : row->state);
+        }
+    }
+}
+
+TEST(a_config_without_sense_is_refused)
+{
+    for (unsigned value = 0; value <= 255; value++) {
+        fathom_alarm_config_t other = config;
+        other.off_mm = other.on_mm;
+        other.when = (uint8_t)value;
+        assert_int_equal(fathom_alarm_init(&alarm, &other),
+                         value == FATHOM_NEAR || value == FATHOM_FAR ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+        const fathom_status_t is_side = value == ON || value == OFF ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+        other = config;
+        other.if_unknown = (uint8_t)value;
+        assert_int_equal(fathom_alarm_init(&alarm, &other), is_side);
+        other = config;
+        other.if_no_response = (uint8_t)value;
+        assert_int_equal(fathom_alarm_init(&alarm, &other), is_side);
+    }
+}
+
+static void expect_init(uint8_t when, uint16_t on_mm, uint16_t off_mm, fathom_status_t status)
+{
+    config.when = when;
+    config.on_mm = on_mm;
+    config.off_mm = off_mm;
+    assert_int_equal(fathom_alarm_init(&alarm, &config), status);
+}
+
+TEST(off_on_the_wrong_side_of_on_is_refused)
+{
+    expect_init(FATHOM_NEAR, 500, 499, FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_NEAR, 500, 500, FATHOM_READY);
+    expect_init(FATHOM_NEAR, 0, 65535, FATHOM_READY);
+    expect_init(FATHOM_NEAR, 65535, 0, FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_FAR, 500, 501, FATHOM_ERR_ARGUMENT);
+    expect_init(FATHOM_FAR, 500, 500, FATHOM_READY);
+    expect_init(FATHOM_FAR, 65535, 0, FATHOM_READY);
+    expect_init(FATHOM_FAR, 0, 65535, FATHOM_ERR_ARGUMENT);
+}
+
+/* ---- hold times ---- */
+
+TEST(a_threshold_has_to_be_passed_for_its_hold_time)
+{
+    config.on_hold_us = 2 * S;
+    config.off_hold_us = 3 * S;
+    start();
+    expect_mm(0, 499, UNKNOWN);
+    expect_mm(2 * S - 1, 499, UNKNOWN);
+    expect_mm(2 * S, 499, ON);
+    expect_mm(4 * S, 601, ON);
+    expect_mm(7 * S - 1, 601, ON);
+    expect_mm(7 * S, 601, OFF);
+    expect_mm(8 * S, 499, OFF);
+    expect_mm(10 * S - 1, 499, OFF);
+    expect_mm(10 * S, 499, ON);
+}
+
+TEST(time_alone_switches_neither_on_nor_off)
+{
+    config.on_hold_us = 2 * S;
+    start();
+    expect_mm(0, 601, OFF);
+    expect_mm(S, 499, OFF);
+    expect_nothing(3 * S, OFF);
+    expect_nothing(5 * S, OFF);
+    expect_mm(5 * S, 499, ON);
+}
+
+TEST(a_distance_that_is_not_beyond_the_threshold_begins_the_hold_time_anew)
+{
+    config.on_hold_us = 2 * S;
+    config.off_hold_us = 2 * S;
+    start();
+    expect_mm(0, 601, UNKNOWN);
+    expect_mm(2 * S, 601, OFF);
+    expect_mm(3 * S, 499, OFF);
+    expect_mm(4 * S, 500, OFF);
+    expect_mm(5 * S, 499, OFF);
+    expect_mm(7 * S - 1, 499, OFF);
+    expect_mm(7 * S, 499, ON);
+    expect_mm(8 * S, 601, ON);
+    expect_mm(9 * S, 499, ON);
+    expect_mm(10 * S, 601, ON);
+    expect_mm(12 * S - 1, 601, ON);
+    expect_mm(12 * S, 601, OFF);
+}
+
+TEST(a_short_time_without_a_distance_does_not_begin_it_anew)
+{
+    config.on_hold_us = 7 * S;
+    start();
+    expect_mm(0, 601, OFF);
+    expect_mm(S, 499, OFF);
+    expect_kind(2 * S, FATHOM_FAULT, 0, OFF);
+    expect_kind(3 * S, FATHOM_UNKNOWN, 0, OFF);
+    expect_status(4 * S, FATHOM_ERR_NO_RESPONSE, OFF);
+    expect_status(6 * S, FATHOM_ERR_MALFORMED, OFF);
+    expect_mm(6 * S, 499, OFF);
+    expect_mm(8 * S, 499, ON);
+}
+
+TEST(unknown_us_without_a_distance_begins_it_anew)
+{
+    config.on_hold_us = 7 * S;
+    config.off_hold_us = 1;
+    start();
+    expect_mm(0, 601, UNKNOWN);
+    expect_mm(1, 601, OFF);
+    expect_mm(S, 499, OFF);
+    expect_nothing(6 * S + 1, UNKNOWN);
+    expect_mm(7 * S, 499, UNKNOWN);
+    expect_mm(11 * S, 499, UNKNOWN);
+    expect_mm(14 * S - 1, 499, UNKNOWN);
+    expect_mm(14 * S, 499, ON);
+}
+
+/* 2100 s are 35 minutes; samples 300 s apart. */
+TEST(hold_times_may_be_35_minutes)
+{
+    config.on_hold_us = 2100000000u;
+    config.unknown_us = 2100000000u;
+    start();
+    for (uint32_t s = 0; s != 2100; s += 300) expect_mm(s * S, 499, UNKNOWN);
+    expect_mm(2100000000u, 499, ON);
+}
+
+/* 71.58 minutes are a turn of the clock: what is 71.6 minutes ago looks like 1 s ago, less than the hold time. */
+TEST(a_state_that_has_lasted_for_a_turn_of_the_clock_stays)
+{
+    config.on_hold_us = 4 * S;
+    start();
+    expect_mm(0, 499, UNKNOWN);
+    expect_mm(4 * S, 499, ON);
+    for (uint32_t s = 5; s != 4300; s++) expect_mm(s * S, 499, ON);
+    expect_mm((uint32_t)4300 * S, 601, OFF);
+    expect_mm((uint32_t)4301 * S, 499, OFF);
+    expect_mm((uint32_t)4305 * S - 1, 499, OFF);
+    expect_mm((uint32_t)4305 * S, 499, ON);
+}
+
+/* ---- not known ---- */
+
+TEST(without_a_distance_for_more_than_unknown_us_it_is_not_known)
+{
+    for (uint32_t s = 5; s <= 1000; s += 995) {
+        config.unknown_us = s != 5 ? s * S : 0;
+        start();
+        expect_mm(0, 499, ON);
+        expect_nothing(s * S, ON);
+        expect_nothing(s * S + 1, UNKNOWN);
+        expect_nothing(s * S + 2, UNKNOWN);
+        expect_mm(s * S + 3, 601, OFF);
+        expect_kind(2 * s * S, FATHOM_FAULT, 0, OFF);
+        expect_mm(2 * s * S + 3, 500, OFF); /* between the thresholds is a distance as well */
+        expect_kind(3 * s * S + 3, FATHOM_FAULT, 0, OFF);
+        expect_kind(3 * s * S + 4, FATHOM_FAULT, 0, UNKNOWN);
+    }
+}
+
+typedef struct {
+    fathom_status_t status;
+    bool responds;
+} response_row_t;
+
+static const response_row_t responses[] = {
+    {FATHOM_READY, true}, /* of another probe */
+    {FATHOM_ERR_MALFORMED, true},
+    {FATHOM_ERR_EXCEPTION, true},
+    {FATHOM_ERR_WARMING_UP, true},
+    {FATHOM_ERR_ARGUMENT, false},
+    {FATHOM_ERR_PORT, false},
+    {FATHOM_ERR_NO_RESPONSE, false},
+    {FATHOM_ERR_CHECKSUM, false},
+    {FATHOM_ERR_STALE, false},
+    {FATHOM_ERR_CANCELLED, false},
+    {FATHOM_ERR_BUSY, false},
+    {FATHOM_ERR_CAPACITY, false},
+    {FATHOM_ERR_ECHO, false},
+    {FATHOM_ERR_UNSUPPORTED, false},
+    {FATHOM_ERR_UNCONFIRMED, false},
+    {FATHOM_ERR_IN_USE, false},
+};
+
+TEST(each_status_shows_that_the_device_responds_or_that_it_does_not)
+{
+    for (unsigned i = 0; i != sizeof responses / sizeof *responses; i++) {
+        const fathom_status_t status = responses[i].status;
+        const uint8_t then = responses[i].responds ? UNKNOWN : NONE;
+        start();
+        expect_mm(0, 499, ON);
+        expect_status(5 * S, status, ON); /* and puts nothing off */
+        expect_nothing(5 * S + 1, then);
+        expect_kind(6 * S, FATHOM_FAULT, 0, UNKNOWN);
+        expect_status(7 * S, status, then); /* at once */
+        expect_nothing(9 * S, then);
+        expect_status(10 * S, FATHOM_ERR_NO_RESPONSE, NONE);
+        expect_status(10 * S, status, then);
+    }
+}
+
+TEST(samples_without_a_distance_show_that_the_device_responds)
+{
+    static const uint8_t kinds[] = {FATHOM_FAULT, FATHOM_UNKNOWN, FATHOM_NO_TARGET, 0, 7};
+    config.no_target_is_unknown = true;
+    for (unsigned i = 0; i != sizeof kinds; i++) {
+        start();
+        expect_mm(0, 499, ON);
+        expect_status(S, FATHOM_ERR_NO_RESPONSE, ON);
+        expect_kind(5 * S, kinds[i], 0, ON);
+        expect_kind(5 * S + 1, kinds[i], 0, UNKNOWN);
+        expect_status(6 * S, FATHOM_ERR_NO_RESPONSE, NONE);
+        expect_kind(7 * S, kinds[i], 0, UNKNOWN);
+        expect_kind(8 * S, FATHOM_FAR, 0, OFF); /* of a switch, or of a median: a distance */
+    }
+}
+
+TEST(a_distance_shows_that_the_device_responds)
+{
+    expect_mm(0, 499, ON);
+    expect_status(S, FATHOM_ERR_NO_RESPONSE, ON);
+    expect_mm(2 * S, 499, ON);
+    expect_nothing(7 * S + 1, UNKNOWN);
+}
+
+/* In a silence as long as half a turn of the clock and longer, too: 4295 s are a turn. */
+TEST(unknown_and_no_response_follow_what_came_last_for_hours)
+{
+    expect_mm(0, 499, ON);
+    expect_nothing(6 * S, UNKNOWN);
+    for (uint32_t s = 1000; s != 20000; s += 1000) {
+        expect_status(s * S, FATHOM_ERR_NO_RESPONSE, NONE);
+        expect_nothing(s * S, NONE);
+        expect_kind(s * S, FATHOM_FAULT, 0, UNKNOWN);
+        expect_nothing(s * S + 1, UNKNOWN);
+    }
+    expect_mm((uint32_t)20000 * S, 500, ON);
+}
+
+/* "A now_us a little before the last sample does no harm": half a turn of the clock, 2^31 us, is before. */
+TEST(a_time_up_to_half_a_turn_of_the_clock_is_after_the_last_sample)
+{
+    expect_mm(0, 499, ON);
+    expect_nothing((uint32_t)-1000, ON);
+    expect_nothing(2147483648u, ON);
+    expect_nothing(2147483647u, UNKNOWN);
+}
+
+/* ---- from init on ---- */
+
+TEST(from_init_on_it_is_unknown_and_after_unknown_us_what_came_tells)
+{
+    expect_nothing(0, UNKNOWN);
+    expect_nothing(5 * S, UNKNOWN);
+    expect_nothing(5 * S + 1, NONE); /* nothing has come */
+    start();
+    expect_status(0, FATHOM_ERR_WARMING_UP, UNKNOWN);
+    expect_nothing(5 * S + 1, UNKNOWN);
+    start();
+    expect_status(0, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
+    expect_kind(4 * S, FATHOM_FAULT, 0, UNKNOWN);
+    expect_status(5 * S, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
+    expect_status(5 * S + 1, FATHOM_ERR_NO_RESPONSE, NONE);
+    start();
+    expect_kind(0, FATHOM_FAULT, 0, UNKNOWN);
+    expect_status(5 * S, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
+    expect_nothing(5 * S + 1, NONE);
+}
+
+TEST(a_sample_a_little_before_the_first_call_is_a_sample)
+{
+    expect_nothing(0, UNKNOWN);
+    expect_mm((uint32_t)-1000, 499, ON);
+    expect_nothing(5 * S - 1000, ON);
+    expect_nothing(5 * S - 999, UNKNOWN);
+}
+
+/* ---- out of it ---- */
+
+TEST(a_distance_leads_out_after_its_hold_time_until_which_the_state_stays)
+{
+    config.on_hold_us = 2 * S;
+    config.off_hold_us = 3 * S;
+    start();
+    expect_status(0, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
+    expect_status(6 * S, FATHOM_ERR_NO_RESPONSE, NONE);
+    expect_mm(7 * S, 499, NONE);
+    expect_nothing(8 * S, NONE);
+    expect_kind(8 * S, FATHOM_FAULT, 0, NONE);
+    expect_mm(9 * S, 499, ON);
+    expect_kind(15 * S, FATHOM_FAULT, 0, UNKNOWN);
+    expect_mm(16 * S, 601, UNKNOWN);
+    expect_status(17 * S, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
+    expect_mm(19 * S - 1, 601, UNKNOWN);
+    expect_mm(19 * S, 601, OFF);
+    expect_kind(25 * S, FATHOM_FAULT, 0, UNKNOWN);
+    expect_mm(26 * S, 601, UNKNOWN); /* to the state before likewise */
+    expect_mm(29 * S - 1, 601, UNKNOWN);
+    expect_mm(29 * S, 601, OFF);
+}
+
+TEST(between_the_thresholds_is_the_state_before_at_once)
+{
+    config.on_hold_us = S;
+    config.off_hold_us = S;
+    for (uint8_t before = ON; before <= OFF; before++) {
+        start();
+        expect_mm(0, before == ON ? 499 : 601, UNKNOWN);
+        expect_mm(S, before == ON ? 499 : 601, before);
+        expect_nothing(7 * S, UNKNOWN);
+        expect_mm(7 * S, 550, before);
+        expect_status(8 * S, FATHOM_ERR_NO_RESPONSE, before);
+        expect_nothing(13 * S, NONE);
+        expect_mm(13 * S, before == ON ? 601 : 499, NONE); /* the other one, but not for its hold time */
+        expect_mm(14 * S - 1, 550, before);
+    }
+}
+
+TEST(between_the_thresholds_without_a_state_before_is_what_if_unknown_says)
+{
+    for (uint8_t side = ON; side <= OFF; side++) {
+        config.if_unknown = side;
+        config.if_no_response = side == ON ? OFF : ON;
+        start();
+        expect_mm(0, 550, side);
+        start();
+        expect_nothing(0, UNKNOWN);
+        expect_nothing(6 * S, NONE);
+        expect_mm(6 * S, 550, side);
+    }
+}
+
+/* A loop that slept: the sample that ends a silence is the first thing that is told after it. */
+TEST(one_sample_that_ends_a_silence_with_the_state_before_changes_nothing)
+{
+    expect_mm(0, 499, ON);
+    expect_mm(6 * S, 499, ON);
+    expect_mm(12 * S, 550, ON);
+    expect_mm(18 * S, 601, OFF);
+}
+
+TEST(one_sample_that_ends_a_silence_and_has_to_be_held_shows_what_the_silence_was)
+{
+    config.on_hold_us = S;
+    start();
+    expect_mm(0, 499, UNKNOWN);
+    expect_mm(S, 499, ON);
+    expect_mm(6 * S + 1, 499, UNKNOWN);
+    expect_mm(7 * S + 1, 499, ON);
+    expect_status(8 * S, FATHOM_ERR_NO_RESPONSE, ON);
+    expect_mm(13 * S, 499, NONE);
+    expect_mm(14 * S, 499, ON);
+}
+
+/* ---- is it on ---- */
+
+TEST(it_is_on_by_the_state_or_by_the_side_that_was_chosen_for_it)
+{
+    for (int i = 0; i != 4; i++) {
+        config.if_unknown = (i & 1) != 0 ? ON : OFF;
+        config.if_no_response = (i & 2) != 0 ? ON : OFF;
+        start();
+        assert_int_equal(fathom_alarm_is_on(&alarm), (i & 1) != 0);
+        expect_mm(0, 499, ON);
+        assert_true(fathom_alarm_is_on(&alarm));
+        expect_mm(S, 601, OFF);
+        assert_false(fathom_alarm_is_on(&alarm));
+        expect_nothing(7 * S, UNKNOWN);
+        assert_int_equal(fathom_alarm_is_on(&alarm), (i & 1) != 0);
+        expect_status(8 * S, FATHOM_ERR_NO_RESPONSE, NONE);
+        assert_int_equal(fathom_alarm_is_on(&alarm), (i & 2) != 0);
+    }
+}
