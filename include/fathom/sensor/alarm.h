@@ -90,8 +90,8 @@ typedef struct {
 fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config);
 
 /*
- * True: the state has changed. Times may wrap; from one call to the next less than 35 minutes pass. A now_us a little
- * before the last sample does no harm.
+ * True: the state has changed. Times may wrap; the time from one call to the next and unknown_us are together less
+ * than 35 minutes. A now_us a little before the last sample does no harm.
  *
  * sample   any sample of the probe, at its time_us
  * status   what came instead of a sample, at now_us:

@@ -81,7 +81,8 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
 bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out);
 
 /* It is now_us, and no sample has come with that. True: the window has been emptied, and was not empty before. To be
- * called at least every 35 minutes; a time a little before that of the last sample does no harm. */
+ * called so often that the time between, and unknown_us, are together less than 35 minutes; a time a little before that
+ * of the last sample does no harm. */
 bool fathom_median_time(fathom_median_t *median, uint32_t now_us);
 
 #ifdef __cplusplus
