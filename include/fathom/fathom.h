@@ -31,8 +31,8 @@
 #include "fathom/sensor/hps167s_settings.h" /* what can be set: commands #6 to #15 */
 
 /* What is made of their readings */
-#include "fathom/sensor/alarm.h"  /* thresholds, hold times, and a safe side where the distance is not known */
-#include "fathom/sensor/level.h"  /* a tank's level and volume */
+#include "fathom/sensor/alarm.h" /* thresholds, hold times, and a safe side where the distance is not known */
+#include "fathom/sensor/level.h" /* a tank's level and volume */
 #include "fathom/sensor/median.h" /* a median, and a gate that drops spikes */
 
 /* What goes with them */

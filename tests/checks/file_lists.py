@@ -29,6 +29,8 @@ BESIDE = {
     'fathom_contact_line_guard': 'a switch on the pins of a line',
     'fathom_edges_capture': 'pulses by a pin interrupt',
     'fathom_debounce_sample': 'a switch in software',
+    'fathom_median_sample': 'a median that drops spikes',
+    'fathom_alarm_sample': 'an alarm',
     'fathom_wait': 'the blocking form',
     'fathom_status_name': 'the names of errors',
 }
