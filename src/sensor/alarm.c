@@ -3,8 +3,8 @@
 
 #include "../common.h"
 
-/* Beside FATHOM_ALARM_ON and FATHOM_ALARM_OFF, what alarm->side may be. */
-enum { BETWEEN = 0, NOT_KNOWN = FATHOM_ALARM_UNKNOWN };
+/* What alarm->side may be beside FATHOM_ALARM_ON, _OFF and _UNKNOWN: a distance between the thresholds, or at one. */
+enum { BETWEEN = 0 };
 
 static bool is_side(uint8_t state) { return state == FATHOM_ALARM_ON || state == FATHOM_ALARM_OFF; }
 
@@ -32,7 +32,7 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
                : FATHOM_ERR_ARGUMENT;
 }
 
-/* The side on which a sample is; NOT_KNOWN: it tells no distance. */
+/* The side on which a sample is; FATHOM_ALARM_UNKNOWN: it tells no distance. */
 static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_t *sample)
 {
     uint8_t kind = sample->kind;
@@ -45,25 +45,25 @@ static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_
         else
             return BETWEEN;
     }
-    if (kind != FATHOM_NEAR && kind != FATHOM_FAR) return NOT_KNOWN;
+    if (kind != FATHOM_NEAR && kind != FATHOM_FAR) return FATHOM_ALARM_UNKNOWN;
     return kind == config->when ? FATHOM_ALARM_ON : FATHOM_ALARM_OFF;
 }
 
-/* Is it unknown_us and more since the last sample that counted? */
+/* Is it more than unknown_us since the last distance? */
 static bool is_too_long(fathom_alarm_t *alarm, uint32_t now_us)
 {
-    if (alarm->side == NOT_KNOWN) return true; /* it has been once, and none has come since */
+    if (alarm->side == FATHOM_ALARM_UNKNOWN) return true; /* it was once, and none has come since */
     if (!alarm->is_fed) alarm->fed_us = now_us;
     alarm->is_fed = true;
     const uint32_t passed_us = fathom_elapsed_us(now_us, alarm->fed_us);
-    /* Half a turn of the clock and more: it is a time before the sample. */
+    /* Half a turn of the clock and more: it is a time before the distance. */
     return passed_us > alarm->config.unknown_us && passed_us <= INT32_MAX;
 }
 
 static void look_at_time(fathom_alarm_t *alarm, uint32_t now_us)
 {
     if (!is_too_long(alarm, now_us)) return;
-    alarm->side = NOT_KNOWN;
+    alarm->side = FATHOM_ALARM_UNKNOWN;
     alarm->state = alarm->responds ? FATHOM_ALARM_UNKNOWN : FATHOM_ALARM_NO_RESPONSE;
 }
 
@@ -82,7 +82,7 @@ bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
     const uint32_t now_us = sample->time_us;
     const uint8_t before = alarm->state;
     const uint8_t side = side_of(&alarm->config, sample);
-    if (side == NOT_KNOWN) return fathom_alarm_status(alarm, FATHOM_READY, now_us);
+    if (side == FATHOM_ALARM_UNKNOWN) return fathom_alarm_status(alarm, FATHOM_READY, now_us);
     look_at_time(alarm, now_us); /* by what came before this sample */
     alarm->fed_us = now_us;
     alarm->responds = true;
