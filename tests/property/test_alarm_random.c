@@ -156,7 +156,7 @@ static void run(void)
 
 TEST(random_runs_have_the_states_of_a_list_that_is_looked_through)
 {
-    const uint32_t seeds = suite_is_long ? 200000 : 5000;
+    const uint32_t seeds = suite_is_long ? 50000 : 5000;
     memset(seen, 0, sizeof seen);
     for (seed = 0; seed != seeds; seed++) run();
     for (unsigned i = FATHOM_ALARM_ON; i <= FATHOM_ALARM_NO_RESPONSE; i++)

@@ -153,6 +153,6 @@ static void run(void)
 
 TEST(random_runs_have_the_medians_and_drop_the_spikes_of_a_sorted_list)
 {
-    const uint32_t seeds = suite_is_long ? 100000 : 2000;
+    const uint32_t seeds = suite_is_long ? 20000 : 2000;
     for (seed = 0; seed != seeds; seed++) run();
 }
