@@ -38,7 +38,7 @@ typedef uint32_t (*fathom_tank_volume_t)(const fathom_level_config_t *tank, uint
 uint32_t fathom_tank_upright(const fathom_level_config_t *tank, uint16_t level_mm);
 
 /*
- * It lies, with flat ends; height_mm is its inner diameter. The error is at most 0.045 per mille of the capacity and half
+ * It lies, with flat ends; height_mm is its inner diameter. The error is at most 0.0431 per mille of the capacity and half
  * a unit, at any height and level; empty is 0, and half full and full are exact. (Where the ends bulge, as those of
  * most tanks, a table is nearer.)
  */
