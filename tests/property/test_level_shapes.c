@@ -6,7 +6,7 @@
 #include "fathom/sensor/level.h"
 
 /* Every level of tanks of these heights and capacities. */
-static const uint16_t heights_mm[] = {1, 2, 3, 7, 100, 999, 1000, 2000, 5008, 32767, 65535};
+static const uint16_t heights_mm[] = {1, 2, 3, 7, 100, 999, 1000, 2000, 2016, 5008, 32767, 65535};
 static const uint32_t capacities[] = {1, 1000, 123456789, UINT32_MAX - 1, UINT32_MAX};
 enum {
     HEIGHTS = sizeof heights_mm / sizeof *heights_mm,
