@@ -44,10 +44,10 @@ class Gate(e2e.Case):
         self.start([gate, str(self.sim('hps167s --distance 2083'))]).expect('^2083 mm$')
 
     def test_the_line_that_compiles_the_one_for_a_microcontroller_does(self):
-        text, source = self.save(1, 'near.c')
-        image = self.path('near.elf')
-        line = re.search(r'(?ms)^avr-gcc .*? -o near\.elf$', text)[0]
-        line = line.replace('near.c', shlex.quote(source)).replace('-o near.elf', '-o ' + shlex.quote(image))
+        text, source = self.save(1, 'tank.c')
+        image = self.path('tank.elf')
+        line = re.search(r'(?ms)^avr-gcc .*? -o tank\.elf$', text)[0]
+        line = line.replace('tank.c', shlex.quote(source)).replace('-o tank.elf', '-o ' + shlex.quote(image))
         subprocess.run(line, cwd=e2e.ROOT, shell=True, check=True)
         with open(image, 'rb') as file:
             self.assertEqual(file.read(20)[18:], b'\x53\0')  # e_machine 83: AVR

@@ -54,6 +54,11 @@ extern volatile uint8_t level;
 /* All programs, in the order of the table. sizes.py reads their names here. */
 #define PROGRAMS(X)                                                                                          \
     X(a16_auto)                                                                                              \
+    X(a16_auto_alarm)                                                                                        \
+    X(a16_auto_median)                                                                                       \
+    X(tank)                                                                                                  \
+    X(tank_lying)                                                                                            \
+    X(tank_table)                                                                                            \
     X(a16_controlled)                                                                                        \
     X(a16_pwm)                                                                                               \
     X(a16_pwm_edges)                                                                                         \
