@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Flash, RAM and the worst stack of each codec, of the job, of each driver alone, and of everything, on each machine.
+"""Flash, RAM and the worst stack of modules that stand alone, of the job, of each driver, and of everything, on each
+machine.
 
 Flash is text + data less that of an empty main: the library, what it needs of the compiler's, and the user's code.
-Of a codec: all its functions and what they stand on, and no user. RAM is what the user has to provide: driver, line,
+Of a module: all its functions and what they stand on, and no user. RAM is what the user has to provide: driver, line,
 transport and frame, but not the constants, which on AVR stand in RAM too and are counted apart. Stack is the deepest of
 all calls of the library that the program makes, without the user's own functions and those of the HAL.
 """
@@ -14,7 +15,8 @@ from stack import Image
 from job import JOBS
 from tools import HERE, LIBRARY, MACHINES, Failed, here, run, source
 
-CODECS = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_stream', 'dyp_55aa', 'pulse_width', 'hps167s_registers']
+ALONE = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_stream', 'dyp_55aa', 'pulse_width', 'hps167s_registers', 'median',
+         'level', 'alarm']
 FOLDER = os.path.join(HERE, 'sizes')
 HEAD = 'flash', 'ram', 'const', 'stack'
 
@@ -26,7 +28,7 @@ def programs():
 
 
 def rows():
-    return [*CODECS, *JOBS, *programs(), 'everything']
+    return [*ALONE, *JOBS, *programs(), 'everything']
 
 
 # Everything at once is more flash and RAM than an ATmega328P has; the linker is told that it had more, to see how much.
@@ -61,7 +63,7 @@ class Builder:
         """Links a row; returns its path and the library's functions that only a user would call."""
         elf = os.path.join(self.work, row + '.elf')
         arguments, roots = ['-g', *self.machine.link, *self.machine.registers], []
-        if row in CODECS:
+        if row in ALONE:
             path = self.machine.crc if row == 'crc16' else source(row + '.c')[0]
             if row == 'crc16_small':
                 self.compile(path)
@@ -90,7 +92,7 @@ class Builder:
         if constants and not machine.is_avr:
             raise Failed(f'{row}: initialised variables: {constants}')
         image = Image(machine.prefix, elf)
-        if row in CODECS:
+        if row in ALONE:
             calls = [image.address_of(root) for root in roots]
         else:
             calls = image.users_calls(is_user)

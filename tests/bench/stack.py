@@ -50,6 +50,7 @@ PERHAPS = {
     'sensor->heard': ('hps167s_info.c:fathom_hps167s_heard',),
     'capture->arm': ('edges.c:arm',),
     'capture->take': ('edges.c:take',),
+    'config->volume': tuple(f'level.c:fathom_tank_{shape}' for shape in ('upright', 'horizontal_cylinder', 'table')),
     **dict.fromkeys(('uart->read', 'uart->write', 'uart->sent', 'uart->set_line', 'uart->set_break',
                      'uart->leaves_in_us', 'turns->asked', 'turns->ended', 'turns->next', 'clock->now_us', 'pin->get',
                      'pin->set'), ()),

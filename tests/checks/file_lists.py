@@ -31,6 +31,7 @@ BESIDE = {
     'fathom_debounce_sample': 'a switch in software',
     'fathom_median_sample': 'a median that drops spikes',
     'fathom_alarm_sample': 'an alarm',
+    'fathom_level': "a tank's level",
     'fathom_wait': 'the blocking form',
     'fathom_status_name': 'the names of errors',
 }

@@ -98,8 +98,9 @@ bool fathom_debounce_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint3
 bool fathom_debounce_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us);
 bool fathom_debounce_sample(fathom_debounce_t *debounce, const fathom_sample_t *sample);
 
-/* It is now_us, and no measurement has come with that. True: the level has become FATHOM_UNKNOWN. To be called at least
- * every 35 minutes; a time a little before that of the last measurement does no harm. */
+/* It is now_us, and no measurement has come with that. True: the level has become FATHOM_UNKNOWN. To be called so often
+ * that the time between, and unknown_us, are together less than 35 minutes; a time a little before that of the last
+ * measurement does no harm. */
 bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us);
 
 /* What the distance is to this threshold: FATHOM_NEAR, FATHOM_FAR, or 0 where it is equal and that holds. */
