@@ -8,7 +8,7 @@
 
 static const command_t *const commands[] = {
     &scan_command, &read_command,  &watch_command,  &info_command, &get_command,
-    &set_command,  &reset_command, &decode_command, &sim_command,
+    &set_command,  &reset_command, &decode_command, &sim_command,  &calibrate_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -26,7 +26,7 @@ static void print_help(void)
     (void)printf("fathom reads the range sensors A16, A05 and HPS-167S on a serial port.\n\n"
                  "usage: fathom COMMAND [ARGUMENTS]\n\n");
     for (size_t i = 0; i != COMMANDS; i++)
-        (void)printf("  %-6s %s\n", commands[i]->name, commands[i]->summary);
+        (void)printf("  %-9s %s\n", commands[i]->name, commands[i]->summary);
     (void)printf("\nfathom COMMAND --help   explains a command, with examples\n"
                  "fathom --version        prints the version\n\n"
                  "Without a sensor at hand, in two terminals:\n\n"

@@ -12,6 +12,7 @@ extern const command_t info_command;
 extern const command_t get_command;
 extern const command_t set_command;
 extern const command_t reset_command;
+extern const command_t calibrate_command;
 extern const command_t decode_command;
 extern const command_t sim_command;
 
