@@ -15,9 +15,12 @@ bool calibrate_report_measurement(const session_t *session, const calibrate_plan
     if (session->is_json) return true;
     errno = 0;
     (void)printf("%s: measured %" PRId32 " mm, the median of %" PRIu32 " (spread %" PRIu32
-                 " mm); known %" PRId32 " mm: %" PRId32 " mm too %s\n",
+                 " mm); known %" PRId32 " mm",
                  session->station->name, measurement->median_mm, asked->samples, measurement->spread_mm,
-                 plan->known_mm, off_mm < 0 ? -off_mm : off_mm, off_mm < 0 ? "near" : "far");
+                 plan->known_mm);
+    if (off_mm != 0)
+        (void)printf(": %" PRId32 " mm too %s", off_mm < 0 ? -off_mm : off_mm, off_mm < 0 ? "near" : "far");
+    (void)fputs("\n", stdout);
     return output_flush() == 0;
 }
 
@@ -122,16 +125,22 @@ static void print_why(const calibrate_plan_t *plan)
     }
 }
 
+/* What is safe to do next. Of a first write that holds from the next power-on: where it adds, it is right then; where it
+ * replaces an offset that is not 0, what is missing then makes it right, and another calibration would only go back. */
 static void print_next(const calibrate_plan_t *plan)
 {
-    if (plan->why == CALIBRATE_NOT_MOVED || plan->why == CALIBRATE_NOT_SEEN)
-        (void)fputs(
-            "fathom: switch its power off and on, then measure, before you calibrate again; if it measures "
-            "as before then too,\nfathom: write offset 0 first: fathom set hps167s ... distance-offset 0\n",
-            stderr);
-    else
-        (void)fputs("fathom: switch its power off and on, then measure, before you calibrate again\n",
-                    stderr);
+    const bool is_unmoved = plan->why == CALIBRATE_NOT_MOVED || plan->why == CALIBRATE_NOT_SEEN;
+    if (plan->rule == CALIBRATE_REPLACES) {
+        (void)fputs("fathom: #12 replaces the offset before, so it may be calibrated again\n", stderr);
+        return;
+    }
+    (void)fputs("fathom: switch its power off and on, then measure, before you calibrate again\n", stderr);
+    if (is_unmoved && plan->writes == 1)
+        (void)fprintf(
+            stderr,
+            "fathom: if it measures as before then, write offset 0 and calibrate again; if it measures X mm, "
+            "neither right\nfathom: nor as before, #12 replaces, and the right offset is %" PRId32 " - X\n",
+            plan->written_mm[0] + plan->known_mm);
 }
 
 static void print_ended(const session_t *session, const calibrate_plan_t *plan)

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+/* fathom calibrate where there is nothing that could be measured well enough: it says why, and writes nothing. */
+#include "tool_bench.h"
+
+#include <string.h>
+
+static void begin(int32_t mm)
+{
+    bench_begin();
+    bench_hps167s((fathom_sim_hps167s_config_t){0});
+    bench.scene.value[0] = mm;
+}
+
+static int set_up(void **state)
+{
+    begin(2015);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+#define CALIBRATE "calibrate hps167s --port line --known 2000"
+
+/* Ends, having written nothing; says this on stderr. */
+static void writes_nothing(int status, const char *err, const char *line)
+{
+    const tool_run_t *const run = tool_run(&bench.tool, "%s", line);
+    if (run->status != status || strstr(run->err, err) == NULL || strstr(run->out, "writing") != NULL)
+        fail_msg("%s: exit status %d\n%s%s", err, run->status, run->out, run->err);
+    assert_int_equal(bench.hps167s.device.counters.writes, 0);
+}
+
+/* 11 mm up and down around 2015, evenly: a spread of 22. */
+static int32_t noisy(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    const int32_t most_mm = *(const int32_t *)ctx;
+    static uint32_t n;
+    return 2015 - most_mm + (int32_t)(n++ * 5 % (2u * (uint32_t)most_mm + 1));
+}
+
+static void begin_noisy(int32_t *most_mm)
+{
+    begin(2015);
+    bench.hps167s.device.scene = (fathom_sim_scene_t){noisy, most_mm};
+}
+
+TEST(samples_that_differ_too_much_are_refused)
+{
+    int32_t most_mm = 11;
+    begin_noisy(&most_mm);
+    writes_nothing(1, "the samples spread over 22 mm, more than --spread 20; hold sensor and target still",
+                   CALIBRATE);
+    writes_nothing(1, "fathom: hps167s:1: nothing was written\n", CALIBRATE);
+    /* half the spread is 11 mm, and d = -15 within twice that: it may end without being settled, but never wrong */
+    const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE " --spread 22");
+    const int off_mm = 15 + bench.hps167s.sensor.offset_mm;
+    assert_true(strstr(run->out, "; #12 adds") == NULL);
+    assert_true(run->status != 0 || (off_mm >= -11 && off_mm <= 11));
+}
+
+TEST(samples_that_differ_a_little_are_averaged)
+{
+    int32_t most_mm = 3;
+    begin_noisy(&most_mm);
+    const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE);
+    if (run->status != 0 || strstr(run->out, "it is right within 3 mm") == NULL) fail_msg("%s", run->out);
+    assert_non_null(strstr(run->out, "; #12 replaces"));
+    assert_in_range(bench.hps167s.sensor.offset_mm + 18, 0, 6);
+}
+
+static int32_t moving(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    const uint32_t begin_us = *(const uint32_t *)ctx;
+    return 2015 + (int32_t)((now_us - begin_us) / 100000); /* 10 mm a second */
+}
+
+TEST(what_does_not_come_to_rest_is_refused)
+{
+    uint32_t begin_us = bench.clock.now_us;
+    bench.hps167s.device.scene = (fathom_sim_scene_t){moving, &begin_us};
+    writes_nothing(1, "it does not come to rest, ", CALIBRATE);
+}
+
+TEST(without_a_distance_nothing_is_written)
+{
+    bench.scene.value[0] = FATHOM_SIM_NO_TARGET;
+    writes_nothing(1, "no target in range; aim it at a flat, light target", CALIBRATE);
+    bench.scene.value[0] = FATHOM_SIM_FAULT;
+    writes_nothing(1, "the sensor reports that it has failed", CALIBRATE);
+    bench.scene.value[0] = 79;
+    writes_nothing(1, "it measures less than 80 mm", CALIBRATE);
+    bench_begin();
+    writes_nothing(1, "could not be measured: no response", CALIBRATE);
+}
+
+/* Nothing there at the first `*ctx` measurements. */
+static int32_t late_target(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    unsigned *const left = ctx;
+    if (*left == 0) return 2000;
+    --*left;
+    return FATHOM_SIM_NO_TARGET;
+}
+
+TEST(one_sample_without_a_target_does_not_end_it)
+{
+    unsigned left = 1;
+    bench.hps167s.device.scene = (fathom_sim_scene_t){late_target, &left};
+    ASSERT_RUN(0, CALIBRATE);
+    assert_int_equal(left, 0);
+}
+
+TEST(wrong_usage)
+{
+    writes_nothing(2, "only an hps167s has a distance offset", "calibrate a16 --port line --known 2000");
+    writes_nothing(2, "--known is missing", "calibrate hps167s --port line");
+    writes_nothing(2, "from 80 to 18000", "calibrate hps167s --port line --known 79");
+    writes_nothing(2, "from 80 to 18000", "calibrate hps167s --port line --known 18001");
+    writes_nothing(2, "from 5 to 200", CALIBRATE " --samples 4");
+    writes_nothing(2, "from 5 to 200", CALIBRATE " --samples 201");
+    writes_nothing(2, "'2000' is too much", "calibrate hps167s --port line 2000");
+    writes_nothing(2, "--port is missing", "calibrate hps167s --known 2000");
+}
