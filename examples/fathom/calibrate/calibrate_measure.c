@@ -35,7 +35,10 @@ static bool take_sample(session_t *session, fathom_sample_t *sample)
         const bool is_over = status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
         if (!is_over && ++failures != MOST_FAILURES_IN_ROW) continue;
         begin_why(session);
-        session_explain(session, status);
+        if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(&session->station->reader))
+            (void)fputs("it sends values that no measurement has; `fathom read` says which", stderr);
+        else
+            session_explain(session, status);
         (void)fputs("\n", stderr);
         return false;
     }
@@ -129,16 +132,19 @@ bool calibrate_measure(session_t *session, const calibrate_batch_t *asked, bool 
     if (is_after_write && !rest(session)) return false;
     for (unsigned batches = 0; batches != MOST_BATCHES; batches++) {
         if (batches != 0 && !rest(session)) return false;
-        why = take_batch(session, asked, &last);
-        if (why == BATCH_FAILED) return false;
-        const bool is_good = why == BATCH_GOOD;
-        if (is_good && has_before && agree(&before, &last)) {
-            *measurement = last;
-            if (before.spread_mm > last.spread_mm) measurement->spread_mm = before.spread_mm;
+        calibrate_measurement_t now = {0, 0};
+        const batch_t batch = take_batch(session, asked, &now);
+        if (batch == BATCH_FAILED) return false;
+        const bool is_good = batch == BATCH_GOOD;
+        if (is_good && has_before && agree(&last, &now)) {
+            *measurement = now;
+            if (last.spread_mm > now.spread_mm) measurement->spread_mm = last.spread_mm;
             return true;
         }
-        if (is_good && batches != MOST_BATCHES - 1) before = last;
+        if (!is_good || has_before) why = batch; /* good: the two do not agree */
         has_before = is_good;
+        before = last;
+        last = now;
     }
     explain(session, asked, why, &last, &before);
     return false;
