@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom calibrate on a pseudo terminal: a simulated HPS-167S that is 15 mm off measures what is true afterwards."""
+import signal
+
+import e2e
+
+
+class Calibrate(e2e.Case):
+    def flash_writes(self, sim):
+        return sim.end(signal.SIGINT).told[0]['flash_writes']
+
+    @e2e.each(
+        # -15; 0, after which it is 15 mm off again; -15
+        one_that_replaces_is_made_right_and_settled=('', 'offset: -15 mm; #12 replaces the offset before', 3),
+        # -15; 0, which changes nothing
+        one_that_adds_is_made_right_and_settled=(
+            '--with offset-adds', 'offset: what it was before minus 15 mm; #12 adds to the offset before', 2))
+    def made_right(self, trait, said, writes):
+        sim = self.sim(f'hps167s:7 --distance 2015 {trait} --counters')
+        done = self.ends(f'calibrate hps167s:7 --port {sim} --known 2000 --samples 5', 0)
+        self.assertIn(f'known 2000 mm; {said}; flash writes: {writes}\n', done.out)
+        self.assertEqual(done.out.count('writing to flash'), writes)
+        self.assertEqual(self.read_json(f'hps167s:7 --port {sim} --count 1')[0]['distance_mm'], 2000)
+        self.assertEqual(self.flash_writes(sim), writes)
+
+    def test_a_dry_run_writes_nothing(self):
+        sim = self.sim('hps167s --distance 2015 --counters')
+        told, = self.ends(f'calibrate hps167s --port {sim} --known 2000 --dry-run --format json', 1).json
+        self.assertEqual((told['would_write_mm'], told['written_mm'], told['right']), (-15, [], False))
+        self.assertEqual(self.flash_writes(sim), 0)
+
+    def test_what_cannot_be_announced_is_not_written(self):
+        sim = self.sim('hps167s --distance 2015 --counters')
+        with open('/dev/full', 'w', encoding='ascii') as full:
+            self.ends(f'calibrate hps167s --port {sim} --known 2000', 1, 'cannot be written; flash writes: 0',
+                      stdout=full)
+        self.assertEqual(self.flash_writes(sim), 0)
+
+    def test_a_dead_line_is_explained(self):
+        self.ends(f'calibrate hps167s --port {self.device()} --known 2000 --timeout 100', 1,
+                  'nothing was heard at all', 'nothing was written', out='')
+
+
+if __name__ == '__main__':
+    e2e.main()
