@@ -80,30 +80,30 @@ static void check(const row_t *row)
     writes.is_taken = row->is_taken;
     const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE " --samples 5");
     const int off_mm = row->off_mm + bench.hps167s.sensor.offset_mm;
-    const unsigned said = count(run->out, "writing to flash");
+    const unsigned announced = count(run->out, "writing to flash");
     bool is_wrong = (run->status == 0) != (off_mm >= -T_MM && off_mm <= T_MM);
-    is_wrong = is_wrong || flash_writes() > said || said > 3 || writes.requests != said;
+    is_wrong = is_wrong || flash_writes() > announced || announced > 3 || writes.requests != announced;
     is_wrong = is_wrong || (run->status == 0) != (strstr(run->out, "it is right within 2 mm") != NULL);
     is_wrong = is_wrong || (row->adds && strstr(run->out, "; #12 replaces") != NULL);
     is_wrong = is_wrong || (!row->adds && strstr(run->out, "; #12 adds") != NULL);
     /* A lost acknowledgement does not matter where it is seen to be taken; the second write of one that adds is a 0,
      * which is never seen. */
-    const bool is_known = row->lost_write == 0 || row->lost_write > said || row->is_taken;
+    const bool is_known = row->lost_write == 0 || row->lost_write > announced || row->is_taken;
     const bool is_zero_lost = row->adds && row->lost_write == 2;
     if (is_same)
-        is_wrong = is_wrong || run->status != 1 || said != 1;
+        is_wrong = is_wrong || run->status != 1 || announced != 1;
     else if (is_known && !is_zero_lost)
         is_wrong =
             is_wrong || run->status != 0 || strstr(run->out, row->adds ? "; #12 adds" : "; #12 repl") == NULL;
     else
-        is_wrong = is_wrong || said != row->lost_write; /* nothing after it */
+        is_wrong = is_wrong || announced != row->lost_write; /* nothing after it */
     /* 2; 3 where there was no offset to tell by */
     if (is_known && !is_same && !is_zero_lost)
-        is_wrong = is_wrong || said != (!row->adds && row->before_mm == 0 ? 3 : 2);
+        is_wrong = is_wrong || announced != (!row->adds && row->before_mm == 0 ? 3 : 2);
     if (is_wrong)
-        fail_msg("%s, off %d, before %d, lost %u%s: off %d, status %d, said %u, wrote %u\n%s%s",
+        fail_msg("%s, off %d, before %d, lost %u%s: off %d, status %d, announced %u, wrote %u\n%s%s",
                  row->adds ? "adds" : "replaces", row->off_mm, row->before_mm, row->lost_write,
-                 row->is_taken ? " taken" : "", off_mm, run->status, said, flash_writes(), run->out,
+                 row->is_taken ? " taken" : "", off_mm, run->status, announced, flash_writes(), run->out,
                  run->err);
 }
 

@@ -93,22 +93,24 @@ static void help(FILE *to)
         "  --dry-run         measures, and says what would be written first\n",
         to);
     session_options_help(to);
-    (void)fputs("\nUse a flat, light target at a right angle, and let nothing move. It is measured before "
-                "and after each "
-                "write until\ntwo medians agree; \"right\" is within half the spread of the samples, and 2 "
-                "mm at least. If it is "
-                "right already,\nnothing is written. Else flash is written up to three times, each time said "
-                "before. Nothing is "
-                "written twice: where\nan acknowledgement is lost, the measurement shows whether it was "
-                "taken. Where it cannot "
-                "go on, it says which offsets\nthe sensor may have now.\n"
-                "Exit status: 0 when the sensor is right in the end, 1 when not (also with --dry-run) or "
-                "when that is not "
-                "known,\n2 for wrong usage.\n\n"
-                "examples:\n"
-                "  fathom calibrate hps167s --port /dev/ttyUSB0 --known 2000 --dry-run\n"
-                "  fathom calibrate hps167s:7 --port /dev/ttyUSB0 --known 2000 --samples 100\n",
-                to);
+    (void)fputs(
+        "\nUse a flat, light target at a right angle, and let nothing move. It is measured before and after "
+        "each "
+        "write, until\ntwo medians agree; \"right\" is within half the spread of the samples, and 2 mm at "
+        "least. What is "
+        "right is left alone.\nElse flash is written up to three times, each time said before. What is not "
+        "acknowledged is not written again: the\nmeasurement shows whether it was taken. Where it cannot go "
+        "on, it says "
+        "which offsets the sensor may have now.\n"
+        "If an offset was written since the sensor's power-on, switch it off and on first: it may hold from "
+        "then on.\n"
+        "Exit status: 0 when the sensor is right in the end, 1 when not (also with --dry-run) or "
+        "when that is not "
+        "known,\n2 for wrong usage.\n\n"
+        "examples:\n"
+        "  fathom calibrate hps167s --port /dev/ttyUSB0 --known 2000 --dry-run\n"
+        "  fathom calibrate hps167s:7 --port /dev/ttyUSB0 --known 2000 --samples 100\n",
+        to);
 }
 
 static int run(const host_t *host, int argc, char **argv)
