@@ -11,18 +11,21 @@ class Calibrate(e2e.Case):
         return sim.end(signal.SIGINT).told[0]['flash_writes']
 
     @e2e.each(
-        # -15; 0, after which it is 15 mm off again; -15
-        one_that_replaces_is_made_right_and_settled=('', 'offset: -15 mm; #12 replaces the offset before', 3),
+        # 10 mm off, and 5 more by an older offset: -15, after which 5 are missing; -10
+        one_that_replaces_is_made_right_and_settled=(
+            '--distance 2010', 5, 'offset: -10 mm; #12 replaces the offset before'),
         # -15; 0, which changes nothing
         one_that_adds_is_made_right_and_settled=(
-            '--with offset-adds', 'offset: what it was before minus 15 mm; #12 adds to the offset before', 2))
-    def made_right(self, trait, said, writes):
-        sim = self.sim(f'hps167s:7 --distance 2015 {trait} --counters')
+            '--distance 2010 --with offset-adds', 5,
+            'offset: what it was before minus 15 mm; #12 adds to the offset before'))
+    def made_right(self, device, before, said):
+        sim = self.sim(f'hps167s:7 {device} --counters')
+        self.ends(f'set hps167s:7 --port {sim} distance-offset {before}', 0)
         done = self.ends(f'calibrate hps167s:7 --port {sim} --known 2000 --samples 5', 0)
-        self.assertIn(f'known 2000 mm; {said}; flash writes: {writes}\n', done.out)
-        self.assertEqual(done.out.count('writing to flash'), writes)
+        self.assertIn(f'known 2000 mm; {said}; flash writes: 2\n', done.out)
+        self.assertEqual(done.out.count('writing to flash'), 2)
         self.assertEqual(self.read_json(f'hps167s:7 --port {sim} --count 1')[0]['distance_mm'], 2000)
-        self.assertEqual(self.flash_writes(sim), writes)
+        self.assertEqual(self.flash_writes(sim), 3)  # one by set
 
     def test_a_dry_run_writes_nothing(self):
         sim = self.sim('hps167s --distance 2015 --counters')

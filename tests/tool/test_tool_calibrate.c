@@ -323,7 +323,7 @@ TEST(an_exception_that_is_no_refusal_is_as_none_at_all)
 
 TEST(ctrl_c_says_what_was_written)
 {
-    bench.tool.ctrl_c_us = 3000000; /* the first measurement takes 2 s, the second 3 */
+    bench.tool.ctrl_c_us = 5000000; /* the first measurement takes 3 s, the second 4 */
     const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE);
     assert_int_equal(run->status, 1);
     assert_string_equal(run->out, FAR ONE);

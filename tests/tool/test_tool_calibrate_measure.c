@@ -81,6 +81,24 @@ TEST(what_does_not_come_to_rest_is_refused)
     writes_nothing(1, "it does not come to rest, ", CALIBRATE);
 }
 
+/* What is in force of the offset, in 1/1000 mm: each measurement comes 1/100 nearer, so that it takes 1.85 s to 63 %. */
+static int32_t filtered(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    int32_t *const used = ctx;
+    const int32_t offset_mm = bench.hps167s.sensor.offset_mm;
+    *used += (offset_mm * 1000 - *used) / 100;
+    return 2015 - offset_mm + (*used < 0 ? *used - 500 : *used + 500) / 1000; /* the device adds its offset */
+}
+
+TEST(a_slow_filter_is_waited_for)
+{
+    int32_t used = 0;
+    bench.hps167s.device.scene = (fathom_sim_scene_t){filtered, &used};
+    const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE);
+    if (run->status != 0 || strstr(run->out, "; #12 replaces") == NULL) fail_msg("%s%s", run->out, run->err);
+    assert_in_range(bench.hps167s.sensor.offset_mm + 17, 0, 4);
+}
+
 TEST(without_a_distance_nothing_is_written)
 {
     bench.scene.value[0] = FATHOM_SIM_NO_TARGET;

@@ -209,6 +209,7 @@ TEST(two_settings_are_all_that_the_tool_ever_sends_to_all_units)
                                            "set hps167s reconnect-time 36",
                                            "set hps167s distance-offset 5",
                                            "set hps167s filter-sensitivity 5",
+                                           "calibrate hps167s --known 2000",
                                            "set hps167s load-settings user",
                                            "set hps167s termination off --blind",
                                            "set hps167s measure-after-power-on off --all-units --yes",

@@ -6,9 +6,10 @@
 
 #include "calibrate/calibrate_plan.h"
 
-/* Between two batches, and after a write: longer than the slowest sensor's six measurements (table 1: 6 to 54 a
- * second), of which one may have been made before. */
-enum { REST_US = 1000000 };
+/* After a write: of the slowest sensor's six measurements (table 1: 6 to 54 a second) one may have been made before. */
+enum { AFTER_WRITE_US = 1000000 };
+/* Between two batches. Where a filter settles with a time constant of 2 s, two that differ by 1 mm leave 0.4 mm. */
+enum { REST_US = 2000000 };
 enum { MOST_BATCHES = 10, MOST_FAILURES_IN_ROW = 5 };
 
 /* Why a batch does not count; FAILED: the line, and all is over. */
@@ -45,10 +46,10 @@ static bool take_sample(session_t *session, fathom_sample_t *sample)
 }
 
 /* Samples that count for nothing. */
-static bool rest(session_t *session)
+static bool rest(session_t *session, uint32_t rest_us)
 {
     const host_t *const host = session->channel.host;
-    const uint64_t end_us = host->now_us(host->ctx) + REST_US;
+    const uint64_t end_us = host->now_us(host->ctx) + rest_us;
     fathom_sample_t sample;
     do
         if (!take_sample(session, &sample)) return false;
@@ -129,9 +130,9 @@ bool calibrate_measure(session_t *session, const calibrate_batch_t *asked, bool 
     calibrate_measurement_t last = {0, 0};
     batch_t why = BATCH_GOOD;
     bool has_before = false;
-    if (is_after_write && !rest(session)) return false;
+    if (is_after_write && !rest(session, AFTER_WRITE_US)) return false;
     for (unsigned batches = 0; batches != MOST_BATCHES; batches++) {
-        if (batches != 0 && !rest(session)) return false;
+        if (batches != 0 && !rest(session, REST_US)) return false;
         calibrate_measurement_t now = {0, 0};
         const batch_t batch = take_batch(session, asked, &now);
         if (batch == BATCH_FAILED) return false;

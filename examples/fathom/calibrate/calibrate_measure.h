@@ -17,7 +17,7 @@ typedef struct {
 } calibrate_measurement_t;
 
 /*
- * Measures until the medians of two batches in succession, a second apart, differ by no more than half their tolerance:
+ * Measures until the medians of two batches in succession, two seconds apart, differ by no more than half their tolerance:
  * a sensor with a filter settles slowly. is_after_write: what was measured before it is dropped first. In a batch all
  * samples are targets; one that has another sample, or too large a spread, does not count. False after saying why
  * there were no two such batches, and what to try.
