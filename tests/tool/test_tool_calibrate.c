@@ -12,11 +12,14 @@ static struct {
     unsigned lost_write; /* 0: none */
     bool is_taken;
     uint8_t exception; /* comes in place of the acknowledgement; 0: nothing does */
+    bool is_deaf;      /* to #1, which the driver reads before it writes #12 */
     unsigned requests;
 } writes;
 
 static void incoming(void *ctx, fathom_sim_frame_t *frame)
 {
+    if (writes.is_deaf && frame->length != 0 && frame->bytes[1] == 3 && frame->bytes[3] == 1)
+        frame->length = 0;
     if (frame->length == 0 || frame->bytes[1] != 6) return;
     if (++writes.requests == writes.lost_write && !writes.is_taken) frame->length = 0;
 }
@@ -298,6 +301,17 @@ TEST(a_refusal_ends_it)
     assert_non_null(strstr(run->err, "refused"));
     assert_non_null(strstr(run->err, "\nfathom: hps167s:1: nothing was written\n"));
     assert_int_equal(writes.requests, 1);
+}
+
+TEST(a_write_that_could_not_be_sent_ends_it)
+{
+    writes.is_deaf = true;
+    const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE);
+    assert_int_equal(run->status, 1);
+    assert_string_equal(run->out, FAR ONE);
+    assert_non_null(strstr(run->err, "fathom: hps167s:1: offset -15 mm was not written: no response"));
+    assert_non_null(strstr(run->err, "\nfathom: hps167s:1: nothing was written\n"));
+    assert_int_equal(writes.requests, 0);
 }
 
 TEST(a_refused_0_leaves_it_right)

@@ -4,6 +4,8 @@
 
 #include <string.h>
 
+#include "sim/fault.h"
+
 static void begin(int32_t mm)
 {
     bench_begin();
@@ -79,6 +81,70 @@ TEST(what_does_not_come_to_rest_is_refused)
     uint32_t begin_us = bench.clock.now_us;
     bench.hps167s.device.scene = (fathom_sim_scene_t){moving, &begin_us};
     writes_nothing(1, "it does not come to rest, ", CALIBRATE);
+}
+
+/* After a write the first measurement is one from before. */
+static int32_t stale(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    int32_t *const used = ctx;
+    const int32_t offset_mm = bench.hps167s.sensor.offset_mm;
+    const int32_t mm = 2015 - offset_mm + *used;
+    *used = offset_mm;
+    return mm;
+}
+
+TEST(what_was_measured_before_a_write_is_dropped)
+{
+    int32_t used = 0;
+    bench.hps167s.device.scene = (fathom_sim_scene_t){stale, &used};
+    const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE);
+    if (run->status != 0 || strstr(run->out, "it is right within 2 mm") == NULL) fail_msg("%s", run->out);
+}
+
+/* 6 mm up and down, in the first second. */
+static int32_t noisy_at_first(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    static uint32_t n;
+    if (now_us - *(const uint32_t *)ctx > 1000000) return 2000;
+    return 1997 + (int32_t)(n++ * 5 % 7);
+}
+
+TEST(of_two_batches_the_larger_spread_counts)
+{
+    uint32_t begin_us = bench.clock.now_us;
+    bench.hps167s.device.scene = (fathom_sim_scene_t){noisy_at_first, &begin_us};
+    const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE);
+    if (run->status != 0 || strstr(run->out, "(spread 6 mm)") == NULL) fail_msg("%s", run->out);
+    assert_non_null(strstr(run->out, "it is right within 3 mm"));
+}
+
+/* There in every second batch, which takes 0.46 s; 2 s are between two. */
+static int32_t at_times(void *ctx, uint8_t probe, uint32_t now_us)
+{
+    return (now_us - *(const uint32_t *)ctx) % 4480000 < 1000000 ? FATHOM_SIM_NO_TARGET : 2000;
+}
+
+TEST(a_target_that_is_there_at_times_is_said_to_be_missing)
+{
+    uint32_t begin_us = bench.clock.now_us;
+    bench.hps167s.device.scene = (fathom_sim_scene_t){at_times, &begin_us};
+    writes_nothing(1, "no target in range", CALIBRATE);
+}
+
+TEST(a_response_that_is_lost_is_asked_for_again)
+{
+    static fathom_sim_fault_t lossy;
+    fathom_sim_fault_init(&lossy, 1);
+    fathom_sim_fault_add(&lossy, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 3)->run = 4;
+    fathom_sim_fault_attach(&lossy, &bench.line, &bench.hps167s.device);
+    bench.scene.value[0] = 2000;
+    ASSERT_RUN(0, CALIBRATE);
+    assert_int_equal(lossy.counters[FATHOM_SIM_FAULT_SILENCE], 4);
+    begin(2000);
+    fathom_sim_fault_init(&lossy, 1);
+    fathom_sim_fault_add(&lossy, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 3)->run = 5;
+    fathom_sim_fault_attach(&lossy, &bench.line, &bench.hps167s.device);
+    writes_nothing(1, "could not be measured: no response", CALIBRATE);
 }
 
 /* What is in force of the offset, in 1/1000 mm: each measurement comes 1/100 nearer, so that it takes 1.85 s to 63 %. */

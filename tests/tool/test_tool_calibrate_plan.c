@@ -229,13 +229,34 @@ TEST(an_offset_that_is_no_int16_is_not_written)
     measured(80);
     assert_int_equal(plan.write_mm, 17920);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
-    measured(3100); /* 17920 + 14900 = 32820 */
+    measured(3152); /* 17920 + 14848 = 32768 */
     assert_true(plan.next == CALIBRATE_END && plan.why == CALIBRATE_TOO_LARGE && !plan.is_right);
     calibrate_begin(&plan, 18000, true);
     measured(80);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
     measured(3153); /* 17920 + 14847 = 32767 */
     assert_true(plan.next == CALIBRATE_WRITE && plan.write_mm == 32767);
+    for (int32_t more_mm = 0; more_mm <= 1; more_mm++) {
+        calibrate_begin(&plan, 80, true);
+        measured(18000);
+        calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
+        measured(14928 + more_mm); /* -17920 - 14848 = -32768 */
+        assert_int_equal(plan.next, more_mm == 0 ? CALIBRATE_WRITE : CALIBRATE_END);
+    }
+    assert_int_equal(plan.why, CALIBRATE_TOO_LARGE);
+}
+
+/* Measured as before within 2 mm, and 3 mm off. */
+TEST(one_that_adds_and_drifts_off_is_not_right)
+{
+    calibrate_begin(&plan, 2000, true);
+    measured(2015);
+    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
+    measured(2002);
+    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
+    measured(2003);
+    assert_true(plan.next == CALIBRATE_END && plan.why == CALIBRATE_UNEXPECTED && !plan.is_right);
+    assert_int_equal(plan.rule, CALIBRATE_ADDS);
 }
 
 TEST(what_moves_meanwhile_is_not_explained)
