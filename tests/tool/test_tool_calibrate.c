@@ -143,10 +143,9 @@ static void expect(int status, const char *out, const char *err, const char *lin
 #define EITHER "whether #12 adds to the offset before or replaces it is not settled"
 #define AGAIN                                                                                                \
     "fathom: switch its power off and on, then measure, before you calibrate again\n"                        \
-    "fathom: if it measures as before then, write offset 0 and calibrate again; if it measures X mm, "       \
-    "neither "                                                                                               \
-    "right\n"                                                                                                \
-    "fathom: nor as before, #12 replaces, and the right offset is 1985 - X\n" /* 2000 - 15 */
+    "fathom: if it measures as before then, write offset 0, switch it off and on, and calibrate again; if "  \
+    "it\n"                                                                                                   \
+    "fathom: measures X mm, neither right nor as before, #12 replaces, and the right offset is 1985 - X\n" /* 2000 - 15 */
 
 TEST(one_that_replaces_is_settled_in_three_writes)
 {

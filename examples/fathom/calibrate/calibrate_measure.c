@@ -67,7 +67,7 @@ static int compare(const void *one, const void *other)
 static batch_t take_batch(session_t *session, const calibrate_batch_t *asked,
                           calibrate_measurement_t *measurement)
 {
-    uint16_t distances[CALIBRATE_MOST_SAMPLES];
+    uint16_t distances[CALIBRATE_MOST_SAMPLES] = {0};
     for (uint32_t i = 0; i != asked->samples; i++) {
         fathom_sample_t sample;
         if (!take_sample(session, &sample)) return BATCH_FAILED;

@@ -136,11 +136,13 @@ static void print_next(const calibrate_plan_t *plan)
     }
     (void)fputs("fathom: switch its power off and on, then measure, before you calibrate again\n", stderr);
     if (is_unmoved && plan->writes == 1)
-        (void)fprintf(
-            stderr,
-            "fathom: if it measures as before then, write offset 0 and calibrate again; if it measures X mm, "
-            "neither right\nfathom: nor as before, #12 replaces, and the right offset is %" PRId32 " - X\n",
-            plan->written_mm[0] + plan->known_mm);
+        (void)fprintf(stderr,
+                      "fathom: if it measures as before then, write offset 0, switch it off and on, and "
+                      "calibrate again; "
+                      "if it\nfathom: measures X mm, neither right nor as before, #12 replaces, and the "
+                      "right offset is "
+                      "%" PRId32 " - X\n",
+                      plan->written_mm[0] + plan->known_mm);
 }
 
 static void print_ended(const session_t *session, const calibrate_plan_t *plan)
