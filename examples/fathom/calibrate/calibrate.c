@@ -131,10 +131,10 @@ static int run(const host_t *host, int argc, char **argv)
                            session.station->model->name);
     if (values[KNOWN] == NULL)
         return usage_error(command, "--known is missing: the true distance of the target in mm");
-    if (!option_number(command, "--known", values[KNOWN], LEAST_MM, MOST_MM, &known_mm) ||
-        !option_number(command, "--samples", values[SAMPLES], CALIBRATE_LEAST_SAMPLES, CALIBRATE_MOST_SAMPLES,
+    if (!option_number(command, "known", values[KNOWN], LEAST_MM, MOST_MM, &known_mm) ||
+        !option_number(command, "samples", values[SAMPLES], CALIBRATE_LEAST_SAMPLES, CALIBRATE_MOST_SAMPLES,
                        &asked.samples) ||
-        !option_number(command, "--spread", values[SPREAD], 0, MOST_SPREAD_MM, &asked.spread_mm))
+        !option_number(command, "spread", values[SPREAD], 0, MOST_SPREAD_MM, &asked.spread_mm))
         return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
     calibrate_begin(&plan, (int32_t)known_mm, values[UNSETTLED] == NULL);
