@@ -10,7 +10,7 @@
 bool dyp_begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
-    reader->stream = &base->stream;
+    reader->frames = base->stream.counters;
     reader->values = base->measurement.values;
     reader->value_count = (uint8_t)(base->stream.length / 2 - 1);
     reader->response = &base->measurement;

@@ -17,6 +17,8 @@ enum { DYP_ADDRESS = 0x0200, DYP_MAX_ADDRESS = 0xFE };
 
 /* ---- reading ---- */
 
+enum { DYP_TAKES = READER_TAKES_MEANINGS | READER_TAKES_WINDOW };
+
 /* The last step of a reader_init_t, when the driver has been begun. True. */
 bool dyp_begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor);
 bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor,

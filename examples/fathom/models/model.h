@@ -11,7 +11,9 @@
 /* One way in which a sensor can be read and simulated. */
 typedef struct {
     const char *name;
-    bool is_asked; /* at an address; else it sends by itself */
+    bool is_asked;    /* else it sends by itself */
+    bool has_address; /* on the wire: it is asked there, or its frames tell it */
+    uint8_t takes;    /* READER_TAKES_...: which of the user's settings have an effect */
     reader_init_t read;
     device_init_t simulate;
 } model_mode_t;

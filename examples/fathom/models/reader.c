@@ -17,6 +17,20 @@ void reader_begin(reader_t *reader, channel_t *channel)
     reader->line = &channel->line;
 }
 
+bool reader_has_break(reader_t *reader, const channel_t *channel)
+{
+    if (channel_has_break(channel)) return true;
+    reader->refusal =
+        "this port cannot hold its TX low (a break), which selects real-time values; try another "
+        "adapter, or connect the sensor's RX to its ground and leave --value out";
+    return false;
+}
+
+void reader_end_break(channel_t *channel)
+{
+    (void)fathom_line_break(&channel->line, false); /* a port that cannot end a break holds none */
+}
+
 fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,
                                      const fathom_modbus_t *transport)
 {

@@ -16,14 +16,28 @@
 #include "fathom/sensor/hps167s_auto.h"
 #include "shared/channel.h"
 
+/* Those of the user's settings that only some sensors have, or only in some modes. */
+enum {
+    READER_TAKES_PROBES = 1,
+    READER_TAKES_MEANINGS = 2,
+    READER_TAKES_WINDOW = 4,
+    READER_TAKES_VALUE = 8,
+    READER_TAKES_REGISTERS = 16,
+    READER_TAKES_TEMPERATURE = 32
+};
+
 /* What the user may set; 0: the driver's default. */
 typedef struct {
     uint32_t timeout_us; /* of a response; of a sensor that sends by itself: until it is stale */
     uint32_t period_us;  /* between two requests */
     const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
     uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
-    fathom_dyp_window_t window;         /* of A16 and A05 */
-    uint8_t probes;                     /* of an A05: bit probe - 1 */
+    fathom_dyp_window_t window;         /* of A16 and A05; of an HPS-167S its ends */
+    uint32_t temperature_us; /* of an HPS-167S: from one reading of it to the next; 0: it is not read */
+    uint16_t registers;      /* of an A05: where the first probe's distance is */
+    uint8_t probes;          /* of an A05: bit probe - 1 */
+    uint8_t value;           /* fathom_dyp_value_t, if has_value; else RX is left alone */
+    bool has_value;
     uint8_t address;
     uint8_t retries;
 } reader_settings_t;
@@ -32,18 +46,50 @@ typedef struct {
  * does: its user may be looking for the loose wire. */
 enum { READER_BACKOFF_US = 1 };
 
-/* Any driver, with what the library's common interface does not show: the causes of an error. */
+/* A temperature that is read between measurements. */
 typedef struct {
+    fathom_sensor_t measuring; /* the driver's */
+    uint32_t period_us;        /* of reading it */
+    uint32_t interval_us;      /* of measuring */
+    uint32_t asked_us;         /* when it was asked for, ... */
+    uint32_t read_us;          /* ... when it was read, if it is known, ... */
+    uint32_t measured_us;      /* ... and when the last measurement began */
+    uint8_t state;
+    bool was_asked; /* once */
+    bool has_measured;
+    bool was_last; /* asked for, after the last measurement */
+    bool is_told;  /* that it could not be read */
+    bool is_known;
+    int16_t dc; /* tenths of a degree Celsius */
+} reader_temperature_t;
+
+/* An A05 that is to be switched off and on, so that it looks at its RX. */
+typedef struct {
+    fathom_sensor_t listening; /* the driver's */
+    fathom_output_t rx;
+    uint32_t heard_us;
+    uint8_t value; /* fathom_dyp_value_t */
+    bool has_been_off;
+} reader_selection_t;
+
+/* Any driver, with what the library's common interface does not show: the causes of an error. */
+typedef struct reader reader_t;
+struct reader {
     fathom_sensor_t sensor;
     const uint16_t *values;                   /* the 16-bit values of the last response, ... */
     uint8_t value_count;                      /* ... and how many there are */
     const fathom_dyp_measurement_t *response; /* of A16 and A05; NULL: a response is one sample */
     uint16_t *sequence;                       /* of the last response */
     fathom_modbus_unit_t *unit;               /* NULL: it sends by itself */
-    fathom_stream_t *stream;                  /* NULL: it is asked */
+    uint16_t *frames;                         /* FATHOM_STREAM_COUNTERS of them; NULL: it is asked */
     const char *protocol;                     /* with which it is asked */
     bool is_paced;                            /* it keeps the user's interval by itself */
     fathom_line_t *line;
+    const char *refusal; /* what a reader_init_t that returned false has to say; NULL: nothing */
+    const char *remark;  /* what the user is to be told now; who tells it makes it NULL */
+    /* Leaves the device and the port as they were before; to be called until it is not FATHOM_PENDING. NULL: they
+     * are. */
+    fathom_status_t (*end)(reader_t *reader);
     union {
         fathom_a16_auto_t a16_auto;
         fathom_a16_modbus_t a16_modbus;
@@ -53,14 +99,25 @@ typedef struct {
         fathom_a05_dyp_t a05_dyp;
         fathom_hps167s_t hps167s;
     } driver;
-    fathom_hps167s_auto_t unasked; /* of an HPS-167S: listens to the measurements that it sends unasked */
-} reader_t;
+    reader_selection_t selection;
+    /* of an HPS-167S */
+    fathom_hps167s_auto_t unasked; /* listens to the measurements that it sends unasked */
+    uint16_t unasked_frames[FATHOM_STREAM_COUNTERS];
+    fathom_hps167s_limits_t limits;
+    reader_temperature_t temperature;
+};
 
 /* Begins to read through an open channel. False: settings that the driver does not take. */
 typedef bool (*reader_init_t)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
 
 /* An empty one, for reader_init_t to fill. */
 void reader_begin(reader_t *reader, channel_t *channel);
+
+/* A level at the module's RX, which a break of the port holds low. False, with a refusal: the port cannot do that. */
+bool reader_has_break(reader_t *reader, const channel_t *channel);
+
+/* That level is high, whatever held it low before. */
+void reader_end_break(channel_t *channel);
 
 /* What all that are asked have in common. Address 0 is the driver's to refuse, where the device cannot be there. */
 fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,

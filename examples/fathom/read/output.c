@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "shared/command.h"
+#include "shared/options.h"
 #include "shared/timestamp.h"
 
 /* ---- JSON and CSV: the same fields in the same order ---- */
@@ -14,7 +15,7 @@ enum { VALUE_TEXT = 48 };
 typedef struct {
     const char *name;
     bool is_string;                                                  /* quoted in JSON */
-    bool needs_optics;                                               /* only of sensors that have them */
+    uint8_t needs;                                                   /* COLUMNS_...; 0: all sensors have it */
     void (*format)(const reading_t *reading, char text[VALUE_TEXT]); /* leaves text empty for null */
 } field_t;
 
@@ -56,7 +57,7 @@ static void put_mode(const reading_t *reading, char text[VALUE_TEXT])
 
 static void put_address(const reading_t *reading, char text[VALUE_TEXT])
 {
-    if (reading->mode->is_asked) put_number(text, reading->sample->address);
+    if (reading->mode->has_address) put_number(text, reading->sample->address);
 }
 
 static void put_probe(const reading_t *reading, char text[VALUE_TEXT])
@@ -113,29 +114,38 @@ static void put_precision(const reading_t *reading, char text[VALUE_TEXT])
     put_number(text, reading->sample->precision);
 }
 
+static void put_temperature(const reading_t *reading, char text[VALUE_TEXT])
+{
+    const reader_temperature_t *const temperature = &reading->reader->temperature;
+    if (temperature->is_known) tenths_text(text, VALUE_TEXT, temperature->dc);
+}
+
 static const field_t fields[] = {
-    {"sensor", true, false, put_sensor},
-    {"mode", true, false, put_mode},
-    {"address", false, false, put_address},
-    {"probe", false, false, put_probe},
-    {"sequence", false, false, put_sequence},
-    {"time_us", false, false, put_time},
-    {"utc", true, false, put_utc},
-    {"status", true, false, put_status},
-    {"interference", false, false, put_interference},
-    {"distance_mm", false, false, put_distance},
-    {"raw", false, false, put_raw},
-    {"magnitude", false, true, put_magnitude},
-    {"ambient", false, true, put_ambient},
-    {"precision", false, true, put_precision},
+    {"sensor", true, 0, put_sensor},
+    {"mode", true, 0, put_mode},
+    {"address", false, 0, put_address},
+    {"probe", false, 0, put_probe},
+    {"sequence", false, 0, put_sequence},
+    {"time_us", false, 0, put_time},
+    {"utc", true, 0, put_utc},
+    {"status", true, 0, put_status},
+    {"interference", false, 0, put_interference},
+    {"distance_mm", false, 0, put_distance},
+    {"raw", false, 0, put_raw},
+    {"magnitude", false, COLUMNS_OPTICS, put_magnitude},
+    {"ambient", false, COLUMNS_OPTICS, put_ambient},
+    {"precision", false, COLUMNS_OPTICS, put_precision},
+    {"temperature_degc", false, COLUMNS_TEMPERATURE, put_temperature},
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
+
+static bool is_in(const field_t *field, uint8_t columns) { return (field->needs & columns) == field->needs; }
 
 static void write_json(FILE *to, const reading_t *reading)
 {
     for (size_t i = 0; i != FIELDS; i++) {
         char text[VALUE_TEXT] = "";
-        if (fields[i].needs_optics && !reading->model->has_optics) continue;
+        if (!is_in(&fields[i], reading->own)) continue;
         fields[i].format(reading, text);
         const char *const quote = fields[i].is_string ? "\"" : "";
         (void)fprintf(to, "%s\"%s\":%s%s%s", i == 0 ? "{" : ",", fields[i].name, quote,
@@ -144,11 +154,10 @@ static void write_json(FILE *to, const reading_t *reading)
     (void)fputs("}\n", to);
 }
 
-static void begin_csv(FILE *to, bool has_optics)
+static void begin_csv(FILE *to, uint8_t columns)
 {
     for (size_t i = 0; i != FIELDS; i++)
-        if (!fields[i].needs_optics || has_optics)
-            (void)fprintf(to, "%s%s", i == 0 ? "" : ",", fields[i].name);
+        if (is_in(&fields[i], columns)) (void)fprintf(to, "%s%s", i == 0 ? "" : ",", fields[i].name);
     (void)fputs("\n", to);
 }
 
@@ -157,8 +166,8 @@ static void write_csv(FILE *to, const reading_t *reading)
 {
     for (size_t i = 0; i != FIELDS; i++) {
         char text[VALUE_TEXT] = "";
-        if (fields[i].needs_optics && !reading->has_optics) continue;
-        if (!fields[i].needs_optics || reading->model->has_optics) fields[i].format(reading, text);
+        if (!is_in(&fields[i], reading->columns)) continue;
+        if (is_in(&fields[i], reading->own)) fields[i].format(reading, text);
         (void)fprintf(to, "%s%s", i == 0 ? "" : ",", text);
     }
     (void)fputs("\n", to);
@@ -190,6 +199,9 @@ static void write_text(FILE *to, const reading_t *reading)
         (void)fprintf(to, "  magnitude %s  ambient %u  precision %u", magnitude, sample->ambient,
                       sample->precision);
     }
+    char temperature[VALUE_TEXT] = "";
+    put_temperature(reading, temperature);
+    if (temperature[0] != '\0') (void)fprintf(to, "  %s degC", temperature);
     (void)fputs("\n", to);
 }
 

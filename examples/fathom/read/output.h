@@ -4,22 +4,27 @@
 
 #include "models/models.h"
 
+/* Members and columns that only some sensors have. */
+enum { COLUMNS_OPTICS = 1, COLUMNS_TEMPERATURE = 2 };
+
 /* One line of output: a sample and what the library does not know of it. */
 typedef struct {
     const model_t *model;
     const model_mode_t *mode;
+    const reader_t *reader;
     const char *name; /* in text */
     const fathom_sample_t *sample;
     uint64_t time_us; /* since the program's start; does not wrap */
     uint64_t utc_us;  /* since 1970 */
-    bool has_optics;  /* this sensor or another one that stands in the same table */
+    uint8_t own;      /* COLUMNS_... of this sensor, ... */
+    uint8_t columns;  /* ... and of all that stand in the same table */
 } reading_t;
 
 /* A way to write readings. begin may be NULL. */
 typedef struct {
     const char *name;
     bool is_json;
-    void (*begin)(FILE *to, bool has_optics);
+    void (*begin)(FILE *to, uint8_t columns);
     void (*write)(FILE *to, const reading_t *reading);
 } format_t;
 

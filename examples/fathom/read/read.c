@@ -22,13 +22,21 @@ static void flush(reading_run_t *run)
 
 static bool is_shared(const reading_run_t *run) { return run->loop.options.station_count > 1; }
 
-/* Has any of the sensors, so that their columns stand in the table? */
-static bool has_optics(const reading_run_t *run)
+/* Those of one sensor, and of all. */
+static uint8_t own_columns(const reading_run_t *run, const station_t *station)
+{
+    const bool has_temperature = run->loop.options.reading.temperature_us != 0 &&
+                                 (station->mode->takes & READER_TAKES_TEMPERATURE) != 0;
+    return (uint8_t)((station->model->has_optics ? COLUMNS_OPTICS : 0) |
+                     (has_temperature ? COLUMNS_TEMPERATURE : 0));
+}
+
+static uint8_t all_columns(const reading_run_t *run)
 {
     const sensor_options_t *const options = &run->loop.options;
-    for (size_t i = 0; i != options->station_count; i++)
-        if (options->stations[i].model->has_optics) return true;
-    return false;
+    uint8_t columns = 0;
+    for (size_t i = 0; i != options->station_count; i++) columns |= own_columns(run, &options->stations[i]);
+    return columns;
 }
 
 static bool write_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
@@ -39,11 +47,13 @@ static bool write_reading(void *ctx, const station_t *station, const fathom_samp
     const reading_t reading = {
         .model = station->model,
         .mode = station->mode,
+        .reader = &station->reader,
         .name = is_shared(run) ? station->name : station->model->name,
         .sample = sample,
         .time_us = time_us,
         .utc_us = host->utc_us(host->ctx) - (poll_loop_time_us(&run->loop) - time_us),
-        .has_optics = has_optics(run),
+        .own = own_columns(run, station),
+        .columns = all_columns(run),
     };
     errno = 0;
     run->options.format->write(stdout, &reading);
@@ -58,6 +68,12 @@ static void write_failure(void *ctx, const failure_t *failure, const station_t *
                   has_name ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
     (void)fputs("\n", stderr);
+}
+
+static void write_remark(void *ctx, const station_t *station, const char *text)
+{
+    (void)ctx;
+    (void)fprintf(stderr, "fathom: %s: %s\n", station->name, text);
 }
 
 static void write_port(void *ctx, const char *text, bool is_there)
@@ -112,7 +128,8 @@ static int finish(reading_run_t *run)
 
 static int run_read(const host_t *host, int argc, char **argv)
 {
-    static const poll_loop_user_t user = {write_reading, write_failure, write_port, tick, is_over};
+    static const poll_loop_user_t user = {write_reading, write_failure, write_remark,
+                                          write_port,    tick,          is_over};
     static reading_run_t run; /* too large for a small stack */
     poll_loop_t *const loop = &run.loop;
     run.output_error = 0;
@@ -123,7 +140,7 @@ static int run_read(const host_t *host, int argc, char **argv)
     run.stats_us = run.options.stats_us;
     if (!poll_loop_open(loop)) return loop->is_lost ? finish(&run) : STATUS_FAILED;
     errno = 0;
-    if (run.options.format->begin != NULL) run.options.format->begin(stdout, has_optics(&run));
+    if (run.options.format->begin != NULL) run.options.format->begin(stdout, all_columns(&run));
     flush(&run);
     const int status = poll_loop_run(loop) ? finish(&run) : STATUS_FAILED;
     poll_loop_close(loop);

@@ -4,22 +4,24 @@
 #include <string.h>
 
 #include "shared/options.h"
+#include "stations/reading_options.h"
 
 static const char command[] = "read";
 
-enum { MODE = SENSOR_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, HELP, OPTIONS };
+enum { MODE = READING_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, TEMPERATURE, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    SENSOR_OPTION_ROWS,
+    READING_OPTION_ROWS,
     [MODE] = {"mode", required_argument, NULL, 256},
     [ADDRESS] = {"address", required_argument, NULL, 256},
     [COUNT] = {"count", required_argument, NULL, 256},
     [FORMAT] = {"format", required_argument, NULL, 256},
     [STATS] = {"stats", optional_argument, NULL, 256},
+    [TEMPERATURE] = {"temperature", optional_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
-enum { MAX_COUNT = 1000000000, MAX_STATS_S = 4000 };
+enum { MAX_COUNT = 1000000000, MAX_STATS_S = 4000, TEMPERATURE_S = 10, MAX_TEMPERATURE_S = 1000 };
 
 static bool take_stats(read_options_t *options, const char *text)
 {
@@ -31,6 +33,17 @@ static bool take_stats(read_options_t *options, const char *text)
     return true;
 }
 
+static bool take_temperature(sensor_options_t *sensors, const char *text)
+{
+    uint32_t seconds = TEMPERATURE_S;
+    if (text == NULL) return true;
+    if (!reading_option_suits(sensors, command, "temperature", READER_TAKES_TEMPERATURE) ||
+        !option_number(command, "temperature", text[0] != '\0' ? text : NULL, 1, MAX_TEMPERATURE_S, &seconds))
+        return false;
+    sensors->reading.temperature_us = seconds * 1000000u;
+    return true;
+}
+
 bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
@@ -39,7 +52,8 @@ bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, 
     if (rest < 0) return false;
     options->wants_help = values[HELP] != NULL;
     if (options->wants_help) return true;
-    if (!sensor_options(sensors, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]))
+    if (!sensor_options(sensors, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]) ||
+        !reading_options(sensors, command, values) || !take_temperature(sensors, values[TEMPERATURE]))
         return false;
     options->format = format_find(command, values[FORMAT]);
     if (options->format == NULL || !take_stats(options, values[STATS]) ||
@@ -78,6 +92,15 @@ void read_help(FILE *to)
         "skipped\n",
         to);
     sensor_options_help(to);
+    reading_options_help(to);
+    (void)fputs(
+        "  --temperature[=S] of an hps167s (modbus): its temperature, read every so many seconds (default "
+        "10) "
+        "between\n"
+        "                    measurements, in each reading: temperature_degc, null where it is not known or "
+        "older than\n"
+        "                    three times that\n",
+        to);
     (void)fputs(
         "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
         "in range\n"

@@ -70,6 +70,11 @@ void channel_close(channel_t *channel)
     channel->tcp = NULL;
 }
 
+bool channel_has_break(const channel_t *channel)
+{
+    return channel->uart.set_break != NULL && !channel->port.is_pty;
+}
+
 bool channel_is_stuck(channel_t *channel)
 {
     enum { STUCK_US = 10000000 };

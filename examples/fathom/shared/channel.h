@@ -46,6 +46,9 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
                   const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
 
+/* Can it hold its TX low? A pseudo terminal has no wire, and a byte stands for each break. */
+bool channel_has_break(const channel_t *channel);
+
 /* Has a request waited for more than 10 s, and its time-out twice, without finding a silence to leave in? Said once in
  * so long. To be asked whenever the line was polled. */
 bool channel_is_stuck(channel_t *channel);

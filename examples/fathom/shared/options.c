@@ -61,6 +61,12 @@ bool option_number(const char *command, const char *name, const char *text, uint
     return false;
 }
 
+void tenths_text(char *text, size_t capacity, int32_t tenths)
+{
+    const uint32_t size = tenths < 0 ? (uint32_t)-tenths : (uint32_t)tenths;
+    (void)snprintf(text, capacity, "%s%" PRIu32 ".%" PRIu32, tenths < 0 ? "-" : "", size / 10, size % 10);
+}
+
 void list_add(char *list, size_t capacity, const char *word)
 {
     const size_t length = strlen(list);

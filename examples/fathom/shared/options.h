@@ -31,6 +31,9 @@ bool option_number(const char *command, const char *name, const char *text, uint
 /* A --format that is text or json; NULL: text. False after saying what is wrong. */
 bool option_json(const char *command, const char *text, bool *is_json);
 
+/* Tenths as a decimal, such as -0.5. */
+void tenths_text(char *text, size_t capacity, int32_t tenths);
+
 /* Adds a word to a list of `capacity` bytes, as in "a16, a05"; what does not fit is left out. */
 void list_add(char *list, size_t capacity, const char *word);
 

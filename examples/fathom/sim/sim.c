@@ -43,8 +43,8 @@ static bool open_line(simulation_t *simulation)
     const fathom_sim_pty_config_t config = {.link = options->link};
     const uint32_t now_us = fathom_sim_pty_now_us();
     fathom_sim_line_init(&simulation->line, &options->devices[0].line, now_us);
-    /* What sends by itself has a wire each way; several share an RS485 pair. */
-    simulation->line.full_duplex = options->count == 1 && !options->devices[0].mode->is_asked;
+    /* What has no address has a wire each way; the others share an RS485 pair. */
+    simulation->line.full_duplex = options->count == 1 && !options->devices[0].mode->has_address;
     simulation->line.echo = options->echo;
     for (uint32_t i = 0; i != options->count; i++) hang_device(simulation, i, now_us);
     if (fathom_sim_pty_open(&simulation->pty, &simulation->line, &config) == 0) return true;

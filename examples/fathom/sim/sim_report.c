@@ -16,7 +16,7 @@ static void print_reader(FILE *to, const sim_device_t *device, const char *port)
 {
     (void)fprintf(to, "fathom read %s", device->model->name);
     if (device->mode != &device->model->modes[0]) (void)fprintf(to, " --mode %s", device->mode->name);
-    if (device->mode->is_asked && device->address != FACTORY_ADDRESS)
+    if (device->mode->has_address && device->address != FACTORY_ADDRESS)
         (void)fprintf(to, " --address %u", device->address);
     if (device->line.baud != device->model->line.baud)
         (void)fprintf(to, " --baud %" PRIu32, device->line.baud);

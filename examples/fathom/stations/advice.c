@@ -206,6 +206,30 @@ static void print_damaged(FILE *to, const failure_t *failure)
                     to);
 }
 
+/* Of a sensor that is heard at an address and not asked. */
+static void print_unheard(FILE *to, const failure_t *failure)
+{
+    const evidence_t *const evidence = &failure->evidence;
+    if (evidence->bytes == 0)
+        (void)fputs(
+            "nothing was heard at all; check the supply, A and B swapped, and that it sends by itself (if "
+            "not: --mode modbus)",
+            to);
+    else if (evidence->foreign != 0)
+        (void)print_others(to, failure);
+    else if (evidence->masters + evidence->own != 0)
+        (void)fprintf(
+            to,
+            "Modbus was heard on this line, and no measurement of address %u; if it does not send by itself: "
+            "--mode modbus",
+            failure->address);
+    else {
+        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->model->name);
+        print_settings(to, failure);
+        (void)fputs("; A and B swapped and noise look like this too", to);
+    }
+}
+
 static void print_stale(FILE *to, const failure_t *failure)
 {
     const uint64_t *const stream = failure->counters->attempt.stream;
@@ -297,7 +321,10 @@ void advice_print(FILE *to, const failure_t *failure)
             print_damaged(to, failure);
         break;
     case FATHOM_ERR_STALE:
-        print_stale(to, failure);
+        if (failure->has_address)
+            print_unheard(to, failure);
+        else
+            print_stale(to, failure);
         break;
     case FATHOM_ERR_MALFORMED:
         if (print_unasked(to, failure)) break;

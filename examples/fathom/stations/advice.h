@@ -18,6 +18,7 @@ typedef struct {
     const char *shared;                 /* its name on a line with others; NULL: it is alone */
     evidence_t evidence;                /* of this attempt */
     uint8_t address;
+    bool has_address;   /* at which it is asked, or heard */
     bool others_answer; /* on this line */
     bool waits;         /* for a lost port, which is opened again */
     bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */

@@ -58,9 +58,8 @@ static void take_port(counters_t *counters, port_counts_t *port, channel_t *chan
 void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader)
 {
     take(channel->counters, counters->attempt.line, counters->total.line, FATHOM_LINE_COUNTERS);
-    if (reader->stream != NULL)
-        take(reader->stream->counters, counters->attempt.stream, counters->total.stream,
-             FATHOM_STREAM_COUNTERS);
+    if (reader->frames != NULL)
+        take(reader->frames, counters->attempt.stream, counters->total.stream, FATHOM_STREAM_COUNTERS);
     if (reader->unit != NULL) {
         take(&reader->unit->responses, counters->attempt.unit + UNIT_RESPONSES,
              counters->total.unit + UNIT_RESPONSES, 1);

@@ -16,6 +16,8 @@ typedef struct {
     bool (*reading)(void *ctx, const station_t *station, const fathom_sample_t *sample);
     /* attempt: its number, from 1. Once for each failed part of an attempt. */
     void (*failure)(void *ctx, const failure_t *failure, const station_t *station);
+    /* What the user has to know of this sensor, or to do with it. */
+    void (*remark)(void *ctx, const station_t *station, const char *text);
     /* What happened to the port, a line of text; is_there: false while it is waited for. */
     void (*port)(void *ctx, const char *text, bool is_there);
     /* Called before each sleep. Returns how long it may take at most, in us. */

@@ -57,7 +57,7 @@ static bool others_answer(const poll_loop_t *loop, const station_t *station)
 /* What others of this line have said late is no evidence of anything else. */
 static void judge(poll_loop_t *loop, const station_t *station, evidence_t *evidence)
 {
-    listener_judge(station->listener, station->mode->is_asked ? station->address : 0, evidence);
+    listener_judge(station->listener, station->mode->has_address ? station->address : 0, evidence);
     if (evidence->foreign == 0 || station_at(loop, evidence->foreign_address) == NULL) return;
     evidence->foreign = 0;
     if (evidence->rest == 0 && evidence->own == 0) evidence->bytes = 0;
@@ -78,7 +78,7 @@ static bool has_more_to_do(const poll_loop_t *loop, const station_t *station)
 /* Does more than one probe of this sensor speak? */
 static bool has_probes(const poll_loop_t *loop, const station_t *station)
 {
-    const uint8_t probes = loop->options.probes;
+    const uint8_t probes = loop->options.reading.probes;
     return station->model->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
 }
 
@@ -93,6 +93,7 @@ static void report_failure(poll_loop_t *loop, station_t *station, fathom_status_
         .line = &station->line,
         .shared = poll_is_shared(loop) ? station->name : NULL,
         .address = station->address,
+        .has_address = station->mode->has_address,
         .others_answer = others_answer(loop, station),
         .waits = loop->options.reconnect && has_more_to_do(loop, station),
         .is_whole = is_first && !reader_has_more(&station->reader) && has_probes(loop, station),

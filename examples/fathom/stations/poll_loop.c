@@ -41,6 +41,13 @@ static void wait_for(poll_loop_t *loop, const fathom_posix_uart_t *port, uint32_
     loop->host->wait(loop->host->ctx, port, max_us, true);
 }
 
+static void tell_remark(poll_loop_t *loop, station_t *station)
+{
+    const char *const remark = station->reader.remark;
+    station->reader.remark = NULL;
+    if (remark != NULL) loop->user->remark(loop->ctx, station, remark);
+}
+
 /* False: it has nothing to say now. */
 static bool poll_station(poll_loop_t *loop, station_t *station)
 {
@@ -48,6 +55,7 @@ static bool poll_station(poll_loop_t *loop, station_t *station)
     do {
         fathom_sample_t sample;
         fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
+        tell_remark(loop, station);
         poll_take_late(loop);
         /* Between two requests a driver does not tell it, and waiting for the port would not wait. */
         loop->is_lost = fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST;
@@ -86,16 +94,13 @@ static uint32_t due_us(poll_loop_t *loop)
 static bool begin_station(poll_loop_t *loop, station_t *station)
 {
     const sensor_options_t *const options = &loop->options;
-    const reader_settings_t settings = {
-        .timeout_us = options->timeout_us,
-        .period_us = options->interval_us,
-        .line = options->has_mixed_lines ? &station->line : NULL,
-        .backoff_us = poll_is_shared(loop) ? 0 : READER_BACKOFF_US,
-        .window = options->window,
-        .probes = options->probes,
-        .address = station->address,
-        .retries = options->retries,
-    };
+    reader_settings_t settings = options->reading;
+    settings.timeout_us = options->timeout_us;
+    settings.period_us = options->interval_us;
+    settings.line = options->has_mixed_lines ? &station->line : NULL;
+    settings.backoff_us = poll_is_shared(loop) ? 0 : READER_BACKOFF_US;
+    settings.address = station->address;
+    settings.retries = options->retries;
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
     if (!station_begin(station, &loop->channel, &settings)) return false;
     /* Goes on after a loss, so that the gap is not taken for a new start. */
@@ -191,7 +196,23 @@ bool poll_loop_open(poll_loop_t *loop)
     return true;
 }
 
-void poll_loop_close(poll_loop_t *loop) { channel_close(&loop->channel); }
+/* Leaves a sensor as it was: ends a break, which not every adapter's driver does when it is closed. */
+static void end_station(poll_loop_t *loop, reader_t *reader)
+{
+    enum { TIMES = 1000, AGAIN_US = 1000 };
+    const host_t *const host = loop->host;
+    for (unsigned times = 0; reader->end != NULL && times != TIMES; times++) {
+        if (reader->end(reader) != FATHOM_PENDING) return;
+        host->wait(host->ctx, NULL, AGAIN_US, false);
+    }
+}
+
+void poll_loop_close(poll_loop_t *loop)
+{
+    for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
+        if (!loop->is_lost) end_station(loop, &station->reader);
+    channel_close(&loop->channel);
+}
 
 bool poll_loop_is_good(const poll_loop_t *loop)
 {

@@ -2,7 +2,6 @@
 #include "stations/sensor_options.h"
 
 #include <string.h>
-#include <strings.h>
 
 #include "shared/command.h"
 #include "shared/line_text.h"
@@ -10,7 +9,6 @@
 #include "shared/tcp_address.h"
 
 /* The longest ones keep every sum of times below the 32 bits of the library's clock. */
-enum { MAX_WORD = 24 };
 enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
 
 static bool take_baud(const char *command, const char *text, uint32_t *baud)
@@ -69,87 +67,6 @@ static bool take_numbers(sensor_options_t *options, const char *command, const c
     return true;
 }
 
-static bool take_probes(sensor_options_t *options, const char *command, const char *text)
-{
-    if (text == NULL) return true;
-    bool has_probes = false;
-    for (size_t i = 0; i != options->station_count; i++)
-        has_probes = has_probes || options->stations[i].model->probes > 1;
-    if (!has_probes) {
-        (void)usage_error(command, "--probes is for an a05, which has four");
-        return false;
-    }
-    for (const char *at = text; at != NULL;) {
-        char word[MAX_WORD];
-        uint32_t probe = 0;
-        at = next_word(at, ',', word, sizeof word);
-        if (!number_parse(word, 1, FATHOM_DYP_PROBES, &probe) || (options->probes >> (probe - 1) & 1) != 0) {
-            (void)usage_error(command, "--probes takes some of 1,2,3,4, each once, not '%s'", text);
-            return false;
-        }
-        options->probes |= (uint8_t)(1u << (probe - 1));
-    }
-    return true;
-}
-
-static const struct {
-    const char *name;
-    uint8_t meaning;
-} meanings[] = {
-    {"unknown", FATHOM_MEANS_UNKNOWN},
-    {"no-target", FATHOM_MEANS_NO_TARGET},
-    {"interference", FATHOM_MEANS_INTERFERENCE},
-    {"too-near", FATHOM_MEANS_TOO_NEAR},
-    {"fault", FATHOM_MEANS_FAULT},
-    {"refused", FATHOM_MEANS_REFUSED},
-};
-
-/* "0", "fffd" ...: where its meaning stands; NULL: it is none of the four. */
-static uint8_t *place_of(fathom_dyp_window_t *window, const char *value)
-{
-    if (strcmp(value, "0") == 0) return &window->value_0;
-    if (strcasecmp(value, "fffd") == 0) return &window->value_fffd;
-    if (strcasecmp(value, "fffe") == 0) return &window->value_fffe;
-    return strcasecmp(value, "ffff") == 0 ? &window->value_ffff : NULL;
-}
-
-/* VALUE=MEANING */
-static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
-{
-    char value[MAX_WORD];
-    const char *const name = next_word(pair, '=', value, sizeof value);
-    uint8_t *const place = place_of(window, value);
-    for (size_t i = 0; place != NULL && name != NULL && i != sizeof meanings / sizeof meanings[0]; i++) {
-        if (strcmp(name, meanings[i].name) != 0) continue;
-        *place = meanings[i].meaning;
-        return true;
-    }
-    return false;
-}
-
-static bool take_means(sensor_options_t *options, const char *command, const char *text)
-{
-    if (text == NULL) return true;
-    bool is_dyp = false;
-    for (size_t i = 0; i != options->station_count; i++)
-        is_dyp = is_dyp || options->stations[i].model->is_dyp;
-    if (!is_dyp) {
-        (void)usage_error(command, "--means is for a16 and a05");
-        return false;
-    }
-    for (const char *at = text; at != NULL;) {
-        char pair[MAX_WORD];
-        at = next_word(at, ',', pair, sizeof pair);
-        if (take_meaning(&options->window, pair)) continue;
-        (void)usage_error(command,
-                          "--means takes 0, fffd, fffe or ffff, each with =unknown, no-target, interference, "
-                          "too-near, fault or refused, such as 0=no-target,ffff=unknown, not '%s'",
-                          text);
-        return false;
-    }
-    return true;
-}
-
 static bool take_stations(sensor_options_t *options, const char *command, char **words, size_t count,
                           const char *address, const char *mode)
 {
@@ -197,9 +114,7 @@ bool sensor_options(sensor_options_t *options, const char *command, char **words
     if (!take_stations(options, command, words, (size_t)word_count, address, mode) ||
         !take_lines(options, command, values) ||
         !stations_check(options->stations, options->station_count, command, has_settings) ||
-        !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo) ||
-        !take_probes(options, command, values[OPTION_PROBES]) ||
-        !take_means(options, command, values[OPTION_MEANS]))
+        !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
     options->port = port;
@@ -212,19 +127,21 @@ bool sensor_options(sensor_options_t *options, const char *command, char **words
     return true;
 }
 
-static void tell_useless(const sensor_options_t *options, const char *name, const char *value)
+static void tell_useless(const sensor_options_t *options, bool has_effect, const char *name,
+                         const char *value)
 {
     const model_mode_t *const mode = options->stations[0].mode;
-    if (value != NULL && !mode->is_asked)
+    if (value != NULL && !has_effect)
         (void)fprintf(stderr, "fathom: in mode %s nothing is asked, so %s has no effect\n", mode->name, name);
 }
 
 void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
                                  const char *const *values)
 {
-    tell_useless(options, "--address", address);
-    tell_useless(options, "--retries", values[OPTION_RETRIES]);
-    tell_useless(options, "--echo", values[OPTION_ECHO]);
+    const model_mode_t *const mode = options->stations[0].mode;
+    tell_useless(options, mode->has_address, "--address", address);
+    tell_useless(options, mode->is_asked, "--retries", values[OPTION_RETRIES]);
+    tell_useless(options, mode->is_asked, "--echo", values[OPTION_ECHO]);
 }
 
 void sensor_options_help(FILE *to)
@@ -243,7 +160,8 @@ void sensor_options_help(FILE *to)
         "  --interval MS     from one attempt to the next; default: as fast as the sensor can\n"
         "  --timeout MS      how long to wait for a response (default: as the sensor needs, 0.5 to 1 s), or "
         "for a\n"
-        "                    good frame of a sensor that sends by itself (default 10000)\n"
+        "                    good frame of a sensor that sends by itself (default 10000, of an hps167s "
+        "2000)\n"
         "  --retries N       how often a failed request is repeated before it counts; default 0\n"
         "  --reconnect       when the adapter is unplugged, or not there yet: waits for it and goes on. A "
         "USB "
@@ -251,12 +169,6 @@ void sensor_options_help(FILE *to)
         "                    is known again by its serial number, also as another /dev/ttyUSB; one without "
         "by the\n"
         "                    USB socket that it was in. Any other port is known by its path\n"
-        "  --probes LIST     of an a05: those that are fitted or wanted, such as 1,2,4; default: all four\n"
-        "  --means LIST      of a16 and a05: what a value is that is no distance, such as "
-        "0=no-target,ffff=unknown; 0,\n"
-        "                    fffd, fffe or ffff = unknown, no-target, interference, too-near, fault or "
-        "refused.\n"
-        "                    Default: 0=unknown,fffd=no-target,fffe=interference,ffff=refused\n"
         "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n",
         to);
 }

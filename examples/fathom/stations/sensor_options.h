@@ -18,8 +18,6 @@ enum {
     OPTION_ECHO,
     OPTION_RECONNECT,
     OPTION_DURATION,
-    OPTION_PROBES,
-    OPTION_MEANS,
     SENSOR_OPTIONS
 };
 
@@ -34,9 +32,7 @@ enum {
     [OPTION_RETRIES] = {"retries", required_argument, NULL, 256},                                            \
     [OPTION_ECHO] = {"echo", required_argument, NULL, 256},                                                  \
     [OPTION_RECONNECT] = {"reconnect", no_argument, NULL, 256},                                              \
-    [OPTION_DURATION] = {"duration", required_argument, NULL, 256},                                          \
-    [OPTION_PROBES] = {"probes", required_argument, NULL, 256},                                              \
-    [OPTION_MEANS] = {"means", required_argument, NULL, 256}
+    [OPTION_DURATION] = {"duration", required_argument, NULL, 256}
 
 /* A line has 32 unit loads. */
 enum { MAX_STATIONS = 32 };
@@ -51,9 +47,9 @@ typedef struct {
     uint32_t count;              /* attempts of each sensor; 0: endless */
     uint32_t interval_us;
     uint32_t timeout_us;
-    uint64_t duration_us;       /* 0: endless */
-    fathom_dyp_window_t window; /* of A16 and A05: what their values mean; 0: the default */
-    uint8_t probes;             /* of A05, bit probe - 1; 0: all */
+    uint64_t duration_us; /* 0: endless */
+    /* What reading_options.h sets, of all that take it; the rest is each sensor's. */
+    reader_settings_t reading;
     uint8_t retries;
     uint8_t echo; /* fathom_line_config_t.echo */
     bool reconnect;

@@ -41,7 +41,7 @@ bool station_parse(station_t *station, const char *command, const char *text, co
 
 void station_name(station_t *station)
 {
-    (void)snprintf(station->name, sizeof station->name, station->mode->is_asked ? "%s:%u" : "%s",
+    (void)snprintf(station->name, sizeof station->name, station->mode->has_address ? "%s:%u" : "%s",
                    station->model->name, station->address);
 }
 
@@ -92,6 +92,10 @@ bool stations_check(const station_t *stations, size_t count, const char *command
 bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings)
 {
     if (station->mode->read(&station->reader, channel, settings)) return true;
-    (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n", station->model->name);
+    if (station->reader.refusal != NULL)
+        (void)fprintf(stderr, "fathom: %s: %s\n", station->name, station->reader.refusal);
+    else
+        (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n",
+                      station->model->name);
     return false;
 }

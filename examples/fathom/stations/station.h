@@ -13,7 +13,7 @@ typedef struct {
     const model_mode_t *mode;
     fathom_line_settings_t line; /* at which it is asked */
     uint8_t address;
-    char name[STATION_NAME]; /* "a16:1", as the user may write it; of one that sends by itself "a16" */
+    char name[STATION_NAME]; /* "a16:1", as the user may write it; of one without an address "a16" */
     reader_t reader;
     counters_t counters;
     listener_t

@@ -8,14 +8,15 @@
 #include "commands.h"
 #include "shared/events.h"
 #include "shared/options.h"
+#include "stations/reading_options.h"
 #include "watch/watch_terminal.h"
 
 static const char command[] = "watch";
 
-enum { HELP = SENSOR_OPTIONS, OPTIONS };
+enum { HELP = READING_OPTIONS, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    SENSOR_OPTION_ROWS,
+    READING_OPTION_ROWS,
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -74,6 +75,16 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
     say(watch, text, MESSAGE_US);
     if (!watch->draws && *reported != failure->status) (void)fprintf(stderr, "fathom: %s\n", text);
     *reported = failure->status;
+}
+
+/* It stays until something else has happened: it may be something to do. */
+static void take_remark(void *ctx, const station_t *station, const char *text)
+{
+    watch_t *const watch = ctx;
+    char said[MESSAGE];
+    (void)snprintf(said, sizeof said, "%s: %s", station->name, text);
+    say(watch, said, UINT32_MAX);
+    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", said);
 }
 
 static void take_port(void *ctx, const char *text, bool is_there)
@@ -184,6 +195,7 @@ static void help(FILE *to)
         "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
         to);
     sensor_options_help(to);
+    reading_options_help(to);
     (void)fputs("\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a "
                 "sensor gave no "
                 "good\n"
@@ -201,14 +213,16 @@ static bool take_options(sensor_options_t *options, int argc, char **argv, bool 
     const int rest = options_parse(command, argc, argv, table, values);
     *wants_help = rest >= 0 && values[HELP] != NULL;
     if (rest < 0 || *wants_help) return rest >= 0;
-    if (!sensor_options(options, command, argv + rest, argc - rest, values, NULL, NULL)) return false;
+    if (!sensor_options(options, command, argv + rest, argc - rest, values, NULL, NULL) ||
+        !reading_options(options, command, values))
+        return false;
     sensor_options_tell_useless(options, NULL, values);
     return true;
 }
 
 static int run(const host_t *host, int argc, char **argv)
 {
-    static const poll_loop_user_t user = {take_reading, take_failure, take_port, tick, is_over};
+    static const poll_loop_user_t user = {take_reading, take_failure, take_remark, take_port, tick, is_over};
     static watch_t watch; /* too large for any stack */
     poll_loop_t *const loop = &watch.loop;
     bool wants_help = false;

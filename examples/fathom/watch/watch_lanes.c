@@ -44,7 +44,9 @@ void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
         const station_t *const station = &options->stations[i];
         const uint8_t probes = station->model->probes;
         for (uint8_t probe = 1; probe <= probes; probe++) {
-            if (probes > 1 && options->probes != 0 && (options->probes >> (probe - 1) & 1) == 0) continue;
+            if (probes > 1 && options->reading.probes != 0 &&
+                (options->reading.probes >> (probe - 1) & 1) == 0)
+                continue;
             lane_t *const lane = &lanes->lane[lanes->count++];
             lane->station = station;
             lane->probe = probe;

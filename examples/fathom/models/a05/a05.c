@@ -10,14 +10,16 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {
         .line = &channel->line,
+        .select = fathom_output_line_break(&channel->line),
         .stale_us = settings->timeout_us,
         .gap_us = CHANNEL_STREAM_GAP_US,
         .window = settings->window,
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    return fathom_a05_auto_init(driver, &config) == FATHOM_READY &&
-           dyp_begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
+    if (fathom_a05_auto_init(driver, &config) != FATHOM_READY) return false;
+    (void)dyp_begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
+    return !settings->has_value || a05_select(reader, channel, settings->value);
 }
 
 static bool read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
@@ -26,6 +28,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
     const fathom_a05_modbus_config_t config = {
         .modbus = reader_config(channel, settings, &channel->modbus),
         .window = settings->window,
+        .registers = settings->registers,
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
@@ -86,9 +89,22 @@ const model_t model_a05 = {
     .what = "four ultrasonic probes",
     .id = FATHOM_A05,
     .line = DYP_LINE,
-    .modes = {{"auto", false, read_auto, simulate_auto},
-              {"modbus", true, read_modbus, simulate_modbus},
-              {"dyp", true, read_dyp, simulate_dyp}},
+    .modes = {{.name = "auto",
+               .takes = DYP_TAKES | READER_TAKES_PROBES | READER_TAKES_VALUE,
+               .read = read_auto,
+               .simulate = simulate_auto},
+              {.name = "modbus",
+               .is_asked = true,
+               .has_address = true,
+               .takes = DYP_TAKES | READER_TAKES_PROBES | READER_TAKES_REGISTERS,
+               .read = read_modbus,
+               .simulate = simulate_modbus},
+              {.name = "dyp",
+               .is_asked = true,
+               .has_address = true,
+               .takes = DYP_TAKES | READER_TAKES_PROBES,
+               .read = read_dyp,
+               .simulate = simulate_dyp}},
     .settings = a05_settings,
     .max_address = DYP_MAX_ADDRESS,
     .is_dyp = true,

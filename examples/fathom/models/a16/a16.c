@@ -5,18 +5,34 @@
 
 /* ---- reading ---- */
 
+/* RX goes high again. */
+static fathom_status_t end_auto(reader_t *reader) { return fathom_a16_auto_deinit(&reader->driver.a16_auto); }
+
+static fathom_status_t end_controlled(reader_t *reader)
+{
+    return fathom_a16_controlled_deinit(&reader->driver.a16_controlled);
+}
+
+/* A level at RX selects (A16 2(2)): that of the port's TX. */
 static bool read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
-    const fathom_a16_auto_config_t config = {
+    fathom_a16_auto_config_t config = {
         .line = &channel->line,
         .stale_us = settings->timeout_us,
         .gap_us = CHANNEL_STREAM_GAP_US,
         .window = settings->window,
+        .value = settings->value,
     };
     reader_begin(reader, channel);
-    return fathom_a16_auto_init(driver, &config) == FATHOM_READY &&
-           dyp_begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
+    if (settings->has_value) {
+        reader_end_break(channel);
+        config.select = fathom_output_line_break(&channel->line);
+    }
+    if (settings->value == FATHOM_REAL_TIME && !reader_has_break(reader, channel)) return false;
+    if (fathom_a16_auto_init(driver, &config) != FATHOM_READY) return false;
+    reader->end = end_auto;
+    return dyp_begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
 
 /* Triggered by a break of the port, whose TX is the module's RX. */
@@ -33,7 +49,8 @@ static bool read_controlled(reader_t *reader, channel_t *channel, const reader_s
     reader_begin(reader, channel);
     if (fathom_a16_controlled_init(driver, &config) != FATHOM_READY) return false;
     reader->sensor = fathom_a16_controlled_sensor(driver);
-    reader->stream = &driver->stream;
+    reader->end = end_controlled;
+    reader->frames = driver->stream.counters;
     reader->values = driver->values;
     reader->value_count = 1;
     reader->response = &driver->measurement;
@@ -48,6 +65,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
     const fathom_a16_modbus_config_t config = {
         .modbus = reader_config(channel, settings, &channel->modbus),
         .window = settings->window,
+        .value = settings->value,
     };
     reader_begin(reader, channel);
     return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
@@ -94,9 +112,20 @@ const model_t model_a16 = {
     .what = "one ultrasonic probe",
     .id = FATHOM_A16,
     .line = DYP_LINE,
-    .modes = {{"auto", false, read_auto, simulate_auto},
-              {"modbus", true, read_modbus, simulate_modbus},
-              {"controlled", false, read_controlled, simulate_controlled}},
+    .modes = {{.name = "auto",
+               .takes = DYP_TAKES | READER_TAKES_VALUE,
+               .read = read_auto,
+               .simulate = simulate_auto},
+              {.name = "modbus",
+               .is_asked = true,
+               .has_address = true,
+               .takes = DYP_TAKES | READER_TAKES_VALUE,
+               .read = read_modbus,
+               .simulate = simulate_modbus},
+              {.name = "controlled",
+               .takes = DYP_TAKES,
+               .read = read_controlled,
+               .simulate = simulate_controlled}},
     .automatic_again = ", or when 1 is written to its register 0x0202",
     .settings = a16_settings,
     .max_address = DYP_MAX_ADDRESS,

@@ -6,25 +6,7 @@
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
 
-/* ---- reading ---- */
-
-static bool read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
-{
-    fathom_hps167s_t *const driver = &reader->driver.hps167s;
-    const fathom_hps167s_config_t config = {
-        .modbus = reader_config(channel, settings, &channel->modbus),
-    };
-    reader_begin(reader, channel);
-    if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
-    reader->sensor = fathom_hps167s_sensor(driver);
-    reader->protocol = reader_modbus;
-    reader->is_paced = true;
-    reader->unit = &driver->unit;
-    reader->sequence = &driver->sequence;
-    reader->values = driver->measurement;
-    reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
-    return true;
-}
+/* ---- unasked measurements beside requests ---- */
 
 static void listen_unasked(reader_t *reader)
 {
@@ -60,7 +42,7 @@ static uint8_t warm_up_says(const uint32_t *traits)
     return traits[DEVICE_WARM_UP_REFUSES] != 0 ? FATHOM_SIM_HPS167S_EXCEPTION : FATHOM_SIM_HPS167S_SILENCE;
 }
 
-static void simulate_modbus(device_t *device, const device_settings_t *settings)
+static void simulate(device_t *device, const device_settings_t *settings, uint32_t unasked_us)
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_hps167s_config_t config = {
@@ -76,11 +58,22 @@ static void simulate_modbus(device_t *device, const device_settings_t *settings)
         .reconnect_ms = traits[DEVICE_RECONNECT],
         .no_baud_code = traits[DEVICE_NO_BAUD_CODE] != 0,
         .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
-        .unasked_us = traits[DEVICE_UNASKED],
+        .unasked_us = traits[DEVICE_UNASKED] != 0 ? traits[DEVICE_UNASKED] : unasked_us,
         .seed = settings->seed,
         .scene = settings->scene};
     fathom_sim_hps167s_init(&device->simulator.hps167s, &config);
     device->base = &device->simulator.hps167s.device;
+}
+
+static void simulate_modbus(device_t *device, const device_settings_t *settings)
+{
+    simulate(device, settings, 0);
+}
+
+/* Each measurement. */
+static void simulate_auto(device_t *device, const device_settings_t *settings)
+{
+    simulate(device, settings, FATHOM_HPS167S_MIN_PERIOD_US);
 }
 
 /* ---- the model ---- */
@@ -105,7 +98,17 @@ const model_t model_hps167s = {
     .line = HPS167S_LINE,
     .rates = rates,
     .other_settings = "--baud 57600, 115200 or 230400, to which it can be set",
-    .modes = {{"modbus", true, read_modbus, simulate_modbus}},
+    .modes = {{.name = "modbus",
+               .is_asked = true,
+               .has_address = true,
+               .takes = READER_TAKES_WINDOW | READER_TAKES_TEMPERATURE,
+               .read = hps167s_read_modbus,
+               .simulate = simulate_modbus},
+              {.name = "auto",
+               .has_address = true,
+               .takes = READER_TAKES_WINDOW,
+               .read = hps167s_read_auto,
+               .simulate = simulate_auto}},
     .settings = hps167s_settings,
     .reset = {.restore = restore, .load = load, .is_sent = is_sent},
     .listen_unasked = listen_unasked,

@@ -16,6 +16,12 @@ extern const model_t model_hps167s;
 
 extern const setting_t hps167s_settings[];
 
+bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+/* The reader of mode modbus: from now on it reads the temperature too. */
+void hps167s_begin_temperature(reader_t *reader, const reader_settings_t *settings);
+
 void hps167s_decode(decode_frame_t *frame, const uint8_t *request);
 
 bool hps167s_identify(inquiry_t *inquiry);

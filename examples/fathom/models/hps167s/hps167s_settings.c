@@ -4,6 +4,7 @@
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
 #include "models/hps167s/hps167s.h"
+#include "shared/options.h"
 
 /* The commands of the HPS-167S (3, #1 to #15) but for the two that restore the factory's settings: hps167s.c. */
 
@@ -48,15 +49,11 @@ static fathom_status_t get_uuid(reader_t *reader, char text[SETTING_TEXT])
     return status;
 }
 
-/* Tenths of a degree as a decimal. */
 static fathom_status_t get_temperature(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_temperature_t temperature;
     const fathom_status_t status = fathom_hps167s_temperature(driver(reader), &temperature);
-    if (status != FATHOM_READY) return status;
-    const int32_t tenths = temperature.temperature_dc;
-    const uint32_t size = tenths < 0 ? (uint32_t)-tenths : (uint32_t)tenths;
-    (void)snprintf(text, SETTING_TEXT, "%s%" PRIu32 ".%" PRIu32, tenths < 0 ? "-" : "", size / 10, size % 10);
+    if (status == FATHOM_READY) tenths_text(text, SETTING_TEXT, temperature.temperature_dc);
     return status;
 }
 
