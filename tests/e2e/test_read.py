@@ -32,6 +32,7 @@ SEEN = [
     ('a05 modbus 316,no-target,interference,4500', [target(316), NO_TARGET, INTERFERENCE, target(4500)]),
     ('hps167s modbus 2083', [target(2083)]),
     ('hps167s modbus no-target', [('no_target', False, None, 65530)]),
+    ('hps167s auto 2083', [target(2083)]),
     ('hps167s modbus fault', [('fault', False, None, 65535)]),
 ]
 
@@ -107,7 +108,8 @@ class Json(e2e.Case):
         a16_modbus_has_the_address=('a16', 'modbus', 254),
         the_four_probes_of_an_a05_share_sequence_and_time=('a05', 'auto', None),
         the_four_probes_of_an_a05_response_share_sequence_and_time=('a05', 'modbus', 9),
-        an_hps167s_has_its_optics_too_and_the_magnitude_exactly=('hps167s', 'modbus', 32))
+        an_hps167s_has_its_optics_too_and_the_magnitude_exactly=('hps167s', 'modbus', 32),
+        an_hps167s_that_is_not_asked_has_them_and_its_address=('hps167s', 'auto', 7))
     def members(self, sensor, mode, address):
         sim = self.sim(f'{sensor}:{address or ""}:{mode} --distance 1234')
         began = time.time()
@@ -178,6 +180,33 @@ class Formats(e2e.Case):
         sim = self.sim(f'{sensor} --distance {distance}')
         done = self.ends(f'read {sensor} --port {sim} --count 1 {options}', 0)
         self.assertEqual(re.sub(r'^ *\d+\.\d{3} s  ', '', done.out, flags=re.M).splitlines(), [*expected])
+
+
+class Choices(e2e.Case):
+    @e2e.each(
+        real_time_by_rx_needs_a_port_that_can_hold_its_tx_low=(
+            'a16 --value real-time', 'fathom: a16: this port cannot hold its TX low (a break)'),
+        an_a05_needs_it_too=(
+            'a05 --value real-time', 'fathom: a05: this port cannot hold its TX low (a break)'),
+        without_the_option_rx_is_left_alone=('a16 --timeout 300', 'nothing was heard'),
+        an_hps167s_that_is_not_asked_is_sent_nothing=(
+            'hps167s:1:auto --timeout 300', 'nothing was heard at all; check the supply, A and B swapped'))
+    def silent(self, line, said):
+        """A byte 0 would stand for a break."""
+        device, reader = self.beside(f'read {line} --count 1')
+        self.ends(reader, 1, said, out='')
+        self.assertTrue(device.is_silent())
+
+    def test_the_simulated_hps167s_that_sends_by_itself_names_the_command_that_reads_it(self):
+        self.assertIn('fathom read hps167s --mode auto --address 7 --port', self.sim('hps167s:7:auto').end().err)
+
+    def test_what_sends_by_itself_needs_a_serial_port(self):
+        self.ends('read hps167s:1:auto --port tcp:127.0.0.1:1', 2, 'needs a serial port')
+
+    def test_the_temperature_stands_in_each_reading(self):
+        sim = self.sim('hps167s --distance 500')  # 77 degrees Fahrenheit
+        objects = self.read_json(f'hps167s --temperature --port {sim} --count 5')
+        self.assertEqual([one['temperature_degc'] for one in objects], [25.0] * 5)
 
 
 class Pace(e2e.Case):

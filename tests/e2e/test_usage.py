@@ -30,7 +30,7 @@ WRONG = [
         ("'' --port /nowhere", "there is no sensor ''"),
         ('a16', '--port is missing'),
         ('a16 --port', '--port needs a value'),
-        ('hps167s --port /nowhere --mode auto', "there is no mode 'auto' for hps167s, only modbus"),
+        ('hps167s --port /nowhere --mode dyp', "there is no mode 'dyp' for hps167s, only modbus, auto"),
         ('hps167s --port /nowhere --address 33', 'from 1 to 32'),
     ]),
     ('wrong_usage', 'read a16 --port /nowhere', [
@@ -94,11 +94,10 @@ WRONG = [
     ]),
     ('probes_and_meanings_of_values', 'read', [
         *told('a05 --port /nowhere --probes', '0', '5', '1,', ',1', '1,1', '1-3', '', '1' * 40),
-        ('a16 --port /nowhere --probes 1', '--probes is for an a05'),
-        ('a16:1 hps167s:2 --port /nowhere --probes 1', '--probes is for an a05'),
+        ('a16:1 hps167s:2 --port /nowhere --probes 1',
+         '--probes is for a05 (auto, modbus, dyp); it has no effect on a16 (modbus)'),
         *told('a16 --port /nowhere --means', '', '0', '0=', '0=far', '=unknown', '1=unknown', 'fffc=fault',
               '0=unknown,', '0=no-target=1', '0=' + 'x' * 40),
-        ('hps167s --port /nowhere --means 0=unknown', '--means is for a16 and a05'),
     ]),
     ('wrong_usage', 'sim', [
         ('', 'which sensor?'),
@@ -247,9 +246,9 @@ class Help(e2e.Case):
         help_of_read_names_sensors_options_and_examples=(
             'read', 'a16 a05 hps167s --port --mode --address --baud --parity --stop-bits --count --interval --timeout '
                     '--retries '
-            '--format --reconnect --echo --stats[=SECONDS] examples:', '19200 8E1'),
+            '--value --window --means --probes --first-register --temperature[=S] --format --reconnect --echo --stats[=SECONDS] examples:', '19200 8E1'),
         help_names_what_is_to_be_seen=(
-            'watch', '--port --interval --duration --reconnect NO_COLOR examples:', 'x no response'),
+            'watch', '--port --interval --duration --reconnect --value --window NO_COLOR examples:', 'x no response'),
         the_help_names_every_option_and_its_examples_are_right_usage=(
             'scan', '--port --address --baud --parity --stop-bits --timeout --retries --listen --wake --estimate '
                     '--format '

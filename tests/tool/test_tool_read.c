@@ -1,0 +1,485 @@
+/* SPDX-License-Identifier: MIT */
+/* What read can choose of a sensor: its value, its probes, its registers, its limits, its temperature, and whether it
+ * is asked at all. */
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- the bench: what the tool sends, and what happens meanwhile ---- */
+
+enum { LOG = 256 };
+
+static uint8_t sent[LOG];
+static size_t sent_count;
+static unsigned breaks;      /* calls of set_break */
+static uint64_t passed_us;   /* since the begin */
+static uint64_t off_at_us;   /* when the power goes for 3 s; 0: never */
+static uint8_t refused_at_3; /* a request with this register's low byte does not leave; 0: none */
+
+static int log_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const fathom_uart_t uart = fathom_sim_uart(ctx);
+    const bool is_refused = length > 3 && refused_at_3 != 0 && bytes[3] == refused_at_3;
+    if (sent_count + length <= LOG) {
+        memcpy(sent + sent_count, bytes, length);
+        sent_count += length;
+    }
+    return is_refused ? (int)length : uart.write(ctx, bytes, length);
+}
+
+static int log_break(void *ctx, bool on)
+{
+    breaks++;
+    return fathom_sim_uart(ctx).set_break(ctx, on);
+}
+
+static void pass(void *ctx, uint32_t max_us)
+{
+    const uint32_t began_us = bench.clock.now_us;
+    fathom_sim_clock_idle(ctx, max_us < 1000 ? max_us : 1000);
+    passed_us += bench.clock.now_us - began_us;
+    if (off_at_us == 0 || passed_us < off_at_us) return;
+    off_at_us = 0;
+    fathom_sim_power_cycle(&bench.line, &bench.a05.device, 3000000, bench.clock.now_us);
+}
+
+static int set_up(void **state)
+{
+    sent_count = 0;
+    breaks = 0;
+    passed_us = 0;
+    off_at_us = 0;
+    refused_at_3 = 0;
+    bench_begin();
+    bench.tool.uart.write = log_write;
+    bench.tool.uart.set_break = log_break;
+    bench.tool.idle = pass;
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+static unsigned count_of(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) count++;
+    return count;
+}
+
+/* Each reading has this in it, and there are so many. */
+static void expect_all(const tool_run_t *run, unsigned readings, const char *part)
+{
+    if (count_of(run->out, "\n") != readings || count_of(run->out, part) != readings)
+        fail_msg("not %u times '%s':\n%s%s", readings, part, run->out, run->err);
+}
+
+static void expect_err(const tool_run_t *run, const char *text)
+{
+    if (strstr(run->err, text) == NULL) fail_msg("'%s' is not in\n%s%s", text, run->out, run->err);
+}
+
+/* ---- processed or real-time ---- */
+
+/* bench.scene is the real-time value, 1234 mm. */
+static fathom_sim_fixed_t processed = {{2000, 2000, 2000, 2000}};
+
+static void a16(uint8_t mode)
+{
+    bench.line.full_duplex = mode == FATHOM_SIM_A16_UART;
+    bench_a16((fathom_sim_a16_config_t){.mode = mode, .processed = fathom_sim_fixed(&processed)});
+}
+
+static void a05_auto(void)
+{
+    bench.line.full_duplex = true;
+    bench_a05(
+        (fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .processed = fathom_sim_fixed(&processed)});
+}
+
+/* A16 6(3): 0x0100 processed, 0x0101 real-time. */
+TEST(an_a16_is_asked_for_the_value_that_is_wanted)
+{
+    const struct {
+        const char *option;
+        const char *distance;
+        uint8_t reg;
+    } rows[] = {
+        {"", ":2000,", 0x00}, {"--value processed", ":2000,", 0x00}, {"--value real-time", ":1234,", 0x01}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)set_up(NULL);
+        a16(FATHOM_SIM_A16_MODBUS);
+        const tool_run_t *const run =
+            tool_run(&bench.tool, "read a16:1:modbus --count 2 --format json %s --port line", rows[i].option);
+        assert_int_equal(run->status, 0);
+        expect_all(run, 2, rows[i].distance);
+        assert_int_equal(sent[2], 0x01);
+        assert_int_equal(sent[3], rows[i].reg);
+    }
+}
+
+TEST(rx_of_an_a16_is_held_low_for_real_time_values_and_let_go_at_the_end)
+{
+    a16(FATHOM_SIM_A16_UART);
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a16 --value real-time --count 5 --format json --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 5, ":1234,");
+    assert_int_equal(bench.a16.device.rx_held, 0);
+    assert_int_equal(breaks, 3); /* off, on, off */
+}
+
+TEST(rx_of_an_a16_is_high_for_processed_values_whatever_was_before)
+{
+    a16(FATHOM_SIM_A16_UART);
+    fathom_sim_break(&bench.line, true, bench.clock.now_us);
+    expect_all(tool_run(&bench.tool, "read a16 --count 5 --format json --port line"), 5, ":1234,");
+    assert_int_equal(breaks, 0); /* without the option it is left alone */
+    expect_all(tool_run(&bench.tool, "read a16 --value processed --count 5 --format json --port line"), 5,
+               ":2000,");
+}
+
+TEST(a_port_without_a_break_is_told_before_anything_is_read)
+{
+    a16(FATHOM_SIM_A16_UART);
+    bench.tool.uart.set_break = NULL;
+    const tool_run_t *run = tool_run(&bench.tool, "read a16 --value real-time --count 1 --port line");
+    assert_int_equal(run->status, 1);
+    assert_string_equal(run->out, "");
+    expect_err(run,
+               "fathom: a16: this port cannot hold its TX low (a break), which selects real-time values; try "
+               "another adapter");
+    run = tool_run(&bench.tool, "read a05 --value real-time --count 1 --port line");
+    assert_int_equal(run->status, 1);
+    expect_err(run, "fathom: a05: this port cannot hold its TX low");
+}
+
+/* A05 1(1): it looks at RX in the first second after power-on. 10 s after the begin it goes off for 3 s. */
+static void a05_is_switched(const char *value, const char *distance)
+{
+    a05_auto();
+    off_at_us = 10000000;
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a05 --value %s --count 20 --format json --port line", value);
+    assert_int_equal(run->status, 0);
+    expect_all(run, 80, distance);
+    assert_in_range(run->took_us, 13000000, 21000000);
+    assert_int_equal(count_of(run->err, "switch its supply off for 3 seconds and on\n"), 1);
+    assert_int_equal(count_of(run->err, "fathom: a05: it has been switched on: readings begin\n"), 1);
+    assert_int_equal(bench.a05.device.rx_held, 0);
+}
+
+TEST(an_a05_is_read_from_when_it_was_switched_on_with_rx_low) { a05_is_switched("real-time", ":1234,"); }
+
+TEST(an_a05_is_read_from_when_it_was_switched_on_with_rx_high) { a05_is_switched("processed", ":2000,"); }
+
+TEST(an_a05_that_is_off_at_the_begin_is_waited_for)
+{
+    a05_auto();
+    fathom_sim_power_cycle(&bench.line, &bench.a05.device, 20000000, bench.clock.now_us);
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a05 --value real-time --count 2 --format json --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 8, ":1234,");
+}
+
+TEST(an_a05_that_is_not_switched_off_gives_nothing)
+{
+    a05_auto();
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a05 --value real-time --duration 30 --port line");
+    assert_int_equal(run->status, 1);
+    assert_string_equal(run->out, "");
+    expect_err(run, "attempts 0, failed 0, readings 0\n");
+    assert_int_equal(bench.a05.device.rx_held, 0);
+}
+
+/* ---- what is asked for ---- */
+
+/* A05 2(3)4: 55 AA 01 12 measures the third probe; the sum 55 + AA + 01 + 12 is 112, of which the low byte is sent. */
+TEST(one_probe_of_an_a05_is_measured_alone)
+{
+    const uint8_t request[] = {0x55, 0xAA, 0x01, 0x12, 0x12};
+    bench_a05((fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_DYP});
+    bench.scene = (fathom_sim_fixed_t){{1000, 2000, 3000, 4000}};
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read a05:1:dyp --probes 3 --count 4 --format json --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 4, "\"probe\":3,");
+    expect_all(run, 4, "\"distance_mm\":3000,");
+    assert_int_equal(sent_count, 4 * sizeof request);
+    assert_memory_equal(sent, request, sizeof request);
+    /* 100 ms from one to the next, and 75 ms for the last (A05 2(3)1); of all probes it is 250 ms */
+    assert_in_range(run->took_us, 300000, 400000);
+}
+
+TEST(two_probes_of_an_a05_are_measured_with_the_others)
+{
+    const uint8_t request[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
+    bench_a05((fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_DYP});
+    expect_all(tool_run(&bench.tool, "read a05:1:dyp --probes 3,4 --count 1 --format json --port line"), 2,
+               ":1234,");
+    assert_memory_equal(sent, request, sizeof request);
+}
+
+/* A05 3(3), remark 2 */
+TEST(an_a05_is_read_where_its_distances_stand_again)
+{
+    const struct {
+        const char *option;
+        uint8_t request[6];
+    } rows[] = {{"", {0x01, 0x03, 0x01, 0x06, 0x00, 0x04}},
+                {"--first-register 0x0106", {0x01, 0x03, 0x01, 0x06, 0x00, 0x04}},
+                {"--first-register 0x0010", {0x01, 0x03, 0x00, 0x10, 0x00, 0x04}},
+                {"--first-register 0X10 --probes 2,3", {0x01, 0x03, 0x00, 0x11, 0x00, 0x02}}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)set_up(NULL);
+        bench_a05((fathom_sim_a05_config_t){0});
+        const tool_run_t *const run =
+            tool_run(&bench.tool, "read a05:1:modbus --count 1 --format json %s --port line", rows[i].option);
+        assert_int_equal(run->status, 0);
+        expect_all(run, rows[i].request[5], "\"distance_mm\":1234,");
+        assert_memory_equal(sent, rows[i].request, sizeof rows[i].request);
+    }
+}
+
+/* ---- what is believed ---- */
+
+static const tool_run_t *read_of(const char *sensor, int32_t value, const char *options)
+{
+    (void)set_up(NULL);
+    bench_a16((fathom_sim_a16_config_t){.address = 1});
+    bench_a05((fathom_sim_a05_config_t){.address = 2});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 3});
+    for (int i = 0; i != 4; i++) bench.scene.value[i] = value;
+    return tool_run(&bench.tool, "read %s --count 1 --format json %s --port line", sensor, options);
+}
+
+TEST(a_distance_outside_the_window_is_refused)
+{
+    const char *const window = "--window 300-5000";
+    expect_all(read_of("a16:1:modbus", 300, window), 1, "\"distance_mm\":300,");
+    expect_all(read_of("a16:1:modbus", 5000, window), 1, "\"distance_mm\":5000,");
+    const tool_run_t *run = read_of("a16:1:modbus", 299, window);
+    assert_int_equal(run->status, 1);
+    expect_err(run, "299 is refused: no distance from 300 to 5000 mm");
+    run = read_of("a05:2:modbus", 5001, window);
+    expect_all(run, 0, ":");
+    expect_err(run, "probe 4: 5001 is refused: no distance from 300 to 5000 mm");
+    /* wider than the A05's own, which ends at 6000 */
+    expect_all(read_of("a05:2:modbus", 6500, "--window 1-7000"), 4, "\"distance_mm\":6500,");
+}
+
+/* What is nearer is below its range, as 79 mm is (table 1: 0.08 m); what is farther cannot be. */
+TEST(a_window_of_an_hps167s_moves_its_limits)
+{
+    const char *const window = "--window 300-5000";
+    expect_all(read_of("hps167s:3", 300, window), 1, "\"distance_mm\":300,");
+    expect_all(read_of("hps167s:3", 5000, window), 1, "\"distance_mm\":5000,");
+    expect_all(read_of("hps167s:3", 299, window), 1, "\"status\":\"unknown\",");
+    expect_err(read_of("hps167s:3", 5001, window), "a value that cannot be a distance: 5001");
+    expect_all(read_of("hps167s:3", 79, ""), 1, "\"status\":\"unknown\",");
+    expect_all(read_of("hps167s:3", 79, "--window 50-5000"), 1, "\"distance_mm\":79,");
+}
+
+TEST(each_of_the_four_values_can_have_each_of_the_six_meanings)
+{
+    const struct {
+        const char *name;
+        int32_t value;
+    } values[] = {{"0", 0}, {"fffd", 0xFFFD}, {"fffe", 0xFFFE}, {"ffff", 0xFFFF}};
+    const struct {
+        const char *name;
+        const char *status;
+    } meanings[] = {{"unknown", "\"status\":\"unknown\",\"interference\":false"},
+                    {"no-target", "\"status\":\"no_target\",\"interference\":false"},
+                    {"interference", "\"status\":\"no_target\",\"interference\":true"},
+                    {"too-near", "\"status\":\"too_near\",\"interference\":false"},
+                    {"fault", "\"status\":\"fault\",\"interference\":false"},
+                    {"refused", NULL}};
+    for (size_t v = 0; v != 4; v++)
+        for (size_t m = 0; m != 6; m++) {
+            char option[64];
+            (void)snprintf(option, sizeof option, "--means %s=%s", values[v].name, meanings[m].name);
+            const tool_run_t *const run = read_of("a16:1:modbus", values[v].value, option);
+            if (meanings[m].status != NULL)
+                expect_all(run, 1, meanings[m].status);
+            else
+                expect_err(run, " is refused; --means ");
+        }
+}
+
+/* ---- an HPS-167S that is not asked ---- */
+
+TEST(unasked_frames_of_an_address_are_read_and_nothing_is_sent)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .unasked_us = 18519});
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read hps167s:7:auto --count 54 --format json --stats --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 54, "{\"sensor\":\"hps167s\",\"mode\":\"auto\",\"address\":7,");
+    /* DC B2 07: 56498 * 128 / 10000 (the example of #5) */
+    expect_all(run, 54,
+               "\"distance_mm\":1234,\"raw\":1234,\"magnitude\":723.1744,\"ambient\":1,\"precision\":0}");
+    assert_in_range(run->took_us, 900000, 1100000); /* 54 a second */
+    assert_int_equal(sent_count, 0);
+    expect_err(run, "\"stream\":{\"frames\":54,");
+}
+
+TEST(an_interval_drops_unasked_frames)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.unasked_us = 18519});
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read hps167s:1:auto --count 4 --interval 500 --format json --port line");
+    expect_all(run, 4, "\"distance_mm\":1234,");
+    assert_in_range(run->took_us, 1500000, 1700000);
+}
+
+TEST(unasked_frames_of_another_address_are_none)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .unasked_us = 18519});
+    const tool_run_t *run = tool_run(&bench.tool, "read hps167s:1:auto --count 1 --port line");
+    assert_int_equal(run->status, 1);
+    expect_err(run, "the line works, but it was address 7 that was heard; try --address 7");
+    assert_in_range(run->took_us, 2000000, 2100000); /* hps167s_auto.h: 2 s */
+    run = tool_run(&bench.tool, "read hps167s:7:auto --timeout 300 --count 1 --window 2000-3000 --port line");
+    assert_int_equal(run->status, 1); /* 1234 is unknown: nothing good */
+    expect_err(run, "attempts 1, failed 0, readings 1\n");
+}
+
+TEST(an_hps167s_that_sends_nothing_is_stale_after_the_time_out)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){0});
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "read hps167s:1:auto --timeout 300 --count 2 --port line");
+    assert_int_equal(run->status, 1);
+    assert_in_range(run->took_us, 600000, 620000);
+    assert_int_equal(count_of(run->err, "nothing was heard at all; check the supply, A and B swapped"), 2);
+}
+
+/* ---- the temperature of an HPS-167S ---- */
+
+TEST(each_reading_has_the_last_temperature)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.temperature_f = 31}); /* (31 - 32) * 5 / 9 = -0.56 degC */
+    const tool_run_t *run =
+        tool_run(&bench.tool, "read hps167s --temperature --count 300 --format json --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 300, ",\"temperature_degc\":-0.6}\n");
+    assert_int_equal(bench.hps167s.device.counters.requests, 301); /* some 5.6 s */
+    run = tool_run(&bench.tool,
+                   "read hps167s --temperature=2 --count 10 --interval 500 --format csv --port line");
+    /* at 0, 2 and 4 s */
+    assert_int_equal(bench.hps167s.device.counters.requests, 301 + 10 + 3);
+    assert_in_range(run->took_us, 4500000, 4700000);
+    assert_non_null(strstr(run->out, ",precision,temperature_degc\n"));
+    assert_int_equal(count_of(run->out, ",0,-0.6\n"), 10);
+    run = tool_run(&bench.tool, "read hps167s --temperature --count 1 --port line");
+    assert_non_null(strstr(run->out, "  precision 0  -0.6 degC\n"));
+    run = tool_run(&bench.tool, "read hps167s --count 1 --format json --port line");
+    assert_null(strstr(run->out, "temperature"));
+}
+
+TEST(a_long_interval_does_not_make_the_temperature_old)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){0});
+    const tool_run_t *const run = tool_run(
+        &bench.tool, "read hps167s --temperature=1 --interval 10000 --count 3 --format json --port line");
+    expect_all(run, 3, ":25.0}"); /* 77 degrees Fahrenheit */
+    assert_in_range(bench.hps167s.device.counters.requests, 3 + 20, 3 + 22);
+    assert_in_range(run->took_us, 20000000, 20200000);
+}
+
+TEST(a_temperature_that_cannot_be_read_fails_nothing_and_is_told_once)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){0});
+    refused_at_3 = 0x04; /* #4 */
+    const tool_run_t *const run = tool_run(
+        &bench.tool, "read hps167s --temperature=1 --count 20 --interval 500 --format json --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 20, "\"distance_mm\":1234,");
+    expect_all(run, 20, ",\"temperature_degc\":null}");
+    expect_err(run, "attempts 20, failed 0, readings 20\n");
+    assert_int_equal(count_of(run->err, "fathom: hps167s:1: its temperature (#4) could not be read"), 1);
+}
+
+static void fall_silent_at_4500_ms(void *ctx, uint32_t max_us)
+{
+    pass(ctx, max_us);
+    if (passed_us > 4500000) refused_at_3 = 0x04;
+}
+
+TEST(a_temperature_of_more_than_three_times_its_period_ago_is_not_told)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){0});
+    bench.tool.idle = fall_silent_at_4500_ms;
+    const tool_run_t *const run = tool_run(
+        &bench.tool, "read hps167s --temperature=2 --duration 20 --interval 1000 --format json --port line");
+    assert_int_equal(run->status, 0);
+    /* Read at 0, 2 and 4 s, so told up to 10 s: with what was measured at 0 to 5 s. Then each request for it takes a
+     * time-out of 1 s, and may be answered late for as long again. */
+    assert_in_range(count_of(run->out, ":25.0}"), 6, 8);
+    assert_in_range(count_of(run->out, ":null}"), 5, 10);
+    assert_null(strstr(strstr(run->out, ":null}"), ":25.0}"));
+}
+
+TEST(on_a_line_with_others_only_an_hps167s_has_a_temperature)
+{
+    bench_a16((fathom_sim_a16_config_t){.address = 1});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 2});
+    const tool_run_t *const run = tool_run(
+        &bench.tool,
+        "read a16:1 hps167s:2 --temperature --window 100-2000 --value real-time --count 1 --format csv "
+        "--port line");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(count_of(run->out, ",1234,1234,,,,\n"), 1);
+    assert_int_equal(count_of(run->out, ",1234,1234,723.1744,1,0,25.0\n"), 1);
+}
+
+/* ---- what has no effect ---- */
+
+TEST(an_option_that_no_sensor_takes_is_wrong_usage)
+{
+    const struct {
+        const char *words;
+        const char *err;
+    } rows[] = {
+        {"hps167s --value real-time",
+         "--value is for a16 (auto, modbus), a05 (auto); it has no effect on hps167s (modbus)"},
+        {"a16:1:controlled --value processed", "it has no effect on a16 (controlled)"},
+        {"a05:1:dyp --value processed", "it has no effect on a05 (dyp)"},
+        {"a05:1:modbus --value processed", "it has no effect on a05 (modbus)"},
+        {"a16 --value fast", "--value takes processed or real-time, not 'fast'"},
+        {"a16:1:modbus --probes 1",
+         "--probes is for a05 (auto, modbus, dyp); it has no effect on a16 (modbus)"},
+        {"hps167s --means 0=fault",
+         "--means is for a16 (auto, modbus, controlled), a05 (auto, modbus, dyp); it has no"},
+        {"a05 --first-register 0x0010",
+         "--first-register is for a05 (modbus); it has no effect on a05 (auto)"},
+        {"a05:1:modbus --first-register 0x0011", "--first-register takes 0x0106 or 0x0010, not '0x0011'"},
+        {"a05:1:modbus --first-register 16", "not '16'"},
+        {"a16 --temperature", "--temperature is for hps167s (modbus); it has no effect on a16 (auto)"},
+        {"hps167s:1:auto --temperature", "it has no effect on hps167s (auto)"},
+        {"hps167s --temperature=0", "--temperature takes a whole number from 1 to 1000, not '0'"},
+        {"a16 --window 300", "not '300'"},
+        {"a16 --window 0-300", "from 1 to 65529, such as 300-5000, not '0-300'"},
+        {"a16 --window 300-299", "not '300-299'"},
+        {"a16 --window 300-65530", "not '300-65530'"},
+        {"hps167s:1:auto a16:2", "hps167s in mode auto sends by itself and cannot share a line with others"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        const tool_run_t *const run = tool_run(&bench.tool, "read %s --port line", rows[i].words);
+        if (run->status != 2) fail_msg("%s: exit status %d", rows[i].words, run->status);
+        expect_err(run, rows[i].err);
+    }
+}
+
+TEST(watch_has_the_same_options)
+{
+    a16(FATHOM_SIM_A16_UART);
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "watch a16 --value real-time --window 1000-2000 --duration 3 --port line");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(count_of(run->out, " a16 1.234 m "), 2); /* at 1 and 2 s */
+    assert_int_equal(bench.a16.device.rx_held, 0);
+}
