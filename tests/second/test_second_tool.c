@@ -129,6 +129,7 @@ static void a16(void)
     scan("a16");
     if (rig.device.config.kind == SECOND_A16_RS232) read_some("read a16", "a16", NULL, "--count 4");
     read_some("read a16:1:modbus", "a16", ":modbus", "--count 4");
+    read_some("read a16:1:modbus --value", "a16", ":modbus", "--value real-time --count 4");
     ask("info a16", "info", "a16", ":modbus", "--format json");
     ask("get a16 switch-threshold", "get", "a16", "", "switch-threshold --format json");
     ask("get a16 real-time-distance", "get", "a16", "", "real-time-distance");
@@ -171,8 +172,11 @@ static void hps167s(void)
                                {"load-settings user", ACKNOWLEDGED(0x15, 0)},
                                {"address 3", HOLDS(0x10, 3)},
                                {"baud 57600", HOLDS(0x11, 2)}};
+    /* before the first request, which may end that */
+    if (rig.device.automatic) read_some("read hps167s:1:auto", "hps167s", ":auto", "--count 6");
     scan("hps167s");
     read_some("read hps167s", "hps167s", "", "--count 6");
+    read_some("read hps167s --temperature", "hps167s", "", "--temperature=1 --count 99");
     ask("info hps167s", "info", "hps167s", "", "--format json --retries 2");
     ask("get hps167s termination", "get", "hps167s", "", "termination --format json --retries 2");
     set("hps167s", "", rows, sizeof rows / sizeof rows[0]);
