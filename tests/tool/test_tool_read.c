@@ -129,6 +129,15 @@ TEST(rx_of_an_a16_is_held_low_for_real_time_values_and_let_go_at_the_end)
     assert_int_equal(breaks, 3); /* off, on, off */
 }
 
+TEST(rx_of_an_a16_is_let_go_when_the_user_ends_it)
+{
+    a16(FATHOM_SIM_A16_UART);
+    bench.tool.ctrl_c_us = 1000000;
+    ASSERT_RUN(0, "read a16 --value real-time --port line");
+    assert_int_equal(breaks, 3); /* as above: it was held */
+    assert_int_equal(bench.a16.device.rx_held, 0);
+}
+
 TEST(rx_of_an_a16_is_high_for_processed_values_whatever_was_before)
 {
     a16(FATHOM_SIM_A16_UART);

@@ -49,6 +49,8 @@ static bool take_reading(void *ctx, const station_t *station, const fathom_sampl
     watch_t *const watch = ctx;
     lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_reading(&watch->lanes, station, sample);
+    const uint64_t end_us = poll_loop_time_us(&watch->loop) + MESSAGE_US;
+    if (watch->message_end_us > end_us) watch->message_end_us = end_us;
     watch->reported[station - watch->loop.options.stations] = FATHOM_READY;
     return true;
 }
@@ -77,14 +79,14 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
     *reported = failure->status;
 }
 
-/* It stays until something else has happened: it may be something to do. */
+/* It stays until there are readings: it may be something to do. */
 static void take_remark(void *ctx, const station_t *station, const char *text)
 {
     watch_t *const watch = ctx;
-    char said[MESSAGE];
-    (void)snprintf(said, sizeof said, "%s: %s", station->name, text);
-    say(watch, said, UINT32_MAX);
-    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", said);
+    char line[MESSAGE];
+    (void)snprintf(line, sizeof line, "%s: %s", station->name, text);
+    say(watch, line, UINT32_MAX);
+    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", line);
 }
 
 static void take_port(void *ctx, const char *text, bool is_there)

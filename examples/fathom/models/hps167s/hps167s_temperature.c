@@ -6,7 +6,7 @@
  * measurements is kept here. A measurement's outcome that was not taken would give way to another request: so
  * the temperature is asked for only while none is under way. */
 
-enum { RESTING, MEASURING, ASKING };
+enum { RESTING, MEASURING, READING_IT };
 
 /* One that is older is not shown. */
 enum { PERIODS_SHOWN = 3 };
@@ -65,7 +65,7 @@ static void begin_next(reader_temperature_t *temperature, uint32_t now)
     /* In turns, or a device that does not answer this would never be measured. */
     const bool has_turn = !temperature->was_last || !is_due;
     if (has_turn && until_asked_us(temperature, now) == 0) {
-        temperature->state = ASKING;
+        temperature->state = READING_IT;
         temperature->asked_us = now;
         temperature->was_asked = true;
         temperature->was_last = true;
@@ -85,9 +85,9 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     if (temperature->is_known &&
         fathom_elapsed_us(now, temperature->read_us) > PERIODS_SHOWN * temperature->period_us)
         temperature->is_known = false;
-    if (temperature->state == ASKING && !ask(reader)) return FATHOM_PENDING;
+    if (temperature->state == READING_IT && !ask(reader)) return FATHOM_PENDING;
     if (temperature->state == RESTING) begin_next(temperature, now);
-    if (temperature->state == ASKING && !ask(reader)) return FATHOM_PENDING;
+    if (temperature->state == READING_IT && !ask(reader)) return FATHOM_PENDING;
     if (temperature->state != MEASURING) {
         fathom_modbus_unit_poll(reader->unit);
         return FATHOM_PENDING;
