@@ -197,6 +197,12 @@ class Choices(e2e.Case):
         self.ends(reader, 1, said, out='')
         self.assertTrue(device.is_silent())
 
+    def test_what_an_hps167s_says_to_another_client_is_no_measurement(self):
+        device, reader = self.beside('read hps167s:1:auto --count 1 --timeout 1000 --format csv')
+        device.write(e2e.registers(1, 77))  # the response to #4
+        self.ends(reader, 1, 'Modbus was heard on this line, and no measurement of address 1; if it does not send '
+                             'by itself: --mode modbus')
+
     def test_the_simulated_hps167s_that_sends_by_itself_names_the_command_that_reads_it(self):
         self.assertIn('fathom read hps167s --mode auto --address 7 --port', self.sim('hps167s:7:auto').end().err)
 
