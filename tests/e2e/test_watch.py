@@ -259,6 +259,11 @@ class End(Case):
         self.ends(it, 1)
         self.assertIn('fathom: /nowhere: no such device', it.screen.main)
 
+    def test_a_port_that_cannot_do_what_is_wanted(self):
+        it = self.watch(f'a16 --value real-time --port {self.device()}')
+        self.ends(it, 1)
+        self.assertIn('fathom: a16: this port cannot hold its TX low', it.screen.main)
+
     def test_a_port_that_comes_back_is_watched_on(self):
         link = self.path('port')
         sim = self.sim(f'hps167s --distance 2500 --link {link}')

@@ -102,7 +102,12 @@ static bool begin_station(poll_loop_t *loop, station_t *station)
     settings.address = station->address;
     settings.retries = options->retries;
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
-    if (!station_begin(station, &loop->channel, &settings)) return false;
+    if (!station_begin(station, &loop->channel, &settings)) {
+        char text[TEXT];
+        station_refusal(station, text, sizeof text);
+        loop->user->port(loop->ctx, text, false);
+        return false;
+    }
     /* Goes on after a loss, so that the gap is not taken for a new start. */
     *station->reader.sequence = sequence;
     station->listener = poll_is_shared(loop) ? &station->own_listener : &loop->channel.listener;

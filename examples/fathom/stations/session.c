@@ -91,7 +91,12 @@ static bool begin(session_t *session)
                                         .backoff_us = READER_BACKOFF_US,
                                         .address = station->address,
                                         .retries = options->retries};
-    if (!station_begin(station, &session->channel, &settings)) return false;
+    if (!station_begin(station, &session->channel, &settings)) {
+        char text[256];
+        station_refusal(station, text, sizeof text);
+        (void)fprintf(stderr, "fathom: %s\n", text);
+        return false;
+    }
     if (session->channel.tcp == NULL && station->model->listen_unasked != NULL)
         station->model->listen_unasked(&station->reader);
     return true;

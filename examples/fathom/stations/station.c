@@ -91,11 +91,12 @@ bool stations_check(const station_t *stations, size_t count, const char *command
 
 bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings)
 {
-    if (station->mode->read(&station->reader, channel, settings)) return true;
-    if (station->reader.refusal != NULL)
-        (void)fprintf(stderr, "fathom: %s: %s\n", station->name, station->reader.refusal);
-    else
-        (void)fprintf(stderr, "fathom: the driver of %s does not take these settings\n",
-                      station->model->name);
-    return false;
+    return station->mode->read(&station->reader, channel, settings);
+}
+
+void station_refusal(const station_t *station, char *text, size_t capacity)
+{
+    const char *const refusal = station->reader.refusal;
+    (void)snprintf(text, capacity, "%s: %s", station->name,
+                   refusal != NULL ? refusal : "its driver does not take these settings");
 }

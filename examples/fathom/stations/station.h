@@ -41,7 +41,9 @@ void station_name(station_t *station);
  * gateway. False after a usage error. */
 bool stations_check(const station_t *stations, size_t count, const char *command, bool has_settings);
 
-/* Begins to read it through an open channel. False, after saying why: its driver did not take the settings. */
+/* Begins to read it through an open channel. False: its driver, or the port, does not take the settings, for which
+ * station_refusal has the words. */
 bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings);
+void station_refusal(const station_t *station, char *text, size_t capacity);
 
 #endif

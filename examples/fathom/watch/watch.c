@@ -153,7 +153,8 @@ static uint32_t tick(void *ctx)
 
 static bool is_over(const void *ctx) { return ((const watch_t *)ctx)->output_error != 0; }
 
-static int finish(watch_t *watch)
+/* has_run: false, where it was not to begin. */
+static int finish(watch_t *watch, bool has_run)
 {
     const host_t *const host = watch->loop.host;
     account_t account;
@@ -164,7 +165,7 @@ static int finish(watch_t *watch)
     if (watch->output_error != 0)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
     /* On the screen that has just gone, this stood last. */
-    if (is_lost && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->message);
+    if ((is_lost || !has_run) && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->message);
     poll_loop_account(&watch->loop, &account);
     counters_print(&account, stderr);
     return !poll_loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
@@ -241,13 +242,13 @@ static int run(const host_t *host, int argc, char **argv)
     }
     terminal_size(&watch.rows, &watch.columns);
     if (!poll_loop_open(loop)) {
-        if (loop->is_lost) return finish(&watch);
+        if (loop->is_lost) return finish(&watch, true);
         terminal_give_back();
         if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.message);
         return STATUS_FAILED;
     }
     const bool has_run = poll_loop_run(loop);
-    const int status = finish(&watch);
+    const int status = finish(&watch, has_run);
     poll_loop_close(loop);
     return has_run ? status : STATUS_FAILED;
 }
