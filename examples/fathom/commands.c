@@ -7,14 +7,14 @@
 #include "shared/options.h"
 
 static const command_t *const commands[] = {
-    &scan_command, &read_command,  &watch_command,  &info_command, &get_command,
-    &set_command,  &reset_command, &decode_command, &sim_command,  &calibrate_command,
+    &scan_command,      &read_command, &watch_command,   &info_command,  &get_command,    &set_command,
+    &calibrate_command, &save_command, &restore_command, &reset_command, &decode_command, &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static int no_command(void)
 {
-    char names[80] = "";
+    char names[160] = "";
     for (size_t i = 0; i != COMMANDS; i++) {
         list_add(names, sizeof names, commands[i]->name);
     }
@@ -26,7 +26,7 @@ static void print_help(void)
     (void)printf("fathom reads the range sensors A16, A05 and HPS-167S on a serial port.\n\n"
                  "usage: fathom COMMAND [ARGUMENTS]\n\n");
     for (size_t i = 0; i != COMMANDS; i++)
-        (void)printf("  %-9s %s\n", commands[i]->name, commands[i]->summary);
+        (void)printf("  %-10s %s\n", commands[i]->name, commands[i]->summary);
     (void)printf("\nfathom COMMAND --help   explains a command, with examples\n"
                  "fathom --version        prints the version\n\n"
                  "Without a sensor at hand, in two terminals:\n\n"

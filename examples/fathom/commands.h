@@ -4,15 +4,17 @@
 
 #include "shared/command.h"
 
-/* The commands, a folder each; settings/ has four. */
+/* The commands, a folder each; settings/ has four, backup/ two. */
 extern const command_t scan_command;
 extern const command_t read_command;
 extern const command_t watch_command;
 extern const command_t info_command;
 extern const command_t get_command;
 extern const command_t set_command;
-extern const command_t reset_command;
 extern const command_t calibrate_command;
+extern const command_t save_command;
+extern const command_t restore_command;
+extern const command_t reset_command;
 extern const command_t decode_command;
 extern const command_t sim_command;
 

@@ -14,9 +14,18 @@
  */
 enum { SETTING_TEXT = 64 };
 
+/* What a row is of: what `fathom save` keeps of a unit, and `fathom restore` writes. */
+typedef enum {
+    SETTING_KEPT = 0, /* what can be set and holds over power-off */
+    SETTING_VERSION,  /* which make of unit it is; cannot be set */
+    SETTING_IDENTITY, /* which unit it is, of all of its model; cannot be set */
+    SETTING_PRESENT   /* of the moment: measured, a command, or what another row tells in another way */
+} setting_kind_t;
+
 typedef struct {
     const char *name;
     const char *what;
+    setting_kind_t kind;
     const char *mode;         /* in which it can be asked: "modbus", "dyp" */
     const char *unit;         /* of the value; NULL: it has none */
     const char *effect;       /* of a change: when it holds and how long; NULL: it cannot be changed */
@@ -28,6 +37,8 @@ typedef struct {
     bool moves;               /* from then on the device is elsewhere: its address, ... */
     bool is_baud;             /* ... or its line settings */
     bool is_never_blind;      /* it has to be read before it is written, or afterwards */
+    bool is_of_variant;       /* not every variant of the device has it */
+    const char *risk; /* what writing it may do to a unit whose value is not known; NULL: nothing else */
     /* Where it cannot be read: what shows that it holds; NULL: its acknowledgement alone. */
     const char *confirmed;
     const char *unconfirmed; /* the same for what does not */

@@ -10,20 +10,6 @@
 
 static session_t session;
 
-/* Is it perhaps just this one that is not printed? */
-static bool is_of_one(fathom_status_t status)
-{
-    return status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_EXCEPTION ||
-           status == FATHOM_ERR_MALFORMED;
-}
-
-static const char *reason(fathom_status_t status)
-{
-    if (status == FATHOM_ERR_NO_RESPONSE) return "no response; not every variant has it";
-    return status == FATHOM_ERR_EXCEPTION ? "refused; not every variant has it"
-                                          : "its responses cannot be that";
-}
-
 static void print_text(const setting_t *setting, fathom_status_t status, const char *text)
 {
     const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
@@ -31,7 +17,7 @@ static void print_text(const setting_t *setting, fathom_status_t status, const c
         (void)printf("%-26s %s%s%s\n", setting->name, text, has_unit ? " " : "",
                      has_unit ? setting->unit : "");
     else
-        (void)printf("%-26s - (%s)\n", setting->name, reason(status));
+        (void)printf("%-26s - (%s)\n", setting->name, setting_reason(status));
 }
 
 static void print_json(const setting_t *setting, fathom_status_t status, const char *text)
@@ -66,7 +52,7 @@ static bool print_one(const setting_t *setting, bool *is_known, unsigned *printe
 {
     char text[SETTING_TEXT];
     const fathom_status_t status = session_get(&session, setting, text);
-    if (status != FATHOM_READY && !(*is_known && is_of_one(status))) {
+    if (status != FATHOM_READY && (!*is_known || setting_reason(status) == NULL)) {
         (void)fflush(stdout);
         (void)fprintf(stderr, "fathom: %s: ", setting->name);
         session_explain(&session, status);

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "settings/set_report.h"
+#include "stations/set_report.h"
 #include "stations/setting_text.h"
 
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
@@ -154,9 +154,7 @@ static int run(const host_t *host, int argc, char **argv)
     if (!take_value(&change, words[1], values[LOST] != NULL) ||
         !session_set_mode(&session, command, values, setting->mode) || !take_kind(&change, values))
         return STATUS_USAGE;
-    if (session.station->address == 0)
-        return usage_error(command,
-                           "what is written to address 0 goes to all units, so nothing can be set there");
+    if (!session_can_set(&session, command)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
     const int status = set(&change);
     session_close(&session);

@@ -65,6 +65,13 @@ bool session_set_mode(session_t *session, const char *command, const char *const
     return session->station->mode != NULL;
 }
 
+bool session_can_set(const session_t *session, const char *command)
+{
+    if (session->station->address != 0) return true;
+    (void)usage_error(command, "what is written to address 0 goes to all units, so nothing can be set there");
+    return false;
+}
+
 const setting_t *session_settings(const session_t *session) { return session->station->model->settings; }
 
 /* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
@@ -231,7 +238,7 @@ void session_explain(session_t *session, fathom_status_t status)
         advice_print(stderr, &failure);
 }
 
-void session_options_help(FILE *to)
+void session_line_help(FILE *to)
 {
     (void)fputs(
         "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or tcp:HOST[:PORT]\n"
@@ -242,9 +249,14 @@ void session_options_help(FILE *to)
         "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --timeout MS      how long to wait for a measurement\n"
         "  --retries N       how often a failed request is repeated; what changes something never is\n"
-        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n"
-        "  --format FORMAT   text (default) or json\n",
+        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n",
         to);
+}
+
+void session_options_help(FILE *to)
+{
+    session_line_help(to);
+    (void)fputs("  --format FORMAT   text (default) or json\n", to);
 }
 
 void session_print_json(FILE *to, const char *text)

@@ -36,6 +36,9 @@ bool session_options(session_t *session, const char *command, int argc, char **a
 /* The same sensor in another of its modes; after a usage error false: the user has asked for another one. */
 bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode);
 
+/* Can anything be set at its address? False after a usage error. */
+bool session_can_set(const session_t *session, const char *command);
+
 /* The table of the sensor's settings. */
 const setting_t *session_settings(const session_t *session);
 
@@ -60,8 +63,9 @@ const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
  * asked for is no distance here. */
 void session_explain(session_t *session, fathom_status_t status);
 
-/* The help of the options. */
+/* The help of the options, and of those of a command that has no --format. */
 void session_options_help(FILE *to);
+void session_line_help(FILE *to);
 
 /* A value as JSON: a number, or a string. */
 void session_print_json(FILE *to, const char *text);

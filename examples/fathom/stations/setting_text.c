@@ -8,21 +8,23 @@
 #include "shared/command.h"
 #include "shared/options.h"
 
-enum { LIST = 400 };
-
-/* "on, off": what it may be. */
-static const char *values_text(const setting_t *setting, char text[LIST])
+const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES])
 {
     text[0] = '\0';
     if (setting->words != NULL) {
-        for (const char *const *word = setting->words; *word != NULL; word++) list_add(text, LIST, *word);
+        for (const char *const *word = setting->words; *word != NULL; word++)
+            list_add(text, SETTING_VALUES, *word);
         return text;
     }
-    (void)snprintf(text, LIST, "%" PRId32 " to %" PRId32, setting->least, setting->most);
+    (void)snprintf(text, SETTING_VALUES, "%" PRId32 " to %" PRId32, setting->least, setting->most);
     if (setting->step > 1) {
-        char multiple[LIST / 8];
+        char multiple[SETTING_TEXT];
         (void)snprintf(multiple, sizeof multiple, "a multiple of %" PRId32, setting->step);
-        list_add(text, LIST, multiple);
+        list_add(text, SETTING_VALUES, multiple);
+    }
+    if (setting->unit != NULL) {
+        const size_t length = strlen(text);
+        (void)snprintf(text + length, SETTING_VALUES - length, " %s", setting->unit);
     }
     return text;
 }
@@ -30,10 +32,10 @@ static const char *values_text(const setting_t *setting, char text[LIST])
 const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
                               const char *name)
 {
-    char known[LIST] = "";
+    char known[SETTING_VALUES] = "";
     for (const setting_t *setting = settings; setting->name != NULL; setting++) {
         if (strcmp(setting->name, name) == 0) return setting;
-        list_add(known, LIST, setting->name);
+        list_add(known, SETTING_VALUES, setting->name);
     }
     (void)usage_error(command, "%s has no setting '%s', only %s", model, name, known);
     return NULL;
@@ -51,18 +53,38 @@ static bool parse_number(const setting_t *setting, const char *text, int32_t *va
     return true;
 }
 
-bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value)
+bool setting_value(const setting_t *setting, const char *text, int32_t *value)
 {
-    char values[LIST];
-    if (setting->words == NULL && parse_number(setting, text, value)) return true;
-    for (int32_t i = 0; setting->words != NULL && setting->words[i] != NULL; i++) {
+    if (setting->words == NULL) return parse_number(setting, text, value);
+    for (int32_t i = 0; setting->words[i] != NULL; i++) {
         if (strcmp(setting->words[i], text) != 0) continue;
         *value = i;
         return true;
     }
-    (void)usage_error(command, "%s takes %s%s%s, not '%s'", setting->name, values_text(setting, values),
-                      setting->unit != NULL ? " " : "", setting->unit != NULL ? setting->unit : "", text);
     return false;
+}
+
+bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value)
+{
+    char values[SETTING_VALUES];
+    if (setting_value(setting, text, value)) return true;
+    (void)usage_error(command, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
+                      text);
+    return false;
+}
+
+const char *setting_reason(fathom_status_t status)
+{
+    switch (status) {
+    case FATHOM_ERR_NO_RESPONSE:
+        return "no response; not every variant has it";
+    case FATHOM_ERR_EXCEPTION:
+        return "refused; not every variant has it";
+    case FATHOM_ERR_MALFORMED:
+        return "its responses cannot be that";
+    default:
+        return NULL;
+    }
 }
 
 void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT])
@@ -81,10 +103,8 @@ void settings_print(FILE *to, const setting_t *settings)
         if (setting->effect == NULL) {
             (void)fputs("; cannot be set", to);
         } else {
-            char values[LIST];
-            (void)fprintf(to, ": %s%s%s\n      %s", values_text(setting, values),
-                          setting->unit != NULL ? " " : "", setting->unit != NULL ? setting->unit : "",
-                          setting->effect);
+            char values[SETTING_VALUES];
+            (void)fprintf(to, ": %s\n      %s", setting_values_text(setting, values), setting->effect);
         }
         (void)fputs("\n", to);
     }

@@ -68,14 +68,20 @@ static fathom_status_t get_number(reader_t *reader, char text[SETTING_TEXT],
     return status;
 }
 
-static uint32_t pick_baud(const fathom_hps167s_configuration_t *is) { return is->baud; }
 static uint32_t pick_baud_code(const fathom_hps167s_configuration_t *is) { return is->baud_code; }
 static uint32_t pick_warm_up(const fathom_hps167s_configuration_t *is) { return is->warm_up_s; }
 static uint32_t pick_reconnect(const fathom_hps167s_configuration_t *is) { return is->reconnect_time_ms; }
 
+/* A code without a rate of its own tells nothing: it is where it has answered. */
 static fathom_status_t get_baud(reader_t *reader, char text[SETTING_TEXT])
 {
-    return get_number(reader, text, pick_baud);
+    const fathom_line_settings_t *const line = driver(reader)->unit.line_settings;
+    fathom_hps167s_configuration_t is;
+    const fathom_status_t status = fathom_hps167s_configuration(driver(reader), &is);
+    if (status != FATHOM_READY) return status;
+    const bool is_told = fathom_hps167s_baud_code(is.baud) == is.baud_code;
+    (void)snprintf(text, SETTING_TEXT, "%" PRIu32, is_told || line == NULL ? is.baud : line->baud);
+    return status;
 }
 
 static fathom_status_t get_baud_code(reader_t *reader, char text[SETTING_TEXT])
@@ -179,15 +185,26 @@ static fathom_status_t load_user(reader_t *reader, int32_t value)
     return fathom_hps167s_load_user_settings(driver(reader));
 }
 
+/* In the order in which `fathom restore` writes them: what is loaded may have an offset and a filter of its own. */
 const setting_t hps167s_settings[] = {
     {.name = "interface-version",
      .what = "of the RS485 interface (#1)",
+     .kind = SETTING_VERSION,
      .mode = "modbus",
      .get = get_version},
-    {.name = "sensor-version", .what = "of the sensor behind it (#3)", .mode = "modbus", .get = get_details},
-    {.name = "uuid", .what = "the sensor's own number (#3)", .mode = "modbus", .get = get_uuid},
+    {.name = "sensor-version",
+     .what = "of the sensor behind it (#3)",
+     .kind = SETTING_VERSION,
+     .mode = "modbus",
+     .get = get_details},
+    {.name = "uuid",
+     .what = "the sensor's own number (#3)",
+     .kind = SETTING_IDENTITY,
+     .mode = "modbus",
+     .get = get_uuid},
     {.name = "temperature",
      .what = "of its analog front end, told in degrees Fahrenheit (#4)",
+     .kind = SETTING_PRESENT,
      .mode = "modbus",
      .unit = "degC",
      .get = get_temperature},
@@ -211,6 +228,7 @@ const setting_t hps167s_settings[] = {
      .is_later = is_baud_later},
     {.name = "baud-code",
      .what = "the rate as it tells it (#2): 1 to 4 by #9, all others mean 19200",
+     .kind = SETTING_PRESENT,
      .mode = "modbus",
      .get = get_baud_code},
     {.name = "warm-up",
@@ -249,6 +267,13 @@ const setting_t hps167s_settings[] = {
      .step = FATHOM_HPS167S_RECONNECT_STEP_MS,
      .get = get_reconnect,
      .set = set_reconnect},
+    {.name = "load-settings",
+     .what = "takes the settings that the user has saved (#13); for the "
+             "factory's: fathom reset",
+     .mode = "modbus",
+     .effect = "at once; kept over power-off",
+     .words = user,
+     .set = load_user},
     {.name = "distance-offset",
      .what = "added to what it measures; whether to an offset from before too "
              "is not in the datasheet (#12)",
@@ -258,6 +283,7 @@ const setting_t hps167s_settings[] = {
      .least = INT16_MIN,
      .most = INT16_MAX,
      .is_never_blind = true,
+     .risk = "a unit that has an offset already may get the sum; fathom calibrate finds out",
      .set = set_offset},
     {.name = "filter-sensitivity",
      .what = "larger is steadier and slower; 0 from the factory, within -100 "
@@ -267,12 +293,5 @@ const setting_t hps167s_settings[] = {
      .least = INT16_MIN,
      .most = INT16_MAX,
      .set = set_filter},
-    {.name = "load-settings",
-     .what = "takes the settings that the user has saved (#13); for the "
-             "factory's: fathom reset",
-     .mode = "modbus",
-     .effect = "at once; kept over power-off",
-     .words = user,
-     .set = load_user},
     {.name = NULL},
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "settings/set_report.h"
+#include "stations/set_report.h"
 
 #include <inttypes.h>
 
