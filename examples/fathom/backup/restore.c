@@ -84,6 +84,17 @@ static const char *names(const plan_t *plan, size_t from, size_t to, bool is_uns
     return text;
 }
 
+/* Of the first `count` rows: what the next run would write once more. */
+static void print_again(const plan_t *plan, size_t count, const char *path)
+{
+    char unseen[SETTING_VALUES];
+    if (names(plan, 0, count, true, unseen)[0] == '\0') return;
+    (void)fflush(stdout);
+    (void)fprintf(stderr,
+                  "fathom: run again it would also write %s again; put `not readable` there in %s first\n",
+                  unseen, path);
+}
+
 static void print_stop(const plan_t *plan, size_t n, const char *path)
 {
     char before[SETTING_VALUES];
@@ -94,10 +105,7 @@ static void print_stop(const plan_t *plan, size_t n, const char *path)
     (void)fprintf(stderr, "fathom: it has ended at %s; written before: %s; not written: %s\n",
                   row_of(plan, n)->name, before[0] != '\0' ? before : "nothing",
                   after[0] != '\0' ? after : "nothing else");
-    if (names(plan, 0, is_written ? n + 1 : n, true, before)[0] != '\0')
-        (void)fprintf(
-            stderr, "fathom: run again it would also write %s again; put `not readable` there in %s first\n",
-            before, path);
+    print_again(plan, is_written ? n + 1 : n, path);
 }
 
 static int write_all(const plan_t *plan, const char *path)
@@ -172,8 +180,10 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
         return STATUS_FAILED;
     }
     if (has_moved(&plan) && !is_place_free(&plan)) return STATUS_FAILED;
-    const int status = write_all(&plan, path);
-    return status == STATUS_OK && has_moved(&plan) ? look_again(&unit) : status;
+    if (write_all(&plan, path) != STATUS_OK) return STATUS_FAILED;
+    if (!has_moved(&plan) || look_again(&unit) == STATUS_OK) return STATUS_OK;
+    print_again(&plan, plan.count, path);
+    return STATUS_FAILED;
 }
 
 /* Address 0 is nothing that is restored. */

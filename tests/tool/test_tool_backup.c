@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: MIT */
+/* fathom save and fathom restore: a file has what the unit has, a unit gets what the file has, and nothing is written
+ * that need not be. The file's own mistakes are in test_tool_backup_file.c. */
+#include "backup_desk.h"
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "sim/fault.h"
+
+static int set_up(void **state)
+{
+    bench_begin();
+    desk_begin();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    desk_end();
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+
+static const fathom_sim_a16_config_t any_a16;
+static const fathom_sim_hps167s_config_t any_hps167s;
+
+static const fathom_sim_counters_t *counters(void) { return &bench.hps167s.device.counters; }
+
+/* Runs a command with the file: it ends so, and says this. */
+static void says(int status, const char *text, const char *line)
+{
+    const tool_run_t *const run = tool_run(&bench.tool, "%s --port line --file %s", line, desk_path("unit"));
+    if (run->status != status || (strstr(run->out, text) == NULL && strstr(run->err, text) == NULL))
+        fail_msg("%s: exit status %d\n%s%s", line, run->status, run->out, run->err);
+}
+
+/* The file, changed as sed would: what stands there once gives way to something else. */
+static void change(const char *from, const char *to)
+{
+    static char text[DESK_TEXT];
+    static char changed[DESK_TEXT];
+    desk_read("unit", text);
+    const char *const at = strstr(text, from);
+    assert_non_null(at);
+    (void)snprintf(changed, sizeof changed, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    desk_write("unit", changed);
+}
+
+#define BEGIN(place)                                                                                         \
+    "# The settings of a range sensor, as fathom save 0.2.0 has read them at\n"                              \
+    "# " place ", 2025-11-24T16:00:"
+#define MIDDLE                                                                                               \
+    "Z. fathom restore writes them into a unit.\n"                                                           \
+    "# A value may be changed; a line may be taken out, then restore leaves that as it is.\n\n"
+#define PLACE "\n# Where it is. fathom restore leaves a unit where it is, but for --as-new.\n"
+
+/* The whole text but the seconds. */
+static void is_text(const char *text, const char *begin, const char *rest)
+{
+    const size_t length = strlen(begin);
+    assert_memory_equal(text, begin, length);
+    assert_string_equal(text + length + 2, rest);
+}
+
+/* The values of #1 and #3 are the datasheet's example: 2.1.0 of 2020-09-27, 3.9 of 2019-09-23, its UUID. */
+static const char of_hps167s[] = MIDDLE
+    "sensor = hps167s                         # infrared time of flight\n"
+    "\n# Which unit it is. It cannot be set; fathom restore compares it.\n"
+    "interface-version = 2.1.0 of 2020-09-27  # of the RS485 interface (#1)\n"
+    "sensor-version = 3.9 of 2019-09-23       # of the sensor behind it (#3)\n"
+    "uuid = 00390025423457142034383501060705  # the sensor's own number (#3)\n" PLACE
+    "address = 7                              # Modbus address (#8)\n"
+    "baud = 19200                             # of the line (#9)\n"
+    "\n# How it is set.\n"
+    "warm-up = 5                              # s, how long it is silent after power-on (#7)\n"
+    "measure-after-power-on = on              # whether it measures all the time, so that a response is "
+    "ready "
+    "sooner (#10)\n"
+    "termination = off                        # the termination resistor, on in every unit from the factory "
+    "(#11)\n"
+    "reconnect-time = 180                     # ms, without data from its sensor for so long it sends "
+    "abnormal "
+    "packets (#15)\n"
+    "\n# What the unit does not tell. It is restored only if you fill it in, and then written each time.\n"
+    "load-settings = not readable             # takes the settings that the user has saved (#13); for the "
+    "factory's: fathom reset\n"
+    "distance-offset = not readable           # mm, added to what it measures; whether to an offset from "
+    "before "
+    "too is not in the datasheet (#12)\n"
+    "filter-sensitivity = not readable        # larger is steadier and slower; 0 from the factory, within "
+    "-100 to "
+    "100 is recommended (#14)\n";
+
+TEST(the_file_of_an_hps167s_has_what_it_is_where_it_is_and_how_it_is_set)
+{
+    char text[DESK_TEXT];
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .warm_up_s = 5, .no_termination = true});
+    says(0, "hps167s:7: its settings are in ", "save hps167s:7");
+    is_text(desk_read("unit", text), BEGIN("address 7, 19200 8E1"), of_hps167s);
+    assert_int_equal(desk_count(), 1);
+    assert_int_equal(counters()->writes, 0);
+    const tool_run_t *const run = tool_run(&bench.tool, "save hps167s:7 --port line");
+    assert_int_equal(run->status, 0);
+    is_text(run->out, BEGIN("address 7, 19200 8E1"), of_hps167s);
+}
+
+static bool misses_switch(void *ctx, fathom_sim_frame_t *frame)
+{
+    (void)ctx;
+    return frame->bytes[2] == 0x02 && (frame->bytes[3] == 0x05 || frame->bytes[3] == 0x06);
+}
+
+static void miss(void *ctx, fathom_sim_frame_t *frame)
+{
+    if (misses_switch(ctx, frame)) frame->length = 0;
+}
+
+static const fathom_sim_faults_t no_switch = {.incoming = miss};
+
+TEST(what_a_variant_of_the_a16_does_not_have_is_not_there)
+{
+    char text[DESK_TEXT];
+    bench_a16((fathom_sim_a16_config_t){.address = 200, .real_time = true, .faults = &no_switch});
+    says(0, "", "save a16:200");
+    is_text(desk_read("unit", text), BEGIN("address 200, 9600 8N1"),
+            MIDDLE
+            "sensor = a16                             # one ultrasonic probe\n" PLACE
+            "address = 200                            # Modbus address (register 0x0200)\n"
+            "\n# How it is set.\n"
+            "switch-polarity = not there              # switch variant: the level when something is nearer "
+            "than the threshold (0x0205); no response; not every variant has it\n"
+            "switch-threshold = not there             # mm, switch variant: the distance at which it "
+            "switches (0x0206); no response; not every variant has it\n"
+            "automatic-value = real-time              # RS232 variant: the distance that automatic output "
+            "sends (0x0207)\n");
+    says(0, "nothing differs", "restore a16:200");
+    change("switch-threshold = not there", "switch-threshold = 1500");
+    says(1, "switch-threshold         not there      -> 1500 mm  this unit does not have it",
+         "restore a16:200 --dry-run");
+    says(1, "nothing was written: this unit does not have all that the file has", "restore a16:200");
+    assert_int_equal(bench.a16.device.counters.writes, 0);
+}
+
+TEST(the_file_of_an_a05_has_its_address)
+{
+    char text[DESK_TEXT];
+    bench_a05((fathom_sim_a05_config_t){.address = 9});
+    says(0, "", "save a05:9");
+    is_text(desk_read("unit", text), BEGIN("address 9, 9600 8N1"),
+            MIDDLE
+            "sensor = a05                             # four ultrasonic probes\n" PLACE
+            "address = 9                              # Modbus address (register 0x0200), of 55 AA too\n");
+    says(0, "whether it is the same unit is not known", "restore a05:9");
+}
+
+/* ---- where a save fails there is no file ---- */
+
+TEST(what_does_not_answer_leaves_no_file)
+{
+    says(1, "no response", "save hps167s");
+    says(1, "no response", "save a16");
+    assert_int_equal(desk_count(), 0);
+    assert_string_equal(tool_run(&bench.tool, "save hps167s --port line")->out, "");
+}
+
+static uint32_t answers_left;
+
+static void fall_silent(void *ctx, fathom_sim_frame_t *frame)
+{
+    if (answers_left == 0)
+        frame->length = 0;
+    else
+        answers_left--;
+}
+
+/* The A16 has four rows; with the third request it is gone, and "not there" would be wrong. */
+TEST(a_unit_that_falls_silent_leaves_no_file)
+{
+    static const fathom_sim_faults_t falls_silent = {.incoming = fall_silent};
+    for (answers_left = 0; answers_left != 4; answers_left++) {
+        const uint32_t answers = answers_left;
+        bench_begin();
+        bench_a16((fathom_sim_a16_config_t){.faults = &falls_silent});
+        says(1, "no response", "save a16");
+        assert_int_equal(desk_count(), 0);
+        answers_left = answers;
+    }
+    bench_begin();
+    bench_a16((fathom_sim_a16_config_t){.faults = &falls_silent});
+    says(0, "its settings are in", "save a16");
+}
+
+TEST(a_response_that_is_lost_is_asked_for_again)
+{
+    static fathom_sim_fault_t faults;
+    char text[DESK_TEXT];
+    for (uint32_t frame = 1; frame <= 4; frame++) {
+        bench_begin();
+        bench_a16(any_a16);
+        fathom_sim_fault_init(&faults, 1);
+        fathom_sim_fault_attach(&faults, &bench.line, &bench.a16.device);
+        assert_non_null(
+            fathom_sim_fault_add(&faults, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, frame));
+        says(0, "", "save a16");
+        assert_null(strstr(desk_read("unit", text), "not there"));
+        desk_remove("unit");
+    }
+}
+
+TEST(a_file_that_is_there_is_never_overwritten)
+{
+    char text[DESK_TEXT];
+    bench_hps167s(any_hps167s);
+    desk_write("unit", "mine");
+    says(1, "unit is there already and is not overwritten", "save hps167s");
+    assert_string_equal(desk_read("unit", text), "mine");
+    assert_int_equal(desk_count(), 1);
+    assert_int_equal(counters()->requests, 0);
+}
+
+TEST(a_file_that_cannot_be_made_is_an_error)
+{
+    bench_hps167s(any_hps167s);
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "save hps167s --port line --file %s/none/file", desk_path("unit"));
+    assert_int_equal(run->status, 1);
+    assert_non_null(strstr(run->err, "cannot be written: No such file or directory"));
+}
+
+/* ---- restore ---- */
+
+TEST(where_nothing_differs_nothing_is_written)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .reconnect_ms = 36});
+    says(0, "", "save hps167s:7");
+    says(0, "nothing differs", "restore hps167s:7 --dry-run");
+    says(0, "in the unit: the same unit\n", "restore hps167s:7");
+    says(0, "nothing differs", "restore hps167s:7 --as-new");
+    assert_int_equal(counters()->writes, 0);
+    assert_int_equal(counters()->flash_writes, 0);
+}
+
+/* Each difference alone: it is shown, written once, and then there is none. */
+TEST(each_setting_that_differs_is_written_once)
+{
+    static const char *const rows[][3] = {
+        {"warm-up = 0", "warm-up = 255", "warm-up is 255 s (was 0)\n"},
+        {"measure-after-power-on = on", "measure-after-power-on = off", "power-on is off (was on)\n"},
+        {"termination = on", "termination = off", "termination is off (was on)\n"},
+        {"reconnect-time = 180", "reconnect-time = 1800", "reconnect-time is 1800 ms (was 180)\n"}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        bench_begin();
+        bench_hps167s(any_hps167s);
+        says(0, "", "save hps167s");
+        change(rows[i][0], rows[i][1]);
+        says(1, " -> ", "restore hps167s --dry-run");
+        assert_int_equal(counters()->writes, 0);
+        says(0, rows[i][2], "restore hps167s");
+        says(0, "nothing differs", "restore hps167s");
+        assert_int_equal(counters()->writes, 1);
+        desk_remove("unit");
+    }
+}
+
+TEST(an_a16_gets_its_three_settings)
+{
+    bench_a16((fathom_sim_a16_config_t){.threshold_mm = 16350, .real_time = true});
+    says(0, "", "save a16");
+    bench_begin();
+    bench_a16(any_a16);
+    says(0, "switch-threshold is 16350 mm (was 1000)\n", "restore a16");
+    assert_int_equal(bench.a16.threshold_mm, 16350);
+    assert_int_equal(bench.a16.data_type, 1);
+    assert_int_equal(bench.a16.polarity, 1);
+    assert_int_equal(bench.a16.device.counters.writes, 2);
+}
+
+TEST(a_unit_stays_where_it_is_unless_told)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .baud_code = 3});
+    says(0, "", "save hps167s:7 --baud 115200");
+    bench_begin();
+    bench_hps167s(any_hps167s);
+    says(0, "address                  1              -> 7  stays\n", "restore hps167s");
+    says(0, "baud                     19200          -> 115200  stays\n", "restore hps167s");
+    assert_int_equal(counters()->writes, 0);
+}
+
+TEST(what_the_unit_does_not_tell_is_written_when_it_is_filled_in)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.offset_adds = true});
+    says(0, "", "save hps167s");
+    change("distance-offset = not readable", "distance-offset = -15");
+    change("filter-sensitivity = not readable", "filter-sensitivity = 20");
+    says(1, "distance-offset: a unit that has an offset already may get the sum",
+         "restore hps167s --dry-run");
+    says(1, "distance-offset          not readable   -> -15 mm  is written whatever it is",
+         "restore hps167s --dry-run");
+    assert_int_equal(counters()->writes, 0);
+    says(0, "distance-offset is -15 mm as far as the device has acknowledged it", "restore hps167s");
+    assert_int_equal(counters()->writes, 2);
+    assert_int_equal(bench.hps167s.user.offset_mm, -15);
+    assert_int_equal(bench.hps167s.user.filter, 20);
+    says(0, "", "restore hps167s"); /* each time */
+    assert_int_equal(counters()->writes, 4);
+    assert_int_equal(bench.hps167s.user.offset_mm, -30);
+}
+
+TEST(a_value_that_cannot_be_set_is_no_line_to_restore)
+{
+    char text[DESK_TEXT];
+    bench_hps167s((fathom_sim_hps167s_config_t){.reconnect_ms = 1000}); /* no multiple of 18 */
+    says(0, "", "save hps167s");
+    assert_non_null(strstr(desk_read("unit", text), "\nreconnect-time = not settable "));
+    assert_non_null(
+        strstr(text, "; it has 1000, which cannot be set: 0 to 2147483646, a multiple of 18 ms\n"));
+    says(0, "nothing differs", "restore hps167s");
+    change("reconnect-time = not settable", "reconnect-time = 990");
+    says(0, "reconnect-time is 990 ms (was 1000)", "restore hps167s");
+}
+
+TEST(another_unit_is_told)
+{
+    static uint8_t details[22];
+    bench_hps167s(any_hps167s);
+    says(0, "", "save hps167s");
+    memcpy(details, bench.hps167s.details, sizeof details);
+    details[1] ^= 0x10; /* of the UUID, behind the acknowledgement's byte */
+    bench_begin();
+    bench_hps167s((fathom_sim_hps167s_config_t){.details = details});
+    says(0, " in the unit: another unit\n", "restore hps167s");
+}

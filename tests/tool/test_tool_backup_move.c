@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT */
+/* fathom restore --as-new, and a restore that is interrupted: where the unit is then, and what is written how often. */
+#include "backup_desk.h"
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static int set_up(void **state)
+{
+    bench_begin();
+    desk_begin();
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    desk_end();
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+
+static const fathom_sim_a16_config_t any_a16;
+static const fathom_sim_a05_config_t any_a05;
+static const fathom_sim_hps167s_config_t any_hps167s;
+
+static const fathom_sim_counters_t *counters(void) { return &bench.hps167s.device.counters; }
+
+/* Runs it with the file: it ends so, and says this. */
+static void says(int status, const char *text, const char *line)
+{
+    const tool_run_t *const run = tool_run(&bench.tool, "%s --port line --file %s", line, desk_path("unit"));
+    if (run->status != status || (strstr(run->out, text) == NULL && strstr(run->err, text) == NULL))
+        fail_msg("%s: exit status %d\n%s%s", line, run->status, run->out, run->err);
+}
+
+static const char hps167s_file[] = "sensor = hps167s\naddress = 7\nbaud = 57600\nwarm-up = 9\n"
+                                   "measure-after-power-on = off\ntermination = off\nreconnect-time = 36\n";
+
+static void is_as_in_the_file(void)
+{
+    assert_int_equal(bench.hps167s.warm_up_s, 9);
+    assert_int_equal(bench.hps167s.reconnect_ms, 36);
+    assert_false(bench.hps167s.auto_output);
+    assert_false(bench.hps167s.termination);
+}
+
+TEST(a_new_unit_takes_the_place_of_the_saved_one)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .baud_code = 2, .warm_up_s = 5});
+    says(0, "", "save hps167s:7 --baud 57600");
+    bench_begin();
+    bench_hps167s(any_hps167s);
+    says(0, "address is 7\n", "restore hps167s --as-new");
+    assert_int_equal(counters()->writes, 3);
+    assert_int_equal(bench.hps167s.device.address, 7);
+    assert_int_equal(bench.hps167s.baud_code, 2);
+    assert_int_equal(bench.hps167s.warm_up_s, 5);
+    says(0, "nothing differs", "restore hps167s:7 --baud 57600 --as-new");
+}
+
+/* Its settings, then its address, then its rate; and then it is looked at again. */
+TEST(the_settings_come_before_the_address_and_the_rate_last)
+{
+    static const char *const order[] = {"warm-up is",
+                                        "measure-after-power-on is",
+                                        "termination is",
+                                        "reconnect-time is",
+                                        "hps167s:1: address is 7\n",
+                                        "hps167s:7: baud is 57600 (was 19200)\n",
+                                        "hps167s:7: it answers there, 57600 8E1\n",
+                                        "now: the same unit\n"};
+    desk_write("unit", hps167s_file);
+    bench_hps167s(any_hps167s);
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "restore hps167s --as-new --port line --file %s", desk_path("unit"));
+    assert_int_equal(run->status, 0);
+    const char *at = run->out;
+    for (size_t i = 0; i != sizeof order / sizeof order[0]; i++) {
+        at = strstr(at, order[i]);
+        if (at == NULL) fail_msg("'%s' is not in\n%s", order[i], run->out);
+    }
+    is_as_in_the_file();
+    assert_int_equal(counters()->writes, 6);
+}
+
+TEST(a_rate_of_the_next_power_on_is_told_and_the_unit_is_found_where_it_is)
+{
+    desk_write("unit", hps167s_file);
+    bench_hps167s((fathom_sim_hps167s_config_t){.baud_at_power_on = true});
+    says(0, "baud is 57600 from the next power-on (19200 until then)\n", "restore hps167s --as-new");
+    says(0, "nothing differs", "restore hps167s:7 --as-new");
+    assert_int_equal(counters()->writes, 6);
+}
+
+TEST(an_a16_and_an_a05_move_to_their_addresses)
+{
+    bench_a16(any_a16);
+    desk_write("unit", "sensor = a16\naddress = 200\nswitch-threshold = 500\n");
+    says(0, "a16:200: it answers there, 9600 8N1\n", "restore a16 --as-new");
+    assert_int_equal(bench.a16.device.address, 200);
+    assert_int_equal(bench.a16.threshold_mm, 500);
+    bench_begin();
+    bench_a05(any_a05);
+    desk_write("unit", "sensor = a05\naddress = 2\n");
+    says(0, "a05:2: it answers there, 9600 8N1\n", "restore a05 --as-new");
+    assert_int_equal(bench.a05.device.address, 2);
+}
+
+/* Another unit at the new address: at the rate of today, and at the one to which it is to go. */
+TEST(an_occupied_place_is_refused_before_anything_is_written)
+{
+    static fathom_sim_hps167s_t other;
+    static const char *const said[] = {
+        "nothing was written: at address 7, 19200 8E1, a device answers already",
+        "nothing was written: at address 7, 57600 8E1, a device answers already"};
+    desk_write("unit", hps167s_file);
+    for (uint8_t code = 1; code <= 2; code++) {
+        const fathom_sim_hps167s_config_t config = {.address = 7, .baud_code = code};
+        bench_begin();
+        bench_hps167s(any_hps167s);
+        fathom_sim_hps167s_init(&other, &config);
+        fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
+        says(1, said[code - 1], "restore hps167s --as-new");
+        assert_int_equal(counters()->writes, 0);
+        assert_int_equal(other.device.counters.writes, 0);
+        says(0, "", "restore hps167s"); /* where it is not to go that matters nothing */
+        assert_int_equal(counters()->writes, 4);
+        is_as_in_the_file();
+        assert_int_equal(other.device.counters.writes, 0);
+    }
+}
+
+/* Another unit is at the unit's own address, at the rate to which it is to go. */
+TEST(an_occupied_rate_is_refused_before_anything_is_written)
+{
+    static fathom_sim_hps167s_t other;
+    const fathom_sim_hps167s_config_t config = {.baud_code = 2};
+    desk_write("unit", "sensor = hps167s\nbaud = 57600\nwarm-up = 9\n");
+    bench_hps167s(any_hps167s);
+    fathom_sim_hps167s_init(&other, &config);
+    fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
+    says(1, "at address 1, 57600 8E1, a device answers already", "restore hps167s --as-new");
+    assert_int_equal(counters()->writes + other.device.counters.writes, 0);
+}
+
+TEST(one_that_sends_unasked_moves_too)
+{
+    desk_write("unit", hps167s_file);
+    for (uint32_t phase_us = 0; phase_us < 18500; phase_us += 3700) {
+        bench_begin();
+        bench_hps167s((fathom_sim_hps167s_config_t){.unasked_us = 18500, .seed = phase_us});
+        fathom_sim_clock_advance(&bench.clock, 1000000 + phase_us);
+        says(0, "it answers there, 57600 8E1", "restore hps167s --as-new");
+        assert_int_equal(counters()->writes, 6);
+        is_as_in_the_file();
+    }
+}
+
+/* ---- interrupted ---- */
+
+/* Runs it where the unit is now. */
+static const tool_run_t *restore_there(const char *more)
+{
+    static const unsigned rates[] = {0, 19200, 57600, 115200, 230400};
+    return tool_run(&bench.tool, "restore hps167s:%u --baud %u --as-new %s --port line --file %s",
+                    bench.hps167s.device.address, rates[bench.hps167s.baud_code], more, desk_path("unit"));
+}
+
+static uint16_t written[64];
+static unsigned written_count;
+static int (*inner_write)(void *ctx, const uint8_t *bytes, size_t length);
+
+static int spy(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const int n = inner_write(ctx, bytes, length);
+    if (n > 0 && bytes[1] != 3) written[written_count++ % 64] = (uint16_t)(bytes[2] << 8 | bytes[3]);
+    return n;
+}
+
+/* How often the device was told what stands there. */
+static unsigned writes_of(uint16_t reg)
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i != written_count; i++) count += written[i] == reg;
+    return count;
+}
+
+/* Ended at any time and run again, it comes to the same, and nothing is written a second time. */
+TEST(what_was_interrupted_is_carried_on_by_the_next_run)
+{
+    static const uint16_t registers[] = {0x0A, 0x10, 0x11, 0x12, 0x13, 0x20}; /* #7 to #11, #15 */
+    unsigned ended = 0;
+    unsigned after_a_write = 0;
+    desk_write("unit", hps167s_file);
+    for (uint64_t end_us = 20000; end_us != 0; end_us += 7000) {
+        bench_begin();
+        bench_hps167s(any_hps167s);
+        inner_write = bench.tool.uart.write;
+        bench.tool.uart.write = spy;
+        written_count = 0;
+        bench.tool.ctrl_c_us = end_us;
+        const tool_run_t *run = restore_there("");
+        if (run->status == 0) break;
+        assert_int_equal(run->status, 1);
+        ended++;
+        if (written_count != 0) {
+            after_a_write++;
+            /* it answers at last behind all that is written; the others are named */
+            assert_true(strstr(run->err, "it has ended at ") != NULL || written_count == 6);
+        } else {
+            assert_non_null(strstr(run->err, "nothing was written"));
+        }
+        bench.tool.ctrl_c_us = 0;
+        fathom_sim_clock_advance(&bench.clock, 1000000);
+        run = restore_there("");
+        if (run->status != 0) fail_msg("%u us: %s%s", (unsigned)end_us, run->out, run->err);
+        is_as_in_the_file();
+        assert_int_equal(bench.hps167s.device.address, 7);
+        assert_int_equal(bench.hps167s.baud_code, 2);
+        for (size_t i = 0; i != sizeof registers / sizeof registers[0]; i++)
+            assert_int_equal(writes_of(registers[i]), 1);
+        assert_int_equal(counters()->writes, 6);
+    }
+    assert_true(ended > 300 && after_a_write > 100);
+}
+
+/* What is written whatever it is comes behind what is compared, and is named where the run ends after it. */
+TEST(what_would_be_written_again_is_named)
+{
+    bool was_named = false;
+    desk_write("unit", "sensor = hps167s\naddress = 7\nwarm-up = 9\ndistance-offset = -15\n");
+    for (uint64_t end_us = 20000; end_us != 0; end_us += 7000) {
+        bench_begin();
+        bench_hps167s(any_hps167s);
+        bench.tool.ctrl_c_us = end_us;
+        const tool_run_t *const run = restore_there("");
+        if (run->status == 0) break;
+        const bool is_written = bench.hps167s.user.offset_mm == -15;
+        const bool is_named =
+            strstr(run->err,
+                   "run again it would also write distance-offset again; put `not readable` there") != NULL;
+        if (is_written && !is_named) fail_msg("%u us: %s", (unsigned)end_us, run->err);
+        if (is_named) assert_int_equal(bench.hps167s.warm_up_s, 9);
+        was_named = was_named || is_named;
+    }
+    assert_true(was_named);
+}
