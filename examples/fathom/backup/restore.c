@@ -151,7 +151,11 @@ static int look_again(const backup_t *unit)
 {
     backup_t now;
     char line[LINE_TEXT];
-    if (!backup_read(&session, &now)) return STATUS_FAILED;
+    if (!backup_read(&session, &now)) {
+        (void)fputs("fathom: all that differed is written; whether it is the same unit there is not known\n",
+                    stderr);
+        return STATUS_FAILED;
+    }
     (void)printf("%s: it answers there, %s\n", session.station->name, session_line_text(&session, line));
     if (plan_print_identity(unit, "before", &now, "now")) return STATUS_OK;
     (void)fflush(stdout);
