@@ -38,7 +38,7 @@ class Commands(e2e.Case):
             self.ends(words, 0 if waits else 1, self.path('none'))
 
     @e2e.each(those_of_the_first_page=('README.md', BLOCK, 1, 1),
-              those_of_the_manual=('examples/fathom/README.md', BLOCK, 9, 9),
+              those_of_the_manual=('examples/fathom/README.md', BLOCK, 9, 20),
               those_of_the_table_of_the_datasheets=('include/README.md', CELL, 51, 500))
     def shown(self, page, pattern, at_least, at_most):
         shown = re.findall(pattern, text_of(page), re.M)
@@ -49,9 +49,9 @@ class Commands(e2e.Case):
 
     def test_the_manual_has_every_command_and_every_option_and_no_other(self):
         manual = text_of('examples/fathom/README.md')
-        lines = re.findall(r'^  (\w+) +\S', self.run_fathom('--help').out, re.M)
-        commands = [name for name in lines if name != 'fathom']
-        self.assertEqual(len(commands), 10, lines)
+        first = re.findall(r'^  (\w+) +\S', self.run_fathom('--help').out, re.M)
+        commands = [name for name in first if name != 'fathom']
+        self.assertGreaterEqual(len(commands), 12, first)
         explained = {'--help'}
         for command in commands:
             self.assertIn(f'`fathom {command}`', manual)

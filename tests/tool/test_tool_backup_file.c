@@ -30,12 +30,12 @@ static uint32_t requests(void)
 }
 
 /* The file is refused with just this line on the standard error, in which %s is its path. */
-static void refuses(int status, const char *sensor, const char *said)
+static void refuses(int status, const char *sensor, const char *words)
 {
     char line[512];
     const tool_run_t *const run =
         tool_run(&bench.tool, "restore %s --port line --file %s", sensor, desk_path("unit"));
-    (void)snprintf(line, sizeof line, "fathom: %s:%s\n", desk_path("unit"), said);
+    (void)snprintf(line, sizeof line, "fathom: %s:%s\n", desk_path("unit"), words);
     assert_string_equal(run->err, line);
     assert_string_equal(run->out, "");
     assert_int_equal(run->status, status);

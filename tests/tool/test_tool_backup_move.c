@@ -112,7 +112,7 @@ TEST(an_a16_and_an_a05_move_to_their_addresses)
 TEST(an_occupied_place_is_refused_before_anything_is_written)
 {
     static fathom_sim_hps167s_t other;
-    static const char *const said[] = {
+    static const char *const words[] = {
         "nothing was written: at address 7, 19200 8E1, a device answers already",
         "nothing was written: at address 7, 57600 8E1, a device answers already"};
     desk_write("unit", hps167s_file);
@@ -122,7 +122,7 @@ TEST(an_occupied_place_is_refused_before_anything_is_written)
         bench_hps167s(any_hps167s);
         fathom_sim_hps167s_init(&other, &config);
         fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
-        says(1, said[code - 1], "restore hps167s --as-new");
+        says(1, words[code - 1], "restore hps167s --as-new");
         assert_int_equal(counters()->writes, 0);
         assert_int_equal(other.device.counters.writes, 0);
         says(0, "", "restore hps167s"); /* where it is not to go that matters nothing */

@@ -175,7 +175,7 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
     plan_begin(&plan, file, &unit, is_new, is_new && session.channel.tcp == NULL);
     plan_print(&plan);
     if (is_dry) return plan.count == 0 && !plan.is_impossible ? STATUS_OK : STATUS_FAILED;
-    (void)fflush(stdout);
+    if (fflush(stdout) != 0 || ferror(stdout) != 0) return STATUS_FAILED; /* unseen, nothing is written */
     if (plan.is_impossible) {
         (void)fprintf(stderr,
                       "fathom: nothing was written: this unit does not have all that the file has; put "
