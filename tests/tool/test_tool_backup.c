@@ -284,8 +284,9 @@ TEST(a_unit_stays_where_it_is_unless_told)
     says(0, "", "save hps167s:7 --baud 115200");
     bench_begin();
     bench_hps167s(any_hps167s);
-    says(0, "address                  1              -> 7  stays\n", "restore hps167s");
-    says(0, "baud                     19200          -> 115200  stays\n", "restore hps167s");
+    says(0, "address                  1              -> 7  stays, without --as-new\n", "restore hps167s");
+    says(0, "baud                     19200          -> 115200  stays, without --as-new\n",
+         "restore hps167s");
     assert_int_equal(counters()->writes, 0);
 }
 

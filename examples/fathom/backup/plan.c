@@ -30,6 +30,7 @@ void plan_begin(plan_t *plan, const backup_t *file, const backup_t *unit, bool m
     memset(plan, 0, sizeof *plan);
     plan->file = file;
     plan->unit = unit;
+    plan->moves = moves;
     for (size_t i = 0; i != rows; i++) {
         plan->steps[i] =
             step_of(&settings[i], &file->rows[i], &unit->rows[i], settings[i].is_baud ? changes_rate : moves);
@@ -49,7 +50,7 @@ void plan_begin(plan_t *plan, const backup_t *file, const backup_t *unit, bool m
 static const char *text_of(const backup_row_t *row)
 {
     const char *const word = backup_word(row->held);
-    return row->held == HELD_NOTHING ? "nothing" : word != NULL ? word : row->text;
+    return word != NULL ? word : row->text;
 }
 
 bool plan_print_identity(const backup_t *one, const char *one_is, const backup_t *other, const char *other_is)
@@ -61,7 +62,7 @@ bool plan_print_identity(const backup_t *one, const char *one_is, const backup_t
         const backup_row_t *const a = &one->rows[i];
         const backup_row_t *const b = &other->rows[i];
         const bool is_unit = setting->kind == SETTING_IDENTITY;
-        if (!backup_has(setting) || setting->set != NULL) continue;
+        if (setting->set != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
         (void)printf("%s: %s %s, %s %s: ", setting->name, text_of(a), one_is, text_of(b), other_is);
         if (a->held != HELD_VALUE || b->held != HELD_VALUE) {
             (void)puts("not known");
@@ -72,7 +73,8 @@ bool plan_print_identity(const backup_t *one, const char *one_is, const backup_t
         if (is_unit) is_known = true;
         (void)printf("%s %s\n", same ? "the same" : "another", is_unit ? "unit" : "version");
     }
-    if (!is_known) (void)puts("whether it is the same unit is not known: there is no number of its own");
+    if (!is_known)
+        (void)puts("whether it is the same unit is not known: there is no number of it to compare");
     return is_same;
 }
 
@@ -87,11 +89,19 @@ static const char *cell(const setting_t *setting, const backup_row_t *row, char 
     return text;
 }
 
-static const char *const notes[] = {[PLAN_NOTHING] = "",
-                                    [PLAN_WRITE] = "",
-                                    [PLAN_WRITE_UNSEEN] = "  is written whatever it is",
-                                    [PLAN_STAYS] = "  stays",
-                                    [PLAN_IMPOSSIBLE] = "  this unit does not have it"};
+static const char *note(const plan_t *plan, plan_step_t step)
+{
+    switch (step) {
+    case PLAN_WRITE_UNSEEN:
+        return "  is written whatever it is";
+    case PLAN_STAYS:
+        return plan->moves ? "  stays: the line is the gateway's" : "  stays, without --as-new";
+    case PLAN_IMPOSSIBLE:
+        return "  this unit does not have it";
+    default:
+        return "";
+    }
+}
 
 void plan_print(const plan_t *plan)
 {
@@ -106,7 +116,7 @@ void plan_print(const plan_t *plan)
         if (!is_begun) (void)printf("%-24s %-14s    %s\n", "setting", "in the unit", "in the file");
         is_begun = true;
         (void)printf("%-24s %-14s -> %s%s\n", setting->name, cell(setting, &plan->unit->rows[i], is),
-                     cell(setting, &plan->file->rows[i], to), notes[plan->steps[i]]);
+                     cell(setting, &plan->file->rows[i], to), note(plan, plan->steps[i]));
     }
     if (!is_begun) (void)puts("nothing differs");
     for (size_t i = 0; i != backup_count(model); i++) {

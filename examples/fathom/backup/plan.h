@@ -18,9 +18,10 @@ typedef struct {
     const backup_t *unit;
     plan_step_t steps[BACKUP_ROWS];
     size_t order
-        [BACKUP_ROWS]; /* the rows that are to be written; what moves the unit last, its rate behind all */
-    size_t count;      /* of these */
-    bool is_impossible;
+        [BACKUP_ROWS];  /* the rows that are to be written; what moves the unit last, its rate behind all */
+    size_t count;       /* of these */
+    bool is_impossible; /* the file has what the unit has not */
+    bool moves;         /* the unit may go to the address of the file */
 } plan_t;
 
 /* moves, changes_rate: the unit may go to the address of the file, the rate of the file. */
