@@ -221,6 +221,25 @@ TEST(a_file_that_is_there_is_never_overwritten)
     assert_int_equal(counters()->requests, 0);
 }
 
+static int (*inner_write)(void *ctx, const uint8_t *bytes, size_t length);
+
+static int write_file_too(void *ctx, const uint8_t *bytes, size_t length)
+{
+    desk_write("unit", "mine");
+    return inner_write(ctx, bytes, length);
+}
+
+TEST(a_file_that_comes_while_the_unit_is_read_is_not_overwritten_either)
+{
+    char text[DESK_TEXT];
+    bench_hps167s(any_hps167s);
+    inner_write = bench.tool.uart.write;
+    bench.tool.uart.write = write_file_too;
+    says(1, "unit is there already and is not overwritten", "save hps167s");
+    assert_string_equal(desk_read("unit", text), "mine");
+    assert_int_equal(desk_count(), 1);
+}
+
 TEST(a_file_that_cannot_be_made_is_an_error)
 {
     bench_hps167s(any_hps167s);

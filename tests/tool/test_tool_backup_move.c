@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "sim/fault.h"
+
 static int set_up(void **state)
 {
     bench_begin();
@@ -132,6 +134,24 @@ TEST(an_occupied_place_is_refused_before_anything_is_written)
     }
 }
 
+/* Its first response is lost, which is no silence. */
+TEST(a_place_is_asked_twice)
+{
+    static fathom_sim_hps167s_t other;
+    static fathom_sim_fault_t faults;
+    const fathom_sim_hps167s_config_t config = {.address = 7};
+    desk_write("unit", hps167s_file);
+    bench_hps167s(any_hps167s);
+    fathom_sim_hps167s_init(&other, &config);
+    fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
+    fathom_sim_fault_init(&faults, 1);
+    fathom_sim_fault_attach(&faults, &bench.line, &other.device);
+    assert_non_null(fathom_sim_fault_add(&faults, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 1));
+    says(1, "nothing was written: at address 7, 19200 8E1, a device answers already",
+         "restore hps167s --as-new");
+    assert_int_equal(counters()->writes, 0);
+}
+
 /* Another unit is at the unit's own address, at the rate to which it is to go. */
 TEST(an_occupied_rate_is_refused_before_anything_is_written)
 {
@@ -147,15 +167,41 @@ TEST(an_occupied_rate_is_refused_before_anything_is_written)
 
 TEST(one_that_sends_unasked_moves_too)
 {
-    desk_write("unit", hps167s_file);
-    for (uint32_t phase_us = 0; phase_us < 18500; phase_us += 3700) {
+    static const char *const rates[] = {"57600", "115200", "230400"};
+    for (uint32_t phase_us = 0; phase_us < 18500; phase_us += 700) {
+        const char *const rate = rates[phase_us / 700 % 3];
+        char text[DESK_TEXT];
+        (void)snprintf(text, sizeof text, "sensor = hps167s\naddress = 7\nbaud = %s\n", rate);
+        desk_write("unit", text);
         bench_begin();
         bench_hps167s((fathom_sim_hps167s_config_t){.unasked_us = 18500, .seed = phase_us});
         fathom_sim_clock_advance(&bench.clock, 1000000 + phase_us);
-        says(0, "it answers there, 57600 8E1", "restore hps167s --as-new");
-        assert_int_equal(counters()->writes, 6);
-        is_as_in_the_file();
+        says(0, "hps167s:7: it answers there, ", "restore hps167s --as-new");
+        assert_int_equal(counters()->writes, 2);
     }
+}
+
+static int (*inner_write)(void *ctx, const uint8_t *bytes, size_t length);
+static uint8_t details[22];
+
+/* With the new address another unit stands there. */
+static int swap(void *ctx, const uint8_t *bytes, size_t length)
+{
+    if (bytes[1] == 6 && bytes[3] == 0x10) details[5] ^= 1;
+    return inner_write(ctx, bytes, length);
+}
+
+TEST(another_unit_at_the_new_place_is_no_success)
+{
+    bench_hps167s(any_hps167s);
+    memcpy(details, bench.hps167s.details, sizeof details);
+    bench.hps167s.details = details;
+    inner_write = bench.tool.uart.write;
+    bench.tool.uart.write = swap;
+    desk_write("unit", "sensor = hps167s\naddress = 7\n");
+    says(1, " now: another unit\n", "restore hps167s --as-new");
+    desk_write("unit", "sensor = hps167s\naddress = 8\n");
+    says(1, "another unit answers at the new place", "restore hps167s:7 --as-new");
 }
 
 /* ---- interrupted ---- */
@@ -170,7 +216,6 @@ static const tool_run_t *restore_there(const char *more)
 
 static uint16_t written[64];
 static unsigned written_count;
-static int (*inner_write)(void *ctx, const uint8_t *bytes, size_t length);
 
 static int spy(void *ctx, const uint8_t *bytes, size_t length)
 {

@@ -19,8 +19,7 @@ static const setting_t *first_read(const session_t *session)
     return setting;
 }
 
-/* sends_unasked: the unit itself may be heard as garbage at another rate than its own. */
-static bool is_silent(session_t *session, const place_t *place, bool sends_unasked, const place_t *home)
+static bool is_silent(session_t *session, const place_t *place)
 {
     enum { TIMES = 2 };
     for (unsigned times = 0; times != TIMES; times++) {
@@ -30,7 +29,6 @@ static bool is_silent(session_t *session, const place_t *place, bool sends_unask
         const fathom_status_t status = session_get(session, first_read(session), text);
         const bool is_garbage = status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
         if (status == FATHOM_ERR_NO_RESPONSE) continue;
-        if (is_garbage && sends_unasked && place->line.baud != home->line.baud) continue;
         (void)fflush(stdout);
         (void)fprintf(stderr, "fathom: nothing was written: at address %u, %s, ", place->address,
                       session_line_text(session, line));
@@ -49,13 +47,11 @@ bool move_is_free(session_t *session, uint8_t address, uint32_t baud)
     station_t *const station = session->station;
     const place_t home = {station->address, station->line};
     place_t places[] = {{address, home.line}, {address, home.line}};
-    const model_t *const model = station->model;
-    const bool sends_unasked = model->has_unasked != NULL && model->has_unasked(&station->reader);
     bool is_free = true;
     places[1].line.baud = baud;
     for (size_t i = 0; i != sizeof places / sizeof places[0] && is_free; i++) {
         const bool is_done = is_at(&places[i], &home) || (i != 0 && is_at(&places[i], &places[0]));
-        if (!is_done) is_free = is_silent(session, &places[i], sends_unasked, &home);
+        if (!is_done) is_free = is_silent(session, &places[i]);
     }
     return session_move(session, home.address, &home.line) && is_free;
 }
