@@ -177,25 +177,28 @@ static void restore(const char *sensor, const wish_t *wishes, size_t count)
 {
     const uint64_t since = second_log_count(&rig.device);
     const uint32_t writes = rig.writes;
-    const uint32_t flash_writes = second_state(&rig.device).flash_writes;
-    const uint8_t was = second_state(&rig.device).address;
+    const second_state_t was = second_state(&rig.device);
     unsigned announced = 0;
     tool("restore", sensor, "--as-new");
-    const uint8_t is = second_state(&rig.device).address;
+    const second_state_t is = second_state(&rig.device);
     for (size_t i = 0; i < count; i++) {
         announced += is_made(&wishes[i]) || is_sent(&wishes[i]);
         check_row(&wishes[i], i, since);
     }
     if (rig.writes - writes != announced) finding("other writes than it says", "restore");
-    if (second_state(&rig.device).flash_writes - flash_writes > announced)
+    if (is.flash_writes - was.flash_writes > announced)
         finding("the flash was written more often", "restore");
-    if (run->status == 0 && !says("it answers there") && !says("nothing differs")) {
-        /* the address was as in the file already */
-        if (is != was) finding("it is elsewhere", "restore");
-    }
-    const bool may_have_moved = says("address is 3") || says("address 3: written") || says("at address 3");
-    if (is != was && !(is == 3 && may_have_moved)) finding("it is nowhere that was said", "restore");
-    if (says("address is 3") && is != 3) finding("it is not where it is said to be", "restore");
+    const bool may_move = says("address is 3") || says("address 3: written");
+    const bool may_change = says("baud is 57600") || says("baud 57600: written");
+    if (is.address != was.address && !(is.address == 3 && may_move))
+        finding("it is nowhere that was said", "address");
+    if (is.line.baud != was.line.baud && !(is.line.baud == 57600 && may_change))
+        finding("it is nowhere that was said", "baud");
+    if (says("address is 3") && is.address != 3) finding("it is not where it is said to be", "address");
+    if (says("baud is 57600 (was") && is.line.baud != 57600)
+        finding("it is not where it is said to be", "baud");
+    if (run->status == 0 && (says("address is 3") || says("baud is 57600")) && !says("it answers there"))
+        finding("moved, and not looked at again", "restore");
     if (run->status == 0 && announced == 0 && !says("nothing differs"))
         finding("success of nothing", "restore");
     if (run->status != 0 && !says("nothing was written") && !says("it has ended at ") &&
@@ -247,7 +250,8 @@ static const wish_t of_a05[] = {{"address", "3", 0x0200, 3}};
 static const wish_t of_hps167s[] = {{"warm-up", "3", 0x0A, 3},
                                     {"measure-after-power-on", "off", 0x12, 0},
                                     {"termination", "off", 0x13, 0},
-                                    {"address", "3", 0x10, 3}};
+                                    {"address", "3", 0x10, 3},
+                                    {"baud", "57600", 0x11, 2}};
 
 TEST(restore_a16_rs232) { LIVE(SECOND_A16_RS232, "a16", of_a16, 50); }
 TEST(restore_a16_rs485) { LIVE(SECOND_A16_RS485, "a16", of_a16, 40); }
