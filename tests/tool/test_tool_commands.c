@@ -251,6 +251,8 @@ TEST(a_command_keeps_nothing_of_the_one_before)
                                           "get a05 --format json --port line address",
                                           "info hps167s:3 --address 3",
                                           "set a16 -- --port line",
+                                          "save a16:7 --port line",
+                                          "restore a05 --port line --file nowhere --as-new",
                                           "scan --port line --address 9 --listen 1 --format json",
                                           "watch a05:2:modbus --timeout 10 --duration 1 --port line",
                                           "--version",

@@ -145,7 +145,6 @@ static int take_sensor(parser_t *parser, const char *value)
 
 static int take_value(const parser_t *parser, const setting_t *setting, backup_row_t *row, const char *value)
 {
-    char values[SETTING_VALUES];
     if (strlen(value) >= sizeof row->text) return wrong(parser, "the value of %s is too long", setting->name);
     if (row->line != 0) return wrong(parser, "%s stands in line %u already", setting->name, row->line);
     row->line = parser->line;
@@ -154,9 +153,11 @@ static int take_value(const parser_t *parser, const setting_t *setting, backup_r
         row->held = held;
         return STATUS_OK;
     }
-    if (setting->set != NULL && !backup_value(setting, value, &row->value))
+    if (setting->set != NULL && !backup_value(setting, value, &row->value)) {
+        char values[SETTING_VALUES];
         return wrong(parser, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
                      value);
+    }
     row->held = HELD_VALUE;
     (void)snprintf(row->text, sizeof row->text, "%s", value);
     return STATUS_OK;

@@ -69,8 +69,10 @@ bool plan_print_identity(const backup_t *one, const char *one_is, const backup_t
             continue;
         }
         const bool same = backup_is_same(setting, a, b);
-        if (is_unit) is_same = same;
-        if (is_unit) is_known = true;
+        if (is_unit) {
+            is_known = true;
+            is_same = same;
+        }
         (void)printf("%s %s\n", same ? "the same" : "another", is_unit ? "unit" : "version");
     }
     if (!is_known)
