@@ -342,6 +342,16 @@ TEST(a_value_that_cannot_be_set_is_no_line_to_restore)
     says(0, "reconnect-time is 990 ms (was 1000)", "restore hps167s");
 }
 
+/* Its code 0 has no rate of its own (table 12), so its rate is that at which it answers; code 3 is 115200 (#9). */
+TEST(the_rate_of_a_unit_that_does_not_tell_it_is_that_at_which_it_answers)
+{
+    char text[DESK_TEXT];
+    bench_hps167s((fathom_sim_hps167s_config_t){.baud_code = 3, .no_baud_code = true});
+    says(0, "", "save hps167s --baud 115200");
+    assert_non_null(strstr(desk_read("unit", text), "\nbaud = 115200 "));
+    says(0, "nothing differs", "restore hps167s --baud 115200 --as-new");
+}
+
 TEST(another_unit_is_told)
 {
     static uint8_t details[22];
