@@ -11,6 +11,7 @@ extern const command_t watch_command;
 extern const command_t info_command;
 extern const command_t get_command;
 extern const command_t set_command;
+extern const command_t commission_command;
 extern const command_t calibrate_command;
 extern const command_t save_command;
 extern const command_t restore_command;

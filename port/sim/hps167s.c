@@ -12,6 +12,8 @@ enum {
     RESET = FATHOM_SIM_HPS167S_RESET
 };
 
+enum { UUID_END = 8 }; /* the register of #3 with the last byte of the UUID, and the year */
+
 static const uint16_t over_range = 65530; /* "65.53 meters" (#5, note) */
 
 /* The example of #3: UUID, 2019-09-23, version 3.9 (the datasheet's own reading of the bytes is wrong). */
@@ -161,6 +163,8 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
         break;
     case DETAILS:
         put_bytes(values, hps->details, 11);
+        values[UUID_END] =
+            pair((uint8_t)(hps->details[2 * UUID_END] + hps->number), hps->details[2 * UUID_END + 1]);
         break;
     case TEMPERATURE:
         values[0] = (uint16_t)hps->temperature_f;
@@ -213,6 +217,7 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
     device->listens = true;
     device->answers_from_new = config->answers_from_new;
     hps->optics = config->optics != NULL ? config->optics : &example_optics;
+    hps->number = config->number;
     hps->details = config->details != NULL ? config->details : example_details;
     hps->version = config->version != NULL ? config->version : default_version;
     hps->reconnect_ms = fathom_sim_or_else(config->reconnect_ms, FATHOM_SIM_HPS167S_RECONNECT_MS);

@@ -89,6 +89,7 @@ typedef struct {
     const fathom_sim_faults_t *faults; /* NULL: none */
     const fathom_sim_optics_t *optics; /* NULL: DC B2 07, 01, 00 00 as in the datasheet's example of #5 */
     const uint8_t *details;            /* 22 bytes of #3; NULL: those of the datasheet's example */
+    uint8_t number;                    /* added to the last byte of the UUID, so that units differ */
     const uint8_t *version;            /* 6 bytes of #1; NULL: 2020-09-27, 2.1.0 (no example is printed) */
     uint32_t period_us;                /* of its measuring; default 18519 us, 54 Hz; 166667 is 6 Hz */
     uint32_t reply_us;                 /* longest from the end of a request to the response; 2.5 ms */
@@ -112,6 +113,7 @@ typedef struct {
     fathom_sim_hps167s_sensor_t sensor; /* what acts */
     fathom_sim_hps167s_sensor_t user;   /* what #13 = 00 brings back */
     int16_t temperature_f;              /* the caller may change it */
+    uint8_t number;
     uint8_t warm_up_s;
     uint8_t warm_up_says;
     uint8_t wrong_length;

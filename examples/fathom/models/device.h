@@ -31,6 +31,7 @@ typedef struct {
     uint8_t address;
     uint32_t baud; /* 0: the factory's; only a sensor that can be set to another rate looks at it */
     uint32_t seed;
+    uint8_t number; /* tells units of one model apart, where they have a number of their own */
     uint32_t traits[DEVICE_TRAITS];
     fathom_sim_scene_t scene;
 } device_settings_t;

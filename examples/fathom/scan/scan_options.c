@@ -157,17 +157,10 @@ static bool take_addresses(scan_plan_t *plan, const char *text)
     uint32_t last = LAST_ADDRESS;
     if (text != NULL && strcmp(text, "0") == 0) {
         first = last = 0; /* by itself only: most units take it for a broadcast */
-    } else if (text != NULL) {
-        char first_text[ITEM_TEXT];
-        const size_t length = strcspn(text, "-");
-        const char *const last_text = text[length] == '-' ? text + length + 1 : text;
-        (void)snprintf(first_text, sizeof first_text, "%.*s", (int)length, text);
-        if (!number_parse(first_text, 1, MAX_ADDRESS, &first) ||
-            !number_parse(last_text, first, MAX_ADDRESS, &last)) {
-            (void)usage_error(command, "--address takes one from 1 to %d, or a range such as 1-32, not '%s'",
-                              MAX_ADDRESS, text);
-            return false;
-        }
+    } else if (text != NULL && !range_parse(text, 1, MAX_ADDRESS, &first, &last)) {
+        (void)usage_error(command, "--address takes one from 1 to %d, or a range such as 1-32, not '%s'",
+                          MAX_ADDRESS, text);
+        return false;
     }
     plan->first = (uint8_t)first;
     plan->last = (uint8_t)last;

@@ -52,6 +52,15 @@ bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
     return true;
 }
 
+bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last)
+{
+    char first_text[16];
+    const size_t length = strcspn(text, "-");
+    const char *const last_text = text[length] == '-' ? text + length + 1 : text;
+    (void)snprintf(first_text, sizeof first_text, "%.*s", (int)length, text);
+    return number_parse(first_text, min, max, first) && number_parse(last_text, *first, max, last);
+}
+
 bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
                    uint32_t *number)
 {

@@ -24,6 +24,9 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
 /* All of `text` is a decimal number from min to max. No sign, no space, nothing after it. */
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);
 
+/* A number, or two as in "2-9", the first not above the last. */
+bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last);
+
 /* A number option; text NULL: it was not given, *number stays. False after saying what is wrong. */
 bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
                    uint32_t *number);

@@ -12,12 +12,15 @@
 #include "sim/sim_options.h"
 #include "sim/sim_report.h"
 
-enum { POWER_OFF_US = 1000000 };
+enum { POWER_OFF_US = 1000000, CONNECT_US = 1000000 };
 
 typedef struct {
     sim_options_t options;
     fathom_sim_line_t line;
     fathom_sim_pty_t pty;
+    uint32_t connected; /* devices, the first ones */
+    uint32_t left_us;   /* when the last of them left the address that it came with, ... */
+    bool has_left;      /* ... if it has */
     device_t devices[SIM_DEVICES];
     fathom_sim_fault_t faults[SIM_DEVICES];
 } simulation_t;
@@ -25,7 +28,11 @@ typedef struct {
 static void hang_device(simulation_t *simulation, uint32_t i, uint32_t now_us)
 {
     const sim_device_t *const asked = &simulation->options.devices[i];
+    uint8_t number = 0;
+    for (uint32_t j = 0; j != i; j++)
+        if (simulation->options.devices[j].model == asked->model) number++;
     device_settings_t settings = {.address = asked->address,
+                                  .number = number,
                                   .baud = asked->line.baud,
                                   .seed = asked->seed,
                                   .scene = asked->scene.scene};
@@ -35,6 +42,7 @@ static void hang_device(simulation_t *simulation, uint32_t i, uint32_t now_us)
     sim_faults_begin(&asked->faults, &simulation->faults[i], asked->seed);
     fathom_sim_fault_attach(&simulation->faults[i], &simulation->line, device->base);
     fathom_sim_attach(&simulation->line, device->base, now_us);
+    simulation->connected++;
 }
 
 static bool open_line(simulation_t *simulation)
@@ -46,7 +54,8 @@ static bool open_line(simulation_t *simulation)
     /* What has no address has a wire each way; the others share an RS485 pair. */
     simulation->line.full_duplex = options->count == 1 && !options->devices[0].mode->has_address;
     simulation->line.echo = options->echo;
-    for (uint32_t i = 0; i != options->count; i++) hang_device(simulation, i, now_us);
+    const uint32_t first = options->one_by_one ? 1 : options->count;
+    for (uint32_t i = 0; i != first; i++) hang_device(simulation, i, now_us);
     if (fathom_sim_pty_open(&simulation->pty, &simulation->line, &config) == 0) return true;
     if (options->link != NULL && errno == EEXIST)
         (void)fprintf(stderr,
@@ -77,9 +86,28 @@ static bool announce(const simulation_t *simulation)
 static void cycle_power(simulation_t *simulation)
 {
     const uint32_t now_us = fathom_sim_pty_now_us();
-    for (uint32_t i = 0; i != simulation->options.count; i++)
+    for (uint32_t i = 0; i != simulation->connected; i++)
         fathom_sim_power_cycle(&simulation->line, simulation->devices[i].base, POWER_OFF_US, now_us);
     (void)fprintf(stderr, "fathom: power off for a second\n");
+}
+
+/* Connects the next one a second after the last one has left its address, as a person would. Returns how long it
+ * may be until then at most. */
+static uint32_t connect_next(simulation_t *simulation, uint32_t due_us)
+{
+    const uint32_t next = simulation->connected;
+    if (next == simulation->options.count) return due_us;
+    const uint32_t now_us = fathom_sim_pty_now_us();
+    if (simulation->devices[next - 1].base->address == simulation->options.devices[next - 1].address)
+        return due_us;
+    if (!simulation->has_left) simulation->left_us = now_us;
+    simulation->has_left = true;
+    const uint32_t passed_us = fathom_elapsed_us(now_us, simulation->left_us);
+    if (passed_us < CONNECT_US) return due_us < CONNECT_US - passed_us ? due_us : CONNECT_US - passed_us;
+    simulation->has_left = false;
+    hang_device(simulation, next, now_us);
+    (void)fprintf(stderr, "fathom: device %u is connected\n", (unsigned)next + 1);
+    return 0;
 }
 
 static int serve(simulation_t *simulation)
@@ -91,6 +119,7 @@ static int serve(simulation_t *simulation)
             (void)fprintf(stderr, "fathom: the simulated port has failed: %s\n", strerror(errno));
             return STATUS_FAILED;
         }
+        due_us = connect_next(simulation, due_us);
         events_wait(fathom_sim_pty_fd(&simulation->pty), POLLIN, due_us, false);
     }
     return STATUS_OK;
@@ -98,7 +127,7 @@ static int serve(simulation_t *simulation)
 
 static void print_counters(const simulation_t *simulation)
 {
-    for (uint32_t i = 0; i != simulation->options.count; i++)
+    for (uint32_t i = 0; i != simulation->connected; i++)
         sim_print_counters(stderr, &simulation->options, i, simulation->devices[i].base, &simulation->line);
 }
 

@@ -12,14 +12,19 @@
 
 static const char command[] = "sim";
 
-enum { LINK, DISTANCE, SEED, FAULT, BAUD, WITH, ECHO_ON, COUNTERS, HELP, OPTIONS };
+enum { LINK, DISTANCE, SEED, FAULT, BAUD, WITH, ECHO_ON, COUNTERS, ONE_BY_ONE, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    [LINK] = {"link", required_argument, NULL, 256}, [DISTANCE] = {"distance", required_argument, NULL, 256},
-    [SEED] = {"seed", required_argument, NULL, 256}, [FAULT] = {"fault", required_argument, NULL, 256},
-    [BAUD] = {"baud", required_argument, NULL, 256}, [WITH] = {"with", required_argument, NULL, 256},
+    [LINK] = {"link", required_argument, NULL, 256},
+    [DISTANCE] = {"distance", required_argument, NULL, 256},
+    [SEED] = {"seed", required_argument, NULL, 256},
+    [FAULT] = {"fault", required_argument, NULL, 256},
+    [BAUD] = {"baud", required_argument, NULL, 256},
+    [WITH] = {"with", required_argument, NULL, 256},
 
-    [ECHO_ON] = {"echo", no_argument, NULL, 256},    [COUNTERS] = {"counters", no_argument, NULL, 256},
+    [ECHO_ON] = {"echo", no_argument, NULL, 256},
+    [COUNTERS] = {"counters", no_argument, NULL, 256},
+    [ONE_BY_ONE] = {"one-by-one", no_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -198,6 +203,7 @@ bool sim_options(sim_options_t *options, int argc, char **argv)
     options->link = values[LINK];
     options->echo = values[ECHO_ON] != NULL;
     options->counters = values[COUNTERS] != NULL;
+    options->one_by_one = values[ONE_BY_ONE] != NULL;
     if (!take_devices(options, argc - rest, argv + rest) || !check_givens(&givens, options->count) ||
         !option_number(command, "seed", values[SEED], 0, UINT32_MAX, &seed))
         return false;

@@ -24,6 +24,7 @@ typedef struct {
     const char *link; /* NULL: none */
     bool echo;
     bool counters;
+    bool one_by_one; /* each is connected when those before it have left the address that they came with */
     bool wants_help;
     uint32_t count; /* of devices */
     sim_device_t devices[SIM_DEVICES];

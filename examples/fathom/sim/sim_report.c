@@ -26,6 +26,13 @@ static void print_reader(FILE *to, const sim_device_t *device, const char *port)
 /* Those that cannot work together are meant to be, most often; but who did not mean it should know. */
 static void print_clashes(FILE *to, const sim_options_t *options)
 {
+    if (options->one_by_one) {
+        (void)fputs(
+            "fathom: one by one: each further device is connected a second after the one before has left "
+            "its address\n",
+            to);
+        return;
+    }
     for (uint32_t i = 0; i != options->count; i++) {
         const sim_device_t *const one = &options->devices[i];
         if (!one->mode->is_asked)

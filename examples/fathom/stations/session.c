@@ -74,13 +74,11 @@ bool session_can_set(const session_t *session, const char *command)
 
 const setting_t *session_settings(const session_t *session) { return session->station->model->settings; }
 
-/* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
-static void listen(session_t *session)
+void session_listen(session_t *session, uint32_t for_us)
 {
-    enum { LISTEN_US = 66000 };
     channel_t *const channel = &session->channel;
     const host_t *const host = channel->host;
-    const uint64_t end_us = host->now_us(host->ctx) + LISTEN_US;
+    const uint64_t end_us = host->now_us(host->ctx) + for_us;
     for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
         if (fathom_line_poll(&channel->line) < 0) return;
         host->wait(host->ctx, &channel->port, (uint32_t)(end_us - now_us), false);
@@ -111,6 +109,7 @@ static bool begin(session_t *session)
 
 bool session_open(session_t *session, const host_t *host)
 {
+    enum { LISTEN_US = 66000 };
     const sensor_options_t *const options = &session->options;
     session->channel.echo = options->echo;
     if (!host->begin(host->ctx)) return false;
@@ -123,7 +122,8 @@ bool session_open(session_t *session, const host_t *host)
         channel_close(&session->channel);
         return false;
     }
-    if (session->channel.tcp == NULL) listen(session);
+    /* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
+    if (session->channel.tcp == NULL) session_listen(session, LISTEN_US);
     return true;
 }
 

@@ -50,6 +50,9 @@ void session_close(session_t *session);
  * one that has been moved. What was under way is given up. False after saying why. */
 bool session_move(session_t *session, uint8_t address, const fathom_line_settings_t *line);
 
+/* Asks nothing for so long; what is heard is added to what the last call has heard. A signal ends it. */
+void session_listen(session_t *session, uint32_t for_us);
+
 /* Calls until it is not FATHOM_PENDING, waiting as long as it may. A signal ends it: FATHOM_ERR_CANCELLED. */
 typedef fathom_status_t (*session_call_t)(reader_t *reader, void *ctx);
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx);

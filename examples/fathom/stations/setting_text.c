@@ -29,14 +29,21 @@ const char *setting_values_text(const setting_t *setting, char text[SETTING_VALU
     return text;
 }
 
+const setting_t *setting_of(const setting_t *settings, const char *name)
+{
+    for (const setting_t *setting = settings; setting->name != NULL; setting++)
+        if (strcmp(setting->name, name) == 0) return setting;
+    return NULL;
+}
+
 const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
                               const char *name)
 {
     char known[SETTING_VALUES] = "";
-    for (const setting_t *setting = settings; setting->name != NULL; setting++) {
-        if (strcmp(setting->name, name) == 0) return setting;
+    const setting_t *const found = setting_of(settings, name);
+    if (found != NULL) return found;
+    for (const setting_t *setting = settings; setting->name != NULL; setting++)
         list_add(known, SETTING_VALUES, setting->name);
-    }
     (void)usage_error(command, "%s has no setting '%s', only %s", model, name, known);
     return NULL;
 }

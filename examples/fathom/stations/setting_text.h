@@ -6,7 +6,10 @@
 
 /* The settings as words: on the command line, in lists, in responses. */
 
-/* By name; NULL after a usage error that lists what there is. */
+/* By name; NULL: there is none. */
+const setting_t *setting_of(const setting_t *settings, const char *name);
+
+/* The same; NULL after a usage error that lists what there is. */
 const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
                               const char *name);
 

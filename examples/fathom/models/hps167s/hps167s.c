@@ -59,6 +59,7 @@ static void simulate(device_t *device, const device_settings_t *settings, uint32
         .no_baud_code = traits[DEVICE_NO_BAUD_CODE] != 0,
         .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
         .unasked_us = traits[DEVICE_UNASKED] != 0 ? traits[DEVICE_UNASKED] : unasked_us,
+        .number = settings->number,
         .seed = settings->seed,
         .scene = settings->scene};
     fathom_sim_hps167s_init(&device->simulator.hps167s, &config);

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "commission/commission.h"
+#include "shared/command.h"
+#include "stations/change.h"
+#include "stations/setting_text.h"
+
+/* What is written to one unit, and in which order. */
+
+/* How often a unit may answer and then not let itself be set, before it is given up. */
+enum { UNWRITTEN = 3 };
+
+static bool has_output(void)
+{
+    if (output_flush() == 0) return true;
+    (void)fputs("fathom: the output cannot be written; it has ended\n", stderr);
+    return false;
+}
+
+/* "#8" of "Modbus address (#8)": the command or register, as its table names it. */
+static void print_where(FILE *to, const setting_t *setting)
+{
+    const char *const open = strchr(setting->what, '(');
+    if (open != NULL) (void)fprintf(to, " %.*s", (int)strcspn(open, ")") + 1, open);
+}
+
+static bool announce(const commission_t *run, const change_t *change)
+{
+    FILE *const to = commission_text(run);
+    (void)fprintf(to, "  writes %s %s", change->setting->name, change->wanted);
+    print_where(to, change->setting);
+    (void)fputc('\n', to);
+    return has_output();
+}
+
+/* Is this so already? Where it cannot be read: no. */
+static fathom_status_t look(commission_t *run, change_t *change, bool *is_so)
+{
+    fathom_status_t status = FATHOM_READY;
+    change->was[0] = '\0';
+    if (change->setting->get != NULL) status = session_get(&run->session, change->setting, change->was);
+    *is_so = status == FATHOM_READY && strcmp(change->was, change->wanted) == 0;
+    return status;
+}
+
+static commission_end_t not_set(commission_t *run, const change_t *change, change_outcome_t outcome,
+                                fathom_status_t status)
+{
+    change_explain(change, outcome, status);
+    if (outcome == CHANGE_NOT_WRITTEN && status != FATHOM_ERR_CANCELLED && status != FATHOM_ERR_PORT &&
+        ++run->unwritten < UNWRITTEN)
+        return COMMISSION_LATER;
+    if (outcome == CHANGE_DIFFERS && !change->setting->moves)
+        (void)fputs(
+            "fathom: perhaps it tells that from its next power-on only: switch it off and on, and run "
+            "the command again\n",
+            stderr);
+    return COMMISSION_STOPPED;
+}
+
+/* Sets what is not so already. */
+static commission_end_t set(commission_t *run, const char *name, int32_t value)
+{
+    change_t change = {
+        .session = &run->session, .setting = setting_of(run->model->settings, name), .value = value};
+    bool is_so = false;
+    setting_print_value(change.setting, value, change.wanted);
+    fathom_status_t status = look(run, &change, &is_so);
+    if (is_so) return COMMISSION_DONE;
+    if (status != FATHOM_READY) return not_set(run, &change, CHANGE_NOT_WRITTEN, status);
+    if (!announce(run, &change)) return COMMISSION_STOPPED;
+    status = session_set(&run->session, change.setting, value);
+    const change_outcome_t outcome = change_outcome(&change, status);
+    if (outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE) return COMMISSION_DONE;
+    return not_set(run, &change, outcome, status);
+}
+
+/* ---- before ---- */
+
+/* Nothing may answer where it is to be, and it has not been taken for another one meanwhile. */
+static commission_end_t look_around(commission_t *run, const record_unit_t *plan, uint8_t at)
+{
+    if (at == plan->address) return COMMISSION_DONE;
+    const presence_t target = presence_ask(&run->session, plan->address, 2);
+    if (target.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
+    if (target.what != PRESENT_NONE) {
+        commission_tell(
+            run,
+            "something answers at address %u, which the unit at address %u is to get: nothing was written; "
+            "disconnect one of the two",
+            plan->address, at);
+        return COMMISSION_LATER;
+    }
+    const presence_t here = presence_ask(&run->session, at, 2);
+    if (here.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
+    return here.what == PRESENT_ONE && strcmp(here.number, plan->number) == 0 ? COMMISSION_DONE
+                                                                              : COMMISSION_LATER;
+}
+
+/* ---- afterwards ---- */
+
+static uint64_t utc_us(const commission_t *run)
+{
+    const host_t *const host = run->session.channel.host;
+    return host->utc_us(host->ctx);
+}
+
+static commission_end_t finish(commission_t *run, record_unit_t *unit)
+{
+    commission_proof_t proof = {.termination = ""};
+    if (!commission_verify(run, unit, &proof)) return COMMISSION_STOPPED;
+    record_unit_t done = *unit;
+    done.is_done = true;
+    if (record_put(&run->record, &done, utc_us(run)) == NULL) return COMMISSION_STOPPED;
+    run->unwritten = 0;
+    run->told[0] = '\0';
+    commission_report(run, unit, &proof);
+    return has_output() ? COMMISSION_DONE : COMMISSION_STOPPED;
+}
+
+static void print_begin(const commission_t *run, const record_unit_t *plan, uint8_t at)
+{
+    FILE *const to = commission_text(run);
+    (void)fprintf(to, "%s at address %u", plan->model->name, at);
+    if (record_has_numbers(plan->model)) (void)fprintf(to, ", UUID %s", plan->number);
+    if (at == plan->address)
+        (void)fputs(": is looked through\n", to);
+    else
+        (void)fprintf(to, ": becomes address %u\n", plan->address);
+}
+
+commission_end_t commission_unit(commission_t *run, const record_unit_t *plan, uint8_t at)
+{
+    const setting_t *const termination = setting_of(run->model->settings, "termination");
+    record_unit_t planned = *plan;
+    planned.is_done = false;
+    commission_end_t end = look_around(run, &planned, at);
+    if (end != COMMISSION_DONE) return end;
+    print_begin(run, &planned, at);
+    record_unit_t *const unit = record_put(&run->record, &planned, utc_us(run));
+    if (unit == NULL || !has_output()) return COMMISSION_STOPPED;
+    if (termination != NULL) end = set(run, termination->name, unit->address == run->options.terminated);
+    if (end == COMMISSION_DONE && at != unit->address) end = set(run, "address", unit->address);
+    return end == COMMISSION_DONE ? finish(run, unit) : end;
+}

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+#include "commission/presence.h"
+
+#include <string.h>
+
+#include "stations/setting_text.h"
+
+enum {
+    READS = 3,
+    /* Fewer bytes than this are no response: the line's own, where it is held by nothing. The shortest frame has 5. */
+    LEAST_BYTES = 3,
+    /* In which the response of a second unit comes. A module at work on a measurement may need so long (A16 3: 110
+     * ms, A05 2(3): 210 ms). */
+    SECOND_RESPONSE_US = 250000
+};
+
+static evidence_t evidence_of(const session_t *session)
+{
+    evidence_t evidence;
+    listener_judge(&session->channel.listener, session->station->address, &evidence);
+    return evidence;
+}
+
+static bool is_silent(const session_t *session)
+{
+    const evidence_t evidence = evidence_of(session);
+    return evidence.own == 0 && evidence.rest < LEAST_BYTES && evidence.streamed_a16 == 0 &&
+           evidence.streamed_a05 == 0;
+}
+
+/* What is asked for: the number, or where the model has none its address, which is what it was asked at. */
+static fathom_status_t ask_number(session_t *session, char number[SETTING_TEXT])
+{
+    const setting_t *const settings = session_settings(session);
+    const setting_t *const uuid = setting_of(settings, "uuid");
+    const fathom_status_t status =
+        session_get(session, uuid != NULL ? uuid : setting_of(settings, "address"), number);
+    if (status != FATHOM_READY || uuid != NULL) return status;
+    char address[SETTING_TEXT];
+    (void)snprintf(address, sizeof address, "%u", session->station->address);
+    if (strcmp(number, address) != 0) return FATHOM_ERR_MALFORMED;
+    (void)snprintf(number, SETTING_TEXT, "-");
+    return status;
+}
+
+static bool has_stopped(const session_t *session, fathom_status_t status)
+{
+    const host_t *const host = session->channel.host;
+    return status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT || host->has_ended(host->ctx);
+}
+
+/* The first read, which may find nothing. */
+static present_t find(session_t *session, unsigned silences, presence_t *presence)
+{
+    for (unsigned i = 0; i != silences; i++) {
+        presence->status = ask_number(session, presence->number);
+        if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
+        if (presence->status == FATHOM_READY) return PRESENT_ONE;
+        if (presence->status != FATHOM_ERR_NO_RESPONSE || !is_silent(session)) return PRESENT_UNCLEAR;
+    }
+    return PRESENT_NONE;
+}
+
+static present_t ask(session_t *session, unsigned silences, presence_t *presence)
+{
+    const present_t found = find(session, silences, presence);
+    if (found != PRESENT_ONE) return found;
+    for (unsigned i = 0; i != READS; i++) {
+        char number[SETTING_TEXT];
+        if (i != 0) presence->status = ask_number(session, number);
+        if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
+        if (presence->status != FATHOM_READY) return PRESENT_UNCLEAR;
+        session_listen(session, SECOND_RESPONSE_US);
+        presence->is_two =
+            evidence_of(session).fitting > 1 || (i != 0 && strcmp(number, presence->number) != 0);
+        if (presence->is_two) return PRESENT_UNCLEAR;
+    }
+    return has_stopped(session, FATHOM_READY) ? PRESENT_STOPPED : PRESENT_ONE;
+}
+
+presence_t presence_ask(session_t *session, uint8_t address, unsigned silences)
+{
+    presence_t presence = {.what = PRESENT_STOPPED, .status = FATHOM_ERR_ARGUMENT};
+    const fathom_line_settings_t line = session->station->line;
+    if (session_move(session, address, &line)) presence.what = ask(session, silences, &presence);
+    return presence;
+}
+
+void presence_explain(session_t *session, const presence_t *presence)
+{
+    if (presence->is_two)
+        (void)fprintf(stderr, "two units answer at address %u", session->station->address);
+    else
+        session_explain(session, presence->status);
+}
