@@ -46,16 +46,14 @@ static const record_unit_t *open_from(const commission_t *run, uint32_t from)
     return NULL;
 }
 
-/* The address that the next unit at address 1 gets; 0: there is none left. Where units have no numbers, the one whose
- * work was interrupted cannot be told from a new one, and is on the line or has not been moved: it comes first. */
+/* The address that the next unit gets that is in no record; 0: there is none left. */
 static uint8_t next_address(commission_t *run)
 {
-    const record_unit_t *const open = open_from(run, 0);
-    if (open != NULL && !has_numbers(run) && !run->options.is_taken_away) return open->address;
     for (uint32_t i = 0; i != run->options.count; i++) {
         const uint8_t address = run->options.addresses[i];
         /* A unit that keeps address 1 is in the way of all others. */
-        if (record_at(&run->record, address) == NULL && (address != FACTORY_ADDRESS || open == NULL))
+        if (record_at(&run->record, address) == NULL &&
+            (address != FACTORY_ADDRESS || open_from(run, 0) == NULL))
             return address;
     }
     return 0;
@@ -78,33 +76,29 @@ static bool is_same(const record_unit_t *unit, const presence_t *presence)
     return presence->what == PRESENT_ONE && strcmp(unit->number, presence->number) == 0;
 }
 
-/* A unit that is planned: it is at its address, or still at address 1. */
-static commission_end_t settle(commission_t *run, const record_unit_t *unit)
+/* A unit that is planned: it is at its address, or still at address 1. may_be_new: what answers at address 1 without a
+ * number may also be another one, which would get its address a second time. */
+static commission_end_t settle(commission_t *run, const record_unit_t *unit, bool may_be_new)
 {
-    const presence_t there = presence_ask(&run->session, unit->address, 2);
-    if (there.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
-    if (is_same(unit, &there)) return commission_unit(run, unit, unit->address);
-    if (there.what != PRESENT_NONE) {
-        commission_tell(run, "address %u is planned for the unit %s, and another one answers there, or two",
-                        unit->address, unit->number);
-        return COMMISSION_LATER;
+    presence_t presence = presence_ask(&run->session, unit->address, 2);
+    if (presence.what == PRESENT_UNCLEAR) presence = presence_ask(&run->session, unit->address, 2);
+    if (is_same(unit, &presence)) return commission_unit(run, unit, unit->address);
+    if (presence.what == PRESENT_NONE && (has_numbers(run) || !may_be_new)) {
+        presence = presence_ask(&run->session, FACTORY_ADDRESS, 2);
+        if (is_same(unit, &presence)) return commission_unit(run, unit, FACTORY_ADDRESS);
     }
-    if (has_numbers(run) || !run->options.is_taken_away) {
-        const presence_t here = presence_ask(&run->session, FACTORY_ADDRESS, 2);
-        if (here.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
-        if (is_same(unit, &here)) return commission_unit(run, unit, FACTORY_ADDRESS);
-    }
+    if (presence.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
     (void)fprintf(commission_text(run), "address %u stays reserved: its unit%s%s was not found\n",
                   unit->address, has_numbers(run) ? " " : "", has_numbers(run) ? unit->number : "");
     return COMMISSION_LATER;
 }
 
-static bool settle_all(commission_t *run)
+static bool settle_all(commission_t *run, bool may_be_new)
 {
     for (uint32_t i = 0; i != run->record.count; i++) {
         const record_unit_t unit = run->record.units[i];
         if (unit.model != run->model || unit.is_done) continue;
-        if (settle(run, &unit) == COMMISSION_STOPPED) return false;
+        if (settle(run, &unit, may_be_new) == COMMISSION_STOPPED) return false;
     }
     return true;
 }
@@ -195,6 +189,16 @@ static bool work(commission_t *run)
     return true;
 }
 
+/* What was open is looked for first, and once more when all others are done. */
+static void work_all(commission_t *run)
+{
+    enum { LATE_US = 1000000 };
+    /* What a run that has just been ended asked for last may still come, and could pass for what is asked now. */
+    session_listen(&run->session, LATE_US);
+    if (!are_there(run) || !settle_all(run, run->options.is_taken_away) || !work(run)) return;
+    if (open_from(run, 0) != NULL && settle_all(run, true)) (void)work(run);
+}
+
 /* ---- the end ---- */
 
 static int finish(commission_t *run)
@@ -246,7 +250,7 @@ static int run_commission(const host_t *host, int argc, char **argv)
     if (!suits(&run)) return STATUS_USAGE;
     /* That it can be written is known before anything is sent. */
     if (!record_write(&run.record) || !session_open(&run.session, host)) return STATUS_FAILED;
-    if (are_there(&run) && settle_all(&run)) (void)work(&run);
+    work_all(&run);
     const int status = finish(&run);
     session_close(&run.session);
     return status;

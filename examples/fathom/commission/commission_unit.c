@@ -142,5 +142,9 @@ commission_end_t commission_unit(commission_t *run, const record_unit_t *plan, u
     if (unit == NULL || !has_output()) return COMMISSION_STOPPED;
     if (termination != NULL) end = set(run, termination->name, unit->address == run->options.terminated);
     if (end == COMMISSION_DONE && at != unit->address) end = set(run, "address", unit->address);
-    return end == COMMISSION_DONE ? finish(run, unit) : end;
+    if (end == COMMISSION_DONE) return finish(run, unit);
+    /* Nothing was written: it is as good as a new one, and could not be told from one. */
+    if (end == COMMISSION_LATER && !record_has_numbers(unit->model) && !record_drop(&run->record, unit))
+        return COMMISSION_STOPPED;
+    return end;
 }

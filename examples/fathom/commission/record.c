@@ -179,3 +179,11 @@ record_unit_t *record_put(record_t *record, const record_unit_t *unit, uint64_t 
     if (was.model == NULL) record->count--;
     return NULL;
 }
+
+bool record_drop(record_t *record, const record_unit_t *unit)
+{
+    const uint32_t at = (uint32_t)(unit - record->units);
+    memmove(&record->units[at], &record->units[at + 1], (record->count - at - 1) * sizeof *unit);
+    record->count--;
+    return record_write(record);
+}

@@ -37,6 +37,9 @@ record_unit_t *record_of(record_t *record, const model_t *model, const char *num
 /* Puts a unit in, in place of the one with its address, and writes the file. utc_us: now. NULL after saying why. */
 record_unit_t *record_put(record_t *record, const record_unit_t *unit, uint64_t utc_us);
 
+/* Takes a unit out and writes the file. False after saying why. */
+bool record_drop(record_t *record, const record_unit_t *unit);
+
 /* Does the model have numbers? */
 bool record_has_numbers(const model_t *model);
 
