@@ -81,7 +81,7 @@ TEST(with_a_damaged_record_nothing_is_sent)
         {TITLE "hps167s 2 - done now\n", ", line 2: no UUID"},
         {TITLE "hps167s 2 " FIRST "0 done now\n", ", line 2: no UUID"},
         {TITLE "a16 2 " FIRST " done now\n", ", line 2: no UUID"},
-        {TITLE "hps167s 2 " FIRST " Done now\n", ", line 2: neither planned nor done"},
+        {TITLE "hps167s 2 " FIRST " Done now\n", ", line 2: neither planned, restart nor done"},
         {TITLE "#\na16 2 - done now\na05 2 - done now\n", ", line 4: this address stands there twice"},
         {TITLE "hps167s 2 " FIRST " done now\nhps167s 3 " FIRST " done now\n",
          ", line 3: this UUID stands there twice"},

@@ -41,7 +41,7 @@ static const record_unit_t *open_from(const commission_t *run, uint32_t from)
 {
     for (uint32_t i = from; i < run->record.count; i++) {
         const record_unit_t *const unit = &run->record.units[i];
-        if (unit->model == run->model && !unit->is_done) return unit;
+        if (unit->model == run->model && unit->state != RECORD_DONE) return unit;
     }
     return NULL;
 }
@@ -64,7 +64,7 @@ static uint32_t count_done(commission_t *run)
     uint32_t count = 0;
     for (uint32_t i = 0; i != run->options.count; i++) {
         const record_unit_t *const unit = record_at(&run->record, run->options.addresses[i]);
-        if (unit != NULL && unit->is_done) count++;
+        if (unit != NULL && unit->state == RECORD_DONE) count++;
     }
     return count;
 }
@@ -82,7 +82,9 @@ static commission_end_t settle(commission_t *run, const record_unit_t *unit, boo
 {
     presence_t presence = presence_ask(&run->session, unit->address, 2);
     if (presence.what == PRESENT_UNCLEAR) presence = presence_ask(&run->session, unit->address, 2);
-    if (is_same(unit, &presence)) return commission_unit(run, unit, unit->address);
+    if (is_same(unit, &presence))
+        return commission_is_restarted(run, unit) ? commission_unit(run, unit, unit->address)
+                                                  : COMMISSION_LATER;
     if (presence.what == PRESENT_NONE && (has_numbers(run) || !may_be_new)) {
         presence = presence_ask(&run->session, FACTORY_ADDRESS, 2);
         if (is_same(unit, &presence)) return commission_unit(run, unit, FACTORY_ADDRESS);
@@ -97,7 +99,7 @@ static bool settle_all(commission_t *run, bool may_be_new)
 {
     for (uint32_t i = 0; i != run->record.count; i++) {
         const record_unit_t unit = run->record.units[i];
-        if (unit.model != run->model || unit.is_done) continue;
+        if (unit.model != run->model || unit.state == RECORD_DONE) continue;
         if (settle(run, &unit, may_be_new) == COMMISSION_STOPPED) return false;
     }
     return true;
@@ -109,7 +111,7 @@ static bool are_there(commission_t *run)
     if (has_numbers(run) || run->options.is_taken_away) return true;
     for (uint32_t i = 0; i != run->record.count; i++) {
         const record_unit_t *const unit = &run->record.units[i];
-        if (unit->model != run->model || !unit->is_done) continue;
+        if (unit->model != run->model || unit->state != RECORD_DONE) continue;
         const presence_t presence = presence_ask(&run->session, unit->address, 2);
         if (presence.what == PRESENT_STOPPED) return false;
         if (presence.what != PRESENT_NONE) continue;
@@ -131,7 +133,7 @@ static commission_end_t take(commission_t *run, const presence_t *presence, uint
     const record_unit_t *const known = record_of(&run->record, run->model, presence->number);
     (void)snprintf(plan.number, sizeof plan.number, "%s", presence->number);
     if (known == NULL) return commission_unit(run, &plan, FACTORY_ADDRESS);
-    if (known->is_done)
+    if (known->state == RECORD_DONE)
         commission_tell(run, "the unit at address 1 was address %u before, and gets that again",
                         known->address);
     return commission_unit(run, known, FACTORY_ADDRESS);
@@ -142,16 +144,22 @@ static commission_end_t look_for_open(commission_t *run, uint32_t *turn)
 {
     const record_unit_t *open = open_from(run, *turn);
     if (open == NULL) open = open_from(run, 0);
-    if (open == NULL || open->address == FACTORY_ADDRESS) return COMMISSION_LATER;
+    if (open == NULL) return COMMISSION_LATER;
     *turn = (uint32_t)(open - run->record.units) + 1;
     const presence_t presence = presence_ask(&run->session, open->address, 1);
     if (presence.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
-    return is_same(open, &presence) ? commission_unit(run, open, open->address) : COMMISSION_LATER;
+    return is_same(open, &presence) && commission_is_restarted(run, open)
+               ? commission_unit(run, open, open->address)
+               : COMMISSION_LATER;
 }
 
 /* Looks once. */
 static commission_end_t look(commission_t *run, uint8_t address, uint32_t *turn)
 {
+    if (address == 0) {
+        commission_tell(run, "switch the units off and on whose termination reads otherwise until then");
+        return look_for_open(run, turn);
+    }
     const presence_t presence = presence_ask(&run->session, FACTORY_ADDRESS, 1);
     switch (presence.what) {
     case PRESENT_STOPPED:
@@ -168,13 +176,21 @@ static commission_end_t look(commission_t *run, uint8_t address, uint32_t *turn)
     }
 }
 
+static bool waits_for_restart(const commission_t *run)
+{
+    const record_unit_t *unit = open_from(run, 0);
+    while (unit != NULL && unit->state != RECORD_RESTART)
+        unit = open_from(run, (uint32_t)(unit - run->record.units) + 1);
+    return unit != NULL;
+}
+
 static bool work(commission_t *run)
 {
     enum { PAUSE_US = 200000 };
     const host_t *const host = run->session.channel.host;
     uint64_t since_us = host->now_us(host->ctx);
     uint32_t turn = 0;
-    for (uint8_t address; (address = next_address(run)) != 0;) {
+    for (uint8_t address; (address = next_address(run)) != 0 || waits_for_restart(run);) {
         const commission_end_t end = look(run, address, &turn);
         if (end == COMMISSION_STOPPED || commission_has_ended(run)) return false;
         const uint64_t now_us = host->now_us(host->ctx);
@@ -206,7 +222,7 @@ static int finish(commission_t *run)
     bool is_all = true;
     for (uint32_t i = 0; i != run->record.count; i++) {
         const record_unit_t *const unit = &run->record.units[i];
-        if (unit->model != run->model || unit->is_done) continue;
+        if (unit->model != run->model || unit->state == RECORD_DONE) continue;
         commission_report(run, unit, NULL);
         is_all = false;
     }

@@ -19,8 +19,9 @@ typedef struct {
 /* What became of a unit. */
 typedef enum {
     COMMISSION_DONE,
-    COMMISSION_LATER,  /* nothing was written, and the user has been told what to do */
-    COMMISSION_STOPPED /* what is known has been said, or the user has ended it */
+    COMMISSION_LATER,   /* nothing was written, and the user has been told what to do */
+    COMMISSION_RESTART, /* it reads what was written from its next power-on only */
+    COMMISSION_STOPPED  /* what is known has been said, or the user has ended it */
 } commission_end_t;
 
 /* Where people read: stdout, or beside the objects on it. */
@@ -38,9 +39,13 @@ commission_end_t commission_unit(commission_t *run, const record_unit_t *plan, u
 /* At its own address: is it that unit, with its settings, measuring, and is none left at address 1? */
 typedef struct {
     char termination[SETTING_TEXT]; /* "": the model has none */
+    bool is_complete;               /* and reads as it is to */
     fathom_sample_t sample;
 } commission_proof_t;
 bool commission_verify(commission_t *run, const record_unit_t *unit, commission_proof_t *proof);
+
+/* At its address: does it read as it is to? Where it is not waited for until its next power-on: true. */
+bool commission_is_restarted(commission_t *run, const record_unit_t *unit);
 
 /* Says that a unit is done; proof NULL: that it is still open. Not flushed. */
 void commission_report(const commission_t *run, const record_unit_t *unit, const commission_proof_t *proof);

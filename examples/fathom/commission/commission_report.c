@@ -11,12 +11,17 @@ static void print_json(const record_unit_t *unit, const commission_proof_t *proo
     if (proof != NULL && proof->termination[0] != '\0')
         (void)printf(", \"termination\": \"%s\"", proof->termination);
     if (has_distance) (void)printf(", \"distance_mm\": %u", proof->sample.distance_mm);
-    (void)printf(", \"state\": \"%s\", \"when\": \"%s\"}\n", unit->is_done ? "done" : "planned", unit->when);
+    (void)printf(", \"state\": \"%s\", \"when\": \"%s\"}\n", record_states[unit->state], unit->when);
 }
 
 static void print_done(const record_unit_t *unit, const commission_proof_t *proof)
 {
     const fathom_sample_t *const sample = &proof->sample;
+    if (unit->state == RECORD_RESTART) {
+        (void)printf("  address %u is set; its termination reads %s until it is switched off and on\n",
+                     unit->address, proof->termination);
+        return;
+    }
     (void)printf("  address %u is done: ", unit->address);
     if (proof->termination[0] != '\0')
         (void)printf("termination %s%s, ", proof->termination,
@@ -31,7 +36,9 @@ static void print_open(const record_unit_t *unit)
 {
     (void)printf("address %u is open: ", unit->address);
     if (record_has_numbers(unit->model)) (void)printf("UUID %s, ", unit->number);
-    if (unit->address == FACTORY_ADDRESS)
+    if (unit->state == RECORD_RESTART)
+        (void)puts("it is to be switched off and on");
+    else if (unit->address == FACTORY_ADDRESS)
         (void)puts("not verified");
     else
         (void)printf("which is there or still at address %u\n", FACTORY_ADDRESS);

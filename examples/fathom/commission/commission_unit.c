@@ -47,15 +47,11 @@ static fathom_status_t look(commission_t *run, change_t *change, bool *is_so)
 static commission_end_t not_set(commission_t *run, const change_t *change, change_outcome_t outcome,
                                 fathom_status_t status)
 {
+    if (status == FATHOM_ERR_DIFFERS && !change->setting->moves) return COMMISSION_RESTART;
     change_explain(change, outcome, status);
     if (outcome == CHANGE_NOT_WRITTEN && status != FATHOM_ERR_CANCELLED && status != FATHOM_ERR_PORT &&
         ++run->unwritten < UNWRITTEN)
         return COMMISSION_LATER;
-    if (outcome == CHANGE_DIFFERS && !change->setting->moves)
-        (void)fputs(
-            "fathom: perhaps it tells that from its next power-on only: switch it off and on, and run "
-            "the command again\n",
-            stderr);
     return COMMISSION_STOPPED;
 }
 
@@ -111,12 +107,24 @@ static commission_end_t finish(commission_t *run, record_unit_t *unit)
     commission_proof_t proof = {.termination = ""};
     if (!commission_verify(run, unit, &proof)) return COMMISSION_STOPPED;
     record_unit_t done = *unit;
-    done.is_done = true;
+    if (proof.is_complete) done.state = RECORD_DONE;
     if (record_put(&run->record, &done, utc_us(run)) == NULL) return COMMISSION_STOPPED;
     run->unwritten = 0;
     run->told[0] = '\0';
     commission_report(run, unit, &proof);
     return has_output() ? COMMISSION_DONE : COMMISSION_STOPPED;
+}
+
+/* The termination, which #11 sets for the next power-on; what #2 tells until then is not in the datasheet. */
+static commission_end_t set_termination(commission_t *run, record_unit_t *unit)
+{
+    if (setting_of(run->model->settings, "termination") == NULL || unit->state == RECORD_RESTART)
+        return COMMISSION_DONE;
+    const commission_end_t end = set(run, "termination", unit->address == run->options.terminated);
+    if (end != COMMISSION_RESTART) return end;
+    record_unit_t restart = *unit;
+    restart.state = RECORD_RESTART;
+    return record_put(&run->record, &restart, utc_us(run)) != NULL ? COMMISSION_DONE : COMMISSION_STOPPED;
 }
 
 static void print_begin(const commission_t *run, const record_unit_t *plan, uint8_t at)
@@ -132,15 +140,14 @@ static void print_begin(const commission_t *run, const record_unit_t *plan, uint
 
 commission_end_t commission_unit(commission_t *run, const record_unit_t *plan, uint8_t at)
 {
-    const setting_t *const termination = setting_of(run->model->settings, "termination");
     record_unit_t planned = *plan;
-    planned.is_done = false;
+    if (planned.state == RECORD_DONE) planned.state = RECORD_PLANNED;
     commission_end_t end = look_around(run, &planned, at);
     if (end != COMMISSION_DONE) return end;
     print_begin(run, &planned, at);
     record_unit_t *const unit = record_put(&run->record, &planned, utc_us(run));
     if (unit == NULL || !has_output()) return COMMISSION_STOPPED;
-    if (termination != NULL) end = set(run, termination->name, unit->address == run->options.terminated);
+    end = set_termination(run, unit);
     if (end == COMMISSION_DONE && at != unit->address) end = set(run, "address", unit->address);
     if (end == COMMISSION_DONE) return finish(run, unit);
     /* Nothing was written: it is as good as a new one, and could not be told from one. */

@@ -49,19 +49,38 @@ static bool is_it(commission_t *run, const record_unit_t *unit)
            fail(unit, "another unit answers there, by its UUID; find out which, and run the command again");
 }
 
-static bool has_termination(commission_t *run, const record_unit_t *unit, char text[SETTING_TEXT])
+/* Reads the termination; "": the model has none. is_so: as it is to be. */
+static fathom_status_t read_termination(commission_t *run, const record_unit_t *unit, char text[SETTING_TEXT],
+                                        bool *is_so)
 {
     const setting_t *const setting = setting_of(unit->model->settings, "termination");
     char wanted[SETTING_TEXT];
     fathom_status_t status = FATHOM_READY;
-    if (setting == NULL) return true;
+    *is_so = true;
+    if (setting == NULL) return status;
     setting_print_value(setting, unit->address == run->options.terminated, wanted);
     for (unsigned i = 0; i != TRIES; i++) {
         status = session_get(&run->session, setting, text);
         if (status == FATHOM_READY || commission_has_ended(run)) break;
     }
+    *is_so = status == FATHOM_READY && strcmp(text, wanted) == 0;
+    return status;
+}
+
+bool commission_is_restarted(commission_t *run, const record_unit_t *unit)
+{
+    char text[SETTING_TEXT];
+    bool is_so = true;
+    if (unit->state == RECORD_RESTART) (void)read_termination(run, unit, text, &is_so);
+    return is_so;
+}
+
+static bool has_termination(commission_t *run, const record_unit_t *unit, commission_proof_t *proof)
+{
+    const fathom_status_t status = read_termination(run, unit, proof->termination, &proof->is_complete);
     if (status != FATHOM_READY) return fail_by(run, unit, "its termination cannot be read", status);
-    return strcmp(text, wanted) == 0 || fail(unit, "its termination reads otherwise than it was set");
+    return proof->is_complete || unit->state == RECORD_RESTART ||
+           fail(unit, "its termination reads otherwise than it was set");
 }
 
 static fathom_status_t call_measure(reader_t *reader, void *ctx)
@@ -115,6 +134,6 @@ static bool has_left(commission_t *run, const record_unit_t *unit)
 
 bool commission_verify(commission_t *run, const record_unit_t *unit, commission_proof_t *proof)
 {
-    return is_it(run, unit) && has_termination(run, unit, proof->termination) &&
-           measures(run, unit, &proof->sample) && has_left(run, unit);
+    return is_it(run, unit) && has_termination(run, unit, proof) && measures(run, unit, &proof->sample) &&
+           has_left(run, unit);
 }

@@ -12,9 +12,12 @@
 #include "stations/setting_text.h"
 
 static const char title[] = "# fathom commission: which unit has which address, or is to have it";
-static const char columns[] = "# sensor, address, UUID (- where it has none), planned or done, since when\n";
+static const char columns[] =
+    "# sensor, address, UUID (- where it has none), planned, restart or done, since when\n";
 
 enum { LINE = 200, PATH = 4096, HEX = 32 };
+
+const char *const record_states[] = {"planned", "restart", "done"};
 
 bool record_has_numbers(const model_t *model) { return setting_of(model->settings, "uuid") != NULL; }
 
@@ -61,13 +64,13 @@ static const char *take_line(record_t *record, const char *text)
     uint32_t number = 0;
     const int found =
         sscanf(text, "%15s %15s %63s %15s %23s %1s", model, address, unit.number, state, unit.when, rest);
-    if (found != 5) return "it has five words: sensor, address, UUID, planned or done, since when";
+    if (found != 5) return "it has five words: sensor, address, UUID, planned, restart or done, since when";
     unit.model = model_named(model);
     if (unit.model == NULL) return "there is no such sensor";
     if (!number_parse(address, 1, unit.model->max_address, &number)) return "no address that it can have";
     if (!is_number(unit.model, unit.number)) return "no UUID";
-    unit.is_done = strcmp(state, "done") == 0;
-    if (!unit.is_done && strcmp(state, "planned") != 0) return "neither planned nor done";
+    for (unit.state = RECORD_PLANNED; strcmp(state, record_states[unit.state]) != 0; unit.state++)
+        if (unit.state == RECORD_DONE) return "neither planned, restart nor done";
     unit.address = (uint8_t)number;
     if (record_at(record, unit.address) != NULL) return "this address stands there twice";
     if (record_of(record, unit.model, unit.number) != NULL) return "this UUID stands there twice";
@@ -128,7 +131,7 @@ static bool put_all(const record_t *record, FILE *file)
     for (uint32_t i = 0; i != record->count; i++) {
         const record_unit_t *const unit = &record->units[i];
         (void)fprintf(file, "%s %u %s %s %s\n", unit->model->name, unit->address, unit->number,
-                      unit->is_done ? "done" : "planned", unit->when);
+                      record_states[unit->state], unit->when);
     }
     return fflush(file) == 0 && ferror(file) == 0 && fsync(fileno(file)) == 0;
 }

@@ -10,12 +10,19 @@
  */
 enum { RECORD_UNITS = 254, RECORD_NUMBER = 64, RECORD_TIME = 24 };
 
+typedef enum {
+    RECORD_PLANNED, /* it is at its address, or still at address 1 */
+    RECORD_RESTART, /* the same; its termination was acknowledged, and reads so from the next power-on only */
+    RECORD_DONE     /* and verified */
+} record_state_t;
+extern const char *const record_states[]; /* as words */
+
 typedef struct {
     const model_t *model;
     char number[RECORD_NUMBER]; /* its own: the UUID; "-": the model has none */
     char when[RECORD_TIME];     /* since when it is so, UTC */
     uint8_t address;
-    bool is_done; /* and verified; else planned: it is there, or still at address 1 */
+    record_state_t state;
 } record_unit_t;
 
 typedef struct {
