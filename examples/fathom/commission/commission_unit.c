@@ -49,6 +49,9 @@ static commission_end_t not_set(commission_t *run, const change_t *change, chang
 {
     if (status == FATHOM_ERR_DIFFERS && !change->setting->moves) return COMMISSION_RESTART;
     change_explain(change, outcome, status);
+    if (status == FATHOM_ERR_DIFFERS)
+        (void)fputs("fathom: or from its next power-on: switch it off and on, and run the command again\n",
+                    stderr);
     if (outcome == CHANGE_NOT_WRITTEN && status != FATHOM_ERR_CANCELLED && status != FATHOM_ERR_PORT &&
         ++run->unwritten < UNWRITTEN)
         return COMMISSION_LATER;

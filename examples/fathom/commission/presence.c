@@ -21,11 +21,12 @@ static evidence_t evidence_of(const session_t *session)
     return evidence;
 }
 
+/* Where another unit sends by itself, its first and its last frame may be cut off. */
 static bool is_silent(const session_t *session)
 {
     const evidence_t evidence = evidence_of(session);
-    return evidence.own == 0 && evidence.rest < LEAST_BYTES && evidence.streamed_a16 == 0 &&
-           evidence.streamed_a05 == 0;
+    const bool is_rest = evidence.rest >= LEAST_BYTES && evidence.foreign == 0;
+    return evidence.own == 0 && !is_rest && evidence.streamed_a16 == 0 && evidence.streamed_a05 == 0;
 }
 
 /* What is asked for: the number, or where the model has none its address, which is what it was asked at. */
