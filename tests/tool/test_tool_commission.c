@@ -174,7 +174,7 @@ TEST(ended_again_and_again_it_comes_to_an_end)
         unsigned runs = 1;
         site_begin();
         add_hps_units(8);
-        bench.tool.ctrl_c_us = 12 * SECOND + step * 333 * MS; /* taking up and one unit take 11 s at most */
+        bench.tool.ctrl_c_us = 9 * SECOND + step * 333 * MS; /* taking up and one unit take 9 s at most */
         while (commission("hps167s --addresses 2-9")->status != 0) assert_true(++runs < 40);
         assert_true(runs > 3);
         expect_all_hps(8);

@@ -229,6 +229,7 @@ TEST(two_units_with_one_number_do_not_get_one_address)
 TEST(units_without_a_number_have_to_stay_connected)
 {
     add_a16_units(3);
+    site.hand_us = 20 * SECOND; /* the second one comes later */
     bench.tool.ctrl_c_us = 12 * SECOND;
     expect(commission("a16 --addresses 2-4"), 1, "1 of 3");
     bench.tool.ctrl_c_us = 0;
@@ -239,7 +240,7 @@ TEST(units_without_a_number_have_to_stay_connected)
         "fathom: address 2 is done by the record, and no unit answers there: nothing was written. Connect it "
         "and switch it on, or if it was taken away: --taken-away\n");
     assert_int_equal(writes(), before);
-    expect(commission("a16 --addresses 2-4 --wait 20 --taken-away"), 0, "3 of 3");
+    expect(commission("a16 --addresses 2-4 --wait 60 --taken-away"), 0, "3 of 3");
 }
 
 /* It may have address 2 already, and be in a box. */

@@ -2,7 +2,6 @@
 #include "commission/commission.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <string.h>
 
 #include "commands.h"
@@ -10,27 +9,6 @@
 /* fathom commission: units that all come with address 1 get an address each, one after the other. */
 
 static const char command[] = "commission";
-
-FILE *commission_text(const commission_t *run) { return run->session.is_json ? stderr : stdout; }
-
-void commission_tell(commission_t *run, const char *format, ...)
-{
-    char text[sizeof run->told];
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (strcmp(text, run->told) == 0) return;
-    memcpy(run->told, text, sizeof text);
-    (void)fprintf(commission_text(run), "%s\n", text);
-    (void)fflush(commission_text(run));
-}
-
-bool commission_has_ended(const commission_t *run)
-{
-    const host_t *const host = run->session.channel.host;
-    return host->has_ended(host->ctx);
-}
 
 /* ---- what is left to do ---- */
 

@@ -12,8 +12,8 @@ typedef struct {
     session_t session;
     record_t record;
     const model_t *model;
-    unsigned unwritten; /* how often in a row a unit answered, and then nothing could be written to it */
-    char told[200];     /* the last thing that the user was told to do: not again while it is so */
+    unsigned unwritten;  /* how often in a row a unit answered, and then nothing could be written to it */
+    char last_told[200]; /* the last thing that the user was told to do: not again while it is so */
 } commission_t;
 
 /* What became of a unit. */

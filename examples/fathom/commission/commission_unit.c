@@ -81,7 +81,8 @@ static commission_end_t set(commission_t *run, const char *name, int32_t value)
 static commission_end_t look_around(commission_t *run, const record_unit_t *plan, uint8_t at)
 {
     if (at == plan->address) return COMMISSION_DONE;
-    const presence_t target = presence_ask(&run->session, plan->address, 2);
+    /* Once; right before the write the driver asks there again (modbus_setting.h). */
+    const presence_t target = presence_ask(&run->session, plan->address, 1);
     if (target.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
     if (target.what != PRESENT_NONE) {
         commission_tell(
@@ -113,7 +114,7 @@ static commission_end_t finish(commission_t *run, record_unit_t *unit)
     if (proof.is_complete) done.state = RECORD_DONE;
     if (record_put(&run->record, &done, utc_us(run)) == NULL) return COMMISSION_STOPPED;
     run->unwritten = 0;
-    run->told[0] = '\0';
+    run->last_told[0] = '\0';
     commission_report(run, unit, &proof);
     return has_output() ? COMMISSION_DONE : COMMISSION_STOPPED;
 }

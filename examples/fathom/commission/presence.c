@@ -9,9 +9,10 @@ enum {
     READS = 3,
     /* Fewer bytes than this are no response: the line's own, where it is held by nothing. The shortest frame has 5. */
     LEAST_BYTES = 3,
-    /* In which the response of a second unit comes. A module at work on a measurement may need so long (A16 3: 110
-     * ms, A05 2(3): 210 ms). */
-    SECOND_RESPONSE_US = 250000
+    /* In which the response of a second unit comes, of an HPS-167S within 20 ms behind an adapter's 16. A module that
+     * is at work on a measurement may need longer (A16 3: 110 ms, A05 2(3): 210 ms). */
+    SECOND_RESPONSE_US = 250000,
+    SECOND_RESPONSE_HPS167S_US = 60000
 };
 
 static evidence_t evidence_of(const session_t *session)
@@ -51,9 +52,9 @@ static bool has_stopped(const session_t *session, fathom_status_t status)
 }
 
 /* The first read, which may find nothing. */
-static present_t find(session_t *session, unsigned silences, presence_t *presence)
+static present_t find(session_t *session, unsigned times, presence_t *presence)
 {
-    for (unsigned i = 0; i != silences; i++) {
+    for (unsigned i = 0; i != times; i++) {
         presence->status = ask_number(session, presence->number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
         if (presence->status == FATHOM_READY) return PRESENT_ONE;
@@ -62,16 +63,18 @@ static present_t find(session_t *session, unsigned silences, presence_t *presenc
     return PRESENT_NONE;
 }
 
-static present_t ask(session_t *session, unsigned silences, presence_t *presence)
+static present_t ask(session_t *session, unsigned times, presence_t *presence)
 {
-    const present_t found = find(session, silences, presence);
+    const uint32_t listen_us =
+        session->station->model->is_dyp ? SECOND_RESPONSE_US : SECOND_RESPONSE_HPS167S_US;
+    const present_t found = find(session, times, presence);
     if (found != PRESENT_ONE) return found;
     for (unsigned i = 0; i != READS; i++) {
         char number[SETTING_TEXT];
         if (i != 0) presence->status = ask_number(session, number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
         if (presence->status != FATHOM_READY) return PRESENT_UNCLEAR;
-        session_listen(session, SECOND_RESPONSE_US);
+        session_listen(session, listen_us);
         presence->is_two =
             evidence_of(session).fitting > 1 || (i != 0 && strcmp(number, presence->number) != 0);
         if (presence->is_two) return PRESENT_UNCLEAR;
@@ -79,11 +82,11 @@ static present_t ask(session_t *session, unsigned silences, presence_t *presence
     return has_stopped(session, FATHOM_READY) ? PRESENT_STOPPED : PRESENT_ONE;
 }
 
-presence_t presence_ask(session_t *session, uint8_t address, unsigned silences)
+presence_t presence_ask(session_t *session, uint8_t address, unsigned times)
 {
     presence_t presence = {.what = PRESENT_STOPPED, .status = FATHOM_ERR_ARGUMENT};
     const fathom_line_settings_t line = session->station->line;
-    if (session_move(session, address, &line)) presence.what = ask(session, silences, &presence);
+    if (session_move(session, address, &line)) presence.what = ask(session, times, &presence);
     return presence;
 }
 

@@ -20,12 +20,12 @@ typedef struct {
 } presence_t;
 
 /*
- * Asks at this address, where the session is from then on. silences: so many requests in a row have to find nothing
+ * Asks at this address, where the session is from then on. times: so many requests in a row have to find nothing
  * before it is PRESENT_NONE; a response may be lost once. PRESENT_ONE: its number (UUID) was read three times without
  * damage and was the same, and to none of the requests a second response came; of a model without numbers the same
  * by its address, and the number is "-".
  */
-presence_t presence_ask(session_t *session, uint8_t address, unsigned silences);
+presence_t presence_ask(session_t *session, uint8_t address, unsigned times);
 
 /* Of what is PRESENT_UNCLEAR: on stderr, without a line feed. */
 void presence_explain(session_t *session, const presence_t *presence);
