@@ -165,14 +165,19 @@ void commission_help(FILE *to)
         to);
     session_options_help(to);
     (void)fputs(
-        "\nFor each unit: nothing may answer at the new address. At address 1 it has to be alone: what it "
-        "tells is read\n"
+        "\nThe port is a serial one, the mode modbus, and the address 1.\n\n"
+        "For each unit: nothing may answer at the new address. At address 1 it has to be alone: what it "
+        "tells "
+        "is read\n"
         "three times. The record has its line before anything is written. Each write is announced, is made "
         "once, and only\n"
         "where the unit has another value; then the unit is asked for everything at its new address, and for "
         "a\n"
         "measurement. A failed or unconfirmed write ends the command: run it again, and it asks where the "
-        "unit is.\n\n"
+        "unit is. The\n"
+        "record says planned until then, and restart of a unit that tells its new termination from its next "
+        "power-on\n"
+        "only: switch it off and on while the command runs.\n\n"
         "hps167s are known by their UUID and may be commissioned on a bench and taken off. An a16 or a05 has "
         "no number:\n"
         "keep those that are done connected and switched on; each has to answer when the command is run "
