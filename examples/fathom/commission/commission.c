@@ -242,10 +242,12 @@ static int run_commission(const host_t *host, int argc, char **argv)
     run.model = run.session.station->model;
     if (!record_read(&run.record, run.options.record)) return STATUS_FAILED;
     if (!suits(&run)) return STATUS_USAGE;
-    /* That it can be written is known before anything is sent. */
-    if (!record_write(&run.record) || !session_open(&run.session, host)) return STATUS_FAILED;
-    work_all(&run);
-    const int status = finish(&run);
+    if (!session_open(&run.session, host)) return STATUS_FAILED;
+    int status = STATUS_FAILED;
+    if (record_write(&run.record)) { /* that it can be is known before anything is sent */
+        work_all(&run);
+        status = finish(&run);
+    }
     session_close(&run.session);
     return status;
 }
