@@ -109,6 +109,6 @@ static void live(second_kind_t kind, const char *sensor, unsigned good_of_100, u
     assert_in_range(done, good_of_100 * 2, 200);
 }
 
-TEST(commission_hps167s) { live(SECOND_HPS167S, "hps167s", 50, 30); }
+TEST(commission_hps167s) { live(SECOND_HPS167S, "hps167s", 54, 30); }
 TEST(commission_a16_rs485) { live(SECOND_A16_RS485, "a16", 98, 65); }
 TEST(commission_a05_rs485) { live(SECOND_A05_RS485, "a05", 98, 65); }

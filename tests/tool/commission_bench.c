@@ -15,6 +15,7 @@ void connect_next(void) { fathom_sim_attach(&bench.line, site.device[site.connec
 static void idle(void *ctx, uint32_t max_us)
 {
     fathom_sim_clock_idle(ctx, max_us);
+    if (site.watch != NULL) site.watch();
     const bool is_due =
         site.connected != 0 && site.connected < site.count && site.device[site.connected - 1]->address != 1;
     if (!is_due) site.left_us = bench.clock.now_us;

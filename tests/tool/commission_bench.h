@@ -19,9 +19,10 @@ typedef struct {
     fathom_sim_device_t *device[UNITS];
     size_t count;
     size_t connected;
-    uint32_t hand_us;   /* how long it takes to connect the next one; 100 ms */
-    uint32_t left_us;   /* when the last one that is connected was at address 1 last */
-    unsigned announced; /* writes, in all runs */
+    void (*watch)(void); /* what else befalls the units: called whenever time has passed */
+    uint32_t hand_us;    /* how long it takes to connect the next one; 100 ms */
+    uint32_t left_us;    /* when the last one that is connected was at address 1 last */
+    unsigned announced;  /* writes, in all runs */
     char record[64];
     uint32_t begin_us;
     uint32_t asked_us[MOMENTS]; /* when requests left, since begin_us */
