@@ -92,10 +92,14 @@ TEST(what_is_so_already_is_not_written)
 
 TEST(units_that_send_by_themselves_are_commissioned_too)
 {
-    add_hps((fathom_sim_hps167s_config_t){.unasked_us = 100000});
-    connect_next();
-    expect(commission("hps167s --addresses 2"), 0, "1 of 1");
-    assert_int_equal(site.device[0]->address, 2);
+    static const uint32_t unasked_us[] = {18500, 26419, 34338, 50176, 66014, 100000, 152000, 192718};
+    for (size_t i = 0; i != sizeof unasked_us / sizeof unasked_us[0]; i++) {
+        site_begin();
+        add_hps((fathom_sim_hps167s_config_t){.unasked_us = unasked_us[i]});
+        connect_next();
+        expect(commission("hps167s --addresses 2 --wait 60"), 0, "1 of 1");
+        assert_int_equal(site.device[0]->address, 2);
+    }
 }
 
 TEST(an_object_a_unit_has_what_it_is_and_where)

@@ -221,11 +221,22 @@ TEST(a_termination_that_is_told_from_the_next_power_on_is_written_once_and_waite
     assert_int_equal(site.device[0]->counters.flash_writes, 2);
 }
 
+/* It was ended before the address was written. */
+TEST(a_termination_that_was_written_is_not_written_again)
+{
+    add_hps_units(1);
+    write_record(TITLE "hps167s 2 " FIRST " restart 2026-01-01T00:00:00Z\n");
+    expect(commission("hps167s --addresses 2 --terminated none --wait 20"), 1,
+           "address 2 is set; its termination reads on until it is switched off and on\n");
+    assert_int_equal(site.device[0]->address, 2);
+    assert_int_equal(site.device[0]->counters.flash_writes, 1);
+}
+
 /* Three reads when it is found, three before it is written; it falls silent at the next one. */
 TEST(a_unit_without_a_number_that_was_not_written_is_a_new_one_again)
 {
     add_a16_units(1);
-    silence(0, 7, 1);
+    silence(0, 7, 3);
     const tool_run_t *const done = commission("a16 --addresses 2,3 --wait 20");
     expect(done, 1, "nothing was written: no response");
     expect(done, 1, "1 of 2");

@@ -8,8 +8,8 @@
 
 /* What is written to one unit, and in which order. */
 
-/* How often a unit may answer and then not let itself be set, before it is given up. */
-enum { UNWRITTEN = 3 };
+/* How often a unit may answer and then not let itself be set, before it is given up; and how often it is read. */
+enum { UNWRITTEN = 3, READS = 3 };
 
 static bool has_output(void)
 {
@@ -39,7 +39,10 @@ static fathom_status_t look(commission_t *run, change_t *change, bool *is_so)
 {
     fathom_status_t status = FATHOM_READY;
     change->was[0] = '\0';
-    if (change->setting->get != NULL) status = session_get(&run->session, change->setting, change->was);
+    for (unsigned i = 0; i != READS && change->setting->get != NULL; i++) {
+        status = session_get(&run->session, change->setting, change->was);
+        if (status == FATHOM_READY || commission_has_ended(run)) break;
+    }
     *is_so = status == FATHOM_READY && strcmp(change->was, change->wanted) == 0;
     return status;
 }
@@ -69,7 +72,9 @@ static commission_end_t set(commission_t *run, const char *name, int32_t value)
     if (is_so) return COMMISSION_DONE;
     if (status != FATHOM_READY) return not_set(run, &change, CHANGE_NOT_WRITTEN, status);
     if (!announce(run, &change)) return COMMISSION_STOPPED;
+    run->writes++;
     status = session_set(&run->session, change.setting, value);
+    if (!run->session.station->reader.unit->is_written) run->writes--;
     const change_outcome_t outcome = change_outcome(&change, status);
     if (outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE) return COMMISSION_DONE;
     return not_set(run, &change, outcome, status);
@@ -145,6 +150,8 @@ static void print_begin(const commission_t *run, const record_unit_t *plan, uint
 commission_end_t commission_unit(commission_t *run, const record_unit_t *plan, uint8_t at)
 {
     record_unit_t planned = *plan;
+    const bool was_there = record_at(&run->record, plan->address) != NULL;
+    const unsigned writes = run->writes;
     if (planned.state == RECORD_DONE) planned.state = RECORD_PLANNED;
     commission_end_t end = look_around(run, &planned, at);
     if (end != COMMISSION_DONE) return end;
@@ -154,8 +161,7 @@ commission_end_t commission_unit(commission_t *run, const record_unit_t *plan, u
     end = set_termination(run, unit);
     if (end == COMMISSION_DONE && at != unit->address) end = set(run, "address", unit->address);
     if (end == COMMISSION_DONE) return finish(run, unit);
-    /* Nothing was written: it is as good as a new one, and could not be told from one. */
-    if (end == COMMISSION_LATER && !record_has_numbers(unit->model) && !record_drop(&run->record, unit))
-        return COMMISSION_STOPPED;
-    return end;
+    /* One to which nothing was written is as good as a new one, and may be one. */
+    const bool is_new = end == COMMISSION_LATER && !was_there && run->writes == writes;
+    return is_new && !record_drop(&run->record, unit) ? COMMISSION_STOPPED : end;
 }
