@@ -226,7 +226,7 @@ static bool suits(commission_t *run)
     if (first == NULL || next_address(run) == 0 || next_address(run) == FACTORY_ADDRESS) return true;
     (void)usage_error(
         command,
-        "a unit keeps address %u by the record %s, where the next one would come; give that one "
+        "a unit keeps address %d by the record %s, where the next one would come; give that one "
         "another address, and delete its line",
         FACTORY_ADDRESS, run->record.path);
     return false;

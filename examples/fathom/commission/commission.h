@@ -12,7 +12,7 @@ typedef struct {
     session_t session;
     record_t record;
     const model_t *model;
-    unsigned writes;    /* that were made */
+    unsigned writes;     /* that were made */
     unsigned unwritten;  /* how often in a row a unit answered, and then nothing could be written to it */
     char last_told[200]; /* the last thing that the user was told to do: not again while it is so */
 } commission_t;

@@ -63,7 +63,7 @@ static bool take_addresses(commission_options_t *options, const model_t *model, 
     }
     if (memchr(options->addresses, FACTORY_ADDRESS, options->count - 1) == NULL) return true;
     (void)usage_error(command,
-                      "all units come with address %u, so it can be given to the last one only; put "
+                      "all units come with address %d, so it can be given to the last one only; put "
                       "it at the end, such as --addresses 2-8,1",
                       FACTORY_ADDRESS);
     return false;
@@ -94,7 +94,7 @@ static bool is_suitable(const session_t *session)
 {
     const char *const port = session->options.port;
     if (session->station->address != FACTORY_ADDRESS)
-        (void)usage_error(command, "it looks for units at address %u, with which they come; leave %u out",
+        (void)usage_error(command, "it looks for units at address %d, with which they come; leave %u out",
                           FACTORY_ADDRESS, session->station->address);
     else if (strncmp(port, "tcp:", 4) == 0)
         (void)usage_error(command,

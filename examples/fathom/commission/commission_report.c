@@ -41,7 +41,7 @@ static void print_open(const record_unit_t *unit)
     else if (unit->address == FACTORY_ADDRESS)
         (void)puts("not verified");
     else
-        (void)printf("which is there or still at address %u\n", FACTORY_ADDRESS);
+        (void)printf("which is there or still at address %d\n", FACTORY_ADDRESS);
 }
 
 void commission_report(const commission_t *run, const record_unit_t *unit, const commission_proof_t *proof)

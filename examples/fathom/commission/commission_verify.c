@@ -69,10 +69,10 @@ static fathom_status_t read_termination(commission_t *run, const record_unit_t *
 
 bool commission_is_restarted(commission_t *run, const record_unit_t *unit)
 {
-    char text[SETTING_TEXT];
-    bool is_so = true;
-    if (unit->state == RECORD_RESTART) (void)read_termination(run, unit, text, &is_so);
-    return is_so;
+    commission_proof_t proof = {.is_complete = true};
+    if (unit->state == RECORD_RESTART)
+        (void)read_termination(run, unit, proof.termination, &proof.is_complete);
+    return proof.is_complete;
 }
 
 static bool has_termination(commission_t *run, const record_unit_t *unit, commission_proof_t *proof)
