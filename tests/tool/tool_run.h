@@ -28,7 +28,7 @@ typedef struct {
 } tool_line_t;
 
 typedef struct {
-    int status;       /* the exit status: 0, 1, 2 */
+    int status;       /* the exit status: 0 to 3 */
     const char *out;  /* the standard output */
     const char *err;  /* the standard error */
     uint64_t took_us; /* of the device's time */

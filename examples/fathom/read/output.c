@@ -15,7 +15,7 @@ enum { VALUE_TEXT = 48 };
 typedef struct {
     const char *name;
     bool is_string;                                                  /* quoted in JSON */
-    uint8_t needs;                                                   /* COLUMNS_...; 0: all sensors have it */
+    uint8_t needs;                                                   /* COLUMNS_...; 0: it is always there */
     void (*format)(const reading_t *reading, char text[VALUE_TEXT]); /* leaves text empty for null */
 } field_t;
 
@@ -120,22 +120,57 @@ static void put_temperature(const reading_t *reading, char text[VALUE_TEXT])
     if (temperature->is_known) tenths_text(text, VALUE_TEXT, temperature->dc);
 }
 
+static void put_alarm(const reading_t *reading, char text[VALUE_TEXT])
+{
+    static const char *const names[] = {[FATHOM_ALARM_ON] = "on",
+                                        [FATHOM_ALARM_OFF] = "off",
+                                        [FATHOM_ALARM_UNKNOWN] = "unknown",
+                                        [FATHOM_ALARM_NO_RESPONSE] = "no_response"};
+    put_string(text, names[reading->result->alarm]);
+}
+
+static void put_is_on(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_string(text, reading->result->is_on ? "true" : "false");
+}
+
+static void put_level(const reading_t *reading, char text[VALUE_TEXT])
+{
+    const result_t *const result = reading->result;
+    if (result->has_level) (void)snprintf(text, VALUE_TEXT, "%" PRId32, result->level.level_mm);
+}
+
+static void put_per_mille(const reading_t *reading, char text[VALUE_TEXT])
+{
+    if (reading->result->has_level) put_number(text, reading->result->level.per_mille);
+}
+
+static void put_volume(const reading_t *reading, char text[VALUE_TEXT])
+{
+    if (reading->result->has_level) put_number(text, reading->result->level.volume);
+}
+
 static const field_t fields[] = {
     {"sensor", true, 0, put_sensor},
     {"mode", true, 0, put_mode},
     {"address", false, 0, put_address},
     {"probe", false, 0, put_probe},
-    {"sequence", false, 0, put_sequence},
+    {"sequence", false, COLUMNS_READING, put_sequence},
     {"time_us", false, 0, put_time},
     {"utc", true, 0, put_utc},
-    {"status", true, 0, put_status},
-    {"interference", false, 0, put_interference},
+    {"alarm", true, COLUMNS_ALARM, put_alarm},
+    {"is_on", false, COLUMNS_ALARM, put_is_on},
+    {"status", true, COLUMNS_READING, put_status},
+    {"interference", false, COLUMNS_READING, put_interference},
     {"distance_mm", false, 0, put_distance},
-    {"raw", false, 0, put_raw},
+    {"raw", false, COLUMNS_READING, put_raw},
     {"magnitude", false, COLUMNS_OPTICS, put_magnitude},
     {"ambient", false, COLUMNS_OPTICS, put_ambient},
     {"precision", false, COLUMNS_OPTICS, put_precision},
     {"temperature_degc", false, COLUMNS_TEMPERATURE, put_temperature},
+    {"level_mm", false, COLUMNS_LEVEL, put_level},
+    {"level_per_mille", false, COLUMNS_LEVEL, put_per_mille},
+    {"volume", false, COLUMNS_LEVEL, put_volume},
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
@@ -175,24 +210,30 @@ static void write_csv(FILE *to, const reading_t *reading)
 
 /* ---- text, for people ---- */
 
-static void write_text(FILE *to, const reading_t *reading)
+/* Where there is no distance. */
+static void write_kind(FILE *to, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
-    (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
-                  (unsigned)(reading->time_us / 1000u % 1000u), reading->name);
-    if (reading->model->probes > 1) (void)fprintf(to, " probe %u", sample->probe);
-    if (sample->kind == FATHOM_TARGET)
-        (void)fprintf(to, "  %6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
-                      sample->distance_mm % 1000u);
-    else if (sample->kind == FATHOM_NO_TARGET)
-        (void)fprintf(to, "  no target in range%s", sample->interference ? " (interference)" : "");
+    if (sample->kind == FATHOM_NO_TARGET)
+        (void)fprintf(to, "no target in range%s", sample->interference ? " (interference)" : "");
     else if (sample->kind == FATHOM_NEAR)
-        (void)fputs("  nearer than it can measure", to);
+        (void)fputs("nearer than it can measure", to);
     else if (sample->kind == FATHOM_UNKNOWN)
-        (void)fprintf(to, "  unknown: the value %" PRIu32 "%s", sample->raw,
+        (void)fprintf(to, "unknown: the value %" PRIu32 "%s", sample->raw,
                       reading->model->has_optics ? "" : " has been given no meaning (--means)");
     else
-        (void)fputs("  fault: the sensor says that it has failed", to);
+        (void)fputs("fault: the sensor says that it has failed", to);
+}
+
+static void write_text_reading(FILE *to, const reading_t *reading)
+{
+    const fathom_sample_t *const sample = reading->sample;
+    (void)fputs("  ", to);
+    if (sample->kind == FATHOM_TARGET)
+        (void)fprintf(to, "%6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
+                      sample->distance_mm % 1000u);
+    else
+        write_kind(to, reading);
     if (reading->model->has_optics && sample->kind != FATHOM_FAULT) {
         char magnitude[VALUE_TEXT];
         put_magnitude(reading, magnitude);
@@ -202,6 +243,37 @@ static void write_text(FILE *to, const reading_t *reading)
     char temperature[VALUE_TEXT] = "";
     put_temperature(reading, temperature);
     if (temperature[0] != '\0') (void)fprintf(to, "  %s degC", temperature);
+}
+
+/* Is it on where no distance decides it? The user has said so. */
+static void write_text_change(FILE *to, const reading_t *reading)
+{
+    const result_t *const result = reading->result;
+    if (result->alarm != FATHOM_ALARM_ON && result->alarm != FATHOM_ALARM_OFF) {
+        (void)fprintf(to, ": %s (%s)", result->alarm == FATHOM_ALARM_UNKNOWN ? "not known" : "no response",
+                      result->is_on ? "on" : "off");
+        return;
+    }
+    (void)fprintf(to, ": alarm %s, ", result->is_on ? "on" : "off");
+    if (reading->sample->kind == FATHOM_TARGET)
+        (void)fprintf(to, "%u mm", reading->sample->distance_mm);
+    else
+        write_kind(to, reading);
+}
+
+static void write_text(FILE *to, const reading_t *reading)
+{
+    const result_t *const result = reading->result;
+    (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
+                  (unsigned)(reading->time_us / 1000u % 1000u), reading->name);
+    if (reading->model->probes > 1) (void)fprintf(to, " probe %u", reading->sample->probe);
+    if (result->alarm != 0)
+        write_text_change(to, reading);
+    else
+        write_text_reading(to, reading);
+    if (result->has_level)
+        (void)fprintf(to, "  level %" PRId32 " mm  %u per mille  volume %" PRIu32, result->level.level_mm,
+                      result->level.per_mille, result->level.volume);
     (void)fputs("\n", to);
 }
 

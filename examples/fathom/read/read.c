@@ -6,12 +6,16 @@
 #include "commands.h"
 #include "read/read_options.h"
 #include "stations/poll_loop.h"
+#include "stations/results.h"
 
 typedef struct {
     read_options_t options;
     poll_loop_t loop;
+    results_t results;
     uint64_t stats_us; /* when all counters are told next */
     int output_error;  /* errno */
+    bool has_begun;    /* the output */
+    bool is_alarmed;   /* a change was told after which an alarm is on */
 } reading_run_t;
 
 static void flush(reading_run_t *run)
@@ -25,9 +29,12 @@ static bool is_shared(const reading_run_t *run) { return run->loop.options.stati
 /* Those of one sensor, and of all. */
 static uint8_t own_columns(const reading_run_t *run, const station_t *station)
 {
+    const results_config_t *const results = &run->options.results;
+    const uint8_t level = results->has_level ? COLUMNS_LEVEL : 0;
+    if (results->has_alarm) return COLUMNS_ALARM | level;
     const bool has_temperature = run->loop.options.reading.temperature_us != 0 &&
                                  (station->mode->takes & READER_TAKES_TEMPERATURE) != 0;
-    return (uint8_t)((station->model->has_optics ? COLUMNS_OPTICS : 0) |
+    return (uint8_t)(COLUMNS_READING | level | (station->model->has_optics ? COLUMNS_OPTICS : 0) |
                      (has_temperature ? COLUMNS_TEMPERATURE : 0));
 }
 
@@ -39,35 +46,57 @@ static uint8_t all_columns(const reading_run_t *run)
     return columns;
 }
 
-static bool write_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
+/* Once, before the first result; the alarms have some while the port is still waited for. */
+static void begin_output(reading_run_t *run)
+{
+    const format_t *const format = run->options.format;
+    if (run->has_begun) return;
+    run->has_begun = true;
+    errno = 0;
+    if (format->begin != NULL) format->begin(stdout, all_columns(run));
+    flush(run);
+}
+
+static bool write_result(void *ctx, const station_t *station, const result_t *result)
 {
     reading_run_t *const run = ctx;
     const host_t *const host = run->loop.host;
+    const fathom_sample_t *const sample = &result->sample;
     const uint64_t time_us = poll_loop_sample_us(&run->loop, sample);
     const reading_t reading = {
         .model = station->model,
         .mode = station->mode,
         .reader = &station->reader,
         .name = is_shared(run) ? station->name : station->model->name,
+        .result = result,
         .sample = sample,
         .time_us = time_us,
         .utc_us = host->utc_us(host->ctx) - (poll_loop_time_us(&run->loop) - time_us),
         .own = own_columns(run, station),
         .columns = all_columns(run),
     };
+    begin_output(run);
     errno = 0;
     run->options.format->write(stdout, &reading);
     flush(run);
+    if (result->is_on) run->is_alarmed = true;
     return run->output_error == 0;
 }
 
-static void write_failure(void *ctx, const failure_t *failure, const station_t *station)
+static bool take_sample(void *ctx, const station_t *station, const fathom_sample_t *sample)
 {
-    const bool has_name = is_shared(ctx) && failure->status != FATHOM_ERR_PORT;
+    return results_sample(&((reading_run_t *)ctx)->results, station, sample);
+}
+
+static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
+{
+    reading_run_t *const run = ctx;
+    const bool has_name = is_shared(run) && failure->status != FATHOM_ERR_PORT;
     (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", has_name ? station->name : "",
                   has_name ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
     (void)fputs("\n", stderr);
+    results_failure(&run->results, station, failure->status);
 }
 
 static void write_remark(void *ctx, const station_t *station, const char *text)
@@ -83,6 +112,13 @@ static void write_port(void *ctx, const char *text, bool is_there)
     (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
+static void get_account(reading_run_t *run, account_t *account)
+{
+    poll_loop_account(&run->loop, account);
+    account->has_median = run->options.results.median != 0;
+    account->dropped_spikes = results_dropped(&run->results);
+}
+
 static void tell_stats(const reading_run_t *run, const account_t *account)
 {
     if (run->options.format->is_json)
@@ -92,15 +128,14 @@ static void tell_stats(const reading_run_t *run, const account_t *account)
 }
 
 /* Tells the counters when it is time for that. */
-static uint32_t tick(void *ctx)
+static uint32_t tick_stats(reading_run_t *run)
 {
-    reading_run_t *const run = ctx;
     const uint32_t every_us = run->options.stats_us;
     const uint64_t now_us = poll_loop_time_us(&run->loop);
     if (every_us == 0) return FATHOM_NO_DEADLINE;
     if (now_us >= run->stats_us) {
         account_t account;
-        poll_loop_account(&run->loop, &account);
+        get_account(run, &account);
         tell_stats(run, &account);
         run->stats_us += every_us;
         if (run->stats_us < now_us) run->stats_us = now_us + every_us;
@@ -108,7 +143,24 @@ static uint32_t tick(void *ctx)
     return (uint32_t)(run->stats_us - now_us);
 }
 
-static bool is_over(const void *ctx) { return ((const reading_run_t *)ctx)->output_error != 0; }
+static uint32_t tick(void *ctx)
+{
+    reading_run_t *const run = ctx;
+    const uint32_t stats_us = tick_stats(run);
+    const uint32_t results_us = results_tick(&run->results);
+    return stats_us < results_us ? stats_us : results_us;
+}
+
+static bool is_ended_by_alarm(const reading_run_t *run)
+{
+    return run->options.until_alarm && run->is_alarmed;
+}
+
+static bool is_over(const void *ctx)
+{
+    const reading_run_t *const run = ctx;
+    return run->output_error != 0 || is_ended_by_alarm(run);
+}
 
 static int finish(reading_run_t *run)
 {
@@ -120,31 +172,37 @@ static int finish(reading_run_t *run)
     if (run->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written: %s\n", strerror(run->output_error));
-    poll_loop_account(&run->loop, &account);
+    get_account(run, &account);
     if (!run->options.stats || run->options.format->is_json) counters_print(&account, stderr);
     if (run->options.stats) tell_stats(run, &account);
+    results_print_dropped(&run->results, stderr);
     return !poll_loop_is_good(&run->loop) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+}
+
+/* What a program waits for comes before what has failed. */
+static int exit_status(const reading_run_t *run, int status)
+{
+    return is_ended_by_alarm(run) ? STATUS_ALARM : status;
 }
 
 static int run_read(const host_t *host, int argc, char **argv)
 {
-    static const poll_loop_user_t user = {write_reading, write_failure, write_remark,
-                                          write_port,    tick,          is_over};
+    static const poll_loop_user_t user = {take_sample, take_failure, write_remark, write_port, tick, is_over};
     static reading_run_t run; /* too large for a small stack */
     poll_loop_t *const loop = &run.loop;
     run.output_error = 0;
+    run.has_begun = run.is_alarmed = false;
     poll_loop_begin(loop, host, &user, &run);
     if (!read_options(&run.options, &loop->options, argc, argv)) return STATUS_USAGE;
     if (run.options.wants_help) return command_help(&read_command);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
-    if (!poll_loop_open(loop)) return loop->is_lost ? finish(&run) : STATUS_FAILED;
-    errno = 0;
-    if (run.options.format->begin != NULL) run.options.format->begin(stdout, all_columns(&run));
-    flush(&run);
+    results_begin(&run.results, &run.options.results, loop, write_result, &run);
+    if (!poll_loop_open(loop)) return exit_status(&run, loop->is_lost ? finish(&run) : STATUS_FAILED);
+    begin_output(&run);
     const int status = poll_loop_run(loop) ? finish(&run) : STATUS_FAILED;
     poll_loop_close(loop);
-    return status;
+    return exit_status(&run, status);
 }
 
 const command_t read_command = {"read", "reads sensors on a serial port", read_help, run_read};

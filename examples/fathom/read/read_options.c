@@ -3,21 +3,23 @@
 
 #include <string.h>
 
+#include "shared/command.h"
 #include "shared/options.h"
-#include "stations/reading_options.h"
+#include "stations/result_options.h"
 
 static const char command[] = "read";
 
-enum { MODE = READING_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, TEMPERATURE, HELP, OPTIONS };
+enum { MODE = RESULT_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, TEMPERATURE, UNTIL_ALARM, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
-    READING_OPTION_ROWS,
+    RESULT_OPTION_ROWS,
     [MODE] = {"mode", required_argument, NULL, 256},
     [ADDRESS] = {"address", required_argument, NULL, 256},
     [COUNT] = {"count", required_argument, NULL, 256},
     [FORMAT] = {"format", required_argument, NULL, 256},
     [STATS] = {"stats", optional_argument, NULL, 256},
     [TEMPERATURE] = {"temperature", optional_argument, NULL, 256},
+    [UNTIL_ALARM] = {"until-alarm", no_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -44,6 +46,15 @@ static bool take_temperature(sensor_options_t *sensors, const char *text)
     return true;
 }
 
+static bool take_until_alarm(read_options_t *options, const char *text)
+{
+    options->until_alarm = text != NULL;
+    if (!options->until_alarm || options->results.has_alarm) return true;
+    (void)usage_error(command, "--until-alarm takes --alarm too, such as --alarm "
+                               "'near<500,unknown=on,no-response=on'");
+    return false;
+}
+
 bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
@@ -53,7 +64,9 @@ bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, 
     options->wants_help = values[HELP] != NULL;
     if (options->wants_help) return true;
     if (!sensor_options(sensors, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]) ||
-        !reading_options(sensors, command, values) || !take_temperature(sensors, values[TEMPERATURE]))
+        !reading_options(sensors, command, values) || !take_temperature(sensors, values[TEMPERATURE]) ||
+        !result_options(&options->results, sensors, command, values) ||
+        !take_until_alarm(options, values[UNTIL_ALARM]))
         return false;
     options->format = format_find(command, values[FORMAT]);
     if (options->format == NULL || !take_stats(options, values[STATS]) ||
@@ -101,6 +114,11 @@ void read_help(FILE *to)
         "older than\n"
         "                    three times that\n",
         to);
+    result_options_help(to);
+    (void)fputs(
+        "  --until-alarm     ends at the first change that is printed after which an alarm is on, with exit "
+        "status 3\n",
+        to);
     (void)fputs(
         "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
         "in range\n"
@@ -109,13 +127,18 @@ void read_help(FILE *to)
         "Exit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a sensor gave "
         "no "
         "good\n"
-        "reading, 2 for wrong usage.\n\n"
+        "reading, 2 for wrong usage. 3 when --until-alarm has ended it, whatever failed before, and never "
+        "else.\n\n"
         "examples:\n"
         "  fathom read a16 --port /dev/ttyUSB0                          live, until Ctrl-C\n"
         "  fathom read hps167s --port /dev/ttyUSB0 --address 7 --count 1\n"
         "  fathom read a16:1:modbus hps167s:7 --port /dev/ttyUSB0       two on one pair, 9600 8N1 and 19200 "
         "8E1\n"
         "  fathom read a05 --mode modbus --port /dev/ttyUSB0 --format csv --interval 1000 > log.csv\n"
-        "  fathom read a16 --port /dev/ttyUSB0 --format json | jq .distance_mm\n",
+        "  fathom read a16 --port /dev/ttyUSB0 --format json | jq .distance_mm\n"
+        "  fathom read a16 --port /dev/ttyUSB0 --median 5 --gate 300 --level "
+        "mounting=2300,height=2000,capacity=5000\n"
+        "  fathom read a05:2:modbus --port /dev/ttyUSB0 --until-alarm --alarm "
+        "'near<500/600,unknown=on,no-response=on'\n",
         to);
 }

@@ -3,13 +3,15 @@
 #define READ_OPTIONS_H
 
 #include "read/output.h"
-#include "stations/sensor_options.h"
+#include "stations/results.h"
 
 /* What `fathom read` was asked to do, besides reading. */
 typedef struct {
     const format_t *format;
+    results_config_t results;
     uint32_t stats_us; /* all counters so often; 0: at the end only */
     bool stats;        /* all counters at the end */
+    bool until_alarm;  /* ends when an alarm is on */
     bool wants_help;
 } read_options_t;
 

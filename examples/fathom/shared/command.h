@@ -19,7 +19,8 @@ typedef struct {
 enum {
     STATUS_OK = 0,
     STATUS_FAILED = 1, /* the line, the port or the output failed */
-    STATUS_USAGE = 2
+    STATUS_USAGE = 2,
+    STATUS_ALARM = 3 /* `fathom read --until-alarm` alone: an alarm is on */
 };
 
 /* Prints its help on stdout; returns the exit status. */

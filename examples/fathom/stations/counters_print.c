@@ -242,6 +242,7 @@ void counters_print_json(const account_t *account, FILE *to)
     print_json_attempts(&account->sum, to);
     (void)fprintf(to, ",\"requests\":%" PRIu64 ",\"skipped_frames\":%" PRIu64 ",\"reconnects\":%" PRIu64,
                   account->requests, account->sum.skipped, account->reconnects);
+    if (account->has_median) (void)fprintf(to, ",\"dropped_spikes\":%" PRIu64, account->dropped_spikes);
     for (size_t g = 0; g != GROUPS; g++) print_json_group(&groups[g], to);
     print_json_time(&account->sum, to);
     (void)fputs(",\"units\":[", to);

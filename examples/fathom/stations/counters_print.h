@@ -13,8 +13,10 @@ typedef struct {
     size_t station_count;
     uint64_t requests; /* that were sent */
     uint64_t reconnects;
-    uint64_t time_us; /* since the start */
-    bool has_port;    /* its driver counts */
+    uint64_t dropped_spikes; /* of the medians, ... */
+    bool has_median;         /* ... where there are some */
+    uint64_t time_us;        /* since the start */
+    bool has_port;           /* its driver counts */
 } account_t;
 
 /* The sums, in two lines or less, and a line a sensor where there are several; what is 0 is left out. */

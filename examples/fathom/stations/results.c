@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+#include "stations/results.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "stations/poll_attempt.h"
+
+/* So late it may be noticed that an alarm has had no distance for unknown_us. */
+enum { TICK_US = 100000 };
+
+static result_probe_t *probe_of(results_t *results, const station_t *station, uint8_t probe)
+{
+    return &results->probes[station - results->loop->options.stations][probe - 1];
+}
+
+/* Is this one of its probes, and wanted? */
+static bool has_probe(const results_t *results, const station_t *station, uint8_t probe)
+{
+    const uint8_t wanted = results->loop->options.reading.probes;
+    return probe <= station->model->probes &&
+           (station->model->probes == 1 || wanted == 0 || (wanted >> (probe - 1) & 1) != 0);
+}
+
+static void begin_probe(const results_config_t *config, result_probe_t *probe, uint32_t now_us)
+{
+    const fathom_median_config_t median = {.window = probe->window,
+                                           .unknown_us = config->unknown_us,
+                                           .gate_mm = config->gate_mm,
+                                           .count = config->median};
+    if (config->median != 0) (void)fathom_median_init(&probe->median, &median);
+    if (!config->has_alarm) return;
+    (void)fathom_alarm_init(&probe->alarm, &config->alarm);
+    probe->began_us = now_us;
+    (void)fathom_alarm_status(&probe->alarm, FATHOM_PENDING, now_us);
+}
+
+void results_begin(results_t *results, const results_config_t *config, poll_loop_t *loop, results_tell_t tell,
+                   void *ctx)
+{
+    memset(results, 0, sizeof *results);
+    results->config = config;
+    results->loop = loop;
+    results->tell = tell;
+    results->ctx = ctx;
+    for (size_t i = 0; i != loop->options.station_count; i++)
+        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
+            begin_probe(config, &results->probes[i][p], (uint32_t)poll_now_us(loop));
+}
+
+static bool tell(const results_t *results, const station_t *station, result_t *result)
+{
+    const results_config_t *const config = results->config;
+    const fathom_sample_t *const sample = &result->sample;
+    result->has_level = config->has_level && sample->kind == FATHOM_TARGET &&
+                        fathom_level(&config->tank, sample->distance_mm, &result->level) == FATHOM_READY;
+    return results->tell(results->ctx, station, result);
+}
+
+static bool tell_change(const results_t *results, const station_t *station, result_probe_t *probe,
+                        result_t *result)
+{
+    probe->is_known = true;
+    result->alarm = probe->alarm.state;
+    result->is_on = fathom_alarm_is_on(&probe->alarm);
+    return tell(results, station, result);
+}
+
+/* For the alarm: what came instead of a distance, at now_us. */
+static bool take_status(results_t *results, const station_t *station, uint8_t number, fathom_status_t status,
+                        uint32_t now_us)
+{
+    result_probe_t *const probe = probe_of(results, station, number);
+    result_t result = {.sample = {.time_us = now_us,
+                                  .kind = FATHOM_UNKNOWN,
+                                  .model = (uint8_t)station->model->id,
+                                  .address = station->address,
+                                  .probe = number}};
+    const bool has_changed = fathom_alarm_status(&probe->alarm, status, now_us);
+    const bool is_late =
+        !probe->is_known && fathom_elapsed_us(now_us, probe->began_us) > probe->alarm.config.unknown_us;
+    return !has_changed && !is_late ? true : tell_change(results, station, probe, &result);
+}
+
+/* Makes the median of the sample. False: there is none. What the median leaves out stays as it came. */
+static bool take_median(result_probe_t *probe, fathom_sample_t *sample)
+{
+    if (sample->kind == FATHOM_UNKNOWN || sample->kind == FATHOM_FAULT) return true;
+    const bool has_median = fathom_median_sample(&probe->median, sample, sample);
+    probe->dropped += probe->median.dropped;
+    probe->median.dropped = 0;
+    return has_median;
+}
+
+bool results_sample(results_t *results, const station_t *station, const fathom_sample_t *sample)
+{
+    const results_config_t *const config = results->config;
+    result_probe_t *const probe = probe_of(results, station, sample->probe);
+    result_t result = {.sample = *sample};
+    const bool is_there = config->median == 0 || take_median(probe, &result.sample);
+    if (!config->has_alarm) return is_there ? tell(results, station, &result) : true;
+    if (!is_there) return take_status(results, station, sample->probe, FATHOM_READY, sample->time_us);
+    if (!fathom_alarm_sample(&probe->alarm, &result.sample)) return true;
+    return tell_change(results, station, probe, &result);
+}
+
+/* Of all its probes, or of a single one. */
+static void take_status_of(results_t *results, const station_t *station, uint8_t single,
+                           fathom_status_t status)
+{
+    const uint32_t now_us = (uint32_t)poll_now_us(results->loop);
+    for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
+        if (has_probe(results, station, probe) && (single == 0 || probe == single))
+            (void)take_status(results, station, probe, status, now_us);
+}
+
+void results_failure(results_t *results, const station_t *station, fathom_status_t status)
+{
+    poll_loop_t *const loop = results->loop;
+    if (!results->config->has_alarm) return;
+    if (status != FATHOM_ERR_PORT) {
+        const uint8_t refused = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
+        take_status_of(results, station, refused, status);
+        return;
+    }
+    /* The port is all sensors'. */
+    for (station_t *each = loop->options.stations; each != poll_end(loop); each++)
+        if (!poll_is_done(loop, each)) take_status_of(results, each, 0, status);
+}
+
+uint32_t results_tick(results_t *results)
+{
+    poll_loop_t *const loop = results->loop;
+    if (!results->config->has_alarm) return FATHOM_NO_DEADLINE;
+    for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
+        if (!poll_is_done(loop, station)) take_status_of(results, station, 0, FATHOM_PENDING);
+    return TICK_US;
+}
+
+uint64_t results_dropped(const results_t *results)
+{
+    uint64_t dropped = 0;
+    for (size_t i = 0; i != MAX_STATIONS; i++)
+        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) dropped += results->probes[i][p].dropped;
+    return dropped;
+}
+
+void results_print_dropped(const results_t *results, FILE *to)
+{
+    const sensor_options_t *const options = &results->loop->options;
+    for (size_t i = 0; i != options->station_count; i++) {
+        const station_t *const station = &options->stations[i];
+        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) {
+            const uint64_t dropped = results->probes[i][p].dropped;
+            if (dropped == 0) continue;
+            (void)fprintf(to, "fathom: %s", station->name);
+            if (station->model->probes > 1) (void)fprintf(to, " probe %u", (unsigned)p + 1);
+            (void)fprintf(to, ": spikes dropped %" PRIu64 "\n", dropped);
+        }
+    }
+}
