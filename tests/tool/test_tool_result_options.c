@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT */
+/* --median, --gate, --level and --alarm: what they may say, and what is said of everything else. */
+#include "tool_bench.h"
+
+#include <string.h>
+
+#include "stations/result_options.h"
+
+EACH_BEGINS(bench_begin())
+
+static const suite_t suite = {.set_up = begins};
+
+/* ---- what they may say ---- */
+
+#define TANK "mounting=2300,height=2000"
+
+TEST(a_level_may_be_so)
+{
+    const struct {
+        const char *text;
+        fathom_level_config_t tank;
+    } rows[] = {
+        {TANK ",capacity=5000", {fathom_tank_upright, NULL, 0, 5000, 2300, 2000, 0}},
+        {"capacity=1,height=1,mounting=1", {fathom_tank_upright, NULL, 0, 1, 1, 1, 0}},
+        {"mounting=65535,height=65535,capacity=4294967295,offset=32767",
+         {fathom_tank_upright, NULL, 0, 4294967295u, 65535, 65535, 32767}},
+        {TANK ",shape=upright,capacity=5000,offset=-32767",
+         {fathom_tank_upright, NULL, 0, 5000, 2300, 2000, -32767}},
+        {TANK ",shape=horizontal-cylinder,capacity=5000,offset=0",
+         {fathom_tank_horizontal_cylinder, NULL, 0, 5000, 2300, 2000, 0}},
+        {TANK ",shape=table,points=0:0/2000:4294967295", {fathom_tank_table, NULL, 2, 0, 2300, 2000, 0}},
+        {TANK ",points=65535:70000,shape=table", {fathom_tank_table, NULL, 1, 0, 2300, 2000, 0}},
+        {TANK
+         ",shape=table,points=0:0/1:1/2:2/3:3/4:4/5:5/6:6/7:7/8:8/9:9/10:10/11:11/12:12/13:13/14:14/15:15/"
+         "16:16/17:17/18:18/19:19/20:20/21:21/22:22/23:23/24:24/25:25/26:26/27:27/28:28/29:29/30:30/31:31",
+         {fathom_tank_table, NULL, 32, 0, 2300, 2000, 0}},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        results_config_t config = {0};
+        const fathom_level_config_t *const expected = &rows[i].tank;
+        assert_true(level_option(&config, "read", rows[i].text));
+        assert_true(config.has_level);
+        assert_false(config.has_alarm);
+        assert_ptr_equal(config.tank.volume, expected->volume);
+        assert_ptr_equal(config.tank.points, expected->point_count != 0 ? config.points : NULL);
+        assert_int_equal(config.tank.point_count, expected->point_count);
+        assert_int_equal(config.tank.capacity, expected->capacity);
+        assert_int_equal(config.tank.mounting_mm, expected->mounting_mm);
+        assert_int_equal(config.tank.height_mm, expected->height_mm);
+        assert_int_equal(config.tank.offset_mm, expected->offset_mm);
+    }
+}
+
+TEST(the_points_of_a_level_are_a_level_and_a_volume)
+{
+    results_config_t config = {0};
+    assert_true(level_option(&config, "read", TANK ",shape=table,points=500:400/1500:4000/2000:5000"));
+    assert_int_equal(config.points[0].level_mm, 500);
+    assert_int_equal(config.points[0].volume, 400);
+    assert_int_equal(config.points[2].level_mm, 2000);
+    assert_int_equal(config.points[2].volume, 5000);
+}
+
+enum { ON = FATHOM_ALARM_ON, OFF = FATHOM_ALARM_OFF };
+
+TEST(an_alarm_may_be_so)
+{
+    const struct {
+        const char *text;
+        fathom_alarm_config_t
+            alarm; /* on_hold, off_hold, unknown, on, off, when, unknown, no response, no target */
+    } rows[] = {
+        {"near<500/600,unknown=on,no-response=off", {0, 0, 0, 500, 600, FATHOM_NEAR, ON, OFF, false}},
+        {"near<500/500,unknown=off,no-response=on", {0, 0, 0, 500, 500, FATHOM_NEAR, OFF, ON, false}},
+        {"near<65535,no-response=on,unknown=on", {0, 0, 0, 65535, 65535, FATHOM_NEAR, ON, ON, false}},
+        {"far>2000/1900,unknown=on,no-response=on,no-target=unknown",
+         {0, 0, 0, 2000, 1900, FATHOM_FAR, ON, ON, true}},
+        {"far>1,unknown=off,no-response=off,no-target=far", {0, 0, 0, 1, 1, FATHOM_FAR, OFF, OFF, false}},
+        {"near<5,hold=200,unknown=on,no-response=on", {200000, 200000, 0, 5, 5, FATHOM_NEAR, ON, ON, false}},
+        {"near<5,unknown=on,hold=0/2000000,no-response=on,unknown-after=2000000",
+         {0, 2000000000u, 2000000000u, 5, 5, FATHOM_NEAR, ON, ON, false}},
+        {"near<5,unknown=on,no-response=on,unknown-after=1", {0, 0, 1000, 5, 5, FATHOM_NEAR, ON, ON, false}},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        results_config_t config = {0};
+        const fathom_alarm_config_t *const expected = &rows[i].alarm;
+        const fathom_alarm_config_t *const got = &config.alarm;
+        assert_true(alarm_option(&config, "read", rows[i].text));
+        assert_true(config.has_alarm);
+        assert_false(config.has_level);
+        assert_int_equal(got->when, expected->when);
+        assert_int_equal(got->on_mm, expected->on_mm);
+        assert_int_equal(got->off_mm, expected->off_mm);
+        assert_int_equal(got->on_hold_us, expected->on_hold_us);
+        assert_int_equal(got->off_hold_us, expected->off_hold_us);
+        assert_int_equal(got->unknown_us, expected->unknown_us);
+        assert_int_equal(got->if_unknown, expected->if_unknown);
+        assert_int_equal(got->if_no_response, expected->if_no_response);
+        assert_int_equal(got->no_target_is_unknown, expected->no_target_is_unknown);
+    }
+}
+
+/* ---- what they may not ---- */
+
+typedef struct {
+    const char *words;
+    const char *err;
+} wrong_t;
+
+static void expect_wrong(const char *option, const wrong_t *rows, size_t count)
+{
+    for (size_t i = 0; i != count; i++) {
+        const tool_run_t *const run =
+            tool_run(&bench.tool, "read a16 --port line %s%s", option, rows[i].words);
+        if (run->status != 2 || strstr(run->err, rows[i].err) == NULL ||
+            strstr(run->err, "; try: fathom read --help\n") == NULL || run->out[0] != '\0')
+            fail_msg("%s%s: exit status %d\n%snot: %s", option, rows[i].words, run->status, run->err,
+                     rows[i].err);
+    }
+}
+
+#define EXPECT_WRONG(option, rows) expect_wrong(option, rows, sizeof(rows) / sizeof(rows)[0])
+
+TEST(a_median_may_not_be_so)
+{
+    static const wrong_t rows[] = {
+        {"--median 2", "--median takes a whole number from 3 to 15, not '2'"},
+        {"--median 16", "not '16'"},
+        {"--median five", "not 'five'"},
+        {"--median 3 --gate 0", "--gate takes a whole number from 1 to 65535, not '0'"},
+        {"--median 3 --gate 65536", "not '65536'"},
+        {"--gate 300", "--gate is the median's: it takes --median too, such as --median 5"},
+        {"--median 3 --interval 2000000",
+         "--median: after 2000000 ms without a reading nothing is known, and --interval is 2000000 ms"},
+    };
+    EXPECT_WRONG("", rows);
+}
+
+#define POINTS "up to 32 of LEVEL:VOLUME, the level in mm, such as 500:400/1500:4000/2000:5000, not "
+#define GROW   ": level and volume grow from point to point, and a full tank has a volume"
+#define SHAPE  "points=, of which the last one is the full tank, and no capacity="
+#define NO_CAP "--level: capacity= is missing, or there are points=, which only shape=table takes"
+
+TEST(a_level_may_not_be_so)
+{
+    static const wrong_t rows[] = {
+        {"mounting=2300,hight=2000",
+         "--level: there is no key 'hight', only mounting, height, capacity, shape, "
+         "points, offset"},
+        {"2300", "--level: there is no key '2300'"},
+        {TANK ",capacity=5000,", "--level: there is no key ''"},
+        {TANK ",capacity", "--level: capacity= takes the volume of the full tank, a whole number from 1 to "
+                           "4294967295 in any unit, not ''"},
+        {TANK ",capacity=0", "not '0'"},
+        {TANK ",capacity=4294967296", "not '4294967296'"},
+        {"height=2000,capacity=5000",
+         "--level: mounting= is missing; it takes the mm from the tank's bottom to "
+         "the sensor's face, from 1 to 65535"},
+        {"mounting=2300,capacity=5000",
+         "--level: height= is missing; it takes the level in mm at which the tank "
+         "is full, from 1 to 65535"},
+        {"mounting=0,height=2000,capacity=5000", "--level: mounting= takes the mm from the tank's bottom"},
+        {"mounting=65536,height=2000,capacity=5000", "not '65536'"},
+        {"mounting=2300mm,height=2000,capacity=5000", "not '2300mm'"},
+        {TANK ",height=2000", "--level: height is there twice"},
+        {TANK, NO_CAP},
+        {TANK ",capacity=5000,points=500:400", NO_CAP},
+        {TANK ",capacity=5000,shape=round",
+         "--level: shape= takes upright, horizontal-cylinder or table, not "
+         "'round'"},
+        {TANK ",shape=table", SHAPE},
+        {TANK ",shape=table,capacity=5000", SHAPE},
+        {TANK ",shape=table,points=500:400,capacity=5000", SHAPE},
+        {TANK ",shape=table,points=", POINTS "''"},
+        {TANK ",shape=table,points=500", POINTS "'500'"},
+        {TANK ",shape=table,points=500:", POINTS "'500:'"},
+        {TANK ",shape=table,points=500:400/", POINTS "'500:400/'"},
+        {TANK ",shape=table,points=500:4:5", POINTS "'500:4:5'"},
+        {TANK ",shape=table,points=65536:1", POINTS "'65536:1'"},
+        {TANK ",shape=table,points=1:4294967296", POINTS "'1:4294967296'"},
+        {TANK
+         ",shape=table,points=0:0/1:1/2:2/3:3/4:4/5:5/6:6/7:7/8:8/9:9/10:10/11:11/12:12/13:13/14:14/15:15/"
+         "16:16/17:17/18:18/19:19/20:20/21:21/22:22/23:23/24:24/25:25/26:26/27:27/28:28/29:29/30:30/31:31/"
+         "32:32",
+         POINTS "'0:0/1:1"},
+        {TANK ",shape=table,points=500:400/500:500/2000:600", "--level: points= at 500:500" GROW},
+        {TANK ",shape=table,points=500:400/600:400/2000:500", "--level: points= at 600:400" GROW},
+        {TANK ",shape=table,points=500:400/600:500/2000:499", "--level: points= at 2000:499" GROW},
+        {TANK ",shape=table,points=2000:0", "--level: points= at 2000:0" GROW},
+        {TANK ",capacity=5000,offset=-32768",
+         "--level: offset= takes the mm that are added to each distance, "
+         "from -32767 to 32767, not '-32768'"},
+        {TANK ",capacity=5000,offset=32768", "not '32768'"},
+        {TANK ",capacity=5000,offset=--3", "not '--3'"},
+        {TANK ",capacity=5000,offset=-", "not '-'"},
+    };
+    EXPECT_WRONG("--level ", rows);
+}
+
+#define BEGINS                                                                                               \
+    "--alarm begins with near<ON or near<ON/OFF, far>ON or far>ON/OFF, in mm from 1 to 65535, such as "
+#define SIDE "on or off (say which: a bumper, a tank and a pit differ)"
+#define SAFE ",unknown=on,no-response=on"
+
+TEST(an_alarm_may_not_be_so)
+{
+    static const wrong_t rows[] = {
+        {"unknown=on,no-response=on,near<500", BEGINS "near<500/600, not with 'unknown=on'"},
+        {"near>500" SAFE, "not with 'near>500'"},
+        {"near" SAFE, "not with 'near'"},
+        {"near<" SAFE, "not with 'near<'"},
+        {"near<0" SAFE, "not with 'near<0'"},
+        {"near<65536" SAFE, "not with 'near<65536'"},
+        {"near<500/" SAFE, "not with 'near<500/'"},
+        {"near</600" SAFE, "not with 'near</600'"},
+        {"near<500/600/700" SAFE, "not with 'near<500/600/700'"},
+        {"far<500" SAFE, "not with 'far<500'"},
+        {"far>5m" SAFE, "not with 'far>5m'"},
+        {"near<500/499" SAFE,
+         "--alarm near<500/499: it goes off farther away than on with near, and nearer than "
+         "on with far"},
+        {"far>2000/2001" SAFE, "--alarm far>2000/2001: it goes off farther away"},
+        {"near<500", "--alarm: unknown= is missing; it takes " SIDE},
+        {"near<500,no-response=on", "--alarm: unknown= is missing; it takes " SIDE},
+        {"near<500,unknown=on", "--alarm: no-response= is missing; it takes " SIDE},
+        {"near<500,unknown=yes,no-response=on", "--alarm: unknown= takes " SIDE ", not 'yes'"},
+        {"near<500,unknown=on,no-response", "--alarm: no-response= takes " SIDE ", not ''"},
+        {"near<500,unknown=on,unknown=on", "--alarm: unknown is there twice"},
+        {"near<500,holds=1" SAFE, "--alarm: there is no key 'holds', only unknown, no-response, hold, "
+                                  "unknown-after, no-target"},
+        {"near<500,hold=2000001" SAFE,
+         "--alarm: hold= takes the ms before it goes on, and off if that differs, "
+         "from 0 to 2000000, such as 200/1000, not '2000001'"},
+        {"near<500,hold=1/2000001" SAFE, "not '1/2000001'"},
+        {"near<500,hold=1/" SAFE, "not '1/'"},
+        {"near<500,unknown-after=0" SAFE,
+         "--alarm: unknown-after= takes the ms without a distance after which it "
+         "is not known, from 1 to 2000000, not '0'"},
+        {"near<500,unknown-after=2000001" SAFE, "not '2000001'"},
+        {"near<500,no-target=near" SAFE,
+         "--alarm: no-target= takes far (the default) or unknown, not 'near'"},
+        {"near<500,unknown-after=1000" SAFE " --interval 1000",
+         "--alarm: after 1000 ms without a reading nothing is known, and --interval is 1000 ms: it has to be "
+         "less"},
+        {"near<500" SAFE " --interval 3600000", "--alarm: after 2000000 ms without a reading"},
+    };
+    EXPECT_WRONG("--alarm ", rows);
+}
+
+TEST(a_list_of_keys_may_not_be_endless)
+{
+    char words[1100];
+    memset(words, '1', sizeof words);
+    words[sizeof words - 1] = '\0';
+    results_config_t config = {0};
+    memcpy(words, "mounting=", strlen("mounting="));
+    assert_false(level_option(&config, "read", words));
+}
+
+TEST(until_alarm_takes_an_alarm)
+{
+    static const wrong_t rows[] = {
+        {"", "--until-alarm takes --alarm too, such as --alarm 'near<500,unknown=on,no-response=on'"}};
+    EXPECT_WRONG("--until-alarm", rows);
+}
+
+/* The longest interval with which they know something: three of them are more than 2000 s. */
+TEST(a_long_interval_is_right)
+{
+    bench_a16((fathom_sim_a16_config_t){0});
+    ASSERT_RUN(0,
+               "read a16:1:modbus --count 1 --port line --median 3 --interval 1999999 --alarm near<5" SAFE);
+}
