@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom read --alarm and --until-alarm at a real port: what ends it, and with which exit status."""
+import os
+import signal
+
+import e2e
+
+ALARM = 'near<500/600,unknown=off,no-response=on'
+
+
+class Alarm(e2e.Case):
+    def begin(self, port, options='--until-alarm'):
+        return self.fathom(f'read a16 --mode modbus --port {port} --timeout 400', options,
+                           ['--alarm', f'{ALARM},unknown-after=700'])
+
+    def look(self, sim, options):
+        """A simulated A16 takes up to 0.5 s."""
+        return self.fathom(f'read a16 --mode modbus --port {sim.port}', options, ['--alarm', ALARM])
+
+    def test_until_alarm_ends_with_3_as_soon_as_something_is_near(self):
+        device = self.device()
+        reader = self.begin(device.port)
+        for mm in (700, 550, 499):
+            device.asked(e2e.ASK_A16, e2e.registers(1, mm))
+        done = self.ends(reader, 3, 'fathom: attempts 3, failed 0, readings 3')
+        self.assertRegex(done.out, r'^ +[\d.]+ s  a16: alarm off, 700 mm\n +[\d.]+ s  a16: alarm on, 499 mm\n$')
+
+    def test_until_alarm_ends_with_3_when_the_sensor_falls_silent(self):
+        device = self.device()
+        reader = self.begin(device.port, '--until-alarm --format csv')
+        device.asked(e2e.ASK_A16, e2e.registers(1, 700))
+        done = self.ends(reader, 3, 'nothing was heard')
+        self.assertEqual([(row['alarm'], row['is_on'], row['distance_mm']) for row in done.rows],
+                         [('off', 'false', '700'), ('no_response', 'true', '')])
+
+    def test_until_alarm_ends_with_3_when_the_port_is_lost_and_waited_for(self):
+        port = self.path('port')
+        device = self.device()
+        os.symlink(device.port, port)
+        reader = self.begin(port, '--until-alarm --reconnect')
+        device.asked(e2e.ASK_A16, e2e.registers(1, 700))
+        reader.expect('alarm off, 700 mm')
+        os.unlink(port)
+        device.hang_up()
+        self.assertRegex(self.ends(reader, 3, 'waiting').out, r'a16: no response \(on\)\n$')
+
+    def test_a_port_that_never_comes_is_no_response_too(self):
+        done = self.ends(self.begin(self.path('none'), '--until-alarm --reconnect --format csv'), 3)
+        self.assertEqual([(row['address'], row['alarm'], row['is_on']) for row in done.rows],
+                         [('1', 'no_response', 'true')])
+
+    def test_the_user_who_ends_it_is_no_alarm(self):
+        sim = self.sim('a16::modbus --distance 700')
+        reader = self.look(sim, '--until-alarm')
+        reader.expect('alarm off, 700 mm')
+        self.assertEqual(reader.end(signal.SIGINT).code, 0)
+
+    def test_without_until_alarm_it_reads_on(self):
+        sim = self.sim('a16::modbus --distance 400')
+        self.assertEqual(self.ends(self.look(sim, '--count 3'), 0).out.count('alarm on, 400 mm\n'), 1)
+
+
+if __name__ == '__main__':
+    e2e.main()
