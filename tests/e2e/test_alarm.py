@@ -45,6 +45,18 @@ class Alarm(e2e.Case):
         device.hang_up()
         self.assertRegex(self.ends(reader, 3, 'waiting').out, r'a16: no response \(on\)\n$')
 
+    def test_a_port_that_is_lost_is_no_response_of_any_sensor(self):
+        """Also of those that have just responded."""
+        sim = self.sim('a16:1:modbus a16:2:modbus --distance 700', ['--link', self.path('line')])
+        reader = self.fathom(f'read a16:1 a16:2 --reconnect --port {self.path("line")}',
+                             ['--alarm', f'{ALARM},unknown-after=2500'])
+        for sensor in ('a16:1', 'a16:2'):
+            reader.expect(f'{sensor}: alarm off, 700 mm')
+        sim.end(signal.SIGKILL)
+        for sensor in ('a16:1', 'a16:2'):
+            reader.expect(rf'{sensor}: no response \(on\)')
+        self.assertNotIn('not known', reader.end(signal.SIGINT).out)
+
     def test_a_port_that_never_comes_is_no_response_too(self):
         done = self.ends(self.begin(self.path('none'), '--until-alarm --reconnect --format csv'), 3)
         self.assertEqual([(row['address'], row['alarm'], row['is_on']) for row in done.rows],

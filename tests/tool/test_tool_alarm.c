@@ -150,6 +150,22 @@ TEST(the_first_state_is_told_when_nothing_has_come_for_that_time)
     expect_text(alarm_of("hps167s", "near<500" SAFE, "--count 8"), "5 hps167s: not known (on)\n");
 }
 
+/* Of 15 there is none in 8 s, but the device responds. */
+TEST(a_sample_without_a_median_is_a_response)
+{
+    SEES_A16(700);
+    expect_text(alarm_of("a16:1:modbus", "near<500,unknown=on,no-response=off", "--median 15 --count 8"),
+                "5 a16: not known (on)\n");
+}
+
+/* Nothing else happens before the reader gives up after 60 s. */
+TEST(the_time_is_looked_at_when_nothing_happens)
+{
+    bench.tool.idle = fathom_sim_clock_idle;
+    expect_text(alarm_of("a16", "near<500" SAFE, "--timeout 60000 --duration 20"),
+                "5 a16: no response (on)\n");
+}
+
 /* ---- several ---- */
 
 /* The A16 takes 0.5 s, then the A05 0.4 s: the last distance of probe 4 is of 1.9 s, and 1.5 s later it is 3.4 s. */

@@ -104,14 +104,12 @@ bool results_sample(results_t *results, const station_t *station, const fathom_s
     return tell_change(results, station, probe, &result);
 }
 
-/* Of all its probes, or of a single one. */
-static void take_status_of(results_t *results, const station_t *station, uint8_t single,
-                           fathom_status_t status)
+/* Of all its probes: where the value of one was refused, it is a response of all. */
+static void take_status_of_all(results_t *results, const station_t *station, fathom_status_t status)
 {
     const uint32_t now_us = (uint32_t)poll_now_us(results->loop);
     for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
-        if (has_probe(results, station, probe) && (single == 0 || probe == single))
-            (void)take_status(results, station, probe, status, now_us);
+        if (has_probe(results, station, probe)) (void)take_status(results, station, probe, status, now_us);
 }
 
 void results_failure(results_t *results, const station_t *station, fathom_status_t status)
@@ -119,13 +117,12 @@ void results_failure(results_t *results, const station_t *station, fathom_status
     poll_loop_t *const loop = results->loop;
     if (!results->config->has_alarm) return;
     if (status != FATHOM_ERR_PORT) {
-        const uint8_t refused = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
-        take_status_of(results, station, refused, status);
+        take_status_of_all(results, station, status);
         return;
     }
     /* The port is all sensors'. */
     for (station_t *each = loop->options.stations; each != poll_end(loop); each++)
-        if (!poll_is_done(loop, each)) take_status_of(results, each, 0, status);
+        if (!poll_is_done(loop, each)) take_status_of_all(results, each, status);
 }
 
 uint32_t results_tick(results_t *results)
@@ -133,7 +130,7 @@ uint32_t results_tick(results_t *results)
     poll_loop_t *const loop = results->loop;
     if (!results->config->has_alarm) return FATHOM_NO_DEADLINE;
     for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
-        if (!poll_is_done(loop, station)) take_status_of(results, station, 0, FATHOM_PENDING);
+        if (!poll_is_done(loop, station)) take_status_of_all(results, station, FATHOM_PENDING);
     return TICK_US;
 }
 
