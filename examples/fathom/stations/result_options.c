@@ -59,7 +59,8 @@ void result_options_help(FILE *to)
     (void)fputs(
         "  --median N        the median of the last N samples of each probe, 3 to 15, in place of each; "
         "nothing before\n"
-        "                    there are N. After 5 s, or three intervals, without a sample it begins anew\n"
+        "                    there are N. After 5 s (or three intervals, if longer) without a sample it "
+        "begins anew\n"
         "  --gate MM         drops a sample that is farther than that from the median: a spike; the third "
         "one "
         "in a row\n"
