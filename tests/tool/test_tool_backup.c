@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "fathom/version.h"
 #include "sim/fault.h"
 
 static int set_up(void **state)
@@ -50,7 +51,7 @@ static void change(const char *from, const char *to)
 }
 
 #define BEGIN(place)                                                                                         \
-    "# The settings of a range sensor, as fathom save 0.2.0 has read them at\n"                              \
+    "# The settings of a range sensor, as fathom save " FATHOM_VERSION_STRING " has read them at\n"          \
     "# " place ", 2025-11-24T16:00:"
 #define MIDDLE                                                                                               \
     "Z. fathom restore writes them into a unit.\n"                                                           \
