@@ -34,7 +34,7 @@ static void print_help(void)
                  "  fathom sim  a16 --link ./tank\n"
                  "  fathom read a16 --port ./tank\n\n"
                  "Exit status: 0 when nothing failed, 1 when the line, the port or the output did, 2 for "
-                 "wrong usage.\n");
+                 "wrong usage,\n3 when `fathom read --until-alarm` was ended by an alarm.\n");
 }
 
 int run_command(const host_t *host, int argc, char **argv)
