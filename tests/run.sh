@@ -93,14 +93,16 @@ show_costs() {
 }
 
 slow='e2e|interop|second|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
+build_and_test() { # PRESET
+    stage 42 "$1: build" build "$1"
+    stage 18 "$1: tests in C" run_tests "$1" "$1" --label-exclude "$slow"
+}
+
 run_short() {
     stage 75 'gcc: build, firmware too' build gcc
     stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
     stage 35 'planted faults' run_tests gcc faults --label-regex faults
-    for preset in clang gcc-sanitize clang-sanitize; do
-        stage 42 "$preset: build" build "$preset"
-        stage 18 "$preset: tests in C" run_tests "$preset" "$preset" --label-exclude "$slow"
-    done
+    for preset in clang clang-sanitize; do build_and_test "$preset"; done
     stage 22 'coverage: build' build coverage
     stage 22 'coverage: tests in C, every branch' measure_coverage
     stage 1 'what it costs' show_costs
@@ -108,6 +110,7 @@ run_short() {
 
 run_long() {
     stage 300 'gcc and clang-sanitize: build' build_two
+    build_and_test gcc-sanitize
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
     stage 240 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
