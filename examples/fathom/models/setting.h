@@ -25,7 +25,6 @@ typedef enum {
 typedef struct {
     const char *name;
     const char *what;
-    setting_kind_t kind;
     const char *mode;         /* in which it can be asked: "modbus", "dyp" */
     const char *unit;         /* of the value; NULL: it has none */
     const char *effect;       /* of a change: when it holds and how long; NULL: it cannot be changed */
@@ -33,12 +32,13 @@ typedef struct {
     int32_t least;            /* ... from here */
     int32_t most;             /* to here, */
     int32_t step;             /* a multiple of this */
-    bool has_zero;            /* 0 is a value too, at which it may not be found again */
-    bool moves;               /* from then on the device is elsewhere: its address, ... */
-    bool is_baud;             /* ... or its line settings */
-    bool is_never_blind;      /* it has to be read before it is written, or afterwards */
-    bool is_of_variant;       /* not every variant of the device has it */
-    const char *risk; /* what writing it may do to a unit whose value is not known; NULL: nothing else */
+    setting_kind_t kind;
+    bool has_zero;       /* 0 is a value too, at which it may not be found again */
+    bool moves;          /* from then on the device is elsewhere: its address, ... */
+    bool is_baud;        /* ... or its line settings */
+    bool is_never_blind; /* it has to be read before it is written, or afterwards */
+    bool is_of_variant;  /* not every variant of the device has it */
+    const char *risk;    /* what writing it may do to a unit whose value is not known; NULL: nothing else */
     /* Where it cannot be read: what shows that it holds; NULL: its acknowledgement alone. */
     const char *confirmed;
     const char *unconfirmed; /* the same for what does not */

@@ -155,16 +155,16 @@ static bool take_first_register(reader_settings_t *settings, const char *command
 }
 
 static const struct {
-    int row;
     const char *name;
+    int row;
     uint8_t takes;
     bool (*take)(reader_settings_t *settings, const char *command, const char *text);
 } readings[] = {
-    {OPTION_PROBES, "probes", READER_TAKES_PROBES, take_probes},
-    {OPTION_MEANS, "means", READER_TAKES_MEANINGS, take_means},
-    {OPTION_WINDOW, "window", READER_TAKES_WINDOW, take_window},
-    {OPTION_VALUE, "value", READER_TAKES_VALUE, take_value},
-    {OPTION_FIRST_REGISTER, "first-register", READER_TAKES_REGISTERS, take_first_register},
+    {"probes", OPTION_PROBES, READER_TAKES_PROBES, take_probes},
+    {"means", OPTION_MEANS, READER_TAKES_MEANINGS, take_means},
+    {"window", OPTION_WINDOW, READER_TAKES_WINDOW, take_window},
+    {"value", OPTION_VALUE, READER_TAKES_VALUE, take_value},
+    {"first-register", OPTION_FIRST_REGISTER, READER_TAKES_REGISTERS, take_first_register},
 };
 
 bool reading_options(sensor_options_t *options, const char *command, const char *const *values)
