@@ -204,20 +204,15 @@ static int check_address(const char *path, const backup_t *file)
 static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
+    int status = STATUS_OK;
     backup_t file;
-    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&restore_command);
-    if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
+    if (!session_alone(&session, &restore_command, argc, argv, table, values, &status)) return status;
     const char *const path = values[FILE_NAME];
     if (path == NULL) return usage_error(command, "--file is missing, as fathom save has written it");
     if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
     if (!session_set_mode(&session, command, values, "modbus") || !session_can_set(&session, command))
         return STATUS_USAGE;
-    int status = backup_parse(path, session.station->model, &file);
+    status = backup_parse(path, session.station->model, &file);
     if (status == STATUS_OK && values[AS_NEW] != NULL) status = check_address(path, &file);
     if (status != STATUS_OK) return status;
     if (!session_open(&session, host)) return STATUS_FAILED;

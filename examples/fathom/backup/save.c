@@ -71,18 +71,13 @@ static int save(const host_t *host, const char *path)
 static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
-    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&save_command);
-    if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
+    int status = STATUS_OK;
+    if (!session_alone(&session, &save_command, argc, argv, table, values, &status)) return status;
     if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
     if (!session_set_mode(&session, command, values, "modbus")) return STATUS_USAGE;
     if (values[FILE_NAME] != NULL && !new_file_is_free(values[FILE_NAME])) return STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    const int status = save(host, values[FILE_NAME]);
+    status = save(host, values[FILE_NAME]);
     session_close(&session);
     return status;
 }

@@ -116,16 +116,11 @@ static void help(FILE *to)
 static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
+    int status = STATUS_OK;
     uint32_t known_mm = 0;
     calibrate_batch_t asked = {.samples = CALIBRATE_SAMPLES, .spread_mm = SPREAD_MM};
     calibrate_plan_t plan;
-    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&calibrate_command);
-    if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
+    if (!session_alone(&session, &calibrate_command, argc, argv, table, values, &status)) return status;
     if (session.station->model->id != FATHOM_HPS167S)
         return usage_error(command, "only an hps167s has a distance offset; %s has none",
                            session.station->model->name);
@@ -138,7 +133,7 @@ static int run(const host_t *host, int argc, char **argv)
         return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
     calibrate_begin(&plan, (int32_t)known_mm, values[UNSETTLED] == NULL);
-    const int status = calibrate(&plan, &asked, values[DRY_RUN] != NULL);
+    status = calibrate(&plan, &asked, values[DRY_RUN] != NULL);
     session_close(&session);
     return status;
 }

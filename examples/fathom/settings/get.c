@@ -143,13 +143,8 @@ static int tell_on_port(const host_t *host, const setting_t *settings, size_t co
 static int run_info(const host_t *host, int argc, char **argv)
 {
     const char *values[SESSION_OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
-    if (!session_options(&session, "info", argc, argv, session_table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&info_command);
-    if (count != 0) return usage_error("info", "one sensor at a time; '%s' is too much", words[0]);
+    int status = STATUS_OK;
+    if (!session_alone(&session, &info_command, argc, argv, session_table, values, &status)) return status;
     return tell_on_port(host, session_settings(&session), SIZE_MAX);
 }
 

@@ -98,13 +98,8 @@ static void help(FILE *to)
 static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
-    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&reset_command);
-    if (count != 0) return usage_error(command, "one sensor at a time; '%s' is too much", words[0]);
+    int status = STATUS_OK;
+    if (!session_alone(&session, &reset_command, argc, argv, table, values, &status)) return status;
     if (session.station->model->reset.restore == NULL)
         return usage_error(command, "only an hps167s can be reset; %s has no such command",
                            session.station->model->name);
@@ -114,7 +109,7 @@ static int run(const host_t *host, int argc, char **argv)
                                     "--yes-restore-factory-settings (the interface) or "
                                     "--yes-load-factory-sensor-settings");
     if (!session_open(&session, host)) return STATUS_FAILED;
-    const int status = finish(is_restore, session_call(&session, is_restore ? restore : load, NULL));
+    status = finish(is_restore, session_call(&session, is_restore ? restore : load, NULL));
     session_close(&session);
     return status;
 }

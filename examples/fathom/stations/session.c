@@ -54,6 +54,22 @@ bool session_options(session_t *session, const char *command, int argc, char **a
     return true;
 }
 
+bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
+                   const struct option *table, const char **values, int *status)
+{
+    char **words = NULL;
+    int count = 0;
+    bool wants_help = false;
+    *status = STATUS_USAGE;
+    if (!session_options(session, command->name, argc, argv, table, values, &words, &count, &wants_help))
+        return false;
+    if (wants_help)
+        *status = command_help(command);
+    else if (count != 0)
+        (void)usage_error(command->name, "one sensor at a time; '%s' is too much", words[0]);
+    return !wants_help && count == 0;
+}
+
 bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode)
 {
     if (strcmp(session->station->mode->name, mode) == 0) return true;

@@ -3,6 +3,7 @@
 #define SESSION_H
 
 #include "models/setting.h"
+#include "shared/command.h"
 #include "shared/line_text.h"
 #include "stations/sensor_options.h"
 
@@ -32,6 +33,11 @@ extern const struct option session_table[SESSION_OPTIONS + 1];
 bool session_options(session_t *session, const char *command, int argc, char **argv,
                      const struct option *table, const char **values, char ***words, int *count,
                      bool *wants_help);
+
+/* The same for a command that takes a sensor and no word behind it. False: the command is over, and *status is its exit
+ * status: --help was printed, or a usage error. */
+bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
+                   const struct option *table, const char **values, int *status);
 
 /* The same sensor in another of its modes; after a usage error false: the user has asked for another one. */
 bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode);
