@@ -15,13 +15,7 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
-{
-    desk_end();
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+static const suite_t suite = {.set_up = set_up, .tear_down = desk_end};
 
 enum { ROWS = 8 };
 

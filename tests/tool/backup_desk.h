@@ -8,7 +8,7 @@
 enum { DESK_TEXT = 8192 };
 
 void desk_begin(void);
-void desk_end(void);
+int desk_end(void **state); /* a suite's tear-down */
 
 /* Of a file in it; valid until the next call but one. */
 const char *desk_path(const char *name);

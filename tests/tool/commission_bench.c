@@ -44,7 +44,17 @@ void site_begin(void)
     (void)unlink(site.record);
 }
 
-void site_end(void) { (void)unlink(site.record); }
+int site_set_up(void **state)
+{
+    site_begin();
+    return 0;
+}
+
+int site_tear_down(void **state)
+{
+    (void)unlink(site.record);
+    return 0;
+}
 
 /* ---- units ---- */
 

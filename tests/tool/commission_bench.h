@@ -31,9 +31,10 @@ typedef struct {
 
 extern site_t site;
 
-/* An empty line, and no record. */
+/* An empty line, and no record; and the same as the set-up of a suite. */
 void site_begin(void);
-void site_end(void);
+int site_set_up(void **state);
+int site_tear_down(void **state);
 
 /* Units that come at once or later: the first one is connected. */
 void add_hps(fathom_sim_hps167s_config_t config);

@@ -16,13 +16,7 @@ static int set_up(void **state)
     return 0;
 }
 
-static int tear_down(void **state)
-{
-    desk_end();
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+static const suite_t suite = {.set_up = set_up, .tear_down = desk_end};
 
 static uint32_t requests(void)
 {

@@ -8,19 +8,7 @@
 
 #include "sim/fault.h"
 
-static int set_up(void **state)
-{
-    site_begin();
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    site_end();
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+static const suite_t suite = {.set_up = site_set_up, .tear_down = site_tear_down};
 
 static fathom_sim_fault_t faults;
 

@@ -5,19 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static int set_up(void **state)
-{
-    site_begin();
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    site_end();
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+static const suite_t suite = {.set_up = site_set_up, .tear_down = site_tear_down};
 
 TEST(of_two_units_at_address_1_none_is_written)
 {

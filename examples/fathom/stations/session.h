@@ -27,8 +27,8 @@ extern const struct option session_table[SESSION_OPTIONS + 1];
 
 /*
  * Reads the options and the sensor, argv's first word that is no option; the words behind it are left in words[0] to
- * words[*count - 1]. The mode is the one in which the sensor is asked. needs_port: false, where the command can do
- * something without. False after a usage error. wants_help: --help was given, nothing else was looked at.
+ * words[*count - 1]. The mode is the one in which the sensor is asked. False after a usage error. wants_help: --help was
+ * given, nothing else was looked at.
  */
 bool session_options(session_t *session, const char *command, int argc, char **argv,
                      const struct option *table, const char **values, char ***words, int *count,
