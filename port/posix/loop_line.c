@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "internal/posix_loop.h"
+
+enum { GAP_US = 25000 };
+
+/* ---- a read that asks only where something has come ---- */
+
+static int gated_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    fathom_loop_source_t *const source = ctx;
+    if (source->is_open && !source->is_readable) return 0;
+    const int n = source->inner.read(source->inner.ctx, bytes, capacity, rx);
+    if (n == 0 || (n > 0 && (size_t)n < capacity && source->reads_all)) source->is_readable = false;
+    return n;
+}
+
+static int inner_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const fathom_loop_source_t *const source = ctx;
+    return source->inner.write(source->inner.ctx, bytes, length);
+}
+
+static bool inner_sent(void *ctx)
+{
+    const fathom_loop_source_t *const source = ctx;
+    return source->inner.sent(source->inner.ctx);
+}
+
+static int inner_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    const fathom_loop_source_t *const source = ctx;
+    return source->inner.set_line(source->inner.ctx, settings);
+}
+
+static int inner_set_break(void *ctx, bool on)
+{
+    const fathom_loop_source_t *const source = ctx;
+    return source->inner.set_break(source->inner.ctx, on);
+}
+
+static uint32_t inner_leaves_in_us(void *ctx)
+{
+    const fathom_loop_source_t *const source = ctx;
+    return source->inner.leaves_in_us(source->inner.ctx);
+}
+
+fathom_uart_t fathom_loop_uart(fathom_loop_source_t *source, const fathom_uart_t *uart)
+{
+    source->inner = *uart;
+    const fathom_uart_t gated = {.read = gated_read,
+                                 .write = inner_write,
+                                 .sent = inner_sent,
+                                 .set_line = uart->set_line != NULL ? inner_set_line : NULL,
+                                 .set_break = uart->set_break != NULL ? inner_set_break : NULL,
+                                 .leaves_in_us = uart->leaves_in_us != NULL ? inner_leaves_in_us : NULL,
+                                 .ctx = source};
+    return gated;
+}
+
+/* ---- lines ---- */
+
+static fathom_loop_line_t *line_of(fathom_loop_source_t *source) { return (fathom_loop_line_t *)source; }
+
+static bool open_line(fathom_loop_source_t *source)
+{
+    fathom_loop_line_t *const line = line_of(source);
+    return fathom_posix_open(&line->port, line->path, &line->settings) == FATHOM_POSIX_OK;
+}
+
+static void close_line(fathom_loop_source_t *source) { fathom_posix_close(&line_of(source)->port); }
+
+static int line_fd(const fathom_loop_source_t *source)
+{
+    return fathom_posix_fd(&((const fathom_loop_line_t *)source)->port);
+}
+
+static short line_events(const fathom_loop_source_t *source)
+{
+    return fathom_posix_poll_events(&((const fathom_loop_line_t *)source)->port);
+}
+
+static bool poll_line(fathom_loop_source_t *source)
+{
+    return fathom_line_poll(&line_of(source)->line) != FATHOM_ERR_PORT;
+}
+
+static uint32_t line_due_us(fathom_loop_source_t *source)
+{
+    return fathom_line_due_us(&line_of(source)->line);
+}
+
+static const char *line_error_text(const fathom_loop_source_t *source)
+{
+    return fathom_posix_error_text(&((const fathom_loop_line_t *)source)->port);
+}
+
+fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line_t *line, const char *path,
+                                           const fathom_line_settings_t *settings)
+{
+    static const fathom_loop_kind_t kind = {open_line, close_line,  line_fd,        line_events,
+                                            poll_line, line_due_us, line_error_text};
+    if (loop == NULL || line == NULL || path == NULL || settings == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
+    memset(line, 0, sizeof *line);
+    const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
+    line->source.kind = &kind;
+    line->source.reads_all = true;
+    line->path = path;
+    line->settings = *settings;
+    const fathom_uart_t uart = fathom_posix_uart(&line->port);
+    line->uart = fathom_loop_uart(&line->source, &uart);
+    line->clock = fathom_posix_clock();
+    line->config.uart = &line->uart;
+    line->config.clock = &line->clock;
+    line->config.frame = line->frame;
+    line->config.frame_size = sizeof line->frame;
+    line->config.find_echo = fathom_line_find_echo;
+    line->config.silence_us = FATHOM_T3_5_US(settings->baud, bits);
+    line->config.gap_us = GAP_US;
+    (void)fathom_line_init(&line->line, &line->config); /* all of it is there */
+    line->modbus = fathom_modbus_client(&line->line);
+    fathom_loop_add(loop, &line->source);
+    return FATHOM_POSIX_OK;
+}
+
+/* ---- pins ---- */
+
+static int pin_fd(const fathom_loop_source_t *source) { return ((const fathom_loop_pin_t *)source)->fd; }
+
+void fathom_loop_add_pin(fathom_loop_t *loop, fathom_loop_pin_t *pin, int fd)
+{
+    static const fathom_loop_kind_t kind = {.fd = pin_fd};
+    memset(pin, 0, sizeof *pin);
+    pin->source.kind = &kind;
+    pin->fd = fd;
+    fathom_loop_add(loop, &pin->source);
+}
