@@ -97,7 +97,7 @@ static bool begin_station(poll_loop_t *loop, station_t *station)
     reader_settings_t settings = options->reading;
     settings.timeout_us = options->timeout_us;
     settings.period_us = options->interval_us;
-    settings.line = options->has_mixed_lines ? &station->line : NULL;
+    settings.line = options->ports[0].has_mixed_lines ? &station->line : NULL;
     settings.backoff_us = poll_is_shared(loop) ? 0 : READER_BACKOFF_US;
     settings.address = station->address;
     settings.retries = options->retries;
@@ -133,7 +133,7 @@ static bool begin_reading(poll_loop_t *loop)
 /* False: it is to end before the port is there. */
 static bool wait_for_port(poll_loop_t *loop)
 {
-    const fathom_line_settings_t *const line = &loop->options.line;
+    const fathom_line_settings_t *const line = &loop->options.ports[0].line;
     do wait_for(loop, NULL, USB_ADAPTER_RETRY_US);
     while (!is_over(loop) && !usb_adapter_try(&loop->adapter, &loop->channel, loop->host, line));
     return !is_over(loop);
@@ -188,9 +188,9 @@ bool poll_loop_open(poll_loop_t *loop)
     const sensor_options_t *const options = &loop->options;
     const fathom_posix_uart_t *const port = &loop->channel.port;
     char text[TEXT];
-    loop->channel.echo = options->echo;
-    loop->adapter.path = options->port;
-    if (usb_adapter_try(&loop->adapter, &loop->channel, loop->host, &options->line)) return true;
+    loop->channel.echo = options->ports[0].echo;
+    loop->adapter.path = options->ports[0].path;
+    if (usb_adapter_try(&loop->adapter, &loop->channel, loop->host, &options->ports[0].line)) return true;
     loop->is_lost = options->reconnect && fathom_posix_error(port) == FATHOM_POSIX_ERR_NOT_FOUND;
     (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(port),
                    loop->is_lost ? "; waiting until it is there" : "");

@@ -96,12 +96,13 @@ static bool take_lines(sensor_options_t *options, const char *command, const cha
             !take_stop_bits(command, values[OPTION_STOP_BITS], line) ||
             !take_parity(command, values[OPTION_PARITY], &line->parity))
             return false;
-        if (i == 0 || line->baud < options->line.baud) options->line = *line;
+        port_options_t *const port = &options->ports[options->stations[i].port];
+        if (port->line.baud == 0 || line->baud < port->line.baud) port->line = *line;
     }
     for (size_t i = 0; i != options->station_count; i++) {
         const fathom_line_settings_t *const line = &options->stations[i].line;
-        if (line->baud != options->line.baud || line->parity != options->line.parity)
-            options->has_mixed_lines = true;
+        port_options_t *const port = &options->ports[options->stations[i].port];
+        if (line->baud != port->line.baud || line->parity != port->line.parity) port->has_mixed_lines = true;
     }
     return true;
 }
@@ -109,21 +110,23 @@ static bool take_lines(sensor_options_t *options, const char *command, const cha
 bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode)
 {
-    const char *const port = values[OPTION_PORT];
-    const bool has_settings = port == NULL || !tcp_names(port);
+    const char *const path = values[OPTION_PORT];
+    const bool has_settings = path == NULL || !tcp_names(path);
+    options->port_count = 1;
     if (!take_stations(options, command, words, (size_t)word_count, address, mode) ||
         !take_lines(options, command, values) ||
         !stations_check(options->stations, options->station_count, command, has_settings) ||
-        !take_numbers(options, command, values) || !take_echo(command, values[OPTION_ECHO], &options->echo))
+        !take_numbers(options, command, values) ||
+        !take_echo(command, values[OPTION_ECHO], &options->ports[0].echo))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
-    options->port = port;
-    if (options->port == NULL) {
+    options->ports[0].path = path;
+    if (path == NULL) {
         (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
         return false;
     }
     for (size_t i = 0; i != options->station_count; i++)
-        if (!tcp_suits(command, options->port, options->stations[i].mode->name)) return false;
+        if (!tcp_suits(command, path, options->stations[i].mode->name)) return false;
     return true;
 }
 

@@ -35,23 +35,29 @@ enum {
     [OPTION_DURATION] = {"duration", required_argument, NULL, 256}
 
 /* A line has 32 unit loads. */
-enum { MAX_STATIONS = 32 };
+enum { MAX_STATIONS_ON_A_LINE = 32, MAX_STATIONS = 32, MAX_PORTS = 1 };
+
+/* A port, and the line behind it. */
+typedef struct {
+    const char *path;
+    fathom_line_settings_t line; /* with which it is opened: the slowest of its sensors' */
+    bool has_mixed_lines;        /* they differ in that */
+    uint8_t echo;                /* fathom_line_config_t.echo */
+} port_options_t;
 
 /* What a command was asked to read. */
 typedef struct {
     station_t stations[MAX_STATIONS];
     size_t station_count;
-    const char *port;
-    fathom_line_settings_t line; /* with which the port is opened: the slowest of the sensors' */
-    bool has_mixed_lines;        /* the sensors differ in that */
-    uint32_t count;              /* attempts of each sensor; 0: endless */
+    port_options_t ports[MAX_PORTS];
+    size_t port_count;
+    uint32_t count; /* attempts of each sensor; 0: endless */
     uint32_t interval_us;
     uint32_t timeout_us;
     uint64_t duration_us; /* 0: endless */
     /* What reading_options.h sets, of all that take it; the rest is each sensor's. */
     reader_settings_t reading;
     uint8_t retries;
-    uint8_t echo; /* fathom_line_config_t.echo */
     bool reconnect;
 } sensor_options_t;
 

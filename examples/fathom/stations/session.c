@@ -126,10 +126,10 @@ static bool begin(session_t *session)
 bool session_open(session_t *session, const host_t *host)
 {
     enum { LISTEN_US = 66000 };
-    const sensor_options_t *const options = &session->options;
-    session->channel.echo = options->echo;
+    const port_options_t *const port = &session->options.ports[0];
+    session->channel.echo = port->echo;
     if (!host->begin(host->ctx)) return false;
-    if (!channel_open(&session->channel, host, options->port, &options->line)) {
+    if (!channel_open(&session->channel, host, port->path, &port->line)) {
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&session->channel.port));
         return false;
     }

@@ -12,6 +12,7 @@ typedef struct {
     const model_t *model;
     const model_mode_t *mode;
     fathom_line_settings_t line; /* at which it is asked */
+    size_t port;                 /* its row in sensor_options_t.ports */
     uint8_t address;
     char name[STATION_NAME]; /* "a16:1", as the user may write it; of one without an address "a16" */
     reader_t reader;

@@ -104,7 +104,7 @@ static void draw(watch_t *watch, uint64_t now_us)
     char title[MESSAGE];
     (void)snprintf(title, sizeof title,
                    "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   Ctrl-C ends",
-                   watch->loop.options.port, seconds / 3600, seconds / 60 % 60, seconds % 60);
+                   watch->loop.options.ports[0].path, seconds / 3600, seconds / 60 % 60, seconds % 60);
     picture_draw(&watch->picture, watch->rows, watch->columns, &watch->lanes, title,
                  now_us < watch->message_end_us ? watch->message : "");
     watch->output_error = terminal_show(&watch->picture, watch->wants_all);
