@@ -37,9 +37,20 @@ enum {
 /* A line has 32 unit loads. */
 enum { MAX_STATIONS_ON_A_LINE = 32, MAX_STATIONS = 32, MAX_PORTS = 1 };
 
+/* The lines of a GPIO chip that a sensor hangs on; -1: none. */
+typedef struct {
+    int32_t trigger; /* to the sensor's RX; an output */
+    int32_t echo;    /* from its TX: pulses */
+    int32_t in;      /* a switch, or a relay's contact */
+    uint8_t bias;    /* of the inputs; fathom_gpio_bias_t */
+} pin_options_t;
+
 /* A port, and the line behind it. */
 typedef struct {
-    const char *path;
+    const char *path; /* of a tty; tcp:HOST[:PORT]; or of a GPIO chip, "gpiochip0" too */
+    bool is_chip;
+    pin_options_t pins; /* then */
+    bool rs485;         /* the kernel's driver is to drive the transceiver */
     fathom_line_settings_t line; /* with which it is opened: the slowest of its sensors' */
     bool has_mixed_lines;        /* they differ in that */
     uint8_t echo;                /* fathom_line_config_t.echo */
