@@ -83,8 +83,11 @@ typedef struct {
 struct fathom_loop_source {
     const fathom_loop_kind_t *kind;
     bool is_open;     /* may be read */
-    bool is_readable; /* its descriptor has become ready, and nobody has read all since */
+    bool is_watched;  /* something wakes it when it becomes ready */
+    bool is_readable; /* it has become ready, and not all has been read since */
+    bool is_hung_up;  /* which a read tells that is still to come */
     bool reads_all; /* set it where a read that brings less than was asked for has brought all: ttys do so */
+    uint8_t zeros;  /* times in a row that it was due at once */
     short events;   /* that are waited for */
     int fd;
     uint32_t pause_us;  /* the last one before it was opened; 0: none */
@@ -123,6 +126,8 @@ struct fathom_loop {
     int epoll_fd;
     int stop_fd;
     volatile sig_atomic_t is_stopped;
+    bool is_in_step;
+    bool has_no_pwait2; /* the kernel has no epoll_pwait2(2) */
     fathom_loop_source_t *sources;
     fathom_loop_source_t *due; /* the one that is due first */
     uint64_t sleeps;           /* so far, */

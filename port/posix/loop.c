@@ -3,7 +3,6 @@
 #include "fathom_loop.h"
 
 #include <errno.h>
-#include <linux/time_types.h>
 #include <poll.h>
 #include <string.h>
 #include <sys/epoll.h>
@@ -11,147 +10,17 @@
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
+#ifdef SYS_epoll_pwait2
+#include <linux/time_types.h>
+#endif
 
 #include "internal/posix_loop.h"
 
-enum { FIRST_PAUSE_US = 500000, LONGEST_PAUSE_US = 8000000, STEADY_US = 1000000, AGAIN_US = 1000 };
-enum { TURNS = 16, EVENTS = 64 };
+enum { FIRST_PAUSE_US = 500000, LONGEST_PAUSE_US = 8000000, EVENTS = 64 };
 
 uint64_t fathom_loop_now_us(const fathom_loop_t *loop)
 {
     return loop->config.now_us != NULL ? loop->config.now_us(loop->config.ctx) : fathom_posix_now_us();
-}
-
-/* ---- opening and closing ---- */
-
-static void tell(fathom_loop_source_t *source, bool is_open)
-{
-    const fathom_loop_config_t *const config = &source->loop->config;
-    if (config->tell != NULL) config->tell(config->ctx, source, is_open);
-}
-
-const char *fathom_loop_error_text(const fathom_loop_source_t *source)
-{
-    if (source->kind->error_text != NULL) return source->kind->error_text(source);
-    return source->is_open ? "" : "it is lost";
-}
-
-/* What is waited for. A descriptor that epoll does not take (a file) is always ready, and needs no waiting. */
-static void watch(fathom_loop_source_t *source, int operation)
-{
-    struct epoll_event event = {.events = EPOLLET | (uint32_t)source->events, .data.ptr = source};
-    if (source->fd < 0 || source->loop->config.sleep != NULL) return;
-    (void)epoll_ctl(source->loop->epoll_fd, operation, source->fd, &event);
-}
-
-static void pause_source(fathom_loop_source_t *source, uint64_t now_us)
-{
-    const fathom_loop_config_t *const config = &source->loop->config;
-    source->pause_us = source->pause_us == 0 ? config->first_pause_us : source->pause_us * 2;
-    if (source->pause_us > config->longest_pause_us) source->pause_us = config->longest_pause_us;
-    fathom_loop_due_at(source, now_us + source->pause_us);
-}
-
-static void open_source(fathom_loop_source_t *source)
-{
-    const fathom_loop_kind_t *const kind = source->kind;
-    source->is_open = kind->open == NULL || kind->open(source);
-    const uint64_t now_us = fathom_loop_now_us(source->loop);
-    if (!source->is_open) {
-        pause_source(source, now_us);
-        tell(source, false);
-        return;
-    }
-    source->fd = kind->fd(source);
-    source->events = kind->events != NULL ? kind->events(source) : POLLIN;
-    source->opened_us = now_us;
-    source->is_readable = true; /* perhaps: it became so before it was watched */
-    watch(source, EPOLL_CTL_ADD);
-    fathom_loop_due_at(source, now_us);
-    tell(source, true);
-}
-
-static void close_source(fathom_loop_source_t *source)
-{
-    if (!source->is_open) return;
-    watch(source, EPOLL_CTL_DEL);
-    source->is_open = false;
-    if (source->kind->close != NULL) source->kind->close(source);
-}
-
-/* Each sensor is told once; a reading that it still had comes first. */
-static void lose_source(fathom_loop_source_t *source)
-{
-    const uint64_t now_us = fathom_loop_now_us(source->loop);
-    for (fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next) {
-        fathom_sample_t sample;
-        while (fathom_poll(&node->sensor, &sample) == FATHOM_READY)
-            node->take(node->ctx, FATHOM_READY, &sample);
-        node->take(node->ctx, FATHOM_ERR_PORT, NULL);
-    }
-    if (now_us - source->opened_us >= STEADY_US) source->pause_us = 0;
-    close_source(source);
-    pause_source(source, now_us);
-    tell(source, false);
-}
-
-/* ---- polling ---- */
-
-/* False: the port is lost. */
-static bool poll_sensor(const fathom_loop_sensor_t *node)
-{
-    fathom_sample_t sample;
-    for (unsigned turn = 0; turn != TURNS; turn++) {
-        const fathom_status_t status = fathom_poll(&node->sensor, &sample);
-        if (status == FATHOM_PENDING) return true;
-        if (status == FATHOM_ERR_PORT) return false;
-        node->take(node->ctx, status, status == FATHOM_READY ? &sample : NULL);
-    }
-    return true;
-}
-
-static bool poll_source(fathom_loop_source_t *source)
-{
-    if (source->kind->poll != NULL && !source->kind->poll(source)) return false;
-    for (const fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next)
-        if (!poll_sensor(node)) return false;
-    return true;
-}
-
-static uint32_t due_us(fathom_loop_source_t *source)
-{
-    uint32_t least_us = source->kind->due_us != NULL ? source->kind->due_us(source) : FATHOM_NO_DEADLINE;
-    for (const fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next) {
-        const uint32_t this_us = fathom_due_us(&node->sensor, 1);
-        if (this_us < least_us) least_us = this_us;
-    }
-    /* What was not read now will not become ready again. */
-    return source->is_readable && source->fd >= 0 && least_us > AGAIN_US ? AGAIN_US : least_us;
-}
-
-static void turn(fathom_loop_source_t *source)
-{
-    source->loop->polls++;
-    if (!source->is_open) {
-        open_source(source);
-        return;
-    }
-    const bool had_come = source->is_readable;
-    if (!poll_source(source)) {
-        lose_source(source);
-        return;
-    }
-    if (source->inner.read == NULL || !had_come) source->is_readable = false;
-    const short events = source->kind->events != NULL ? source->kind->events(source) : POLLIN;
-    if (events != source->events) {
-        source->events = events;
-        watch(source, EPOLL_CTL_MOD);
-    }
-    const uint32_t least_us = due_us(source);
-    if (least_us == FATHOM_NO_DEADLINE)
-        fathom_loop_due_never(source);
-    else
-        fathom_loop_due_at(source, fathom_loop_now_us(source->loop) + least_us);
 }
 
 /* ---- the loop ---- */
@@ -165,28 +34,39 @@ uint32_t fathom_loop_due_us(const fathom_loop_t *loop)
 }
 
 /* epoll_wait counts milliseconds, and a t3.5 of 1.75 ms would become 1 or 2. */
-static int wait_for(const fathom_loop_t *loop, struct epoll_event *events, uint32_t max_us)
+static int wait_for(fathom_loop_t *loop, struct epoll_event *events, uint32_t max_us)
 {
     const bool is_endless = max_us == FATHOM_NO_DEADLINE;
 #ifdef SYS_epoll_pwait2
-    const struct __kernel_timespec exact = {max_us / 1000000u, (long long)(max_us % 1000000u) * 1000};
-    const long count = syscall(SYS_epoll_pwait2, loop->epoll_fd, events, EVENTS, is_endless ? NULL : &exact,
-                               NULL, (size_t)0);
-    if (count >= 0 || errno != ENOSYS) return (int)count;
+    if (!loop->has_no_pwait2) {
+        const struct __kernel_timespec exact = {max_us / 1000000u, (long long)(max_us % 1000000u) * 1000};
+        const long count = syscall(SYS_epoll_pwait2, loop->epoll_fd, events, EVENTS,
+                                   is_endless ? NULL : &exact, NULL, (size_t)0);
+        if (count >= 0 || errno == EINTR) return (int)count;
+        loop->has_no_pwait2 = true; /* Linux before 5.11, or a sandbox that does not let it pass */
+    }
 #endif
-    /* Before Linux 5.11. */
     const struct timespec limit = {(time_t)(max_us / 1000000u), (long)(max_us % 1000000u) * 1000};
     struct pollfd entry = {loop->epoll_fd, POLLIN, 0};
     if (ppoll(&entry, 1, is_endless ? NULL : &limit, NULL) <= 0) return 0;
     return epoll_wait(loop->epoll_fd, events, EVENTS, 0);
 }
 
-static void sleep_for(const fathom_loop_t *loop, uint32_t max_us)
+static void sleep_for(fathom_loop_t *loop, uint32_t max_us)
 {
     struct epoll_event events[EVENTS];
     const int count = wait_for(loop, events, max_us);
-    for (int i = 0; i < count; i++)
-        if (events[i].data.ptr != NULL) fathom_loop_wake(events[i].data.ptr);
+    for (int i = 0; i < count; i++) {
+        fathom_loop_source_t *const source = events[i].data.ptr;
+        if (source != NULL) {
+            if ((events[i].events & (EPOLLHUP | EPOLLERR)) != 0) source->is_hung_up = true;
+            fathom_loop_wake(source);
+        } else { /* a stop, which has ended this sleep and no other one */
+            uint64_t stops;
+            const ssize_t taken = read(loop->stop_fd, &stops, sizeof stops);
+            (void)taken;
+        }
+    }
 }
 
 void fathom_loop_wake(fathom_loop_source_t *source)
@@ -198,6 +78,8 @@ void fathom_loop_wake(fathom_loop_source_t *source)
 
 void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us)
 {
+    if (loop->is_in_step) return;
+    loop->is_in_step = true;
     const uint32_t due_us = fathom_loop_due_us(loop);
     if (max_us > due_us) max_us = due_us;
     loop->sleeps++;
@@ -208,55 +90,72 @@ void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us)
     const uint64_t now_us = fathom_loop_now_us(loop);
     /* One that is due again at once waits for the next step, so that none keeps the others waiting. */
     fathom_loop_source_t *ready = NULL;
+    fathom_loop_source_t **last = &ready;
     while (loop->due != NULL && loop->due->due_us <= now_us) {
         fathom_loop_source_t *const source = loop->due;
         fathom_loop_due_never(source);
-        source->ready = ready;
-        ready = source;
+        source->ready = NULL;
+        *last = source;
+        last = &source->ready;
     }
     while (ready != NULL) {
         fathom_loop_source_t *const source = ready;
         ready = source->ready;
-        turn(source);
+        fathom_loop_turn(source);
     }
+    loop->is_in_step = false;
 }
 
+/* A stop ends one run: this one, or where none runs the next one. */
 void fathom_loop_run(fathom_loop_t *loop)
 {
-    while (!loop->is_stopped) fathom_loop_step(loop, FATHOM_NO_DEADLINE);
+    if (loop->is_in_step) return;
+    while (!__atomic_load_n(&loop->is_stopped, __ATOMIC_SEQ_CST)) fathom_loop_step(loop, FATHOM_NO_DEADLINE);
+    __atomic_store_n(&loop->is_stopped, 0, __ATOMIC_SEQ_CST);
 }
 
 void fathom_loop_stop(fathom_loop_t *loop)
 {
     const uint64_t one = 1;
     const int saved = errno;
-    loop->is_stopped = 1;
+    __atomic_store_n(&loop->is_stopped, 1, __ATOMIC_SEQ_CST);
     if (loop->stop_fd >= 0 && write(loop->stop_fd, &one, sizeof one) < 0) errno = saved;
 }
 
 int fathom_loop_fd(const fathom_loop_t *loop) { return loop->epoll_fd; }
 
+bool fathom_loop_has(const fathom_loop_t *loop, const fathom_loop_source_t *source)
+{
+    const fathom_loop_source_t *at = loop->sources;
+    while (at != NULL && at != source) at = at->next;
+    return at != NULL;
+}
+
 void fathom_loop_add(fathom_loop_t *loop, fathom_loop_source_t *source)
 {
+    if (fathom_loop_has(loop, source)) return;
     source->loop = loop;
     source->next = loop->sources;
     loop->sources = source;
-    open_source(source);
+    fathom_loop_open(source);
 }
 
 void fathom_loop_remove(fathom_loop_source_t *source)
 {
+    if (source->loop == NULL) return;
     fathom_loop_source_t **at = &source->loop->sources;
     while (*at != source) at = &(*at)->next;
     *at = source->next;
-    close_source(source);
     fathom_loop_due_never(source);
+    if (source->is_open) fathom_loop_close(source);
+    source->loop = NULL;
 }
 
 void fathom_loop_add_sensor(fathom_loop_source_t *source, fathom_loop_sensor_t *sensor)
 {
     fathom_loop_sensor_t **at = &source->sensors;
-    while (*at != NULL) at = &(*at)->next;
+    while (*at != NULL && *at != sensor) at = &(*at)->next;
+    if (*at != NULL) return;
     *at = sensor;
     sensor->next = NULL;
     if (source->is_open) fathom_loop_wake(source);

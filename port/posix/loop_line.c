@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "internal/posix_loop.h"
+#include "internal/posix_port.h"
 
 enum { GAP_US = 25000 };
 
@@ -10,9 +11,10 @@ enum { GAP_US = 25000 };
 static int gated_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     fathom_loop_source_t *const source = ctx;
-    if (source->is_open && !source->is_readable) return 0;
+    if (source->is_open && source->is_watched && !source->is_readable) return 0;
     const int n = source->inner.read(source->inner.ctx, bytes, capacity, rx);
-    if (n == 0 || (n > 0 && (size_t)n < capacity && source->reads_all)) source->is_readable = false;
+    const bool is_last = source->reads_all && !source->is_hung_up; /* of which no event tells a second time */
+    if (n == 0 || (n > 0 && (size_t)n < capacity && is_last)) source->is_readable = false;
     return n;
 }
 
@@ -101,8 +103,11 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
 {
     static const fathom_loop_kind_t kind = {open_line, close_line,  line_fd,        line_events,
                                             poll_line, line_due_us, line_error_text};
-    if (loop == NULL || line == NULL || path == NULL || settings == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
+    if (loop == NULL || line == NULL || path == NULL || settings == NULL ||
+        fathom_loop_has(loop, &line->source))
+        return FATHOM_POSIX_ERR_ARGUMENT;
     memset(line, 0, sizeof *line);
+    if (fathom_posix_check(&line->port, settings) != FATHOM_POSIX_OK) return FATHOM_POSIX_ERR_ARGUMENT;
     const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
     line->source.kind = &kind;
     line->source.reads_all = true;
@@ -131,6 +136,7 @@ static int pin_fd(const fathom_loop_source_t *source) { return ((const fathom_lo
 void fathom_loop_add_pin(fathom_loop_t *loop, fathom_loop_pin_t *pin, int fd)
 {
     static const fathom_loop_kind_t kind = {.fd = pin_fd};
+    if (fathom_loop_has(loop, &pin->source)) return;
     memset(pin, 0, sizeof *pin);
     pin->source.kind = &kind;
     pin->fd = fd;

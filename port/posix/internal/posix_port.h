@@ -16,6 +16,9 @@ fathom_posix_status_t fathom_posix_fail_lost(fathom_posix_uart_t *port, int code
 /* OK, or fails with CLOSED or LOST. */
 fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port);
 
+/* settings.c: OK, or fails with ARGUMENT. */
+fathom_posix_status_t fathom_posix_check(fathom_posix_uart_t *port, const fathom_line_settings_t *settings);
+
 /* settings.c: sets the tty and reads it back; on failure what it was before is put back. */
 fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom_line_settings_t *settings);
 
