@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: MIT */
+#include "loop_fake.h"
+#include "suite.h"
+
+/* When fathom_loop.h polls what, in simulated time: pauses and what is told of them are in test_loop_lost.c. */
+
+static fake_source_t one, two, three;
+static fake_sensor_t first, second;
+
+static int set_up(void **state)
+{
+    (void)fake_set_up(state);
+    fake_source(&one);
+    fake_source(&two);
+    fake_source(&three);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up, .tear_down = fake_tear_down};
+
+static void add(fake_source_t *source) { fathom_loop_add(&fake.loop, &source->source); }
+static void step(void) { fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE); }
+
+static int tear_down_none(void **state) { return 0; }
+static const suite_t plain = {.tear_down = tear_down_none};
+
+/* ---- what is due ---- */
+
+TEST(a_source_is_polled_once_it_is_open_and_then_when_it_is_due)
+{
+    one.due_us = 250000;
+    add(&one);
+    assert_int_equal(one.polls, 0);
+    step();
+    assert_int_equal(one.polls, 1);
+    assert_int_equal(fake_elapsed_us(), 0);
+    step();
+    assert_int_equal(one.polls, 2);
+    assert_int_equal(fake_elapsed_us(), 250000);
+    fake_pass(10000000);
+    assert_int_equal(one.polls, 2 + 40);
+}
+
+TEST(nothing_else_is_polled)
+{
+    one.due_us = 1000;
+    two.due_us = 1000000;
+    add(&one);
+    add(&two);
+    fake_pass(1000000 - 1);
+    assert_int_equal(one.polls, 1000);
+    assert_int_equal(two.polls, 1);
+    assert_int_equal(fake.loop.polls, 1001);
+}
+
+TEST(the_first_of_the_sensors_on_a_source_says_when_it_is_due)
+{
+    one.due_us = FATHOM_NO_DEADLINE;
+    add(&one);
+    fake_sensor(&first, &one);
+    fake_sensor(&second, &one);
+    first.due_us = 7000;
+    second.due_us = 5000;
+    step();
+    step();
+    assert_int_equal(fake_elapsed_us(), 5000);
+    assert_int_equal(first.polls, 2);
+    assert_int_equal(second.polls, 2);
+}
+
+TEST(what_has_come_is_polled_before_it_is_due_and_then_its_time_begins_anew)
+{
+    add(&one);
+    step();
+    fake_wake_in(&one, 1000);
+    step();
+    assert_int_equal(one.polls, 2);
+    assert_int_equal(fake_elapsed_us(), 1000);
+    step();
+    assert_int_equal(one.polls, 3);
+    assert_int_equal(fake_elapsed_us(), 1001000);
+}
+
+TEST(they_are_polled_in_the_order_in_which_they_are_due)
+{
+    one.due_us = 3000;
+    two.due_us = 2000;
+    three.due_us = 1000;
+    add(&one);
+    add(&two);
+    add(&three);
+    step();
+    one.due_us = two.due_us = three.due_us = 1000000;
+    fake.now_us += 500000; /* the machine was suspended: all are due */
+    uint64_t *const at_us[] = {&three.polled_us, &two.polled_us, &one.polled_us};
+    const fake_source_t *const order[] = {&three, &two, &one};
+    for (unsigned i = 0; i != 3; i++) *at_us[i] = 0;
+    unsigned polled = 0;
+    while (polled != 3) {
+        step();
+        for (unsigned i = polled; i != 3 && *at_us[i] != 0; i++) polled++;
+    }
+    for (unsigned i = 0; i != 3; i++) assert_int_equal(order[i]->polls, 2);
+}
+
+/* The step polls each that is due once, whatever that says. */
+TEST(one_that_is_due_again_at_once_keeps_no_other_waiting)
+{
+    one.due_us = 0;
+    add(&one);
+    add(&two);
+    step();
+    assert_int_equal(one.polls, 1);
+    assert_int_equal(two.polls, 1);
+    two.due_us = 100;
+    fake_wake_in(&two, 0);
+    for (unsigned i = 0; i != 10; i++) step();
+    assert_int_equal(one.polls, 11);
+    assert_in_range(two.polls, 2, 3);
+}
+
+/* 16 times at once, and then each millisecond: 1 s of it is 16 and 1000 polls, and not as many as a processor can do. */
+TEST(one_that_is_due_at_once_without_end_does_not_spin)
+{
+    one.due_us = 0;
+    add(&one);
+    fake_pass(1000000);
+    assert_in_range(one.polls, 1000, 1020);
+    one.due_us = 100000; /* and once that is over it begins anew */
+    fake_pass(200000);
+    one.due_us = 0;
+    fake_wake_in(&one, 0);
+    const unsigned before = one.polls;
+    for (unsigned i = 0; i != 10; i++) step();
+    assert_int_equal(one.polls, before + 10);
+}
+
+/* hal.h: whatever is polled is polled at least every 71 minutes, 4294 s. */
+TEST(a_source_that_waits_for_ever_is_polled_before_the_clock_has_wrapped)
+{
+    one.due_us = FATHOM_NO_DEADLINE;
+    two.due_us = 4294000000u;
+    add(&one);
+    add(&two);
+    step();
+    for (unsigned hours = 0; hours != 10; hours++) {
+        const unsigned before[] = {one.polls, two.polls};
+        fake_pass(4294000000u);
+        assert_true(one.polls > before[0] && two.polls > before[1]);
+        assert_true(one.polls + two.polls - before[0] - before[1] < 8);
+    }
+}
+
+/* ---- steps ---- */
+
+TEST(a_step_sleeps_no_longer_than_it_may)
+{
+    add(&one);
+    step();
+    fathom_loop_step(&fake.loop, 300);
+    assert_int_equal(fake.slept_us, 300);
+    assert_int_equal(fake_elapsed_us(), 300);
+    assert_int_equal(one.polls, 1);
+    assert_int_equal(fathom_loop_due_us(&fake.loop), 999700);
+    fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE);
+    assert_int_equal(fake.slept_us, 999700);
+}
+
+TEST(without_a_source_a_step_sleeps_for_any_time)
+{
+    assert_int_equal(fathom_loop_due_us(&fake.loop), FATHOM_NO_DEADLINE);
+    step();
+    assert_int_equal(fake.slept_us, FATHOM_NO_DEADLINE);
+    assert_int_equal(fathom_loop_fd(&fake.loop), -1);
+}
+
+TEST(what_is_overdue_is_due_in_no_time)
+{
+    add(&one);
+    step();
+    fake.now_us += 36000000000u; /* ten hours */
+    assert_int_equal(fathom_loop_due_us(&fake.loop), 0);
+    step();
+    assert_int_equal(fake.slept_us, 0);
+    assert_int_equal(one.polls, 2);
+}
+
+TEST(the_counters_count)
+{
+    add(&one);
+    add(&two);
+    step();
+    assert_int_equal(fake.loop.sleeps, 1);
+    assert_int_equal(fake.loop.polls, 2);
+}
+
+/* ---- sensors ---- */
+
+TEST(a_sensor_is_polled_until_it_has_nothing_more_and_all_is_taken)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    memcpy(first.script, (fathom_status_t[]){FATHOM_READY, FATHOM_READY, FATHOM_ERR_CHECKSUM, FATHOM_READY},
+           4 * sizeof first.script[0]);
+    step();
+    assert_int_equal(first.readings, 3);
+    assert_int_equal(first.errors, 1);
+    assert_int_equal(first.polls, 5);
+}
+
+TEST(one_that_never_ends_keeps_no_other_waiting)
+{
+    add(&one);
+    add(&two);
+    fake_sensor(&first, &one);
+    fake_sensor(&second, &one);
+    first.for_ever = FATHOM_READY;
+    second.script[0] = FATHOM_READY;
+    fake_pass(1000000);
+    assert_int_equal(second.readings, 1);
+    assert_int_equal(two.polls, 2);
+    /* 16 at a time; 16 times at once, and then each millisecond */
+    assert_in_range(first.readings, 1000 * 16, 1020 * 16);
+}
+
+TEST(errors_without_end_do_not_spin_either)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    first.for_ever = FATHOM_ERR_STALE;
+    first.due_us = 0;
+    fake_pass(1000000);
+    assert_in_range(first.errors, 1000 * 16, 1020 * 16);
+}
+
+/* More than a poll takes, and no due_us tells of it. */
+TEST(many_readings_at_once_are_all_taken_without_waiting)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    for (unsigned i = 0; i != 40; i++) first.script[i] = FATHOM_READY;
+    fake_pass(1);
+    assert_int_equal(first.readings, 40);
+}
+
+TEST(a_sensor_that_is_added_later_is_polled_in_the_next_step)
+{
+    add(&one);
+    step();
+    fake_sensor(&first, &one);
+    first.script[0] = FATHOM_READY;
+    step();
+    assert_int_equal(fake_elapsed_us(), 0);
+    assert_int_equal(first.readings, 1);
+}
+
+/* Both are polled, and in the order in which they were added first. */
+TEST(a_sensor_that_is_added_twice_is_there_once)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    fake_sensor(&second, &one);
+    fathom_loop_add_sensor(&one.source, &first.node);
+    fathom_loop_add_sensor(&one.source, &second.node);
+    step();
+    assert_int_equal(first.polls, 1);
+    assert_int_equal(second.polls, 1);
+    assert_ptr_equal(one.source.sensors, &first.node);
+    assert_ptr_equal(first.node.next, &second.node);
+    assert_null(second.node.next);
+}
+
+TEST(sensors_may_be_there_before_their_source)
+{
+    fake_sensor(&first, &one);
+    add(&one);
+    first.script[0] = FATHOM_READY;
+    step();
+    assert_int_equal(first.readings, 1);
+}
+
+/* ---- callbacks ---- */
+
+static void stop(fathom_status_t status) { fathom_loop_stop(&fake.loop); }
+
+static void add_more(fathom_status_t status)
+{
+    if (status != FATHOM_READY || second.on != NULL) return;
+    fake_sensor(&second, &one);
+    second.script[0] = FATHOM_READY;
+    second.when_taken = stop;
+    add(&two);
+    add(&three);
+}
+
+TEST(a_callback_may_add_to_the_loop_and_stop_it)
+{
+    memset(&second, 0, sizeof second);
+    add(&one);
+    fake_sensor(&first, &one);
+    first.script[0] = FATHOM_READY;
+    first.when_taken = add_more;
+    fathom_loop_run(&fake.loop);
+    assert_int_equal(second.readings, 1);
+    step();
+    assert_int_equal(two.polls, 1);
+    assert_int_equal(three.polls, 1);
+    assert_int_equal(fake_elapsed_us(), 0);
+}
+
+static void wake_one(fathom_status_t status) { fathom_loop_wake(&one.source); }
+
+TEST(a_callback_may_wake_its_own_source)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    first.script[0] = FATHOM_READY;
+    first.when_taken = wake_one;
+    step();
+    const unsigned before = one.polls;
+    step();
+    assert_int_equal(one.polls, before + 1);
+    assert_int_equal(fake_elapsed_us(), 0);
+}
+
+static void add_sensor_to_two(fathom_status_t status)
+{
+    if (second.on != NULL) return;
+    fake_sensor(&second, &two);
+    second.script[0] = FATHOM_READY;
+}
+
+TEST(a_callback_may_add_a_sensor_to_another_source)
+{
+    memset(&second, 0, sizeof second);
+    add(&one);
+    add(&two);
+    step();
+    fake_sensor(&first, &one);
+    first.script[0] = FATHOM_READY;
+    first.when_taken = add_sensor_to_two;
+    step();
+    step();
+    assert_int_equal(second.readings, 1);
+    assert_int_equal(fake_elapsed_us(), 0);
+}
+
+static void step_inside(fathom_status_t status)
+{
+    step();
+    fathom_loop_run(&fake.loop);
+}
+
+TEST(a_step_within_a_step_does_nothing)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    first.script[0] = FATHOM_READY;
+    first.when_taken = step_inside;
+    step();
+    assert_int_equal(fake.loop.sleeps, 1);
+    assert_int_equal(one.polls, 1);
+}
+
+/* ---- stop ---- */
+
+TEST(a_stop_ends_the_run_and_the_loop_can_be_run_again)
+{
+    add(&one);
+    fake_sensor(&first, &one);
+    first.when_taken = stop;
+    for (unsigned n = 1; n != 4; n++) {
+        first.at = 0;
+        first.script[0] = FATHOM_READY;
+        fathom_loop_run(&fake.loop);
+        assert_int_equal(first.readings, n);
+    }
+}
+
+TEST(a_stop_before_the_run_ends_it_at_once)
+{
+    add(&one);
+    fathom_loop_stop(&fake.loop);
+    fathom_loop_run(&fake.loop);
+    assert_int_equal(fake.loop.sleeps, 0);
+}
+
+/* ---- adding and removing ---- */
+
+TEST(a_source_that_is_removed_is_closed_and_not_polled_any_more)
+{
+    add(&one);
+    add(&two);
+    step();
+    fathom_loop_remove(&one.source);
+    assert_int_equal(one.closes, 1);
+    fake_pass(5000000);
+    assert_int_equal(one.polls, 1);
+    assert_int_equal(two.polls, 6);
+}
+
+TEST(what_is_added_twice_is_there_once)
+{
+    add(&one);
+    add(&two);
+    add(&one);
+    add(&two);
+    assert_int_equal(one.opens, 1);
+    step();
+    assert_int_equal(one.polls, 1);
+    fathom_loop_remove(&one.source);
+    fathom_loop_remove(&two.source);
+    assert_null(fake.loop.sources);
+    assert_null(fake.loop.due);
+}
+
+TEST(removing_what_is_not_there_does_nothing)
+{
+    fathom_loop_remove(&one.source);
+    add(&one);
+    fathom_loop_remove(&one.source);
+    fathom_loop_remove(&one.source);
+    assert_int_equal(one.closes, 1);
+}
+
+TEST(what_was_removed_can_be_added_again)
+{
+    add(&one);
+    fathom_loop_remove(&one.source);
+    fake_source(&one);
+    add(&one);
+    step();
+    assert_int_equal(one.polls, 1);
+}
+
+TEST(a_wake_of_what_is_not_open_does_nothing)
+{
+    one.cannot_open = true;
+    add(&one);
+    fathom_loop_wake(&one.source);
+    fake_pass(100000);
+    assert_int_equal(one.opens, 1);
+}
+
+TEST(deinit_closes_all_and_may_be_called_twice)
+{
+    add(&one);
+    add(&two);
+    two.is_lost = true;
+    step();
+    assert_int_equal(two.closes, 1);
+    fathom_loop_deinit(&fake.loop);
+    fathom_loop_deinit(&fake.loop);
+    assert_int_equal(one.closes, 1);
+    assert_int_equal(two.closes, 1);
+    assert_null(fake.loop.sources);
+}
+
+TEST_IN(plain, an_argument_that_is_missing_is_said)
+{
+    static fathom_loop_line_t line;
+    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    static const fathom_line_settings_t wrong[] = {{0, FATHOM_PARITY_NONE, 1},
+                                                   {9601, FATHOM_PARITY_NONE, 1},
+                                                   {9600, 3, 1},
+                                                   {9600, FATHOM_PARITY_NONE, 0}};
+    fake_begin(0, 0);
+    assert_int_equal(fathom_loop_init(NULL, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_loop_add_line(NULL, &line, "x", &settings), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_loop_add_line(&fake.loop, NULL, "x", &settings), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_loop_add_line(&fake.loop, &line, NULL, &settings), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_loop_add_line(&fake.loop, &line, "x", NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    for (unsigned i = 0; i != sizeof wrong / sizeof wrong[0]; i++)
+        assert_int_equal(fathom_loop_add_line(&fake.loop, &line, "/nowhere", &wrong[i]),
+                         FATHOM_POSIX_ERR_ARGUMENT);
+    assert_null(fake.loop.sources);
+    assert_int_equal(fake.tolds, 0);
+}
