@@ -75,6 +75,7 @@ static bool poll_it(fathom_loop_source_t *source)
 {
     of(source)->polls++;
     of(source)->polled_us = fake.now_us;
+    of(source)->turn = ++fake.turns;
     return !of(source)->is_lost;
 }
 

@@ -30,6 +30,7 @@ typedef struct {
     fake_wake_t wakes[FAKE_WAKES];
     fake_told_t told[FAKE_TOLD];
     unsigned tolds;
+    unsigned turns; /* polls of all sources */
     fathom_loop_t loop;
 } fake_t;
 
@@ -44,6 +45,7 @@ typedef struct {
     short events;
     const char *text;
     unsigned opens, closes, polls;
+    unsigned turn; /* of its last poll; */
     uint64_t polled_us;
 } fake_source_t;
 
