@@ -161,7 +161,7 @@ TEST(the_loop_wakes_once_for_the_end_of_a_request)
     line_rig_until(&rig.readings[0], 5);
     memset(&calls, 0, sizeof calls);
     line_rig_until(&rig.readings[0], 6);
-    assert_in_range(calls.sleeps, 40, 100);
+    assert_in_range(calls.sleeps, 20, 100);
     assert_int_equal(calls.empty_reads, 0);
     assert_int_equal(rig.errors[0], 0);
 }
