@@ -33,8 +33,8 @@ extern "C" {
  *    mark on all bytes of a USB packet, so that a spike on the line before a response would condemn the whole
  *    response. A byte with wrong parity is delivered like any other; checksums have to find it.
  *    fathom_posix_line_errors has the driver's counts, for diagnosis.
- *  - It does not drive an RS-485 transceiver by itself. The adapter does, or the kernel's driver (device tree
- *    `linux,rs485-enabled-at-boot-time`, or TIOCSRS485 through fathom_posix_fd).
+ *  - It does not drive an RS-485 transceiver by itself. The adapter does, or the kernel's driver: as the device tree
+ *    tells it (`linux,rs485-enabled-at-boot-time`), or fathom_posix_set_rs485.
  *  - It does not make a USB adapter faster. An FTDI chip holds bytes back for up to 16 ms:
  *    `setserial /dev/ttyUSB0 low_latency` makes that 1 ms.
  *  - No flow control, no modem lines, 8 data bits only.
@@ -119,6 +119,30 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
                                             const fathom_line_settings_t *settings);
 
 /*
+ * How the kernel's driver drives an RS-485 transceiver whose DE hangs on RTS. Of zeros: RTS is on while bytes leave, and
+ * off otherwise. "On" is the kernel's word (TIOCM_RTS): at an RS-232 plug a positive voltage, at the pin of a chip mostly
+ * the low level, so that many boards have an inverter there. The datasheet of the board knows.
+ */
+typedef struct {
+    bool rts_off_to_send; /* the other way round */
+    uint8_t before_ms;    /* from RTS to the first start bit, and ... */
+    uint8_t after_ms;     /* ... from the last stop bit to RTS; most drivers allow 0 to 100 */
+} fathom_posix_rs485_t;
+
+/*
+ * Lets the driver of an open port turn the transceiver round (TIOCSRS485), and reads that back (TIOCGRS485). It holds
+ * until it is set again, over fathom_posix_set_line and after close. Whether the UART hears what it sends is left to the
+ * driver: a line finds that out (line.h).
+ *
+ * rs485: NULL: RTS is left alone again.
+ *
+ * Returns FATHOM_POSIX_OK; ARGUMENT; CLOSED; LOST; BUSY while sent() is false; UNSUPPORTED where the driver has no
+ * RS-485: those of USB adapters, of most PC ports, and pseudo terminals; the text says what to do; REFUSED when the
+ * driver has made something else of it; or SYSTEM: then what was before was put back and holds.
+ */
+fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fathom_posix_rs485_t *rs485);
+
+/*
  * The HAL functions of an open port (hal.h); `port` must stay where it is as long as they are used. On a
  * closed port read and write return -1.
  *
@@ -145,7 +169,7 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
  */
 fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port);
 
-/* Of the last call that failed on this port, or OK: fathom_posix_open, fathom_posix_set_line,
+/* Of the last call that failed on this port, or OK: fathom_posix_open, fathom_posix_set_line, fathom_posix_set_rs485,
  * fathom_posix_line_errors, and read, write, sent and fathom_posix_wait for LOST. */
 fathom_posix_status_t fathom_posix_error(const fathom_posix_uart_t *port);
 

@@ -112,16 +112,21 @@ static uint32_t uart_leaves_in_us(void *ctx)
     return now_us < port->leaving_until_us ? (uint32_t)(port->leaving_until_us - now_us) : 0;
 }
 
+fathom_posix_status_t fathom_posix_idle(fathom_posix_uart_t *port)
+{
+    /* sent first: it is what finds a port that has just been lost. */
+    const bool sent = is_sent(port);
+    const fathom_posix_status_t status = fathom_posix_usable(port);
+    if (status != FATHOM_POSIX_OK || sent) return status;
+    return fathom_posix_fail(port, FATHOM_POSIX_ERR_BUSY, "bytes are still leaving");
+}
+
 fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
 {
     if (port == NULL) return FATHOM_POSIX_ERR_ARGUMENT;
     if (settings == NULL) return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "no settings were given");
-    /* sent first: it is what finds a port that has just been lost. */
-    const bool sent = is_sent(port);
-    const fathom_posix_status_t status = fathom_posix_usable(port);
-    if (status != FATHOM_POSIX_OK) return status;
-    if (!sent) return fathom_posix_fail(port, FATHOM_POSIX_ERR_BUSY, "bytes are still leaving");
-    return fathom_posix_apply(port, settings);
+    const fathom_posix_status_t status = fathom_posix_idle(port);
+    return status == FATHOM_POSIX_OK ? fathom_posix_apply(port, settings) : status;
 }
 
 static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)

@@ -3,7 +3,6 @@
 #include "posix_driver.h"
 
 #include <errno.h>
-#include <linux/serial.h>
 #include <stdarg.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -80,6 +79,26 @@ int __wrap_tcsetattr(int fd, int when, const struct termios *tty)
     return driver.set_error != 0 ? give(driver.set_error) : result;
 }
 
+static uint32_t at_most(uint32_t value, uint32_t most) { return most != 0 && value > most ? most : value; }
+
+static int rs485(unsigned long request, struct serial_rs485 *out)
+{
+    if (!driver.has_rs485) return give(ENOTTY);
+    if (request == TIOCGRS485) {
+        if (driver.rs485_get_error != 0 && driver.rs485_get_error_after-- <= 0)
+            return give(driver.rs485_get_error);
+        *out = driver.rs485;
+        return 0;
+    }
+    driver.rs485_sets++;
+    if (driver.rs485_error != 0) return give(driver.rs485_error);
+    out->flags = (out->flags & ~driver.rs485_drops) | driver.rs485_adds;
+    out->delay_rts_before_send = at_most(out->delay_rts_before_send, driver.rs485_delay_most);
+    out->delay_rts_after_send = at_most(out->delay_rts_after_send, driver.rs485_delay_most);
+    driver.rs485 = *out; /* the kernel tells so as well */
+    return 0;
+}
+
 int __wrap_ioctl(int fd, unsigned long request, ...)
 {
     va_list arguments;
@@ -107,6 +126,9 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
         if (driver.lsr_error != 0) return give(driver.lsr_error);
         *(int *)out = driver.lsr;
         return 0;
+    case TIOCSRS485:
+    case TIOCGRS485:
+        return rs485(request, out);
     case TIOCGICOUNT: {
         if (driver.count_error != 0) return give(driver.count_error);
         struct serial_icounter_struct *const counts = out;

@@ -2,7 +2,9 @@
 #ifndef FATHOM_TESTS_POSIX_DRIVER_H
 #define FATHOM_TESTS_POSIX_DRIVER_H
 
+#include <linux/serial.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <termios.h>
 
 /*
@@ -33,8 +35,16 @@ typedef struct {
     int write_most; /* bytes that one write takes; 0: all */
     int write_error, write_interrupts;
     int write_refusals; /* so many calls give EAGAIN first */
-    int sets;           /* calls of tcsetattr */
-    int writes;         /* calls of write */
+    bool has_rs485;
+    struct serial_rs485 rs485;        /* as TIOCSRS485 has left it */
+    uint32_t rs485_drops, rs485_adds; /* flags that are not kept, that are set as well */
+    uint32_t rs485_delay_most;        /* longer ones become this; 0: all are kept */
+    int rs485_error;                  /* of TIOCSRS485 */
+    int rs485_get_error;
+    int rs485_get_error_after; /* so many calls */
+    int rs485_sets;            /* calls of TIOCSRS485 */
+    int sets;                  /* calls of tcsetattr */
+    int writes;                /* calls of write */
 } posix_driver_t;
 
 extern posix_driver_t driver;

@@ -43,6 +43,11 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
         if (!host->open(host->ctx, path, settings, &channel->port, &channel->uart)) return false;
         suit_serial(channel, settings);
     }
+    if (channel->rs485 &&
+        fathom_posix_set_rs485(&channel->port, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK) {
+        channel_close(channel);
+        return false;
+    }
     channel->clock = (fathom_clock_t){now_us, channel};
     listener_begin(&channel->listener, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;

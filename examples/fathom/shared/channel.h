@@ -28,7 +28,9 @@ typedef struct {
     fathom_line_t line;
     fathom_modbus_t modbus;
     fathom_modbus_t dyp;
-    uint8_t echo; /* fathom_line_config_t.echo; to be set before it is opened */
+    /* To be set before it is opened. */
+    uint8_t echo; /* fathom_line_config_t.echo */
+    bool rs485;   /* the kernel's driver is to drive the transceiver: RTS is on while bytes leave */
     uint8_t frame[255];
 } channel_t;
 

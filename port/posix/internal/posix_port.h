@@ -25,4 +25,7 @@ fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom
 /* uart.c: offers the kernel the rest of an accepted write. */
 void fathom_posix_push(fathom_posix_uart_t *port);
 
+/* uart.c: OK, or fails with CLOSED, LOST, or BUSY while bytes are leaving. */
+fathom_posix_status_t fathom_posix_idle(fathom_posix_uart_t *port);
+
 #endif
