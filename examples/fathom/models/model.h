@@ -8,12 +8,21 @@
 #include "models/inquiry.h"
 #include "models/setting.h"
 
+/* The lines of a GPIO chip on which a sensor hangs instead of a serial line: bits. */
+enum {
+    MODEL_PIN_TRIGGER = 1, /* to its RX */
+    MODEL_PIN_ECHO = 2,    /* pulses, from its TX */
+    MODEL_PIN_IN = 4       /* a level: a switch, or a relay's contact */
+};
+
 /* One way in which a sensor can be read and simulated. */
 typedef struct {
     const char *name;
     bool is_asked;    /* else it sends by itself */
     bool has_address; /* on the wire: it is asked there, or its frames tell it */
     uint8_t takes;    /* READER_TAKES_...: which of the user's settings have an effect */
+    uint8_t pins;     /* MODEL_PIN_...: that it needs; 0: it has a serial line */
+    uint8_t may_pins; /* and that it can have besides */
     reader_init_t read;
     device_init_t simulate;
 } model_mode_t;

@@ -6,16 +6,24 @@
 #include "shared/command.h"
 #include "shared/options.h"
 
-bool sensor_text_parse(sensor_text_t *sensor, const char *command, const char *text)
+static bool is_letter(char character)
 {
-    if (strlen(text) >= sizeof sensor->parts) return model_find(command, text) != NULL;
-    memcpy(sensor->parts, text, strlen(text) + 1);
-    char *const address = strchr(sensor->parts, ':');
-    char *const mode = address != NULL ? strchr(address + 1, ':') : NULL;
-    if (address != NULL) *address = '\0';
-    if (mode != NULL) *mode = '\0';
-    sensor->address = address != NULL ? address + 1 : NULL;
-    sensor->mode = mode != NULL ? mode + 1 : NULL;
+    return (character >= 'a' && character <= 'z') || (character >= 'A' && character <= 'Z');
+}
+
+bool sensor_text_parse(sensor_text_t *sensor, const char *command, const char *text, size_t length)
+{
+    const bool fits = length < sizeof sensor->parts; /* no sensor has so long a name */
+    memset(sensor, 0, sizeof *sensor);
+    memcpy(sensor->parts, text, fits ? length : sizeof sensor->parts - 1);
+    char *const first = fits ? strchr(sensor->parts, ':') : NULL;
+    if (first != NULL) {
+        char *const second = is_letter(first[1]) ? first : strchr(first + 1, ':');
+        if (second != first) sensor->address = first + 1;
+        if (second != NULL) sensor->mode = second + 1;
+        if (second != NULL) *second = '\0';
+        *first = '\0';
+    }
     sensor->model = model_find(command, sensor->parts);
     return sensor->model != NULL;
 }

@@ -4,7 +4,7 @@
 
 #include "models/models.h"
 
-/* SENSOR[:ADDRESS[:MODE]], as a user names a sensor on a line. */
+/* SENSOR[:ADDRESS][:MODE], as a user names a sensor: digits are the address, words the mode. */
 typedef struct {
     const model_t *model;
     const char *address; /* NULL: it is not there; "": the factory's */
@@ -12,8 +12,8 @@ typedef struct {
     char parts[40];
 } sensor_text_t;
 
-/* False after a usage error. */
-bool sensor_text_parse(sensor_text_t *sensor, const char *command, const char *text);
+/* Of `text`, its first `length` bytes. It may not be moved afterwards. False after a usage error. */
+bool sensor_text_parse(sensor_text_t *sensor, const char *command, const char *text, size_t length);
 
 /* Its address, where it says one; else *address stays. False after a usage error. */
 bool sensor_text_address(const sensor_text_t *sensor, const char *command, const model_mode_t *mode,

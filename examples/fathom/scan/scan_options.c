@@ -27,7 +27,7 @@ enum {
 };
 
 static const struct option table[OPTIONS + 1] = {
-    [PORT] = {"port", required_argument, NULL, 256},
+    [PORT] = {"port", required_argument, NULL, OPTION_ONCE},
     [BAUD] = {"baud", required_argument, NULL, 256},
     [PARITY] = {"parity", required_argument, NULL, 256},
     [STOP_BITS] = {"stop-bits", required_argument, NULL, 256},

@@ -154,7 +154,7 @@ static int run_get(const host_t *host, int argc, char **argv)
     char **words = NULL;
     int count = 0;
     bool wants_help = false;
-    if (argc == 2 && argv[1][0] != '-') return list(argv[1]);
+    if (argc == 2 && argv[1][0] != '-' && strchr(argv[1], '@') == NULL) return list(argv[1]);
     if (!session_options(&session, "get", argc, argv, session_table, values, &words, &count, &wants_help))
         return STATUS_USAGE;
     if (wants_help) return command_help(&get_command);

@@ -33,6 +33,13 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
                 (void)usage_error(command, "there is no option %s", argv[optind - 1]);
             return -1;
         }
+        if (found == OPTION_ONCE && values[row] != NULL) {
+            (void)usage_error(command,
+                              "--%s stands twice, and takes one; a sensor's own stands behind it, such as "
+                              "a16@/dev/ttyUSB0",
+                              table[row].name);
+            return -1;
+        }
         values[row] = optarg != NULL ? optarg : "";
         if (each != NULL) each(ctx, row, values[row]);
     }

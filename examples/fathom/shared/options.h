@@ -7,6 +7,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* What getopt_long returns for a long option, of which the row counts: option.val. */
+enum {
+    OPTION_ANY = 256, /* of several the last one counts */
+    OPTION_ONCE       /* --port: a second one is wrong usage, since one of two would be dropped silently */
+};
+
 /*
  * Reads a command line. What was given to row i of the table (long options, ended by a row of zeros) stands in
  * values[i] ("" for an option without a value), else NULL; of a repeated option the last one counts. Returns

@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include "fathom_posix.h"
-#include "shared/command.h"
 #include "shared/events.h"
 #include "shared/options.h"
 
@@ -60,21 +59,6 @@ const char *tcp_parse(const char *path, tcp_address_t *address)
     if (end == NULL) end = host + strlen(host);
     wrong = take_host(host, (size_t)(end - host), address);
     return wrong != NULL ? wrong : take_port(end, address);
-}
-
-bool tcp_suits(const char *command, const char *path, const char *mode)
-{
-    tcp_address_t address;
-    if (!tcp_names(path)) return true;
-    const char *const wrong = tcp_parse(path, &address);
-    if (wrong != NULL) {
-        (void)usage_error(command, "--port %s: %s", path, wrong);
-        return false;
-    }
-    if (strcmp(mode, "modbus") == 0) return true;
-    (void)usage_error(
-        command, "mode %s needs a serial port; over tcp: a sensor is asked by Modbus: --mode modbus", mode);
-    return false;
 }
 
 /* The error of a connection that was begun: 0 when it stands, EINTR when the user has ended the command. */

@@ -17,9 +17,6 @@ bool tcp_names(const char *path);
 /* NULL, or what is wrong with it. */
 const char *tcp_parse(const char *path, tcp_address_t *address);
 
-/* Can the sensor be read in this mode at that path? False after saying why not. True for any serial port. */
-bool tcp_suits(const char *command, const char *path, const char *mode);
-
 /*
  * Connects: the descriptor, which does not wait; or -1, and what happened and what to try is in `text`, and whether
  * that may pass by itself in *may_pass. Takes TCP_CONNECT_S for each address of the host at most, less when the user

@@ -10,7 +10,7 @@ void sim_help(FILE *to)
     (void)fputs("fathom sim puts simulated sensors behind a pseudo terminal, which any program can open like "
                 "a serial\n"
                 "port. It prints the port's path and runs until Ctrl-C.\n\n"
-                "usage: fathom sim SENSOR[:ADDRESS[:MODE]]... [OPTIONS]\n\n",
+                "usage: fathom sim SENSOR[:ADDRESS][:MODE]... [OPTIONS]\n\n",
                 to);
     models_print(to);
     (void)fputs(

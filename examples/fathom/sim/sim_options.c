@@ -100,7 +100,7 @@ enum { SEED_STEP = 1000003 };
 static bool take_device(sim_device_t *device, const char *text)
 {
     sensor_text_t sensor;
-    if (!sensor_text_parse(&sensor, command, text)) return false;
+    if (!sensor_text_parse(&sensor, command, text, strlen(text))) return false;
     device->model = sensor.model;
     device->mode = model_mode_find(command, sensor.model, sensor.mode);
     device->address = FACTORY_ADDRESS;

@@ -188,6 +188,10 @@ bool poll_loop_open(poll_loop_t *loop)
     const sensor_options_t *const options = &loop->options;
     const fathom_posix_uart_t *const port = &loop->channel.port;
     char text[TEXT];
+    if (options->port_count > 1) {
+        loop->user->port(loop->ctx, "several ports in one command cannot be read yet", false);
+        return false;
+    }
     loop->channel.echo = options->ports[0].echo;
     loop->adapter.path = options->ports[0].path;
     if (usb_adapter_try(&loop->adapter, &loop->channel, loop->host, &options->ports[0].line)) return true;

@@ -137,7 +137,7 @@ uint32_t results_tick(results_t *results)
 uint64_t results_dropped(const results_t *results)
 {
     uint64_t dropped = 0;
-    for (size_t i = 0; i != MAX_STATIONS; i++)
+    for (size_t i = 0; i != results->loop->options.station_count; i++)
         for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) dropped += results->probes[i][p].dropped;
     return dropped;
 }

@@ -4,50 +4,10 @@
 #include <string.h>
 
 #include "shared/command.h"
-#include "shared/line_text.h"
 #include "shared/options.h"
-#include "shared/tcp_address.h"
 
 /* The longest ones keep every sum of times below the 32 bits of the library's clock. */
 enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
-
-static bool take_baud(const char *command, const char *text, uint32_t *baud)
-{
-    if (text == NULL || baud_parse(text, baud)) return true;
-    (void)usage_error(command, "--baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not '%s'", text);
-    return false;
-}
-
-static bool take_parity(const char *command, const char *text, uint8_t *parity)
-{
-    if (text == NULL || parity_parse(text, parity)) return true;
-    (void)usage_error(command, "--parity takes none, even or odd, not '%s'", text);
-    return false;
-}
-
-/* Two of them take the place of the parity bit: a character has 11 bits either way (HPS-167S 2.2.2). */
-static bool take_stop_bits(const char *command, const char *text, fathom_line_settings_t *line)
-{
-    uint32_t number = line->stop_bits;
-    if (!option_number(command, "stop-bits", text, 1, 2, &number)) return false;
-    line->stop_bits = (uint8_t)number;
-    if (number == 2) line->parity = FATHOM_PARITY_NONE;
-    return true;
-}
-
-/* In the order of fathom_line_config_t.echo: found out, told that there is none, told that there is. */
-static bool take_echo(const char *command, const char *text, uint8_t *echo)
-{
-    static const char *const names[] = {"auto", "off", "on"};
-    if (text == NULL) return true;
-    for (uint8_t i = 0; i != sizeof names / sizeof names[0]; i++) {
-        if (strcmp(text, names[i]) != 0) continue;
-        *echo = i;
-        return true;
-    }
-    (void)usage_error(command, "--echo takes auto, on or off, not '%s'", text);
-    return false;
-}
 
 static bool take_numbers(sensor_options_t *options, const char *command, const char *const *values)
 {
@@ -67,36 +27,93 @@ static bool take_numbers(sensor_options_t *options, const char *command, const c
     return true;
 }
 
-static bool take_stations(sensor_options_t *options, const char *command, char **words, size_t count,
-                          const char *address, const char *mode)
+/* ---- the ports ---- */
+
+static const port_options_t *next_chip(const sensor_options_t *options, const port_options_t *port)
 {
-    if (count == 0 || count > MAX_STATIONS) {
-        (void)usage_error(command,
-                          count == 0 ? "which sensor? a16, a05 or hps167s" : "a line has 32 sensors at most");
-        return false;
+    const port_options_t *const end = options->ports + options->port_count;
+    do port++;
+    while (port != end && !port->is_chip);
+    return port;
+}
+
+/* "gpiochip0" is "/dev/gpiochip0". */
+static bool is_same_chip(const char *one, const char *other)
+{
+    static const char folder[] = "/dev/";
+    if (strncmp(one, folder, sizeof folder - 1) == 0) one += sizeof folder - 1;
+    if (strncmp(other, folder, sizeof folder - 1) == 0) other += sizeof folder - 1;
+    return strcmp(one, other) == 0;
+}
+
+/* The kernel gives a line to one user only. port: what has these keys. */
+static bool check_pins(const sensor_options_t *options, const char *command, const port_options_t *port)
+{
+    const port_options_t *const end = options->ports + options->port_count;
+    for (const port_options_t *other = port; other != end; other = next_chip(options, other)) {
+        if (!is_same_chip(port->path, other->path)) continue;
+        for (int one = KEY_TRIGGER; one <= KEY_IN; one++)
+            for (int two = KEY_TRIGGER; two <= KEY_IN; two++) {
+                const bool is_one = port == other && one >= two;
+                if (is_one || !port_keys_has(&port->keys, (port_key_t)one) ||
+                    !port_keys_has(&other->keys, (port_key_t)two) ||
+                    port->keys.value[one] != other->keys.value[two])
+                    continue;
+                (void)usage_error(command, "line %u of %s stands for two things, %s and %s",
+                                  (unsigned)port->keys.value[one], port->path, port_key_name((port_key_t)one),
+                                  port_key_name((port_key_t)two));
+                return false;
+            }
     }
-    if (count > 1 && (address != NULL || mode != NULL)) {
-        (void)usage_error(command,
-                          "with several sensors --address and --mode stand behind each name, such as "
-                          "a16:1:modbus");
-        return false;
-    }
-    for (size_t i = 0; i != count; i++)
-        if (!station_parse(&options->stations[i], command, words[i], address, mode, count > 1)) return false;
-    options->station_count = count;
     return true;
 }
 
-static bool take_lines(sensor_options_t *options, const char *command, const char *const *values)
+/* Its row; a chip has one for each sensor. */
+static size_t port_of(sensor_options_t *options, const char *path)
+{
+    const bool is_chip = port_kind(path, strlen(path)) == PORT_CHIP;
+    size_t i = 0;
+    while (i != options->port_count && (is_chip || strcmp(options->ports[i].path, path) != 0)) i++;
+    if (i != options->port_count) return i;
+    options->port_count++;
+    options->ports[i] = (port_options_t){.path = path, .is_chip = is_chip};
+    return i;
+}
+
+static bool take_port(sensor_options_t *options, const char *command, station_t *station,
+                      const sensor_place_t *place, const char *path)
+{
+    if (place->port != NULL) path = place->port;
+    if (path == NULL) {
+        (void)usage_error(command,
+                          "--port is missing, such as --port /dev/ttyUSB0; or behind the sensor: %s@%s",
+                          place->word, "/dev/ttyUSB0");
+        return false;
+    }
+    station->port = port_of(options, path);
+    port_options_t *const port = &options->ports[station->port];
+    port->station_count++;
+    return port_keys_add(&port->keys, command, place->word, &place->keys);
+}
+
+/* What the options say of all ttys whose own keys do not. */
+static bool take_defaults(port_keys_t *keys, const char *command, const char *const *values)
+{
+    const char *const rs485 = values[OPTION_RS485] != NULL ? "on" : NULL;
+    return port_keys_option(keys, command, "baud", KEY_BAUD, values[OPTION_BAUD]) &&
+           port_keys_option(keys, command, "stop-bits", KEY_STOP_BITS, values[OPTION_STOP_BITS]) &&
+           port_keys_option(keys, command, "parity", KEY_PARITY, values[OPTION_PARITY]) &&
+           port_keys_option(keys, command, "echo", KEY_ECHO, values[OPTION_ECHO]) &&
+           port_keys_option(keys, command, "rs485", KEY_RS485, rs485);
+}
+
+static void take_lines(sensor_options_t *options, const port_keys_t *defaults)
 {
     for (size_t i = 0; i != options->station_count; i++) {
         fathom_line_settings_t *const line = &options->stations[i].line;
-        *line = options->stations[i].model->line;
-        if (!take_baud(command, values[OPTION_BAUD], &line->baud) ||
-            !take_stop_bits(command, values[OPTION_STOP_BITS], line) ||
-            !take_parity(command, values[OPTION_PARITY], &line->parity))
-            return false;
         port_options_t *const port = &options->ports[options->stations[i].port];
+        *line = options->stations[i].model->line;
+        port_options_line(port, defaults, line);
         if (port->line.baud == 0 || line->baud < port->line.baud) port->line = *line;
     }
     for (size_t i = 0; i != options->station_count; i++) {
@@ -104,47 +121,105 @@ static bool take_lines(sensor_options_t *options, const char *command, const cha
         port_options_t *const port = &options->ports[options->stations[i].port];
         if (line->baud != port->line.baud || line->parity != port->line.parity) port->has_mixed_lines = true;
     }
+}
+
+static bool take_ports(sensor_options_t *options, const char *command, const char *const *values)
+{
+    port_keys_t defaults = {.given = 0};
+    if (!take_defaults(&defaults, command, values)) return false;
+    take_lines(options, &defaults);
+    for (size_t i = 0; i != options->port_count; i++) {
+        port_options_take(&options->ports[i], &defaults);
+        if (options->ports[i].is_chip && !check_pins(options, command, &options->ports[i])) return false;
+    }
     return true;
 }
 
+/* ---- the sensors ---- */
+
+static bool take_places(sensor_options_t *options, const char *command, char **words, const char *path,
+                        sensor_place_t *places)
+{
+    for (size_t i = 0; i != options->station_count; i++)
+        if (!place_parse(&places[i], command, words[i])) return false;
+    for (size_t i = 0; i != options->station_count; i++)
+        if (!take_port(options, command, &options->stations[i], &places[i], path)) return false;
+    return true;
+}
+
+static bool take_stations(sensor_options_t *options, const char *command, char **words, const char *path,
+                          const char *address, const char *mode)
+{
+    static sensor_place_t places[MAX_STATIONS]; /* too large for a small stack */
+    if (!take_places(options, command, words, path, places)) return false;
+    for (size_t i = 0; i != options->station_count; i++) {
+        station_t *const station = &options->stations[i];
+        const port_options_t *const port = &options->ports[station->port];
+        if (!station_take(station, command, &places[i], address, mode,
+                          options->asks_all || port->station_count > 1))
+            return false;
+    }
+    return true;
+}
+
+static bool check_count(const char *command, int count, bool has_options)
+{
+    if (count == 0)
+        (void)usage_error(command, "which sensor? a16, a05 or hps167s");
+    else if (count > MAX_STATIONS)
+        (void)usage_error(command, "up to %d sensors at once, not %d", MAX_STATIONS, count);
+    else if (count > 1 && has_options)
+        (void)usage_error(command,
+                          "with several sensors --address and --mode stand behind each name, such as "
+                          "a16:1:modbus");
+    else
+        return true;
+    return false;
+}
+
+/* In the order in which a user mends it. */
 bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode)
 {
-    const char *const path = values[OPTION_PORT];
-    const bool has_settings = path == NULL || !tcp_names(path);
-    options->port_count = 1;
-    if (!take_stations(options, command, words, (size_t)word_count, address, mode) ||
-        !take_lines(options, command, values) ||
-        !stations_check(options->stations, options->station_count, command, has_settings) ||
-        !take_numbers(options, command, values) ||
-        !take_echo(command, values[OPTION_ECHO], &options->ports[0].echo))
+    static station_t stations[MAX_STATIONS];
+    if (!check_count(command, word_count, address != NULL || mode != NULL)) return false;
+    options->stations = stations;
+    options->station_count = (size_t)word_count;
+    options->port_count = 0;
+    memset(stations, 0, options->station_count * sizeof stations[0]);
+    if (!take_stations(options, command, words, values[OPTION_PORT], address, mode) ||
+        !take_ports(options, command, values) ||
+        !stations_check(stations, options->station_count, options->ports, command) ||
+        !stations_name(stations, options->station_count, options->ports, command) ||
+        !take_numbers(options, command, values))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
-    options->ports[0].path = path;
-    if (path == NULL) {
-        (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
-        return false;
-    }
     for (size_t i = 0; i != options->station_count; i++)
-        if (!tcp_suits(command, path, options->stations[i].mode->name)) return false;
+        if (!station_suits(&stations[i], &options->ports[stations[i].port], command)) return false;
     return true;
 }
 
-static void tell_useless(const sensor_options_t *options, bool has_effect, const char *name,
-                         const char *value)
+static void tell_useless(const sensor_options_t *options, const station_t *station, bool has_effect,
+                         const char *name, const char *value)
 {
-    const model_mode_t *const mode = options->stations[0].mode;
+    const bool is_alone = options->station_count == 1;
     if (value != NULL && !has_effect)
-        (void)fprintf(stderr, "fathom: in mode %s nothing is asked, so %s has no effect\n", mode->name, name);
+        (void)fprintf(stderr, "fathom: %s%sin mode %s nothing is asked, so %s has no effect\n",
+                      is_alone ? "" : station->name, is_alone ? "" : ": ", station->mode->name, name);
 }
 
 void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
                                  const char *const *values)
 {
-    const model_mode_t *const mode = options->stations[0].mode;
-    tell_useless(options, mode->has_address, "--address", address);
-    tell_useless(options, mode->is_asked, "--retries", values[OPTION_RETRIES]);
-    tell_useless(options, mode->is_asked, "--echo", values[OPTION_ECHO]);
+    for (size_t i = 0; i != options->station_count; i++) {
+        const station_t *const station = &options->stations[i];
+        const model_mode_t *const mode = station->mode;
+        const bool has_key = port_keys_has(&options->ports[station->port].keys, KEY_ECHO);
+        tell_useless(options, station, mode->has_address, "--address", address);
+        tell_useless(options, station, mode->is_asked, "--retries", values[OPTION_RETRIES]);
+        tell_useless(options, station, mode->is_asked, has_key ? "echo=" : "--echo",
+                     has_key ? "" : values[OPTION_ECHO]);
+    }
 }
 
 void sensor_options_help(FILE *to)

@@ -4,6 +4,7 @@
 
 #include <getopt.h>
 
+#include "shared/options.h"
 #include "stations/station.h"
 
 /* The options of every command that reads sensors: the first rows of its table. */
@@ -16,6 +17,7 @@ enum {
     OPTION_TIMEOUT,
     OPTION_RETRIES,
     OPTION_ECHO,
+    OPTION_RS485,
     OPTION_RECONNECT,
     OPTION_DURATION,
     SENSOR_OPTIONS
@@ -23,7 +25,7 @@ enum {
 
 /* getopt_long returns 256 for each: the row counts. */
 #define SENSOR_OPTION_ROWS                                                                                   \
-    [OPTION_PORT] = {"port", required_argument, NULL, 256},                                                  \
+    [OPTION_PORT] = {"port", required_argument, NULL, OPTION_ONCE},                                          \
     [OPTION_BAUD] = {"baud", required_argument, NULL, 256},                                                  \
     [OPTION_PARITY] = {"parity", required_argument, NULL, 256},                                              \
     [OPTION_STOP_BITS] = {"stop-bits", required_argument, NULL, 256},                                        \
@@ -31,34 +33,17 @@ enum {
     [OPTION_TIMEOUT] = {"timeout", required_argument, NULL, 256},                                            \
     [OPTION_RETRIES] = {"retries", required_argument, NULL, 256},                                            \
     [OPTION_ECHO] = {"echo", required_argument, NULL, 256},                                                  \
+    [OPTION_RS485] = {"rs485", no_argument, NULL, 256},                                                      \
     [OPTION_RECONNECT] = {"reconnect", no_argument, NULL, 256},                                              \
     [OPTION_DURATION] = {"duration", required_argument, NULL, 256}
 
-/* A line has 32 unit loads. */
-enum { MAX_STATIONS_ON_A_LINE = 32, MAX_STATIONS = 32, MAX_PORTS = 1 };
-
-/* The lines of a GPIO chip that a sensor hangs on; -1: none. */
-typedef struct {
-    int32_t trigger; /* to the sensor's RX; an output */
-    int32_t echo;    /* from its TX: pulses */
-    int32_t in;      /* a switch, or a relay's contact */
-    uint8_t bias;    /* of the inputs; fathom_gpio_bias_t */
-} pin_options_t;
-
-/* A port, and the line behind it. */
-typedef struct {
-    const char *path; /* of a tty; tcp:HOST[:PORT]; or of a GPIO chip, "gpiochip0" too */
-    bool is_chip;
-    pin_options_t pins; /* then */
-    bool rs485;         /* the kernel's driver is to drive the transceiver */
-    fathom_line_settings_t line; /* with which it is opened: the slowest of its sensors' */
-    bool has_mixed_lines;        /* they differ in that */
-    uint8_t echo;                /* fathom_line_config_t.echo */
-} port_options_t;
+enum { MAX_PORTS = MAX_STATIONS };
 
 /* What a command was asked to read. */
 typedef struct {
-    station_t stations[MAX_STATIONS];
+    /* Without a MODE each is asked, also one that is alone at its port: to be set before. */
+    bool asks_all;
+    station_t *stations; /* the tool has one set of them, since it runs one command at a time */
     size_t station_count;
     port_options_t ports[MAX_PORTS];
     size_t port_count;
@@ -73,13 +58,13 @@ typedef struct {
 } sensor_options_t;
 
 /*
- * words: SENSOR[:ADDRESS[:MODE]], word_count of them. values: what options_parse has found. address and mode: what
+ * words: of place.h, word_count of them, which it cuts. values: what options_parse has found. address and mode: what
  * further options have said of the one sensor; NULL: nothing. False after saying what is wrong.
  */
 bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode);
 
-/* Says which of these options have no effect because nothing is asked. */
+/* Says which of these options, and keys, have no effect on a sensor because nothing is asked. */
 void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
                                  const char *const *values);
 

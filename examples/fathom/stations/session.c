@@ -12,12 +12,6 @@ const struct option session_table[SESSION_OPTIONS + 1] = {
     SESSION_OPTION_ROWS,
 };
 
-static bool has_mode(const char *word)
-{
-    const char *const colon = strchr(word, ':');
-    return colon != NULL && strchr(colon + 1, ':') != NULL;
-}
-
 static bool take_format(session_t *session, const char *command, const char *text)
 {
     session->is_json = text != NULL && strcmp(text, "json") == 0;
@@ -39,12 +33,12 @@ bool session_options(session_t *session, const char *command, int argc, char **a
         (void)usage_error(command, "which sensor? a16, a05 or hps167s");
         return false;
     }
-    const char *mode = values[SESSION_MODE];
-    if (mode == NULL && !has_mode(argv[rest])) mode = "modbus";
-    session->station = &session->options.stations[0];
+    session->options.asks_all = true;
     if (!take_format(session, command, values[SESSION_FORMAT]) ||
-        !sensor_options(&session->options, command, argv + rest, 1, values, values[SESSION_ADDRESS], mode))
+        !sensor_options(&session->options, command, argv + rest, 1, values, values[SESSION_ADDRESS],
+                        values[SESSION_MODE]))
         return false;
+    session->station = &session->options.stations[0];
     if (!session->station->mode->is_asked) {
         (void)usage_error(command, "in mode %s nothing is asked; leave it out", session->station->mode->name);
         return false;

@@ -4,9 +4,13 @@
 
 #include "models/models.h"
 #include "stations/counters.h"
+#include "stations/place.h"
 
-/* One sensor on a line, as a command reads it. */
-enum { STATION_NAME = 16 };
+/* A line has 32 unit loads. */
+enum { MAX_STATIONS = 256, MAX_STATIONS_ON_A_LINE = 32 };
+
+/* One sensor at a port, as a command reads it. */
+enum { STATION_NAME = 80 };
 
 typedef struct {
     const model_t *model;
@@ -14,7 +18,9 @@ typedef struct {
     fathom_line_settings_t line; /* at which it is asked */
     size_t port;                 /* its row in sensor_options_t.ports */
     uint8_t address;
-    char name[STATION_NAME]; /* "a16:1", as the user may write it; of one without an address "a16" */
+    /* The user's; else "a16:1", of one without an address "a16". Where others at other ports have the same: "a16:1@tty". */
+    char name[STATION_NAME];
+    bool has_own_name; /* the user's */
     reader_t reader;
     counters_t counters;
     listener_t
@@ -28,19 +34,25 @@ typedef struct {
 } station_t;
 
 /*
- * Reads SENSOR[:ADDRESS[:MODE]]; an empty ADDRESS is the factory's. Without a MODE it is the sensor's first one; the
- * first in which it is asked if it has an ADDRESS or shares the line, for only then can it have or do that.
- * address, mode: what options have said of the same; NULL: nothing. False after a usage error.
+ * What the user has named; *station is all zeros before. An empty ADDRESS is the factory's. Without a MODE it is the
+ * sensor's first one; the first in which it is asked if it has an ADDRESS or is_asked, for only then can it have or do
+ * that. address, mode: what options have said of the same; NULL: nothing. False after a usage error.
  */
-bool station_parse(station_t *station, const char *command, const char *text, const char *address,
-                   const char *mode, bool is_shared);
+bool station_take(station_t *station, const char *command, const sensor_place_t *place, const char *address,
+                  const char *mode, bool is_asked);
 
-/* Its name, by its model, mode and address. */
+/* Can it be read in its mode at this port? False after a usage error. */
+bool station_suits(const station_t *station, const port_options_t *port, const char *command);
+
+/* Its name, by its model, mode and address, if the user has given none. */
 void station_name(station_t *station);
 
-/* Can these be read on one line? has_settings: a line where each is asked at its own settings; not so behind a
- * gateway. False after a usage error. */
-bool stations_check(const station_t *stations, size_t count, const char *command, bool has_settings);
+/* Names that several have are told apart by the ports. False after a usage error: some are the same all the same. */
+bool stations_name(station_t *stations, size_t count, const port_options_t *ports, const char *command);
+
+/* Can they be read at their ports, those of a port together? False after a usage error. */
+bool stations_check(const station_t *stations, size_t count, const port_options_t *ports,
+                    const char *command);
 
 /* Begins to read it through an open channel. False: its driver, or the port, does not take the settings, for which
  * station_refusal has the words. */

@@ -25,7 +25,6 @@ enum { PICTURE_US = 125000, LINE_US = 1000000, MESSAGE_US = 5000000, MESSAGE = 5
 
 typedef struct {
     poll_loop_t loop;
-    lanes_t lanes;
     picture_t picture;
     uint16_t rows; /* of the window */
     uint16_t columns;
@@ -36,6 +35,7 @@ typedef struct {
     bool draws;                             /* pictures, else lines */
     bool wants_all;   /* of the next picture, because something else may have written to the terminal */
     int output_error; /* errno */
+    lanes_t lanes;    /* last: only those of them that are used are ever touched */
 } watch_t;
 
 static void say(watch_t *watch, const char *text, uint64_t for_us)
@@ -229,7 +229,7 @@ static int run(const host_t *host, int argc, char **argv)
     static watch_t watch; /* too large for any stack */
     poll_loop_t *const loop = &watch.loop;
     bool wants_help = false;
-    memset(&watch, 0, sizeof watch);
+    memset(&watch, 0, offsetof(watch_t, lanes));
     poll_loop_begin(loop, host, &user, &watch);
     if (!take_options(&loop->options, argc, argv, &wants_help)) return STATUS_USAGE;
     if (wants_help) return command_help(&watch_command);

@@ -40,6 +40,8 @@ void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
 {
     lanes->step_us = options->interval_us > LEAST_STEP_US ? options->interval_us : LEAST_STEP_US;
     lanes->count = 0;
+    lanes->now_us = 0;
+    lanes->seen = 0;
     for (size_t i = 0; i != options->station_count; i++) {
         const station_t *const station = &options->stations[i];
         const uint8_t probes = station->model->probes;
@@ -48,6 +50,7 @@ void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
                 (options->reading.probes >> (probe - 1) & 1) == 0)
                 continue;
             lane_t *const lane = &lanes->lane[lanes->count++];
+            memset(lane, 0, sizeof *lane);
             lane->station = station;
             lane->probe = probe;
             (void)snprintf(lane->name, sizeof lane->name, probes > 1 ? "%s probe %u" : "%s", station->name,

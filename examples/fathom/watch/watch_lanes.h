@@ -37,7 +37,7 @@ typedef struct {
     uint16_t readings;
 } step_t;
 
-enum { LANE_STEPS = 512, LANE_NAME = 24 };
+enum { LANE_STEPS = 512, LANE_NAME = STATION_NAME + 16 };
 
 typedef struct {
     const station_t *station;
