@@ -77,18 +77,18 @@ class What(Settings):
     @e2e.each(
         # the examples of #3; a temperature of 77 degrees Fahrenheit is (77 - 32) * 5 / 9 = 25.0
         everything_that_an_hps167s_tells=('hps167s:7', 'hps167s:7', {
-            'sensor': 'hps167s', 'asked_at': 7, 'mode': 'modbus', 'line': '19200 8E1',
+            'name': 'hps167s:7', 'sensor': 'hps167s', 'asked_at': 7, 'mode': 'modbus', 'line': '19200 8E1',
             'interface-version': '2.1.0 of 2020-09-27', 'sensor-version': '3.9 of 2019-09-23',
             'uuid': '00390025423457142034383501060705', 'temperature': 25.0, 'baud': 19200, 'baud-code': 1,
             'warm-up': 0,
             'measure-after-power-on': 'on', 'termination': 'on', 'reconnect-time': 180}),
         everything_that_an_a16_tells=('a16:1:modbus --distance 754', 'a16', {
-            'sensor': 'a16', 'asked_at': 1, 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,
+            'name': 'a16:1', 'sensor': 'a16', 'asked_at': 1, 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,
             'switch-polarity': 'positive', 'switch-threshold': 1000, 'automatic-value': 'processed',
             'distance': 754,
             'real-time-distance': 754}),
         everything_that_an_a05_tells=('a05:3:modbus --distance 1000,2000,1953,no-target', 'a05:3', {
-            'sensor': 'a05', 'asked_at': 3, 'mode': 'modbus', 'line': '9600 8N1', 'address': 3,
+            'name': 'a05:3', 'sensor': 'a05', 'asked_at': 3, 'mode': 'modbus', 'line': '9600 8N1', 'address': 3,
             'distances': '1000, 2000, 1953, no target'}))
     def everything(self, device, sensor, expected):
         self.assertEqual(self.json(f'info {sensor} --port {self.sim(device)}'), expected)

@@ -101,7 +101,7 @@ class NoConnection(Case):
     def serial(self, sensor, mode):
         self.ends(f'read {sensor} --mode {mode} --port {self.server()}', 2,
                   f'mode {mode} needs a serial port; over '
-                  'tcp: a sensor is asked by Modbus: --mode modbus', out='')
+                  f'tcp: a sensor is asked by Modbus: {sensor}:modbus', out='')
 
 
 class Responses(Case):

@@ -92,6 +92,48 @@ WRONG = [
         ('a05 --probes 5 --port /nowhere', "--probes takes some of 1,2,3,4, each once, not '5'"),
         ('a16 --means 0 --port /nowhere', "not '0'"),
     ]),
+    ('a_port_of_each_sensor', 'read', [
+        ('a16@', 'a16@: the port is missing behind @, such as @/dev/ttyUSB0'),
+        ('a16@,baud=9600', 'the port is missing behind @'),
+        ('a16@/nowhere a05:2', '--port is missing, such as --port /dev/ttyUSB0; or behind the sensor: '
+                               'a05:2@/dev/ttyUSB0'),
+        ('a16 --port /nowhere --port /elsewhere', '--port stands twice, and takes one'),
+        ('a16@/nowhere,speed=1',
+         "a16@/nowhere,speed=1: a serial port has no key 'speed', only baud, parity, stop, rs485, echo"),
+        ('a16@/nowhere,trigger=1', "a serial port has no key 'trigger', only baud"),
+        ('a16@gpiochip0,baud=9600', "a GPIO chip has no key 'baud', only trigger, echo, in, bias"),
+        ('a16@/nowhere,', "a serial port has no key ''"),
+        ('a16@/nowhere,baud', 'a16@/nowhere,baud: the value of baud is missing: 9600, 19200,'),
+        ('a16@/nowhere,baud=', "baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not ''"),
+        ('a16@/nowhere,baud=9600,baud=9600', 'baud stands there twice'),
+        ('a16@/nowhere,stop=3', "stop takes a whole number from 1 to 2, not '3'"),
+        ('a16@/nowhere,echo=7', "echo takes auto, on or off, not '7'"),
+        ('a16@gpiochip0,echo=on', "echo takes the number of a line from 0 to 65535, not 'on'"),
+        ('a16@gpiochip0,bias=high', "bias takes as-is, up, down or off, not 'high'"),
+        ('hps167s@tcp:h,baud=9600', "a port over TCP has no keys, for the line is the gateway's"),
+        ('hps167s@tcp:', 'tcp:: the host is missing'),
+        ('a16@tcp:h', 'a16 in mode auto needs a serial port; over tcp: a sensor is asked by Modbus: a16:modbus'),
+        ('a16@/dev/gpiochip0,in=1', 'a16 in mode auto needs a serial port, and /dev/gpiochip0 is a GPIO chip'),
+        ('a16:modbus@gpiochip0', 'a16 in mode modbus needs a serial port'),
+        ('a16@gpiochip0,trigger=3,echo=3', 'line 3 of gpiochip0 stands for two things, trigger and echo'),
+        ('a=a16@gpiochip0,in=3 b=a16@/dev/gpiochip0,echo=3', 'line 3 of gpiochip0 stands for two things'),
+        ('a16:3@x,baud=9600 a16:4@x,baud=19200', 'a16:4@x: another sensor at this port has another baud'),
+        ('=a16@x', "the first a letter or digit, such as tank-1=a16; not ''"),
+        ('-- -a=a16@x', "not '-a'"),
+        ('t/1=a16@x', "not 't/1'"),
+        ('t' * 32 + '=a16@x', "a name has up to 31 letters, digits, - _ and ., the first a letter or digit"),
+        ('t=a16@x t=a05@y', 'two sensors have the name t; give each one of its own, such as one=a05'),
+        ('t=a16:1@x t=a05:2@x', 'two sensors have the name t'),
+        ('a16@1/x a16@2/x', 'two sensors have the name a16@x'),
+        ('a16@x a05:auto@x', 'a05 in mode auto sends by itself and cannot share a line'),
+        ('a16:1@x a05:1 --port x', 'a16:1 and a05:1 have the same address'),
+        ('a=a16:1@x b=a05:1@x', 'a and b have the same address'),
+        ('a05:1:dyp@x a05:2@x', 'a damaged response in mode dyp'),
+        (' '.join(f'a16:{address}@x' for address in range(1, 34)), 'a line has 32 sensors at most; x has 33'),
+        ('a16@x ' * 257, 'up to 256 sensors at once, not 257'),
+        ('a16:modbus@x --mode auto', "'a16:modbus@x' and an option say the same"),
+        ('a16:modbus:1@x', "there is no mode 'modbus:1' for a16"),
+    ]),
     ('probes_and_meanings_of_values', 'read', [
         *told('a05 --port /nowhere --probes', '0', '5', '1,', ',1', '1,1', '1-3', '', '1' * 40),
         ('a16:1 hps167s:2 --port /nowhere --probes 1',
@@ -178,6 +220,7 @@ WRONG = [
          "--parity takes all, or some of none, even and odd with commas between them, not 'mark'"),
         ('--parity none,', "not ''"),
         ('--stop-bits 0', '--stop-bits takes a whole number from 1 to 2'),
+        ('--port /elsewhere', '--port stands twice'),
         ('--timeout 0', '--timeout takes a whole number from 1 to 10000'),
         ('--retries 10', '--retries takes a whole number from 0 to 9'),
         ('--listen 0', '--listen takes a whole number from 1 to 60'),
@@ -186,9 +229,12 @@ WRONG = [
     ]),
     ('wrong_words_are_usage_errors', 'info', [
         ('a16:1:auto --port /nowhere', 'nothing is asked'),
-        ('a16 a05 --port /nowhere', 'one sensor at a time'),
+        ('a16 a05 --port /nowhere', 'a16:1 and a05:1 have the same address'),
+        ('a16@x a05:auto@y', 'in mode auto nothing is asked'),
+        ('a16@x hps167s', '--port is missing'),
     ]),
     ('wrong_words_are_usage_errors', 'get', [
+        ('a16@/nowhere', 'which setting?'),
         ('a17', "no sensor 'a17'"),
         ('a16 address', '--port is missing'),
         ('a16 --port /nowhere', 'which setting?'),
@@ -256,7 +302,7 @@ class Help(e2e.Case):
         help_of_sim_names_sensors_options_and_examples=(
             'sim', 'a16 a05 hps167s --link --distance --seed examples'),
         the_help_names_it_all=(
-            'sim', 'SENSOR[:ADDRESS[:MODE]]... --baud --echo --counters --with warm-up=S N@ 64 SIGUSR1'))
+            'sim', 'SENSOR[:ADDRESS][:MODE]... --baud --echo --counters --with warm-up=S N@ 64 SIGUSR1'))
     def names(self, command, words, *more):
         text = self.told(f'{command} --help')
         for word in (*words.split(), *more, 'Exit status'):
@@ -277,12 +323,16 @@ class Help(e2e.Case):
             self.ends(re.sub(r'--port \S+', '--port /nowhere', example), 1)
 
     def test_options_may_stand_before_and_after_the_sensor_and_the_last_one_counts(self):
-        self.ends('read --format csv a16 --port /elsewhere --port /nowhere', 1, '/nowhere: no such device')
+        self.ends('read --interval 1s a16 --port /nowhere --interval 1', 1, '/nowhere: no such device')
 
     def test_what_has_no_effect_is_said(self):
         for option in ('--address 7', '--retries 7', '--echo on'):
             self.ends(f'read a16 --port /nowhere {option}', 1,
                       f'in mode auto nothing is asked, so {option.split()[0]} has no effect\n')
+        self.ends('read a16@/nowhere,echo=on', 1, 'in mode auto nothing is asked, so echo= has no effect\n')
+        told = self.run_fathom('read one=a16@/nowhere hps167s@/elsewhere --retries 7').err
+        self.assertEqual(told.count('no effect'), 1)
+        self.assertIn('fathom: one: in mode auto nothing is asked, so --retries has no effect\n', told)
         self.assertNotIn('no effect',
                          self.run_fathom('read a16 --port /nowhere --mode modbus --retries 7').err)
 

@@ -92,7 +92,7 @@ static bool take_terminated(commission_options_t *options, const model_t *model,
 /* What a session may be and this may not. */
 static bool is_suitable(const session_t *session)
 {
-    const char *const port = session->options.ports[0].path;
+    const char *const port = session_port(session)->path;
     if (session->station->address != FACTORY_ADDRESS)
         (void)usage_error(command, "it looks for units at address %d, with which they come; leave %u out",
                           FACTORY_ADDRESS, session->station->address);

@@ -29,17 +29,30 @@ static void print_json(const setting_t *setting, fathom_status_t status, const c
         (void)fputs("null", stdout);
 }
 
+/* Does each tell whose it is? */
+static bool has_name(void) { return session.options.station_count > 1 || session.station->has_own_name; }
+
 static void begin(void)
 {
     const station_t *const station = session.station;
     char line[LINE_TEXT];
     (void)session_line_text(&session, line);
     if (session.is_json)
-        (void)printf("{\"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",
-                     station->model->name, station->address, station->mode->name, line);
+        (void)printf(
+            "{\"name\": \"%s\", \"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",
+            station->name, station->model->name, station->address, station->mode->name, line);
     else
-        (void)printf("%s, %s, asked at address %u, %s\n", station->model->name, station->model->what,
-                     station->address, line);
+        (void)printf("%s%s%s%s, %s, asked at address %u, %s\n",
+                     station != session.options.stations ? "\n" : "", has_name() ? station->name : "",
+                     has_name() ? ": " : "", station->model->name, station->model->what, station->address,
+                     line);
+}
+
+/* Before what is said on the standard error. */
+static void say_whose(void)
+{
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.station->name : "", has_name() ? ": " : "");
 }
 
 static bool can_be_printed(const setting_t *setting)
@@ -53,8 +66,8 @@ static bool print_one(const setting_t *setting, bool *is_known, unsigned *printe
     char text[SETTING_TEXT];
     const fathom_status_t status = session_get(&session, setting, text);
     if (status != FATHOM_READY && (!*is_known || setting_reason(status) == NULL)) {
-        (void)fflush(stdout);
-        (void)fprintf(stderr, "fathom: %s: ", setting->name);
+        say_whose();
+        (void)fprintf(stderr, "%s: ", setting->name);
         session_explain(&session, status);
         (void)fputs("\n", stderr);
         return false;
@@ -86,8 +99,10 @@ static int tell(const setting_t *settings, size_t count)
         (void)fputs("fathom: the output cannot be written\n", stderr);
         is_good = false;
     }
-    if (is_known && printed != all)
-        (void)fprintf(stderr, "fathom: %u of %u values could not be read\n", all - printed, all);
+    if (is_known && printed != all) {
+        say_whose();
+        (void)fprintf(stderr, "%u of %u values could not be read\n", all - printed, all);
+    }
     return is_good && printed == all ? STATUS_OK : STATUS_FAILED;
 }
 
@@ -140,12 +155,20 @@ static int tell_on_port(const host_t *host, const setting_t *settings, size_t co
     return status;
 }
 
+/* One after the other; what fails keeps none of the others from being told. */
 static int run_info(const host_t *host, int argc, char **argv)
 {
     const char *values[SESSION_OPTIONS] = {NULL};
     int status = STATUS_OK;
-    if (!session_alone(&session, &info_command, argc, argv, session_table, values, &status)) return status;
-    return tell_on_port(host, session_settings(&session), SIZE_MAX);
+    if (!session_several(&session, &info_command, argc, argv, session_table, values, &status)) return status;
+    const sensor_options_t *const options = &session.options;
+    status = STATUS_OK;
+    for (size_t i = 0; i != options->station_count; i++) {
+        if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
+        session.station = &options->stations[i];
+        if (tell_on_port(host, session_settings(&session), SIZE_MAX) != STATUS_OK) status = STATUS_FAILED;
+    }
+    return status;
 }
 
 static int run_get(const host_t *host, int argc, char **argv)

@@ -41,7 +41,7 @@ static int finish(bool is_restore, fathom_status_t status)
             (void)printf("%s: the interface has its factory settings: address 1, "
                          "19200 8E1, termination on\n"
                          "from now on: fathom read hps167s --port %s\n",
-                         station->name, session.options.ports[session.station->port].path);
+                         station->name, session_port(&session)->path);
         else
             (void)printf("%s: the sensor has acknowledged that it loads its factory "
                          "settings; they cannot be read "
@@ -64,7 +64,7 @@ static int finish(bool is_restore, fathom_status_t status)
                       "the reset was sent, and then the device could not be read: "
                       "it is at address 1, 19200 8E1, or "
                       "still at address %u, %s; try fathom scan --port %s",
-                      station->address, line_text(&station->line, line), session.options.ports[session.station->port].path);
+                      station->address, line_text(&station->line, line), session_port(&session)->path);
     } else {
         session_explain(&session, status);
     }

@@ -45,7 +45,7 @@ static void print_unknown(FILE *to, const change_t *change)
         (void)fprintf(to,
                       "it is at %" PRIu32 " or at %s baud, perhaps from the next power-on; try fathom scan "
                       "--port %s --baud %" PRIu32 ",%s",
-                      was, change->wanted, change->session->options.ports[0].path, was, change->wanted);
+                      was, change->wanted, session_port(change->session)->path, was, change->wanted);
     } else if (setting->moves) {
         char line[LINE_TEXT];
         (void)fprintf(to, "it is at address %u or at address %s, %s; try fathom read with either",

@@ -193,6 +193,7 @@ bool poll_loop_open(poll_loop_t *loop)
         return false;
     }
     loop->channel.echo = options->ports[0].echo;
+    loop->channel.rs485 = options->ports[0].rs485;
     loop->adapter.path = options->ports[0].path;
     if (usb_adapter_try(&loop->adapter, &loop->channel, loop->host, &options->ports[0].line)) return true;
     loop->is_lost = options->reconnect && fathom_posix_error(port) == FATHOM_POSIX_ERR_NOT_FOUND;

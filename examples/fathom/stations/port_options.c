@@ -205,8 +205,10 @@ static int32_t pin(const port_keys_t *keys, port_key_t key)
 
 void port_options_take(port_options_t *port, const port_keys_t *defaults)
 {
+    static const port_keys_t none;
     uint32_t rs485 = 0;
     uint32_t echo = 0;
+    if (port_kind(port->path, strlen(port->path)) != PORT_TTY) defaults = &none;
     (void)get(&port->keys, defaults, KEY_RS485, &rs485);
     (void)get(&port->keys, defaults, KEY_ECHO, &echo);
     port->rs485 = rs485 != 0;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "stations/session.h"
 
+#include <limits.h>
 #include <string.h>
 
 #include "shared/command.h"
@@ -20,48 +21,79 @@ static bool take_format(session_t *session, const char *command, const char *tex
     return false;
 }
 
-bool session_options(session_t *session, const char *command, int argc, char **argv,
-                     const struct option *table, const char **values, char ***words, int *count,
-                     bool *wants_help)
+/* Nothing can be asked for in a mode in which a sensor is only listened to, or on pins. */
+static bool check_modes(const sensor_options_t *options, const char *command)
+{
+    for (size_t i = 0; i != options->station_count; i++) {
+        const model_mode_t *const mode = options->stations[i].mode;
+        if (mode->is_asked && mode->pins == 0) continue;
+        (void)usage_error(command, "in mode %s nothing is asked; leave it out", mode->name);
+        return false;
+    }
+    return true;
+}
+
+/* The same as session_options, of so many of the words, if there are that many. */
+static bool take_options(session_t *session, const char *command, int argc, char **argv,
+                         const struct option *table, const char **values, int most, char ***words, int *count,
+                         bool *wants_help)
 {
     memset(session, 0, sizeof *session);
     const int rest = options_parse(command, argc, argv, table, values);
     if (rest < 0) return false;
     *wants_help = values[SESSION_HELP] != NULL;
     if (*wants_help) return true;
-    if (rest == argc) {
-        (void)usage_error(command, "which sensor? a16, a05 or hps167s");
-        return false;
-    }
+    const int taken = argc - rest < most ? argc - rest : most;
     session->options.asks_all = true;
     if (!take_format(session, command, values[SESSION_FORMAT]) ||
-        !sensor_options(&session->options, command, argv + rest, 1, values, values[SESSION_ADDRESS],
-                        values[SESSION_MODE]))
+        !sensor_options(&session->options, command, argv + rest, taken, values, values[SESSION_ADDRESS],
+                        values[SESSION_MODE]) ||
+        !check_modes(&session->options, command))
         return false;
-    session->station = &session->options.stations[0];
-    if (!session->station->mode->is_asked) {
-        (void)usage_error(command, "in mode %s nothing is asked; leave it out", session->station->mode->name);
-        return false;
-    }
-    *words = argv + rest + 1;
-    *count = argc - rest - 1;
+    session->station = session->options.stations;
+    *words = argv + rest + taken;
+    *count = argc - rest - taken;
     return true;
 }
 
-bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
-                   const struct option *table, const char **values, int *status)
+bool session_options(session_t *session, const char *command, int argc, char **argv,
+                     const struct option *table, const char **values, char ***words, int *count,
+                     bool *wants_help)
+{
+    return take_options(session, command, argc, argv, table, values, 1, words, count, wants_help);
+}
+
+static bool take_sensors(session_t *session, const command_t *command, int argc, char **argv,
+                         const struct option *table, const char **values, int most, int *status)
 {
     char **words = NULL;
     int count = 0;
     bool wants_help = false;
     *status = STATUS_USAGE;
-    if (!session_options(session, command->name, argc, argv, table, values, &words, &count, &wants_help))
+    if (!take_options(session, command->name, argc, argv, table, values, most, &words, &count, &wants_help))
         return false;
     if (wants_help)
         *status = command_help(command);
     else if (count != 0)
         (void)usage_error(command->name, "one sensor at a time; '%s' is too much", words[0]);
     return !wants_help && count == 0;
+}
+
+bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
+                   const struct option *table, const char **values, int *status)
+{
+    return take_sensors(session, command, argc, argv, table, values, 1, status);
+}
+
+bool session_several(session_t *session, const command_t *command, int argc, char **argv,
+                     const struct option *table, const char **values, int *status)
+{
+    return take_sensors(session, command, argc, argv, table, values, INT_MAX, status);
+}
+
+const port_options_t *session_port(const session_t *session)
+{
+    return &session->options.ports[session->station->port];
 }
 
 bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode)
@@ -120,10 +152,12 @@ static bool begin(session_t *session)
 bool session_open(session_t *session, const host_t *host)
 {
     enum { LISTEN_US = 66000 };
-    const port_options_t *const port = &session->options.ports[0];
+    const port_options_t *const port = session_port(session);
     session->channel.echo = port->echo;
-    if (!host->begin(host->ctx)) return false;
-    if (!channel_open(&session->channel, host, port->path, &port->line)) {
+    session->channel.rs485 = port->rs485;
+    if (!session->has_begun && !host->begin(host->ctx)) return false;
+    session->has_begun = true;
+    if (!channel_open(&session->channel, host, port->path, &session->station->line)) {
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&session->channel.port));
         return false;
     }

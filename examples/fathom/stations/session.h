@@ -7,10 +7,11 @@
 #include "shared/line_text.h"
 #include "stations/sensor_options.h"
 
-/* A session with one sensor on a port: what all commands share that ask for, or change, more than distances. */
+/* A session with one sensor at a port: what all commands share that ask for, or change, more than distances. */
 typedef struct {
     sensor_options_t options;
-    station_t *station; /* the only one */
+    station_t *station; /* the only one; with session_several each in turn */
+    bool has_begun;     /* the host */
     channel_t channel;
     port_counts_t port_counts;
     bool is_json;
@@ -39,6 +40,13 @@ bool session_options(session_t *session, const char *command, int argc, char **a
 bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
                    const struct option *table, const char **values, int *status);
 
+/* The same for a command that takes several sensors, and nothing else. */
+bool session_several(session_t *session, const command_t *command, int argc, char **argv,
+                     const struct option *table, const char **values, int *status);
+
+/* Its port. */
+const port_options_t *session_port(const session_t *session);
+
 /* The same sensor in another of its modes; after a usage error false: the user has asked for another one. */
 bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode);
 
@@ -48,7 +56,7 @@ bool session_can_set(const session_t *session, const char *command);
 /* The table of the sensor's settings. */
 const setting_t *session_settings(const session_t *session);
 
-/* False after saying why. */
+/* For session->station, which may be another one than before. False after saying why. */
 bool session_open(session_t *session, const host_t *host);
 void session_close(session_t *session);
 

@@ -22,7 +22,7 @@ static void print_next(const change_t *change)
     char options[LINE_OPTIONS];
     if (!setting->moves) return;
     (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, unit->address,
-                 station->mode->name, change->session->options.ports[0].path,
+                 station->mode->name, session_port(change->session)->path,
                  line_options(line, &model->line, options));
 }
 

@@ -52,8 +52,8 @@ static bool suits_tcp(const station_t *station, const char *path, const char *co
     }
     if (strcmp(station->mode->name, "modbus") == 0) return true;
     (void)usage_error(command,
-                      "%s in mode %s needs a serial port; over tcp: a sensor is asked by Modbus: mode modbus",
-                      station->model->name, station->mode->name);
+                      "%s in mode %s needs a serial port; over tcp: a sensor is asked by Modbus: %s:modbus",
+                      station->model->name, station->mode->name, station->model->name);
     return false;
 }
 
