@@ -8,15 +8,22 @@
 
 #include "commands.h"
 
-enum { WORDS = 64, TEXT = 1024 };
+enum { WORDS = 300, TEXT = 10000, PORTS = 256 };
 static const uint64_t longest_us = UINT64_C(7200000000);
 static const uint64_t began_utc_us = UINT64_C(1764000000000000); /* 2025-11-24, 16:00 */
+
+/* A port that was opened. */
+typedef struct {
+    const tool_port_t *port;
+    fathom_posix_uart_t *posix;
+} open_t;
 
 typedef struct {
     const tool_line_t *line;
     uint32_t last_us; /* of the line's clock */
     uint64_t now_us;  /* since the begin */
     bool is_endless;
+    open_t opened[PORTS]; /* of line->ports */
 } machine_t;
 
 static uint64_t now_us(void *ctx)
@@ -31,20 +38,85 @@ static uint64_t now_us(void *ctx)
 
 static uint64_t utc_us(void *ctx) { return began_utc_us + now_us(ctx); }
 
+/* ---- ports ---- */
+
+static int refuse(fathom_posix_uart_t *port, fathom_posix_status_t error, const char *text)
+{
+    port->error = error;
+    (void)snprintf(port->text, sizeof port->text, "%s: %s", port->path, text);
+    return -1;
+}
+
+static int lose(const open_t *opened)
+{
+    opened->posix->is_lost = true;
+    return refuse(opened->posix, FATHOM_POSIX_ERR_LOST, "unplugged");
+}
+
+static int port_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    const open_t *const opened = ctx;
+    const fathom_uart_t *const uart = &opened->port->uart;
+    return opened->port->is_away ? lose(opened) : uart->read(uart->ctx, bytes, capacity, rx);
+}
+
+static int port_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    const open_t *const opened = ctx;
+    const fathom_uart_t *const uart = &opened->port->uart;
+    return opened->port->is_away ? lose(opened) : uart->write(uart->ctx, bytes, length);
+}
+
+static bool port_sent(void *ctx)
+{
+    const open_t *const opened = ctx;
+    const fathom_uart_t *const uart = &opened->port->uart;
+    return opened->port->is_away || uart->sent(uart->ctx);
+}
+
+static int port_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    const open_t *const opened = ctx;
+    const fathom_uart_t *const uart = &opened->port->uart;
+    return opened->port->is_away ? lose(opened) : uart->set_line(uart->ctx, settings);
+}
+
+/* Which of the line's ports that is. */
+static bool find_port(machine_t *machine, const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart)
+{
+    const tool_line_t *const line = machine->line;
+    if (line->port_count == 0) {
+        *uart = line->uart;
+        return true;
+    }
+    for (size_t i = 0; i != line->port_count; i++) {
+        if (strcmp(line->ports[i].path, path) != 0 || line->ports[i].is_away) continue;
+        machine->opened[i] = (open_t){&line->ports[i], port};
+        *uart = (fathom_uart_t){.read = port_read,
+                                .write = port_write,
+                                .sent = port_sent,
+                                .set_line = port_set_line,
+                                .ctx = &machine->opened[i]};
+        return true;
+    }
+    return false;
+}
+
 /* As fathom_posix_open: what came before is thrown away. */
 static bool open_port(void *ctx, const char *path, const fathom_line_settings_t *settings,
                       fathom_posix_uart_t *port, fathom_uart_t *uart)
 {
-    const machine_t *const machine = ctx;
     uint8_t bytes[64];
     fathom_rx_t rx;
     memset(port, 0, sizeof *port);
     port->fd = -1;
     (void)snprintf(port->path, sizeof port->path, "%s", path);
-    *uart = machine->line->uart;
+    if (!find_port(ctx, path, port, uart)) {
+        refuse(port, FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
+        return false;
+    }
     if (uart->set_line != NULL && uart->set_line(uart->ctx, settings) < 0) {
-        port->error = FATHOM_POSIX_ERR_REFUSED;
-        (void)snprintf(port->text, sizeof port->text, "%s: refused", path);
+        refuse(port, FATHOM_POSIX_ERR_REFUSED, "refused");
         return false;
     }
     do memset(&rx, 0, sizeof rx);
@@ -74,6 +146,17 @@ static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us
     (void)now_us(ctx);
 }
 
+/* Whatever has happened may have been on any port. */
+static void sleep_for(void *ctx, fathom_loop_t *loop, uint32_t max_us)
+{
+    wait_for(ctx, NULL, max_us, true);
+    for (fathom_loop_source_t *source = loop->sources; source != NULL; source = source->next)
+        fathom_loop_wake(source);
+}
+
+/* Signals and the output do not end a sleep here. */
+static void attend(void *ctx, fathom_loop_t *loop) {}
+
 /* Into argv, whose first word is "fathom". */
 static int split(char *text, char *argv[WORDS])
 {
@@ -93,10 +176,20 @@ const tool_run_t *tool_run(const tool_line_t *line, const char *format, ...)
     static tool_run_t run;
     static char *out;
     static char *err;
-    machine_t machine = {.line = line, .last_us = line->clock.now_us(line->clock.ctx)};
-    const host_t host = {open_port, close_port,     now_us,   utc_us,  begin,
-                         has_ended, is_output_gone, wait_for, &machine};
-    char text[TEXT];
+    static machine_t machine; /* too large for a small stack */
+    machine = (machine_t){.line = line, .last_us = line->clock.now_us(line->clock.ctx)};
+    const host_t host = {.open = open_port,
+                         .close = close_port,
+                         .now_us = now_us,
+                         .utc_us = utc_us,
+                         .begin = begin,
+                         .has_ended = has_ended,
+                         .is_output_gone = is_output_gone,
+                         .wait = wait_for,
+                         .loop = {.now_us = now_us, .sleep = sleep_for, .ctx = &machine},
+                         .attend = attend,
+                         .ctx = &machine};
+    static char text[TEXT];
     char *argv[WORDS];
     size_t out_size;
     size_t err_size;

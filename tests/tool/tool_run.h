@@ -17,9 +17,20 @@
  *
  * Nothing is kept from one run to the next but what the device keeps.
  */
+
+/* One of several ports. */
 typedef struct {
-    fathom_uart_t uart;   /* behind every --port PATH but tcp:; set_line is called when the port is opened */
-    fathom_clock_t clock; /* the device's time; it may begin anywhere and wrap */
+    const char *path;
+    fathom_uart_t uart;
+    bool is_away; /* there is no such port; one that is open is lost. It may change while the time passes */
+} tool_port_t;
+
+typedef struct {
+    /* Behind every PATH but tcp:, unless there are ports; set_line is called when the port is opened. */
+    fathom_uart_t uart;
+    const tool_port_t *ports; /* whose time is the same */
+    size_t port_count;        /* 0: `uart` is the only one */
+    fathom_clock_t clock;     /* the device's time; it may begin anywhere and wrap */
     /* Lets the time pass until something may be read or something else can happen, but no longer than max_us
      * (FATHOM_NO_DEADLINE: any time), and at least a microsecond. It may not end the test, as assert does. */
     void (*idle)(void *ctx, uint32_t max_us);

@@ -91,12 +91,22 @@ static bool take_sample(void *ctx, const station_t *station, const fathom_sample
 static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
 {
     reading_run_t *const run = ctx;
+    if (failure->is_told) {
+        results_failure(&run->results, station, failure->status);
+        return;
+    }
     const bool has_name = is_shared(run) && failure->status != FATHOM_ERR_PORT;
     (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", has_name ? station->name : "",
                   has_name ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
     (void)fputs("\n", stderr);
     results_failure(&run->results, station, failure->status);
+}
+
+static void take_absence(void *ctx, const station_t *station)
+{
+    (void)ctx;
+    (void)station;
 }
 
 static void write_remark(void *ctx, const station_t *station, const char *text)
@@ -187,7 +197,8 @@ static int exit_status(const reading_run_t *run, int status)
 
 static int run_read(const host_t *host, int argc, char **argv)
 {
-    static const poll_loop_user_t user = {take_sample, take_failure, write_remark, write_port, tick, is_over};
+    static const poll_loop_user_t user = {take_sample, take_failure, take_absence, write_remark,
+                                          write_port,  tick,         is_over};
     static reading_run_t run; /* too large for a small stack */
     poll_loop_t *const loop = &run.loop;
     run.output_error = 0;
@@ -198,9 +209,12 @@ static int run_read(const host_t *host, int argc, char **argv)
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
     results_begin(&run.results, &run.options.results, loop, write_result, &run);
-    if (!poll_loop_open(loop)) return exit_status(&run, loop->is_lost ? finish(&run) : STATUS_FAILED);
-    begin_output(&run);
-    const int status = poll_loop_run(loop) ? finish(&run) : STATUS_FAILED;
+    int status = STATUS_FAILED;
+    if (poll_loop_open(loop)) {
+        begin_output(&run);
+        poll_loop_run(loop);
+        status = finish(&run);
+    }
     poll_loop_close(loop);
     return exit_status(&run, status);
 }

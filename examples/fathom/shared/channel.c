@@ -48,6 +48,7 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
         channel_close(channel);
         return false;
     }
+    if (channel->source != NULL) channel->uart = fathom_loop_uart(channel->source, &channel->uart);
     channel->clock = (fathom_clock_t){now_us, channel};
     listener_begin(&channel->listener, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;

@@ -8,6 +8,7 @@
 #include "fathom/engine/dyp_client.h"
 #include "fathom/engine/line.h"
 #include "fathom/engine/modbus_client.h"
+#include "fathom_loop.h"
 #include "shared/host.h"
 #include "shared/listener.h"
 #include "shared/tcp.h"
@@ -31,6 +32,8 @@ typedef struct {
     /* To be set before it is opened. */
     uint8_t echo; /* fathom_line_config_t.echo */
     bool rs485;   /* the kernel's driver is to drive the transceiver: RTS is on while bytes leave */
+    fathom_loop_source_t
+        *source; /* in a loop: it is read only where something has come; NULL: it is not in one */
     uint8_t frame[255];
 } channel_t;
 

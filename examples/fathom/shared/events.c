@@ -98,3 +98,50 @@ void events_wait(int fd, short events, uint32_t max_us, bool watch_output)
     if ((entries[1].revents & POLLIN) != 0) drain();
     if ((entries[2].revents & (POLLERR | POLLHUP)) != 0) output_gone = true;
 }
+
+/* ---- the same, in a loop ---- */
+
+static int wake_fd(const fathom_loop_source_t *source)
+{
+    (void)source;
+    return wake[0];
+}
+
+static bool poll_wake(fathom_loop_source_t *source)
+{
+    (void)source;
+    drain();
+    return true;
+}
+
+static int output_fd(const fathom_loop_source_t *source)
+{
+    (void)source;
+    return STDOUT_FILENO;
+}
+
+/* What a lost reader brings is told unasked. A file has none, and is refused by epoll, which is right. */
+static short output_events(const fathom_loop_source_t *source)
+{
+    (void)source;
+    return 0;
+}
+
+static bool poll_output(fathom_loop_source_t *source)
+{
+    struct pollfd entry = {STDOUT_FILENO, 0, 0};
+    (void)source;
+    if (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLERR | POLLHUP)) != 0) output_gone = true;
+    return true;
+}
+
+void events_attend(fathom_loop_t *loop)
+{
+    static const fathom_loop_kind_t wakes = {.fd = wake_fd, .poll = poll_wake};
+    static const fathom_loop_kind_t outputs = {.fd = output_fd, .events = output_events, .poll = poll_output};
+    static fathom_loop_source_t sources[2];
+    memset(sources, 0, sizeof sources);
+    sources[0].kind = &wakes;
+    sources[1].kind = &outputs;
+    for (size_t i = 0; i != 2; i++) fathom_loop_add(loop, &sources[i]);
+}

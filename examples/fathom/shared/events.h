@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom_loop.h"
+
 /*
  * What a command waits for: its port, the time, and the wish to end it. SIGINT, SIGTERM and SIGHUP (unless
  * nohup has it ignored) only leave a mark, which cannot be missed between looking and sleeping; a broken
@@ -23,7 +25,7 @@ bool events_noted(void);
 /* Has a signal asked to end? */
 bool events_ended(void);
 
-/* Has the standard output lost its reader, as far as events_wait has seen? */
+/* Has the standard output lost its reader, as far as a sleep has seen? */
 bool events_output_gone(void);
 
 /*
@@ -32,5 +34,8 @@ bool events_output_gone(void);
  * away.
  */
 void events_wait(int fd, short events, uint32_t max_us, bool watch_output);
+
+/* From now on the same, with watch_output, ends each sleep of this loop. One loop a command. */
+void events_attend(fathom_loop_t *loop);
 
 #endif

@@ -63,6 +63,12 @@ static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us
         events_wait(fathom_posix_fd(port), fathom_posix_poll_events(port), max_us, watch_output);
 }
 
+static void attend(void *ctx, fathom_loop_t *loop)
+{
+    (void)ctx;
+    events_attend(loop);
+}
+
 const host_t host_posix = {.open = open_port,
                            .close = close_port,
                            .now_us = now_us,
@@ -70,4 +76,5 @@ const host_t host_posix = {.open = open_port,
                            .begin = begin,
                            .has_ended = has_ended,
                            .is_output_gone = is_output_gone,
-                           .wait = wait_for};
+                           .wait = wait_for,
+                           .attend = attend};

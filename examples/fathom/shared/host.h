@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
+#include "fathom_loop.h"
 #include "fathom_posix.h"
 
 /*
@@ -25,9 +26,13 @@ typedef struct {
     bool (*begin)(void *ctx);
     bool (*has_ended)(void *ctx);
     bool (*is_output_gone)(void *ctx); /* the reader of the standard output has gone */
-    /* Sleeps until *port (NULL: none) has bytes or something to do, max_us microseconds (FATHOM_NO_DEADLINE: no limit)
+    /* For a command with one port at most. Sleeps until *port (NULL: none) has bytes or something to do, max_us microseconds (FATHOM_NO_DEADLINE: no limit)
      * have passed, or the command is to end. watch_output: also until the reader of the standard output goes away. */
     void (*wait)(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us, bool watch_output);
+    /* For a loop: its now_us and sleep, where neither the clock nor the ports are the system's; else zeros. And what
+     * ends its sleep besides the ports, as that of wait: is added to it. */
+    fathom_loop_config_t loop;
+    void (*attend)(void *ctx, fathom_loop_t *loop);
     void *ctx;
 } host_t;
 

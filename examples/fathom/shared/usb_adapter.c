@@ -5,7 +5,7 @@
 
 /* When an adapter has just come, the system needs a moment until it may be used, and other programs (modem managers)
  * try it first. */
-enum { TRIES_UNTIL_TOLD = 6 };
+enum { TRIES_UNTIL_TOLD = 3 };
 
 const char *usb_adapter_path(const usb_adapter_t *adapter)
 {

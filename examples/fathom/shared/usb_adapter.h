@@ -14,10 +14,6 @@ typedef struct {
     uint32_t repeats;            /* ... so often in a row */
 } usb_adapter_t;
 
-/* How long to wait between two tries. One at least lies between a loss and the next try, so that a port which opens
- * and fails at once costs next to nothing. */
-enum { USB_ADAPTER_RETRY_US = 500000 };
-
 /*
  * Tries once. A USB adapter is looked for by what it is, anything else by its path. False: it is not there, or not
  * to be had; if that lasts and is something else than "not there", it says so once on stderr.

@@ -15,12 +15,13 @@ typedef struct {
     const channel_t *channel;
     const counters_t *counters;
     const fathom_line_settings_t *line; /* at which it was asked */
-    const char *shared;                 /* its name on a line with others; NULL: it is alone */
+    const char *shared;                 /* its name among others that are read; NULL: it is alone */
     evidence_t evidence;                /* of this attempt */
     uint8_t address;
     bool has_address;   /* at which it is asked, or heard */
     bool others_answer; /* on this line */
     bool waits;         /* for a lost port, which is opened again */
+    bool is_told;       /* of another sensor on this port, which is lost to all of them */
     bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
 } failure_t;
 

@@ -9,7 +9,15 @@ bool poll_is_done(const poll_loop_t *loop, const station_t *station)
     return count != 0 && station->counters.attempts >= count;
 }
 
-bool poll_is_shared(const poll_loop_t *loop) { return loop->options.station_count > 1; }
+bool poll_is_over(const poll_loop_t *loop)
+{
+    const host_t *const host = loop->host;
+    const uint64_t duration_us = loop->options.duration_us;
+    return host->has_ended(host->ctx) || host->is_output_gone(host->ctx) || loop->user->is_over(loop->ctx) ||
+           loop->ports_left == 0 || (duration_us != 0 && poll_now_us(loop) - loop->start_us >= duration_us);
+}
+
+bool poll_is_shared(const poll_port_t *port) { return port->station_count > 1; }
 
 station_t *poll_end(poll_loop_t *loop) { return loop->options.stations + loop->options.station_count; }
 
@@ -17,63 +25,52 @@ station_t *poll_end(poll_loop_t *loop) { return loop->options.stations + loop->o
 
 listener_t *poll_whose(void *ctx)
 {
-    poll_loop_t *const loop = ctx;
-    for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
-        if (loop->channel.line.head == &station->reader.unit->request.transaction) return station->listener;
+    const poll_port_t *const port = ctx;
+    for (station_t *station = port->stations; station != NULL; station = station->next)
+        if (port->channel.line.head == &station->reader.unit->request.transaction) return station->listener;
     return NULL;
 }
 
 /* The one on this line that has this address; NULL: none. */
-static station_t *station_at(poll_loop_t *loop, uint8_t address)
+static station_t *station_at(const poll_port_t *port, uint8_t address)
 {
-    for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
+    for (station_t *station = port->stations; station != NULL; station = station->next)
         if (station->address == address) return station;
     return NULL;
 }
 
-void poll_take_late(poll_loop_t *loop)
+void poll_take_late(poll_port_t *port)
 {
-    const channel_t *const channel = &loop->channel;
-    if (!poll_is_shared(loop) || channel->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
-    for (station_t *station = loop->options.stations; station != poll_end(loop); station++) {
+    const channel_t *const channel = &port->channel;
+    if (!poll_is_shared(port) || channel->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
+    for (station_t *station = port->stations; station != NULL; station = station->next) {
         evidence_t evidence;
         if (channel->listener.now != station->listener) continue;
         listener_judge(station->listener, station->address, &evidence);
-        station_t *const other = evidence.foreign != 0 ? station_at(loop, evidence.foreign_address) : NULL;
-        counters_take_late(other != NULL ? &other->counters : &station->counters, &loop->channel);
+        station_t *const other = evidence.foreign != 0 ? station_at(port, evidence.foreign_address) : NULL;
+        counters_take_late(other != NULL ? &other->counters : &station->counters, &port->channel);
         return;
     }
 }
 
 /* Has another sensor of this line answered? */
-static bool others_answer(const poll_loop_t *loop, const station_t *station)
+static bool others_answer(const poll_port_t *port, const station_t *station)
 {
-    const sensor_options_t *const options = &loop->options;
-    for (size_t i = 0; i != options->station_count; i++)
-        if (&options->stations[i] != station && options->stations[i].counters.readings != 0) return true;
+    for (const station_t *other = port->stations; other != NULL; other = other->next)
+        if (other != station && other->counters.readings != 0) return true;
     return false;
 }
 
 /* What others of this line have said late is no evidence of anything else. */
-static void judge(poll_loop_t *loop, const station_t *station, evidence_t *evidence)
+static void judge(const poll_port_t *port, const station_t *station, evidence_t *evidence)
 {
     listener_judge(station->listener, station->mode->has_address ? station->address : 0, evidence);
-    if (evidence->foreign == 0 || station_at(loop, evidence->foreign_address) == NULL) return;
+    if (evidence->foreign == 0 || station_at(port, evidence->foreign_address) == NULL) return;
     evidence->foreign = 0;
     if (evidence->rest == 0 && evidence->own == 0) evidence->bytes = 0;
 }
 
 /* ---- attempts ---- */
-
-/* Is there anything to wait for when the port is lost? */
-static bool has_more_to_do(const poll_loop_t *loop, const station_t *station)
-{
-    const sensor_options_t *const options = &loop->options;
-    if (options->count == 0 || station->counters.attempts + 1 < options->count) return true;
-    for (size_t i = 0; i != options->station_count; i++)
-        if (&options->stations[i] != station && !poll_is_done(loop, &options->stations[i])) return true;
-    return false;
-}
 
 /* Does more than one probe of this sensor speak? */
 static bool has_probes(const poll_loop_t *loop, const station_t *station)
@@ -82,24 +79,33 @@ static bool has_probes(const poll_loop_t *loop, const station_t *station)
     return station->model->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
 }
 
-static void report_failure(poll_loop_t *loop, station_t *station, fathom_status_t status, bool is_first)
+/* How the attempt has gone so far. */
+typedef struct {
+    fathom_status_t status;
+    bool is_first; /* of the attempt's outcomes */
+    bool is_told;
+} outcome_t;
+
+static void report_failure(poll_port_t *port, station_t *station, const outcome_t *outcome)
 {
+    const poll_loop_t *const loop = port->loop;
     failure_t failure = {
-        .status = status,
+        .status = outcome->status,
         .model = station->model,
         .reader = &station->reader,
-        .channel = &loop->channel,
+        .channel = &port->channel,
         .counters = &station->counters,
         .line = &station->line,
-        .shared = poll_is_shared(loop) ? station->name : NULL,
+        .shared = loop->options.station_count > 1 ? station->name : NULL,
         .address = station->address,
         .has_address = station->mode->has_address,
-        .others_answer = others_answer(loop, station),
-        .waits = loop->options.reconnect && has_more_to_do(loop, station),
-        .is_whole = is_first && !reader_has_more(&station->reader) && has_probes(loop, station),
+        .others_answer = others_answer(port, station),
+        .waits = port->waits,
+        .is_whole = outcome->is_first && !reader_has_more(&station->reader) && has_probes(loop, station),
+        .is_told = outcome->is_told,
     };
-    counters_failure(&station->counters, status, &station->reader);
-    judge(loop, station, &failure.evidence);
+    counters_failure(&station->counters, outcome->status, &station->reader);
+    judge(port, station, &failure.evidence);
     station->has_failed = true;
     loop->user->failure(loop->ctx, &failure, station);
 }
@@ -138,20 +144,29 @@ static bool is_early(const poll_loop_t *loop, station_t *station, fathom_status_
     return true;
 }
 
-void poll_take_outcome(poll_loop_t *loop, station_t *station, fathom_status_t status,
+void poll_take_outcome(poll_port_t *port, station_t *station, fathom_status_t status,
                        const fathom_sample_t *sample)
 {
-    counters_take(&station->counters, &loop->port_counts, &loop->channel, &station->reader);
+    const poll_loop_t *const loop = port->loop;
+    counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
     if (status != FATHOM_ERR_PORT && is_early(loop, station, status)) return;
     if (status == FATHOM_READY && station->reader.unit != NULL && !station->answering)
         counters_time(&station->counters, fathom_elapsed_us(sample->time_us, station->listener->asked_us));
-    const bool is_first = !station->answering;
+    const outcome_t outcome = {.status = status, .is_first = !station->answering};
     station->answering = true;
     if (status == FATHOM_READY) {
         if (loop->user->reading(loop->ctx, station, sample)) station->counters.readings++;
         if (sample->kind != FATHOM_UNKNOWN) station->has_good = true;
     } else {
-        report_failure(loop, station, status, is_first);
+        report_failure(port, station, &outcome);
     }
     if (status == FATHOM_ERR_PORT || !reader_has_more(&station->reader)) end_attempt(loop, station);
+}
+
+void poll_take_loss(poll_port_t *port, station_t *station, bool is_told)
+{
+    const outcome_t outcome = {.status = FATHOM_ERR_PORT, .is_told = is_told};
+    counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+    report_failure(port, station, &outcome);
+    end_attempt(port->loop, station);
 }

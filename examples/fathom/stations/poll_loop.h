@@ -4,23 +4,26 @@
 
 #include "stations/poll.h"
 
-/* Reads the sensors on one port, all of them in one loop, until the user, the count, the time or a loss ends it: what
- * `fathom read` and `fathom watch` share. */
+/* Reads the sensors on all ports, in one loop, until the user, the count, the time or a loss ends it: what `fathom read`
+ * and `fathom watch` share. */
 
 /* To be called first; all of it is cleared. */
 void poll_loop_begin(poll_loop_t *loop, const host_t *host, const poll_loop_user_t *user, void *ctx);
 
-/* Opens the port. False, after saying why: it cannot be opened, or (is_lost) it was waited for until the user ended
- * that. */
+/* Opens the ports. False, after saying why: none can be opened or is waited for, or a driver did not take its
+ * settings. */
 bool poll_loop_open(poll_loop_t *loop);
 
-/* False, after saying why: a driver did not take its settings. */
-bool poll_loop_run(poll_loop_t *loop);
+void poll_loop_run(poll_loop_t *loop);
 
+/* Also where it was not opened. */
 void poll_loop_close(poll_loop_t *loop);
 
+/* Is a port lost, or has it not been there yet? */
+bool poll_loop_is_lost(const poll_loop_t *loop);
+
 /* Has nothing failed, and has each sensor given a reading that is not unknown? One that has said nothing is forgiven
- * where the user ended it, or the port was still waited for. */
+ * where the user ended it, or its port was still waited for. A port that could not be opened is a failure. */
 bool poll_loop_is_good(const poll_loop_t *loop);
 
 /* Takes and adds up all counters. */

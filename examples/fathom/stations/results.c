@@ -114,15 +114,7 @@ static void take_status_of_all(results_t *results, const station_t *station, fat
 
 void results_failure(results_t *results, const station_t *station, fathom_status_t status)
 {
-    poll_loop_t *const loop = results->loop;
-    if (!results->config->has_alarm) return;
-    if (status != FATHOM_ERR_PORT) {
-        take_status_of_all(results, station, status);
-        return;
-    }
-    /* The port is all sensors'. */
-    for (station_t *each = loop->options.stations; each != poll_end(loop); each++)
-        if (!poll_is_done(loop, each)) take_status_of_all(results, each, status);
+    if (results->config->has_alarm) take_status_of_all(results, station, status);
 }
 
 uint32_t results_tick(results_t *results)

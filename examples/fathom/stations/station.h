@@ -12,7 +12,8 @@ enum { MAX_STATIONS = 256, MAX_STATIONS_ON_A_LINE = 32 };
 /* One sensor at a port, as a command reads it. */
 enum { STATION_NAME = 80 };
 
-typedef struct {
+typedef struct station station_t;
+struct station {
     const model_t *model;
     const model_mode_t *mode;
     fathom_line_settings_t line; /* at which it is asked */
@@ -31,7 +32,8 @@ typedef struct {
     bool answering;       /* the present attempt has begun to hand over a response, ... */
     bool has_failed;      /* ... or a part of it was an error */
     bool has_good;        /* there has been a reading that is not unknown */
-} station_t;
+    station_t *next;      /* on the same port; the poll loop's */
+};
 
 /*
  * What the user has named; *station is all zeros before. An empty ADDRESS is the factory's. Without a MODE it is the

@@ -21,7 +21,7 @@ static const struct option table[OPTIONS + 1] = {
 };
 
 /* Eight pictures a second are smooth; a line a second can be read. A message stays for a while. */
-enum { PICTURE_US = 125000, LINE_US = 1000000, MESSAGE_US = 5000000, MESSAGE = 512 };
+enum { PICTURE_US = 125000, LINE_US = 1000000, MESSAGE_US = 5000000, MESSAGE = 512, PORTS = 256 };
 
 typedef struct {
     poll_loop_t loop;
@@ -31,6 +31,7 @@ typedef struct {
     uint64_t next_us;      /* when the next picture or line is due */
     char message[MESSAGE]; /* the last failure, or what has happened to the port */
     uint64_t message_end_us;
+    char loss[MESSAGE];                     /* what was said of a port that was lost last */
     fathom_status_t reported[MAX_STATIONS]; /* for lines: what was printed of each sensor's last failure */
     bool draws;                             /* pictures, else lines */
     bool wants_all;   /* of the next picture, because something else may have written to the terminal */
@@ -74,9 +75,19 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
     lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_failure(&watch->lanes, failure, station);
     get_advice(text, failure, station);
-    say(watch, text, MESSAGE_US);
-    if (!watch->draws && *reported != failure->status) (void)fprintf(stderr, "fathom: %s\n", text);
+    if (!failure->is_told) say(watch, text, MESSAGE_US);
+    if (failure->status == FATHOM_ERR_PORT && !failure->is_told)
+        (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
+    if (!watch->draws && !failure->is_told && *reported != failure->status)
+        (void)fprintf(stderr, "fathom: %s\n", text);
     *reported = failure->status;
+}
+
+static void take_absence(void *ctx, const station_t *station)
+{
+    watch_t *const watch = ctx;
+    lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
+    lanes_away(&watch->lanes, station);
 }
 
 /* It stays until there are readings: it may be something to do. */
@@ -94,22 +105,36 @@ static void take_port(void *ctx, const char *text, bool is_there)
     watch_t *const watch = ctx;
     say(watch, text, is_there ? MESSAGE_US : UINT32_MAX);
     watch->wants_all = true;
-    if (!is_there) lanes_port_lost(&watch->lanes);
+    if (!is_there) (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
     if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", text);
+}
+
+/* "/dev/ttyUSB0, /dev/ttyUSB1 and 3 more" */
+static void name_ports(const watch_t *watch, char text[PORTS])
+{
+    enum { NAMED = 3 };
+    const sensor_options_t *const options = &watch->loop.options;
+    size_t at = 0;
+    for (size_t i = 0; i != options->port_count && i != NAMED && at < PORTS; i++)
+        at += (size_t)snprintf(text + at, PORTS - at, "%s%s", i != 0 ? ", " : "", options->ports[i].path);
+    if (options->port_count > NAMED && at < PORTS)
+        (void)snprintf(text + at, PORTS - at, " and %zu more", options->port_count - NAMED);
 }
 
 static void draw(watch_t *watch, uint64_t now_us)
 {
     const uint32_t seconds = (uint32_t)(now_us / 1000000u);
     char title[MESSAGE];
+    char ports[PORTS];
+    name_ports(watch, ports);
     (void)snprintf(title, sizeof title,
-                   "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   Ctrl-C ends",
-                   watch->loop.options.ports[0].path, seconds / 3600, seconds / 60 % 60, seconds % 60);
+                   "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   %sCtrl-C ends", ports,
+                   seconds / 3600, seconds / 60 % 60, seconds % 60, terminal_has_keys() ? "q or " : "");
     picture_draw(&watch->picture, watch->rows, watch->columns, &watch->lanes, title,
                  now_us < watch->message_end_us ? watch->message : "");
     watch->output_error = terminal_show(&watch->picture, watch->wants_all);
     /* While a port is waited for, others may write to the terminal. */
-    watch->wants_all = watch->loop.is_lost;
+    watch->wants_all = poll_loop_is_lost(&watch->loop);
 }
 
 /* All lanes in one line. */
@@ -151,21 +176,22 @@ static uint32_t tick(void *ctx)
     return (uint32_t)(watch->next_us - now_us);
 }
 
-static bool is_over(const void *ctx) { return ((const watch_t *)ctx)->output_error != 0; }
+static bool is_over(const void *ctx)
+{
+    return ((const watch_t *)ctx)->output_error != 0 || terminal_wants_end();
+}
 
-/* has_run: false, where it was not to begin. */
-static int finish(watch_t *watch, bool has_run)
+static int finish(watch_t *watch)
 {
     const host_t *const host = watch->loop.host;
     account_t account;
-    const bool is_lost = watch->loop.is_lost;
     terminal_give_back();
     if (watch->output_error == EINTR && host->has_ended(host->ctx)) watch->output_error = 0;
     if (watch->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (watch->output_error != 0)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
     /* On the screen that has just gone, this stood last. */
-    if ((is_lost || !has_run) && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->message);
+    if (poll_loop_is_lost(&watch->loop) && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->loss);
     poll_loop_account(&watch->loop, &account);
     counters_print(&account, stderr);
     return !poll_loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
@@ -192,7 +218,8 @@ static void help(FILE *to)
         "damaged, wrong or\n"
         "impossible response, s nothing for too long, F the sensor says that it has failed, P the port is "
         "lost.\n\n"
-        "The picture fits the window and follows it. NO_COLOR=1 turns colours off; without UTF-8 in the "
+        "The picture fits the window and follows it; q or Ctrl-C ends it. NO_COLOR=1 turns colours off; "
+        "without UTF-8 in the "
         "locale "
         "the bars are\n"
         "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
@@ -225,7 +252,8 @@ static bool take_options(sensor_options_t *options, int argc, char **argv, bool 
 
 static int run(const host_t *host, int argc, char **argv)
 {
-    static const poll_loop_user_t user = {take_reading, take_failure, take_remark, take_port, tick, is_over};
+    static const poll_loop_user_t user = {take_reading, take_failure, take_absence, take_remark,
+                                          take_port,    tick,         is_over};
     static watch_t watch; /* too large for any stack */
     poll_loop_t *const loop = &watch.loop;
     bool wants_help = false;
@@ -241,16 +269,17 @@ static int run(const host_t *host, int argc, char **argv)
         terminal_take();
     }
     terminal_size(&watch.rows, &watch.columns);
-    if (!poll_loop_open(loop)) {
-        if (loop->is_lost) return finish(&watch, true);
+    int status = STATUS_FAILED;
+    if (poll_loop_open(loop)) {
+        if (watch.draws) terminal_attend(&loop->sources);
+        poll_loop_run(loop);
+        status = finish(&watch);
+    } else {
         terminal_give_back();
-        if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.message);
-        return STATUS_FAILED;
+        if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.loss);
     }
-    const bool has_run = poll_loop_run(loop);
-    const int status = finish(&watch, has_run);
     poll_loop_close(loop);
-    return has_run ? status : STATUS_FAILED;
+    return status;
 }
 
 const command_t watch_command = {"watch", "shows sensors live in the terminal", help, run};

@@ -125,9 +125,10 @@ void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *st
             take(lanes, &lanes->lane[i], mark, 0);
 }
 
-void lanes_port_lost(lanes_t *lanes)
+void lanes_away(lanes_t *lanes, const station_t *station)
 {
     for (size_t i = 0; i != lanes->count; i++) {
+        if (lanes->lane[i].station != station) continue;
         lanes->lane[i].mark = MARK_PORT;
         lanes->lane[i].has_outcome = true;
         lanes->lane[i].steps[number_now(lanes) % LANE_STEPS].mark = MARK_PORT;

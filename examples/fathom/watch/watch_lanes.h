@@ -70,8 +70,8 @@ void lanes_pass(lanes_t *lanes, uint64_t now_us);
 void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample_t *sample);
 void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *station);
 
-/* All of them: the port is lost. */
-void lanes_port_lost(lanes_t *lanes);
+/* Those of this sensor: its port is not there. */
+void lanes_away(lanes_t *lanes, const station_t *station);
 
 /* The step so many steps ago, 0: the present one, as it is to be shown: between two outcomes the distance stands.
  * ago: less than LANE_STEPS. */

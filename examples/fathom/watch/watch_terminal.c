@@ -17,6 +17,8 @@ static struct {
     struct termios before;
     bool is_taken;
     bool has_input; /* `before` is set */
+    bool wants_end;
+    fathom_loop_source_t keys;
     picture_t shown;
 } terminal;
 
@@ -71,9 +73,12 @@ void terminal_take(void)
         quiet.c_lflag &= ~(tcflag_t)(ECHO | ICANON);
         quiet.c_cc[VSUSP] = _POSIX_VDISABLE;
         quiet.c_cc[VQUIT] = _POSIX_VDISABLE;
+        quiet.c_cc[VMIN] = 0; /* a read does not wait */
+        quiet.c_cc[VTIME] = 0;
         (void)tcsetattr(STDIN_FILENO, TCSADRAIN, &quiet);
     }
     terminal.is_taken = true;
+    terminal.wants_end = false;
     terminal.shown.rows = 0;
     /* Another screen, no cursor, no new line at the right edge, nothing on it. */
     (void)write_all("\x1B[?1049h\x1B[?25l\x1B[?7l\x1B[2J");
@@ -86,6 +91,37 @@ void terminal_give_back(void)
     (void)write_all("\x1B[0m\x1B[?7h\x1B[?25h\x1B[?1049l");
     /* What was typed meanwhile was meant for no program. */
     if (terminal.has_input) (void)tcsetattr(STDIN_FILENO, TCSAFLUSH, &terminal.before);
+}
+
+bool terminal_has_keys(void) { return terminal.is_taken && terminal.has_input; }
+
+bool terminal_wants_end(void) { return terminal.wants_end; }
+
+static int keys_fd(const fathom_loop_source_t *source)
+{
+    (void)source;
+    return STDIN_FILENO;
+}
+
+/* All that were pressed. A terminal that has gone says so by SIGHUP too. */
+static bool poll_keys(fathom_loop_source_t *source)
+{
+    char keys[64];
+    ssize_t n;
+    if (!source->is_readable) return true;
+    while ((n = read(STDIN_FILENO, keys, sizeof keys)) > 0)
+        if (memchr(keys, 'q', (size_t)n) != NULL || memchr(keys, 'Q', (size_t)n) != NULL)
+            terminal.wants_end = true;
+    return true;
+}
+
+void terminal_attend(fathom_loop_t *loop)
+{
+    static const fathom_loop_kind_t kind = {.fd = keys_fd, .poll = poll_keys};
+    if (!terminal_has_keys()) return;
+    memset(&terminal.keys, 0, sizeof terminal.keys);
+    terminal.keys.kind = &kind;
+    fathom_loop_add(loop, &terminal.keys);
 }
 
 void terminal_size(uint16_t *rows, uint16_t *columns)

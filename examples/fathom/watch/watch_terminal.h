@@ -2,6 +2,7 @@
 #ifndef WATCH_TERMINAL_H
 #define WATCH_TERMINAL_H
 
+#include "fathom_loop.h"
 #include "watch/watch_picture.h"
 
 /*
@@ -19,6 +20,15 @@ bool terminal_has_colours(void);
 
 void terminal_take(void);
 void terminal_give_back(void); /* twice is no error */
+
+/* Are keys read: is its standard input a terminal too, and taken? */
+bool terminal_has_keys(void);
+
+/* Adds the keys to a loop, if they are read. One loop a command, and after terminal_take. */
+void terminal_attend(fathom_loop_t *loop);
+
+/* Was q pressed? */
+bool terminal_wants_end(void);
 
 /* 80 x 24 where the system does not know. */
 void terminal_size(uint16_t *rows, uint16_t *columns);

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+#include "stations/poll_port.h"
+
+#include "stations/poll_attempt.h"
+
+/* So often in a row its sensors are polled at most, so that none keeps the other ports waiting; and so soon again the
+ * end of a sensor is looked after. */
+enum { TURNS = 16, AGAIN_US = 1000, TEXT = 512 };
+
+static poll_port_t *port_of(fathom_loop_source_t *source) { return (poll_port_t *)source; }
+
+static const poll_port_t *const_port_of(const fathom_loop_source_t *source)
+{
+    return (const poll_port_t *)source;
+}
+
+static void tell(const poll_port_t *port, const char *text, bool is_there)
+{
+    const poll_loop_t *const loop = port->loop;
+    loop->user->port(loop->ctx, text, is_there);
+}
+
+/* The others go on without it. */
+static void finish(poll_port_t *port)
+{
+    if (port->is_done) return;
+    port->is_done = true;
+    port->loop->ports_left--;
+}
+
+static void leave(poll_port_t *port)
+{
+    finish(port);
+    port->is_left = true;
+    port->loop->has_left = true;
+}
+
+/* ---- opening ---- */
+
+static bool begin_station(poll_port_t *port, station_t *station)
+{
+    poll_loop_t *const loop = port->loop;
+    const sensor_options_t *const options = &loop->options;
+    reader_settings_t settings = options->reading;
+    settings.timeout_us = options->timeout_us;
+    settings.period_us = options->interval_us;
+    settings.line = port->options->has_mixed_lines ? &station->line : NULL;
+    settings.backoff_us = poll_is_shared(port) ? 0 : READER_BACKOFF_US;
+    settings.address = station->address;
+    settings.retries = options->retries;
+    const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
+    if (!station_begin(station, &port->channel, &settings)) {
+        char text[TEXT];
+        station_refusal(station, text, sizeof text);
+        tell(port, text, false);
+        return false;
+    }
+    /* Goes on after a loss, so that the gap is not taken for a new start. */
+    *station->reader.sequence = sequence;
+    station->listener = poll_is_shared(port) ? &station->own_listener : &port->channel.listener;
+    poll_begin_attempt(station);
+    station->next_us = poll_now_us(loop);
+    station->skipping = false;
+    station->answering = false;
+    return true;
+}
+
+/* The port is open: begins to read. */
+static bool begin_stations(poll_port_t *port)
+{
+    for (station_t *station = port->stations; station != NULL; station = station->next)
+        if (!begin_station(port, station)) return false;
+    port->channel.listener.whose = poll_is_shared(port) ? poll_whose : NULL;
+    port->channel.listener.ctx = port;
+    counters_begin_port(&port->counts, &port->channel);
+    return true;
+}
+
+/* By what it is: so far, a tty or a connection. False: channel.port has the reason. */
+static bool connect_port(poll_port_t *port)
+{
+    port->channel.echo = port->options->echo;
+    port->channel.source = &port->source;
+    return usb_adapter_try(&port->adapter, &port->channel, port->loop->host, &port->options->line);
+}
+
+static void tell_away(const poll_port_t *port)
+{
+    const poll_loop_t *const loop = port->loop;
+    for (const station_t *station = port->stations; station != NULL; station = station->next)
+        if (!poll_is_done(loop, station)) loop->user->away(loop->ctx, station);
+}
+
+/* It could not be opened when the command began. With several ports the others show that it is right to wait. */
+static void take_absence(poll_port_t *port)
+{
+    const sensor_options_t *const options = &port->loop->options;
+    const bool may_come =
+        fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_NOT_FOUND || options->port_count > 1;
+    char text[TEXT];
+    port->is_lost = true;
+    port->waits = options->reconnect && may_come;
+    (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(&port->channel.port),
+                   port->waits ? "; waiting until it is there" : "");
+    tell(port, text, false);
+    if (port->waits) return;
+    port->loop->has_failed = true;
+    leave(port);
+}
+
+static bool open_port(fathom_loop_source_t *source)
+{
+    poll_port_t *const port = port_of(source);
+    if (port->is_done) return false;
+    if (!connect_port(port)) {
+        if (!port->is_lost) take_absence(port);
+        if (port->waits) tell_away(port);
+        return false;
+    }
+    port->source.reads_all = port->channel.tcp == NULL;
+    if (!begin_stations(port)) {
+        channel_close(&port->channel);
+        port->loop->has_failed = true;
+        leave(port);
+        return false;
+    }
+    if (port->is_lost) {
+        char text[TEXT];
+        (void)snprintf(text, sizeof text, "%s: %s", usb_adapter_path(&port->adapter),
+                       port->was_open ? "it is back; reading goes on" : "it is there; reading begins");
+        if (port->was_open) port->loop->reconnects++;
+        tell(port, text, true);
+    }
+    port->is_lost = false;
+    port->was_open = true;
+    return true;
+}
+
+static void close_port(fathom_loop_source_t *source) { channel_close(&port_of(source)->channel); }
+
+/* ---- losing ---- */
+
+/* Is there anything to wait for, when this attempt has failed? */
+static bool has_more_to_do(const poll_port_t *port)
+{
+    const uint32_t count = port->loop->options.count;
+    for (const station_t *station = port->stations; station != NULL; station = station->next)
+        if (count == 0 || station->counters.attempts + 1 < count) return true;
+    return false;
+}
+
+/* Each of its sensors has failed once. */
+static void lose(poll_port_t *port)
+{
+    poll_loop_t *const loop = port->loop;
+    const sysfs_adapter_t *const sysfs = &port->adapter.sysfs;
+    char text[TEXT];
+    bool is_told = false;
+    port->waits = loop->options.reconnect && has_more_to_do(port);
+    for (station_t *station = port->stations; station != NULL; station = station->next) {
+        if (poll_is_done(loop, station)) continue;
+        poll_take_loss(port, station, is_told);
+        is_told = true;
+    }
+    /* Of those that have been read too, since what the line has counted is lost with it. */
+    for (station_t *station = port->stations; station != NULL; station = station->next)
+        counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+    if (!port->waits) {
+        leave(port);
+    } else if (sysfs->vendor[0] != '\0' && sysfs->needs_socket) {
+        (void)snprintf(text, sizeof text,
+                       "%s: this adapter has no serial number of its own: use the same USB socket again",
+                       usb_adapter_path(&port->adapter));
+        tell(port, text, false);
+    }
+}
+
+/* ---- polling ---- */
+
+static int port_fd(const fathom_loop_source_t *source)
+{
+    return fathom_posix_fd(&const_port_of(source)->channel.port);
+}
+
+static short port_events(const fathom_loop_source_t *source)
+{
+    return fathom_posix_poll_events(&const_port_of(source)->channel.port);
+}
+
+static void tell_remark(const poll_loop_t *loop, station_t *station)
+{
+    const char *const remark = station->reader.remark;
+    station->reader.remark = NULL;
+    if (remark != NULL) loop->user->remark(loop->ctx, station, remark);
+}
+
+/* False: it has nothing to say now. */
+static bool poll_station(poll_port_t *port, station_t *station)
+{
+    do {
+        fathom_sample_t sample;
+        fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
+        tell_remark(port->loop, station);
+        poll_take_late(port);
+        /* Between two requests a driver does not tell it, and waiting for the port would not wait. */
+        port->is_lost = fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_LOST;
+        if (port->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
+        if (status == FATHOM_PENDING && station->reader.unit != NULL && channel_is_stuck(&port->channel))
+            status = FATHOM_ERR_NO_RESPONSE;
+        if (status == FATHOM_PENDING) return false;
+        poll_take_outcome(port, station, status, &sample);
+    } while (reader_has_more(&station->reader));
+    return true;
+}
+
+/* A station that has nothing left to do is not polled, and asks nothing more. True: one had an outcome. */
+static bool poll_stations(poll_port_t *port)
+{
+    bool has_come = false;
+    bool is_done = true;
+    for (station_t *station = port->stations; station != NULL && !port->is_lost; station = station->next) {
+        if (poll_is_done(port->loop, station)) continue;
+        if (poll_station(port, station)) has_come = true;
+        if (!poll_is_done(port->loop, station)) is_done = false;
+    }
+    if (is_done) finish(port);
+    return has_come;
+}
+
+static bool poll_port(fathom_loop_source_t *source)
+{
+    poll_port_t *const port = port_of(source);
+    for (unsigned turn = 0; turn != TURNS && !port->is_done && !poll_is_over(port->loop); turn++) {
+        const bool has_come = poll_stations(port);
+        if (port->is_lost) {
+            lose(port);
+            return false;
+        }
+        if (!has_come) break;
+    }
+    if (port->is_done && !port->is_left && poll_port_end_stations(port)) leave(port);
+    return true;
+}
+
+static uint32_t due_us(fathom_loop_source_t *source)
+{
+    const poll_port_t *const port = port_of(source);
+    uint32_t soonest_us = port->is_done ? AGAIN_US : FATHOM_NO_DEADLINE;
+    for (station_t *station = port->stations; station != NULL && !port->is_done; station = station->next) {
+        if (poll_is_done(port->loop, station)) continue;
+        const uint32_t this_us = fathom_due_us(&station->reader.sensor, 1);
+        if (this_us < soonest_us) soonest_us = this_us;
+    }
+    return soonest_us;
+}
+
+/* ---- begin and end ---- */
+
+void poll_port_begin(poll_port_t *port, poll_loop_t *loop, const port_options_t *options)
+{
+    static const fathom_loop_kind_t kind = {open_port, close_port, port_fd, port_events,
+                                            poll_port, due_us,     NULL};
+    port->loop = loop;
+    port->options = options;
+    port->adapter.path = options->path;
+    port->source.kind = &kind;
+    fathom_loop_add(&loop->sources, &port->source);
+}
+
+void poll_port_end(poll_port_t *port)
+{
+    if (port->source.loop != NULL) fathom_loop_remove(&port->source);
+    port->source.loop = NULL;
+}
+
+/* Such as a break, which not every adapter's driver ends when it is closed. */
+bool poll_port_end_stations(poll_port_t *port)
+{
+    bool has_ended = true;
+    for (station_t *station = port->stations; station != NULL; station = station->next) {
+        reader_t *const reader = &station->reader;
+        if (reader->end != NULL && reader->end(reader) == FATHOM_PENDING)
+            has_ended = false;
+        else
+            reader->end = NULL;
+    }
+    return has_ended;
+}

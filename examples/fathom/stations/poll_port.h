@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef POLL_PORT_H
+#define POLL_PORT_H
+
+#include "stations/poll.h"
+
+/* A port of the poll loop: opens it, polls its sensors, and says why it is lost. */
+
+/* Adds it to the loop's sources, and tries to open it. */
+void poll_port_begin(poll_port_t *port, poll_loop_t *loop, const port_options_t *options);
+
+/* Takes it out of the loop. */
+void poll_port_end(poll_port_t *port);
+
+/* Leaves its sensors as they were: to be called until it is true. */
+bool poll_port_end_stations(poll_port_t *port);
+
+#endif
