@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT */
+/* The word by which a user names a sensor and where it is: what comes of right ones, what is said of wrong ones, and that
+ * no word whatever does harm. */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream; stderr is a variable */
+#include "suite.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stations/place.h"
+
+/* ---- a word, and its place as a word again ---- */
+
+enum { WORD = 400 };
+
+static char said[WORD * 2]; /* on the standard error by the last parse */
+
+static bool parse(sensor_place_t *place, const char *text, char word[WORD])
+{
+    char *err = NULL;
+    size_t size = 0;
+    FILE *const own = stderr;
+    assert_true(strlen(text) < WORD);
+    (void)snprintf(word, WORD, "%s", text);
+    stderr = open_memstream(&err, &size);
+    const bool is_right = place_parse(place, "read", word);
+    (void)fclose(stderr);
+    stderr = own;
+    (void)snprintf(said, sizeof said, "%s", err);
+    free(err);
+    return is_right;
+}
+
+static const char *value_text(port_key_t key, uint32_t value)
+{
+    static const char *const words[PORT_KEYS][4] = {
+        [KEY_PARITY] = {"none", "even", "odd"},
+        [KEY_RS485] = {"off", "on"},
+        [KEY_ECHO] = {"auto", "off", "on"},
+        [KEY_BIAS] = {"as-is", "up", "down", "off"},
+    };
+    static char number[16];
+    if (value < 4 && words[key][0] != NULL) return words[key][value];
+    (void)snprintf(number, sizeof number, "%u", (unsigned)value);
+    return number;
+}
+
+static void add(char word[WORD], const char *before, const char *text)
+{
+    const size_t length = strlen(word);
+    if (text != NULL) (void)snprintf(word + length, WORD - length, "%s%s", before, text);
+}
+
+/* The keys in the order of port_key_t. */
+static void print(const sensor_place_t *place, char word[WORD])
+{
+    word[0] = '\0';
+    if (place->name[0] != '\0') add(word, place->name, "=");
+    add(word, "", place->sensor.model->name);
+    add(word, ":", place->sensor.address);
+    add(word, ":", place->sensor.mode);
+    add(word, "@", place->port);
+    for (port_key_t key = 0; key != PORT_KEYS; key++) {
+        if (!port_keys_has(&place->keys, key)) continue;
+        add(word, ",", port_key_name(key));
+        add(word, "=", value_text(key, place->keys.value[key]));
+    }
+}
+
+/* ---- right ones ---- */
+
+TEST(what_comes_of_right_words)
+{
+    const struct {
+        const char *word;
+        const char *name;
+        const char *model;
+        const char *address;
+        const char *mode;
+        const char *port;
+        const char *keys; /* as they are printed */
+    } rows[] = {
+        {"a16", "", "a16", NULL, NULL, NULL, ""},
+        {"a16:3", "", "a16", "3", NULL, NULL, ""},
+        {"a16:modbus", "", "a16", NULL, "modbus", NULL, ""},
+        {"a16::modbus", "", "a16", "", "modbus", NULL, ""},
+        {"a16:", "", "a16", "", NULL, NULL, ""},
+        {"a05:2:dyp", "", "a05", "2", "dyp", NULL, ""},
+        /* the address and the mode are looked at with the sensor */
+        {"a16:x", "", "a16", NULL, "x", NULL, ""},
+        {"a16:1x", "", "a16", "1x", NULL, NULL, ""},
+        {"a16:1:", "", "a16", "1", "", NULL, ""},
+        {"a16:modbus:1", "", "a16", NULL, "modbus:1", NULL, ""},
+        {"tank=hps167s:7", "tank", "hps167s", "7", NULL, NULL, ""},
+        {"7=a16", "7", "a16", NULL, NULL, NULL, ""},
+        {"A-z_9.=a16", "A-z_9.", "a16", NULL, NULL, NULL, ""},
+        {"abcdefghijabcdefghijabcdefghijX=a16", "abcdefghijabcdefghijabcdefghijX", "a16", NULL, NULL, NULL,
+         ""},
+        {"a16@/dev/ttyUSB0", "", "a16", NULL, NULL, "/dev/ttyUSB0", ""},
+        {"a16@./a=b@c:1", "", "a16", NULL, NULL, "./a=b@c:1", ""},
+        {"hps167s:8@tcp:10.0.0.7", "", "hps167s", "8", NULL, "tcp:10.0.0.7", ""},
+        {"hps167s@tcp:[::1]:1502", "", "hps167s", NULL, NULL, "tcp:[::1]:1502", ""},
+        {"a=a16:1:modbus@x,baud=57600,parity=odd,stop=2,rs485=on,echo=off", "a", "a16", "1", "modbus", "x",
+         ",baud=57600,parity=odd,stop=2,rs485=on,echo=off"},
+        {"a16@x,echo=auto,rs485=off", "", "a16", NULL, NULL, "x", ",rs485=off,echo=auto"},
+        {"a16@gpiochip0,trigger=17,echo=27", "", "a16", NULL, NULL, "gpiochip0", ",trigger=17,echo=27"},
+        {"a05@/dev/gpiochip12,in=0,bias=up", "", "a05", NULL, NULL, "/dev/gpiochip12", ",in=0,bias=up"},
+        {"a05@gpiochip1,bias=as-is,in=65535", "", "a05", NULL, NULL, "gpiochip1", ",in=65535,bias=as-is"},
+        /* what is no chip is a tty */
+        {"a16@gpiochip/x,baud=9600", "", "a16", NULL, NULL, "gpiochip/x", ",baud=9600"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        sensor_place_t place;
+        char word[WORD];
+        char expected[WORD] = "";
+        char printed[WORD];
+        if (!parse(&place, rows[i].word, word)) fail_msg("%s: %s", rows[i].word, said);
+        assert_string_equal(place.name, rows[i].name);
+        if (rows[i].name[0] != '\0') add(expected, rows[i].name, "=");
+        add(expected, "", rows[i].model);
+        add(expected, ":", rows[i].address);
+        add(expected, ":", rows[i].mode);
+        add(expected, "@", rows[i].port);
+        add(expected, "", rows[i].keys);
+        print(&place, printed);
+        assert_string_equal(printed, expected);
+        assert_string_equal(said, "");
+    }
+}
+
+/* The numbers are those of other headers: hal.h, line.h and fathom_gpio.h. */
+TEST(values_are_those_of_the_library)
+{
+    sensor_place_t place;
+    char word[WORD];
+    assert_true(parse(&place, "a16@x,baud=230400,parity=even,stop=1,rs485=on,echo=on", word));
+    assert_int_equal(place.keys.value[KEY_BAUD], 230400);
+    assert_int_equal(place.keys.value[KEY_PARITY], FATHOM_PARITY_EVEN);
+    assert_int_equal(place.keys.value[KEY_STOP_BITS], 1);
+    assert_int_equal(place.keys.value[KEY_RS485], 1);
+    assert_int_equal(place.keys.value[KEY_ECHO], 2);
+    assert_true(parse(&place, "a16@gpiochip0,in=5,bias=down", word));
+    assert_int_equal(place.keys.value[KEY_IN], 5);
+    assert_int_equal(place.keys.value[KEY_BIAS], 2);
+    assert_true(parse(&place, "a16@gpiochip0,in=5,bias=off", word));
+    assert_int_equal(place.keys.value[KEY_BIAS], 3);
+}
+
+/* ---- wrong ones ---- */
+
+TEST(what_is_said_of_wrong_words)
+{
+    const struct {
+        const char *word;
+        const char *says;
+    } rows[] = {
+        {"", "there is no sensor '', only a16, a05, hps167s"},
+        {"a17:1", "there is no sensor 'a17'"},
+        {"tank=", "there is no sensor ''"},
+        {"a=b=a16", "there is no sensor 'b=a16'"},
+        {"hps167s1234567890123456789012345678901234567890:1", "there is no sensor 'hps167s1234567890"},
+        {"=a16", "not ''"},
+        {".a=a16",
+         "=a16: a name has up to 31 letters, digits, - _ and ., the first a letter or digit, such as "
+         "tank-1=a16; not '.a'"},
+        {"a b=a16", "not 'a b'"},
+        {"a:1=a16", "not 'a:1'"},
+        {"\xC3\xA4=a16", "a name has up to 31"},
+        {"abcdefghijabcdefghijabcdefghijXY=a16", "a name has up to 31"},
+        {"a16@", "a16@: the port is missing behind @, such as @/dev/ttyUSB0"},
+        {"a16@,baud=9600", "the port is missing"},
+        {"a16@x,", "a16@x,: a serial port has no key '', only baud, parity, stop, rs485, echo"},
+        {"a16@x,baud=9600,,echo=on", "has no key ''"},
+        {"a16@x,=9600", "has no key ''"},
+        {"a16@x,Baud=9600", "has no key 'Baud'"},
+        {"a16@x,bau=9600", "has no key 'bau'"},
+        {"a16@x,in=1", "a serial port has no key 'in'"},
+        {"a16@gpiochip0,rs485=on", "a GPIO chip has no key 'rs485', only trigger, echo, in, bias"},
+        {"a16@x,baud", "a16@x,baud: the value of baud is missing: 9600, 19200"},
+        {"a16@x,baud=", "baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not ''"},
+        {"a16@x,baud=9601", "not '9601'"},
+        {"a16@x,baud=00000000000009600", "not '00000000000009600'"},
+        {"a16@x,parity=even,parity=odd", "parity stands there twice"},
+        {"a16@x,parity=e", "parity takes none, even or odd, not 'e'"},
+        {"a16@x,stop=0", "stop takes a whole number from 1 to 2, not '0'"},
+        {"a16@x,rs485=yes", "rs485 takes on or off, not 'yes'"},
+        {"a16@x,echo=1", "echo takes auto, on or off, not '1'"},
+        {"a16@gpiochip0,echo=on", "echo takes the number of a line from 0 to 65535, not 'on'"},
+        {"a16@gpiochip0,trigger=-1", "not '-1'"},
+        {"a16@gpiochip0,in=65536", "not '65536'"},
+        {"a16@gpiochip0,bias=", "bias takes as-is, up, down or off, not ''"},
+        {"hps167s@tcp:h,baud=9600", "a port over TCP has no keys, for the line is the gateway's"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        sensor_place_t place;
+        char word[WORD];
+        if (parse(&place, rows[i].word, word)) fail_msg("'%s' is taken", rows[i].word);
+        if (strstr(said, rows[i].says) == NULL) fail_msg("'%s': %s", rows[i].word, said);
+    }
+}
+
+/* ---- any ---- */
+
+static uint32_t seed;
+
+static uint32_t any(uint32_t below)
+{
+    seed = seed * 1664525u + 1013904223u; /* Numerical Recipes */
+    return (seed >> 8) % below;
+}
+
+/* Parts of right ones and of none, so that some are right. */
+static void make_word(char word[WORD])
+{
+    static const char *const parts[] = {
+        "a16",    "a05",      "hps167s",        ":",       ":1",       ":modbus",  "@",        "@x",
+        "@./tty", "@tcp:h:5", "@gpiochip0",     ",",       "=",        ",baud=",   ",baud=96", "00",
+        "9600",   ",echo=on", ",parity=even",   ",stop=2", ",in=7",    ",bias=up", "tank=",    "t",
+        ":dyp",   "0",        ",trigger=17",    ",echo=4", "\xFF",     "[",        "%s",       " ",
+        "-",      "_.=",      "a16:1@/dev/tty", "a=a16@",  ",rs485=on"};
+    const uint32_t count = 1 + any(6);
+    word[0] = '\0';
+    for (uint32_t i = 0; i != count; i++) add(word, "", parts[any(sizeof parts / sizeof parts[0])]);
+    if (any(8) == 0) word[any((uint32_t)strlen(word))] = (char)(1 + any(255));
+}
+
+TEST(a_hundred_thousand_words_do_no_harm_and_those_that_are_taken_are_the_same_again)
+{
+    uint32_t taken = 0;
+    seed = 20261123;
+    for (uint32_t i = 0; i != 100000; i++) {
+        sensor_place_t first;
+        sensor_place_t second;
+        char text[WORD];
+        char word[WORD];
+        char printed[WORD];
+        char again[WORD];
+        make_word(text);
+        if (!parse(&first, text, word)) {
+            assert_memory_equal(said, "fathom read: ", 13);
+            continue;
+        }
+        taken++;
+        print(&first, printed);
+        if (!parse(&second, printed, word)) fail_msg("'%s' was '%s': %s", printed, text, said);
+        print(&second, again);
+        assert_string_equal(again, printed);
+        assert_string_equal(first.name, second.name);
+        assert_ptr_equal(first.sensor.model, second.sensor.model);
+        assert_memory_equal(&first.keys, &second.keys, sizeof first.keys);
+    }
+    assert_in_range(taken, 1000, 99000);
+}
