@@ -49,7 +49,13 @@ typedef struct {
     bool is_there; /* it means something for these sensors and this port */
 } group_t;
 
-static bool is_asked(const account_t *account) { return account->stations[0].mode->is_asked; }
+/* Is there a sensor that is asked, or that is not? */
+static bool has_some(const account_t *account, bool is_asked)
+{
+    for (size_t i = 0; i != account->station_count; i++)
+        if (account->stations[i].mode->is_asked == is_asked) return true;
+    return false;
+}
 
 static void get_groups(group_t groups[GROUPS], const char *const failure_names[FAILURE_KINDS],
                        const account_t *account)
@@ -58,8 +64,8 @@ static void get_groups(group_t groups[GROUPS], const char *const failure_names[F
     const group_t all[GROUPS] = {
         {"failures", failure_names, account->sum.failures, FAILURE_KINDS, true},
         {"line", line_names, total->line, FATHOM_LINE_COUNTERS, true},
-        {"stream", stream_names, total->stream, FATHOM_STREAM_COUNTERS, !is_asked(account)},
-        {"unit", unit_names, total->unit, UNIT_COUNTERS, is_asked(account)},
+        {"stream", stream_names, total->stream, FATHOM_STREAM_COUNTERS, has_some(account, false)},
+        {"unit", unit_names, total->unit, UNIT_COUNTERS, has_some(account, true)},
         {"port", port_names, total->port, PORT_COUNTERS, account->has_port},
     };
     memcpy(groups, all, sizeof all);
@@ -167,8 +173,8 @@ void counters_print_all(const account_t *account, FILE *to)
         }
         (void)fputs("\n", to);
     }
-    for (size_t i = 0; i != account->station_count && is_asked(account); i++)
-        print_unit(&account->stations[i], to);
+    for (size_t i = 0; i != account->station_count; i++)
+        if (account->stations[i].mode->is_asked) print_unit(&account->stations[i], to);
 }
 
 /* ---- for programs ---- */
@@ -246,9 +252,12 @@ void counters_print_json(const account_t *account, FILE *to)
     for (size_t g = 0; g != GROUPS; g++) print_json_group(&groups[g], to);
     print_json_time(&account->sum, to);
     (void)fputs(",\"units\":[", to);
-    for (size_t i = 0; i != account->station_count && is_asked(account); i++) {
-        if (i != 0) (void)fputs(",", to);
+    const char *gap = "";
+    for (size_t i = 0; i != account->station_count; i++) {
+        if (!account->stations[i].mode->is_asked) continue;
+        (void)fputs(gap, to);
         print_json_unit(&account->stations[i], to);
+        gap = ",";
     }
     (void)fputs("]}\n", to);
 }
