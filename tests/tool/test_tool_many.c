@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: MIT */
+/* Many ports in one command: each is read, lost and opened again on its own. */
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { PORTS = 256, NAMES = 16, WORDS = 8192 };
+
+static struct {
+    fathom_sim_clock_t clock;
+    fathom_sim_line_t lines[PORTS];
+    fathom_sim_uart_t uarts[PORTS];
+    fathom_sim_hps167s_t hps167s[PORTS];
+    fathom_sim_a16_t a16;
+    fathom_sim_fixed_t scene;
+    tool_port_t ports[PORTS];
+    char paths[PORTS][8]; /* p0, p1 ... */
+    tool_line_t tool;
+    uint64_t passed_us;
+    size_t pulled; /* this port is away ... */
+    uint64_t off_us;
+    uint64_t on_us;
+} many;
+
+static void pass(void *ctx, uint32_t max_us)
+{
+    const uint32_t began_us = many.clock.now_us;
+    /* So that it is away to the millisecond. */
+    fathom_sim_clock_idle(ctx, many.on_us != 0 && max_us > 1000 ? 1000 : max_us);
+    many.passed_us += many.clock.now_us - began_us;
+    if (many.on_us != 0)
+        many.ports[many.pulled].is_away = many.passed_us >= many.off_us && many.passed_us < many.on_us;
+}
+
+/* So many ports with an empty line at 19200 8E1 each. */
+static void ports(size_t count)
+{
+    const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
+    memset(&many, 0, sizeof many);
+    many.scene.value[0] = 1234;
+    fathom_sim_clock_init(&many.clock, UINT32_MAX - 1000000, 0);
+    for (size_t i = 0; i != count; i++) {
+        fathom_sim_line_init(&many.lines[i], &settings, many.clock.now_us);
+        fathom_sim_uart_init(&many.uarts[i], &many.lines[i], &many.clock);
+        many.uarts[i].knows = 0;
+        (void)snprintf(many.paths[i], sizeof many.paths[i], "p%zu", i);
+        many.ports[i] = (tool_port_t){.path = many.paths[i], .uart = fathom_sim_uart(&many.uarts[i])};
+    }
+    many.tool = (tool_line_t){.ports = many.ports,
+                              .port_count = count,
+                              .clock = fathom_sim_clock(&many.clock),
+                              .idle = pass,
+                              .ctx = &many.clock};
+}
+
+static void hps167s(size_t port, fathom_sim_hps167s_config_t config)
+{
+    config.scene = fathom_sim_fixed(&many.scene);
+    fathom_sim_hps167s_init(&many.hps167s[port], &config);
+    fathom_sim_attach(&many.lines[port], &many.hps167s[port].device, many.clock.now_us);
+}
+
+static void away(size_t port, uint64_t off_us, uint64_t on_us)
+{
+    many.pulled = port;
+    many.off_us = off_us;
+    many.on_us = on_us;
+    many.ports[port].is_away = off_us == 0;
+}
+
+/* ---- what the lines of text say ---- */
+
+typedef struct {
+    unsigned count;
+    double first_s, last_s;
+    double longest_s; /* from one to the next */
+} readings_t;
+
+static readings_t readings_of(const tool_run_t *run, const char *name)
+{
+    readings_t readings = {0};
+    for (const char *line = run->out; *line != '\0'; line = strchr(line, '\n') + 1) {
+        double at_s = 0;
+        char word[64];
+        assert_int_equal(sscanf(line, "%lf s %63s", &at_s, word), 2);
+        if (strcmp(word, name) != 0) continue;
+        if (readings.count == 0) readings.first_s = at_s;
+        if (readings.count != 0 && at_s - readings.last_s > readings.longest_s)
+            readings.longest_s = at_s - readings.last_s;
+        readings.last_s = at_s;
+        readings.count++;
+    }
+    return readings;
+}
+
+static void expect_err(const tool_run_t *run, const char *text)
+{
+    if (strstr(run->err, text) == NULL) fail_msg("'%s' is not in\n%s%s", text, run->out, run->err);
+}
+
+static unsigned times(const char *text, const char *words)
+{
+    unsigned count = 0;
+    for (; (text = strstr(text, words)) != NULL; text++) count++;
+    return count;
+}
+
+#define RUN(exit_status, ...)                                                                                \
+    const tool_run_t *const run = tool_run(&many.tool, __VA_ARGS__);                                         \
+    if (run->status != (exit_status)) fail_msg("exit status %d\n%s%s", run->status, run->out, run->err)
+
+/* ---- lost, silent and fine ---- */
+
+/* Lost at 2.2 s, found so at once by those that wait for time: its attempts at 0, 0.5, 1, 1.5 and 2 s, the loss, and,
+ * as the pauses are 0.5, 1 and 2 s, tries at 2.7, 3.7 and 5.7 s; back at 5 s; attempts at 5.7, 6.2 ... 9.7 s: 9. The
+ * others: at 0, 0.5 ... 9.5 s. */
+static void three(void)
+{
+    ports(3);
+    hps167s(0, (fathom_sim_hps167s_config_t){0});
+    hps167s(2, (fathom_sim_hps167s_config_t){0});
+    away(0, 2200000, 5000000);
+}
+
+TEST(one_is_lost_and_comes_back_one_is_silent_and_the_third_does_not_pause)
+{
+    three();
+    RUN(1, "read lost=hps167s@p0 mute=hps167s@p1 fine=hps167s@p2 --interval 500 --timeout 100 --duration 10 "
+           "--reconnect");
+    const readings_t fine = readings_of(run, "fine");
+    const readings_t lost = readings_of(run, "lost");
+    assert_int_equal(fine.count, 20);
+    assert_true(fine.longest_s < 0.510);
+    assert_int_equal(lost.count, 5 + 9);
+    assert_true(lost.longest_s > 3.690 && lost.longest_s < 3.710); /* from 2.0 to 5.7 s */
+    assert_int_equal(readings_of(run, "mute").count, 0);
+    expect_err(run, "fathom: lost: attempts 15, failed 1, readings 14\n");
+    expect_err(run, "fathom: mute: attempts 20, failed 20, readings 0");
+    expect_err(run, "fathom: fine: attempts 20, failed 0, readings 20\n");
+    assert_int_equal(times(run->err, "p0: unplugged; waiting until it is back\n"), 1);
+    assert_int_equal(times(run->err, "fathom: p0: it is back; reading goes on\n"), 1);
+    assert_int_equal(times(run->err, "p0: "), 2);
+    assert_int_equal(times(run->err, "p2"), 0);
+    expect_err(run, "fathom: mute: attempt 20: no response from address 1");
+}
+
+TEST(without_reconnect_the_others_are_read_to_their_end)
+{
+    three();
+    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 12");
+    assert_int_equal(readings_of(run, "lost").count, 5);
+    assert_int_equal(readings_of(run, "fine").count, 12);
+    expect_err(run, "p0: unplugged; connect it again and start again (with --reconnect it is waited for)\n");
+    expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5\n");
+    expect_err(run, "fathom: fine: attempts 12, failed 0, readings 12\n");
+    assert_in_range(run->took_us, 5500000, 5600000); /* 11 intervals, and a response */
+}
+
+TEST(when_all_are_lost_it_ends)
+{
+    three();
+    RUN(1, "read hps167s@p0 --interval 500");
+    assert_in_range(run->took_us, 2200000, 2210000);
+}
+
+TEST(a_count_is_each_sensors_own)
+{
+    three();
+    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 6 --reconnect --stats");
+    /* 5 readings and the loss: all that was asked for, so it is not waited for. */
+    expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5");
+    expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
+    expect_err(run, "requests 11, skipped frames 0, reconnects 0\n");
+    assert_int_equal(times(run->err, "waiting"), 0);
+    assert_in_range(run->took_us, 2500000, 2600000);
+}
+
+TEST(both_sensors_of_a_lost_port_fail_and_it_is_told_once)
+{
+    three();
+    many.hps167s[1] = many.hps167s[2]; /* hangs on no line */
+    fathom_sim_hps167s_init(&many.hps167s[1], &(fathom_sim_hps167s_config_t){
+                                                  .address = 2, .scene = fathom_sim_fixed(&many.scene)});
+    fathom_sim_attach(&many.lines[0], &many.hps167s[1].device, many.clock.now_us);
+    RUN(1, "read hps167s:1@p0 hps167s:2@p0 fine=hps167s@p2 --interval 500 --count 6 --stats");
+    expect_err(run, "fathom: hps167s:1: attempts 6, failed 1, readings 5");
+    expect_err(run, "fathom: hps167s:2: attempts 6, failed 1, readings 5");
+    expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
+    expect_err(run, "fathom: failures: impossible values 0, port 2,");
+    assert_int_equal(times(run->err, "unplugged"), 1);
+}
+
+/* ---- not there at the beginning ---- */
+
+TEST(a_port_that_is_not_there_is_said_and_the_others_are_read)
+{
+    three();
+    away(0, 0, 3000000);
+    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 4");
+    expect_err(run, "fathom: p0: no such device\n");
+    expect_err(run, "fathom: lost: attempts 0, failed 0, readings 0\n");
+    assert_int_equal(readings_of(run, "fine").count, 4);
+}
+
+TEST(when_none_is_there_it_ends)
+{
+    three();
+    many.ports[0].is_away = many.ports[2].is_away = true;
+    RUN(1, "read hps167s@p0 hps167s@p2 --interval 500");
+    expect_err(run, "fathom: p0: no such device\nfathom: p2: no such device\n");
+    assert_string_equal(run->out, "");
+    assert_int_equal(run->took_us, 0);
+}
+
+/* Tries at 0, 0.5, 1.5 and 3.5 s. */
+TEST(a_port_that_is_not_there_yet_is_waited_for)
+{
+    three();
+    away(0, 0, 3000000);
+    RUN(0, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 8 --reconnect --stats");
+    const readings_t lost = readings_of(run, "lost");
+    assert_int_equal(lost.count, 8);
+    assert_true(lost.first_s > 3.5 && lost.first_s < 3.53);
+    assert_true(readings_of(run, "fine").longest_s < 0.510);
+    expect_err(run, "fathom: p0: no such device; waiting until it is there\n");
+    expect_err(run, "fathom: p0: it is there; reading begins\n");
+    expect_err(run, "reconnects 0\n");
+}
+
+TEST(ctrl_c_ends_it_while_one_is_waited_for)
+{
+    three();
+    away(0, 0, 9000000);
+    many.tool.ctrl_c_us = 3200000;
+    RUN(0, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --reconnect");
+    assert_in_range(run->took_us, 3200000, 3210000);
+    assert_int_equal(readings_of(run, "fine").count, 7); /* at 0 to 3 s */
+}
+
+TEST(a_port_that_refuses_its_settings_does_not_end_the_others)
+{
+    three();
+    RUN(1, "read hps167s@p2 a16::controlled@p0 --count 3"); /* these UARTs hold no break */
+    assert_int_equal(readings_of(run, "hps167s:1").count, 3);
+    expect_err(run, "fathom: a16: ");
+}
+
+/* ---- of several kinds ---- */
+
+TEST(each_port_has_its_own_settings_and_its_own_stations)
+{
+    ports(3);
+    hps167s(0, (fathom_sim_hps167s_config_t){.address = 7, .baud_code = 2});
+    hps167s(2, (fathom_sim_hps167s_config_t){0});
+    fathom_sim_hps167s_init(&many.hps167s[1], &(fathom_sim_hps167s_config_t){
+                                                  .address = 2, .scene = fathom_sim_fixed(&many.scene)});
+    fathom_sim_attach(&many.lines[2], &many.hps167s[1].device, many.clock.now_us);
+    fathom_sim_a16_init(&many.a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO,
+                                                              .scene = fathom_sim_fixed(&many.scene)});
+    fathom_sim_attach(&many.lines[1], &many.a16.device, many.clock.now_us);
+    RUN(0, "read hps167s:7@p0,baud=57600 tank=a16@p1 hps167s:1@p2 hps167s:2@p2 --count 3 --stats");
+    static const char *const names[] = {"hps167s:7", "tank", "hps167s:1", "hps167s:2"};
+    for (size_t i = 0; i != 4; i++) assert_int_equal(readings_of(run, names[i]).count, 3);
+    /* Of those that are asked and of the one that is not. */
+    expect_err(run, "fathom: requests 9, ");
+    expect_err(run, "fathom: stream: frames 3,");
+    expect_err(run, "fathom: unit: responses 9, failures 0\n");
+    assert_int_equal(times(run->err, "time to answer"), 3);
+}
+
+TEST(a_silent_one_among_others_is_told_by_its_own_line)
+{
+    ports(2);
+    hps167s(1, (fathom_sim_hps167s_config_t){0});
+    RUN(1, "read mute=hps167s@p0 fine=hps167s@p1 --count 2 --interval 1000");
+    /* Not "while others on this line answer", since they are on another one. */
+    expect_err(run, "fathom: mute: attempt 1: no response from address 1: nothing was heard at all;");
+}
+
+TEST(two_hundred_and_fifty_six_ports_are_read_side_by_side)
+{
+    static char words[WORDS];
+    size_t length = 0;
+    ports(PORTS);
+    for (size_t i = 0; i != PORTS; i++) {
+        hps167s(i, (fathom_sim_hps167s_config_t){.seed = (uint32_t)i});
+        length += (size_t)snprintf(words + length, sizeof words - length, " s%zu=hps167s@p%zu", i, i);
+    }
+    RUN(0, "read%s --count 3 --interval 100", words);
+    for (size_t i = 0; i != PORTS; i++) {
+        char name[NAMES];
+        (void)snprintf(name, sizeof name, "s%zu", i);
+        const readings_t one = readings_of(run, name);
+        assert_int_equal(one.count, 3);
+        assert_true(one.longest_s < 0.110);
+    }
+    assert_in_range(run->took_us, 200000, 250000);
+}
