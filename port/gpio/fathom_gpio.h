@@ -20,8 +20,10 @@ extern "C" {
  *     static fathom_gpio_t trigger, echo;
  *     if (fathom_gpio_open_output(&trigger, "gpiochip0", 17, true) != FATHOM_GPIO_OK ||
  *         fathom_gpio_open_edges(&echo, "gpiochip0", 27, FATHOM_GPIO_BIAS_AS_IS) != FATHOM_GPIO_OK) ...
+ *     const fathom_clock_t clock = fathom_posix_clock();
  *     const fathom_pin_t trigger_pin = fathom_gpio_pin(&trigger);
  *     const fathom_capture_t capture = fathom_gpio_capture(&echo);
+ *     config.pulse.clock = &clock; (the kernel's stamps are of the same: CLOCK_MONOTONIC)
  *     config.pulse.trigger = fathom_output_pin(&trigger_pin);
  *     config.pulse.capture = &capture;
  *
@@ -32,9 +34,16 @@ extern "C" {
  * its sleep states, and the driver of the chip (one behind I2C or USB stamps milliseconds late). Measure it on the board:
  * `fathom read --stats` prints the spread, and how much was rejected.
  *
+ * Lost edges: the kernel's queue has place for FATHOM_GPIO_QUEUE, and drops the oldest. Their numbers tell. What they
+ * belonged to is given up, and so is all up to the next falling edge: a pulse is one whose two edges came one after the
+ * other.
+ *
  * Memory: all is the caller's, may not be moved while it is open, and nothing is allocated. One thread at a time. Nothing
- * waits.
+ * waits. It needs port/posix beside it.
+ *
+ * What has run: all of it, on system calls that tests stand in for. It has never run on a board.
  */
+enum { FATHOM_GPIO_QUEUE = 64 };
 
 typedef enum {
     FATHOM_GPIO_OK = 0,
@@ -44,13 +53,14 @@ typedef enum {
     FATHOM_GPIO_ERR_IN_USE = -4,     /* another program, or a driver of the kernel, has this line */
     FATHOM_GPIO_ERR_NOT_A_CHIP = -5, /* a file, a device of another kind */
     FATHOM_GPIO_ERR_NO_LINE = -6,    /* the chip has fewer lines; the text says how many */
-    FATHOM_GPIO_ERR_UNSUPPORTED =
-        -7,                     /* this chip has no bias, or no edges; or the kernel is older than 5.10 */
+    /* This line cannot be an output, tell edges, or have that resistor; or the kernel is older than 5.10. */
+    FATHOM_GPIO_ERR_UNSUPPORTED = -7,
     FATHOM_GPIO_ERR_LOST = -8,  /* the chip has gone */
     FATHOM_GPIO_ERR_SYSTEM = -9 /* anything else that the system said; the text has its words */
 } fathom_gpio_status_t;
 
-/* The resistor of an input. AS_IS: what the board or the boot loader has set. */
+/* The resistor of an input. AS_IS: what the board or the boot loader has set. Most drivers of chips that have no resistors
+ * take any of them without a word: the kernel does not tell. */
 typedef enum {
     FATHOM_GPIO_BIAS_AS_IS = 0,
     FATHOM_GPIO_BIAS_PULL_UP = 1,
@@ -62,8 +72,10 @@ typedef enum {
 typedef struct {
     int fd; /* of the line */
     bool is_open;
-    bool is_lost;
+    bool is_lost; /* for good, until it is opened again */
+    bool is_output;
     bool has_edges;
+    bool is_high;       /* an input, when it was looked at last */
     fathom_pin_t level; /* for edges */
     fathom_edges_t edges;
     uint32_t line;        /* its number on the chip */
@@ -91,12 +103,16 @@ fathom_gpio_status_t fathom_gpio_open_edges(fathom_gpio_t *gpio, const char *chi
 /* Gives it back. One that is closed, failed to open, or is all zeros: nothing happens. */
 void fathom_gpio_close(fathom_gpio_t *gpio);
 
-/* The HAL of an open one, which stays where it is. `set` of an output, `get` of an input, with edges too, where it also
- * takes the events that have come, so that the descriptor is not ready any more. */
+/*
+ * The HAL of an open one, which stays where it is. `set` of an output, `get` of an input; with edges `get` takes the
+ * events that have come too, so that the descriptor is not ready any more. A hal.h pin cannot fail: where the chip has
+ * gone, `set` does nothing, `get` says what was last, and fathom_gpio_error tells.
+ */
 fathom_pin_t fathom_gpio_pin(fathom_gpio_t *gpio);
 
-/* Of one with edges. take < 0: the chip has gone. Where events were lost, so is the pulse that they belonged to, and
- * none is made up (edges.h). */
+/* Of one with edges. take < 0: the chip has gone. arm forgets what has come, also what is still in the queue. What comes
+ * between two cycles stays there, and the descriptor ready: wait edge-triggered (EPOLLET), as fathom_loop.h does, or call
+ * `get`. */
 fathom_capture_t fathom_gpio_capture(fathom_gpio_t *gpio);
 
 /* For poll(2) and epoll(7): can be read when edges have come. -1: closed. */

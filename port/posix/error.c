@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#undef _GNU_SOURCE        /* with it, strerror_r is another function */
-#define _DEFAULT_SOURCE 1 /* getgrgid_r, strerror_r */
 #include <errno.h>
-#include <grp.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
 
+#include "internal/describe.h"
 #include "internal/posix_port.h"
 
 fathom_posix_status_t fathom_posix_error(const fathom_posix_uart_t *port) { return port->error; }
@@ -30,20 +26,13 @@ fathom_posix_status_t fathom_posix_fail(fathom_posix_uart_t *port, fathom_posix_
     return error;
 }
 
-/* strerror is not safe with threads. */
-static const char *words(int code, char *text, size_t capacity)
-{
-    if (strerror_r(code, text, capacity) != 0) (void)snprintf(text, capacity, "error %d", code);
-    return text;
-}
-
 fathom_posix_status_t fathom_posix_fail_lost(fathom_posix_uart_t *port, int code)
 {
     char text[80];
     port->is_lost = true;
     return fathom_posix_fail(port, FATHOM_POSIX_ERR_LOST,
                              "the device was unplugged or its far end closed (%s)",
-                             code != 0 ? words(code, text, sizeof text) : "hang-up");
+                             code != 0 ? fathom_posix_words(code, text, sizeof text) : "hang-up");
 }
 
 fathom_posix_status_t fathom_posix_fail_system(fathom_posix_uart_t *port, const char *what, int code)
@@ -54,8 +43,9 @@ fathom_posix_status_t fathom_posix_fail_system(fathom_posix_uart_t *port, const 
     if (is_gone)
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_FOUND,
                                  "%s: %s: there is no UART behind this name, or it was unplugged", what,
-                                 words(code, text, sizeof text));
-    return fathom_posix_fail(port, FATHOM_POSIX_ERR_SYSTEM, "%s: %s", what, words(code, text, sizeof text));
+                                 fathom_posix_words(code, text, sizeof text));
+    return fathom_posix_fail(port, FATHOM_POSIX_ERR_SYSTEM, "%s: %s", what,
+                             fathom_posix_words(code, text, sizeof text));
 }
 
 fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port)
@@ -66,32 +56,9 @@ fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port)
 
 static fathom_posix_status_t fail_permission(fathom_posix_uart_t *port, const char *path)
 {
-    static const char denied[] = "permission denied";
-    struct stat status;
-    if (stat(path, &status) != 0)
-        return fathom_posix_fail(port, FATHOM_POSIX_ERR_PERMISSION,
-                                 "%s: a folder on its way is closed to you", denied);
-
-    char memory[1024]; /* the group's name and members; a longer entry is shown as its number */
-    char number[16];
-    struct group entry;
-    struct group *group = NULL;
-    const int found = getgrgid_r(status.st_gid, &entry, memory, sizeof memory, &group);
-    (void)snprintf(number, sizeof number, "%lu", (unsigned long)status.st_gid);
-    const char *const name = found == 0 && group != NULL ? entry.gr_name : number;
-
-    /* No user should join the group root, and joining does not help where the group may not read and write either. */
-    const unsigned mode = (unsigned)status.st_mode & 07777u;
-    if (status.st_gid == 0 || (mode & (S_IRGRP | S_IWGRP)) != (S_IRGRP | S_IWGRP))
-        return fathom_posix_fail(
-            port, FATHOM_POSIX_ERR_PERMISSION,
-            "%s: it belongs to the group %s with mode %04o, so joining a group does not help; "
-            "a udev rule (GROUP=\"dialout\", MODE=\"0660\") or root can",
-            denied, name, mode);
-    return fathom_posix_fail(port, FATHOM_POSIX_ERR_PERMISSION,
-                             "%s: it belongs to the group %s; join it with: sudo usermod -aG %s $USER "
-                             "and log in again",
-                             denied, name, name);
+    char text[sizeof port->text];
+    return fathom_posix_fail(port, FATHOM_POSIX_ERR_PERMISSION, "%s",
+                             fathom_posix_describe_denied(path, "dialout", text, sizeof text));
 }
 
 fathom_posix_status_t fathom_posix_fail_open(fathom_posix_uart_t *port, const char *path, int code)

@@ -68,6 +68,7 @@ def find_package(build, work):
     run('cmake', '--build', folder)
     expect(run(os.path.join(folder, 'consumer')), f'{version} works\n')
     run(os.path.join(folder, 'ports'))
+    expect(run(os.path.join(folder, 'pins')), '/dev/null, line 17: not a GPIO chip\n')
     said = configure(build, folder + '2', '-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=99.0', good=False)
     expect('compatible with requested version "99.0"' in ' '.join(said.split()), True)
 

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* mkstemp, chown */
+#include <errno.h>
+#include <fcntl.h>
+#include <grp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "gpio_chip.h"
+#include "posix_pty.h"
+
+/* What fathom_gpio_open_... asks of the kernel, and says when that refuses; levels of pins without edges. */
+
+static fathom_gpio_t gpio;
+
+static int begins(void **state)
+{
+    chip_reset();
+    memset(&gpio, 0, sizeof gpio);
+    return 0;
+}
+
+static int ends(void **state)
+{
+    fathom_gpio_close(&gpio);
+    assert_int_equal(chip.open_chips, 0); /* nothing but the line stays open */
+    chip_reset();
+    return 0;
+}
+
+static const suite_t suite = {.set_up = begins, .tear_down = ends};
+
+enum { OUTPUT, INPUT, EDGES };
+
+static fathom_gpio_status_t open_as(int kind, const char *name, uint32_t line)
+{
+    memset(&gpio, 0xA5, sizeof gpio); /* any content will do */
+    if (kind == OUTPUT) return fathom_gpio_open_output(&gpio, name, line, true);
+    if (kind == INPUT) return fathom_gpio_open_input(&gpio, name, line, FATHOM_GPIO_BIAS_PULL_UP);
+    return fathom_gpio_open_edges(&gpio, name, line, FATHOM_GPIO_BIAS_AS_IS);
+}
+
+static void expect_failure(int kind, const char *name, uint32_t line, fathom_gpio_status_t error,
+                           const char *text)
+{
+    const unsigned before = posix_count_fds();
+    assert_int_equal(open_as(kind, name, line), error);
+    assert_int_equal(fathom_gpio_error(&gpio), error);
+    assert_int_equal(fathom_gpio_fd(&gpio), -1);
+    gpio_says(&gpio, text);
+    assert_null(strchr(fathom_gpio_error_text(&gpio), '\n'));
+    fathom_gpio_close(&gpio);
+    assert_int_equal(posix_count_fds(), before);
+}
+
+TEST(an_output_is_requested_with_its_level)
+{
+    assert_int_equal(open_as(OUTPUT, "gpiochip0", 17), FATHOM_GPIO_OK);
+    const struct gpio_v2_line_request *const request = &chip.lines[0].request;
+    assert_int_equal(request->num_lines, 1);
+    assert_int_equal(request->offsets[0], 17);
+    assert_string_equal(request->consumer, "fathom");
+    assert_int_equal(request->config.flags, GPIO_V2_LINE_FLAG_OUTPUT);
+    assert_int_equal(request->config.num_attrs, 1);
+    assert_int_equal(request->config.attrs[0].attr.id, GPIO_V2_LINE_ATTR_ID_OUTPUT_VALUES);
+    assert_int_equal(request->config.attrs[0].mask, 1);
+    assert_true(chip.lines[0].level);
+    assert_int_equal(chip.open_flags & (O_ACCMODE | O_CLOEXEC), O_RDWR | O_CLOEXEC);
+    assert_int_equal(chip.open_chips, 0);
+    fathom_gpio_close(&gpio);
+    assert_int_equal(fathom_gpio_open_output(&gpio, "/dev/gpiochip0", 4, false), FATHOM_GPIO_OK);
+    assert_false(chip.lines[0].level);
+}
+
+TEST(an_output_is_driven)
+{
+    assert_int_equal(open_as(OUTPUT, "gpiochip0", 17), FATHOM_GPIO_OK);
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    assert_null(pin.get);
+    pin.set(pin.ctx, false);
+    assert_false(chip.lines[0].level);
+    chip.interrupts = 2;
+    pin.set(pin.ctx, true);
+    assert_true(chip.lines[0].level);
+    assert_int_equal(chip.lines[0].sets, 2);
+    assert_int_equal(fathom_gpio_error(&gpio), FATHOM_GPIO_OK);
+    assert_string_equal(fathom_gpio_error_text(&gpio), "");
+}
+
+TEST(an_input_is_requested_with_its_resistor_and_no_edges)
+{
+    static const uint64_t flags[] = {
+        0, GPIO_V2_LINE_FLAG_BIAS_PULL_UP, GPIO_V2_LINE_FLAG_BIAS_PULL_DOWN,
+        GPIO_V2_LINE_FLAG_BIAS_DISABLED}; /* in the order of fathom_gpio_bias_t */
+    for (int bias = 0; bias != 4; bias++) {
+        assert_int_equal(fathom_gpio_open_input(&gpio, "gpiochip0", 5, (fathom_gpio_bias_t)bias),
+                         FATHOM_GPIO_OK);
+        assert_int_equal(chip.lines[0].request.config.flags, GPIO_V2_LINE_FLAG_INPUT | flags[bias]);
+        assert_int_equal(chip.lines[0].request.config.num_attrs, 0);
+        fathom_gpio_close(&gpio);
+        assert_int_equal(fathom_gpio_open_edges(&gpio, "gpiochip0", 5, (fathom_gpio_bias_t)bias),
+                         FATHOM_GPIO_OK);
+        assert_int_equal(chip.lines[0].request.config.flags,
+                         GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING |
+                             GPIO_V2_LINE_FLAG_EDGE_FALLING | flags[bias]);
+        assert_int_equal(chip.lines[0].request.event_buffer_size, FATHOM_GPIO_QUEUE);
+        fathom_gpio_close(&gpio);
+    }
+}
+
+TEST(an_input_tells_its_level)
+{
+    assert_int_equal(open_as(INPUT, "gpiochip0", 5), FATHOM_GPIO_OK);
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    assert_null(pin.set);
+    assert_false(pin.get(pin.ctx));
+    chip.lines[0].level = true;
+    chip.interrupts = 1;
+    assert_true(pin.get(pin.ctx));
+    chip.lines[0].level = false;
+    assert_false(pin.get(pin.ctx));
+}
+
+TEST(a_contact_does_not_open_because_the_chip_has_gone)
+{
+    assert_int_equal(open_as(INPUT, "gpiochip0", 5), FATHOM_GPIO_OK);
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    chip.lines[0].level = true;
+    assert_true(pin.get(pin.ctx));
+    chip.level_error = ENODEV;
+    assert_true(pin.get(pin.ctx));
+    assert_int_equal(fathom_gpio_error(&gpio), FATHOM_GPIO_ERR_LOST);
+    gpio_says(&gpio, "/dev/gpiochip0, line 5: the chip has gone");
+    /* For good, until it is opened again: then it is what it is. */
+    chip.level_error = 0;
+    chip.lines[0].level = false;
+    assert_true(pin.get(pin.ctx));
+    fathom_gpio_close(&gpio);
+    assert_int_equal(open_as(INPUT, "gpiochip0", 5), FATHOM_GPIO_OK);
+    assert_false(pin.get(pin.ctx));
+    assert_int_equal(fathom_gpio_error(&gpio), FATHOM_GPIO_OK);
+}
+
+TEST(an_output_of_a_chip_that_has_gone_is_told)
+{
+    assert_int_equal(open_as(OUTPUT, "gpiochip0", 17), FATHOM_GPIO_OK);
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    chip.set_error = ENODEV;
+    pin.set(pin.ctx, false);
+    assert_int_equal(fathom_gpio_error(&gpio), FATHOM_GPIO_ERR_LOST);
+    chip.set_error = 0;
+    pin.set(pin.ctx, false);
+    assert_int_equal(chip.lines[0].sets, 0);
+}
+
+TEST(a_call_that_was_interrupted_is_repeated)
+{
+    chip.interrupts = 3;
+    assert_int_equal(open_as(EDGES, "gpiochip0", 27), FATHOM_GPIO_OK);
+    assert_int_equal(chip.interrupts, 0);
+    assert_int_equal(chip.opened, 1);
+}
+
+TEST(what_is_no_chip_is_told_as_such)
+{
+    char file[] = "/tmp/fathom-test-XXXXXX";
+    const int fd = mkstemp(file);
+    assert_true(fd >= 0);
+    assert_int_equal(close(fd), 0);
+    expect_failure(INPUT, file, 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip; ls /dev/gpiochip* lists");
+    assert_int_equal(unlink(file), 0);
+    expect_failure(INPUT, "/dev/null", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/dev/null, line 1: not a GPIO chip");
+    expect_failure(INPUT, "/tmp", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip");
+    expect_failure(INPUT, "null", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/dev/null, line 1: ");
+    chip.chip_error = EINVAL; /* a character device that takes no such call */
+    expect_failure(INPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip");
+}
+
+TEST(a_missing_chip_is_told_as_such)
+{
+    expect_failure(OUTPUT, "gpiochip77", 1, FATHOM_GPIO_ERR_NOT_FOUND,
+                   "/dev/gpiochip77, line 1: no such chip; ls ");
+    expect_failure(OUTPUT, "/dev/null/gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no such chip");
+    chip.open_error = ENODEV; /* it was pulled out a moment ago */
+    expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+    chip.open_error = EMFILE;
+    expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_SYSTEM, "opening it: Too many open files");
+    chip.open_error = 0;
+    chip.chip_error = ENODEV;
+    expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+}
+
+TEST(wrong_arguments_are_told_as_such)
+{
+    static const char path[] = "/dev/a-path-that-is-longer-than-what-the-port-keeps-of-it/gpiochip0";
+    assert_true(sizeof path > 64);
+    assert_int_equal(fathom_gpio_open_input(NULL, "gpiochip0", 1, FATHOM_GPIO_BIAS_AS_IS),
+                     FATHOM_GPIO_ERR_ARGUMENT);
+    expect_failure(INPUT, NULL, 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
+    expect_failure(INPUT, "", 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
+    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 63 characters at most");
+    fathom_gpio_close(NULL);
+}
+
+TEST(a_line_that_the_chip_has_not_is_told_with_those_that_it_has)
+{
+    expect_failure(INPUT, "gpiochip0", 54, FATHOM_GPIO_ERR_NO_LINE,
+                   "line 54: the chip has the lines 0 to 53");
+    expect_failure(OUTPUT, "gpiochip0", 4000000000u, FATHOM_GPIO_ERR_NO_LINE,
+                   "line 4000000000: the chip has");
+    assert_int_equal(chip.refused + chip.opened, 0);
+    assert_int_equal(open_as(INPUT, "gpiochip0", 53), FATHOM_GPIO_OK);
+}
+
+TEST(a_line_in_use_is_told_with_its_user)
+{
+    chip.request_error = EBUSY;
+    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE,
+                   "in use by another program or by a driver");
+    (void)snprintf(chip.consumer, sizeof chip.consumer, "spi0 CS0");
+    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE,
+                   "in use by \"spi0 CS0\"; end that program");
+    memset(chip.consumer, 'x', sizeof chip.consumer); /* not ended by a zero */
+    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE, "xxx\"; end that program");
+}
+
+TEST(a_kernel_with_version_1_only_is_told_as_such)
+{
+    chip.info_error = EINVAL;
+    expect_failure(INPUT, "gpiochip0", 5, FATHOM_GPIO_ERR_UNSUPPORTED,
+                   "version 1 of the GPIO interface only; Linux 5.10");
+    chip.info_error = ENOTTY;
+    expect_failure(EDGES, "gpiochip0", 5, FATHOM_GPIO_ERR_UNSUPPORTED, "version 1 ");
+    assert_int_equal(chip.refused, 0);
+    chip.info_error = ENODEV;
+    expect_failure(INPUT, "gpiochip0", 5, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+}
+
+TEST(what_the_chip_cannot_do_is_told)
+{
+    chip.request_error = ENODEV; /* gpiolib, edge_detector_setup(): the line has no interrupt */
+    expect_failure(EDGES, "gpiochip0", 27, FATHOM_GPIO_ERR_UNSUPPORTED,
+                   "no interrupt for it, so edges are not told");
+    expect_failure(INPUT, "gpiochip0", 27, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+    chip.request_error = ENXIO;
+    expect_failure(EDGES, "gpiochip0", 27, FATHOM_GPIO_ERR_UNSUPPORTED, "no interrupt for it");
+    chip.request_error = EIO; /* gpiolib: the chip has no such direction */
+    expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED, "it cannot be an output");
+    expect_failure(INPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED, "it cannot be an input");
+    static const int refusals[] = {EINVAL, EOPNOTSUPP, 524 /* ENOTSUPP, the kernel's own */};
+    for (unsigned i = 0; i != 3; i++) {
+        chip.request_error = refusals[i];
+        expect_failure(INPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED,
+                       "refuses an input like this; take");
+        expect_failure(EDGES, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED,
+                       "refuses an input like this, with edges");
+    }
+    chip.request_error = EPERM;
+    expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_PERMISSION, "this line is not for programs");
+    chip.request_error = ENOMEM;
+    expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_SYSTEM, "taking it: Cannot allocate memory");
+}
+
+static int open_is_denied(void *path)
+{
+    if (fathom_gpio_open_input(&gpio, path, 4, FATHOM_GPIO_BIAS_AS_IS) != FATHOM_GPIO_ERR_PERMISSION)
+        return 1;
+    const char *const text = fathom_gpio_error_text(&gpio);
+    return strstr(text, "line 4: permission denied: it belongs to the group ") != NULL &&
+                   strstr(text, "GROUP=\"gpio\"") != NULL
+               ? 0
+               : 2;
+}
+
+/* As Debian has it: root's alone. */
+TEST(a_denied_permission_names_the_group_and_the_rule)
+{
+    char file[] = "/tmp/fathom-test-XXXXXX";
+    const int fd = mkstemp(file);
+    assert_true(fd >= 0);
+    assert_int_equal(fchmod(fd, 0), 0);
+    assert_int_equal(close(fd), 0);
+    assert_int_equal(posix_run_unprivileged(open_is_denied, file), 0);
+    assert_int_equal(unlink(file), 0);
+}
