@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -120,7 +121,7 @@ static int output_fd(const fathom_loop_source_t *source)
     return STDOUT_FILENO;
 }
 
-/* What a lost reader brings is told unasked. A file has none, and is refused by epoll, which is right. */
+/* What a lost reader brings is told unasked. */
 static short output_events(const fathom_loop_source_t *source)
 {
     (void)source;
@@ -135,6 +136,16 @@ static bool poll_output(fathom_loop_source_t *source)
     return true;
 }
 
+/* A file has no reader that could go; epoll refuses it. */
+static bool has_reader(void)
+{
+    struct epoll_event event = {0};
+    const int fd = epoll_create1(EPOLL_CLOEXEC);
+    const bool has = fd >= 0 && epoll_ctl(fd, EPOLL_CTL_ADD, STDOUT_FILENO, &event) == 0;
+    if (fd >= 0) (void)close(fd);
+    return has;
+}
+
 void events_attend(fathom_loop_t *loop)
 {
     static const fathom_loop_kind_t wakes = {.fd = wake_fd, .poll = poll_wake};
@@ -143,5 +154,6 @@ void events_attend(fathom_loop_t *loop)
     memset(sources, 0, sizeof sources);
     sources[0].kind = &wakes;
     sources[1].kind = &outputs;
-    for (size_t i = 0; i != 2; i++) fathom_loop_add(loop, &sources[i]);
+    fathom_loop_add(loop, &sources[0]);
+    if (has_reader()) fathom_loop_add(loop, &sources[1]);
 }

@@ -28,8 +28,16 @@ static void finish(poll_port_t *port)
     port->loop->ports_left--;
 }
 
+/* Since what the line and the port's driver have counted is lost with it. */
+static void take_counters(poll_port_t *port)
+{
+    for (station_t *station = port->stations; station != NULL && port->was_open; station = station->next)
+        counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+}
+
 static void leave(poll_port_t *port)
 {
+    take_counters(port);
     finish(port);
     port->is_left = true;
     port->loop->has_left = true;
@@ -80,6 +88,7 @@ static bool begin_stations(poll_port_t *port)
 static bool connect_port(poll_port_t *port)
 {
     port->channel.echo = port->options->echo;
+    port->channel.rs485 = port->options->rs485;
     port->channel.source = &port->source;
     return usb_adapter_try(&port->adapter, &port->channel, port->loop->host, &port->options->line);
 }
@@ -162,9 +171,7 @@ static void lose(poll_port_t *port)
         poll_take_loss(port, station, is_told);
         is_told = true;
     }
-    /* Of those that have been read too, since what the line has counted is lost with it. */
-    for (station_t *station = port->stations; station != NULL; station = station->next)
-        counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+    take_counters(port);
     if (!port->waits) {
         leave(port);
     } else if (sysfs->vendor[0] != '\0' && sysfs->needs_socket) {
