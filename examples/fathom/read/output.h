@@ -14,12 +14,14 @@ enum {
     COLUMNS_LEVEL = 16
 };
 
-/* One line of output: a result and what the library does not know of it. */
+/* One line of output: a result, or an attempt that has failed, and what the library does not know of it. */
 typedef struct {
     const model_t *model;
     const model_mode_t *mode;
     const reader_t *reader;
-    const char *name; /* in text */
+    const char *name;
+    const char *label;   /* the name in text, shorter where there is one sensor alone */
+    const char *failure; /* a word of `status`; NULL: it has not failed */
     const result_t *result;
     const fathom_sample_t *sample; /* the result's */
     uint64_t time_us;              /* since the program's start; does not wrap */
@@ -32,6 +34,7 @@ typedef struct {
 typedef struct {
     const char *name;
     bool is_json;
+    bool has_failures; /* a row for each attempt, also for one that has failed */
     void (*begin)(FILE *to, uint8_t columns);
     void (*write)(FILE *to, const reading_t *reading);
 } format_t;

@@ -46,30 +46,32 @@ static uint8_t all_columns(const reading_run_t *run)
     return columns;
 }
 
-/* Once, before the first result; the alarms have some while the port is still waited for. */
+/* Once, before the first row; the alarms have some while the port is still waited for. */
 static void begin_output(reading_run_t *run)
 {
     const format_t *const format = run->options.format;
     if (run->has_begun) return;
     run->has_begun = true;
     errno = 0;
-    if (format->begin != NULL) format->begin(stdout, all_columns(run));
+    if (format->begin != NULL && !run->options.no_header) format->begin(stdout, all_columns(run));
     flush(run);
 }
 
-static bool write_result(void *ctx, const station_t *station, const result_t *result)
+/* A row, handed over whole. */
+static void write_row(reading_run_t *run, const station_t *station, const result_t *result,
+                      const char *failure)
 {
-    reading_run_t *const run = ctx;
     const host_t *const host = run->loop.host;
-    const fathom_sample_t *const sample = &result->sample;
-    const uint64_t time_us = poll_loop_sample_us(&run->loop, sample);
+    const uint64_t time_us = poll_loop_sample_us(&run->loop, &result->sample);
     const reading_t reading = {
         .model = station->model,
         .mode = station->mode,
         .reader = &station->reader,
-        .name = is_shared(run) ? station->name : station->model->name,
+        .name = station->name,
+        .label = is_shared(run) ? station->name : station->model->name,
+        .failure = failure,
         .result = result,
-        .sample = sample,
+        .sample = &result->sample,
         .time_us = time_us,
         .utc_us = host->utc_us(host->ctx) - (poll_loop_time_us(&run->loop) - time_us),
         .own = own_columns(run, station),
@@ -79,8 +81,26 @@ static bool write_result(void *ctx, const station_t *station, const result_t *re
     errno = 0;
     run->options.format->write(stdout, &reading);
     flush(run);
+}
+
+static bool write_result(void *ctx, const station_t *station, const result_t *result)
+{
+    reading_run_t *const run = ctx;
+    write_row(run, station, result, NULL);
     if (result->is_on) run->is_alarmed = true;
     return run->output_error == 0;
+}
+
+/* probe: 0 where it is not one alone. Changes of an alarm are written by themselves. */
+static void write_failure_row(reading_run_t *run, const station_t *station, size_t kind, uint8_t probe)
+{
+    char word[COUNTERS_MEMBER];
+    const result_t result = {.sample = {.time_us = (uint32_t)run->loop.host->now_us(run->loop.host->ctx),
+                                        .kind = FATHOM_UNKNOWN,
+                                        .address = station->address,
+                                        .probe = station->model->probes == 1 ? 1 : probe}};
+    if (run->options.results.has_alarm || !run->options.format->has_failures) return;
+    write_row(run, station, &result, counters_member(counters_failure_name(kind), word));
 }
 
 static bool take_sample(void *ctx, const station_t *station, const fathom_sample_t *sample)
@@ -88,38 +108,45 @@ static bool take_sample(void *ctx, const station_t *station, const fathom_sample
     return results_sample(&((reading_run_t *)ctx)->results, station, sample);
 }
 
-static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
+static void tell_failure(const reading_run_t *run, const failure_t *failure, const station_t *station)
 {
-    reading_run_t *const run = ctx;
-    if (failure->is_told) {
-        results_failure(&run->results, station, failure->status);
-        return;
-    }
-    const bool has_name = is_shared(run) && failure->status != FATHOM_ERR_PORT;
+    if (failure->is_told) return;
+    const bool is_port = failure->status == FATHOM_ERR_PORT;
+    const bool has_name = is_shared(run) && !is_port;
+    if (run->options.quiet && (!is_port || failure->waits)) return;
     (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", has_name ? station->name : "",
                   has_name ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
     (void)fputs("\n", stderr);
-    results_failure(&run->results, station, failure->status);
+}
+
+static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
+{
+    reading_run_t *const run = ctx;
+    const fathom_status_t status = failure->status;
+    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
+    tell_failure(run, failure, station);
+    write_failure_row(run, station, counters_failure_kind(status, &station->reader), probe);
+    results_failure(&run->results, station, status);
 }
 
 static void take_absence(void *ctx, const station_t *station)
 {
-    (void)ctx;
-    (void)station;
+    write_failure_row(ctx, station, -FATHOM_ERR_PORT, 0);
 }
 
 static void write_remark(void *ctx, const station_t *station, const char *text)
 {
-    (void)ctx;
-    (void)fprintf(stderr, "fathom: %s: %s\n", station->name, text);
+    const reading_run_t *const run = ctx;
+    if (!run->options.quiet) (void)fprintf(stderr, "fathom: %s: %s\n", station->name, text);
 }
 
+/* What ends the command is said by a quiet one too. */
 static void write_port(void *ctx, const char *text, bool is_there)
 {
-    (void)ctx;
-    (void)is_there;
-    (void)fprintf(stderr, "fathom: %s\n", text);
+    const reading_run_t *const run = ctx;
+    const bool goes_on = is_there || run->loop.options.reconnect;
+    if (!goes_on || !run->options.quiet) (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
 static void get_account(reading_run_t *run, account_t *account)
@@ -131,10 +158,12 @@ static void get_account(reading_run_t *run, account_t *account)
 
 static void tell_stats(const reading_run_t *run, const account_t *account)
 {
-    if (run->options.format->is_json)
+    if (run->options.format->is_json) {
         counters_print_json(account, stderr);
-    else
-        counters_print_all(account, stderr);
+        return;
+    }
+    counters_print_all(account, stderr);
+    results_print_dropped(&run->results, stderr);
 }
 
 /* Tells the counters when it is time for that. */
@@ -183,9 +212,7 @@ static int finish(reading_run_t *run)
     if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written: %s\n", strerror(run->output_error));
     get_account(run, &account);
-    if (!run->options.stats || run->options.format->is_json) counters_print(&account, stderr);
     if (run->options.stats) tell_stats(run, &account);
-    results_print_dropped(&run->results, stderr);
     return !poll_loop_is_good(&run->loop) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 

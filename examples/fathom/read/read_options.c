@@ -9,7 +9,19 @@
 
 static const char command[] = "read";
 
-enum { MODE = RESULT_OPTIONS, ADDRESS, COUNT, FORMAT, STATS, TEMPERATURE, UNTIL_ALARM, HELP, OPTIONS };
+enum {
+    MODE = RESULT_OPTIONS,
+    ADDRESS,
+    COUNT,
+    FORMAT,
+    STATS,
+    TEMPERATURE,
+    UNTIL_ALARM,
+    QUIET,
+    NO_HEADER,
+    HELP,
+    OPTIONS
+};
 
 static const struct option table[OPTIONS + 1] = {
     RESULT_OPTION_ROWS,
@@ -20,6 +32,8 @@ static const struct option table[OPTIONS + 1] = {
     [STATS] = {"stats", optional_argument, NULL, 256},
     [TEMPERATURE] = {"temperature", optional_argument, NULL, 256},
     [UNTIL_ALARM] = {"until-alarm", no_argument, NULL, 256},
+    [QUIET] = {"quiet", no_argument, NULL, 256},
+    [NO_HEADER] = {"no-header", no_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -55,6 +69,14 @@ static bool take_until_alarm(read_options_t *options, const char *text)
     return false;
 }
 
+static bool take_no_header(read_options_t *options, const char *text)
+{
+    options->no_header = text != NULL;
+    if (!options->no_header || options->format->begin != NULL) return true;
+    (void)usage_error(command, "--no-header is for --format csv");
+    return false;
+}
+
 bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
@@ -69,10 +91,12 @@ bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, 
         !take_until_alarm(options, values[UNTIL_ALARM]))
         return false;
     options->format = format_find(command, values[FORMAT]);
-    if (options->format == NULL || !take_stats(options, values[STATS]) ||
+    if (options->format == NULL || !take_no_header(options, values[NO_HEADER]) ||
+        !take_stats(options, values[STATS]) ||
         !option_number(command, "count", values[COUNT], 1, MAX_COUNT, &sensors->count))
         return false;
-    sensor_options_tell_useless(sensors, values[ADDRESS], values);
+    options->quiet = values[QUIET] != NULL;
+    if (!options->quiet) sensor_options_tell_useless(sensors, values[ADDRESS], values);
     return true;
 }
 
@@ -98,7 +122,11 @@ void read_help(FILE *to)
         "  --mode MODE       how the only sensor is read\n"
         "  --address N       of the only sensor; 1 from the factory\n"
         "  --count N         ends after N attempts of each sensor\n"
-        "  --format FORMAT   text (default), json (an object a line) or csv (with a header line)\n"
+        "  --format FORMAT   text (default), json (an object a line) or csv (with a header line); in the "
+        "last two an attempt\n"
+        "                    that fails is a row too, with the reason in status\n"
+        "  --no-header       of csv, to add to a file that has one\n"
+        "  -q, --quiet       nothing on the standard error but what ends it, and what --stats asks for\n"
         "  --stats[=SECONDS] all counters at the end, and every so many seconds; with --format json an "
         "object a\n"
         "                    line. Every request, and every frame that came, is in them: read, failed or "

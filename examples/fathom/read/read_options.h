@@ -12,6 +12,8 @@ typedef struct {
     uint32_t stats_us; /* all counters so often; 0: at the end only */
     bool stats;        /* all counters at the end */
     bool until_alarm;  /* ends when an alarm is on */
+    bool quiet;        /* says only what ends it, and what `stats` has asked for */
+    bool no_header;    /* of csv */
     bool wants_help;
 } read_options_t;
 

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "shared/channel.h"
 
+#include <stdio.h>
+#include <string.h>
+
 #include "fathom/codec/hps167s_registers.h"
+#include "shared/options.h"
 #include "shared/tcp_address.h"
 
 /* What the line has to know of a serial port, ... */
@@ -30,18 +34,32 @@ static uint32_t now_us(void *ctx)
     return (uint32_t)channel->host->now_us(channel->host->ctx);
 }
 
+/* The user who has set it a while ago is to know why it is this port. */
+static void tell_environment(fathom_posix_uart_t *port, const char *path)
+{
+    const char *const other = options_port_of_environment();
+    const size_t length = strlen(port->text);
+    if (other != NULL && strcmp(other, path) == 0)
+        (void)snprintf(port->text + length, sizeof port->text - length,
+                       " (FATHOM_PORT in the environment names this port)");
+}
+
+static bool open_any(channel_t *channel, const char *path, const fathom_line_settings_t *settings)
+{
+    const host_t *const host = channel->host;
+    channel->tcp = NULL;
+    if (!tcp_names(path)) return host->open(host->ctx, path, settings, &channel->port, &channel->uart);
+    channel->tcp = tcp_open(path, &channel->port, &channel->uart);
+    return channel->tcp != NULL;
+}
+
 bool channel_open(channel_t *channel, const host_t *host, const char *path,
                   const fathom_line_settings_t *settings)
 {
     channel->host = host;
-    if (tcp_names(path)) {
-        channel->tcp = tcp_open(path, &channel->port, &channel->uart);
-        if (channel->tcp == NULL) return false;
-        suit_tcp(channel);
-    } else {
-        channel->tcp = NULL;
-        if (!host->open(host->ctx, path, settings, &channel->port, &channel->uart)) return false;
-        suit_serial(channel, settings);
+    if (!open_any(channel, path, settings)) {
+        tell_environment(&channel->port, path);
+        return false;
     }
     if (channel->rs485 &&
         fathom_posix_set_rs485(&channel->port, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK) {
@@ -49,6 +67,10 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
         return false;
     }
     if (channel->source != NULL) channel->uart = fathom_loop_uart(channel->source, &channel->uart);
+    if (channel->tcp != NULL)
+        suit_tcp(channel);
+    else
+        suit_serial(channel, settings);
     channel->clock = (fathom_clock_t){now_us, channel};
     listener_begin(&channel->listener, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;

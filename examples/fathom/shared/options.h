@@ -14,8 +14,9 @@ enum {
 };
 
 /*
- * Reads a command line. What was given to row i of the table (long options, ended by a row of zeros) stands in
- * values[i] ("" for an option without a value), else NULL; of a repeated option the last one counts. Returns
+ * Reads a command line. What was given to row i of the table (long options, ended by a row of zeros; --help, --port
+ * and --quiet have -h, -p and -q) stands in values[i] ("" for an option without a value), else NULL; of a repeated
+ * option the last one counts. Where --port was not given, it is the port of the environment. Returns
  * the index of the first argument that is no option, all of which stand last in argv then; or -1 after
  * saying what is wrong.
  */
@@ -26,6 +27,9 @@ int options_parse(const char *command, int argc, char **argv, const struct optio
 typedef void (*option_each_t)(void *ctx, int row, const char *value);
 int options_parse_each(const char *command, int argc, char **argv, const struct option *table,
                        const char **values, option_each_t each, void *ctx);
+
+/* FATHOM_PORT; NULL: there is none. values[] has the same pointer then. */
+const char *options_port_of_environment(void);
 
 /* All of `text` is a decimal number from min to max. No sign, no space, nothing after it. */
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);

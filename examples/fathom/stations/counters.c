@@ -4,18 +4,33 @@
 #include <string.h>
 
 /* Those that can end an attempt; the others have no name. */
-static const char *const failure_names[FAILURE_KINDS] = {
-    [FAILURE_VALUE] = "impossible values",
-    [-FATHOM_ERR_PORT] = "port",
-    [-FATHOM_ERR_NO_RESPONSE] = "no response",
-    [-FATHOM_ERR_CHECKSUM] = "damaged",
-    [-FATHOM_ERR_EXCEPTION] = "exception",
-    [-FATHOM_ERR_MALFORMED] = "other response",
-    [-FATHOM_ERR_STALE] = "stale",
-    [FAILURE_KINDS - 1] = "other",
+static const struct {
+    const char *name;
+    const char *what;
+} failure_kinds[FAILURE_KINDS] = {
+    [FAILURE_VALUE] = {"impossible values",
+                       "a value that can be no distance, or that --window or --means refuses"},
+    [-FATHOM_ERR_PORT] = {"port", "the port is lost, or it is waited for"},
+    [-FATHOM_ERR_NO_RESPONSE] = {"no response", "nothing that was asked for came within --timeout"},
+    [-FATHOM_ERR_CHECKSUM] = {"damaged", "what came has a wrong checksum"},
+    [-FATHOM_ERR_EXCEPTION] = {"exception", "the sensor has refused the request by a Modbus exception"},
+    [-FATHOM_ERR_MALFORMED] = {"other response", "a response that does not fit the request"},
+    [-FATHOM_ERR_STALE] = {"stale", "no good frame of a sensor that sends by itself within --timeout"},
+    [FAILURE_KINDS - 1] = {"other", "anything else"},
 };
 
-const char *counters_failure_name(size_t kind) { return failure_names[kind]; }
+const char *counters_failure_name(size_t kind) { return failure_kinds[kind].name; }
+
+const char *counters_failure_what(size_t kind) { return failure_kinds[kind].what; }
+
+const char *counters_member(const char *name, char text[COUNTERS_MEMBER])
+{
+    size_t i = 0;
+    for (; name[i] != '\0' && i != COUNTERS_MEMBER - 1; i++) text[i] = name[i];
+    text[i] = '\0';
+    for (char *space = text; (space = strchr(space, ' ')) != NULL;) *space = '_';
+    return text;
+}
 
 static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t count)
 {
@@ -77,12 +92,16 @@ void counters_take_late(counters_t *counters, channel_t *channel)
 
 void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0, sizeof counters->attempt); }
 
+size_t counters_failure_kind(fathom_status_t status, const reader_t *reader)
+{
+    const size_t kind = (size_t)-status;
+    if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(reader)) return FAILURE_VALUE;
+    return kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL ? FAILURE_KINDS - 1 : kind;
+}
+
 void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
 {
-    size_t kind = (size_t)-status;
-    if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(reader)) kind = FAILURE_VALUE;
-    if (kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL) kind = FAILURE_KINDS - 1;
-    counters->failures[kind]++;
+    counters->failures[counters_failure_kind(status, reader)]++;
 }
 
 void counters_time(counters_t *counters, uint32_t took_us)

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* Also the members of the JSON object, with underscores for spaces. */
+/* Also the members of the JSON object (counters_member). */
 static const char *const line_names[FATHOM_LINE_COUNTERS] = {
     [FATHOM_LINE_RESPONSES] = "responses",
     [FATHOM_LINE_DROPPED_BYTES] = "bytes of no frame",
@@ -179,12 +179,10 @@ void counters_print_all(const account_t *account, FILE *to)
 
 /* ---- for programs ---- */
 
-/* A member's name: spaces become underscores. */
 static void print_name(FILE *to, const char *name)
 {
-    (void)fputc('"', to);
-    for (; *name != '\0'; name++) (void)fputc(*name == ' ' ? '_' : *name, to);
-    (void)fputs("\":", to);
+    char member[COUNTERS_MEMBER];
+    (void)fprintf(to, "\"%s\":", counters_member(name, member));
 }
 
 static void print_json_attempts(const counters_t *counters, FILE *to)
