@@ -25,6 +25,7 @@ bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_
     reader->protocol = protocol;
     reader->is_paced = true;
     reader->unit = &base->unit;
+    reader->period_us = &base->unit.pace_us;
     reader->values = base->measurement.values;
     reader->value_count = (uint8_t)base->request.last;
     reader->response = &base->measurement;

@@ -84,6 +84,7 @@ struct reader {
     uint16_t *frames;                         /* FATHOM_STREAM_COUNTERS of them; NULL: it is asked */
     const char *protocol;                     /* with which it is asked */
     bool is_paced;                            /* it keeps the user's interval by itself */
+    const uint32_t *period_us;                /* the one that it keeps then, or longer: its least */
     fathom_line_t *line;
     const char *refusal; /* what a reader_init_t that returned false has to say; NULL: nothing */
     const char *remark;  /* what the user is to be told now; who tells it makes it NULL */

@@ -41,7 +41,13 @@ static void put_string(char text[VALUE_TEXT], const char *string)
     (void)snprintf(text, VALUE_TEXT, "%s", string);
 }
 
-static void put_name(const reading_t *reading, char text[VALUE_TEXT]) { put_string(text, reading->name); }
+/* A part of a port's path may stand in it. */
+static void put_name(const reading_t *reading, char text[VALUE_TEXT])
+{
+    put_string(text, reading->name);
+    for (char *at = text; *at != '\0'; at++)
+        if (*at == '"' || *at == '\\' || *at == ',' || (unsigned char)*at < ' ') *at = '_';
+}
 
 static void put_sensor(const reading_t *reading, char text[VALUE_TEXT])
 {

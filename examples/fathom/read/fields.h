@@ -6,7 +6,7 @@
 
 /* JSON and CSV: the same fields in the same order. */
 
-enum { VALUE_TEXT = 48 };
+enum { VALUE_TEXT = 96 };
 
 void fields_json(FILE *to, const reading_t *reading);
 void fields_begin_csv(FILE *to, uint8_t columns);

@@ -46,14 +46,19 @@ static uint8_t all_columns(const reading_run_t *run)
     return columns;
 }
 
-/* Once, before the first row; the alarms have some while the port is still waited for. */
-static void begin_output(reading_run_t *run)
+/* Before each row: what is to be written first. The alarms have some while the port is still waited for. */
+static void begin_output(reading_run_t *run, uint64_t utc_us)
 {
     const format_t *const format = run->options.format;
-    if (run->has_begun) return;
+    bool is_empty = !run->has_begun;
     run->has_begun = true;
     errno = 0;
-    if (format->begin != NULL && !run->options.no_header) format->begin(stdout, all_columns(run));
+    if (!output_file_turn(&run->options.file, utc_us, &is_empty)) {
+        run->output_error = errno;
+        return;
+    }
+    if (!is_empty || format->begin == NULL || run->options.no_header) return;
+    format->begin(stdout, all_columns(run));
     flush(run);
 }
 
@@ -77,7 +82,8 @@ static void write_row(reading_run_t *run, const station_t *station, const result
         .own = own_columns(run, station),
         .columns = all_columns(run),
     };
-    begin_output(run);
+    begin_output(run, reading.utc_us);
+    if (run->output_error != 0) return;
     errno = 0;
     run->options.format->write(stdout, &reading);
     flush(run);
@@ -204,13 +210,15 @@ static bool is_over(const void *ctx)
 static int finish(reading_run_t *run)
 {
     const host_t *const host = run->loop.host;
+    const char *const path = run->options.file.path;
     account_t account;
     /* A signal may have cut a write short: then ending was asked for, and is no failure. */
     if (run->output_error == EINTR && host->has_ended(host->ctx)) run->output_error = 0;
     /* The reader of a pipe has seen enough, as head does: no reason for words. */
     if (run->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (run->output_error != 0)
-        (void)fprintf(stderr, "fathom: the readings cannot be written: %s\n", strerror(run->output_error));
+        (void)fprintf(stderr, "fathom: the readings cannot be written%s%s: %s\n", path != NULL ? " to " : "",
+                      path != NULL ? path : "", strerror(run->output_error));
     get_account(run, &account);
     if (run->options.stats) tell_stats(run, &account);
     return !poll_loop_is_good(&run->loop) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
@@ -236,9 +244,11 @@ static int run_read(const host_t *host, int argc, char **argv)
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
     results_begin(&run.results, &run.options.results, loop, write_result, &run);
+    if (run.options.file.path != NULL) begin_output(&run, host->utc_us(host->ctx));
+    if (run.output_error != 0) return finish(&run);
     int status = STATUS_FAILED;
     if (poll_loop_open(loop)) {
-        begin_output(&run);
+        begin_output(&run, host->utc_us(host->ctx));
         poll_loop_run(loop);
         status = finish(&run);
     }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "read/fields.h"
 #include "shared/command.h"
 #include "shared/options.h"
 #include "stations/result_options.h"
@@ -19,6 +20,8 @@ enum {
     UNTIL_ALARM,
     QUIET,
     NO_HEADER,
+    OUTPUT,
+    ROTATE,
     HELP,
     OPTIONS
 };
@@ -34,6 +37,8 @@ static const struct option table[OPTIONS + 1] = {
     [UNTIL_ALARM] = {"until-alarm", no_argument, NULL, 256},
     [QUIET] = {"quiet", no_argument, NULL, 256},
     [NO_HEADER] = {"no-header", no_argument, NULL, 256},
+    [OUTPUT] = {"output", required_argument, NULL, 256},
+    [ROTATE] = {"rotate", required_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
@@ -58,6 +63,21 @@ static bool take_temperature(sensor_options_t *sensors, const char *text)
         return false;
     sensors->reading.temperature_us = seconds * 1000000u;
     return true;
+}
+
+static bool take_file(output_file_t *file, const char *path, const char *rotate)
+{
+    file->path = path;
+    file->is_by_day = rotate != NULL;
+    if (path != NULL && (path[0] == '\0' || strlen(path) > OUTPUT_FILE_NAME / 2))
+        (void)usage_error(command, "--output takes the name of a file");
+    else if (rotate != NULL && strcmp(rotate, "day") != 0)
+        (void)usage_error(command, "--rotate takes day, not '%s'", rotate);
+    else if (rotate != NULL && path == NULL)
+        (void)usage_error(command, "--rotate takes --output too, such as --output log.csv");
+    else
+        return true;
+    return false;
 }
 
 static bool take_until_alarm(read_options_t *options, const char *text)
@@ -91,8 +111,8 @@ bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, 
         !take_until_alarm(options, values[UNTIL_ALARM]))
         return false;
     options->format = format_find(command, values[FORMAT]);
-    if (options->format == NULL || !take_no_header(options, values[NO_HEADER]) ||
-        !take_stats(options, values[STATS]) ||
+    if (options->format == NULL || !take_file(&options->file, values[OUTPUT], values[ROTATE]) ||
+        !take_no_header(options, values[NO_HEADER]) || !take_stats(options, values[STATS]) ||
         !option_number(command, "count", values[COUNT], 1, MAX_COUNT, &sensors->count))
         return false;
     options->quiet = values[QUIET] != NULL;
@@ -126,6 +146,9 @@ void read_help(FILE *to)
         "last two an attempt\n"
         "                    that fails is a row too, with the reason in status\n"
         "  --no-header       of csv, to add to a file that has one\n"
+        "  --output FILE     adds to this file instead of the standard output; csv has a header line where "
+        "it is empty\n"
+        "  --rotate day      one such file for each day in UTC: --output log.csv is log-2026-11-23.csv\n"
         "  -q, --quiet       nothing on the standard error but what ends it, and what --stats asks for\n"
         "  --stats[=SECONDS] all counters at the end, and every so many seconds; with --format json an "
         "object a\n"
@@ -147,6 +170,7 @@ void read_help(FILE *to)
         "  --until-alarm     ends at the first change that is printed after which an alarm is on, with exit "
         "status 3\n",
         to);
+    fields_help(to);
     (void)fputs(
         "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
         "in range\n"

@@ -3,11 +3,13 @@
 #define READ_OPTIONS_H
 
 #include "read/output.h"
+#include "read/output_file.h"
 #include "stations/results.h"
 
 /* What `fathom read` was asked to do, besides reading. */
 typedef struct {
     const format_t *format;
+    output_file_t file;
     results_config_t results;
     uint32_t stats_us; /* all counters so often; 0: at the end only */
     bool stats;        /* all counters at the end */

@@ -57,12 +57,14 @@ static bool begin_station(poll_port_t *port, station_t *station)
     settings.address = station->address;
     settings.retries = options->retries;
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
+    char text[TEXT];
     if (!station_begin(station, &port->channel, &settings)) {
-        char text[TEXT];
         station_refusal(station, text, sizeof text);
         tell(port, text, false);
         return false;
     }
+    if (!port->was_open && station_is_raised(station, options->interval_us, text, sizeof text))
+        loop->user->remark(loop->ctx, station, text);
     /* Goes on after a loss, so that the gap is not taken for a new start. */
     *station->reader.sequence = sequence;
     station->listener = poll_is_shared(port) ? &station->own_listener : &port->channel.listener;

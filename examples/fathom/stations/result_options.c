@@ -64,7 +64,7 @@ void result_options_help(FILE *to)
         "  --gate MM         drops a sample that is farther than that from the median: a spike; the third "
         "one "
         "in a row\n"
-        "                    is none, something has moved. How many were dropped is told at the end\n"
+        "                    is none, something has moved. How many were dropped is told by --stats\n"
         "  --level KEYS      what is in a tank, from the distance to its surface, for all sensors: "
         "level_mm, level_per_mille\n"
         "                    and volume. mounting=MM from the bottom to the sensor's face, height=MM when it "

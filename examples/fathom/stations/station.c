@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "stations/station.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #include "shared/command.h"
@@ -216,4 +217,16 @@ void station_refusal(const station_t *station, char *text, size_t capacity)
     const char *const refusal = station->reader.refusal;
     (void)snprintf(text, capacity, "%s: %s", station->name,
                    refusal != NULL ? refusal : "its driver does not take these settings");
+}
+
+bool station_is_raised(station_t *station, uint32_t interval_us, char *text, size_t capacity)
+{
+    const uint32_t *const period_us = station->reader.period_us;
+    if (period_us == NULL || interval_us == 0 || interval_us >= *period_us || station->is_raise_told)
+        return false;
+    station->is_raise_told = true;
+    (void)snprintf(text, capacity,
+                   "asked every %.4g ms, which is the least it can do (--interval %" PRIu32 ")",
+                   *period_us / 1000.0, interval_us / 1000);
+    return true;
 }

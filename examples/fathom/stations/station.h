@@ -31,6 +31,7 @@ struct station {
     bool skipping;        /* the present response came before it */
     bool answering;       /* the present attempt has begun to hand over a response, ... */
     bool has_failed;      /* ... or a part of it was an error */
+    bool is_raise_told;   /* by station_is_raised */
     bool has_good;        /* there has been a reading that is not unknown */
     station_t *next;      /* on the same port; the poll loop's */
 };
@@ -60,5 +61,8 @@ bool stations_check(const station_t *stations, size_t count, const port_options_
  * station_refusal has the words. */
 bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings);
 void station_refusal(const station_t *station, char *text, size_t capacity);
+
+/* Has its driver raised the interval that the user has given (0: none)? Then *text says so, the first time. */
+bool station_is_raised(station_t *station, uint32_t interval_us, char *text, size_t capacity);
 
 #endif

@@ -56,6 +56,7 @@ static bool read_controlled(reader_t *reader, channel_t *channel, const reader_s
     reader->response = &driver->measurement;
     reader->sequence = &driver->measurement.sequence;
     reader->is_paced = true;
+    reader->period_us = &driver->trigger.period_us;
     return true;
 }
 

@@ -29,6 +29,7 @@ bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_sett
     reader->protocol = reader_modbus;
     reader->is_paced = true;
     reader->unit = &driver->unit;
+    reader->period_us = &driver->unit.pace_us;
     reader->sequence = &driver->sequence;
     reader->values = driver->measurement;
     reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;

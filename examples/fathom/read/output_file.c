@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open, dup2 */
+#include "read/output_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "shared/timestamp.h"
+
+/* The day stands before the last dot of the name, or at its end. */
+static void name_of(const output_file_t *file, uint64_t utc_us, char name[OUTPUT_FILE_NAME])
+{
+    enum { DAY = 10 }; /* "2026-11-23" of what utc_text makes */
+    const char *const slash = strrchr(file->path, '/');
+    const char *const base = slash != NULL ? slash + 1 : file->path;
+    const char *const dot = strrchr(base, '.');
+    const size_t stem = dot != NULL && dot != base ? (size_t)(dot - file->path) : strlen(file->path);
+    char utc[UTC_TEXT];
+    if (file->is_by_day)
+        (void)snprintf(name, OUTPUT_FILE_NAME, "%.*s-%.*s%s", (int)stem, file->path, (int)DAY,
+                       utc_text(utc_us, utc), file->path + stem);
+    else
+        (void)snprintf(name, OUTPUT_FILE_NAME, "%s", file->path);
+}
+
+bool output_file_turn(output_file_t *file, uint64_t utc_us, bool *is_empty)
+{
+    char name[OUTPUT_FILE_NAME];
+    if (file->path == NULL) return true;
+    name_of(file, utc_us, name);
+    *is_empty = false;
+    if (strcmp(name, file->name) == 0) return true;
+    const int fd = open(name, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+    if (fd < 0) return false;
+    *is_empty = lseek(fd, 0, SEEK_END) == 0;
+    const bool is_done = dup2(fd, STDOUT_FILENO) == STDOUT_FILENO;
+    const int error = errno;
+    (void)close(fd);
+    errno = error;
+    if (is_done) memcpy(file->name, name, sizeof name);
+    return is_done;
+}
