@@ -26,6 +26,8 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 HERE = os.path.dirname(os.path.abspath(__file__))
 FATHOM = os.path.abspath(os.environ.get('FATHOM') or os.path.join(ROOT, 'build', 'fathom'))
 PATIENCE = 20  # seconds; far more than anything here takes on a busy machine
+# Statuses of attempts that have failed, which have rows too.
+FAILURES = ['impossible_values', 'port', 'no_response', 'damaged', 'exception', 'other_response', 'stale', 'other']
 LITTLE = 0.3  # seconds of CPU; a program that spins takes ten times as much in these tests
 
 
@@ -60,8 +62,13 @@ class Done:
         return f'exit status {self.code}, {self.elapsed:.3f} s, {self.cpu:.3f} s of CPU\n{self.out}{self.err}'
 
     @property
-    def json(self):
+    def all_json(self):
         return [json.loads(line) for line in self.out.splitlines()]
+
+    @property
+    def json(self):
+        """Without the attempts that have failed."""
+        return [one for one in self.all_json if 'distance_mm' not in one or one.get('status') not in FAILURES]
 
     @property
     def told(self):
@@ -69,9 +76,14 @@ class Done:
         return [json.loads(line) for line in self.err.splitlines() if line.startswith('{')]
 
     @property
-    def rows(self):
+    def all_rows(self):
         """Of csv, without the header."""
         return list(csv.DictReader(io.StringIO(self.out)))
+
+    @property
+    def rows(self):
+        """Without the attempts that have failed."""
+        return [row for row in self.all_rows if row.get('status') not in FAILURES]
 
     @property
     def mm(self):
@@ -259,7 +271,7 @@ class Case(unittest.TestCase):
         device = self.device()
         program = self.fathom(*line, ['--port', device.port], **options)
         if '--format csv' in ' '.join(program.command):
-            program.expect('^sensor,')
+            program.expect('^name,')
         return device, program
 
     def play(self, line, request, *scripts):

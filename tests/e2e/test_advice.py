@@ -32,7 +32,7 @@ class Asked(e2e.Case):
 
     def test_on_a_good_line_no_advice_appears(self):
         done = self.ask(GOOD, GOOD, GOOD, code=0)
-        self.assertEqual(done.err, 'fathom: attempts 3, failed 0, readings 3\nfathom: line: responses 3\n')
+        self.assertEqual(done.err, '')
         for cause in CAUSES:
             self.assertNotIn(cause, done.err)
 
@@ -74,7 +74,7 @@ class Asked(e2e.Case):
             both = e2e.ASK_A16 + GOOD
             done = self.ask(both, both, sensor=f'{A16} --echo {echo}', code=0)
             self.assertEqual(done.out.count(' 754 mm'), 2)
-            self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 2\nfathom: line: responses 2\n')
+            self.assertEqual(done.err, '')
 
     def test_a_late_response_names_a_time_out_that_is_long_enough(self):
         device, reader = self.beside(f'read {A16} --count 2 --timeout 500')

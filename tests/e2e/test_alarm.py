@@ -20,7 +20,7 @@ class Alarm(e2e.Case):
 
     def test_until_alarm_ends_with_3_as_soon_as_something_is_near(self):
         device = self.device()
-        reader = self.begin(device.port)
+        reader = self.begin(device.port, '--until-alarm --stats')
         for mm in (700, 550, 499):
             device.asked(e2e.ASK_A16, e2e.registers(1, mm))
         done = self.ends(reader, 3, 'fathom: attempts 3, failed 0, readings 3')

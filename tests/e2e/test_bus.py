@@ -36,10 +36,7 @@ class Read(e2e.Case):
                                ('a05', 'modbus', 2, 3, 'no_target', None): 4,
                                ('a05', 'modbus', 2, 4, 'target', 3562): 4,
                                ('hps167s', 'modbus', 7, 1, 'target', 2083): 4})
-        self.assertEqual(done.err.splitlines(), [
-            'fathom: attempts 12, failed 0, readings 24', 'fathom: a16:1: attempts 4, failed 0, readings 4',
-            'fathom: a05:2: attempts 4, failed 0, readings 16',
-            'fathom: hps167s:7: attempts 4, failed 0, readings 4', 'fathom: line: responses 12'])
+        self.assertEqual(done.err, '')
 
     def test_each_line_of_text_names_sensor_and_address(self):
         lines = self.ends(f'read {BUS} --port {self.bus()} --count 1', 0).out.splitlines()
@@ -51,7 +48,7 @@ class Read(e2e.Case):
         done = self.ends(f'read a16:1 hps167s:7 --port {self.bus()} --count 1 --format csv', 0)
         header, *rows = [line.split(',') for line in done.out.splitlines()]
         self.assertEqual(header[-3:], ['magnitude', 'ambient', 'precision'])
-        self.assertEqual({row[0]: row[-3:] for row in rows},
+        self.assertEqual({row[1]: row[-3:] for row in rows},
                          {'a16': ['', '', ''], 'hps167s': ['723.1744', '1', '0']})
         self.assertEqual({len(row) for row in rows}, {len(header)})
 
@@ -154,12 +151,6 @@ class Dead(e2e.Case):
         self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, responses 0, '
                                    r'failures 4, time-outs in a row 4, left alone for 0\.[78] s$')
         self.assertRegex(done.err, '(?m)^fathom: a05:3: attempts 4, failed 0, readings 16, ')
-
-    def test_the_last_words_name_it_too(self):
-        done, _ = self.read('--count 3 --timeout 400')
-        self.assertRegex(done.err, '(?m)^fathom: a16:2: attempts 3, failed 3, readings 0, time-outs in a row '
-                                   '3, left alone for')
-        self.assertRegex(done.err, '(?m)^fathom: a16:1: attempts 3, failed 0, readings 3$')
 
     def test_the_only_one_on_a_line_is_asked_again_and_again(self):
         _, reader = self.beside('read a16:2 --timeout 60 --count 8 --stats --format json')

@@ -8,7 +8,7 @@ import time
 
 import e2e
 
-COMMON = ['sensor', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 'status', 'interference',
+COMMON = ['name', 'sensor', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 'status', 'interference',
           'distance_mm', 'raw']
 OPTICS = ['magnitude', 'ambient', 'precision']
 
@@ -57,7 +57,7 @@ class FirstContact(e2e.Case):
 
     def test_an_odd_probe_is_told_and_the_three_others_are_read_each_time(self):
         sim = self.sim('a05 --distance 1000,2000,7000,3000')
-        done = self.ends(f'read a05 --port {sim} --count 3 --format csv', 1, 'attempts 3, failed 3, readings 9\n')
+        done = self.ends(f'read a05 --port {sim} --count 3 --format csv --stats', 1, 'attempts 3, failed 3, readings 9\n')
         self.assertEqual([(row['probe'], row['distance_mm']) for row in done.rows],
                          [('1', '1000'), ('2', '2000'), ('4', '3000')] * 3)
         self.assertEqual(re.findall(r'attempt (\d): (probe 3: 7000 is refused: no distance from 1 to 6000 mm); '
@@ -95,11 +95,11 @@ class FirstContact(e2e.Case):
         self.assertRegex(self.ends(f'read a16 --port {sim} --count 1 {option}', 1).err, words)
 
     def test_a_sensor_that_says_nothing_in_the_time_that_it_has_is_a_failure(self):
-        self.ends(f'read a16 --port {self.device()} --duration 1', 1, 'attempts 0, failed 0, readings 0\n')
+        self.ends(f'read a16 --port {self.device()} --duration 1 --stats', 1, 'attempts 0, failed 0, readings 0\n')
 
     def test_one_good_sensor_does_not_make_up_for_another_that_gave_nothing_good(self):
         sim = self.sim('a16:1:modbus a05:2:modbus --distance 1@0 --distance 2@1000')
-        self.ends(f'read a16:1 a05:2 --port {sim} --count 1', 1, 'attempts 2, failed 0, readings 5\n')
+        self.ends(f'read a16:1 a05:2 --port {sim} --count 1 --stats', 1, 'attempts 2, failed 0, readings 5\n')
 
 
 class Json(e2e.Case):
@@ -144,18 +144,18 @@ class Formats(e2e.Case):
         done = self.ends(f'read a05 --mode modbus --port {sim} --count 2 --format csv', 0)
         header, *rows = done.out.splitlines()
         self.assertEqual(header, ','.join(COMMON))
-        expected = ['a05,modbus,1,1,{0},T,U,target,false,1000,1000',
-                    'a05,modbus,1,2,{0},T,U,no_target,false,,65533',
-                    'a05,modbus,1,3,{0},T,U,no_target,true,,65534',
-                    'a05,modbus,1,4,{0},T,U,target,false,4500,4500']
+        expected = ['a05:1,a05,modbus,1,1,{0},T,U,target,false,1000,1000',
+                    'a05:1,a05,modbus,1,2,{0},T,U,no_target,false,,65533',
+                    'a05:1,a05,modbus,1,3,{0},T,U,no_target,true,,65534',
+                    'a05:1,a05,modbus,1,4,{0},T,U,target,false,4500,4500']
         got = [re.sub(r',\d+,[-\dT:.]+Z,', ',T,U,', row) for row in rows]
         self.assertEqual(got, [row.format(sequence) for sequence in (1, 2) for row in expected])
 
     @e2e.each(
         csv_of_a_sensor_with_optics=('hps167s', 2083, OPTICS,
-                                     r'hps167s,modbus,1,1,1,\d+,[^,]+Z,target,false,2083,2083,723\.1744,1,0'),
+                                     r'hps167s:1,hps167s,modbus,1,1,1,\d+,[^,]+Z,target,false,2083,2083,723\.1744,1,0'),
         csv_of_a_sensor_that_sends_by_itself_has_no_address=(
-            'a16', 754, [], r'a16,auto,,1,1,\d+,[^,]+Z,target,false,754,754'))
+            'a16', 754, [], r'a16,a16,auto,,1,1,\d+,[^,]+Z,target,false,754,754'))
     def csv(self, sensor, distance, more, expected):
         sim = self.sim(f'{sensor} --distance {distance}')
         header, row = self.ends(f'read {sensor} --port {sim} --count 1 --format csv', 0).out.splitlines()
@@ -235,13 +235,12 @@ class Pace(e2e.Case):
 
     def test_an_interval_between_frames_drops_what_comes_meanwhile_and_counts_it(self):
         sim = self.sim('a16 --distance 500')  # a frame every 100 ms
-        done = self.ends(f'read a16 --port {sim} --count 3 --interval 400 --format json', 0,
+        done = self.ends(f'read a16 --port {sim} --count 3 --interval 400 --format csv --stats', 0,
                          'attempts 3, failed 0, readings 3')
-        self.assertEqual(len(done.json), 3)
-        first, _, last = done.json
-        self.assertGreaterEqual(last['time_us'] - first['time_us'], 600000)
-        self.assertGreaterEqual(last['sequence'] - first['sequence'], 4)
-        self.assertGreater(int(re.search(r'line: frames (\d+)', done.err)[1]), 5)
+        first, _, last = done.rows
+        self.assertGreaterEqual(int(last['time_us']) - int(first['time_us']), 600000)
+        self.assertGreaterEqual(int(last['sequence']) - int(first['sequence']), 4)
+        self.assertGreater(int(re.search(r'stream: frames (\d+)', done.err)[1]), 5)
 
     def test_a_frame_of_four_probes_is_one_attempt_and_never_split_by_an_interval(self):
         sim = self.sim('a05 --distance 1000,2000,1953,3562')
@@ -249,10 +248,10 @@ class Pace(e2e.Case):
         self.assertEqual([one['probe'] for one in objects], [1, 2, 3, 4, 1, 2, 3, 4])
         self.assertEqual(len({one['sequence'] for one in objects}), 2)
 
-    def test_counters_are_told_on_stderr_at_the_end(self):
+    def test_nothing_is_told_at_the_end_without_stats(self):
         sim = self.sim('a05::modbus --distance 1000')
         done = self.run_fathom(f'read a05 --mode modbus --port {sim} --count 2')
-        self.assertEqual(done.err, 'fathom: attempts 2, failed 0, readings 8\nfathom: line: responses 2\n')
+        self.assertEqual(done.err, '')
 
 
 class Clients(e2e.Case):

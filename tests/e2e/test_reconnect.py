@@ -50,7 +50,7 @@ class Plug(e2e.Case):
         return [(int(row['sequence']), int(row['distance_mm'])) for row in done.rows]
 
     def test_a_sensor_that_is_asked_is_read_on_and_the_count_goes_on(self):
-        reader = self.lose('--count 5', 1111, 1112)
+        reader = self.lose('--count 5 --stats', 1111, 1112)
         self.answer(self.plug_in(), 1113, 1114)
         done = self.ends(reader, 1, f'fathom: {self.port}: it is back; reading goes on\n',
                          'attempts 5, failed 1, readings 4\n')
@@ -61,7 +61,7 @@ class Plug(e2e.Case):
 
     def test_a_sensor_that_sends_is_read_on_without_a_word_about_the_time_that_it_was_away(self):
         device = self.plug_in()
-        reader = self.begin('--count 4', sensor='a16')
+        reader = self.begin('--count 4 --stats', sensor='a16')
         self.send(device, reader, 2)
         self.pull(device, reader)
         time.sleep(0.6)  # longer than the time-out: it would be stale
@@ -97,7 +97,7 @@ class Plug(e2e.Case):
         self.assertEqual(self.rows(done), [(1, 1000), (2, 1001), (3, 1002)])
 
     def test_it_ends_at_once_and_cleanly_while_it_waits(self):
-        reader = self.lose('', 1111)
+        reader = self.lose('--stats', 1111)
         began = time.monotonic()
         done = reader.end(signal.SIGINT)
         self.assertLess(time.monotonic() - began, 0.4)
@@ -114,7 +114,7 @@ class Plug(e2e.Case):
         self.assertEqual(self.rows(self.ends(reader, 0, ': it is there; reading begins\n')), [(1, 1111)])
 
     def test_a_port_that_never_comes_can_be_given_up(self):
-        reader = self.fathom(f'read a16 --port {self.port} --reconnect')
+        reader = self.fathom(f'read a16 --port {self.port} --reconnect --stats')
         reader.expect('waiting until it is there$', 'err')
         self.ends(reader.end(signal.SIGTERM), 0, 'attempts 0, failed 0, readings 0\n', out='')
 

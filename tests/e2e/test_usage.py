@@ -58,7 +58,12 @@ WRONG = [
         ('--stats 5', "there is no sensor '5'"),
         ('--reconnect=1', 'there is no option --reconnect=1'),
         ('--fast', 'there is no option --fast'),
-        ('-p', 'there is no option -p'),
+        ('-x', 'there is no option -x'),
+        ('-p', '-p needs a value'),
+        ('--no-header', '--no-header is for --format csv'),
+        ('--rotate day', '--rotate takes --output too'),
+        ('--output log.csv --rotate hour', "--rotate takes day, not 'hour'"),
+        ("--output ''", '--output takes the name of a file'),
         ('--help=3', 'there is no option --help=3'),
     ]),
     ('what_cannot_be_is_said_before_anything_is_sent', 'read --port /nowhere', [

@@ -46,7 +46,7 @@ def noise():
 class Raw(e2e.Case):
     def plays(self, scripts, good, code, *words, options='', timeout=TIMEOUT):
         """So many of the scripts give a reading."""
-        line = f'read {self.sensor} --mode modbus --timeout {timeout * 1000:.0f} --format csv {options}'
+        line = f'read {self.sensor} --mode modbus --timeout {timeout * 1000:.0f} --format csv --stats {options}'
         done = self.play(line, self.request(), *scripts)
         # each attempt takes its time-out, and as long again for the quarantine
         self.assertLess(done.elapsed, 2 + 2 * len(scripts) * timeout)

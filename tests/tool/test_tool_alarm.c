@@ -31,7 +31,7 @@ static const tool_run_t *alarm_of(const char *sensors, const char *alarm, const 
 TEST(near_goes_on_and_off_at_thresholds_of_its_own)
 {
     SEES_A16(700, 550, 499, 550, 600, 601, 600, 500);
-    const tool_run_t *const run = alarm_of("a16:1:modbus", "near<500/600" SAFE, "--count 8");
+    const tool_run_t *const run = alarm_of("a16:1:modbus", "near<500/600" SAFE, "--count 8 --stats");
     assert_int_equal(run->status, 0);
     expect_text(run, "0 a16: alarm off, 700 mm\n2 a16: alarm on, 499 mm\n5 a16: alarm off, 601 mm\n");
     expect_err(run, "fathom: attempts 8, failed 0, readings 8\n");
@@ -224,15 +224,15 @@ TEST(a_change_is_an_object)
     SEES_A05({480, REFUSED_A05, FATHOM_SIM_NO_TARGET, 700});
     expect_objects(alarm_of("a05:2:modbus", "near<500,unknown-after=1500,unknown=off,no-response=on",
                             "--probes 1,2,3 --count 3 --format json"),
-                   "{\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":1,"
+                   "{\"name\":\"a05:2\",\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":1,"
                    "\"alarm\":\"on\",\"is_on\":true,\"distance_mm\":480}\n"
-                   "{\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":3,"
+                   "{\"name\":\"a05:2\",\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":3,"
                    "\"alarm\":\"off\",\"is_on\":false,\"distance_mm\":null}\n"
-                   "{\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":2,"
+                   "{\"name\":\"a05:2\",\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":2,"
                    "\"alarm\":\"unknown\",\"is_on\":false,\"distance_mm\":null}\n");
     (void)set_up(NULL);
     expect_objects(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 7 --format json"),
-                   "{\"sensor\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"probe\":1,"
+                   "{\"name\":\"a16:1\",\"sensor\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"probe\":1,"
                    "\"alarm\":\"no_response\",\"is_on\":true,\"distance_mm\":null}\n");
 }
 
@@ -244,8 +244,8 @@ TEST(a_change_is_a_row_of_csv_and_may_have_a_level)
         alarm_of("a16:1:modbus", "near<500" SAFE,
                  "--level mounting=2300,height=2000,capacity=1000 --count 2 --format csv");
     const char *const header =
-        "sensor,mode,address,probe,time_us,utc,alarm,is_on,distance_mm,level_mm,level_per_mille,volume\n"
-        "a16,modbus,1,1,";
+        "name,sensor,mode,address,probe,time_us,utc,alarm,is_on,distance_mm,level_mm,level_per_mille,volume\n"
+        "a16:1,a16,modbus,1,1,";
     assert_memory_equal(run->out, header, strlen(header));
     assert_non_null(strstr(run->out, "Z,on,true,480,1820,910,910\n"));
     SEES_A16(480);
@@ -268,7 +268,7 @@ TEST(until_alarm_ends_with_3_when_one_is_on)
     assert_int_equal(run->status, 3);
     expect_text(run, "0 a16: alarm on, 400 mm\n");
     (void)set_up(NULL); /* nothing is there: the attempts of 0 and 2 s have failed, that of 4 s not yet */
-    run = alarm_of("a16:1:modbus", "near<500" SAFE, "--until-alarm");
+    run = alarm_of("a16:1:modbus", "near<500" SAFE, "--until-alarm --stats");
     assert_int_equal(run->status, 3);
     assert_in_range(run->took_us, 5000000, 5200000);
     expect_err(run, "fathom: attempts 2, failed 2, readings 0\n");

@@ -225,7 +225,7 @@ TEST(the_user_can_end_a_command)
 {
     bench_hps167s(any_hps167s);
     bench.tool.ctrl_c_us = 5000000;
-    const tool_run_t *const run = tool_run(&bench.tool, "read hps167s --interval 1000 --port line");
+    const tool_run_t *const run = tool_run(&bench.tool, "read hps167s --interval 1000 --stats --port line");
     assert_int_equal(run->status, 0);
     assert_in_range(run->took_us, 5000000, 5100000);
     assert_non_null(strstr(run->err, "attempts 5, failed 0"));
@@ -257,7 +257,7 @@ TEST(a_command_keeps_nothing_of_the_one_before)
                                           "watch a05:2:modbus --timeout 10 --duration 1 --port line",
                                           "--version",
                                           "bogus"};
-    static const char command[] = "read hps167s --count 3 --timeout 300 --format json --port line";
+    static const char command[] = "read hps167s --count 3 --timeout 300 --format csv --stats --port line";
     char alone[COPY];
     char after[COPY];
     for (size_t i = 0; i != sizeof befores / sizeof befores[0]; i++) {

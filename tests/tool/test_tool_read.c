@@ -196,7 +196,7 @@ TEST(an_a05_that_is_not_switched_off_gives_nothing)
 {
     a05_auto();
     const tool_run_t *const run =
-        tool_run(&bench.tool, "read a05 --value real-time --duration 30 --port line");
+        tool_run(&bench.tool, "read a05 --value real-time --duration 30 --stats --port line");
     assert_int_equal(run->status, 1);
     assert_string_equal(run->out, "");
     expect_err(run, "attempts 0, failed 0, readings 0\n");
@@ -273,7 +273,10 @@ TEST(a_distance_outside_the_window_is_refused)
     assert_int_equal(run->status, 1);
     expect_err(run, "299 is refused: no distance from 300 to 5000 mm");
     run = read_of("a05:2:modbus", 5001, window);
-    expect_all(run, 0, ":");
+    expect_all(run, 4,
+               "\"status\":\"impossible_values\",\"interference\":null,\"distance_mm\":null,\"raw\":null}");
+    expect_all(run, 4, "\"sequence\":null,");
+    assert_int_equal(count_of(run->out, "\"probe\":4,"), 1);
     expect_err(run, "probe 4: 5001 is refused: no distance from 300 to 5000 mm");
     /* wider than the A05's own, which ends at 6000 */
     expect_all(read_of("a05:2:modbus", 6500, "--window 1-7000"), 4, "\"distance_mm\":6500,");
@@ -326,7 +329,7 @@ TEST(unasked_frames_of_an_address_are_read_and_nothing_is_sent)
     const tool_run_t *const run =
         tool_run(&bench.tool, "read hps167s:7:auto --count 54 --format json --stats --port line");
     assert_int_equal(run->status, 0);
-    expect_all(run, 54, "{\"sensor\":\"hps167s\",\"mode\":\"auto\",\"address\":7,");
+    expect_all(run, 54, "{\"name\":\"hps167s:7\",\"sensor\":\"hps167s\",\"mode\":\"auto\",\"address\":7,");
     /* DC B2 07: 56498 * 128 / 10000 (the example of #5) */
     expect_all(run, 54,
                "\"distance_mm\":1234,\"raw\":1234,\"magnitude\":723.1744,\"ambient\":1,\"precision\":0}");
@@ -351,7 +354,8 @@ TEST(unasked_frames_of_another_address_are_none)
     assert_int_equal(run->status, 1);
     expect_err(run, "the line works, but it was address 7 that was heard; try --address 7");
     assert_in_range(run->took_us, 2000000, 2100000); /* hps167s_auto.h: 2 s */
-    run = tool_run(&bench.tool, "read hps167s:7:auto --timeout 300 --count 1 --window 2000-3000 --port line");
+    run = tool_run(&bench.tool,
+                   "read hps167s:7:auto --timeout 300 --count 1 --window 2000-3000 --stats --port line");
     assert_int_equal(run->status, 1); /* 1234 is unknown: nothing good */
     expect_err(run, "attempts 1, failed 0, readings 1\n");
 }
@@ -403,12 +407,13 @@ TEST(a_temperature_that_cannot_be_read_fails_nothing_and_is_told_once)
 {
     bench_hps167s((fathom_sim_hps167s_config_t){0});
     refused_at_3 = 0x04; /* #4 */
-    const tool_run_t *const run = tool_run(
-        &bench.tool, "read hps167s --temperature=1 --count 20 --interval 500 --format json --port line");
+    const tool_run_t *const run =
+        tool_run(&bench.tool,
+                 "read hps167s --temperature=1 --count 20 --interval 500 --format json --stats --port line");
     assert_int_equal(run->status, 0);
     expect_all(run, 20, "\"distance_mm\":1234,");
     expect_all(run, 20, ",\"temperature_degc\":null}");
-    expect_err(run, "attempts 20, failed 0, readings 20\n");
+    expect_err(run, "\"attempts\":20,\"failed\":0,\"readings\":20,");
     assert_int_equal(count_of(run->err, "fathom: hps167s:1: its temperature (#4) could not be read"), 1);
 }
 

@@ -19,7 +19,7 @@ static const suite_t suite = {.set_up = set_up};
 TEST(a_spike_is_dropped_and_the_median_of_the_others_is_printed)
 {
     SEES_A16(1000, 1010, 990, 3000, 1005, 1002);
-    const tool_run_t *const run = read_steps("a16:1:modbus", "--count 6 --median 3 --gate 300");
+    const tool_run_t *const run = read_steps("a16:1:modbus", "--count 6 --median 3 --gate 300 --stats");
     assert_int_equal(run->status, 0);
     expect_text(run, "2 a16    1000 mm    1.000 m\n"
                      "4 a16    1005 mm    1.005 m\n"

@@ -149,7 +149,7 @@ void read_help(FILE *to)
         "  --output FILE     adds to this file instead of the standard output; csv has a header line where "
         "it is empty\n"
         "  --rotate day      one such file for each day in UTC: --output log.csv is log-2026-11-23.csv\n"
-        "  -q, --quiet       nothing on the standard error but what ends it, and what --stats asks for\n"
+        "  --quiet, -q       nothing on the standard error but what ends it, and what --stats asks for\n"
         "  --stats[=SECONDS] all counters at the end, and every so many seconds; with --format json an "
         "object a\n"
         "                    line. Every request, and every frame that came, is in them: read, failed or "

@@ -224,7 +224,7 @@ void scan_help(FILE *to)
         "an A16 or A05 that sends by itself (for an A05 until power-off). So it listens first, and asks "
         "nothing where\n"
         "something sends.\n\n"
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`\n"
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`\n" OPTIONS_PORT_HELP
         "  --address A-B     the addresses to ask, 1..254; default 1-32. Or 0 alone, which an A16 or A05 may "
         "have\n"
         "  --baud LIST       the rates, such as 9600,57600, or all; default 9600,19200\n"

@@ -28,6 +28,10 @@ typedef void (*option_each_t)(void *ctx, int row, const char *value);
 int options_parse_each(const char *command, int argc, char **argv, const struct option *table,
                        const char **values, option_each_t each, void *ctx);
 
+/* Below the line of --port in a help. */
+#define OPTIONS_PORT_HELP                                                                                    \
+    "                    Also -p PATH; where none is given, that of FATHOM_PORT in the environment\n"
+
 /* FATHOM_PORT; NULL: there is none. values[] has the same pointer then. */
 const char *options_port_of_environment(void);
 

@@ -230,7 +230,7 @@ void sensor_options_help(FILE *to)
         "or\n"
         "                    gateway: tcp:HOST, tcp:HOST:PORT (502 if not given), tcp:[IPV6]:PORT, for mode "
         "modbus;\n"
-        "                    --baud, --parity, --stop-bits and --echo mean nothing there\n"
+        "                    --baud, --parity, --stop-bits and --echo mean nothing there\n" OPTIONS_PORT_HELP
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"
         "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"

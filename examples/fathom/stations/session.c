@@ -285,8 +285,8 @@ void session_explain(session_t *session, fathom_status_t status)
 void session_line_help(FILE *to)
 {
     (void)fputs(
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or tcp:HOST[:PORT]\n"
-        "  --address N       1 from the factory; also as in hps167s:7\n"
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or "
+        "tcp:HOST[:PORT]\n" OPTIONS_PORT_HELP "  --address N       1 from the factory; also as in hps167s:7\n"
         "  --mode MODE       modbus (default), or dyp for an a05 with frames 55 AA\n"
         "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"
