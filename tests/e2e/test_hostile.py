@@ -15,7 +15,7 @@ class Sending(e2e.Case):
 
     def stream(self, sensor, blocks, count=4, pause=0.06, timeout=3000):
         """Plays the blocks over and over until the reader has made its attempts."""
-        device, reader = self.beside(f'read {sensor} --count {count} --timeout {timeout} --format csv')
+        device, reader = self.beside(f'read {sensor} --count {count} --timeout {timeout} --format csv --stats')
         at = 0
         while not reader.has_ended(pause):
             device.write(blocks[at % len(blocks)])
@@ -42,7 +42,7 @@ class Sending(e2e.Case):
             good = e2e.frame(*values)
             done = self.stream(sensor, [corrupt(good), good])
             self.assertEqual((self.shown(done, values), done.code), (4 * len(values), 0), done)
-            self.assertRegex(done.err, r'line: frames \d+, ')
+            self.assertRegex(done.err, r'stream: frames \d+, ')
             done = self.stream(sensor, [corrupt(good)], count=1, timeout=500)
             self.assertEqual((self.shown(done, values), done.code), (0, 1), done)
             self.assertIn('attempt 1: bytes were heard, but no frame of', done.err)

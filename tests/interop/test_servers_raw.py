@@ -134,7 +134,7 @@ class Raw(e2e.Case):
         echo, right = self.request(), self.right()
         for options in ('', '--echo on'):
             self.plays([[echo, right], [echo, 0.05, right], [echo + right]], 3, 0,
-                       'fathom: line: responses 3\n',
+                       'fathom: line: responses 3, ',
                        options=options)
 
     def test_an_echo_and_a_damaged_response(self):

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom read as a log: a row for each attempt, handed over whole; files by day; and how little is said beside it."""
+import csv
+import os
+import re
+import socket
+
+import e2e
+
+GOOD = e2e.SAYS_754
+DAMAGED = bytes((*GOOD[:4], GOOD[4] ^ 0x10, *GOOD[5:]))
+# In this order: no response, a wrong checksum, exception 2, two registers instead of one, a value over 16350 (A16).
+SCRIPT = [GOOD, b'', DAMAGED, e2e.adu(1, 0x83, 2), e2e.registers(1, 754, 755), e2e.registers(1, 40000), GOOD]
+STATUSES = ['target', 'no_response', 'damaged', 'exception', 'other_response', 'impossible_values', 'target']
+HEADER = 'name,sensor,mode,address,probe,sequence,time_us,utc,status,interference,distance_mm,raw'
+MANUAL = f'{e2e.ROOT}/examples/fathom/README.md'
+
+
+class Failures(e2e.Case):
+    def ask(self, options, script=(*SCRIPT,)):
+        device, reader = self.beside(f'read a16:1 --timeout 300 --count {len(script)}', options.split())
+        for response in script:
+            device.asked(e2e.ASK_A16, response)
+        return reader.finish()
+
+    def test_each_attempt_is_a_row_of_csv_with_what_came_of_it(self):
+        rows = self.ends(self.ask('--format csv'), 1).all_rows
+        self.assertEqual([row['status'] for row in rows], STATUSES)
+        for row in rows:
+            self.assertEqual([row[name] for name in ('name', 'sensor', 'mode', 'address', 'probe')],
+                             ['a16:1', 'a16', 'modbus', '1', '1'])
+            self.assertRegex(row['utc'], r'^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$')
+            known = ['754', '754', 'false'] if row['status'] == 'target' else ['', '', '']
+            self.assertEqual([row[name] for name in ('distance_mm', 'raw', 'interference')], known)
+            self.assertEqual(row['sequence'] == '', row['status'] != 'target')
+        times = [int(row['time_us']) for row in rows]
+        self.assertEqual(times, sorted(times))
+        # of the silent one it is when the time-out of 300 ms was over
+        self.assertGreaterEqual(times[1] - times[0], 300000)
+
+    def test_and_an_object_of_json_with_all_members(self):
+        objects = self.ends(self.ask('--format json'), 1).all_json
+        self.assertEqual([one['status'] for one in objects], STATUSES)
+        for one in objects:
+            self.assertEqual(','.join(one), HEADER)
+        for one in objects[1:6]:
+            self.assertEqual([one[name] for name in ('sequence', 'interference', 'distance_mm', 'raw')], [None] * 4)
+
+    def test_text_has_none(self):
+        done = self.ends(self.ask('', [b'', GOOD]), 1, 'attempt 1: no response')
+        self.assertEqual(len(done.out.splitlines()), 1)
+
+    def test_where_there_is_no_median_yet_a_failed_attempt_is_a_row(self):
+        done = self.ends(self.ask('--format csv --median 3', [GOOD, b'', GOOD, GOOD]), 1)
+        self.assertEqual([row['status'] for row in done.all_rows], ['no_response', 'target'])
+
+    def test_changes_of_an_alarm_are_the_only_rows_of_one(self):
+        done = self.ends(self.ask('--format csv --alarm near<500,unknown=off,no-response=off', [GOOD, DAMAGED, GOOD]), 1)
+        self.assertEqual([row['alarm'] for row in done.all_rows], ['off'])
+
+    def test_each_probe_that_was_refused_has_its_row_and_the_others_are_read(self):
+        sim = self.sim('a05:2:modbus --distance 1000,40000,1953,50000')
+        done = self.ends(f'read a05:2:modbus --port {sim} --count 1 --format csv', 1)
+        self.assertEqual([(row['probe'], row['status'], row['distance_mm']) for row in done.all_rows],
+                         [('1', 'target', '1000'), ('2', 'impossible_values', ''), ('3', 'target', '1953'),
+                          ('4', 'impossible_values', '')])
+
+    def test_an_attempt_of_four_probes_that_fails_as_a_whole_is_one_row_of_none(self):
+        done = self.ends(f'read a05:2:modbus --port {self.device()} --timeout 60 --count 2 --format json', 1)
+        self.assertEqual([(one['name'], one['probe'], one['status']) for one in done.all_json],
+                         [('a05:2', None, 'no_response')] * 2)
+
+    def test_a_sensor_that_sends_by_itself_is_stale(self):
+        done = self.ends(f'read a16 --port {self.device()} --timeout 60 --count 2 --format csv', 1)
+        self.assertEqual([(row['name'], row['address'], row['status']) for row in done.all_rows],
+                         [('a16', '', 'stale')] * 2)
+
+    def test_a_port_that_is_lost_is_a_row(self):
+        device, reader = self.beside('read a16:1 --format csv')
+        device.read(8)
+        device.hang_up()
+        self.assertEqual([row['status'] for row in self.ends(reader, 1, 'the device was unplugged').all_rows], ['port'])
+
+
+class Whole(e2e.Case):
+    def writes(self, options):
+        """What each write(2) has handed over: a socket of packets keeps them apart."""
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        sim = self.sim('a05:2:modbus hps167s:7 --distance 1@1000,40000,1953,3562 --distance 2@2083')
+        with ours:
+            with theirs:
+                reader = self.fathom(f'read a05:2 hps167s:7 --temperature --port {sim} --count 4 {options}',
+                                     ['--level', 'mounting=9000,height=8000,capacity=4000000000'], stdout=theirs)
+            reader.finish()
+            ours.settimeout(0)
+            packets = []
+            while packets[-1:] != [b'']:
+                packets.append(ours.recv(65536))
+        return [packet.decode() for packet in packets[:-1]]
+
+    @e2e.each(csv=('--format csv', 1), json=('--format json', 0), text=('', 0))
+    def write(self, options, header):
+        packets = self.writes(options)
+        rows = 4 + 4 * 3 + (4 if options else 0)  # the refused probe has none in text
+        self.assertEqual(len(packets), header + rows)
+        for packet in packets:
+            self.assertEqual((packet.count('\n'), packet[-1]), (1, '\n'))
+
+
+class Files(e2e.Case):
+    def content(self, name):
+        with open(self.path(name), encoding='ascii') as file:
+            return file.read()
+
+    def test_no_row_is_lost_or_torn_at_midnight_and_each_is_in_the_file_of_its_day(self):
+        sim = self.sim('hps167s:7 --distance 2083')
+        os.mkdir(self.path('a.b'))
+        for _ in range(2):  # 54 a second, so some on both sides; the second run adds to the files of the first
+            self.ends(f'read hps167s:7 --port {sim} --count 60 --format csv --rotate day --output '
+                      f'{self.path("a.b/tank.csv")}', 0, out='',
+                      env=self.preload('clock_shim.c', MIDNIGHT_IN_US='500000'))
+        days = ('2026-02-28', '2026-03-01')
+        self.assertEqual(sorted(os.listdir(self.path('a.b'))), [f'tank-{day}.csv' for day in days])
+        sequences = []
+        for day in days:
+            header, *rows = self.content(f'a.b/tank-{day}.csv').splitlines()
+            self.assertEqual(header, f'{HEADER},magnitude,ambient,precision')
+            for row in csv.DictReader(rows, header.split(',')):
+                self.assertEqual((row['utc'][:10], row['distance_mm'], row['precision']), (day, '2083', '0'))
+                sequences.append(int(row['sequence']))
+        self.assertEqual(sorted(sequences), sorted([*range(1, 61)] * 2))
+        self.assertGreater(len(self.content(f'a.b/tank-{days[0]}.csv').splitlines()), 20)
+
+    def test_a_file_that_the_shell_adds_to_has_one_header(self):
+        sim = self.sim('a16:1:modbus --distance 754')
+        for options in ('', '--no-header'):
+            with open(self.path('log.csv'), 'ab') as file:
+                self.ends(f'read a16:1 --port {sim} --count 2 --format csv {options}', 0, stdout=file)
+        self.assertEqual([line.split(',')[0] for line in self.content('log.csv').splitlines()], ['name'] + ['a16:1'] * 4)
+
+    def test_a_file_of_json(self):
+        sim = self.sim('a16:1:modbus --distance 754')
+        for _ in range(2):
+            self.ends(f'read a16:1 --port {sim} --count 1 --format json --output {self.path("log")}', 0, out='')
+        self.assertEqual(self.content('log').count('"distance_mm":754,'), 2)
+
+    @e2e.each(that_cannot_be_opened=('nowhere/log.csv', 'No such file or directory'),
+              that_is_full=('/dev/full', 'No space left on device'))
+    def file(self, name, words):
+        self.ends(f'read a16 --port /nowhere --format csv --output {self.path(name)}', 1,
+                  f'fathom: the readings cannot be written to {self.path(name)}: {words}\n', out='')
+
+
+class Quiet(e2e.Case):
+    def test_failures_and_remarks_are_not_told(self):
+        done = self.ends(f'read a16:1 --port {self.device()} --timeout 60 --count 2 --interval 50 -q --format csv', 1)
+        self.assertEqual((done.err, len(done.all_rows)), ('', 2))
+
+    def test_nor_that_a_port_is_waited_for(self):
+        done = self.ends(f'read a16:1 --port {self.path("none")} --reconnect --duration 1 --quiet', 0)
+        self.assertEqual((done.out, done.err), ('', ''))
+
+    @e2e.each(wrong_usage=('--count 0', 2, 'fathom read: --count takes'),
+              a_port_that_cannot_be_opened=('', 1, 'fathom: /nowhere: no such device'),
+              an_output_that_is_broken=('--output /dev/full --format csv', 1, 'No space left'))
+    def told(self, options, code, words):
+        done = self.ends(f'read a16 --port /nowhere --quiet {options}', code, words)
+        self.assertEqual(done.err.count('\n'), 1)
+
+    def test_a_port_that_is_lost_for_good_is_told(self):
+        device, reader = self.beside('read a16:1 --quiet')
+        device.read(8)
+        device.hang_up()
+        self.assertEqual(self.ends(reader, 1, 'the device was unplugged').err.count('\n'), 1)
+
+    def test_and_what_stats_asks_for(self):
+        sim = self.sim('a16:1:modbus --distance 754')
+        self.ends(f'read a16:1 --port {sim} --count 1 --quiet --stats', 0, 'fathom: attempts 1, failed 0, readings 1\n')
+
+
+class Interval(e2e.Case):
+    # A16 table 12: 120 ms; A05 3(3): 400 ms, 2(3)1: 250 ms, of one probe 100 ms; HPS-167S table 1: 54 a second
+    @e2e.each(an_a16=('a16:1:modbus', '119', '120'), an_a05=('a05:1:modbus', '399', '400'),
+              an_a05_by_55_aa=('a05:1:dyp', '249', '250'), one_probe_of_it=('a05:1:dyp --probes 1', '99', '100'),
+              an_a16_that_is_triggered=('a16:1:controlled', '120', '121'),
+              an_hps167s=('hps167s:1', '18', '18.52'))
+    def raised(self, sensor, interval, least):
+        sim = self.device()
+        line = f'read {sensor} --port {sim} --timeout 60 --count 2 --interval'
+        name = 'a16' if 'controlled' in sensor else ':'.join(sensor.split()[0].split(':')[:2])
+        words = f'fathom: {name}: asked every {least} ms, which is the least it can do (--interval {interval})\n'
+        self.assertEqual(self.ends(f'{line} {interval}', 1).err.count(words), 1)
+        self.assertNotIn('the least it can do', self.run_fathom(f'{line} {int(interval) + 1}').err)
+
+    def test_one_that_is_not_given_is_not_raised(self):
+        self.assertNotIn('the least', self.run_fathom(f'read a16:1 --port {self.device()} --timeout 60 --count 1').err)
+
+
+class Port(e2e.Case):
+    def test_the_environment_has_it_where_none_is_given(self):
+        sim = self.sim('a16:1:modbus --distance 754')
+        env = {**os.environ, 'FATHOM_PORT': str(sim)}
+        for line in ('read a16:1 --count 1', 'get a16:1 address', 'scan --listen 1 --baud 9600 --address 1'):
+            self.ends(line, 0, env=env)
+        done = self.ends('read a16:1 --count 1 -p /nowhere', 1, '/nowhere: no such device', env=env)
+        self.assertNotIn('FATHOM_PORT', done.err)
+
+    @e2e.each(*((line,) for line in ('read a16', 'get a16 address', 'scan', 'watch a16', 'info a16', 'save a16')))
+    def named(self, line):
+        self.ends(line, 1, '/nowhere: no such device', ' (FATHOM_PORT in the environment names this port)\n',
+                  env={**os.environ, 'FATHOM_PORT': '/nowhere'})
+
+    def test_an_empty_one_is_none(self):
+        self.ends('read a16', 2, '--port is missing', env={**os.environ, 'FATHOM_PORT': ''})
+
+
+class Help(e2e.Case):
+    @e2e.each(*((command,) for command in ('read', 'watch', 'scan', 'get', 'set', 'info', 'save', 'restore', 'reset',
+                                           'calibrate', 'commission', 'sim', 'decode')))
+    def short(self, command):
+        """-h of all commands, -p of those that have a port."""
+        done = self.ends(f'{command} -h', 0)
+        self.assertEqual(done.out, self.ends(f'{command} --help', 0).out)
+        has_port = re.search('^  --port', done.out, re.M) is not None
+        self.assertEqual(has_port, command not in ('sim', 'decode'))
+        self.ends(f'{command} -p', 2, '-p needs a value' if has_port else 'there is no option -p')
+
+    def test_the_manual_has_the_fields_and_the_statuses_of_the_help(self):
+        text = self.ends('read --help', 0).out
+        with open(MANUAL, encoding='utf-8') as file:
+            manual = file.read()
+        fields, statuses = (re.findall(r'^  (\w+) +(.*)$', part.split('\n\n')[0], re.M)
+                            for part in text.split('\nfields of json')[1].split('\nstatus of a reading'))
+        shown = [(name, ' '.join((unit + ' ' + what).split())) for name, unit, what in
+                 re.findall(r'^\| `(\w+)` \| (\S*) *\| (.+) \|$', manual.split('## Options')[0], re.M)]
+        self.assertEqual([(name, ' '.join(what.split())) for name, what in fields], shown)
+        self.assertEqual(len(shown), 21)
+        told = re.findall(r'^\| `(\w+)` \| ([^|]+) \|$', manual.split('| `status` | of a reading')[1].split('\n###')[0], re.M)
+        self.assertEqual(statuses, told)
+        self.assertEqual([name for name, _ in told if name in e2e.FAILURES], e2e.FAILURES)
+
+
+if __name__ == '__main__':
+    e2e.main()
