@@ -98,8 +98,8 @@ class Asked(e2e.Case):
     def test_exceptions_are_told_by_name_and_what_they_mean(self):
         rows = ((1, 'illegal function', 'check that it is a16'),
                 (2, 'illegal data address', 'no such register; check that it is a16'),
-                (3, 'illegal data value', 'check that it is a16'), (4, 'device failure', 'supply off and on'),
-                (6, 'device busy', '--retries'), (11, 'gateway target silent', 'gateway'),
+                (3, 'illegal data value', 'check that it is a16'), (4, 'server device failure', 'supply off and on'),
+                (6, 'server device busy', '--retries'), (11, 'gateway target device failed to respond', 'gateway'),
                 (7, 'unknown', 'no code of'))
         done = self.ask(*(e2e.adu(1, 0x83, row[0]) for row in rows))
         for attempt, (number, name, meaning) in enumerate(rows, 1):

@@ -196,7 +196,7 @@ class Responses(Case):
 
     @e2e.each(**{f'exceptions_of_a_gateway_are_no_response_and_said_{number}': (number, name) for number,
                  name in
-                 ((10, 'path unavailable'), (11, 'target silent'))})
+                 ((10, 'path unavailable'), (11, 'target device failed to respond'))})
     def gateway(self, number, name):
         server, reader = self.reader('--count 2 --timeout 700')
         server.say(adu(self.asked(server), 1, 0x83, number))

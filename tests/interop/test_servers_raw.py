@@ -82,7 +82,7 @@ class Raw(e2e.Case):
         another_units_response=(lambda right: e2e.adu(2, *right[1:-2]), OTHERS),
         an_exception_to_this_request=(lambda right: e2e.adu(1, 0x83, 3),
                                       'address 1 refused: exception 03 (illegal data value)'),
-        an_exception=(lambda right: e2e.adu(1, 0x83, 4), 'address 1 refused: exception 04 (device failure)'),
+        an_exception=(lambda right: e2e.adu(1, 0x83, 4), 'address 1 refused: exception 04 (server device failure)'),
         a_wrong_crc=(lambda right: flipped(right, len(right) - 1), DAMAGED),
         what_follows_a_truncated_response_is_not_joined_to_it=(lambda right: right[:5], DAMAGED),
         silence=(lambda right: b'', NOTHING))

@@ -5,9 +5,9 @@ import interop
 from interop import e2e
 
 DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 723.1744
-NAMES = {1: 'illegal function', 2: 'illegal data address', 3: 'illegal data value', 4: 'device failure',
-         5: 'acknowledge', 6: 'device busy', 7: 'unknown', 8: 'memory parity error',
-         10: 'gateway path unavailable', 11: 'gateway target silent'}
+NAMES = {1: 'illegal function', 2: 'illegal data address', 3: 'illegal data value', 4: 'server device failure',
+         5: 'acknowledge', 6: 'server device busy', 7: 'unknown', 8: 'memory parity error',
+         10: 'gateway path unavailable', 11: 'gateway target device failed to respond'}
 
 
 class Servers:

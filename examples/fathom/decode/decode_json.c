@@ -2,6 +2,7 @@
 #include <inttypes.h>
 
 #include "decode/decode_print.h"
+#include "models/decoding_print.h"
 
 static void put_bytes(FILE *to, const uint8_t *bytes, size_t count)
 {
@@ -22,44 +23,6 @@ static void put_head(FILE *to, const uint8_t *bytes, const decode_piece_t *piece
     put_bytes(to, bytes, piece->length);
 }
 
-/* The name and the unit of a field, as one word. */
-static void put_key(FILE *to, const decode_field_t *field)
-{
-    (void)fputc('"', to);
-    for (const char *at = field->name; *at != '\0'; at++) {
-        const char low = *at >= 'A' && *at <= 'Z' ? (char)(*at - 'A' + 'a') : *at;
-        (void)fputc(low == ' ' || low == '-' ? '_' : low, to);
-    }
-    if (field->unit[0] != '\0')
-        (void)fprintf(to, "_%s", field->unit[0] == 'F' ? "f" : field->unit[0] == 'C' ? "c" : field->unit);
-    (void)fputs("\":", to);
-}
-
-static void put_meaning(FILE *to, const decode_meaning_t *meaning)
-{
-    bool any = false;
-    (void)fputc('{', to);
-    if (meaning->sensor[0] != '\0')
-        (void)fprintf(to, "\"sensor\":\"%s\",\"source\":\"%s\",", meaning->sensor, meaning->source);
-    (void)fprintf(to, "\"what\":\"%s\",\"fields\":{", meaning->what);
-    for (uint8_t i = 0; i != meaning->count; i++) {
-        const decode_field_t *const field = &meaning->fields[i];
-        const char *const quote = field->is_number ? "" : "\"";
-        if (i != 0) (void)fputc(',', to);
-        put_key(to, field);
-        (void)fprintf(to, "%s%s%s", quote, field->value, quote);
-    }
-    (void)fputs("},\"notes\":{", to);
-    for (uint8_t i = 0; i != meaning->count; i++) {
-        if (meaning->fields[i].note == NULL) continue;
-        if (any) (void)fputc(',', to);
-        any = true;
-        put_key(to, &meaning->fields[i]);
-        (void)fprintf(to, "\"%s\"", meaning->fields[i].note);
-    }
-    (void)fputs("}}", to);
-}
-
 static void put_frame(FILE *to, const decode_frame_t *frame)
 {
     static const char *const directions[] = {
@@ -78,7 +41,7 @@ static void put_frame(FILE *to, const decode_frame_t *frame)
     (void)fputs("},\"meanings\":[", to);
     for (uint8_t i = 0; i != frame->meanings; i++) {
         if (i != 0) (void)fputc(',', to);
-        put_meaning(to, &frame->meaning[i]);
+        decoding_put_json(to, &frame->meaning[i]);
     }
     (void)fputs("],\"notes\":[", to);
     for (uint8_t i = 0; i != frame->notes; i++)

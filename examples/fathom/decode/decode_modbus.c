@@ -6,6 +6,7 @@
 
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
+#include "shared/modbus_exception.h"
 
 enum { UNIT = 0, HEAD = 6, ALL_UNITS = 0xFF };
 enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, EXCEPTION = FATHOM_MODBUS_EXCEPTION };
@@ -24,27 +25,11 @@ static const char *function_name(uint8_t function)
     }
 }
 
-/* By the specification's name, section 7. */
-static const char *exception_name(uint8_t code)
-{
-    static const char *const names[] = {[1] = "illegal function",
-                                        [2] = "illegal data address",
-                                        [3] = "illegal data value",
-                                        [4] = "server device failure",
-                                        [5] = "acknowledge",
-                                        [6] = "server device busy",
-                                        [8] = "memory parity error",
-                                        [10] = "gateway path unavailable",
-                                        [11] = "gateway target device failed to respond"};
-    const char *const name = code < sizeof names / sizeof names[0] ? names[code] : NULL;
-    return name != NULL ? name : "no code of the specification";
-}
-
 static void decode_exception(decode_frame_t *frame, const decode_context_t *context, bool is_asked)
 {
     const uint8_t code = frame->bytes[DECODE_AT_SIZE];
     decode_meaning_t *const meaning = decode_mean(frame, "", "", "the request is refused");
-    decode_number(meaning, "exception", code, "")->note = exception_name(code);
+    decode_number(meaning, "exception", code, "")->note = modbus_exception(code).name;
     bool has_none = false;
     for (size_t i = 0; i != MODELS; i++) {
         const model_t *const model = models[i];

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "decode/decode_print.h"
+#include "models/decoding_print.h"
 
 enum { BYTES_A_LINE = 20 };
 
@@ -56,31 +57,6 @@ static void put_head(FILE *to, const decode_frame_t *frame)
     (void)fputc('\n', to);
 }
 
-static void put_value(FILE *to, const decode_field_t *field)
-{
-    (void)fprintf(to, "%s%s%s", field->value, field->unit[0] != '\0' ? " " : "", field->unit);
-    if (field->note != NULL) (void)fprintf(to, " (%s)", field->note);
-    (void)fputc('\n', to);
-}
-
-/* What has one field stands in one line. */
-static void put_meaning(FILE *to, const decode_meaning_t *meaning)
-{
-    (void)fputs("        ", to);
-    if (meaning->sensor[0] != '\0') (void)fprintf(to, "%-8s ", meaning->sensor);
-    (void)fputs(meaning->what, to);
-    if (meaning->count == 1) {
-        (void)fprintf(to, ": %s ", meaning->fields[0].name);
-        put_value(to, &meaning->fields[0]);
-        return;
-    }
-    (void)fputc('\n', to);
-    for (uint8_t i = 0; i != meaning->count; i++) {
-        (void)fprintf(to, "            %-17s ", meaning->fields[i].name);
-        put_value(to, &meaning->fields[i]);
-    }
-}
-
 static void put_checksum(FILE *to, const decode_frame_t *frame)
 {
     const uint8_t *const found = frame->bytes + frame->piece->length - frame->checksum_length;
@@ -100,7 +76,7 @@ static void put_frame(FILE *to, const decode_frame_t *frame)
 {
     put_bytes(to, frame->bytes, frame->piece);
     put_head(to, frame);
-    for (uint8_t i = 0; i != frame->meanings; i++) put_meaning(to, &frame->meaning[i]);
+    for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_text(to, &frame->meaning[i]);
     put_checksum(to, frame);
     for (uint8_t i = 0; i != frame->notes; i++) (void)fprintf(to, "        note: %s\n", frame->note[i]);
 }

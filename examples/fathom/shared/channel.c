@@ -98,6 +98,16 @@ void channel_close(channel_t *channel)
     channel->tcp = NULL;
 }
 
+void channel_listen(channel_t *channel, uint32_t for_us)
+{
+    const host_t *const host = channel->host;
+    const uint64_t end_us = host->now_us(host->ctx) + for_us;
+    for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
+        if (fathom_line_poll(&channel->line) < 0) return;
+        host->wait(host->ctx, &channel->port, (uint32_t)(end_us - now_us), false);
+    }
+}
+
 bool channel_has_break(const channel_t *channel)
 {
     return channel->uart.set_break != NULL && !channel->port.is_pty;

@@ -45,11 +45,18 @@ typedef struct {
  */
 enum { CHANNEL_STREAM_GAP_US = 25000, CHANNEL_RESPONSE_GAP_US = 60000 };
 
+/* What a device sends unasked is known before the first request, which leaves room for it (line.h), if so long was
+ * listened. */
+enum { CHANNEL_UNASKED_US = 66000 };
+
 /* path: of a serial port, or tcp:HOST[:PORT], which is Modbus only. False: channel->port has the error. The channel may
  * not be moved. One that was closed may be opened again. */
 bool channel_open(channel_t *channel, const host_t *host, const char *path,
                   const fathom_line_settings_t *settings);
 void channel_close(channel_t *channel);
+
+/* Asks nothing for so long; what is heard is added to what the last call has heard. A signal ends it. */
+void channel_listen(channel_t *channel, uint32_t for_us);
 
 /* Can it hold its TX low? A pseudo terminal has no wire, and a byte stands for each break. */
 bool channel_has_break(const channel_t *channel);

@@ -5,32 +5,8 @@
 #include <string.h>
 
 #include "shared/line_text.h"
+#include "shared/modbus_exception.h"
 #include "shared/sysfs_adapter.h"
-
-typedef struct {
-    const char *name;
-    const char *meaning;
-    bool is_other_sensor; /* most likely */
-} exception_t;
-
-/* MODBUS Application Protocol V1.1b3, 7; the last two are a gateway's. */
-static exception_t exception_text(uint8_t number)
-{
-    static const exception_t texts[] = {
-        [1] = {"illegal function", "it does not know this kind of request", true},
-        [2] = {"illegal data address", "it has no such register", true},
-        [3] = {"illegal data value", "it does not take so many registers", true},
-        [4] = {"device failure", "it has failed; switch its supply off and on", false},
-        [5] = {"acknowledge", "it is still at work; try a longer --interval", false},
-        [6] = {"device busy", "try --retries 2 or a longer --interval", false},
-        [8] = {"memory parity error", "its memory is damaged; switch its supply off and on", false},
-        [10] = {"gateway path unavailable", "a gateway in between cannot reach it; check the gateway", false},
-        [11] = {"gateway target silent", "a gateway in between hears nothing of it; check the wiring there",
-                false},
-    };
-    static const exception_t unknown = {"unknown", "no code of the Modbus standard", true};
-    return number < sizeof texts / sizeof texts[0] && texts[number].name != NULL ? texts[number] : unknown;
-}
 
 /* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
 static void print_settings(FILE *to, const failure_t *failure)
@@ -65,6 +41,12 @@ static void print_late(FILE *to, uint32_t slowest_us)
         (void)fprintf(to, ": it took %" PRIu32 " ms, so --timeout %" PRIu32, slowest_us / 1000u, try_ms);
 }
 
+/* By what the user tells the address. */
+static const char *address_word(const failure_t *failure)
+{
+    return failure->is_request ? "UNIT" : "--address";
+}
+
 /* What else is on the line, if that explains why nothing was understood. */
 static bool print_others(FILE *to, const failure_t *failure)
 {
@@ -79,7 +61,8 @@ static bool print_others(FILE *to, const failure_t *failure)
                       evidence->foreign_address, failure->model->name);
     else if (evidence->foreign != 0)
         (void)fprintf(to, "the line works, but it was address %u that was heard; try %s%s%u",
-                      evidence->foreign_address, failure->shared != NULL ? failure->model->name : "--address",
+                      evidence->foreign_address,
+                      failure->shared != NULL ? failure->model->name : address_word(failure),
                       failure->shared != NULL ? ":" : " ", evidence->foreign_address);
     else if (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)
         (void)fprintf(to, "frames of %s that sends by itself were heard; try: fathom read %s --mode auto",
@@ -95,16 +78,15 @@ static void print_tcp(FILE *to, const failure_t *failure)
 {
     const uint8_t exception = tcp_gateway_exception(failure->channel->tcp);
     if (exception != 0)
-        (void)fprintf(
-            to, "the gateway says exception %02u (%s); check --address, and there the line and the supply",
-            exception, exception_text(exception).name);
+        (void)fprintf(to, "the gateway says exception %02u (%s); check %s, and there the line and the supply",
+                      exception, modbus_exception(exception).name, address_word(failure));
     else if (failure->evidence.bytes != 0)
         (void)fputs("a response came that does not fit; check that the server is one of Modbus TCP", to);
     else
-        (void)fputs("the connection stands, but nothing came back; check --address, the sensor's line and "
-                    "supply, and "
-                    "try a --timeout that is longer than the gateway's own",
-                    to);
+        (void)fprintf(to,
+                      "the connection stands, but nothing came back; check %s, the sensor's line and "
+                      "supply, and try a --timeout that is longer than the gateway's own",
+                      address_word(failure));
 }
 
 /* Of a sensor without an address: a break on our TX is its trigger. */
@@ -159,10 +141,11 @@ static void print_no_response(FILE *to, const failure_t *failure)
     } else if (failure->channel->tcp != NULL) {
         print_tcp(to, failure);
     } else if (is_only_echo(evidence)) {
-        (void)fputs("only the tool's own request came back, so the adapter works and echoes, but no sensor "
-                    "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
-                    "supply, and --address",
-                    to);
+        (void)fprintf(to,
+                      "only the tool's own request came back, so the adapter works and echoes, but no sensor "
+                      "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
+                      "supply, and %s",
+                      address_word(failure));
     } else if (evidence->own != 0) {
         (void)fputs("frames of this address were heard, but none that answers; check that no other master "
                     "asks, and that only one sensor has this address",
@@ -180,11 +163,10 @@ static void print_no_response(FILE *to, const failure_t *failure)
             line_text(failure->line, settings));
     } else {
         char settings[LINE_TEXT];
-        (void)fprintf(
-            to,
-            "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, --address, and "
-            "--baud and --parity (now %s)",
-            line_text(failure->line, settings));
+        (void)fprintf(to,
+                      "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, %s, and "
+                      "--baud and --parity (now %s)",
+                      address_word(failure), line_text(failure->line, settings));
     }
 }
 
@@ -340,7 +322,7 @@ void advice_print(FILE *to, const failure_t *failure)
         break;
     case FATHOM_ERR_EXCEPTION: {
         const uint8_t number = fathom_modbus_unit_exception(failure->reader->unit);
-        const exception_t text = exception_text(number);
+        const modbus_exception_t text = modbus_exception(number);
         (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, number, text.name,
                       text.meaning);
         if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->model->name);

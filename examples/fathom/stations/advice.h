@@ -22,6 +22,7 @@ typedef struct {
     bool others_answer; /* on this line */
     bool waits;         /* for a lost port, which is opened again */
     bool is_told;       /* of another sensor on this port, which is lost to all of them */
+    bool is_request;    /* of `fathom request`, which takes the address as UNIT */
     bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
 } failure_t;
 

@@ -116,16 +116,7 @@ bool session_can_set(const session_t *session, const char *command)
 
 const setting_t *session_settings(const session_t *session) { return session->station->model->settings; }
 
-void session_listen(session_t *session, uint32_t for_us)
-{
-    channel_t *const channel = &session->channel;
-    const host_t *const host = channel->host;
-    const uint64_t end_us = host->now_us(host->ctx) + for_us;
-    for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
-        if (fathom_line_poll(&channel->line) < 0) return;
-        host->wait(host->ctx, &channel->port, (uint32_t)(end_us - now_us), false);
-    }
-}
+void session_listen(session_t *session, uint32_t for_us) { channel_listen(&session->channel, for_us); }
 
 /* Its driver, from the beginning. */
 static bool begin(session_t *session)
@@ -151,7 +142,6 @@ static bool begin(session_t *session)
 
 bool session_open(session_t *session, const host_t *host)
 {
-    enum { LISTEN_US = 66000 };
     const port_options_t *const port = session_port(session);
     session->channel.echo = port->echo;
     session->channel.rs485 = port->rs485;
@@ -167,7 +157,7 @@ bool session_open(session_t *session, const host_t *host)
         return false;
     }
     /* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
-    if (session->channel.tcp == NULL) session_listen(session, LISTEN_US);
+    if (session->channel.tcp == NULL) channel_listen(&session->channel, CHANNEL_UNASKED_US);
     return true;
 }
 
