@@ -9,7 +9,7 @@
 static const command_t *const commands[] = {
     &scan_command,  &read_command,       &watch_command,     &info_command, &get_command,
     &set_command,   &commission_command, &calibrate_command, &save_command, &restore_command,
-    &reset_command, &decode_command,     &sim_command,
+    &reset_command, &request_command,    &decode_command,    &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

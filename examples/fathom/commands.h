@@ -16,6 +16,7 @@ extern const command_t calibrate_command;
 extern const command_t save_command;
 extern const command_t restore_command;
 extern const command_t reset_command;
+extern const command_t request_command;
 extern const command_t decode_command;
 extern const command_t sim_command;
 

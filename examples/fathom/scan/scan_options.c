@@ -202,13 +202,11 @@ bool scan_options(scan_options_t *options, int argc, char **argv)
     options->wake = values[WAKE] != NULL;
     options->estimate = values[ESTIMATE] != NULL;
     options->port = values[PORT];
-    if (options->port == NULL && !options->estimate)
-        (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
-    else if (options->port != NULL && strncmp(options->port, "tcp:", 4) == 0)
-        (void)usage_error(command, "it needs a serial port; the rates behind '%s' are the gateway's",
-                          options->port);
-    else
-        return true;
+    if (options->estimate && options->port == NULL) return true;
+    if (!option_port(command, options->port)) return false;
+    if (strncmp(options->port, "tcp:", 4) != 0) return true;
+    (void)usage_error(command, "it needs a serial port; the rates behind '%s' are the gateway's",
+                      options->port);
     return false;
 }
 

@@ -172,6 +172,15 @@ bool port_keys_option(port_keys_t *keys, const char *command, const char *name, 
     return false;
 }
 
+bool port_keys_line(port_keys_t *keys, const char *command, const char *baud, const char *stop_bits,
+                    const char *parity, const char *echo)
+{
+    return port_keys_option(keys, command, "baud", KEY_BAUD, baud) &&
+           port_keys_option(keys, command, "stop-bits", KEY_STOP_BITS, stop_bits) &&
+           port_keys_option(keys, command, "parity", KEY_PARITY, parity) &&
+           port_keys_option(keys, command, "echo", KEY_ECHO, echo);
+}
+
 bool port_keys_add(port_keys_t *keys, const char *command, const char *word, const port_keys_t *others)
 {
     for (size_t key = 0; key != PORT_KEYS; key++) {

@@ -100,10 +100,8 @@ static bool take_port(sensor_options_t *options, const char *command, station_t 
 static bool take_defaults(port_keys_t *keys, const char *command, const char *const *values)
 {
     const char *const rs485 = values[OPTION_RS485] != NULL ? "on" : NULL;
-    return port_keys_option(keys, command, "baud", KEY_BAUD, values[OPTION_BAUD]) &&
-           port_keys_option(keys, command, "stop-bits", KEY_STOP_BITS, values[OPTION_STOP_BITS]) &&
-           port_keys_option(keys, command, "parity", KEY_PARITY, values[OPTION_PARITY]) &&
-           port_keys_option(keys, command, "echo", KEY_ECHO, values[OPTION_ECHO]) &&
+    return port_keys_line(keys, command, values[OPTION_BAUD], values[OPTION_STOP_BITS], values[OPTION_PARITY],
+                          values[OPTION_ECHO]) &&
            port_keys_option(keys, command, "rs485", KEY_RS485, rs485);
 }
 
