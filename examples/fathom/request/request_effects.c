@@ -20,14 +20,23 @@ static void say(const char *format, ...)
 
 static bool may_be_dyp(const request_t *request) { return request->model == NULL || request->model->is_dyp; }
 
-/* A read of 0x0009 is command #6 of an HPS-167S; what it does with another count or function is not known. */
+/* What an HPS-167S is asked for by these, #3 and #5, is known; the range of each has 0x0009 in it. */
+static bool is_harmless(uint16_t first, uint16_t count)
+{
+    return (first == FATHOM_HPS167S_DETAILS && count == FATHOM_HPS167S_DETAILS_COUNT) ||
+           (first == FATHOM_HPS167S_MEASUREMENT && count == FATHOM_HPS167S_MEASUREMENT_COUNT);
+}
+
+/* A read of 0x0009 is its command #6. What it does with another count, from another register on or by function 4 is not
+ * in the datasheet. */
 static bool touches_reset(const request_t *request)
 {
     const uint8_t function = request->frame[REQUEST_FUNCTION];
+    const uint16_t first = request_word(request, REQUEST_FIRST);
+    const uint16_t count = request_word(request, REQUEST_COUNT);
     if (function != REQUEST_READ && function != REQUEST_READ_INPUT) return false;
-    const uint32_t first = request_word(request, REQUEST_FIRST);
-    return first <= FATHOM_HPS167S_RESET &&
-           first + request_word(request, REQUEST_COUNT) > FATHOM_HPS167S_RESET;
+    return first <= FATHOM_HPS167S_RESET && (uint32_t)first + count > FATHOM_HPS167S_RESET &&
+           !(function == REQUEST_READ && is_harmless(first, count));
 }
 
 /* What it sets, if one of the models is there. */
@@ -53,7 +62,8 @@ static void say_write(const request_t *request)
 {
     const uint8_t function = request->frame[REQUEST_FUNCTION];
     if (function == REQUEST_WRITE || function == REQUEST_WRITE_MANY) {
-        say("it writes: the unit may keep that in flash, which wears, and may move to another address or "
+        say("the request writes: the unit may keep that in flash, which wears, and may move to another "
+            "address or "
             "rate");
         return;
     }
