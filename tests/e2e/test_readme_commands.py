@@ -51,13 +51,13 @@ class Commands(e2e.Case):
         manual = text_of('examples/fathom/README.md')
         first = re.findall(r'^  (\w+) +\S', self.run_fathom('--help').out, re.M)
         commands = [name for name in first if name != 'fathom']
-        self.assertEqual(len(commands), 13, first)
+        self.assertEqual(len(commands), 14, first)
         explained = {'--help'}
         for command in commands:
             self.assertIn(f'`fathom {command}`', manual)
             explained |= set(re.findall(r'^ +(--[\w-]+)', self.run_fathom(command, '--help').out, re.M))
         self.assertGreater(len(explained), 30)
-        shown = set(re.findall(r'(?<![\w-])(--[a-z][\w-]+)', manual)) - {'--preset', '--build', '--yes'}
+        shown = set(re.findall(r'(?<![\w-])(--[a-z][\w-]+)', manual)) - {'--preset', '--build'}
         self.assertEqual(shown, explained)
 
     def test_a_command_that_is_wrong_would_be_seen(self):
