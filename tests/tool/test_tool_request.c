@@ -14,17 +14,19 @@ enum { CHARACTER_US = 1042, MOST = 256 };
 typedef struct {
     uint32_t now_us;
     uint32_t leaves_us; /* the end of the last request */
-    uint32_t delay_us;  /* from there to the first character of the answer, at its beginning */
+    uint32_t delay_us;  /* from there to the first character of the response, at its beginning */
     bool echoes;
     uint8_t sent[MOST]; /* by the tool, all of it */
     size_t sent_length;
     unsigned writes;
     uint8_t answer[MOST];
     size_t length;
-    uint8_t coming[2 * MOST]; /* echo and answer */
+    uint8_t coming[2 * MOST]; /* echo and response */
     uint32_t at_us[2 * MOST]; /* when each is there */
     size_t count;
     size_t taken;
+    bool babbles; /* a byte every 2 ms, less than the silence of 3.5 characters */
+    uint32_t babbled;
     tool_line_t tool;
 } far_end_t;
 
@@ -54,6 +56,10 @@ static int far_write(void *ctx, const uint8_t *bytes, size_t length)
 static int far_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     size_t n = 0;
+    if (far_end.babbles && far_end.now_us / 2000 != far_end.babbled) {
+        far_end.babbled = far_end.now_us / 2000;
+        bytes[n++] = 0x55;
+    }
     for (; n != capacity && far_end.taken != far_end.count && far_end.at_us[far_end.taken] <= far_end.now_us;
          n++)
         bytes[n] = far_end.coming[far_end.taken++];
@@ -66,7 +72,8 @@ static int far_set_line(void *ctx, const fathom_line_settings_t *settings) { ret
 
 static void far_idle(void *ctx, uint32_t max_us)
 {
-    uint32_t by_us = max_us < 10000 ? max_us : 10000;
+    const uint32_t most_us = far_end.babbles ? 2000 : 10000;
+    uint32_t by_us = max_us < most_us ? max_us : most_us;
     if (far_end.taken != far_end.count && far_end.at_us[far_end.taken] - far_end.now_us < by_us)
         by_us = far_end.at_us[far_end.taken] - far_end.now_us;
     far_end.now_us += by_us != 0 ? by_us : 1;
@@ -245,6 +252,7 @@ TEST(without_yes_nothing_dangerous_leaves)
         {"1 0x2b 0e 01 00", "function 43 (0x2B) is in none of the datasheets"},
         {"1 23 00 00 00 01 00 00 00 01 02 00 00", "function 23 (0x17) is in none"},
         {"1 10 02 05 00 01 02 00 00", "in hex: 0x10, which is 16"},
+        {"1 6 0x0015 0xFF", "hps167s: resets the device's settings"}, /* HPS-167S #13 */
         {"1 3 0x0009", "a read of 0x0009 resets"},
         {"1 3 8 2", "a read of 0x0009 resets"},
         {"1 3 0 10", "a read of 0x0009 resets"},
@@ -373,7 +381,8 @@ TEST(what_comes_back_is_told)
         /* refused */
         {"1 3 0x0101", "01 83 02 C0 F1", 1, "received  01 83 02 C0 F1\n",
          "unit 1 refused: exception 02 (illegal data address): it has no such register\n"},
-        {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "", "exception 02 (illegal data address): "},
+        {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "",
+         "it has no such register; HPS table 39: illegal start address or register address\n"},
         {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "no exceptions are in the datasheet of a16\n"},
         {"1 6 0x0200 5 --yes", "01 86 04 43 A3", 1, "", "exception 04 (server device failure): "},
         {"1 0x2b 0e 01 00 --yes", "01 AB 01 9E F0", 1, "", "exception 01 (illegal function): "},
@@ -438,6 +447,25 @@ TEST(the_user_can_end_it)
     far_end.tool.ctrl_c_us = 200000;
     far_run(1, "sent ", "fathom: ended before the response came\n", "1 3 0x0101");
     assert_in_range(far_end.now_us, 200000, 210000);
+}
+
+/* It waits for a silence for 10 s and twice the time-out. */
+TEST(a_line_that_is_never_silent_is_given_up)
+{
+    far_end.babbles = true;
+    far_run(1, "", "the line was not silent; nothing was sent\n", "1 3 0x0101");
+    assert_int_equal(far_end.writes, 0);
+    assert_in_range(far_end.now_us, 12000000, 12200000);
+}
+
+/* The RS232 variant sends every 100 ms until it is asked. */
+TEST(an_a16_that_sends_by_itself_is_asked_between_its_frames)
+{
+    bench.line.full_duplex = true;
+    bench_a16((fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO});
+    const tool_run_t *const run = tool_run(&bench.tool, "request 1 3 0x0101 --port line");
+    assert_int_equal(run->status, 0);
+    assert_non_null(strstr(run->out, "0x0101    unsigned  1234 "));
 }
 
 /* ---- echo ---- */

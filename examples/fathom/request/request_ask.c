@@ -34,17 +34,17 @@ static bool is_request(const fathom_transaction_t *transaction, const uint8_t *f
 static bool reads(uint8_t function) { return function >= READ_COILS && function <= REQUEST_READ_INPUT; }
 
 /* Is a response to it as long as its first bytes say? (MODBUS Application Protocol V1.1b3, 6) */
-static bool tells_length(uint8_t function)
+static bool has_known_length(uint8_t function)
 {
     return reads(function) || function == WRITE_COIL || function == REQUEST_WRITE ||
            function == WRITE_COILS || function == REQUEST_WRITE_MANY;
 }
 
-static uint8_t told_length_with_zero(const uint8_t *frame, uint8_t have)
+static uint8_t known_length_with_zero(const uint8_t *frame, uint8_t have)
 {
     if (have <= SIZE) return SIZE + 1;
     const uint8_t function = frame[FUNCTION] & (uint8_t)~FATHOM_MODBUS_EXCEPTION;
-    if (!tells_length(function)) return 0;
+    if (!has_known_length(function)) return 0;
     if (function != frame[FUNCTION]) return EXCEPTION_LENGTH;
     if (!reads(function)) return WRITE_LENGTH;
     const uint8_t size = frame[SIZE];
@@ -61,9 +61,9 @@ static uint8_t any_length_with_zero(const uint8_t *frame, uint8_t have)
 }
 
 /* Zeros are what noise is made of: frames of unit 0 are looked for where it may answer. */
-static uint8_t told_length(const uint8_t *frame, uint8_t have)
+static uint8_t known_length(const uint8_t *frame, uint8_t have)
 {
-    return frame[0] != 0 ? told_length_with_zero(frame, have) : 0;
+    return frame[0] != 0 ? known_length_with_zero(frame, have) : 0;
 }
 
 static uint8_t any_length(const uint8_t *frame, uint8_t have)
@@ -77,7 +77,7 @@ static bool fits(const request_t *request, const uint8_t *frame)
 {
     const uint8_t *const asked = request->frame;
     const uint8_t function = asked[FUNCTION];
-    if (!tells_length(function)) return true;
+    if (!has_known_length(function)) return true;
     if (!reads(function)) return memcmp(frame + FIRST, asked + FIRST, WRITE_LENGTH - 2 - FIRST) == 0;
     if (function >= REQUEST_READ) return frame[SIZE] == 2 * asked[COUNT];
     /* Coils: eight in a byte. The user has given the bytes of such a request, perhaps not these. */
@@ -99,10 +99,10 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
 
 static const fathom_protocol_t *protocol_of(const request_t *request)
 {
-    static const fathom_protocol_t told = {encode,         told_length, fathom_crc16, is_request,
-                                           parse_response, 0,           false};
-    static const fathom_protocol_t told_with_zero = {
-        encode, told_length_with_zero, fathom_crc16, is_request, parse_response, 0, true};
+    static const fathom_protocol_t known = {encode, known_length, fathom_crc16, is_request, parse_response,
+                                            0,      false};
+    static const fathom_protocol_t known_with_zero = {
+        encode, known_length_with_zero, fathom_crc16, is_request, parse_response, 0, true};
     static const fathom_protocol_t any = {encode,         any_length, fathom_crc16, is_request,
                                           parse_response, 0,          false};
     static const fathom_protocol_t any_with_zero = {
@@ -110,7 +110,7 @@ static const fathom_protocol_t *protocol_of(const request_t *request)
     const uint8_t unit = request->frame[REQUEST_UNIT];
     const bool has_zero =
         unit == FATHOM_MODBUS_ANY_UNIT || (unit == FATHOM_MODBUS_BROADCAST && !request_is_broadcast(request));
-    if (tells_length(request->frame[REQUEST_FUNCTION])) return has_zero ? &told_with_zero : &told;
+    if (has_known_length(request->frame[REQUEST_FUNCTION])) return has_zero ? &known_with_zero : &known;
     return has_zero ? &any_with_zero : &any;
 }
 
