@@ -361,6 +361,9 @@ TEST(registers_are_unsigned_signed_hex_and_text)
             "0x0101    unsigned 16706  signed  16706  hex 4142  ascii \"AB\"\n"
             "0x0102    unsigned 64036  signed  -1500  hex FA24\n",
             "", "1 3 0x0101 2");
+    far_answers("01 03 04 80 00 7F FF B3 83");
+    far_run(0, "unsigned 32768  signed -32768  hex 8000\n0x0102    unsigned 32767  signed  32767  hex 7FFF\n",
+            "", "1 3 0x0101 2");
     far_answers("01 03 02 22 5C A0 DD"); /* a quote and a backslash */
     far_run(0, "\"ascii\":\"\\\"\\\\\"}", "", "1 3 0x0101 --format json");
 }
@@ -406,6 +409,7 @@ TEST(what_comes_back_is_told)
          "unit 1 answered something else than was asked"},
         {"1 3 0x0101 2", "01 03 02 02 EF F8 A8", 1, "", "unit 1 answered something else than was asked"},
         {"1 6 0x0200 5 --yes", "01 06 02 05 00 01 59 B3", 1, "", "unit 1 answered something else"},
+        {"1 5 00 00 ff 00 --yes", "01 05 00 01 FF 00 DD FA", 1, "", "unit 1 answered something else"},
         /* no frame, and nothing */
         {"1 3 0x0101", "55 FE 80", 1, "heard     55 FE 80\n", "bytes were heard, but no Modbus frame; "},
         {"1 3 0x0101", "", 1, "sent      01 03 01 01 00 01 D4 36\n",
@@ -428,6 +432,23 @@ TEST(what_comes_back_is_told)
         far_run(rows[i].status, rows[i].out, rows[i].err, rows[i].line);
         assert_int_equal(far_end.writes, 1);
     }
+}
+
+TEST(only_the_sensor_that_was_named_and_could_be_there_is_guessed)
+{
+    far_answers("01 03 02 00 05 78 47");
+    const tool_run_t *run = tool_run(&far_end.tool, "request 1 3 0x0200 --sensor a05 --port line");
+    assert_non_null(strstr(run->out, "a05      0x0200 slave address: address 5\n"));
+    assert_null(strstr(run->out, "a16"));
+    run = tool_run(&far_end.tool, "request 1 6 0x0200 5 --sensor a05 --port line");
+    assert_non_null(strstr(run->err, "if it is a05: set 0x0200"));
+    assert_null(strstr(run->err, "if it is a16"));
+    run = tool_run(&far_end.tool, "request 255 6 0x0200 5 --port line");
+    assert_non_null(strstr(run->err, "if it is a16: set 0x0200"));
+    run = tool_run(&far_end.tool, "request 32 6 0x0016 5 --port line");
+    assert_non_null(strstr(run->err, "if it is hps167s: #14 filter sensitivity: filter sensitivity 5\n"));
+    run = tool_run(&far_end.tool, "request 33 6 0x0016 5 --port line"); /* beyond its addresses */
+    assert_null(strstr(run->err, "if it is"));
 }
 
 TEST(an_answer_after_the_time_out_is_none_and_the_time_out_is_kept)
@@ -492,6 +513,15 @@ TEST(an_echo_alone_is_no_answer)
         far_end.echoes = true;
         far_run(1, "heard ", "only the tool's own request came back", lines[i]);
     }
+}
+
+/* Whenever it comes: only what acknowledges 5 and 6, and perhaps another function, equals its request. */
+TEST(a_copy_of_what_is_acknowledged_otherwise_is_an_echo)
+{
+    far_answers("01 03 01 01 00 01 D4 36");
+    far_run(1, "heard ", "only the tool's own request came back", "1 3 0x0101");
+    far_answers("01 10 02 05 00 01 02 00 01 44 05");
+    far_run(1, "heard ", "only the tool's own request came back", "1 16 0x0205 1 --yes");
 }
 
 /* A copy is an acknowledgement or an echo. 8 characters leave in 8.3 ms; an adapter holds their echo back for up to

@@ -89,7 +89,6 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
     request_ask_t *const ask = (request_ask_t *)transaction;
     const uint8_t *const asked = ask->request->frame;
     const bool is_exception = frame[FUNCTION] == (asked[FUNCTION] | FATHOM_MODBUS_EXCEPTION);
-    if (frame[0] != asked[0] && asked[0] != FATHOM_MODBUS_ANY_UNIT) return FATHOM_PENDING;
     if (!is_exception && (frame[FUNCTION] != asked[FUNCTION] || !fits(ask->request, frame)))
         return FATHOM_ERR_MALFORMED;
     ask->length = transaction->protocol->length(frame, MAX_LENGTH);
