@@ -522,6 +522,9 @@ TEST(a_copy_of_what_is_acknowledged_otherwise_is_an_echo)
     far_run(1, "heard ", "only the tool's own request came back", "1 3 0x0101");
     far_answers("01 10 02 05 00 01 02 00 01 44 05");
     far_run(1, "heard ", "only the tool's own request came back", "1 16 0x0205 1 --yes");
+    /* this one has the shape of a response, of three bytes */
+    far_answers("01 03 03 01 00 01 D5 8E");
+    far_run(1, "heard ", "only the tool's own request came back", "1 3 0x0301");
 }
 
 /* A copy is an acknowledgement or an echo. 8 characters leave in 8.3 ms; an adapter holds their echo back for up to
