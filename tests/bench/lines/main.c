@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What it costs to read many lines, each with an HPS-167S that answers at once, by several ways of a program:
+ *
+ *     bench_lines ROUNDS WINDOW_MS PERIOD_MS LINES[,LINES...] [WAY ...]
+ *
+ * Prints one row of CSV a way and round; all ways take turns, so that what else the machine does meets each of them.
+ * Round 0 is for warming up. WAY: loop, every, libmodbus; none: all. Exit status 0, or 1 when a reading was wrong or a
+ * line could not be read, or 2 for wrong usage.
+ */
+#define _DEFAULT_SOURCE 1 /* getrusage */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "lines.h"
+
+enum { WARM_PERIODS = 3 };
+
+const fathom_line_settings_t lines_settings = {LINES_BAUD, FATHOM_PARITY_EVEN, 1};
+
+static const lines_way_t *const ways[] = {&lines_loop, &lines_libmodbus, &lines_every};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+uint64_t lines_now_us(void)
+{
+    struct timespec now = {0, 0};
+    (void)clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
+}
+
+uint32_t lines_first_us(const lines_job_t *job, unsigned n)
+{
+    return (uint32_t)((uint64_t)job->period_us * n / job->count);
+}
+
+uint32_t lines_warm_us(const lines_job_t *job) { return WARM_PERIODS * job->period_us; }
+
+static void one_more(uint32_t *count) { __atomic_store_n(count, *count + 1, __ATOMIC_RELAXED); }
+
+void lines_see(lines_seen_t *seen, unsigned distance_mm)
+{
+    const unsigned answer = distance_mm - LINES_FIRST_MM - seen->line * LINES_ANSWERS;
+    const bool is_right = answer < LINES_ANSWERS &&
+                          (seen->answer == LINES_ANSWERS || answer == (seen->answer + 1) % LINES_ANSWERS);
+    one_more(is_right ? &seen->right : &seen->wrong);
+    seen->answer = is_right ? answer : LINES_ANSWERS;
+}
+
+static uint64_t us_of(const struct timeval *time)
+{
+    return (uint64_t)time->tv_sec * 1000000u + (uint64_t)time->tv_usec;
+}
+
+void lines_mark(const lines_job_t *job, lines_mark_t *mark)
+{
+    struct rusage usage;
+    (void)getrusage(RUSAGE_SELF, &usage);
+    mark->time_us = lines_now_us();
+    mark->user_us = us_of(&usage.ru_utime);
+    mark->system_us = us_of(&usage.ru_stime);
+    mark->right = mark->wrong = 0;
+    for (unsigned n = 0; n != job->count; n++) {
+        mark->right += __atomic_load_n(&job->seen[n].right, __ATOMIC_RELAXED);
+        mark->wrong += __atomic_load_n(&job->seen[n].wrong, __ATOMIC_RELAXED);
+    }
+}
+
+/* One row. False: it could not be measured, or a reading was wrong. */
+static bool measure(lines_job_t *job, const lines_way_t *way, unsigned round)
+{
+    lines_mark_t marks[2] = {{0}, {0}};
+    for (unsigned n = 0; n != job->count; n++) job->seen[n] = (lines_seen_t){n, LINES_ANSWERS, 0, 0};
+    if (!way->run(job, marks)) {
+        (void)fprintf(stderr, "bench_lines: %s: a line could not be opened\n", way->name);
+        return false;
+    }
+    (void)printf("%u,%s,%u,%lu,%lu,%lu,%u,%u\n", job->count, way->name, round,
+                 (unsigned long)(marks[1].time_us - marks[0].time_us),
+                 (unsigned long)(marks[1].user_us - marks[0].user_us),
+                 (unsigned long)(marks[1].system_us - marks[0].system_us), marks[1].right - marks[0].right,
+                 marks[1].wrong);
+    return marks[1].wrong == 0 && marks[1].right != marks[0].right;
+}
+
+static bool is_named(const char *name, char **names)
+{
+    if (*names == NULL) return true;
+    while (*names != NULL && strcmp(*names, name) != 0) names++;
+    return *names != NULL;
+}
+
+int main(int argc, char **argv)
+{
+    static char paths[LINES_MOST][LINES_PATH];
+    static lines_job_t job = {.paths = paths};
+    if (argc < 5) return 2;
+    const unsigned rounds = (unsigned)atoi(argv[1]);
+    job.window_us = (uint32_t)atoi(argv[2]) * 1000u;
+    job.period_us = (uint32_t)atoi(argv[3]) * 1000u;
+    (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
+    if (!lines_begin_far_end(LINES_MOST, paths)) return 1;
+    (void)puts("lines,way,round,time_us,user_us,system_us,transactions,wrong");
+    bool is_right = true;
+    for (char *at = argv[4]; at != NULL && *at != '\0';) {
+        job.count = (unsigned)strtoul(at, &at, 10);
+        if (*at == ',') at++;
+        if (job.count == 0 || job.count > LINES_MOST) return 2;
+        for (unsigned round = 0; round <= rounds; round++)
+            for (unsigned i = 0; i != WAYS; i++)
+                if (is_named(ways[i]->name, argv + 5) && !measure(&job, ways[i], round)) is_right = false;
+    }
+    return is_right ? 0 : 1;
+}
