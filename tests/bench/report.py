@@ -165,8 +165,8 @@ def tables(figures, sizes):
             sizes_table(sizes, FOOTPRINTS))
 
 
-def pattern(name):
-    return re.compile(rf'(?s)(?<=<!-- {name}: kept by tests/bench/run.py --update -->\n).*?(?=<!-- end -->)')
+def pattern(name, keeper='run.py'):
+    return re.compile(rf'(?s)(?<=<!-- {name}: kept by tests/bench/{keeper} --update -->\n).*?(?=<!-- end -->)')
 
 
 def read(page):

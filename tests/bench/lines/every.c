@@ -43,7 +43,7 @@ static bool add(const lines_job_t *job, unsigned n)
     const fathom_hps167s_config_t config = {.modbus.transport = &at->modbus,
                                             .modbus.address = LINES_UNIT,
                                             .modbus.period_us = job->period_us,
-                                            .modbus.timeout_us = LINES_TIMEOUT_US};
+                                            .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};
     if (fathom_hps167s_init(&at->driver, &config) != FATHOM_READY) return false;
     sensors[n] = fathom_hps167s_sensor(&at->driver);
     return true;

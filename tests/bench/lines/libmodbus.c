@@ -44,8 +44,8 @@ static bool open_line(reader_t *reader, const char *path)
     reader->client = modbus_new_rtu(path, LINES_BAUD, 'E', 8, 1);
     if (reader->client == NULL) return false;
     if (modbus_set_slave(reader->client, LINES_UNIT) == 0 &&
-        modbus_set_response_timeout(reader->client, 0, LINES_TIMEOUT_US) == 0 &&
-        modbus_connect(reader->client) == 0)
+        modbus_set_response_timeout(reader->client, LINES_TIMEOUT_S, 0) == 0 &&
+        modbus_connect(reader->client) == 0 && modbus_flush(reader->client) >= 0)
         return true;
     modbus_free(reader->client);
     return false;

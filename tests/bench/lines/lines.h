@@ -11,7 +11,7 @@
 
 /* Many lines with an HPS-167S on each, read by several ways of a program; what they share. */
 
-enum { LINES_MOST = 256, LINES_PATH = 32, LINES_UNIT = 1, LINES_BAUD = 19200, LINES_TIMEOUT_US = 500000 };
+enum { LINES_MOST = 256, LINES_PATH = 32, LINES_UNIT = 1, LINES_BAUD = 19200, LINES_TIMEOUT_S = 2 };
 
 /* What is behind a pty answers at once. The distance tells which line it is and how many answers it has sent: two lines
  * that were mixed up and an answer that was lost or came twice are seen. */
@@ -25,9 +25,10 @@ typedef struct {
     uint32_t wrong;
 } lines_seen_t;
 
-/* One measurement: the lines are read once a period each, one after another as evenly as can be. */
+/* One measurement: each line is read once a period. */
 typedef struct {
     unsigned count;
+    bool is_spread; /* the lines begin one after another, evenly over the period; else all at once */
     uint32_t period_us;
     uint32_t window_us;        /* what is measured; it begins when all lines have been read a few times */
     char (*paths)[LINES_PATH]; /* of the ptys */

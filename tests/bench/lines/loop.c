@@ -18,7 +18,7 @@ static bool add(lines_job_t *job, unsigned n)
     fathom_hps167s_config_t config = {.modbus.transport = &lines[n].modbus,
                                       .modbus.address = LINES_UNIT,
                                       .modbus.period_us = job->period_us,
-                                      .modbus.timeout_us = LINES_TIMEOUT_US};
+                                      .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};
     if (fathom_loop_add_line(&loop, &lines[n], job->paths[n], &lines_settings) != FATHOM_POSIX_OK ||
         fathom_hps167s_init(&drivers[n], &config) != FATHOM_READY)
         return false;

@@ -2,11 +2,13 @@
 /*
  * What it costs to read many lines, each with an HPS-167S that answers at once, by several ways of a program:
  *
- *     bench_lines ROUNDS WINDOW_MS PERIOD_MS LINES[,LINES...] [WAY ...]
+ *     bench_lines together|spread ROUNDS WINDOW_MS PERIOD_MS LINES[,LINES...] [WAY ...]
  *
- * Prints one row of CSV a way and round; all ways take turns, so that what else the machine does meets each of them.
- * Round 0 is for warming up. WAY: loop, every, libmodbus; none: all. Exit status 0, or 1 when a reading was wrong or a
- * line could not be read, or 2 for wrong usage.
+ * together: all lines begin at once, as in a program that reads them all from its start on; spread: one after another,
+ * evenly over the period, so that hardly two of them are ever due at one time. Prints one row of CSV a way and round;
+ * the ways take turns, so that what else the machine does meets each of them. Round 0 is for warming up. WAY: loop,
+ * libmodbus, every; none: all. Exit status 0, or 1 when a reading was wrong or a line could not be read, or 2 for wrong
+ * usage.
  */
 #define _DEFAULT_SOURCE 1 /* getrusage */
 #include <stdio.h>
@@ -33,7 +35,7 @@ uint64_t lines_now_us(void)
 
 uint32_t lines_first_us(const lines_job_t *job, unsigned n)
 {
-    return (uint32_t)((uint64_t)job->period_us * n / job->count);
+    return job->is_spread ? (uint32_t)((uint64_t)job->period_us * n / job->count) : 0;
 }
 
 uint32_t lines_warm_us(const lines_job_t *job) { return WARM_PERIODS * job->period_us; }
@@ -92,25 +94,35 @@ static bool is_named(const char *name, char **names)
     return *names != NULL;
 }
 
+static bool measure_all(lines_job_t *job, unsigned rounds, char **names)
+{
+    bool is_right = true;
+    for (unsigned round = 0; round <= rounds; round++) {
+        for (unsigned i = 0; i != WAYS; i++) {
+            const lines_way_t *const way = ways[(i + round) % WAYS];
+            if (is_named(way->name, names) && !measure(job, way, round)) is_right = false;
+        }
+    }
+    return is_right;
+}
+
 int main(int argc, char **argv)
 {
     static char paths[LINES_MOST][LINES_PATH];
     static lines_job_t job = {.paths = paths};
-    if (argc < 5) return 2;
-    const unsigned rounds = (unsigned)atoi(argv[1]);
-    job.window_us = (uint32_t)atoi(argv[2]) * 1000u;
-    job.period_us = (uint32_t)atoi(argv[3]) * 1000u;
+    if (argc < 6) return 2;
+    const unsigned rounds = (unsigned)atoi(argv[2]);
+    job.is_spread = strcmp(argv[1], "spread") == 0;
+    job.window_us = (uint32_t)atoi(argv[3]) * 1000u;
+    job.period_us = (uint32_t)atoi(argv[4]) * 1000u;
     (void)setvbuf(stdout, NULL, _IOLBF, BUFSIZ);
     if (!lines_begin_far_end(LINES_MOST, paths)) return 1;
     (void)puts("lines,way,round,time_us,user_us,system_us,transactions,wrong");
     bool is_right = true;
-    for (char *at = argv[4]; at != NULL && *at != '\0';) {
+    for (char *at = argv[5]; *at != '\0'; at += *at == ',') {
         job.count = (unsigned)strtoul(at, &at, 10);
-        if (*at == ',') at++;
         if (job.count == 0 || job.count > LINES_MOST) return 2;
-        for (unsigned round = 0; round <= rounds; round++)
-            for (unsigned i = 0; i != WAYS; i++)
-                if (is_named(ways[i]->name, argv + 5) && !measure(&job, ways[i], round)) is_right = false;
+        if (!measure_all(&job, rounds, argv + 6)) is_right = false;
     }
     return is_right ? 0 : 1;
 }
