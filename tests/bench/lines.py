@@ -129,9 +129,10 @@ def page_table(table):
         share = float(row['median']) / found[row['begin'], int(row['lines']), 'libmodbus']
         lines.append(f'| {row["begin"]} | {row["lines"]} | {WHATS[row["way"]]} | {row["median"]} us | '
                      f'{row["least"]} to {row["most"]} | {share:.2f} | {row["calls"] or "–"} |')
-    said = (f'{what} {figure:.2f}{"" if figure <= bound else ", over"} ({bound})'
-            for what, figure, bound in verdicts(table))
-    return '\n'.join(lines) + '\n\nBounds in brackets: ' + '; '.join(said) + '.\n'
+    lines += ['', '| bounds | measured | at most |', '|---|---|---|']
+    lines += [f'| {what} | {figure:.2f}{"" if figure <= bound else ", over"} | {bound} |'
+              for what, figure, bound in verdicts(table)]
+    return '\n'.join(lines) + '\n'
 
 
 def machine():

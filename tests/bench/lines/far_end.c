@@ -13,14 +13,14 @@
 #include "fathom/codec/crc16.h"
 #include "lines.h"
 
-/* A unit that answers one request, at once. What it costs is no part of what is measured, but takes time of the
+/* A unit that responds to one request, at once. What it costs is no part of what is measured, but takes time of the
  * machine: it is as little as can be. */
 
 enum { REQUEST = 8, RESPONSE = 13, EVENTS = 64 };
 
 typedef struct {
     int master;
-    unsigned answer;
+    unsigned number;
     size_t have;
     uint8_t bytes[REQUEST];
 } end_t;
@@ -50,15 +50,15 @@ static bool open_pty(end_t *end, char *path)
 }
 
 /* Datasheet, command #5: distance, magnitude, its exponent and the ambient light, precision. */
-static void answer(end_t *end, unsigned line)
+static void respond(end_t *end, unsigned line)
 {
-    const unsigned distance_mm = LINES_FIRST_MM + line * LINES_ANSWERS + end->answer;
+    const unsigned distance_mm = LINES_FIRST_MM + line * LINES_RESPONSES + end->number;
     uint8_t frame[RESPONSE] = {
         LINES_UNIT, 3, 8, (uint8_t)(distance_mm >> 8), (uint8_t)distance_mm, 0x16, 0x2E, 0, 1, 0, 5};
-    end->answer = (end->answer + 1) % LINES_ANSWERS;
+    end->number = (end->number + 1) % LINES_RESPONSES;
     const size_t length = with_crc(frame, RESPONSE - 2);
     if (write(end->master, frame, length) != (ssize_t)length)
-        (void)fputs("bench_lines: an answer got stuck\n", stderr);
+        (void)fputs("bench_lines: a response got stuck\n", stderr);
 }
 
 static void serve(int epoll_fd)
@@ -76,7 +76,7 @@ static void serve(int epoll_fd)
             if (n > 0) end->have += (size_t)n;
             if (end->have != REQUEST) continue;
             end->have = 0;
-            if (memcmp(end->bytes, request, REQUEST) == 0) answer(end, (unsigned)(end - ends));
+            if (memcmp(end->bytes, request, REQUEST) == 0) respond(end, (unsigned)(end - ends));
         }
     }
 }

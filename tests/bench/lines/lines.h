@@ -13,14 +13,14 @@
 
 enum { LINES_MOST = 256, LINES_PATH = 32, LINES_UNIT = 1, LINES_BAUD = 19200, LINES_TIMEOUT_S = 2 };
 
-/* What is behind a pty answers at once. The distance tells which line it is and how many answers it has sent: two lines
- * that were mixed up and an answer that was lost or came twice are seen. */
-enum { LINES_FIRST_MM = 1000, LINES_ANSWERS = 16 };
+/* What is behind a pty responds at once. The distance tells which line it is and how many responses it has sent: two
+ * lines that were mixed up, and a response that was lost or came twice, are seen. */
+enum { LINES_FIRST_MM = 1000, LINES_RESPONSES = 16 };
 
 /* What was read on a line. Its reader writes it, and another thread may look at it. */
 typedef struct {
     unsigned line;
-    unsigned answer; /* the last one; LINES_ANSWERS: none yet */
+    unsigned number; /* of the last one; LINES_RESPONSES: none yet */
     uint32_t right;
     uint32_t wrong;
 } lines_seen_t;

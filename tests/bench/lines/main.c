@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What it costs to read many lines, each with an HPS-167S that answers at once, by several ways of a program:
+ * What it costs to read many lines, each with an HPS-167S that responds at once, by several ways of a program:
  *
  *     bench_lines together|spread ROUNDS WINDOW_MS PERIOD_MS LINES[,LINES...] [WAY ...]
  *
@@ -44,11 +44,11 @@ static void one_more(uint32_t *count) { __atomic_store_n(count, *count + 1, __AT
 
 void lines_see(lines_seen_t *seen, unsigned distance_mm)
 {
-    const unsigned answer = distance_mm - LINES_FIRST_MM - seen->line * LINES_ANSWERS;
-    const bool is_right = answer < LINES_ANSWERS &&
-                          (seen->answer == LINES_ANSWERS || answer == (seen->answer + 1) % LINES_ANSWERS);
+    const unsigned number = distance_mm - LINES_FIRST_MM - seen->line * LINES_RESPONSES;
+    const bool is_right = number < LINES_RESPONSES &&
+                          (seen->number == LINES_RESPONSES || number == (seen->number + 1) % LINES_RESPONSES);
     one_more(is_right ? &seen->right : &seen->wrong);
-    seen->answer = is_right ? answer : LINES_ANSWERS;
+    seen->number = is_right ? number : LINES_RESPONSES;
 }
 
 static uint64_t us_of(const struct timeval *time)
@@ -74,7 +74,7 @@ void lines_mark(const lines_job_t *job, lines_mark_t *mark)
 static bool measure(lines_job_t *job, const lines_way_t *way, unsigned round)
 {
     lines_mark_t marks[2] = {{0}, {0}};
-    for (unsigned n = 0; n != job->count; n++) job->seen[n] = (lines_seen_t){n, LINES_ANSWERS, 0, 0};
+    for (unsigned n = 0; n != job->count; n++) job->seen[n] = (lines_seen_t){n, LINES_RESPONSES, 0, 0};
     if (!way->run(job, marks)) {
         (void)fprintf(stderr, "bench_lines: %s: a line could not be opened\n", way->name);
         return false;
