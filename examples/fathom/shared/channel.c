@@ -102,9 +102,9 @@ void channel_listen(channel_t *channel, uint32_t for_us)
 {
     const host_t *const host = channel->host;
     const uint64_t end_us = host->now_us(host->ctx) + for_us;
-    for (uint64_t now_us; (now_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
+    for (uint64_t at_us; (at_us = host->now_us(host->ctx)) < end_us && !host->has_ended(host->ctx);) {
         if (fathom_line_poll(&channel->line) < 0) return;
-        host->wait(host->ctx, &channel->port, (uint32_t)(end_us - now_us), false);
+        host->wait(host->ctx, &channel->port, (uint32_t)(end_us - at_us), false);
     }
 }
 
