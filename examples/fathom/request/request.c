@@ -33,6 +33,7 @@ static void help(FILE *to)
         "The "
         "response\n"
         "                    to 5 or 6 equals its request: only on or off tells it from an echo for sure\n"
+        "  --rs485           the kernel's driver drives the transceiver: RTS is on while bytes leave\n"
         "  --format FORMAT   text (default) or json, an object\n"
         "  --yes             sends it although it writes, has a function but 1 to 4, goes to unit 0 or 255, "
         "or "
@@ -90,6 +91,7 @@ static int run(const host_t *host, int argc, char **argv)
         return usage_error("request", "nothing was sent; --yes sends it all the same");
     memset(&channel, 0, sizeof channel);
     channel.echo = request.echo;
+    channel.rs485 = request.rs485;
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     if (!channel_open(&channel, host, request.path, &request.line)) {
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&channel.port));

@@ -13,7 +13,7 @@
 
 static const char command[] = "request";
 
-enum { PORT, SENSOR, BAUD, PARITY, STOP_BITS, TIMEOUT, ECHO, FORMAT, YES, HELP, OPTIONS };
+enum { PORT, SENSOR, BAUD, PARITY, STOP_BITS, TIMEOUT, ECHO, RS485, FORMAT, YES, HELP, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
     [PORT] = {"port", required_argument, NULL, OPTION_ONCE},
@@ -23,6 +23,7 @@ static const struct option table[OPTIONS + 1] = {
     [STOP_BITS] = {"stop-bits", required_argument, NULL, 256},
     [TIMEOUT] = {"timeout", required_argument, NULL, 256},
     [ECHO] = {"echo", required_argument, NULL, 256},
+    [RS485] = {"rs485", no_argument, NULL, 256},
     [FORMAT] = {"format", required_argument, NULL, 256},
     [YES] = {"yes", no_argument, NULL, 256},
     [HELP] = {"help", no_argument, NULL, 256},
@@ -223,7 +224,8 @@ static bool take_options(request_t *request, const char *const *values)
         request->line = request->model->line;
     }
     if (!option_port(command, port.path) ||
-        !port_keys_line(&keys, command, values[BAUD], values[STOP_BITS], values[PARITY], values[ECHO]) ||
+        !port_keys_line(&keys, command, values[BAUD], values[STOP_BITS], values[PARITY], values[ECHO],
+                        values[RS485]) ||
         !option_number(command, "timeout", values[TIMEOUT], 1, MAX_TIMEOUT_MS, &timeout_ms) ||
         !option_json(command, values[FORMAT], &request->is_json))
         return false;
@@ -232,6 +234,7 @@ static bool take_options(request_t *request, const char *const *values)
     port_options_take(&port, &keys);
     request->path = port.path;
     request->echo = port.echo;
+    request->rs485 = port.rs485;
     request->is_meant = values[YES] != NULL;
     return true;
 }

@@ -16,6 +16,7 @@ typedef struct {
     fathom_line_settings_t line;
     uint32_t timeout_us;
     uint8_t echo; /* fathom_line_config_t.echo */
+    bool rs485;   /* the kernel's driver is to drive the transceiver */
     bool is_json;
     bool is_meant;      /* --yes */
     uint8_t frame[255]; /* with its CRC */

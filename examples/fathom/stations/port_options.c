@@ -173,12 +173,13 @@ bool port_keys_option(port_keys_t *keys, const char *command, const char *name, 
 }
 
 bool port_keys_line(port_keys_t *keys, const char *command, const char *baud, const char *stop_bits,
-                    const char *parity, const char *echo)
+                    const char *parity, const char *echo, const char *rs485)
 {
     return port_keys_option(keys, command, "baud", KEY_BAUD, baud) &&
            port_keys_option(keys, command, "stop-bits", KEY_STOP_BITS, stop_bits) &&
            port_keys_option(keys, command, "parity", KEY_PARITY, parity) &&
-           port_keys_option(keys, command, "echo", KEY_ECHO, echo);
+           port_keys_option(keys, command, "echo", KEY_ECHO, echo) &&
+           port_keys_option(keys, command, "rs485", KEY_RS485, rs485 != NULL ? "on" : NULL);
 }
 
 bool port_keys_add(port_keys_t *keys, const char *command, const char *word, const port_keys_t *others)

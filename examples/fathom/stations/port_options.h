@@ -57,9 +57,9 @@ bool port_keys_parse(port_keys_t *keys, const char *command, const char *word, p
 bool port_keys_option(port_keys_t *keys, const char *command, const char *name, port_key_t key,
                       const char *text);
 
-/* The same for --baud, --stop-bits, --parity and --echo. */
+/* The same for --baud, --stop-bits, --parity, --echo and --rs485, which has no value. */
 bool port_keys_line(port_keys_t *keys, const char *command, const char *baud, const char *stop_bits,
-                    const char *parity, const char *echo);
+                    const char *parity, const char *echo, const char *rs485);
 
 /* Adds those of another sensor at this port. False after a usage error: they do not agree. */
 bool port_keys_add(port_keys_t *keys, const char *command, const char *word, const port_keys_t *others);

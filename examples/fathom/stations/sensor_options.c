@@ -96,15 +96,6 @@ static bool take_port(sensor_options_t *options, const char *command, station_t 
     return port_keys_add(&port->keys, command, place->word, &place->keys);
 }
 
-/* What the options say of all ttys whose own keys do not. */
-static bool take_defaults(port_keys_t *keys, const char *command, const char *const *values)
-{
-    const char *const rs485 = values[OPTION_RS485] != NULL ? "on" : NULL;
-    return port_keys_line(keys, command, values[OPTION_BAUD], values[OPTION_STOP_BITS], values[OPTION_PARITY],
-                          values[OPTION_ECHO]) &&
-           port_keys_option(keys, command, "rs485", KEY_RS485, rs485);
-}
-
 static void take_lines(sensor_options_t *options, const port_keys_t *defaults)
 {
     for (size_t i = 0; i != options->station_count; i++) {
@@ -123,8 +114,10 @@ static void take_lines(sensor_options_t *options, const port_keys_t *defaults)
 
 static bool take_ports(sensor_options_t *options, const char *command, const char *const *values)
 {
-    port_keys_t defaults = {.given = 0};
-    if (!take_defaults(&defaults, command, values)) return false;
+    port_keys_t defaults = {.given = 0}; /* of all ttys whose own keys say nothing else */
+    if (!port_keys_line(&defaults, command, values[OPTION_BAUD], values[OPTION_STOP_BITS],
+                        values[OPTION_PARITY], values[OPTION_ECHO], values[OPTION_RS485]))
+        return false;
     take_lines(options, &defaults);
     for (size_t i = 0; i != options->port_count; i++) {
         port_options_take(&options->ports[i], &defaults);
