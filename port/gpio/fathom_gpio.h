@@ -27,8 +27,8 @@ extern "C" {
  *     config.pulse.trigger = fathom_output_pin(&trigger_pin);
  *     config.pulse.capture = &capture;
  *
- * Voltage: the pins of most boards take 3.3 V and no more; an A16 or A05 that runs from 5 V may drive 5 V. Mind the
- * datasheet of both.
+ * Voltage: the pins of most boards take 3.3 V and no more. An A16's TX is 3 V when it is high, and its RX stands 5 V
+ * (A16 1, remark); a relay's contact goes to ground or to 3.3 V, never to 5 V.
  *
  * How exact a width is depends on how soon the kernel's interrupt handler runs after each edge: on the processor's load,
  * its sleep states, and the driver of the chip (one behind I2C or USB stamps milliseconds late). Measure it on the board:
@@ -41,7 +41,8 @@ extern "C" {
  * Memory: all is the caller's, may not be moved while it is open, and nothing is allocated. One thread at a time. Nothing
  * waits. It needs port/posix beside it.
  *
- * What has run: all of it, on system calls that tests stand in for. It has never run on a board.
+ * What has run: all of it, on system calls that tests stand in for, and on a PL061 in QEMU, by Debian's kernel for arm64.
+ * It has never run on a board.
  */
 enum { FATHOM_GPIO_QUEUE = 64 };
 
@@ -83,12 +84,12 @@ typedef struct {
     uint32_t events;      /* edges that were read; wraps */
     uint32_t lost_events; /* that the kernel's queue had no room for; wraps */
     fathom_gpio_status_t error;
-    char path[64]; /* for messages */
+    char path[128];
     char text[320];
 } fathom_gpio_t;
 
 /*
- * chip: "gpiochip0", or a path; used during the call only. line: its number on the chip ("GPIO17" of a Raspberry Pi is
+ * chip: "gpiochip0", or a path of up to 127 characters; used during the call only. line: its number on the chip ("GPIO17" of a Raspberry Pi is
  * line 17 of gpiochip0, or of gpiochip4 on early kernels of a Pi 5). The line is taken for this program alone, and given
  * back by fathom_gpio_close; what an output does then is the driver's: mostly it keeps its level.
  *

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <poll.h>
 #include <string.h>
 
 #include "internal/posix_loop.h"
@@ -133,9 +134,18 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
 
 static int pin_fd(const fathom_loop_source_t *source) { return ((const fathom_loop_pin_t *)source)->fd; }
 
+/* Its chip may have gone, which a level does not tell. */
+static bool open_pin(fathom_loop_source_t *source)
+{
+    struct pollfd entry = {pin_fd(source), POLLIN, 0};
+    return poll(&entry, 1, 0) <= 0 || (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
+}
+
+static bool poll_pin(fathom_loop_source_t *source) { return !source->is_hung_up; }
+
 void fathom_loop_add_pin(fathom_loop_t *loop, fathom_loop_pin_t *pin, int fd)
 {
-    static const fathom_loop_kind_t kind = {.fd = pin_fd};
+    static const fathom_loop_kind_t kind = {.open = open_pin, .fd = pin_fd, .poll = poll_pin};
     if (fathom_loop_has(loop, &pin->source)) return;
     memset(pin, 0, sizeof *pin);
     pin->source.kind = &kind;

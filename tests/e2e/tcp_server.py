@@ -57,6 +57,16 @@ class Case(e2e.Case):
         self.addCleanup(server.close)
         return server
 
+    def full(self):
+        """A server whose queue is full: what connects now hears nothing."""
+        server = self.server(backlog=0)
+        for _ in range(4):
+            waiting = socket.socket()
+            self.addCleanup(waiting.close)
+            waiting.setblocking(False)
+            waiting.connect_ex(('127.0.0.1', server.number))
+        return str(server)
+
 
 def adu(transaction, unit, *pdu):
     """MODBUS Messaging on TCP/IP V1.0b, 3.1.3."""

@@ -32,10 +32,17 @@ class Commands(e2e.Case):
             self.assertNotEqual(done.code, 2, done.err)
             self.assertEqual(done.code == 0, 'C8' not in words, done.out)  # C5 C8 is the datasheet's misprint
         else:
-            at = words.index('--port') + 1
             waits = '--reconnect' in words  # for the port
-            words = [*words[:at], self.path('none'), *words[at + 1:], *(['--duration', '1'] if waits else [])]
-            self.ends(words, 0 if waits else 1, self.path('none'))
+            self.ends([*self.at_no_port(words), *(['--duration', '1'] if waits else [])], 0 if waits else 1,
+                      self.path('none'))
+
+    def at_no_port(self, words):
+        """Each port, behind --port and behind @, is one that is not there."""
+        none = self.path('none')
+        there = [none if before == '--port' else re.sub('@[^,]+', f'@{none}{number}', word)
+                 for number, (before, word) in enumerate(zip(['', *words], words))]
+        self.assertNotEqual(there, words)
+        return there
 
     @e2e.each(those_of_the_first_page=('README.md', BLOCK, 1, 1),
               those_of_the_manual=('examples/fathom/README.md', BLOCK, 14, 20),

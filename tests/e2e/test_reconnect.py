@@ -65,7 +65,7 @@ class Plug(e2e.Case):
         self.send(device, reader, 2)
         self.pull(device, reader)
         time.sleep(0.6)  # longer than the time-out: it would be stale
-        self.send(self.plug_in(), reader, 4)
+        self.send(self.plug_in(), reader, 99)  # to its end
         done = self.ends(reader, 1, 'attempts 4, failed 1, readings 3\n')
         self.assertEqual(set(done.mm), {'1953'})
         self.assertNotIn('nothing was heard', done.err)
@@ -128,7 +128,7 @@ class Plug(e2e.Case):
         time.sleep(2)
         done = reader.end()
         self.assertLess(done.cpu, e2e.LITTLE)
-        self.assertEqual(len(done.err.splitlines()), 3, done.err)  # the loss, and two of counters
+        self.assertEqual(len(done.err.splitlines()), 1, done.err)  # the loss
 
     def test_a_port_that_opens_and_is_lost_at_once_is_not_tried_without_a_pause(self):
         """The link shows a port that hangs up as soon as it was opened: a failed attempt each time, not

@@ -113,7 +113,7 @@ class Files(e2e.Case):
         with open(self.path(name), encoding='ascii') as file:
             return file.read()
 
-    def test_no_row_is_lost_or_torn_at_midnight_and_each_is_in_the_file_of_its_day(self):
+    def test_no_row_is_lost_or_truncated_at_midnight_and_each_is_in_the_file_of_its_day(self):
         sim = self.sim('hps167s:7 --distance 2083')
         os.mkdir(self.path('a.b'))
         for _ in range(2):  # 54 a second, so some on both sides; the second run adds to the files of the first

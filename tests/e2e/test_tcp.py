@@ -56,16 +56,6 @@ class NoConnection(Case):
     def nowhere(self, port, words, more=''):
         self.fails(port, f'{port}: {words}', more)
 
-    def full(self):
-        """A server whose queue is full: what connects now hears nothing."""
-        server = self.server(backlog=0)
-        for _ in range(4):
-            waiting = socket.socket()
-            self.addCleanup(waiting.close)
-            waiting.setblocking(False)
-            waiting.connect_ex(('127.0.0.1', server.number))
-        return str(server)
-
     def test_no_response_to_the_connection_is_given_up_after_5_seconds(self):
         done = self.fails(self.full(), ': Connection timed out: nothing answers at this address')
         self.assertTrue(5 <= done.elapsed < 15, done.elapsed)

@@ -295,11 +295,11 @@ class Help(e2e.Case):
 
     @e2e.each(
         help_of_read_names_sensors_options_and_examples=(
-            'read', 'a16 a05 hps167s --port --mode --address --baud --parity --stop-bits --count --interval --timeout '
+            'read', '[NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... a16 a05 hps167s --port --rs485 --mode --address --baud --parity --stop-bits --count --interval --timeout '
                     '--retries '
             '--value --window --means --probes --first-register --temperature[=S] --median --gate --level --alarm --until-alarm --format --reconnect --echo --stats[=SECONDS] examples:', '19200 8E1'),
         help_names_what_is_to_be_seen=(
-            'watch', '--port --interval --duration --reconnect --value --window NO_COLOR examples:', 'x no response'),
+            'watch', '[NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... --port --rs485 --interval --duration --reconnect --value --window NO_COLOR examples:', 'x no response'),
         the_help_names_every_option_and_its_examples_are_right_usage=(
             'scan', '--port --address --baud --parity --stop-bits --timeout --retries --listen --wake --estimate '
                     '--format '
@@ -316,7 +316,7 @@ class Help(e2e.Case):
     def test_help_wins_over_what_is_missing(self):
         self.assertEqual(self.told('read a17 --help'), self.told('read --help'))
 
-    @e2e.each(each_example_of_the_help_is_right_usage=('read', 11, 'sim'),
+    @e2e.each(each_example_of_the_help_is_right_usage=('read', 12, 'sim'),
               each_example_of_the_help_of_scan_is_right_usage=('scan', 3),
               each_example_of_the_help_of_watch_is_right_usage=('watch', 3))
     def examples(self, command, count, *more_pages):

@@ -231,6 +231,17 @@ class End(Case):
         self.assertNotIn('keys', it.screen.main)
         self.assertRegex(it.screen.main, r'^fathom: attempts \d+, failed 0, readings \d+\r\n')
 
+    @e2e.each(q='q', a_big_q_among_others='some keys and Q and more')
+    def key(self, keys):
+        sim = self.sim('hps167s --distance 2500')
+        it = self.watch(f'hps167s --port {sim}')
+        it.wait(lambda screen: FULL in screen.text() and 'q or Ctrl-C ends' in screen.line(0))
+        it.type(b'wetyuiop')
+        it.changes()
+        it.type(keys.encode())
+        self.ends(it)
+        self.assertNotIn('keys', it.screen.main)
+
     @e2e.each(**{f'signals_{number.name}': number
                  for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)})
     def signals(self, number):
@@ -278,6 +289,44 @@ class End(Case):
         it.type(b'\x03')
         it.finish()
         self.assert_given_back(it)
+
+
+class Ports(Case):
+    """Several ports in one picture."""
+
+    def begin(self, options=''):
+        self.link = self.path('lost')
+        lost = self.sim(f'hps167s --distance 2500 --link {self.link}')
+        fine = self.sim('hps167s --distance 2000')
+        it = self.watch(f'lost=hps167s@{self.link} fine=hps167s@{fine} {options}')
+        it.wait(lambda screen: FULL in screen.text() and FULL in foot_of(screen, 'lost') and
+                FULL in foot_of(screen, 'fine'))
+        self.assertRegex(it.screen.line(0), rf'^fathom watch lost, {os.path.basename(str(fine))}   00:00:\d\d   '
+                         'q or Ctrl-C ends$')
+        return lost, it
+
+    def test_a_lost_port_marks_its_lanes_only(self):
+        lost, it = self.begin('--reconnect')
+        lost.end()
+        it.wait(lambda screen: re.search(r'(?m)^lost +port lost ', screen.text()) and
+                'P' in foot_of(screen, 'lost') and 'waiting until it is back' in screen.text())
+        for _ in range(8):
+            it.changes()
+        self.assertRegex(it.screen.text(), r'(?m)^fine +2\.000 m .* lost 0 of ')
+        self.assertNotIn('P', foot_of(it.screen, 'fine'))
+        self.sim(f'hps167s --distance 1500 --link {self.link}')
+        it.wait(lambda screen: re.search(r'(?m)^lost +1\.500 m ', screen.text()))
+        it.type(b'q')
+        self.ends(it, 1)
+
+    def test_what_was_said_of_a_lost_port_stands_there_after_the_end(self):
+        lost, it = self.begin()
+        lost.end()
+        it.wait(lambda screen: re.search(r'(?m)^lost +port lost ', screen.text()))
+        it.type(b'q')
+        self.ends(it, 1)
+        self.assertIn(f'fathom: {self.link}: ', it.screen.main)
+        self.assertIn('connect it again and start again', it.screen.main)
 
 
 class Lines(Case):

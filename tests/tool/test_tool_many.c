@@ -127,7 +127,7 @@ TEST(one_is_lost_and_comes_back_one_is_silent_and_the_third_does_not_pause)
 {
     three();
     RUN(1, "read lost=hps167s@p0 mute=hps167s@p1 fine=hps167s@p2 --interval 500 --timeout 100 --duration 10 "
-           "--reconnect");
+           "--reconnect --stats");
     const readings_t fine = readings_of(run, "fine");
     const readings_t lost = readings_of(run, "lost");
     assert_int_equal(fine.count, 20);
@@ -135,9 +135,9 @@ TEST(one_is_lost_and_comes_back_one_is_silent_and_the_third_does_not_pause)
     assert_int_equal(lost.count, 5 + 9);
     assert_true(lost.longest_s > 3.690 && lost.longest_s < 3.710); /* from 2.0 to 5.7 s */
     assert_int_equal(readings_of(run, "mute").count, 0);
-    expect_err(run, "fathom: lost: attempts 15, failed 1, readings 14\n");
+    expect_err(run, "fathom: lost: attempts 15, failed 1, readings 14,");
     expect_err(run, "fathom: mute: attempts 20, failed 20, readings 0");
-    expect_err(run, "fathom: fine: attempts 20, failed 0, readings 20\n");
+    expect_err(run, "fathom: fine: attempts 20, failed 0, readings 20,");
     assert_int_equal(times(run->err, "p0: unplugged; waiting until it is back\n"), 1);
     assert_int_equal(times(run->err, "fathom: p0: it is back; reading goes on\n"), 1);
     assert_int_equal(times(run->err, "p0: "), 2);
@@ -145,15 +145,44 @@ TEST(one_is_lost_and_comes_back_one_is_silent_and_the_third_does_not_pause)
     expect_err(run, "fathom: mute: attempt 20: no response from address 1");
 }
 
+/* Rows of csv that begin with the name and have this status. */
+static unsigned rows_of(const tool_run_t *run, const char *name, const char *status)
+{
+    unsigned count = 0;
+    for (const char *line = run->out; *line != '\0'; line = strchr(line, '\n') + 1) {
+        const char *const found = strstr(line, status);
+        if (strncmp(line, name, strlen(name)) == 0 && found != NULL && found < strchr(line, '\n')) count++;
+    }
+    return count;
+}
+
+/* As above; a row for the loss, and one for each try in vain, at 2.7 and 3.7 s, of each sensor at that port. */
+TEST(an_outage_is_rows_and_a_quiet_one_is_no_more)
+{
+    three();
+    fathom_sim_hps167s_init(&many.hps167s[1], &(fathom_sim_hps167s_config_t){
+                                                  .address = 2, .scene = fathom_sim_fixed(&many.scene)});
+    fathom_sim_attach(&many.lines[0], &many.hps167s[1].device, many.clock.now_us);
+    RUN(1, "read lost=hps167s@p0 both=hps167s:2@p0 mute=hps167s@p1 fine=hps167s@p2 --interval 500 "
+           "--timeout 100 --duration 10 --reconnect --quiet --format csv");
+    assert_int_equal(rows_of(run, "lost,", ",target,"), 5 + 9);
+    assert_int_equal(rows_of(run, "lost,", "Z,port,,,,,,\n"), 3);
+    assert_int_equal(rows_of(run, "both,", ",port,"), 3);
+    assert_int_equal(rows_of(run, "mute,", ",no_response,"), 20);
+    assert_int_equal(rows_of(run, "fine,", ",target,"), 20);
+    assert_int_equal(times(run->out, "\n"), 1 + 14 + 3 + 14 + 3 + 20 + 20);
+    assert_string_equal(run->err, "");
+}
+
 TEST(without_reconnect_the_others_are_read_to_their_end)
 {
     three();
-    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 12");
+    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 12 --stats");
     assert_int_equal(readings_of(run, "lost").count, 5);
     assert_int_equal(readings_of(run, "fine").count, 12);
     expect_err(run, "p0: unplugged; connect it again and start again (with --reconnect it is waited for)\n");
-    expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5\n");
-    expect_err(run, "fathom: fine: attempts 12, failed 0, readings 12\n");
+    expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5,");
+    expect_err(run, "fathom: fine: attempts 12, failed 0, readings 12,");
     assert_in_range(run->took_us, 5500000, 5600000); /* 11 intervals, and a response */
 }
 
@@ -197,9 +226,9 @@ TEST(a_port_that_is_not_there_is_said_and_the_others_are_read)
 {
     three();
     away(0, 0, 3000000);
-    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 4");
+    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 4 --stats");
     expect_err(run, "fathom: p0: no such device\n");
-    expect_err(run, "fathom: lost: attempts 0, failed 0, readings 0\n");
+    expect_err(run, "fathom: lost: attempts 0, failed 0, readings 0,");
     assert_int_equal(readings_of(run, "fine").count, 4);
 }
 
@@ -226,6 +255,22 @@ TEST(a_port_that_is_not_there_yet_is_waited_for)
     expect_err(run, "fathom: p0: no such device; waiting until it is there\n");
     expect_err(run, "fathom: p0: it is there; reading begins\n");
     expect_err(run, "reconnects 0\n");
+}
+
+/* It has said nothing, and is forgiven; one whose port is there is not. */
+TEST(a_port_that_never_comes_is_no_failure_when_the_time_is_over)
+{
+    three();
+    away(0, 0, 9000000);
+    RUN(0, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --reconnect --duration 2");
+    assert_int_equal(readings_of(run, "fine").count, 4); /* at 0, 0.5, 1 and 1.5 s */
+}
+
+TEST(one_whose_port_is_there_and_that_says_nothing_is_a_failure_when_the_time_is_over)
+{
+    three();
+    RUN(1, "read mute=a16:auto@p1 fine=hps167s@p2 --interval 500 --reconnect --duration 2");
+    assert_string_equal(run->err, "");
 }
 
 TEST(ctrl_c_ends_it_while_one_is_waited_for)

@@ -14,7 +14,7 @@
 
 enum { WORD = 400 };
 
-static char said[WORD * 2]; /* on the standard error by the last parse */
+static char message[WORD * 2]; /* on the standard error by the last parse */
 
 static bool parse(sensor_place_t *place, const char *text, char word[WORD])
 {
@@ -27,7 +27,7 @@ static bool parse(sensor_place_t *place, const char *text, char word[WORD])
     const bool is_right = place_parse(place, "read", word);
     (void)fclose(stderr);
     stderr = own;
-    (void)snprintf(said, sizeof said, "%s", err);
+    (void)snprintf(message, sizeof message, "%s", err);
     free(err);
     return is_right;
 }
@@ -115,7 +115,7 @@ TEST(what_comes_of_right_words)
         char word[WORD];
         char expected[WORD] = "";
         char printed[WORD];
-        if (!parse(&place, rows[i].word, word)) fail_msg("%s: %s", rows[i].word, said);
+        if (!parse(&place, rows[i].word, word)) fail_msg("%s: %s", rows[i].word, message);
         assert_string_equal(place.name, rows[i].name);
         if (rows[i].name[0] != '\0') add(expected, rows[i].name, "=");
         add(expected, "", rows[i].model);
@@ -125,7 +125,7 @@ TEST(what_comes_of_right_words)
         add(expected, "", rows[i].keys);
         print(&place, printed);
         assert_string_equal(printed, expected);
-        assert_string_equal(said, "");
+        assert_string_equal(message, "");
     }
 }
 
@@ -176,7 +176,7 @@ TEST(what_is_said_of_wrong_words)
         {"a16@x,Baud=9600", "has no key 'Baud'"},
         {"a16@x,bau=9600", "has no key 'bau'"},
         {"a16@x,in=1", "a serial port has no key 'in'"},
-        {"a16@gpiochip0,rs485=on", "a GPIO chip has no key 'rs485', only trigger, echo, in, bias"},
+        {"a16@gpiochip0,rs485=on", "a GPIO chip has no key 'rs485', only trigger, echo, in, bias, near"},
         {"a16@x,baud", "a16@x,baud: the value of baud is missing: 9600, 19200"},
         {"a16@x,baud=", "baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not ''"},
         {"a16@x,baud=9601", "not '9601'"},
@@ -196,7 +196,7 @@ TEST(what_is_said_of_wrong_words)
         sensor_place_t place;
         char word[WORD];
         if (parse(&place, rows[i].word, word)) fail_msg("'%s' is taken", rows[i].word);
-        if (strstr(said, rows[i].says) == NULL) fail_msg("'%s': %s", rows[i].word, said);
+        if (strstr(message, rows[i].says) == NULL) fail_msg("'%s': %s", rows[i].word, message);
     }
 }
 
@@ -238,12 +238,12 @@ TEST(a_hundred_thousand_words_do_no_harm_and_those_that_are_taken_are_the_same_a
         char again[WORD];
         make_word(text);
         if (!parse(&first, text, word)) {
-            assert_memory_equal(said, "fathom read: ", 13);
+            assert_memory_equal(message, "fathom read: ", 13);
             continue;
         }
         taken++;
         print(&first, printed);
-        if (!parse(&second, printed, word)) fail_msg("'%s' was '%s': %s", printed, text, said);
+        if (!parse(&second, printed, word)) fail_msg("'%s' was '%s': %s", printed, text, message);
         print(&second, again);
         assert_string_equal(again, printed);
         assert_string_equal(first.name, second.name);

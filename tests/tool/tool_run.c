@@ -8,7 +8,7 @@
 
 #include "commands.h"
 
-enum { WORDS = 300, TEXT = 10000, PORTS = 256 };
+enum { WORDS = 300, TEXT = 10000, PORTS = 256, CHIPS = 4 };
 static const uint64_t longest_us = UINT64_C(7200000000);
 static const uint64_t began_utc_us = UINT64_C(1764000000000000); /* 2025-11-24, 16:00 */
 
@@ -18,13 +18,22 @@ typedef struct {
     fathom_posix_uart_t *posix;
 } open_t;
 
+/* Lines that were opened. */
+typedef struct machine machine_t;
 typedef struct {
+    machine_t *machine;
+    tool_chip_t *chip;
+    pins_t *pins;
+} opened_pins_t;
+
+struct machine {
     const tool_line_t *line;
     uint32_t last_us; /* of the line's clock */
     uint64_t now_us;  /* since the begin */
     bool is_endless;
     open_t opened[PORTS]; /* of line->ports */
-} machine_t;
+    opened_pins_t pins[CHIPS];
+};
 
 static uint64_t now_us(void *ctx)
 {
@@ -126,6 +135,86 @@ static bool open_port(void *ctx, const char *path, const fathom_line_settings_t 
 
 static void close_port(void *ctx, fathom_posix_uart_t *port) {}
 
+/* ---- pins ---- */
+
+static bool is_lost(const opened_pins_t *opened)
+{
+    fathom_gpio_t *const line = &opened->pins->lines[0];
+    if (!opened->chip->is_away) return false;
+    line->is_lost = true;
+    line->error = FATHOM_GPIO_ERR_LOST;
+    (void)snprintf(line->text, sizeof line->text, "%s: the chip has gone", opened->chip->path);
+    return true;
+}
+
+static void set_trigger(void *ctx, bool high)
+{
+    const opened_pins_t *const opened = ctx;
+    const fathom_pin_t *const pin = &opened->chip->trigger;
+    if (!is_lost(opened)) pin->set(pin->ctx, high);
+}
+
+static bool get_in(void *ctx)
+{
+    const opened_pins_t *const opened = ctx;
+    const fathom_pin_t *const pin = &opened->chip->in;
+    return !is_lost(opened) && pin->get(pin->ctx);
+}
+
+static void arm(void *ctx)
+{
+    const opened_pins_t *const opened = ctx;
+    const fathom_capture_t *const capture = &opened->chip->capture;
+    if (!is_lost(opened)) capture->arm(capture->ctx);
+}
+
+static int take(void *ctx, fathom_pulse_t *pulse)
+{
+    const opened_pins_t *const opened = ctx;
+    const fathom_capture_t *const capture = &opened->chip->capture;
+    if (is_lost(opened)) return -1;
+    const int taken = capture->take(capture->ctx, pulse);
+    /* By the clock of the host, which begins at 0. */
+    const uint32_t now = (uint32_t)now_us(opened->machine);
+    pulse->end_us = now - fathom_elapsed_us(opened->machine->last_us, pulse->end_us);
+    return taken;
+}
+
+static bool open_pins(void *ctx, const char *path, const pin_options_t *wanted, pins_t *pins,
+                      fathom_posix_uart_t *port)
+{
+    machine_t *const machine = ctx;
+    tool_chip_t *const chip = machine->line->chip;
+    memset(pins, 0, sizeof *pins);
+    memset(port, 0, sizeof *port);
+    port->fd = -1;
+    (void)snprintf(port->path, sizeof port->path, "%s", path);
+    if (chip == NULL || strcmp(chip->path, path) != 0 || chip->is_away) {
+        refuse(port, FATHOM_POSIX_ERR_NOT_FOUND, "no such chip");
+        return false;
+    }
+    if (chip->refusal != NULL) {
+        refuse(port, FATHOM_POSIX_ERR_IN_USE, chip->refusal);
+        return false;
+    }
+    opened_pins_t *const opened = &machine->pins[chip->opened++ % CHIPS];
+    *opened = (opened_pins_t){machine, chip, pins};
+    chip->asked = *wanted;
+    pins->wanted = *wanted;
+    pins->missed = &chip->missed;
+    pins->lost_events = &chip->lost_events;
+    if (wanted->trigger >= 0) pins->trigger = (fathom_pin_t){.set = set_trigger, .ctx = opened};
+    if (wanted->trigger >= 0) set_trigger(opened, true);
+    if (wanted->echo >= 0) pins->capture = (fathom_capture_t){arm, take, opened};
+    if (wanted->in >= 0) pins->in = (fathom_pin_t){.get = get_in, .ctx = opened};
+    return true;
+}
+
+static void close_pins(void *ctx, pins_t *pins, fathom_posix_uart_t *port)
+{
+    ((machine_t *)ctx)->line->chip->closed++;
+}
+
 static bool begin(void *ctx) { return true; }
 
 static bool has_ended(void *ctx)
@@ -180,6 +269,8 @@ const tool_run_t *tool_run(const tool_line_t *line, const char *format, ...)
     machine = (machine_t){.line = line, .last_us = line->clock.now_us(line->clock.ctx)};
     const host_t host = {.open = open_port,
                          .close = close_port,
+                         .open_pins = open_pins,
+                         .close_pins = close_pins,
                          .now_us = now_us,
                          .utc_us = utc_us,
                          .begin = begin,

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
+#include "shared/pins.h"
 
 /*
  * Runs commands of the tool in this process, against a device behind a UART in memory, in the device's time.
@@ -25,11 +26,28 @@ typedef struct {
     bool is_away; /* there is no such port; one that is open is lost. It may change while the time passes */
 } tool_port_t;
 
+/* A GPIO chip; what its lines are is the test's. */
+typedef struct {
+    const char *path;
+    fathom_pin_t trigger;
+    fathom_capture_t capture;
+    fathom_pin_t in;
+    uint8_t missed; /* as pins_t has them: the tool takes them */
+    uint32_t lost_events;
+    bool is_away; /* there is no such chip; one that is open is lost. It may change while the time passes */
+    const char *refusal; /* it can be opened, but no line of it: with this text */
+    /* What was asked for last, and how often lines were opened and closed. */
+    pin_options_t asked;
+    unsigned opened;
+    unsigned closed;
+} tool_chip_t;
+
 typedef struct {
     /* Behind every PATH but tcp:, unless there are ports; set_line is called when the port is opened. */
     fathom_uart_t uart;
     const tool_port_t *ports; /* whose time is the same */
     size_t port_count;        /* 0: `uart` is the only one */
+    tool_chip_t *chip;        /* NULL: there is none */
     fathom_clock_t clock;     /* the device's time; it may begin anywhere and wrap */
     /* Lets the time pass until something may be read or something else can happen, but no longer than max_us
      * (FATHOM_NO_DEADLINE: any time), and at least a microsecond. It may not end the test, as assert does. */

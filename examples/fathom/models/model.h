@@ -24,10 +24,10 @@ typedef struct {
     uint8_t pins;     /* MODEL_PIN_...: that it needs; 0: it has a serial line */
     uint8_t may_pins; /* and that it can have besides */
     reader_init_t read;
-    device_init_t simulate;
+    device_init_t simulate; /* NULL: `fathom sim` does not */
 } model_mode_t;
 
-enum { MODEL_MODES = 3 };
+enum { MODEL_MODES = 5 };
 
 /* All that the tool knows of a sensor model. What is NULL or 0 it has not. */
 typedef struct model model_t;

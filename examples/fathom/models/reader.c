@@ -46,6 +46,25 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
     };
 }
 
+fathom_contact_timing_t reader_contact_timing(const channel_t *channel, const reader_settings_t *settings)
+{
+    enum { UNTOLD_US = 1000000 }; /* so late a change is seen of which no event came */
+    return (fathom_contact_timing_t){.period_us =
+                                         settings->period_us != 0 ? settings->period_us : settings->repeat_us,
+                                     .interval_us = channel->pins.wakes ? UNTOLD_US : 0,
+                                     .stale_us = settings->timeout_us};
+}
+
+bool reader_begin_contact(reader_t *reader, const channel_t *channel, fathom_contact_t *contact,
+                          fathom_sensor_t sensor)
+{
+    reader->sensor = sensor;
+    reader->sequence = &contact->sequence;
+    reader->pins = &channel->pins;
+    reader->is_paced = true;
+    return true;
+}
+
 bool reader_got_unexpected_response(const reader_t *reader)
 {
     return reader->unit != NULL && reader->unit->request.transaction.status == FATHOM_ERR_MALFORMED;

@@ -9,9 +9,12 @@
 #include "fathom/sensor/a05_auto.h"
 #include "fathom/sensor/a05_dyp.h"
 #include "fathom/sensor/a05_modbus.h"
+#include "fathom/sensor/a05_relay.h"
 #include "fathom/sensor/a16_auto.h"
 #include "fathom/sensor/a16_controlled.h"
 #include "fathom/sensor/a16_modbus.h"
+#include "fathom/sensor/a16_pwm.h"
+#include "fathom/sensor/a16_switch.h"
 #include "fathom/sensor/hps167s.h"
 #include "fathom/sensor/hps167s_auto.h"
 #include "shared/channel.h"
@@ -30,6 +33,8 @@ enum {
 typedef struct {
     uint32_t timeout_us; /* of a response; of a sensor that sends by itself: until it is stale */
     uint32_t period_us;  /* between two requests */
+    uint32_t
+        repeat_us; /* without a period: of a contact, from one sample of the same state to the next; 0: never */
     const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
     uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
     fathom_dyp_window_t window;         /* of A16 and A05; of an HPS-167S its ends */
@@ -85,6 +90,8 @@ struct reader {
     const char *protocol;                     /* with which it is asked */
     bool is_paced;                            /* it keeps the user's interval by itself */
     const uint32_t *period_us;                /* the one that it keeps then, or longer: its least */
+    fathom_pulse_meter_t *meter;              /* of pulses; NULL: it sends none */
+    const pins_t *pins;                       /* NULL: it has none */
     fathom_line_t *line;
     const char *refusal; /* what a reader_init_t that returned false has to say; NULL: nothing */
     const char *remark;  /* what the user is to be told now; who tells it makes it NULL */
@@ -95,9 +102,12 @@ struct reader {
         fathom_a16_auto_t a16_auto;
         fathom_a16_modbus_t a16_modbus;
         fathom_a16_controlled_t a16_controlled;
+        fathom_a16_pwm_t a16_pwm;
+        fathom_a16_switch_t a16_switch;
         fathom_a05_auto_t a05_auto;
         fathom_a05_modbus_t a05_modbus;
         fathom_a05_dyp_t a05_dyp;
+        fathom_a05_relay_t a05_relay;
         fathom_hps167s_t hps167s;
     } driver;
     reader_selection_t selection;
@@ -123,6 +133,12 @@ void reader_end_break(channel_t *channel);
 /* What all that are asked have in common. Address 0 is the driver's to refuse, where the device cannot be there. */
 fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,
                                      const fathom_modbus_t *transport);
+
+/* What all contacts have in common: how often they are looked at, and the last step of a reader_init_t, when the driver
+ * has been begun. True. */
+fathom_contact_timing_t reader_contact_timing(const channel_t *channel, const reader_settings_t *settings);
+bool reader_begin_contact(reader_t *reader, const channel_t *channel, fathom_contact_t *contact,
+                          fathom_sensor_t sensor);
 
 /* reader_t.protocol. */
 extern const char reader_modbus[];

@@ -20,8 +20,10 @@ bool sensor_text_parse(sensor_text_t *sensor, const char *command, const char *t
     if (first != NULL) {
         char *const second = is_letter(first[1]) ? first : strchr(first + 1, ':');
         if (second != first) sensor->address = first + 1;
-        if (second != NULL) sensor->mode = second + 1;
-        if (second != NULL) *second = '\0';
+        if (second != NULL) {
+            sensor->mode = second + 1;
+            *second = '\0';
+        }
         *first = '\0';
     }
     sensor->model = model_find(command, sensor->parts);

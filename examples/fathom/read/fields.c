@@ -16,6 +16,9 @@ typedef struct {
     void (*format)(const reading_t *reading, char text[VALUE_TEXT]); /* leaves text empty for null */
 } field_t;
 
+/* FATHOM_NEAR of a contact. */
+enum { KIND_NEAR = FATHOM_UNKNOWN + 1 };
+
 /* What a sample can be, as `status` has it. */
 static const struct {
     const char *name;
@@ -24,7 +27,8 @@ static const struct {
     [FATHOM_TARGET] = {"target", "there is a distance"},
     [FATHOM_NO_TARGET] = {"no_target", "nothing in range"},
     [FATHOM_NEAR] = {"too_near", "something nearer than it can measure"},
-    [FATHOM_FAR] = {"far", "a switch says that nothing is nearer than its threshold"},
+    [KIND_NEAR] = {"near", "a switch or a relay says that something is nearer than its threshold"},
+    [FATHOM_FAR] = {"far", "a switch or a relay says that nothing is"},
     [FATHOM_UNKNOWN] = {"unknown",
                         "a value that means no distance, and nothing else that is known (--means)"},
     [FATHOM_FAULT] = {"fault", "the sensor says that it has failed"},
@@ -39,6 +43,13 @@ static void put_number(char text[VALUE_TEXT], uint64_t number)
 static void put_string(char text[VALUE_TEXT], const char *string)
 {
     (void)snprintf(text, VALUE_TEXT, "%s", string);
+}
+
+bool fields_is_contact(const reading_t *reading) { return (reading->mode->pins & MODEL_PIN_IN) != 0; }
+
+bool fields_has_probe(const reading_t *reading)
+{
+    return !fields_is_contact(reading) || reading->model->probes == 1;
 }
 
 /* A part of a port's path may stand in it. */
@@ -66,7 +77,7 @@ static void put_address(const reading_t *reading, char text[VALUE_TEXT])
 
 static void put_probe(const reading_t *reading, char text[VALUE_TEXT])
 {
-    if (reading->sample->probe != 0) put_number(text, reading->sample->probe);
+    if (reading->sample->probe != 0 && fields_has_probe(reading)) put_number(text, reading->sample->probe);
 }
 
 static void put_sequence(const reading_t *reading, char text[VALUE_TEXT])
@@ -83,7 +94,9 @@ static void put_utc(const reading_t *reading, char text[VALUE_TEXT])
 
 static void put_status(const reading_t *reading, char text[VALUE_TEXT])
 {
-    put_string(text, reading->failure != NULL ? reading->failure : kinds[reading->sample->kind].name);
+    const uint8_t kind = reading->sample->kind;
+    const bool is_near = kind == FATHOM_NEAR && fields_is_contact(reading);
+    put_string(text, reading->failure != NULL ? reading->failure : kinds[is_near ? KIND_NEAR : kind].name);
 }
 
 static void put_interference(const reading_t *reading, char text[VALUE_TEXT])
@@ -165,7 +178,7 @@ static void put_volume(const reading_t *reading, char text[VALUE_TEXT])
 }
 
 static const field_t fields[] = {
-    {"name", "", "of the sensor, such as a16:1", true, false, 0, put_name},
+    {"name", "", "of the sensor, as the user has given it, else such as a16:1", true, false, 0, put_name},
     {"sensor", "", "its model: a16, a05 or hps167s", true, false, 0, put_sensor},
     {"mode", "", "how it is read, such as auto or modbus", true, false, 0, put_mode},
     {"address", "", "null in a mode without addresses", false, false, 0, put_address},

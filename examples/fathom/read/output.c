@@ -16,12 +16,18 @@ static void write_kind(FILE *to, const reading_t *reading)
     if (sample->kind == FATHOM_NO_TARGET)
         (void)fprintf(to, "no target in range%s", sample->interference ? " (interference)" : "");
     else if (sample->kind == FATHOM_NEAR)
-        (void)fputs("nearer than it can measure", to);
+        (void)fputs(fields_is_contact(reading) ? "near" : "nearer than it can measure", to);
+    else if (sample->kind == FATHOM_FAR)
+        (void)fputs("far", to);
     else if (sample->kind == FATHOM_UNKNOWN)
         (void)fprintf(to, "unknown: the value %" PRIu32 "%s", sample->raw,
                       reading->model->has_optics ? "" : " has been given no meaning (--means)");
-    else
+    else if (reading->reader->meter == NULL)
         (void)fputs("fault: the sensor says that it has failed", to);
+    else if (sample->raw == 0)
+        (void)fputs("fault: the line stays high; check the wire of echo", to);
+    else
+        (void)fprintf(to, "fault: a pulse of %" PRIu32 " us, longer than any of the sensor", sample->raw);
 }
 
 static void write_text_reading(FILE *to, const reading_t *reading)
@@ -65,7 +71,8 @@ static void write_text(FILE *to, const reading_t *reading)
     const result_t *const result = reading->result;
     (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
                   (unsigned)(reading->time_us / 1000u % 1000u), reading->label);
-    if (reading->model->probes > 1) (void)fprintf(to, " probe %u", reading->sample->probe);
+    if (reading->model->probes > 1 && fields_has_probe(reading))
+        (void)fprintf(to, " probe %u", reading->sample->probe);
     if (result->alarm != 0)
         write_text_change(to, reading);
     else

@@ -18,12 +18,10 @@ static void name_of(const output_file_t *file, uint64_t utc_us, char name[OUTPUT
     const char *const base = slash != NULL ? slash + 1 : file->path;
     const char *const dot = strrchr(base, '.');
     const size_t stem = dot != NULL && dot != base ? (size_t)(dot - file->path) : strlen(file->path);
-    char utc[UTC_TEXT];
-    if (file->is_by_day)
-        (void)snprintf(name, OUTPUT_FILE_NAME, "%.*s-%.*s%s", (int)stem, file->path, (int)DAY,
-                       utc_text(utc_us, utc), file->path + stem);
-    else
-        (void)snprintf(name, OUTPUT_FILE_NAME, "%s", file->path);
+    char utc[UTC_TEXT] = "";
+    if (file->is_by_day) (void)utc_text(utc_us, utc);
+    (void)snprintf(name, OUTPUT_FILE_NAME, "%.*s%s%.*s%s", (int)stem, file->path, file->is_by_day ? "-" : "",
+                   (int)DAY, utc, file->path + stem);
 }
 
 bool output_file_turn(output_file_t *file, uint64_t utc_us, bool *is_empty)

@@ -24,7 +24,11 @@ static void flush(reading_run_t *run)
     if (error != 0) run->output_error = error;
 }
 
-static bool is_shared(const reading_run_t *run) { return run->loop.options.station_count > 1; }
+/* Is it named in text? Not the only one, unless the user has named it. */
+static bool has_name(const reading_run_t *run, const station_t *station)
+{
+    return run->loop.options.station_count > 1 || station->has_own_name;
+}
 
 /* Those of one sensor, and of all. */
 static uint8_t own_columns(const reading_run_t *run, const station_t *station)
@@ -73,7 +77,7 @@ static void write_row(reading_run_t *run, const station_t *station, const result
         .mode = station->mode,
         .reader = &station->reader,
         .name = station->name,
-        .label = is_shared(run) ? station->name : station->model->name,
+        .label = has_name(run, station) ? station->name : station->model->name,
         .failure = failure,
         .result = result,
         .sample = &result->sample,
@@ -116,12 +120,11 @@ static bool take_sample(void *ctx, const station_t *station, const fathom_sample
 
 static void tell_failure(const reading_run_t *run, const failure_t *failure, const station_t *station)
 {
-    if (failure->is_told) return;
     const bool is_port = failure->status == FATHOM_ERR_PORT;
-    const bool has_name = is_shared(run) && !is_port;
-    if (run->options.quiet && (!is_port || failure->waits)) return;
-    (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", has_name ? station->name : "",
-                  has_name ? ": " : "", station->counters.attempts + 1);
+    const bool is_named = has_name(run, station) && !is_port;
+    if (failure->is_told || (run->options.quiet && (!is_port || failure->waits))) return;
+    (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", is_named ? station->name : "",
+                  is_named ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
     (void)fputs("\n", stderr);
 }
@@ -138,7 +141,7 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
 
 static void take_absence(void *ctx, const station_t *station)
 {
-    write_failure_row(ctx, station, -FATHOM_ERR_PORT, 0);
+    write_failure_row(ctx, station, (size_t)-FATHOM_ERR_PORT, 0);
 }
 
 static void write_remark(void *ctx, const station_t *station, const char *text)
@@ -148,11 +151,10 @@ static void write_remark(void *ctx, const station_t *station, const char *text)
 }
 
 /* What ends the command is said by a quiet one too. */
-static void write_port(void *ctx, const char *text, bool is_there)
+static void write_port(void *ctx, const char *text, poll_port_state_t state)
 {
     const reading_run_t *const run = ctx;
-    const bool goes_on = is_there || run->loop.options.reconnect;
-    if (!goes_on || !run->options.quiet) (void)fprintf(stderr, "fathom: %s\n", text);
+    if (state == POLL_PORT_GIVEN_UP || !run->options.quiet) (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
 static void get_account(reading_run_t *run, account_t *account)
@@ -162,14 +164,22 @@ static void get_account(reading_run_t *run, account_t *account)
     account->dropped_spikes = results_dropped(&run->results);
 }
 
-static void tell_stats(const reading_run_t *run, const account_t *account)
+static void tell_stats(reading_run_t *run, const account_t *account)
 {
-    if (run->options.format->is_json) {
+    const bool is_json = run->options.format->is_json;
+    if (is_json)
         counters_print_json(account, stderr);
-        return;
+    else
+        counters_print_all(account, stderr);
+    if (!is_json) results_print_dropped(&run->results, stderr);
+    for (size_t i = 0; i != run->loop.options.station_count; i++) {
+        station_t *const station = &run->loop.options.stations[i];
+        if ((station->mode->pins & MODEL_PIN_ECHO) == 0) continue;
+        if (is_json)
+            pulses_print_json(&station->pulses, station->name, stderr);
+        else
+            pulses_print(&station->pulses, station->name, stderr);
     }
-    counters_print_all(account, stderr);
-    results_print_dropped(&run->results, stderr);
 }
 
 /* Tells the counters when it is time for that. */

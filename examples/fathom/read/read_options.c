@@ -6,6 +6,7 @@
 #include "read/fields.h"
 #include "shared/command.h"
 #include "shared/options.h"
+#include "stations/pins_help.h"
 #include "stations/result_options.h"
 
 static const char command[] = "read";
@@ -122,12 +123,14 @@ bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, 
 
 void read_help(FILE *to)
 {
-    (void)fputs("fathom read reads sensors on a serial port and prints what they say.\n\n"
-                "usage: fathom read SENSOR[:ADDRESS[:MODE]]... --port PATH [OPTIONS]\n\n",
+    (void)fputs("fathom read reads sensors on serial ports and pins and prints what they say.\n\n"
+                "usage: fathom read [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... [--port PATH] "
+                "[OPTIONS]\n\n",
                 to);
     models_print(to);
     (void)fputs(
-        "\nThe first mode is the default, or with an address or several sensors the first in which it is "
+        "\nThe first mode is the default, or with an address or several sensors at a port the first in which "
+        "it is "
         "asked: auto\n"
         "listens to a sensor that sends by itself, modbus and dyp (frames 55 AA) ask it, controlled triggers "
         "it by "
@@ -137,8 +140,7 @@ void read_help(FILE *to)
         "own.\n"
         "One that does not answer three times in a row is then left alone, longer each time up to 16 "
         "time-outs, so that\n"
-        "it does not slow the others; the only one on a line is asked again and again. --baud and --parity "
-        "go for all.\n\n"
+        "it does not slow the others; the only one on a line is asked again and again.\n\n"
         "  --mode MODE       how the only sensor is read\n"
         "  --address N       of the only sensor; 1 from the factory\n"
         "  --count N         ends after N attempts of each sensor\n"
@@ -170,6 +172,7 @@ void read_help(FILE *to)
         "  --until-alarm     ends at the first change that is printed after which an alarm is on, with exit "
         "status 3\n",
         to);
+    pins_help(to);
     fields_help(to);
     (void)fputs(
         "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
@@ -186,6 +189,8 @@ void read_help(FILE *to)
         "  fathom read hps167s --port /dev/ttyUSB0 --address 7 --count 1\n"
         "  fathom read a16:1:modbus hps167s:7 --port /dev/ttyUSB0       two on one pair, 9600 8N1 and 19200 "
         "8E1\n"
+        "  fathom read tank=a16@/dev/ttyUSB0 hps167s:7@/dev/ttyUSB1,baud=57600      two ports\n"
+        "  fathom read a16:pwm@gpiochip0,trigger=17,echo=27 --stats=10               a pulse at pins\n"
         "  fathom read a05 --mode modbus --port /dev/ttyUSB0 --format csv --interval 1000 > log.csv\n"
         "  fathom read a16 --port /dev/ttyUSB0 --format json | jq .distance_mm\n"
         "  fathom read a16 --port /dev/ttyUSB0 --median 5 --gate 300 --level "

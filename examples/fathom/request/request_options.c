@@ -212,29 +212,37 @@ static bool without_minus(int argc, char **argv, char *copy[MAX_WORDS + 1], char
     return true;
 }
 
+static bool take_line(request_t *request, const char *const *values)
+{
+    const char *const given[PORT_KEYS] = {[KEY_BAUD] = values[BAUD],
+                                          [KEY_PARITY] = values[PARITY],
+                                          [KEY_STOP_BITS] = values[STOP_BITS],
+                                          [KEY_ECHO] = values[ECHO],
+                                          [KEY_RS485] = values[RS485] != NULL ? "on" : NULL};
+    port_options_t port = {.path = values[PORT]};
+    if (!port_keys_options(&port.keys, command, given) || !option_port(command, port.path)) return false;
+    port_options_take(&port, &port.keys);
+    port_options_line(&port, &port.keys, &request->line);
+    request->echo = port.echo;
+    request->rs485 = port.rs485;
+    request->path = port.path;
+    return true;
+}
+
 static bool take_options(request_t *request, const char *const *values)
 {
     uint32_t timeout_ms = TIMEOUT_MS;
-    port_options_t port = {.path = values[PORT]};
-    port_keys_t keys = {.given = 0};
     request->line = (fathom_line_settings_t){9600, FATHOM_PARITY_NONE, 1};
     if (values[SENSOR] != NULL) {
         request->model = model_find(command, values[SENSOR]);
         if (request->model == NULL) return false;
         request->line = request->model->line;
     }
-    if (!option_port(command, port.path) ||
-        !port_keys_line(&keys, command, values[BAUD], values[STOP_BITS], values[PARITY], values[ECHO],
-                        values[RS485]) ||
+    if (!take_line(request, values) ||
         !option_number(command, "timeout", values[TIMEOUT], 1, MAX_TIMEOUT_MS, &timeout_ms) ||
         !option_json(command, values[FORMAT], &request->is_json))
         return false;
     request->timeout_us = request_is_broadcast(request) ? TURNAROUND_US : timeout_ms * 1000u;
-    port_options_line(&port, &keys, &request->line);
-    port_options_take(&port, &keys);
-    request->path = port.path;
-    request->echo = port.echo;
-    request->rs485 = port.rs485;
     request->is_meant = values[YES] != NULL;
     return true;
 }

@@ -60,6 +60,15 @@ static bool can_be_printed(const setting_t *setting)
     return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
 }
 
+static void tell_remark(const setting_t *setting, const char *text)
+{
+    if (has_name()) {
+        say_whose();
+        (void)fprintf(stderr, "%s is %s\n", setting->name, text);
+    }
+    setting->remark(stderr, text);
+}
+
 /* False: nothing further can be told, for a reason that was said. */
 static bool print_one(const setting_t *setting, bool *is_known, unsigned *printed)
 {
@@ -79,7 +88,7 @@ static bool print_one(const setting_t *setting, bool *is_known, unsigned *printe
         print_json(setting, status, text);
     else
         print_text(setting, status, text);
-    if (setting->remark != NULL && status == FATHOM_READY) setting->remark(stderr, text);
+    if (setting->remark != NULL && status == FATHOM_READY) tell_remark(setting, text);
     return true;
 }
 
@@ -111,12 +120,15 @@ static void help(FILE *to, bool is_info)
     if (is_info)
         (void)fputs(
             "fathom info prints everything that a device tells: versions, settings, what it measures.\n\n"
-            "usage: fathom info SENSOR[:ADDRESS[:MODE]] --port PATH [OPTIONS]\n\n",
+            "usage: fathom info [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... [--port PATH] "
+            "[OPTIONS]\n\n"
+            "Several sensors are asked one after the other; where one fails, the others are told all the "
+            "same.\n\n",
             to);
     else
         (void)fputs(
             "fathom get prints a setting of a device. It changes nothing.\n\n"
-            "usage: fathom get SENSOR[:ADDRESS[:MODE]] --port PATH SETTING [OPTIONS]\n"
+            "usage: fathom get SENSOR[:ADDRESS][:MODE][@PORT] [--port PATH] SETTING [OPTIONS]\n"
             "       fathom get SENSOR        lists the settings, their values, and when they take effect\n\n",
             to);
     models_print(to);
@@ -130,6 +142,7 @@ static void help(FILE *to, bool is_info)
         to);
     (void)fputs(is_info ? "  fathom info hps167s:7 --port /dev/ttyUSB0\n"
                           "  fathom info a05 --port /dev/ttyUSB0 --format json\n"
+                          "  fathom info tank=a16@/dev/ttyUSB0 gate=hps167s:7@/dev/ttyUSB1,baud=57600\n"
                         : "  fathom get hps167s:7 --port /dev/ttyUSB0 termination\n"
                           "  fathom get a16 --port /dev/ttyUSB0 switch-threshold\n",
                 to);

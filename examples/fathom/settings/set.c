@@ -45,7 +45,7 @@ static void help(FILE *to)
     (void)fputs("fathom set changes a setting of a device: it asks for the value, writes it if it is another "
                 "one, and "
                 "reads it\nback. It follows a device to its new address or baud rate.\n\n"
-                "usage: fathom set SENSOR[:ADDRESS[:MODE]] --port PATH SETTING VALUE [OPTIONS]\n\n"
+                "usage: fathom set SENSOR[:ADDRESS][:MODE][@PORT] [--port PATH] SETTING VALUE [OPTIONS]\n\n"
                 "`fathom get SENSOR` lists the settings, their values, and when they take effect.\n\n",
                 to);
     session_options_help(to);

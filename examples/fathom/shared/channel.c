@@ -53,24 +53,10 @@ static bool open_any(channel_t *channel, const char *path, const fathom_line_set
     return channel->tcp != NULL;
 }
 
-bool channel_open(channel_t *channel, const host_t *host, const char *path,
-                  const fathom_line_settings_t *settings)
+/* The port is open: a line on it. */
+static void begin(channel_t *channel)
 {
-    channel->host = host;
-    if (!open_any(channel, path, settings)) {
-        tell_environment(&channel->port, path);
-        return false;
-    }
-    if (channel->rs485 &&
-        fathom_posix_set_rs485(&channel->port, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK) {
-        channel_close(channel);
-        return false;
-    }
     if (channel->source != NULL) channel->uart = fathom_loop_uart(channel->source, &channel->uart);
-    if (channel->tcp != NULL)
-        suit_tcp(channel);
-    else
-        suit_serial(channel, settings);
     channel->clock = (fathom_clock_t){now_us, channel};
     listener_begin(&channel->listener, &channel->uart, &channel->clock);
     channel->config.uart = &channel->uart;
@@ -85,17 +71,73 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
     channel->modbus = fathom_modbus_client_with_zero(&channel->line);
     channel->dyp = fathom_dyp_client(&channel->line);
     channel->requests = 0;
-    channel->moved_us = host->now_us(host->ctx);
+    channel->moved_us = channel->host->now_us(channel->host->ctx);
+}
+
+bool channel_open(channel_t *channel, const host_t *host, const char *path,
+                  const fathom_line_settings_t *settings)
+{
+    channel->host = host;
+    if (!open_any(channel, path, settings)) {
+        tell_environment(&channel->port, path);
+        return false;
+    }
+    if (channel->tcp != NULL)
+        suit_tcp(channel);
+    else
+        suit_serial(channel, settings);
+    if (channel->rs485 &&
+        fathom_posix_set_rs485(&channel->port, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK) {
+        channel_close(channel);
+        return false;
+    }
+    begin(channel);
     return true;
+}
+
+bool channel_open_pins(channel_t *channel, const host_t *host, const char *chip, const pin_options_t *wanted)
+{
+    channel->host = host;
+    channel->is_chip = host->open_pins(host->ctx, chip, wanted, &channel->pins, &channel->port);
+    if (!channel->is_chip) return false;
+    channel->clock = (fathom_clock_t){now_us, channel};
+    listener_begin(&channel->listener, &channel->uart, &channel->clock); /* hears nothing */
+    return true;
+}
+
+void channel_look(channel_t *channel)
+{
+    if (channel->is_chip) pins_look(&channel->pins, &channel->port);
+}
+
+bool channel_begin_tcp(channel_t *channel, const host_t *host, const char *path, unsigned turn)
+{
+    channel->host = host;
+    channel->tcp = tcp_begin(path, turn, &channel->port);
+    if (channel->tcp == NULL) tell_environment(&channel->port, path);
+    return channel->tcp != NULL;
+}
+
+fathom_status_t channel_go_on(channel_t *channel)
+{
+    const fathom_status_t status = tcp_go_on(channel->tcp, &channel->uart);
+    if (status == FATHOM_ERR_PORT) tell_environment(&channel->port, channel->port.path);
+    if (status != FATHOM_READY) return status;
+    suit_tcp(channel);
+    begin(channel);
+    return FATHOM_READY;
 }
 
 void channel_close(channel_t *channel)
 {
-    if (channel->tcp == NULL)
+    if (channel->is_chip)
+        channel->host->close_pins(channel->host->ctx, &channel->pins, &channel->port);
+    else if (channel->tcp == NULL)
         channel->host->close(channel->host->ctx, &channel->port);
     else
         tcp_close(channel->tcp);
     channel->tcp = NULL;
+    channel->is_chip = false;
 }
 
 void channel_listen(channel_t *channel, uint32_t for_us)

@@ -20,7 +20,9 @@ typedef struct {
     uint64_t moved_us; /* when a request has left last, or none waited, */
     uint64_t requests; /* and how many had left then */
     fathom_posix_uart_t port;
-    tcp_t *tcp; /* then `port` stands in for it (tcp.h); NULL: a serial port */
+    tcp_t *tcp;   /* then `port` stands in for it (tcp.h); NULL: a serial port, or ... */
+    bool is_chip; /* ... pins, for which `port` stands in too: then there are no line and no client */
+    pins_t pins;
     fathom_uart_t uart;
     fathom_clock_t clock;
     listener_t listener; /* between uart and port */
@@ -53,7 +55,16 @@ enum { CHANNEL_UNASKED_US = 66000 };
  * not be moved. One that was closed may be opened again. */
 bool channel_open(channel_t *channel, const host_t *host, const char *path,
                   const fathom_line_settings_t *settings);
+/* The same for lines of a GPIO chip. */
+bool channel_open_pins(channel_t *channel, const host_t *host, const char *chip, const pin_options_t *wanted);
 void channel_close(channel_t *channel);
+
+/* After each poll: notices that the pins are lost, which only some drivers tell. */
+void channel_look(channel_t *channel);
+
+/* The same with a connection, without waiting, as tcp.h's tcp_begin and tcp_go_on. */
+bool channel_begin_tcp(channel_t *channel, const host_t *host, const char *path, unsigned turn);
+fathom_status_t channel_go_on(channel_t *channel);
 
 /* Asks nothing for so long; what is heard is added to what the last call has heard. A signal ends it. */
 void channel_listen(channel_t *channel, uint32_t for_us);

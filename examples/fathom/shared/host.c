@@ -22,6 +22,19 @@ static void close_port(void *ctx, fathom_posix_uart_t *port)
     fathom_posix_close(port);
 }
 
+static bool open_pins(void *ctx, const char *chip, const pin_options_t *wanted, pins_t *pins,
+                      fathom_posix_uart_t *port)
+{
+    (void)ctx;
+    return pins_open(pins, chip, wanted, port);
+}
+
+static void close_pins(void *ctx, pins_t *pins, fathom_posix_uart_t *port)
+{
+    (void)ctx;
+    pins_close(pins, port);
+}
+
 static uint64_t now_us(void *ctx)
 {
     (void)ctx;
@@ -71,6 +84,8 @@ static void attend(void *ctx, fathom_loop_t *loop)
 
 const host_t host_posix = {.open = open_port,
                            .close = close_port,
+                           .open_pins = open_pins,
+                           .close_pins = close_pins,
                            .now_us = now_us,
                            .utc_us = utc_us,
                            .begin = begin,

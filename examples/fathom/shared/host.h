@@ -8,6 +8,7 @@
 #include "fathom/hal.h"
 #include "fathom_loop.h"
 #include "fathom_posix.h"
+#include "shared/pins.h"
 
 /*
  * What a command needs of the machine that it runs on, besides stdout and stderr: serial ports, the time, sleep, and
@@ -20,6 +21,10 @@ typedef struct {
     bool (*open)(void *ctx, const char *path, const fathom_line_settings_t *settings,
                  fathom_posix_uart_t *port, fathom_uart_t *uart);
     void (*close)(void *ctx, fathom_posix_uart_t *port);
+    /* Opens lines of a GPIO chip, as pins.h has it. */
+    bool (*open_pins)(void *ctx, const char *chip, const pin_options_t *wanted, pins_t *pins,
+                      fathom_posix_uart_t *port);
+    void (*close_pins)(void *ctx, pins_t *pins, fathom_posix_uart_t *port);
     uint64_t (*now_us)(void *ctx); /* does not wrap */
     uint64_t (*utc_us)(void *ctx); /* since 1970 */
     /* A command begins to wait: from now on has_ended tells what the user wishes. False after saying why. */

@@ -153,17 +153,17 @@ const char *next_word(const char *list, char separator, char *word, size_t capac
     return end != NULL ? end + 1 : NULL;
 }
 
-bool option_port(const char *command, const char *path)
-{
-    if (path != NULL) return true;
-    (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
-    return false;
-}
-
 bool option_json(const char *command, const char *text, bool *is_json)
 {
     *is_json = text != NULL && strcmp(text, "json") == 0;
     if (text == NULL || *is_json || strcmp(text, "text") == 0) return true;
     (void)usage_error(command, "there is no format '%s', only text, json", text);
+    return false;
+}
+
+bool option_port(const char *command, const char *path)
+{
+    if (path != NULL) return true;
+    (void)usage_error(command, "--port is missing, such as --port /dev/ttyUSB0");
     return false;
 }

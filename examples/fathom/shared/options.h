@@ -45,11 +45,11 @@ bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, 
 bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
                    uint32_t *number);
 
-/* A command takes --port; NULL: it was not given. False after saying so. */
-bool option_port(const char *command, const char *path);
-
 /* A --format that is text or json; NULL: text. False after saying what is wrong. */
 bool option_json(const char *command, const char *text, bool *is_json);
+
+/* --port of a command that takes no port behind a sensor: it has to be there. False after saying that it is not. */
+bool option_port(const char *command, const char *path);
 
 /* Tenths as a decimal, such as -0.5. */
 void tenths_text(char *text, size_t capacity, int32_t tenths);

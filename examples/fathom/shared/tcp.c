@@ -14,7 +14,9 @@ struct tcp {
     fathom_libmodbus_t libmodbus;
     fathom_uart_t inner; /* its HAL, behind ours */
     fathom_clock_t clock;
-    modbus_t *modbus;
+    modbus_t *modbus; /* NULL: the connection is under way */
+    tcp_address_t address;
+    uint64_t deadline_us;
     fathom_posix_uart_t *port; /* what stands in for the connection */
 };
 
@@ -78,20 +80,22 @@ static bool tcp_sent(void *ctx)
     return tcp->inner.sent(tcp->inner.ctx);
 }
 
-/* False: no memory. */
-static bool begin(tcp_t *tcp, const tcp_address_t *address, int fd)
+/* The connection stands. False: no memory. */
+static bool begin(tcp_t *tcp, fathom_uart_t *uart)
 {
-    tcp->modbus = modbus_new_tcp_pi(address->host, address->service);
+    tcp->modbus = modbus_new_tcp_pi(tcp->address.host, tcp->address.service);
     if (tcp->modbus == NULL) return false;
-    (void)modbus_set_socket(tcp->modbus, fd);
+    (void)modbus_set_socket(tcp->modbus, tcp->port->fd);
     tcp->clock = fathom_posix_clock();
     const fathom_libmodbus_config_t config = {.clock = &tcp->clock};
     (void)fathom_libmodbus_init(&tcp->libmodbus, tcp->modbus, &config); /* all of it is there */
     tcp->inner = fathom_libmodbus_uart(&tcp->libmodbus);
+    *uart = (fathom_uart_t){.read = tcp_read, .write = tcp_write, .sent = tcp_sent, .ctx = tcp};
     return true;
 }
 
-tcp_t *tcp_open(const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart)
+/* With a connection that stands, or, where there is a turn, is under way. NULL: *port has the error. */
+static tcp_t *new_tcp(const char *path, const unsigned *turn, fathom_posix_uart_t *port)
 {
     tcp_address_t address;
     char text[200];
@@ -103,31 +107,62 @@ tcp_t *tcp_open(const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart
         say(port, FATHOM_POSIX_ERR_ARGUMENT, wrong);
         return NULL;
     }
-    const int fd = tcp_connect(&address, text, sizeof text, &may_pass);
+    const int fd = turn == NULL ? tcp_connect(&address, text, sizeof text, &may_pass)
+                                : tcp_connect_begin(&address, *turn, text, sizeof text, &may_pass);
     if (fd < 0) {
         say(port, may_pass ? FATHOM_POSIX_ERR_NOT_FOUND : FATHOM_POSIX_ERR_SYSTEM, text);
         return NULL;
     }
     tcp_t *const tcp = calloc(1, sizeof *tcp);
-    if (tcp == NULL || !begin(tcp, &address, fd)) {
-        free(tcp);
+    if (tcp == NULL) {
         (void)close(fd);
         say(port, FATHOM_POSIX_ERR_SYSTEM, strerror(ENOMEM));
         return NULL;
     }
+    tcp->address = address;
+    tcp->deadline_us = fathom_posix_now_us() + TCP_CONNECT_S * 1000000u;
     tcp->port = port;
     port->fd = fd;
     port->is_open = true;
-    *uart = (fathom_uart_t){.read = tcp_read, .write = tcp_write, .sent = tcp_sent, .ctx = tcp};
     return tcp;
+}
+
+tcp_t *tcp_open(const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart)
+{
+    tcp_t *const tcp = new_tcp(path, NULL, port);
+    if (tcp == NULL || begin(tcp, uart)) return tcp;
+    tcp_close(tcp);
+    say(port, FATHOM_POSIX_ERR_SYSTEM, strerror(ENOMEM));
+    return NULL;
+}
+
+tcp_t *tcp_begin(const char *path, unsigned turn, fathom_posix_uart_t *port)
+{
+    return new_tcp(path, &turn, port);
+}
+
+fathom_status_t tcp_go_on(tcp_t *tcp, fathom_uart_t *uart)
+{
+    char text[200];
+    int error = tcp_connect_look(tcp->port->fd);
+    if (error == EINPROGRESS && fathom_posix_now_us() < tcp->deadline_us) return FATHOM_PENDING;
+    if (error == EINPROGRESS) error = ETIMEDOUT;
+    if (error == 0 && begin(tcp, uart)) return FATHOM_READY;
+    tcp_connect_text(error != 0 ? error : ENOMEM, text, sizeof text);
+    say(tcp->port, FATHOM_POSIX_ERR_NOT_FOUND, text);
+    return FATHOM_ERR_PORT;
 }
 
 void tcp_close(tcp_t *tcp)
 {
     if (tcp == NULL) return;
     tcp->port->is_open = false;
-    modbus_close(tcp->modbus);
-    modbus_free(tcp->modbus);
+    if (tcp->modbus == NULL) {
+        (void)close(tcp->port->fd);
+    } else {
+        modbus_close(tcp->modbus);
+        modbus_free(tcp->modbus);
+    }
     free(tcp);
 }
 

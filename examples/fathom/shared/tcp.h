@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
+#include "fathom/status.h"
 #include "fathom_posix.h"
 
 /*
@@ -22,6 +23,13 @@ typedef struct tcp tcp_t;
  */
 tcp_t *tcp_open(const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart);
 void tcp_close(tcp_t *tcp);
+
+/*
+ * The same without waiting: tcp_begin, and then tcp_go_on when `port`'s descriptor can be written, and in TCP_CONNECT_S.
+ * Returns FATHOM_READY; FATHOM_PENDING; or FATHOM_ERR_PORT, and *port has the error. turn: so often it was tried.
+ */
+tcp_t *tcp_begin(const char *path, unsigned turn, fathom_posix_uart_t *port);
+fathom_status_t tcp_go_on(tcp_t *tcp, fathom_uart_t *uart);
 
 /* What a gateway has said since the last request: exception 10 or 11; 0: neither. */
 uint8_t tcp_gateway_exception(const tcp_t *tcp);

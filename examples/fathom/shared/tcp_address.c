@@ -61,31 +61,37 @@ const char *tcp_parse(const char *path, tcp_address_t *address)
     return wrong != NULL ? wrong : take_port(end, address);
 }
 
-/* The error of a connection that was begun: 0 when it stands, EINTR when the user has ended the command. */
-static int outcome(int fd)
+int tcp_connect_look(int fd)
 {
-    const uint64_t deadline_us = fathom_posix_now_us() + TCP_CONNECT_S * 1000000u;
     struct pollfd entry = {fd, POLLOUT, 0};
-    while (poll(&entry, 1, 0) <= 0) {
-        const uint64_t now_us = fathom_posix_now_us();
-        if (events_ended()) return EINTR;
-        if (now_us >= deadline_us) return ETIMEDOUT;
-        events_wait(fd, POLLOUT, (uint32_t)(deadline_us - now_us), false);
-    }
+    if (poll(&entry, 1, 0) <= 0) return EINPROGRESS;
     int error = 0;
     socklen_t length = sizeof error;
     return getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &length) == 0 ? error : errno;
 }
 
-/* The descriptor, or -1 and errno. */
-static int connect_to(const struct addrinfo *to)
+/* The error of a connection that was begun: 0 when it stands, EINTR when the user has ended the command. */
+static int outcome(int fd)
+{
+    const uint64_t deadline_us = fathom_posix_now_us() + TCP_CONNECT_S * 1000000u;
+    for (;;) {
+        const int error = tcp_connect_look(fd);
+        const uint64_t now_us = fathom_posix_now_us();
+        if (error != EINPROGRESS) return error;
+        if (events_ended()) return EINTR;
+        if (now_us >= deadline_us) return ETIMEDOUT;
+        events_wait(fd, POLLOUT, (uint32_t)(deadline_us - now_us), false);
+    }
+}
+
+/* The descriptor, or -1 and errno. The connection stands, or is under way. */
+static int begin_to(const struct addrinfo *to)
 {
     const int on = 1;
     const int fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
     if (fd < 0) return -1;
-    int error = 0;
-    if (connect(fd, to->ai_addr, to->ai_addrlen) != 0) error = errno == EINPROGRESS ? outcome(fd) : errno;
-    if (error != 0) {
+    if (connect(fd, to->ai_addr, to->ai_addrlen) != 0 && errno != EINPROGRESS) {
+        const int error = errno;
         (void)close(fd);
         errno = error;
         return -1;
@@ -93,6 +99,18 @@ static int connect_to(const struct addrinfo *to)
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on,
                      sizeof on); /* a request is small, and waits for nothing */
     return fd;
+}
+
+/* The same, but it stands. */
+static int connect_to(const struct addrinfo *to)
+{
+    const int fd = begin_to(to);
+    if (fd < 0) return -1;
+    const int error = outcome(fd);
+    if (error == 0) return fd;
+    (void)close(fd);
+    errno = error;
+    return -1;
 }
 
 static const char *advice_for(int error)
@@ -111,24 +129,48 @@ static const char *advice_for(int error)
     }
 }
 
-int tcp_connect(const tcp_address_t *address, char *text, size_t capacity, bool *may_pass)
+void tcp_connect_text(int error, char *text, size_t capacity)
+{
+    (void)snprintf(text, capacity, "%s: %s", strerror(error), advice_for(error));
+}
+
+/* NULL: what tcp_connect says. */
+static struct addrinfo *look_up(const tcp_address_t *address, char *text, size_t capacity, bool *may_pass)
 {
     const struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
     struct addrinfo *list = NULL;
     const int looked_up = getaddrinfo(address->host, address->service, &hints, &list);
-    if (looked_up != 0) {
-        *may_pass = looked_up == EAI_AGAIN;
-        (void)snprintf(text, capacity,
-                       "the host is not known: %s; check its name, or give its address in numbers",
-                       gai_strerror(looked_up));
-        return -1;
-    }
+    *may_pass = looked_up == 0 || looked_up == EAI_AGAIN;
+    if (looked_up == 0) return list;
+    (void)snprintf(text, capacity,
+                   "the host is not known: %s; check its name, or give its address in numbers",
+                   gai_strerror(looked_up));
+    return NULL;
+}
+
+int tcp_connect(const tcp_address_t *address, char *text, size_t capacity, bool *may_pass)
+{
+    struct addrinfo *const list = look_up(address, text, capacity, may_pass);
+    if (list == NULL) return -1;
     int fd = -1;
     for (const struct addrinfo *to = list; to != NULL && fd < 0 && !events_ended(); to = to->ai_next)
         fd = connect_to(to);
     const int error = errno;
     freeaddrinfo(list);
-    *may_pass = true;
-    if (fd < 0) (void)snprintf(text, capacity, "%s: %s", strerror(error), advice_for(error));
+    if (fd < 0) tcp_connect_text(error, text, capacity);
+    return fd;
+}
+
+int tcp_connect_begin(const tcp_address_t *address, unsigned turn, char *text, size_t capacity,
+                      bool *may_pass)
+{
+    struct addrinfo *const list = look_up(address, text, capacity, may_pass);
+    if (list == NULL) return -1;
+    const struct addrinfo *to = list;
+    for (; turn != 0; turn--) to = to->ai_next != NULL ? to->ai_next : list;
+    const int fd = begin_to(to);
+    const int error = errno;
+    freeaddrinfo(list);
+    if (fd < 0) tcp_connect_text(error, text, capacity);
     return fd;
 }

@@ -25,4 +25,13 @@ const char *tcp_parse(const char *path, tcp_address_t *address);
 enum { TCP_CONNECT_S = 5 };
 int tcp_connect(const tcp_address_t *address, char *text, size_t capacity, bool *may_pass);
 
+/* The same without waiting (but for the name): it is begun, with one of the host's addresses, another one each turn,
+ * from 0. Then: 0, it stands; EINPROGRESS; or why not. */
+int tcp_connect_begin(const tcp_address_t *address, unsigned turn, char *text, size_t capacity,
+                      bool *may_pass);
+int tcp_connect_look(int fd);
+
+/* In words: what happened and what to try. */
+void tcp_connect_text(int error, char *text, size_t capacity);
+
 #endif

@@ -16,10 +16,13 @@ typedef struct {
 
 /*
  * Tries once. A USB adapter is looked for by what it is, anything else by its path. False: it is not there, or not
- * to be had; if that lasts and is something else than "not there", it says so once on stderr.
+ * to be had.
  */
 bool usb_adapter_try(usb_adapter_t *adapter, channel_t *channel, const host_t *host,
                      const fathom_line_settings_t *settings);
+
+/* After a try: has it now failed so often, for something else than "not there", that it is to be told? True once. */
+bool usb_adapter_is_overdue(const usb_adapter_t *adapter);
 
 /* Where it is. */
 const char *usb_adapter_path(const usb_adapter_t *adapter);

@@ -105,6 +105,11 @@ static bool take_device(sim_device_t *device, const char *text)
     device->mode = model_mode_find(command, sensor.model, sensor.mode);
     device->address = FACTORY_ADDRESS;
     device->line = sensor.model->line;
+    if (device->mode != NULL && device->mode->simulate == NULL) {
+        (void)usage_error(command, "%s in mode %s has pins and no line, and is not simulated here",
+                          sensor.model->name, device->mode->name);
+        return false;
+    }
     return device->mode != NULL && sensor_text_address(&sensor, command, device->mode, &device->address);
 }
 

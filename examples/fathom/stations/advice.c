@@ -7,6 +7,7 @@
 #include "shared/line_text.h"
 #include "shared/modbus_exception.h"
 #include "shared/sysfs_adapter.h"
+#include "stations/advice_pins.h"
 
 /* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
 static void print_settings(FILE *to, const failure_t *failure)
@@ -289,6 +290,8 @@ static void print_port(FILE *to, const failure_t *failure)
 
 void advice_print(FILE *to, const failure_t *failure)
 {
+    if (failure->channel->is_chip && advice_print_pins(to, failure->status, failure->reader, failure->noises))
+        return;
     const bool is_triggered = failure->reader->protocol == NULL && failure->reader->is_paced;
     if (is_triggered &&
         (failure->status == FATHOM_ERR_NO_RESPONSE || failure->status == FATHOM_ERR_CHECKSUM)) {

@@ -17,6 +17,7 @@ typedef struct {
     const fathom_line_settings_t *line; /* at which it was asked */
     const char *shared;                 /* its name among others that are read; NULL: it is alone */
     evidence_t evidence;                /* of this attempt */
+    uint32_t noises;                    /* pulses of this attempt that were too short */
     uint8_t address;
     bool has_address;   /* at which it is asked, or heard */
     bool others_answer; /* on this line */

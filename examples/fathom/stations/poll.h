@@ -11,6 +11,9 @@
 /* What poll_loop.c, poll_port.c and poll_attempt.c have in common. */
 typedef struct poll_loop poll_loop_t;
 
+/* What a port is now. */
+typedef enum { POLL_PORT_THERE, POLL_PORT_WAITED_FOR, POLL_PORT_GIVEN_UP } poll_port_state_t;
+
 /* What a command does with it. ctx: poll_loop_t.ctx. */
 typedef struct {
     /* False: it could not be told. */
@@ -21,8 +24,8 @@ typedef struct {
     void (*away)(void *ctx, const station_t *station);
     /* What the user has to know of this sensor, or to do with it. */
     void (*remark)(void *ctx, const station_t *station, const char *text);
-    /* What happened to a port, a line of text that names it; is_there: false while it is waited for. */
-    void (*port)(void *ctx, const char *text, bool is_there);
+    /* What happened to a port, a line of text that names it. */
+    void (*port)(void *ctx, const char *text, poll_port_state_t state);
     /* Called before each sleep. Returns how long it may take at most, in us. */
     uint32_t (*tick)(void *ctx);
     /* Ends it. */
@@ -39,11 +42,13 @@ typedef struct {
     channel_t channel;
     usb_adapter_t adapter;
     port_counts_t counts;
-    bool was_open; /* once */
-    bool is_lost;  /* or has not been there yet */
-    bool waits;    /* it is opened again */
-    bool is_done;  /* nothing is read there any more: all has been read, or it is lost for good */
-    bool is_left;  /* and the loop may forget it */
+    unsigned tries;  /* of a connection */
+    bool is_waiting; /* for a connection that is under way */
+    bool was_open;   /* once */
+    bool is_lost;    /* or has not been there yet */
+    bool waits;      /* it is opened again */
+    bool is_done;    /* nothing is read there any more: all has been read, or it is lost for good */
+    bool is_left;    /* and the loop may forget it */
 } poll_port_t;
 
 struct poll_loop {

@@ -97,6 +97,7 @@ static void report_failure(poll_port_t *port, station_t *station, const outcome_
         .counters = &station->counters,
         .line = &station->line,
         .shared = loop->options.station_count > 1 ? station->name : NULL,
+        .noises = station->pulses.attempt_noises,
         .address = station->address,
         .has_address = station->mode->has_address,
         .others_answer = others_answer(port, station),
@@ -149,6 +150,7 @@ void poll_take_outcome(poll_port_t *port, station_t *station, fathom_status_t st
 {
     const poll_loop_t *const loop = port->loop;
     counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+    pulses_take(&station->pulses, &station->reader, status == FATHOM_READY ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, station, status)) return;
     if (status == FATHOM_READY && station->reader.unit != NULL && !station->answering)
         counters_time(&station->counters, fathom_elapsed_us(sample->time_us, station->listener->asked_us));

@@ -70,7 +70,8 @@ bool poll_loop_open(poll_loop_t *loop)
     const host_t *const host = loop->host;
     const sensor_options_t *const options = &loop->options;
     if (fathom_loop_init(&loop->sources, &host->loop) != FATHOM_POSIX_OK) {
-        loop->user->port(loop->ctx, "the system has no descriptor left; end other programs", false);
+        loop->user->port(loop->ctx, "the system has no descriptor left; end other programs",
+                         POLL_PORT_GIVEN_UP);
         return false;
     }
     host->attend(host->ctx, &loop->sources);

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "stations/poll_port.h"
 
+#include <poll.h>
+
+#include "shared/tcp_address.h"
 #include "stations/poll_attempt.h"
 
-/* So often in a row its sensors are polled at most, so that none keeps the other ports waiting; and so soon again the
- * end of a sensor is looked after. */
-enum { TURNS = 16, AGAIN_US = 1000, TEXT = 512 };
+/* So often in a row its sensors are polled at most, so that none keeps the other ports waiting; so soon again the end of
+ * a sensor is looked after, and the time-out of a connection. */
+enum { TURNS = 16, AGAIN_US = 1000, CONNECTION_US = 500000, TEXT = 512 };
 
 static poll_port_t *port_of(fathom_loop_source_t *source) { return (poll_port_t *)source; }
 
@@ -14,10 +17,10 @@ static const poll_port_t *const_port_of(const fathom_loop_source_t *source)
     return (const poll_port_t *)source;
 }
 
-static void tell(const poll_port_t *port, const char *text, bool is_there)
+static void tell(const poll_port_t *port, const char *text, poll_port_state_t state)
 {
     const poll_loop_t *const loop = port->loop;
-    loop->user->port(loop->ctx, text, is_there);
+    loop->user->port(loop->ctx, text, state);
 }
 
 /* The others go on without it. */
@@ -47,6 +50,7 @@ static void leave(poll_port_t *port)
 
 static bool begin_station(poll_port_t *port, station_t *station)
 {
+    char text[TEXT];
     poll_loop_t *const loop = port->loop;
     const sensor_options_t *const options = &loop->options;
     reader_settings_t settings = options->reading;
@@ -57,10 +61,9 @@ static bool begin_station(poll_port_t *port, station_t *station)
     settings.address = station->address;
     settings.retries = options->retries;
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
-    char text[TEXT];
     if (!station_begin(station, &port->channel, &settings)) {
         station_refusal(station, text, sizeof text);
-        tell(port, text, false);
+        tell(port, text, POLL_PORT_GIVEN_UP);
         return false;
     }
     if (!port->was_open && station_is_raised(station, options->interval_us, text, sizeof text))
@@ -86,13 +89,25 @@ static bool begin_stations(poll_port_t *port)
     return true;
 }
 
-/* By what it is: so far, a tty or a connection. False: channel.port has the reason. */
-static bool connect_port(poll_port_t *port)
+/* By what it is: pins, a tty, or a connection, for which alone a single port waits here. FATHOM_ERR_PORT: channel.port
+ * has the reason. */
+static fathom_status_t connect_port(poll_port_t *port)
 {
+    const poll_loop_t *const loop = port->loop;
+    const port_options_t *const options = port->options;
+    if (options->is_chip)
+        return channel_open_pins(&port->channel, loop->host, options->path, &options->pins) ? FATHOM_READY
+                                                                                            : FATHOM_ERR_PORT;
     port->channel.echo = port->options->echo;
     port->channel.rs485 = port->options->rs485;
     port->channel.source = &port->source;
-    return usb_adapter_try(&port->adapter, &port->channel, port->loop->host, &port->options->line);
+    if (tcp_names(port->options->path) && loop->options.port_count > 1)
+        return channel_begin_tcp(&port->channel, loop->host, port->options->path, port->tries++)
+                   ? FATHOM_PENDING
+                   : FATHOM_ERR_PORT;
+    return usb_adapter_try(&port->adapter, &port->channel, loop->host, &port->options->line)
+               ? FATHOM_READY
+               : FATHOM_ERR_PORT;
 }
 
 static void tell_away(const poll_port_t *port)
@@ -113,24 +128,34 @@ static void take_absence(poll_port_t *port)
     port->waits = options->reconnect && may_come;
     (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(&port->channel.port),
                    port->waits ? "; waiting until it is there" : "");
-    tell(port, text, false);
+    tell(port, text, port->waits ? POLL_PORT_WAITED_FOR : POLL_PORT_GIVEN_UP);
     if (port->waits) return;
     port->loop->has_failed = true;
     leave(port);
 }
 
-static bool open_port(fathom_loop_source_t *source)
+/* What is there and cannot be opened has to be told some time. */
+static void tell_waiting(const poll_port_t *port)
 {
-    poll_port_t *const port = port_of(source);
-    if (port->is_done) return false;
-    if (!connect_port(port)) {
-        if (!port->is_lost) take_absence(port);
-        if (port->waits) tell_away(port);
-        return false;
-    }
-    port->source.reads_all = port->channel.tcp == NULL;
+    char text[TEXT];
+    if (!port->waits || !usb_adapter_is_overdue(&port->adapter)) return;
+    (void)snprintf(text, sizeof text, "still waiting: %s", fathom_posix_error_text(&port->channel.port));
+    tell(port, text, POLL_PORT_WAITED_FOR);
+}
+
+static void take_failed_try(poll_port_t *port)
+{
+    if (!port->is_lost) take_absence(port);
+    if (port->waits) tell_away(port);
+    tell_waiting(port);
+}
+
+/* False: it cannot be used. */
+static bool take_port(poll_port_t *port)
+{
+    /* A tty; what stands in for one in a test need not. */
+    port->source.reads_all = port->channel.tcp == NULL && fathom_posix_fd(&port->channel.port) >= 0;
     if (!begin_stations(port)) {
-        channel_close(&port->channel);
         port->loop->has_failed = true;
         leave(port);
         return false;
@@ -140,11 +165,32 @@ static bool open_port(fathom_loop_source_t *source)
         (void)snprintf(text, sizeof text, "%s: %s", usb_adapter_path(&port->adapter),
                        port->was_open ? "it is back; reading goes on" : "it is there; reading begins");
         if (port->was_open) port->loop->reconnects++;
-        tell(port, text, true);
+        tell(port, text, POLL_PORT_THERE);
     }
     port->is_lost = false;
     port->was_open = true;
     return true;
+}
+
+static bool open_port(fathom_loop_source_t *source)
+{
+    poll_port_t *const port = port_of(source);
+    if (port->is_done) return false;
+    const fathom_status_t status = connect_port(port);
+    port->is_waiting = status == FATHOM_PENDING;
+    if (status == FATHOM_ERR_PORT) take_failed_try(port);
+    if (status != FATHOM_READY || take_port(port)) return status != FATHOM_ERR_PORT;
+    channel_close(&port->channel);
+    return false;
+}
+
+/* False: the connection does not come to stand. */
+static bool wait_for_connection(poll_port_t *port)
+{
+    const fathom_status_t status = channel_go_on(&port->channel);
+    port->is_waiting = status == FATHOM_PENDING;
+    if (status == FATHOM_ERR_PORT) take_failed_try(port);
+    return status == FATHOM_READY ? take_port(port) : status == FATHOM_PENDING;
 }
 
 static void close_port(fathom_loop_source_t *source) { channel_close(&port_of(source)->channel); }
@@ -180,7 +226,7 @@ static void lose(poll_port_t *port)
         (void)snprintf(text, sizeof text,
                        "%s: this adapter has no serial number of its own: use the same USB socket again",
                        usb_adapter_path(&port->adapter));
-        tell(port, text, false);
+        tell(port, text, POLL_PORT_WAITED_FOR);
     }
 }
 
@@ -193,6 +239,7 @@ static int port_fd(const fathom_loop_source_t *source)
 
 static short port_events(const fathom_loop_source_t *source)
 {
+    if (const_port_of(source)->is_waiting) return POLLOUT;
     return fathom_posix_poll_events(&const_port_of(source)->channel.port);
 }
 
@@ -211,6 +258,7 @@ static bool poll_station(poll_port_t *port, station_t *station)
         fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
         tell_remark(port->loop, station);
         poll_take_late(port);
+        channel_look(&port->channel);
         /* Between two requests a driver does not tell it, and waiting for the port would not wait. */
         port->is_lost = fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_LOST;
         if (port->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
@@ -239,6 +287,11 @@ static bool poll_stations(poll_port_t *port)
 static bool poll_port(fathom_loop_source_t *source)
 {
     poll_port_t *const port = port_of(source);
+    if (port->is_waiting && !wait_for_connection(port)) return false;
+    if (port->is_waiting) {
+        source->is_readable = false; /* nothing is read yet */
+        return true;
+    }
     for (unsigned turn = 0; turn != TURNS && !port->is_done && !poll_is_over(port->loop); turn++) {
         const bool has_come = poll_stations(port);
         if (port->is_lost) {
@@ -254,6 +307,7 @@ static bool poll_port(fathom_loop_source_t *source)
 static uint32_t due_us(fathom_loop_source_t *source)
 {
     const poll_port_t *const port = port_of(source);
+    if (port->is_waiting) return CONNECTION_US;
     uint32_t soonest_us = port->is_done ? AGAIN_US : FATHOM_NO_DEADLINE;
     for (station_t *station = port->stations; station != NULL && !port->is_done; station = station->next) {
         if (poll_is_done(port->loop, station)) continue;

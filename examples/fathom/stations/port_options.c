@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "stations/port_options.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "shared/command.h"
@@ -68,6 +67,13 @@ static bool take_bias(const char *text, uint32_t *value)
     return take_word(words, text, value);
 }
 
+/* In the order of pins_near_t, of which the first is never written. */
+static bool take_near(const char *text, uint32_t *value)
+{
+    static const char *const words[] = {"", "low", "high", NULL};
+    return take_word(words, text, value) && *value != PINS_NEAR_USUAL;
+}
+
 /* ---- keys ---- */
 
 static const char a_line[] = "the number of a line from 0 to 65535";
@@ -87,6 +93,7 @@ static const struct {
     [KEY_PULSE] = {"echo", PORT_CHIP, a_line, take_line},
     [KEY_IN] = {"in", PORT_CHIP, a_line, take_line},
     [KEY_BIAS] = {"bias", PORT_CHIP, "as-is, up, down or off", take_bias},
+    [KEY_NEAR] = {"near", PORT_CHIP, "high or low", take_near},
 };
 
 bool port_keys_has(const port_keys_t *keys, port_key_t key) { return (keys->given >> key & 1u) != 0; }
@@ -159,27 +166,20 @@ bool port_keys_parse(port_keys_t *keys, const char *command, const char *word, p
     }
 }
 
-bool port_keys_option(port_keys_t *keys, const char *command, const char *name, port_key_t key,
-                      const char *text)
+bool port_keys_options(port_keys_t *keys, const char *command, const char *const given[PORT_KEYS])
 {
-    uint32_t value = 0;
-    if (text == NULL) return true;
-    if (rows[key].take(text, &value)) {
+    for (size_t key = 0; key != PORT_KEYS; key++) {
+        uint32_t value = 0;
+        if (given[key] == NULL) continue;
+        if (!rows[key].take(given[key], &value)) {
+            (void)usage_error(command, "--%s takes %s, not '%s'",
+                              key == KEY_STOP_BITS ? "stop-bits" : rows[key].name, rows[key].takes,
+                              given[key]);
+            return false;
+        }
         set(keys, key, value);
-        return true;
     }
-    (void)usage_error(command, "--%s takes %s, not '%s'", name, rows[key].takes, text);
-    return false;
-}
-
-bool port_keys_line(port_keys_t *keys, const char *command, const char *baud, const char *stop_bits,
-                    const char *parity, const char *echo, const char *rs485)
-{
-    return port_keys_option(keys, command, "baud", KEY_BAUD, baud) &&
-           port_keys_option(keys, command, "stop-bits", KEY_STOP_BITS, stop_bits) &&
-           port_keys_option(keys, command, "parity", KEY_PARITY, parity) &&
-           port_keys_option(keys, command, "echo", KEY_ECHO, echo) &&
-           port_keys_option(keys, command, "rs485", KEY_RS485, rs485 != NULL ? "on" : NULL);
+    return true;
 }
 
 bool port_keys_add(port_keys_t *keys, const char *command, const char *word, const port_keys_t *others)
@@ -226,7 +226,8 @@ void port_options_take(port_options_t *port, const port_keys_t *defaults)
     port->pins = (pin_options_t){.trigger = pin(&port->keys, KEY_TRIGGER),
                                  .echo = pin(&port->keys, KEY_PULSE),
                                  .in = pin(&port->keys, KEY_IN),
-                                 .bias = (uint8_t)port->keys.value[KEY_BIAS]};
+                                 .bias = (uint8_t)port->keys.value[KEY_BIAS],
+                                 .near = (uint8_t)port->keys.value[KEY_NEAR]};
 }
 
 void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line)
@@ -239,4 +240,30 @@ void port_options_line(const port_options_t *port, const port_keys_t *defaults, 
         if (value == 2) line->parity = FATHOM_PARITY_NONE;
     }
     if (get(&port->keys, defaults, KEY_PARITY, &value)) line->parity = (uint8_t)value;
+}
+
+void port_options_help(FILE *to)
+{
+    (void)fputs(
+        "  --port PATH       of every sensor without @PORT: a serial port (/dev/ttyUSB0, or the link of "
+        "`fathom "
+        "sim`); a\n"
+        "                    Modbus TCP server or gateway, for mode modbus: tcp:HOST, tcp:HOST:PORT (502 if "
+        "not "
+        "given),\n"
+        "                    tcp:[IPV6]:PORT; or a GPIO chip, for modes on pins: "
+        "gpiochip0\n" OPTIONS_PORT_HELP
+        "  --baud N          of serial ports, if not the factory's: 9600, 19200, 38400, 57600, 115200 or "
+        "230400\n"
+        "  --parity P        if not the factory's: none, even or odd\n"
+        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
+        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n"
+        "  --rs485           the kernel's driver drives the transceiver: RTS is on while bytes leave\n"
+        "  @PORT,KEY=VALUE   of this port alone, and before the options: of a serial port baud= parity= "
+        "stop= echo= and\n"
+        "                    rs485=on|off; of a GPIO chip trigger= echo= in= (its lines, from 0),\n"
+        "                    bias=as-is|up|down|off and near=high|low; of tcp: none. Sensors with the same "
+        "PORT share\n"
+        "                    it, and what stands behind one goes for all\n",
+        to);
 }

@@ -5,8 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "fathom/hal.h"
+#include "shared/pins.h"
 
 /* The port of a sensor, and what may stand behind it: PORT[,key=value...]. */
 
@@ -36,6 +38,7 @@ typedef enum {
     KEY_PULSE, /* written echo= */
     KEY_IN,
     KEY_BIAS, /* fathom_gpio_bias_t */
+    KEY_NEAR, /* pins_near_t */
     PORT_KEYS
 } port_key_t;
 
@@ -53,26 +56,13 @@ const char *port_key_name(port_key_t key);
 bool port_keys_parse(port_keys_t *keys, const char *command, const char *word, port_kind_t kind,
                      const char *list);
 
-/* Reads the option --NAME that says the same as a key; text NULL: it was not given. False after a usage error. */
-bool port_keys_option(port_keys_t *keys, const char *command, const char *name, port_key_t key,
-                      const char *text);
-
-/* The same for --baud, --stop-bits, --parity, --echo and --rs485, which has no value. */
-bool port_keys_line(port_keys_t *keys, const char *command, const char *baud, const char *stop_bits,
-                    const char *parity, const char *echo, const char *rs485);
+/* Reads the options that say the same as keys: for each key what was given; NULL: nothing. False after a usage error. */
+bool port_keys_options(port_keys_t *keys, const char *command, const char *const given[PORT_KEYS]);
 
 /* Adds those of another sensor at this port. False after a usage error: they do not agree. */
 bool port_keys_add(port_keys_t *keys, const char *command, const char *word, const port_keys_t *others);
 
 /* ---- the port ---- */
-
-/* The lines of a GPIO chip that a sensor hangs on; -1: none. */
-typedef struct {
-    int32_t trigger; /* to the sensor's RX; an output */
-    int32_t echo;    /* from its TX: pulses */
-    int32_t in;      /* a switch, or a relay's contact */
-    uint8_t bias;    /* of the inputs; fathom_gpio_bias_t */
-} pin_options_t;
 
 /* A port, and the line behind it. */
 typedef struct {
@@ -92,5 +82,8 @@ void port_options_take(port_options_t *port, const port_keys_t *defaults);
 
 /* The same for the line of one of its sensors, which is the factory's before. */
 void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line);
+
+/* The help of --port, of the options that say the same as keys, and of the keys. */
+void port_options_help(FILE *to);
 
 #endif

@@ -96,6 +96,17 @@ static bool take_port(sensor_options_t *options, const char *command, station_t 
     return port_keys_add(&port->keys, command, place->word, &place->keys);
 }
 
+/* What the options say of all ttys whose own keys do not. */
+static bool take_defaults(port_keys_t *keys, const char *command, const char *const *values)
+{
+    const char *const given[PORT_KEYS] = {[KEY_BAUD] = values[OPTION_BAUD],
+                                          [KEY_PARITY] = values[OPTION_PARITY],
+                                          [KEY_STOP_BITS] = values[OPTION_STOP_BITS],
+                                          [KEY_ECHO] = values[OPTION_ECHO],
+                                          [KEY_RS485] = values[OPTION_RS485] != NULL ? "on" : NULL};
+    return port_keys_options(keys, command, given);
+}
+
 static void take_lines(sensor_options_t *options, const port_keys_t *defaults)
 {
     for (size_t i = 0; i != options->station_count; i++) {
@@ -114,10 +125,8 @@ static void take_lines(sensor_options_t *options, const port_keys_t *defaults)
 
 static bool take_ports(sensor_options_t *options, const char *command, const char *const *values)
 {
-    port_keys_t defaults = {.given = 0}; /* of all ttys whose own keys say nothing else */
-    if (!port_keys_line(&defaults, command, values[OPTION_BAUD], values[OPTION_STOP_BITS],
-                        values[OPTION_PARITY], values[OPTION_ECHO], values[OPTION_RS485]))
-        return false;
+    port_keys_t defaults = {.given = 0};
+    if (!take_defaults(&defaults, command, values)) return false;
     take_lines(options, &defaults);
     for (size_t i = 0; i != options->port_count; i++) {
         port_options_take(&options->ports[i], &defaults);
@@ -215,16 +224,8 @@ void sensor_options_tell_useless(const sensor_options_t *options, const char *ad
 
 void sensor_options_help(FILE *to)
 {
+    port_options_help(to);
     (void)fputs(
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or a Modbus TCP "
-        "server "
-        "or\n"
-        "                    gateway: tcp:HOST, tcp:HOST:PORT (502 if not given), tcp:[IPV6]:PORT, for mode "
-        "modbus;\n"
-        "                    --baud, --parity, --stop-bits and --echo mean nothing there\n" OPTIONS_PORT_HELP
-        "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
-        "  --parity P        if not the factory's: none, even or odd\n"
-        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --duration S      ends after so many seconds; without it Ctrl-C does\n"
         "  --interval MS     from one attempt to the next; default: as fast as the sensor can\n"
         "  --timeout MS      how long to wait for a response (default: as the sensor needs, 0.5 to 1 s), or "
@@ -237,7 +238,6 @@ void sensor_options_help(FILE *to)
         "adapter\n"
         "                    is known again by its serial number, also as another /dev/ttyUSB; one without "
         "by the\n"
-        "                    USB socket that it was in. Any other port is known by its path\n"
-        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n",
+        "                    USB socket that it was in. Any other port is known by its path\n",
         to);
 }

@@ -274,16 +274,12 @@ void session_explain(session_t *session, fathom_status_t status)
 
 void session_line_help(FILE *to)
 {
+    port_options_help(to);
     (void)fputs(
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or "
-        "tcp:HOST[:PORT]\n" OPTIONS_PORT_HELP "  --address N       1 from the factory; also as in hps167s:7\n"
+        "  --address N       1 from the factory; also as in hps167s:7\n"
         "  --mode MODE       modbus (default), or dyp for an a05 with frames 55 AA\n"
-        "  --baud N          if not the factory's: 9600, 19200, 38400, 57600, 115200 or 230400\n"
-        "  --parity P        if not the factory's: none, even or odd\n"
-        "  --stop-bits N     if not the factory's 1: 2, which means no parity too unless --parity is given\n"
         "  --timeout MS      how long to wait for a measurement\n"
-        "  --retries N       how often a failed request is repeated; what changes something never is\n"
-        "  --echo ECHO       does the adapter return what it sends? auto (default: found out), on or off\n",
+        "  --retries N       how often a failed request is repeated; what changes something never is\n",
         to);
 }
 

@@ -90,6 +90,11 @@ static bool suits_chip(const station_t *station, const port_options_t *port, con
             return false;
         }
     }
+    if ((mode->pins & MODEL_PIN_IN) == 0 && port_keys_has(&port->keys, KEY_NEAR)) {
+        (void)usage_error(command, "%s in mode %s tells distances and has no near=, such as @%s,%s",
+                          station->model->name, mode->name, port->path, pins);
+        return false;
+    }
     return true;
 }
 

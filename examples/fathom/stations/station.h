@@ -5,6 +5,7 @@
 #include "models/models.h"
 #include "stations/counters.h"
 #include "stations/place.h"
+#include "stations/pulses.h"
 
 /* A line has 32 unit loads. */
 enum { MAX_STATIONS = 256, MAX_STATIONS_ON_A_LINE = 32 };
@@ -24,6 +25,7 @@ struct station {
     bool has_own_name; /* the user's */
     reader_t reader;
     counters_t counters;
+    pulses_t pulses;
     listener_t
         own_listener;     /* where several sensors are asked: what was heard while it was this one's turn */
     listener_t *listener; /* the line's or its own */

@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "shared/events.h"
 #include "shared/options.h"
+#include "stations/pins_help.h"
 #include "stations/reading_options.h"
 #include "watch/watch_terminal.h"
 
@@ -100,25 +101,29 @@ static void take_remark(void *ctx, const station_t *station, const char *text)
     if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", line);
 }
 
-static void take_port(void *ctx, const char *text, bool is_there)
+static void take_port(void *ctx, const char *text, poll_port_state_t state)
 {
     watch_t *const watch = ctx;
-    say(watch, text, is_there ? MESSAGE_US : UINT32_MAX);
+    say(watch, text, state == POLL_PORT_THERE ? MESSAGE_US : UINT32_MAX);
     watch->wants_all = true;
-    if (!is_there) (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
+    if (state != POLL_PORT_THERE) (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
     if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
-/* "/dev/ttyUSB0, /dev/ttyUSB1 and 3 more" */
-static void name_ports(const watch_t *watch, char text[PORTS])
+/* "/dev/ttyUSB0", or "ttyUSB0, ttyUSB1, ttyUSB2 and 3 more". */
+static void name_ports(const sensor_options_t *options, char text[PORTS])
 {
     enum { NAMED = 3 };
-    const sensor_options_t *const options = &watch->loop.options;
+    const size_t count = options->port_count;
     size_t at = 0;
-    for (size_t i = 0; i != options->port_count && i != NAMED && at < PORTS; i++)
-        at += (size_t)snprintf(text + at, PORTS - at, "%s%s", i != 0 ? ", " : "", options->ports[i].path);
-    if (options->port_count > NAMED && at < PORTS)
-        (void)snprintf(text + at, PORTS - at, " and %zu more", options->port_count - NAMED);
+    if (count == 1) {
+        (void)snprintf(text, PORTS, "%s", options->ports[0].path);
+        return;
+    }
+    for (size_t i = 0; i != count && i != NAMED && at < PORTS; i++)
+        at += (size_t)snprintf(text + at, PORTS - at, "%s%s", i != 0 ? ", " : "",
+                               port_last_part(options->ports[i].path));
+    if (count > NAMED && at < PORTS) (void)snprintf(text + at, PORTS - at, " and %zu more", count - NAMED);
 }
 
 static void draw(watch_t *watch, uint64_t now_us)
@@ -126,7 +131,7 @@ static void draw(watch_t *watch, uint64_t now_us)
     const uint32_t seconds = (uint32_t)(now_us / 1000000u);
     char title[MESSAGE];
     char ports[PORTS];
-    name_ports(watch, ports);
+    name_ports(&watch->loop.options, ports);
     (void)snprintf(title, sizeof title,
                    "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   %sCtrl-C ends", ports,
                    seconds / 3600, seconds / 60 % 60, seconds % 60, terminal_has_keys() ? "q or " : "");
@@ -191,7 +196,8 @@ static int finish(watch_t *watch)
     if (watch->output_error != 0)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
     /* On the screen that has just gone, this stood last. */
-    if (poll_loop_is_lost(&watch->loop) && watch->draws) (void)fprintf(stderr, "fathom: %s\n", watch->loss);
+    if ((poll_loop_is_lost(&watch->loop) || watch->loop.has_failed) && watch->draws)
+        (void)fprintf(stderr, "fathom: %s\n", watch->loss);
     poll_loop_account(&watch->loop, &account);
     counters_print(&account, stderr);
     return !poll_loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
@@ -202,7 +208,8 @@ static void help(FILE *to)
     (void)fputs(
         "fathom watch shows live in the terminal what sensors say: distance over time, one lane for each "
         "probe.\n\n"
-        "usage: fathom watch SENSOR[:ADDRESS[:MODE]]... --port PATH [OPTIONS]\n\n",
+        "usage: fathom watch [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... [--port PATH] "
+        "[OPTIONS]\n\n",
         to);
     models_print(to);
     (void)fputs(
@@ -214,18 +221,19 @@ static void help(FILE *to)
         "instead of a\n"
         "distance stands there as a letter: - no target, ~ no target and interference, ? a value without a "
         "meaning, n\n"
-        "something nearer than it can measure, x no response, ! a "
+        "something nearer than it can measure, N and _ the near and far of a switch or a relay, x no "
+        "response, ! a "
         "damaged, wrong or\n"
         "impossible response, s nothing for too long, F the sensor says that it has failed, P the port is "
         "lost.\n\n"
         "The picture fits the window and follows it; q or Ctrl-C ends it. NO_COLOR=1 turns colours off; "
-        "without UTF-8 in the "
-        "locale "
-        "the bars are\n"
+        "without UTF-8 in\n"
+        "the locale the bars are "
         "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
         to);
     sensor_options_help(to);
     reading_options_help(to);
+    pins_help(to);
     (void)fputs("\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a "
                 "sensor gave no "
                 "good\n"
@@ -246,6 +254,7 @@ static bool take_options(sensor_options_t *options, int argc, char **argv, bool 
     if (!sensor_options(options, command, argv + rest, argc - rest, values, NULL, NULL) ||
         !reading_options(options, command, values))
         return false;
+    options->reading.repeat_us = 250000; /* a column */
     sensor_options_tell_useless(options, NULL, values);
     return true;
 }

@@ -23,6 +23,8 @@ static const struct {
     [MARK_INTERFERENCE] = {'~', false, "interference"},
     [MARK_UNKNOWN] = {'?', false, "unknown"},
     [MARK_TOO_NEAR] = {'n', false, "too near"},
+    [MARK_FAR] = {'_', false, "far"},
+    [MARK_NEAR] = {'N', false, "near"},
     [MARK_STALE] = {'s', true, "stale"},
     [MARK_NO_RESPONSE] = {'x', true, "no response"},
     [MARK_BAD_RESPONSE] = {'!', true, "unusable"},
@@ -36,15 +38,18 @@ const char *mark_name(mark_t mark) { return marks[mark].name; }
 
 bool mark_is_loss(mark_t mark) { return marks[mark].is_loss; }
 
+static bool is_contact(const station_t *station) { return (station->mode->pins & MODEL_PIN_IN) != 0; }
+
 void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
 {
     lanes->step_us = options->interval_us > LEAST_STEP_US ? options->interval_us : LEAST_STEP_US;
     lanes->count = 0;
+    lanes->name_width = LEAST_NAME;
     lanes->now_us = 0;
     lanes->seen = 0;
     for (size_t i = 0; i != options->station_count; i++) {
         const station_t *const station = &options->stations[i];
-        const uint8_t probes = station->model->probes;
+        const uint8_t probes = is_contact(station) ? 1 : station->model->probes;
         for (uint8_t probe = 1; probe <= probes; probe++) {
             if (probes > 1 && options->reading.probes != 0 &&
                 (options->reading.probes >> (probe - 1) & 1) == 0)
@@ -55,6 +60,9 @@ void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
             lane->probe = probe;
             (void)snprintf(lane->name, sizeof lane->name, probes > 1 ? "%s probe %u" : "%s", station->name,
                            probe);
+            const size_t length = strlen(lane->name);
+            if (length > lanes->name_width)
+                lanes->name_width = (uint16_t)(length < MOST_NAME ? length : MOST_NAME);
         }
     }
 }
@@ -70,6 +78,9 @@ void lanes_pass(lanes_t *lanes, uint64_t now_us)
         for (uint64_t n = passed < LANE_STEPS ? passed : LANE_STEPS; n != 0; n--)
             lanes->lane[i].steps[(number_now(lanes) - n + 1) % LANE_STEPS] = (step_t){.mark = MARK_NONE};
 }
+
+/* Does it stand until the next one? */
+static bool is_held(mark_t mark) { return mark == MARK_NONE || mark == MARK_NEAR || mark == MARK_FAR; }
 
 static uint8_t hold_of(const lanes_t *lanes, const lane_t *lane)
 {
@@ -88,7 +99,7 @@ static void take(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm
         step->has_distance = true;
         step->distance_mm = distance_mm;
     }
-    step->hold = mark == MARK_NONE ? hold_of(lanes, lane) : 0;
+    step->hold = is_held(mark) ? hold_of(lanes, lane) : 0;
     if (!mark_is_loss(mark)) step->readings++;
     lane->heard_us = lanes->now_us;
     lane->has_outcome = true;
@@ -103,7 +114,8 @@ void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample
     mark_t mark = MARK_NONE;
     if (sample->kind == FATHOM_NO_TARGET) mark = sample->interference ? MARK_INTERFERENCE : MARK_NO_TARGET;
     if (sample->kind == FATHOM_UNKNOWN) mark = MARK_UNKNOWN;
-    if (sample->kind == FATHOM_NEAR) mark = MARK_TOO_NEAR;
+    if (sample->kind == FATHOM_NEAR) mark = is_contact(station) ? MARK_NEAR : MARK_TOO_NEAR;
+    if (sample->kind == FATHOM_FAR) mark = MARK_FAR;
     if (sample->kind == FATHOM_FAULT) mark = MARK_FAULT;
     for (size_t i = 0; i != lanes->count; i++)
         if (lanes->lane[i].station == station && lanes->lane[i].probe == sample->probe)
@@ -145,7 +157,7 @@ step_t lane_step(const lanes_t *lanes, const lane_t *lane, uint32_t ago)
         const step_t *const step = &lane->steps[(now - ago - held) % LANE_STEPS];
         if (is_empty(step)) continue;
         if (held == 0 || held <= step->hold) shown = *step;
-        if (held != 0) shown.mark = MARK_NONE; /* what it says of its own step only */
+        if (held != 0 && !is_held((mark_t)step->mark)) shown.mark = MARK_NONE; /* of its own step only */
         return shown;
     }
     return shown;

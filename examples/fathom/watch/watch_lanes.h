@@ -13,6 +13,8 @@ typedef enum {
     MARK_INTERFERENCE,
     MARK_UNKNOWN,  /* a value without a meaning */
     MARK_TOO_NEAR, /* ... to be measured */
+    MARK_FAR,      /* of a switch or a contact, whose states stand until the next one, as distances do */
+    MARK_NEAR,
     MARK_STALE,
     MARK_NO_RESPONSE,
     MARK_BAD_RESPONSE, /* damaged, refused, or with a value that cannot be */
@@ -52,13 +54,16 @@ typedef struct {
     uint64_t lost; /* of these */
 } lane_t;
 
+enum { LEAST_NAME = 13, MOST_NAME = 39 }; /* a NAME of 31 characters and " probe 1"; what is longer is cut */
+
 enum { MAX_LANES = MAX_STATIONS * 4 };
 
 typedef struct {
     lane_t lane[MAX_LANES];
     size_t count;
-    uint64_t now_us; /* since the start */
-    uint32_t seen;   /* bit mark_t: it has come */
+    uint16_t name_width; /* the longest name's in characters, LEAST_NAME to MOST_NAME */
+    uint64_t now_us;     /* since the start */
+    uint32_t seen;       /* bit mark_t: it has come */
     uint32_t step_us;
 } lanes_t;
 

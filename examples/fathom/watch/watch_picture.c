@@ -85,6 +85,9 @@ static void draw_plot(picture_t *picture, const lanes_t *lanes, const lane_t *la
     }
 }
 
+/* So many columns farther to the right stands what is behind the names. */
+static uint16_t longer_names(const lanes_t *lanes) { return (uint16_t)(lanes->name_width - LEAST_NAME); }
+
 /* Name, value, rate, losses. */
 static void draw_words(picture_t *picture, const lanes_t *lanes, const lane_t *lane, uint16_t row,
                        bool is_short)
@@ -93,13 +96,16 @@ static void draw_words(picture_t *picture, const lanes_t *lanes, const lane_t *l
     const uint32_t rate = lane_rate_tenths(lanes, lane);
     char value[LANE_VALUE];
     char text[96];
-    (void)put_text(picture, row, 0, lane->name, COLOUR_BOLD);
-    (void)put_text(picture, row, 15, lane_value(lane, value), colour_of(lane->mark));
+    const uint16_t longer = longer_names(lanes);
+    (void)snprintf(text, sizeof text, "%.*s", lanes->name_width, lane->name);
+    (void)put_text(picture, row, 0, text, COLOUR_BOLD);
+    (void)put_text(picture, row, (uint16_t)(15 + longer), lane_value(lane, value), colour_of(lane->mark));
     (void)snprintf(text, sizeof text, "%4" PRIu32 ".%" PRIu32 "/s", rate / 10, rate % 10);
-    (void)put_text(picture, row, 27, text, COLOUR_PLAIN);
+    (void)put_text(picture, row, (uint16_t)(27 + longer), text, COLOUR_PLAIN);
     if (is_short) return;
     (void)snprintf(text, sizeof text, "lost %" PRIu64 " of %" PRIu64, lane->lost, lane->outcomes);
-    uint16_t end = put_text(picture, row, 38, text, lane->lost != 0 ? COLOUR_LOSS : COLOUR_PLAIN);
+    uint16_t end =
+        put_text(picture, row, (uint16_t)(38 + longer), text, lane->lost != 0 ? COLOUR_LOSS : COLOUR_PLAIN);
     if (unit == NULL || unit->backoff_left_us < 1000000) return;
     (void)snprintf(text, sizeof text, "asked again in %" PRIu32 " s", unit->backoff_left_us / 1000000);
     (void)put_text(picture, row, (uint16_t)(end + 2), text, COLOUR_PLAIN);
@@ -110,7 +116,7 @@ static void draw_lane(picture_t *picture, const lanes_t *lanes, const lane_t *la
 {
     draw_words(picture, lanes, lane, row, height == 1);
     if (height == 1)
-        draw_plot(picture, lanes, lane, row, 1, NARROW, false);
+        draw_plot(picture, lanes, lane, row, 1, (uint16_t)(NARROW + longer_names(lanes)), false);
     else
         draw_plot(picture, lanes, lane, (uint16_t)(row + 1), (uint16_t)(height - 1), GUTTER, true);
 }
@@ -130,12 +136,12 @@ static void draw_axis(picture_t *picture, const lanes_t *lanes, uint16_t row, ui
     (void)put_text(picture, row, (uint16_t)(picture->columns - 4), " now", COLOUR_PLAIN);
 }
 
-/* The two that most sensors never say stand there from when they have come. */
+/* Those that most sensors never say stand there from when they have come. */
 static void draw_legend(picture_t *picture, const lanes_t *lanes, uint16_t row)
 {
     uint16_t column = 0;
     for (mark_t mark = MARK_NO_TARGET; mark != MARKS; mark++) {
-        if ((mark == MARK_UNKNOWN || mark == MARK_TOO_NEAR) && (lanes->seen >> mark & 1) == 0) continue;
+        if ((mark >= MARK_UNKNOWN && mark <= MARK_NEAR) && (lanes->seen >> mark & 1) == 0) continue;
         put(picture, row, column, (uint8_t)mark_character(mark), colour_of(mark));
         column =
             (uint16_t)(put_text(picture, row, (uint16_t)(column + 2), mark_name(mark), COLOUR_PLAIN) + 1);
@@ -192,7 +198,8 @@ void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lan
     }
     draw_hidden(picture, lanes->count - shown);
     if (!has_footer) return;
-    draw_axis(picture, lanes, end, height_of_all == shown ? NARROW : GUTTER);
+    draw_axis(picture, lanes, end,
+              height_of_all == shown ? (uint16_t)(NARROW + longer_names(lanes)) : GUTTER);
     draw_legend(picture, lanes, (uint16_t)(end + 1));
     draw_message(picture, message, (uint16_t)(end + 2));
 }

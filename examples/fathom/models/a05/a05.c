@@ -49,6 +49,26 @@ static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings
            dyp_begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
 }
 
+/* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user says
+ * that near is the other level. */
+static bool read_relay(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a05_relay_t *const driver = &reader->driver.a05_relay;
+    const pin_options_t *const wanted = &channel->pins.wanted;
+    const bool conducts_high = wanted->bias == FATHOM_GPIO_BIAS_PULL_DOWN;
+    const bool is_normally_closed = wanted->near == (conducts_high ? PINS_NEAR_LOW : PINS_NEAR_HIGH);
+    const fathom_a05_relay_config_t config = {
+        .pin = &channel->pins.in,
+        .clock = &channel->clock,
+        .timing = reader_contact_timing(channel, settings),
+        .wiring = is_normally_closed ? FATHOM_A05_RELAY_NORMALLY_CLOSED : FATHOM_A05_RELAY_NORMALLY_OPEN,
+        .level = conducts_high ? FATHOM_A05_RELAY_CONDUCTS_HIGH : FATHOM_A05_RELAY_CONDUCTS_LOW,
+    };
+    reader_begin(reader, channel);
+    return fathom_a05_relay_init(driver, &config) == FATHOM_READY &&
+           reader_begin_contact(reader, channel, &driver->base, fathom_a05_relay_sensor(driver));
+}
+
 /* ---- simulation ---- */
 
 static void simulate(device_t *device, const device_settings_t *settings, uint8_t mode)
@@ -104,7 +124,8 @@ const model_t model_a05 = {
                .has_address = true,
                .takes = DYP_TAKES | READER_TAKES_PROBES,
                .read = read_dyp,
-               .simulate = simulate_dyp}},
+               .simulate = simulate_dyp},
+              {.name = "relay", .pins = MODEL_PIN_IN, .read = read_relay}},
     .settings = a05_settings,
     .max_address = DYP_MAX_ADDRESS,
     .is_dyp = true,

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+#include "models/a16/a16.h"
+
+static fathom_status_t end_pwm(reader_t *reader) { return fathom_a16_pwm_deinit(&reader->driver.a16_pwm); }
+
+/* A pulse a trigger (A16 1). */
+bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
+    const pins_t *const pins = &channel->pins;
+    const fathom_a16_pwm_config_t config = {.pulse = {.clock = &channel->clock,
+                                                      .capture = &pins->capture,
+                                                      .trigger = fathom_output_pin(&pins->trigger),
+                                                      .cycle_us = settings->period_us},
+                                            .window = settings->window};
+    reader_begin(reader, channel);
+    if (fathom_a16_pwm_init(driver, &config) != FATHOM_READY) return false;
+    reader->sensor = fathom_a16_pwm_sensor(driver);
+    reader->end = end_pwm;
+    reader->sequence = &driver->sequence;
+    reader->meter = &driver->meter;
+    reader->pins = pins;
+    reader->is_paced = true;
+    reader->period_us = &driver->meter.trigger.period_us;
+    return true;
+}
+
+/* A level (A16 4); from the factory "less than 1 meter" is a high one. */
+bool a16_read_switch(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+{
+    fathom_a16_switch_t *const driver = &reader->driver.a16_switch;
+    const fathom_a16_switch_config_t config = {.pin = &channel->pins.in,
+                                               .clock = &channel->clock,
+                                               .timing = reader_contact_timing(channel, settings),
+                                               .negative = channel->pins.wanted.near == PINS_NEAR_LOW};
+    reader_begin(reader, channel);
+    return fathom_a16_switch_init(driver, &config) == FATHOM_READY &&
+           reader_begin_contact(reader, channel, &driver->base, fathom_a16_switch_sensor(driver));
+}

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom read with sensors on several ports: one of them is killed and started again, or is a connection to nothing,
+and the others do not pause."""
+import os
+import re
+import signal
+import time
+
+import e2e
+import tcp_server
+
+INTERVAL = 0.1
+# A machine under load lets a program wait; a port that is waited for would make it half a second at least.
+PAUSE = 0.4
+
+
+class Case(tcp_server.Case):
+    def setUp(self):
+        super().setUp()
+        self.sims = {}
+
+    def sensor(self, name, sensor='hps167s', more=''):
+        """A simulated one behind a link of this name."""
+        link = self.path(name)
+        self.sims[name] = self.sim(f'{sensor} --link {link} {more}')
+        return f'{name}={sensor}@{link}'
+
+    def begin(self, *words, options=''):
+        return self.fathom('read', list(words), f'--interval {int(INTERVAL * 1000)} --timeout 500 {options}')
+
+    def times(self, program, name):
+        """When there were readings of this sensor, in seconds; of what has come so far."""
+        lines = program.said['out'].decode().splitlines()
+        return [float(line.split()[0]) for line in lines if line.split()[2] == name]
+
+    def longest(self, program, name):
+        times = self.times(program, name)
+        return max(later - before for before, later in zip(times, times[1:]))
+
+    def has(self, program, name, count):
+        """So many more readings of it come."""
+        goal = len(self.times(program, name)) + count
+        if not program.hear(lambda: len(self.times(program, name)) >= goal):
+            program.fail(f'{count} more readings of {name} did not come')
+
+
+class Lost(Case):
+    def test_one_of_three_is_killed_and_started_again_and_the_others_do_not_pause(self):
+        one, two, three = (self.sensor(name) for name in ('one', 'two', 'three'))
+        reader = self.begin(one, two, three, options='--reconnect')
+        self.has(reader, 'two', 5)
+        self.sims['two'].end(signal.SIGKILL)
+        os.unlink(self.path('two'))
+        reader.expect(f'{self.path("two")}: .*; waiting until it is back$', 'err')
+        before = len(self.times(reader, 'two'))
+        self.has(reader, 'one', 20)
+        self.assertEqual(len(self.times(reader, 'two')), before)
+        self.sensor('two')
+        reader.expect(f'{self.path("two")}: it is back; reading goes on$', 'err')
+        self.has(reader, 'two', 5)
+        done = self.ends(reader.end(signal.SIGINT), 1, re.compile(r'two: attempts \d+, failed 1, '))
+        for name in ('one', 'three'):
+            self.assertLess(self.longest(reader, name), PAUSE, name)
+            self.assertRegex(done.err, rf'{name}: attempts \d+, failed 0, ')
+        self.assertGreater(self.longest(reader, 'two'), 2 - INTERVAL)
+        self.assertEqual(done.err.count('waiting until'), 1)
+
+    def test_without_reconnect_the_others_are_read_on(self):
+        reader = self.begin(self.sensor('one'), self.sensor('two'), options='--count 30')
+        self.has(reader, 'one', 3)
+        self.sims['one'].end()
+        done = self.ends(reader, 1, '(with --reconnect it is waited for)', 'two: attempts 30, failed 0, readings 30\n')
+        self.assertEqual(len(self.times(reader, 'two')), 30)
+        self.assertEqual(done.err.count('connect it again'), 1)
+
+    def test_a_port_that_is_away_takes_next_to_no_cpu(self):
+        reader = self.fathom('read', [self.sensor('one'), f'a16@{self.path("nowhere")}'],
+                             '--interval 1000 --reconnect --duration 4')
+        self.assertLess(self.ends(reader, 0, 'nowhere: no such device').cpu, e2e.LITTLE)
+
+    def test_all_that_can_end_it_end_it(self):
+        words = [self.sensor('one'), self.sensor('two')]
+        for end, code in ((signal.SIGINT, 0), (signal.SIGTERM, 0)):
+            reader = self.begin(*words, options='--interval 60000')
+            self.has(reader, 'two', 1)
+            self.has(reader, 'one', 1 - len(self.times(reader, 'one')))
+            began = time.monotonic()
+            self.ends(reader.end(end), code)
+            self.assertLess(time.monotonic() - began, 2)
+
+    def test_an_output_without_a_reader_ends_it(self):
+        out, pipe = os.pipe()
+        reader = self.fathom('read', [self.sensor('one'), self.sensor('two')], '--interval 60000', stdout=pipe)
+        os.close(pipe)
+        self.assertIn(b' s  ', os.read(out, 4000))
+        os.close(out)
+        self.ends(reader, 1)
+
+
+class Connections(Case):
+    def test_a_connection_that_does_not_come_to_stand_does_not_keep_the_others_waiting(self):
+        reader = self.begin(self.sensor('one'), f'far=hps167s@{self.full()}', options='--reconnect --duration 7')
+        done = self.ends(reader, 0, 'Connection timed out: nothing answers at this address')
+        self.assertLess(self.longest(reader, 'one'), PAUSE)
+        self.assertGreater(len(self.times(reader, 'one')), 50)
+        self.assertIn('one: attempts ', done.err)
+
+    def test_a_connection_is_read_beside_a_port_and_again_after_it_was_lost(self):
+        server = self.server()
+        reader = self.begin(self.sensor('one'), f'far=hps167s@{server}', options='--reconnect')
+        for mm in (1000, 2000):
+            server.accept()
+            transaction, unit, _ = server.request()
+            server.say(tcp_server.registers(transaction, unit, mm, 0xDCB2, 0x0701, 0))
+            reader.expect(f' far +{mm} mm')
+            server.reset()
+        reader.expect('waiting until it is back', 'err')
+        self.ends(reader.end(signal.SIGINT), 1, 'it is back; reading goes on')
+        self.assertLess(self.longest(reader, 'one'), PAUSE)
+
+    def test_a_server_that_is_not_there_is_said(self):
+        server = self.server()
+        server.close()
+        reader = self.begin(self.sensor('one'), f'far=hps167s@{server}', options='--count 3')
+        self.ends(reader, 1, f'{server}: Connection refused: nothing serves this port')
+        self.assertEqual(len(self.times(reader, 'one')), 3)
+
+
+class Cost(Case):
+    def test_no_read_of_a_port_brings_nothing(self):
+        """Eight ports: a read for each response, but for those at the start. Polling all of them whenever one has
+        something would make it eight."""
+        words = [self.sensor(f's{n}') for n in range(8)]
+        reader = self.begin(*words)
+
+        def reads():
+            with open(f'/proc/{reader.process.pid}/io', encoding='ascii') as file:
+                return int(re.search(r'syscr: (\d+)', file.read())[1])
+        self.has(reader, 's7', 3)
+        before, lines = reads(), len(reader.lines())
+        self.has(reader, 's7', 20)
+        count, read = len(reader.lines()) - lines, reads() - before
+        self.assertGreater(count, 120)
+        self.assertLess(read, 1.3 * count)
+        reader.end()
+
+
+if __name__ == '__main__':
+    e2e.main()

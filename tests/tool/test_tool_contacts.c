@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+/* a16:switch and a05:relay on a line of a GPIO chip. */
+#include "pins_bench.h"
+
+static const suite_t suite = {.set_up = set_up};
+
+/* ---- switch and relay ---- */
+
+static void come_near(void) { see(500); }
+
+TEST(a_switch_says_near_and_far)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(3000);
+    at_us = 4000000;
+    happens = come_near;
+    EXPECT(0, 2, "s  a16  ", "read a16:switch@gpiochip0,in=6,bias=down --duration 10");
+    assert_non_null(strstr(last->out, "s  a16  far\n"));
+    assert_non_null(strstr(last->out, "s  a16  near\n"));
+    assert_int_equal(chip.asked.in, 6);
+    assert_int_equal(chip.asked.bias, FATHOM_GPIO_BIAS_PULL_DOWN);
+    assert_int_equal(chip.asked.trigger, -1);
+    assert_int_equal(chip.asked.echo, -1);
+}
+
+TEST(a_switch_repeats_its_state_at_the_interval)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(3000);
+    EXPECT(0, 5, "far", "read a16:switch@gpiochip0,in=6 --interval 1000 --count 5");
+    assert_in_range(last->took_us, 4000000, 4200000);
+}
+
+TEST(a_switch_as_json_has_a_state_and_no_distance)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    EXPECT(0, 1, "\"status\":\"far\",\"interference\":false,\"distance_mm\":null",
+           "read a16:switch@gpiochip0,in=6 --count 1 --format json");
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    EXPECT(0, 1, "\"status\":\"near\",\"interference\":false,\"distance_mm\":null,\"raw\":1",
+           "read a16:switch@gpiochip0,in=6 --count 1 --format json");
+}
+
+/* The contact goes to ground: it conducts, and the input is low, when something is near (A05 4). */
+TEST(a_relay_that_pulls_down_is_near_when_it_is_low)
+{
+    with_relay((fathom_sim_a05_config_t){.bounces = 10});
+    see(3000);
+    at_us = 4000000;
+    happens = come_near;
+    EXPECT(0, 2, "s  a05  ", "read a05:relay@gpiochip0,in=5,bias=up --duration 10");
+    assert_non_null(strstr(last->out, "s  a05  far\n"));
+    assert_non_null(strstr(last->out, "s  a05  near\n"));
+    assert_int_equal(chip.asked.in, 5);
+    assert_int_equal(chip.asked.bias, FATHOM_GPIO_BIAS_PULL_UP);
+    EXPECT(0, 1, "\"probe\":null", "read a05:relay@gpiochip0,in=5,bias=up --count 1 --format json");
+    assert_non_null(strstr(last->out, "\"status\":\"near\""));
+    assert_non_null(strstr(last->out, "\"raw\":0"));
+}
+
+static bool get_inverted(void *ctx)
+{
+    const fathom_pin_t pin = fathom_sim_tx_pin(&pins);
+    return !pin.get(pin.ctx);
+}
+
+/* The contact goes to the supply. */
+TEST(a_relay_at_an_input_that_is_pulled_down_is_near_when_it_is_high)
+{
+    with_relay((fathom_sim_a05_config_t){0});
+    chip.in.get = get_inverted;
+    see(3000);
+    EXPECT(0, 1, "far", "read a05:relay@gpiochip0,in=5,bias=down --count 1");
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    EXPECT(0, 1, "near", "read a05:relay@gpiochip0,in=5,bias=down --count 1");
+}
+
+/* The normally closed contact; and a switch of negative polarity (register 0x0205 is 0). */
+TEST(near_can_be_the_other_level)
+{
+    with_relay((fathom_sim_a05_config_t){.normally_closed = true});
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    EXPECT(0, 1, "near", "read a05:relay@gpiochip0,in=5,bias=up,near=high --count 1");
+    EXPECT(0, 1, "far",
+           "read a05:relay@gpiochip0,in=5,bias=up,near=low --count 1"); /* the normally open one */
+    chip.in.get = get_inverted;
+    EXPECT(0, 1, "near", "read a05:relay@gpiochip0,in=5,bias=down,near=low --count 1");
+    EXPECT(0, 1, "far", "read a05:relay@gpiochip0,in=5,bias=down --count 1");
+}
+
+TEST(near_of_a_switch_is_high_unless_it_is_said)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    EXPECT(0, 1, "near", "read a16:switch@gpiochip0,in=6,near=high --count 1");
+    EXPECT(0, 1, "far", "read a16:switch@gpiochip0,in=6,near=low --count 1");
+}
+
+static bool get_noise(void *ctx) { return (bench.clock.now_us / 7000) % 2 != 0; }
+
+TEST(a_level_that_does_not_stand_still_says_what_to_check)
+{
+    with_relay((fathom_sim_a05_config_t){0});
+    chip.in.get = get_noise;
+    EXPECT(1, 0, "far", "read a05:relay@gpiochip0,in=5 --count 1");
+    expect_err("attempt 1: the level does not stand still; check for a loose wire");
+    expect_err("bias=up or bias=down");
+}
+
+TEST(watch_has_a_lane_of_near_and_far)
+{
+    with_relay((fathom_sim_a05_config_t){0});
+    see(3000);
+    at_us = 4000000;
+    happens = come_near;
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "watch a05:relay@gpiochip0,in=5,bias=up --duration 8");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(count_of(run->out, "probe"), 0); /* it is all probes' */
+    const char *const near = strstr(run->out, "near");
+    const char *const far = strstr(run->out, "far");
+    assert_non_null(near);
+    assert_non_null(far);
+    assert_true(far < near);
+    assert_null(strstr(near, "far")); /* and so it stays */
+}
+
+static void lose(void) { chip.is_away = true; }
+
+TEST(a_contact_whose_chip_goes_is_lost_and_does_not_change)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    at_us = 1000000;
+    happens = lose;
+    EXPECT(1, 1, "near", "read a16:switch@gpiochip0,in=6");
+    expect_err("the chip has gone");
+}

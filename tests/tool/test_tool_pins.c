@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/* a16:pwm on the lines of a GPIO chip, and how exact --stats says it is; the chip itself; wrong usage. */
+#include "pins_bench.h"
+
+static const suite_t suite = {.set_up = set_up};
+
+/* ---- A16 PWM ---- */
+
+TEST(pwm_reads_a_pulse_a_cycle_at_the_lines_that_were_named)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    EXPECT(0, 3, "1234 mm    1.234 m", "read " PWM " --count 3");
+    assert_string_equal(last->out, "     0.119 s  a16    1234 mm    1.234 m\n" /* 2 + 110 + 7 ms (A16 1) */
+                                   "     0.340 s  a16    1234 mm    1.234 m\n" /* and cycles of 221 ms */
+                                   "     0.561 s  a16    1234 mm    1.234 m\n");
+    assert_int_equal(chip.asked.trigger, 17);
+    assert_int_equal(chip.asked.echo, 27);
+    assert_int_equal(chip.asked.in, -1);
+    assert_int_equal(chip.asked.bias, FATHOM_GPIO_BIAS_AS_IS);
+    assert_int_equal(chip.opened, 1);
+    assert_int_equal(chip.closed, 1);
+}
+
+TEST(pwm_keeps_an_interval)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    EXPECT(0, 3, "1234 mm", "read " PWM " --count 3 --interval 1000");
+    assert_in_range(last->took_us, 2119000, 2135000);
+}
+
+TEST(pwm_as_json_has_the_width)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    see(4000); /* 23000 us, by A16 1: 4000 mm * 23 / 4 */
+    EXPECT(0, 1, "\"status\":\"target\"", "read " PWM " --count 1 --format json");
+    assert_non_null(strstr(last->out, "\"mode\":\"pwm\""));
+    assert_non_null(strstr(last->out, "\"distance_mm\":4000,\"raw\":23000"));
+}
+
+TEST(pwm_tells_nothing_in_range)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    see(FATHOM_SIM_NO_TARGET);
+    EXPECT(0, 1, "no target in range", "read " PWM " --count 1");
+}
+
+TEST(a_line_that_stays_high_is_a_fault_with_a_cause)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
+    EXPECT(0, 1, "fault: the line stays high; check the wire of echo", "read " PWM " --count 1");
+    EXPECT(0, 1, "\"status\":\"fault\"", "read " PWM " --count 1 --format json");
+}
+
+TEST(no_pulse_says_what_to_check)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
+    EXPECT(1, 0, "mm", "read " PWM " --count 1");
+    expect_err("attempt 1: no pulse came back; check the sensor's supply");
+    expect_err("the numbers of the chip's lines");
+    expect_err("5 V or RS232 at a pin for 3.3 V");
+}
+
+TEST(a_distance_outside_the_window_is_refused)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    EXPECT(1, 0, "mm", "read " PWM " --count 1 --window 2000-3000");
+    expect_err("a pulse came that is no distance from 2000 to 3000 mm");
+}
+
+static void spike(void)
+{
+    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
+    fathom_sim_clock_advance(&bench.clock, 100);
+    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
+}
+
+TEST(noise_is_rejected_and_counted)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    at_us = 50000;
+    happens = spike;
+    EXPECT(0, 1, "1234 mm", "read " PWM " --count 1 --stats");
+    expect_err("rejected: noises 1, faults 0, missed edges 0, lost events 0");
+}
+
+static void cut_with_noise(void)
+{
+    spike();
+    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
+}
+
+TEST(noise_alone_is_told_as_such)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    at_us = 50000;
+    happens = cut_with_noise;
+    EXPECT(1, 0, "mm", "read " PWM " --count 1");
+    expect_err("no pulse of the sensor came back, but 1 shorter ones: noise");
+}
+
+/* ---- how exact they are ---- */
+
+static const uint32_t *widths_us; /* of the pulses to come, ended by 0 */
+static bool is_armed;
+
+static void arm_widths(void *ctx) { is_armed = true; }
+
+static int take_width(void *ctx, fathom_pulse_t *pulse)
+{
+    pulse->is_high = false;
+    if (!is_armed || *widths_us == 0) return 0;
+    is_armed = false;
+    pulse->width_us = *widths_us++;
+    pulse->end_us = bench.clock.now_us;
+    return 1;
+}
+
+static void with_widths(const uint32_t *list)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    widths_us = list;
+    is_armed = false;
+    chip.capture = (fathom_capture_t){arm_widths, take_width, NULL};
+}
+
+/* The squares of -10, 0 and 10 by 2: 100, of which the root is 10 us; times 4 / 23 that is 1.74 mm. */
+TEST(stats_tell_the_spread_of_the_widths_and_what_was_rejected)
+{
+    static const uint32_t list[] = {9990, 10000, 10010, 94000, 120000, 0};
+    with_widths(list);
+    chip.missed = 3;
+    chip.lost_events = 5;
+    EXPECT(0, 5, "s  a16", "read " PWM " --count 5 --stats");
+    expect_err(
+        "fathom: a16: pulses: 3 of a distance, 9990 to 10010 us wide, mean 10000.0 us, standard deviation "
+        "10.0 us (1.7 mm); 1 without a target; rejected: noises 0, faults 1, missed edges 3, lost events "
+        "5\n");
+    with_widths(list);
+    chip.missed = 3;
+    chip.lost_events = 5;
+    EXPECT(0, 5, "\"mode\":\"pwm\"", "read " PWM " --count 5 --stats --format json");
+    expect_err("{\"pulses\":\"a16\",\"distances\":3,\"least_us\":9990,\"most_us\":10010,\"mean_us\":10000.0,"
+               "\"deviation_us\":10.0,\"no_targets\":1,\"noises\":0,\"faults\":1,\"missed_edges\":3,"
+               "\"lost_events\":5}\n");
+}
+
+TEST(stats_of_one_pulse_and_of_none_have_no_spread)
+{
+    static const uint32_t one[] = {10000, 0};
+    with_widths(one);
+    EXPECT(0, 1, "1739 mm", "read " PWM " --count 1 --stats");
+    expect_err("pulses: 1 of a distance, 10000 to 10000 us wide, mean 10000.0 us; 0 without");
+    static const uint32_t none[] = {0};
+    with_widths(none);
+    EXPECT(1, 1, "\"status\":\"no_response\",", "read " PWM " --count 1 --stats --format json");
+    expect_err("\"distances\":0,\"least_us\":null,\"most_us\":null,\"mean_us\":null,\"deviation_us\":null");
+}
+
+/* Each second has its own: 4 pulses of 9000 us in the first, then those of 20000. */
+TEST(stats_each_second_begin_anew)
+{
+    static const uint32_t list[] = {9000, 9000, 9000, 9000, 9000, 20000, 20000, 20000, 20000, 0};
+    with_widths(list);
+    EXPECT(0, 9, "s  a16", "read " PWM " --count 9 --stats=1");
+    expect_err("pulses: 5 of a distance, 9000 to 9000 us wide");
+    expect_err("pulses: 4 of a distance, 20000 to 20000 us wide");
+}
+
+/* ---- the chip ---- */
+
+static void lose(void) { chip.is_away = true; }
+
+TEST(a_chip_that_goes_ends_the_command)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    at_us = 1000000;
+    happens = lose;
+    const tool_run_t *const run = tool_run(&bench.tool, "read " PWM);
+    assert_int_equal(run->status, 1);
+    assert_in_range(count_of(run->out, "1234 mm"), 3, 5);
+    assert_non_null(strstr(run->err, "the chip has gone"));
+}
+
+TEST(a_chip_that_comes_back_is_read_again_with_reconnect)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    at_us = 1000000;
+    until_us = 3000000;
+    happens = lose;
+    const tool_run_t *const run = tool_run(&bench.tool, "read " PWM " --reconnect --count 12");
+    assert_int_equal(run->status, 1); /* an attempt has failed */
+    assert_int_equal(count_of(run->out, "1234 mm"), 11);
+    assert_int_equal(chip.opened, 2);
+    assert_int_equal(chip.closed, 2);
+    assert_non_null(strstr(run->err, "gpiochip0: it is back; reading goes on"));
+}
+
+TEST(a_chip_that_is_not_there_and_a_line_in_use_are_told)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    chip.is_away = true;
+    EXPECT(1, 0, "mm", "read " PWM);
+    expect_err("fathom: gpiochip0: no such chip\n");
+    chip.is_away = false;
+    chip.refusal = "in use by \"spi0 CS0\"";
+    EXPECT(1, 0, "mm", "read " PWM);
+    expect_err("fathom: gpiochip0: in use by \"spi0 CS0\"\n");
+}
+
+TEST(two_sensors_on_one_chip_are_read_in_one_command)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    const tool_run_t *const run = tool_run(
+        &bench.tool, "read tank=" PWM " door=a05:relay@gpiochip0,in=5,bias=up --interval 300 --count 4");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(count_of(run->out, "s  tank"), 4);
+    assert_int_equal(count_of(run->out, "s  door"), 4);
+    assert_int_equal(chip.opened, 2);
+}
+
+/* ---- wrong usage ---- */
+
+static void expect_usage(const char *words, const char *text)
+{
+    EXPECT(2, 0, "mm", "read %s", words);
+    expect_err(text);
+    assert_int_equal(chip.opened, 0);
+}
+
+TEST(what_is_wrong_usage_says_what_to_write)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    expect_usage("a16:pwm@gpiochip0,trigger=17",
+                 "a16 in mode pwm needs echo= too, such as @gpiochip0,trigger=17,echo=27");
+    expect_usage("a16:pwm@gpiochip0,echo=27", "a16 in mode pwm needs trigger= too");
+    expect_usage("a16:switch --port gpiochip0", "a16 in mode switch needs in= too, such as @gpiochip0,in=5");
+    expect_usage("a16:switch@gpiochip0,in=5,trigger=6", "a16 in mode switch has no trigger=");
+    expect_usage("a16:pwm@/dev/ttyUSB0",
+                 "a16 in mode pwm needs GPIO lines, such as a16:pwm@gpiochip0,trigger=17,echo=27");
+    expect_usage("a05:relay@/dev/ttyUSB0", "such as a05:relay@gpiochip0,in=5");
+    expect_usage("a16:modbus@gpiochip0,in=5",
+                 "a16 in mode modbus needs a serial port, and gpiochip0 is a GPIO chip");
+    expect_usage("a05:pwm@gpiochip0,in=5", "there is no mode 'pwm' for a05, only");
+    expect_usage("a16:pwm@gpiochip0,trigger=17,echo=17", "line 17 of gpiochip0 stands for two things");
+    expect_usage("a16:switch@gpiochip0,in=5,bias=sideways", "bias takes as-is, up, down or off");
+    expect_usage("a16:switch@gpiochip0,in=5,near=by", "near takes high or low, not 'by'");
+    expect_usage("a16:switch@gpiochip0,in=5,near=", "near takes high or low, not ''");
+    expect_usage(PWM ",near=high", "a16 in mode pwm tells distances and has no near=");
+    expect_usage(PWM " --probes 1", "--probes");
+    expect_usage(PWM " --value real-time", "--value");
+}
+
+TEST(what_asks_and_what_simulates_has_no_pins)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    EXPECT(2, 0, "mm", "info " PWM);
+    expect_err("in mode pwm nothing is asked");
+    EXPECT(2, 0, "mm", "get " PWM);
+    EXPECT(2, 0, "mm", "sim a16:pwm");
+    expect_err("a16 in mode pwm has pins and no line");
+}

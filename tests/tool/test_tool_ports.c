@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT */
+/* What a command makes of the sensors and ports that the user has named, and `fathom info` of several. */
+#include "tool_bench.h"
+
+#include <string.h>
+
+#include "stations/sensor_options.h"
+
+EACH_BEGINS(bench_begin())
+
+static const suite_t suite = {.set_up = begins};
+
+/* ---- the options ---- */
+
+enum { WORDS = 8, TEXT = 256 };
+
+static sensor_options_t options;
+
+/* Of words with blanks between them; the values of options are what the test has set. */
+static void take(const char *text, const char *const *values)
+{
+    static char copy[TEXT];
+    char *words[WORDS];
+    int count = 0;
+    assert_true(strlen(text) < sizeof copy);
+    (void)strcpy(copy, text);
+    for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) words[count++] = word;
+    memset(&options, 0, sizeof options);
+    assert_true(sensor_options(&options, "read", words, count, values, NULL, NULL));
+}
+
+#define TAKE(text, ...)                                                                                      \
+    do {                                                                                                     \
+        const char *const values[SENSOR_OPTIONS] = {__VA_ARGS__};                                            \
+        take(text, values);                                                                                  \
+    } while (0)
+
+static void expect_station(size_t i, const char *name, const char *mode, size_t port)
+{
+    assert_string_equal(options.stations[i].name, name);
+    assert_string_equal(options.stations[i].mode->name, mode);
+    assert_int_equal(options.stations[i].port, port);
+}
+
+static void expect_line(const fathom_line_settings_t *line, uint32_t baud, uint8_t parity, uint8_t stop_bits)
+{
+    assert_int_equal(line->baud, baud);
+    assert_int_equal(line->parity, parity);
+    assert_int_equal(line->stop_bits, stop_bits);
+}
+
+TEST(sensors_with_one_port_share_it_and_are_asked)
+{
+    TAKE("a16 hps167s:2@y a05:2 a16@x hps167s:5@y", [OPTION_PORT] = "z");
+    assert_int_equal(options.port_count, 3);
+    assert_string_equal(options.ports[0].path, "z");
+    assert_string_equal(options.ports[1].path, "y");
+    assert_string_equal(options.ports[2].path, "x");
+    expect_station(0, "a16:1", "modbus", 0);
+    expect_station(1, "hps167s:2", "modbus", 1);
+    expect_station(2, "a05:2", "modbus", 0);
+    expect_station(3, "a16", "auto", 2); /* alone, and without an address */
+    expect_station(4, "hps167s:5", "modbus", 1);
+    assert_int_equal(options.ports[1].station_count, 2);
+}
+
+TEST(the_port_of_an_option_is_the_same_as_one_behind_a_sensor)
+{
+    TAKE("a16:3 hps167s:2@x", [OPTION_PORT] = "x");
+    assert_int_equal(options.port_count, 1);
+    /* 9600 8N1 and 19200 8E1: opened at the slower */
+    assert_true(options.ports[0].has_mixed_lines);
+    expect_line(&options.ports[0].line, 9600, FATHOM_PARITY_NONE, 1);
+    expect_line(&options.stations[1].line, 19200, FATHOM_PARITY_EVEN, 1);
+}
+
+TEST(names_that_are_the_same_have_the_port_behind_them)
+{
+    TAKE("a16@/dev/ttyUSB0 a16@/dev/ttyUSB1 a05@/dev/ttyS2 a16:1@tcp:h hps167s:7@x gate=hps167s:7@y", NULL);
+    expect_station(0, "a16@ttyUSB0", "auto", 0);
+    expect_station(1, "a16@ttyUSB1", "auto", 1);
+    expect_station(2, "a05", "auto", 2);
+    expect_station(3, "a16:1", "modbus", 3);
+    expect_station(4, "hps167s:7", "modbus", 4);
+    expect_station(5, "gate", "modbus", 5);
+    TAKE("a05=a16@1/x a05@2/y", NULL);
+    expect_station(0, "a05", "auto", 0);
+    expect_station(1, "a05@y", "auto", 1);
+}
+
+TEST(a_port_s_own_keys_win_over_the_options)
+{
+    TAKE("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", [OPTION_BAUD] = "115200",
+         [OPTION_PARITY] = "odd", [OPTION_ECHO] = "on", [OPTION_RS485] = "");
+    expect_line(&options.stations[0].line, 57600, FATHOM_PARITY_ODD, 1);
+    assert_false(options.ports[0].rs485);
+    assert_int_equal(options.ports[0].echo, 1);
+    expect_line(&options.stations[1].line, 115200, FATHOM_PARITY_ODD, 1);
+    assert_true(options.ports[1].rs485);
+    assert_int_equal(options.ports[1].echo, 2);
+    /* of no serial port */
+    assert_false(options.ports[2].rs485);
+    assert_int_equal(options.ports[2].echo, 0);
+}
+
+/* HPS-167S 2.2.2: a character has 11 bits. */
+TEST(two_stop_bits_take_the_place_of_the_parity_unless_it_is_given_too)
+{
+    TAKE("hps167s@x,stop=2 hps167s@y,stop=2,parity=even", NULL);
+    expect_line(&options.stations[0].line, 19200, FATHOM_PARITY_NONE, 2);
+    expect_line(&options.stations[1].line, 19200, FATHOM_PARITY_EVEN, 2);
+    TAKE("hps167s@x hps167s@y,stop=1", [OPTION_STOP_BITS] = "2");
+    expect_line(&options.stations[0].line, 19200, FATHOM_PARITY_NONE, 2);
+    expect_line(&options.stations[1].line, 19200, FATHOM_PARITY_EVEN, 1);
+}
+
+TEST(keys_behind_one_sensor_go_for_all_at_the_port)
+{
+    TAKE("hps167s:1@x hps167s:2@x,baud=57600 hps167s:3@x,baud=57600,echo=on", NULL);
+    for (size_t i = 0; i != 3; i++) expect_line(&options.stations[i].line, 57600, FATHOM_PARITY_EVEN, 1);
+    assert_false(options.ports[0].has_mixed_lines);
+    assert_int_equal(options.ports[0].echo, 2);
+}
+
+/* ---- fathom info ---- */
+
+static const tool_run_t *info(const char *words)
+{
+    static tool_port_t ports[2];
+    bench_a16((fathom_sim_a16_config_t){.address = 3});
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7});
+    ports[0] = (tool_port_t){.path = "here", .uart = bench.tool.uart};
+    ports[1] = (tool_port_t){.path = "gone", .is_away = true};
+    bench.tool.ports = ports;
+    bench.tool.port_count = 2;
+    return tool_run(&bench.tool, "info %s", words);
+}
+
+static void expect_begin(const char *text, const char *begin)
+{
+    if (strncmp(text, begin, strlen(begin)) != 0) fail_msg("'%s' does not begin with '%s'", text, begin);
+}
+
+TEST(info_tells_one_sensor_after_the_other)
+{
+    const tool_run_t *const run = info("gate=hps167s:7@here a16:3@here");
+    assert_int_equal(run->status, 0);
+    expect_begin(run->out, "gate: hps167s, infrared time of flight, asked at address 7, 19200 8E1\n");
+    assert_non_null(strstr(run->out, "\n\na16:3: a16, one ultrasonic probe, asked at address 3, 9600 8N1\n"));
+    expect_begin(run->err, "fathom: gate: termination is on\nfathom: the termination resistor is on");
+}
+
+TEST(info_goes_on_where_a_sensor_or_its_port_fails)
+{
+    const tool_run_t *const run =
+        info("lost=a16@gone mute=a16:9@here tank=a16:3@here --timeout 300 --format json");
+    assert_int_equal(run->status, 1);
+    expect_begin(run->out, "{\"name\": \"tank\", \"sensor\": \"a16\", \"asked_at\": 3, ");
+    assert_string_equal(strchr(run->out, '\n'), "\n"); /* one object, in one line */
+    expect_begin(run->err, "fathom: gone: no such device\nfathom: mute: address: no response from address 9");
+}
+
+TEST(info_of_one_has_no_name_before_its_text_unless_the_user_has_given_one)
+{
+    const tool_run_t *run = info("a16:3@here");
+    expect_begin(run->out, "a16, one ultrasonic probe, asked");
+    bench_begin();
+    run = info("t=a16:3 --port here");
+    expect_begin(run->out, "t: a16, one ultrasonic probe, asked");
+}
