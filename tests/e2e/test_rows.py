@@ -139,6 +139,20 @@ class Files(e2e.Case):
                 self.ends(f'read a16:1 --port {sim} --count 2 --format csv {options}', 0, stdout=file)
         self.assertEqual([line.split(',')[0] for line in self.content('log.csv').splitlines()], ['name'] + ['a16:1'] * 4)
 
+    def test_a_file_that_is_emptied_meanwhile_goes_on_at_its_beginning(self):
+        """As logrotate's copytruncate does."""
+        sim, log = self.sim('hps167s:7 --distance 2083'), self.path('log.csv')
+        reader = self.fathom(f'read hps167s:7 --port {sim} --format csv --output {log}')
+        for _ in range(2):
+            while not os.path.exists(log) or os.path.getsize(log) < 500:
+                self.assertFalse(reader.has_ended(0.02))
+            os.truncate(log, 0)
+        while os.path.getsize(log) < 500:
+            self.assertFalse(reader.has_ended(0.02))
+        self.ends(reader.end(), 0)
+        rows = self.content('log.csv').splitlines()
+        self.assertEqual({row.split(',')[0] for row in rows}, {'hps167s:7'})
+
     def test_a_file_of_json(self):
         sim = self.sim('a16:1:modbus --distance 754')
         for _ in range(2):
