@@ -96,6 +96,14 @@ class Picture(Case):
         self.assertTrue(any(line.startswith('a16:9: no response from address 9: ') for line in lines),
                         screen.text())
 
+    def test_a_name_moves_what_stands_behind_it(self):
+        long = 'n' * 31
+        sims = [self.sim('hps167s --distance 2500'), self.sim('a05::modbus --distance 1000')]
+        it = self.watch(f'gate=hps167s@{sims[0]} {long}=a05:1@{sims[1]}')
+        # The longest has 39 columns, and two blanks stand behind it.
+        it.wait(lambda screen: re.search(f'(?m)^{long} probe 4  1\\.000 m ', screen.text())
+                and re.search(r'(?m)^gate {37}2\.500 m ', screen.text()))
+
     def test_a_bar_is_as_high_as_the_distance_on_its_scale(self):
         _, it = self.begin()
         it.wait(lambda screen: FULL in screen.text())
