@@ -48,7 +48,7 @@ class Case(tcp_server.Case):
 class Lost(Case):
     def test_one_of_three_is_killed_and_started_again_and_the_others_do_not_pause(self):
         one, two, three = (self.sensor(name) for name in ('one', 'two', 'three'))
-        reader = self.begin(one, two, three, options='--reconnect')
+        reader = self.begin(one, two, three, options='--reconnect --stats')
         self.has(reader, 'two', 5)
         self.sims['two'].end(signal.SIGKILL)
         os.unlink(self.path('two'))
@@ -67,10 +67,10 @@ class Lost(Case):
         self.assertEqual(done.err.count('waiting until'), 1)
 
     def test_without_reconnect_the_others_are_read_on(self):
-        reader = self.begin(self.sensor('one'), self.sensor('two'), options='--count 30')
+        reader = self.begin(self.sensor('one'), self.sensor('two'), options='--count 30 --stats')
         self.has(reader, 'one', 3)
         self.sims['one'].end()
-        done = self.ends(reader, 1, '(with --reconnect it is waited for)', 'two: attempts 30, failed 0, readings 30\n')
+        done = self.ends(reader, 1, '(with --reconnect it is waited for)', 'two: attempts 30, failed 0, readings 30,')
         self.assertEqual(len(self.times(reader, 'two')), 30)
         self.assertEqual(done.err.count('connect it again'), 1)
 
@@ -100,7 +100,7 @@ class Lost(Case):
 
 class Connections(Case):
     def test_a_connection_that_does_not_come_to_stand_does_not_keep_the_others_waiting(self):
-        reader = self.begin(self.sensor('one'), f'far=hps167s@{self.full()}', options='--reconnect --duration 7')
+        reader = self.begin(self.sensor('one'), f'far=hps167s@{self.full()}', options='--reconnect --duration 7 --stats')
         done = self.ends(reader, 0, 'Connection timed out: nothing answers at this address')
         self.assertLess(self.longest(reader, 'one'), PAUSE)
         self.assertGreater(len(self.times(reader, 'one')), 50)
