@@ -320,6 +320,7 @@ class Ports(Case):
                 'P' in foot_of(screen, 'lost') and 'waiting until it is back' in screen.text())
         for _ in range(8):
             it.changes()
+        it.wait(lambda screen: ' now' in screen.text())  # the whole of a picture
         self.assertRegex(it.screen.text(), r'(?m)^fine +2\.000 m .* lost 0 of ')
         self.assertNotIn('P', foot_of(it.screen, 'fine'))
         self.sim(f'hps167s --distance 1500 --link {self.link}')
