@@ -106,7 +106,7 @@ WRONG = [
         ('a16@/nowhere,speed=1',
          "a16@/nowhere,speed=1: a serial port has no key 'speed', only baud, parity, stop, rs485, echo"),
         ('a16@/nowhere,trigger=1', "a serial port has no key 'trigger', only baud"),
-        ('a16@gpiochip0,baud=9600', "a GPIO chip has no key 'baud', only trigger, echo, in, bias"),
+        ('a16@gpiochip0,baud=9600', "a GPIO chip has no key 'baud', only trigger, echo, in, bias, near"),
         ('a16@/nowhere,', "a serial port has no key ''"),
         ('a16@/nowhere,baud', 'a16@/nowhere,baud: the value of baud is missing: 9600, 19200,'),
         ('a16@/nowhere,baud=', "baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not ''"),
