@@ -39,7 +39,8 @@ class Commands(e2e.Case):
     def at_no_port(self, words):
         """Each port, behind --port and behind @, is one that is not there."""
         none = self.path('none')
-        there = [none if before == '--port' else re.sub('@[^,]+', f'@{none}{number}', word)
+        there = [none if before == '--port' else
+                 re.sub('@[^,]+', f'@{none}/gpiochip0' if '@gpiochip' in word else f'@{none}{number}', word)
                  for number, (before, word) in enumerate(zip(['', *words], words))]
         self.assertNotEqual(there, words)
         return there

@@ -154,7 +154,8 @@ WRONG = [
         ('a16:255', "not '255'"),
         ('a16:1x', "not '1x'"),
         ('hps167s:33', 'from 1 to 32'),
-        ('a16:1:pwm', "there is no mode 'pwm' for a16, only auto, modbus"),
+        ('a16:1:wave', "there is no mode 'wave' for a16, only auto, modbus"),
+        ('a16:pwm', 'a16 in mode pwm has pins and no line, and is not simulated here'),
         ('a16:1:auto:1', "there is no mode 'auto:1'"),
         ('a16:1:', "there is no mode ''"),
         ('a16 --distance 1000,2000', "--distance '1000,2000' is more than the 1 of a16"),
@@ -316,7 +317,7 @@ class Help(e2e.Case):
     def test_help_wins_over_what_is_missing(self):
         self.assertEqual(self.told('read a17 --help'), self.told('read --help'))
 
-    @e2e.each(each_example_of_the_help_is_right_usage=('read', 12, 'sim'),
+    @e2e.each(each_example_of_the_help_is_right_usage=('read', 13, 'sim'),
               each_example_of_the_help_of_scan_is_right_usage=('scan', 3),
               each_example_of_the_help_of_watch_is_right_usage=('watch', 3))
     def examples(self, command, count, *more_pages):
@@ -325,7 +326,7 @@ class Help(e2e.Case):
         examples = re.findall(rf'fathom ({command} (?:(?! {{2}}|[|>\n]).)*)', ''.join(pages))
         self.assertEqual(len(examples), count)
         for example in examples:
-            self.ends(re.sub(r'--port \S+', '--port /nowhere', example), 1)
+            self.ends(re.sub('@/?', '@/nowhere/', re.sub(r'--port \S+', '--port /nowhere', example)), 1)
 
     def test_options_may_stand_before_and_after_the_sensor_and_the_last_one_counts(self):
         self.ends('read --interval 1s a16 --port /nowhere --interval 1', 1, '/nowhere: no such device')

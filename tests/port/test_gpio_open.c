@@ -194,13 +194,17 @@ TEST(a_missing_chip_is_told_as_such)
 
 TEST(wrong_arguments_are_told_as_such)
 {
-    static const char path[] = "/dev/a-path-that-is-longer-than-what-the-port-keeps-of-it/gpiochip0";
-    assert_true(sizeof path > 64);
+    char path[140] = "/dev/";
+    memset(path + 5, 'x', 134);
     assert_int_equal(fathom_gpio_open_input(NULL, "gpiochip0", 1, FATHOM_GPIO_BIAS_AS_IS),
                      FATHOM_GPIO_ERR_ARGUMENT);
     expect_failure(INPUT, NULL, 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
     expect_failure(INPUT, "", 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
-    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 63 characters at most");
+    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
+    path[128] = '\0';
+    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
+    path[127] = '\0';
+    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_NOT_FOUND, "no such chip");
     fathom_gpio_close(NULL);
 }
 
