@@ -152,6 +152,11 @@ void fathom_loop_remove(fathom_loop_source_t *source);
 /* sensor->sensor and take are set; it is polled after those that were added before. */
 void fathom_loop_add_sensor(fathom_loop_source_t *source, fathom_loop_sensor_t *sensor);
 
+/* The same in one line: sets node->sensor, take and ctx, and adds it. */
+void fathom_loop_read(fathom_loop_source_t *source, fathom_loop_sensor_t *node, fathom_sensor_t sensor,
+                      void (*take)(void *ctx, fathom_status_t status, const fathom_sample_t *sample),
+                      void *ctx);
+
 /* Sleeps and polls until fathom_loop_stop is called. */
 void fathom_loop_run(fathom_loop_t *loop);
 

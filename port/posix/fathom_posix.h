@@ -207,8 +207,14 @@ uint64_t fathom_posix_now_us(void);
  */
 void fathom_posix_wait(void *port, uint32_t max_us);
 
-/* For a program's own poll(2), epoll(7) or select(2): the file descriptor, -1 when closed, and the events
- * to wait for: POLLIN, and POLLOUT while the port keeps the rest of a request. Not for reading or writing. */
+/*
+ * For a program's own poll(2), epoll(7) or select(2): the file descriptor, -1 when closed, and the events to wait for:
+ * POLLIN, and POLLOUT while the port keeps the rest of a request. Not for reading or writing.
+ *
+ * For several ports there is such a loop, fathom_loop.h. One of your own that polls all sensors whenever one port has
+ * become ready takes about twice the processor time with 32 ports: nearly all of its reads bring nothing. And a port that
+ * is lost stays ready: close it when a poll returns FATHOM_ERR_PORT, or the loop spins.
+ */
 int fathom_posix_fd(const fathom_posix_uart_t *port);
 short fathom_posix_poll_events(const fathom_posix_uart_t *port);
 

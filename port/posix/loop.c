@@ -18,13 +18,6 @@
 
 enum { FIRST_PAUSE_US = 500000, LONGEST_PAUSE_US = 8000000, EVENTS = 64 };
 
-uint64_t fathom_loop_now_us(const fathom_loop_t *loop)
-{
-    return loop->config.now_us != NULL ? loop->config.now_us(loop->config.ctx) : fathom_posix_now_us();
-}
-
-/* ---- the loop ---- */
-
 uint32_t fathom_loop_due_us(const fathom_loop_t *loop)
 {
     if (loop->due == NULL) return FATHOM_NO_DEADLINE;
@@ -159,6 +152,16 @@ void fathom_loop_add_sensor(fathom_loop_source_t *source, fathom_loop_sensor_t *
     *at = sensor;
     sensor->next = NULL;
     if (source->is_open) fathom_loop_wake(source);
+}
+
+void fathom_loop_read(fathom_loop_source_t *source, fathom_loop_sensor_t *node, fathom_sensor_t sensor,
+                      void (*take)(void *ctx, fathom_status_t status, const fathom_sample_t *sample),
+                      void *ctx)
+{
+    node->sensor = sensor;
+    node->take = take;
+    node->ctx = ctx;
+    fathom_loop_add_sensor(source, node);
 }
 
 fathom_posix_status_t fathom_loop_init(fathom_loop_t *loop, const fathom_loop_config_t *config)

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "internal/posix_loop.h"
 
+uint64_t fathom_loop_now_us(const fathom_loop_t *loop)
+{
+    return loop->config.now_us != NULL ? loop->config.now_us(loop->config.ctx) : fathom_posix_now_us();
+}
+
 /*
  * The sources by the time when they are due: a skew heap, which needs no memory but in its nodes. What is added or taken
- * out merges two heaps along their right sides, and exchanges the children on the way: n of these cost n log n.
+ * out merges two heaps along their right sides, and swaps the children on the way: n of these cost n log n.
  */
 static fathom_loop_source_t *merge(fathom_loop_source_t *one, fathom_loop_source_t *other,
                                    fathom_loop_source_t *parent)

@@ -30,11 +30,11 @@ static void sleep_until_something(void *ctx, fathom_loop_t *loop, uint32_t max_u
 
 static void tell(void *ctx, const fathom_loop_source_t *source, bool is_open)
 {
-    assert_in_range(fake.tolds, 0, FAKE_TOLD - 1);
-    fake_told_t *const told = &fake.told[fake.tolds++];
-    told->source = (fathom_loop_source_t *)source;
-    told->at_us = fake.now_us - fake.begin_us;
-    told->is_open = is_open;
+    assert_in_range(fake.count, 0, FAKE_NEWS - 1);
+    fake_news_t *const news = &fake.news[fake.count++];
+    news->source = (fathom_loop_source_t *)source;
+    news->at_us = fake.now_us - fake.begin_us;
+    news->is_open = is_open;
 }
 
 void fake_begin(uint32_t first_pause_us, uint32_t longest_pause_us)
@@ -151,7 +151,7 @@ uint64_t fake_elapsed_us(void) { return fake.now_us - fake.begin_us; }
 unsigned fake_failures(const fake_source_t *source)
 {
     unsigned failures = 0;
-    for (unsigned i = 0; i != fake.tolds; i++)
-        failures += fake.told[i].source == &source->source && !fake.told[i].is_open;
+    for (unsigned i = 0; i != fake.count; i++)
+        failures += fake.news[i].source == &source->source && !fake.news[i].is_open;
     return failures;
 }

@@ -10,7 +10,7 @@
 /* A loop in simulated time, whose sources and sensors do what the test says. A sleep takes no time; it ends when its time
  * is over, or at the next wake that the test has planned. */
 
-enum { FAKE_WAKES = 16, FAKE_SCRIPT = 64, FAKE_TOLD = 256 };
+enum { FAKE_WAKES = 16, FAKE_SCRIPT = 64, FAKE_NEWS = 256 };
 
 typedef struct {
     uint64_t at_us;
@@ -21,15 +21,15 @@ typedef struct {
     fathom_loop_source_t *source;
     uint64_t at_us;
     bool is_open;
-} fake_told_t;
+} fake_news_t;
 
 typedef struct {
     uint64_t now_us;
     uint64_t begin_us;
     uint32_t slept_us; /* what the last sleep was asked for */
     fake_wake_t wakes[FAKE_WAKES];
-    fake_told_t told[FAKE_TOLD];
-    unsigned tolds;
+    fake_news_t news[FAKE_NEWS];
+    unsigned count; /* of news */
     unsigned turns; /* polls of all sources */
     fathom_loop_t loop;
 } fake_t;

@@ -469,5 +469,5 @@ TEST_IN(plain, an_argument_that_is_missing_is_said)
         assert_int_equal(fathom_loop_add_line(&fake.loop, &line, "/nowhere", &wrong[i]),
                          FATHOM_POSIX_ERR_ARGUMENT);
     assert_null(fake.loop.sources);
-    assert_int_equal(fake.tolds, 0);
+    assert_int_equal(fake.count, 0);
 }

@@ -24,11 +24,11 @@ static void add(fake_source_t *source) { fathom_loop_add(&fake.loop, &source->so
 static void step(void) { fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE); }
 
 /* What was told, one after the other: so long after the beginning it was open, or not. */
-static void assert_told(unsigned n, uint64_t at_us, bool is_open)
+static void assert_news(unsigned n, uint64_t at_us, bool is_open)
 {
-    assert_true(n < fake.tolds);
-    assert_int_equal(fake.told[n].at_us, at_us);
-    assert_int_equal(fake.told[n].is_open, is_open);
+    assert_true(n < fake.count);
+    assert_int_equal(fake.news[n].at_us, at_us);
+    assert_int_equal(fake.news[n].is_open, is_open);
 }
 
 TEST(one_that_cannot_be_opened_is_tried_after_500_ms_and_each_pause_is_twice_the_one_before_up_to_8_s)
@@ -38,8 +38,8 @@ TEST(one_that_cannot_be_opened_is_tried_after_500_ms_and_each_pause_is_twice_the
     add(&one);
     fake_pass(31500001);
     assert_int_equal(one.opens, sizeof at_ms / sizeof at_ms[0]);
-    assert_int_equal(fake.tolds, one.opens); /* once a pause */
-    for (unsigned n = 0; n != fake.tolds; n++) assert_told(n, at_ms[n] * 1000, false);
+    assert_int_equal(fake.count, one.opens); /* once a pause */
+    for (unsigned n = 0; n != fake.count; n++) assert_news(n, at_ms[n] * 1000, false);
     assert_int_equal(one.polls, 0);
     assert_int_equal(one.closes, 0);
 }
@@ -51,8 +51,8 @@ TEST(once_it_can_be_opened_that_is_told_and_it_is_polled)
     fake_pass(1000000);
     one.cannot_open = false;
     fake_pass(1000000);
-    assert_told(2, 1500000, true);
-    assert_int_equal(fake.tolds, 3);
+    assert_news(2, 1500000, true);
+    assert_int_equal(fake.count, 3);
     assert_int_equal(one.polls, 1);
     assert_int_equal(one.polled_us - fake.begin_us, 1500000);
 }
@@ -65,10 +65,10 @@ TEST(one_that_is_lost_is_closed_and_opened_again_after_the_first_pause)
     step(); /* 3 s */
     one.is_lost = false;
     assert_int_equal(one.closes, 1);
-    assert_told(1, 3000000, false);
+    assert_news(1, 3000000, false);
     assert_false(one.source.is_open);
     step();
-    assert_told(2, 3500000, true);
+    assert_news(2, 3500000, true);
     assert_int_equal(one.opens, 2);
 }
 
@@ -84,17 +84,17 @@ TEST(one_that_was_open_for_less_than_a_second_gets_a_longer_pause)
     step(); /* open at 500 ms, polled, and next at 1.4 s */
     one.is_lost = true;
     step(); /* after 900 ms: 1 s */
-    assert_told(3, 1400000, false);
+    assert_news(3, 1400000, false);
     one.is_lost = false;
     one.due_us = 1000000;
     step();
-    assert_told(4, 2400000, true);
+    assert_news(4, 2400000, true);
     step();
     one.is_lost = true;
     step(); /* after 1 s: 500 ms again */
-    assert_told(5, 3400000, false);
+    assert_news(5, 3400000, false);
     step();
-    assert_told(6, 3900000, true);
+    assert_news(6, 3900000, true);
 }
 
 TEST_IN(plain, the_pauses_are_the_configs)
@@ -105,8 +105,8 @@ TEST_IN(plain, the_pauses_are_the_configs)
     add(&one);
     fake_pass(100000);
     static const uint64_t at_us[] = {0, 10000, 30000, 55000, 80000};
-    assert_int_equal(fake.tolds, 5);
-    for (unsigned n = 0; n != 5; n++) assert_told(n, at_us[n], false);
+    assert_int_equal(fake.count, 5);
+    for (unsigned n = 0; n != 5; n++) assert_news(n, at_us[n], false);
 }
 
 /* 3e9 us twice is more than 32 bits have. */
@@ -118,8 +118,8 @@ TEST_IN(plain, long_pauses_do_not_wrap)
     add(&one);
     fake_pass(11000000001u);
     static const uint64_t at_us[] = {0, 3000000000u, 7000000000u, 11000000000u};
-    assert_int_equal(fake.tolds, 4);
-    for (unsigned n = 0; n != 4; n++) assert_told(n, at_us[n], false);
+    assert_int_equal(fake.count, 4);
+    for (unsigned n = 0; n != 4; n++) assert_news(n, at_us[n], false);
 }
 
 TEST_IN(plain, a_first_pause_over_the_longest_is_the_longest)
@@ -129,8 +129,8 @@ TEST_IN(plain, a_first_pause_over_the_longest_is_the_longest)
     one.cannot_open = true;
     add(&one);
     fake_pass(8000001);
-    assert_int_equal(fake.tolds, 2);
-    assert_told(1, 8000000, false);
+    assert_int_equal(fake.count, 2);
+    assert_news(1, 8000000, false);
 }
 
 /* ---- its sensors ---- */
@@ -210,7 +210,7 @@ TEST(a_sensor_that_says_so_without_end_is_an_error_a_pause_and_no_spin)
     assert_int_equal(first.port_errors, 1);
     assert_int_equal(second.port_errors, 1);
     assert_in_range(fake_failures(&one), 9, 11);
-    assert_int_equal(fake.tolds, fake_failures(&one) + 1); /* open at first */
+    assert_int_equal(fake.count, fake_failures(&one) + 1); /* open at first */
     assert_in_range(first.polls, 9, 50);
     first.for_ever = FATHOM_PENDING;
     first.due_us = FATHOM_NO_DEADLINE;
