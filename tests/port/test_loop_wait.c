@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* struct sigaction, sockets */
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include "loop_fake.h"
+#include "loop_line_rig.h"
+
+/* What wakes fathom_loop.h, and what ends its sleep, on real descriptors. */
+
+enum { SOON_US = 30000, LONG_US = 10000000 };
+
+static fathom_loop_pin_t pin, other;
+static fake_sensor_t first, second;
+static int ends[2]; /* [0] is the loop's */
+
+static int set_up(void **state)
+{
+    posix_start_watchdog(0);
+    line_rig_begin(NULL);
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);
+    return 0;
+}
+
+static void close_end(unsigned i)
+{
+    if (ends[i] >= 0) (void)close(ends[i]);
+    ends[i] = -1;
+}
+
+static int tear_down(void **state)
+{
+    line_rig_end();
+    close_end(0);
+    close_end(1);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
+
+/* Steps for so long; how many. */
+static unsigned pass(uint64_t us)
+{
+    const uint64_t until_us = fathom_posix_now_us() + us;
+    const uint64_t before = rig.loop.sleeps;
+    for (uint64_t now_us; (now_us = fathom_posix_now_us()) < until_us;)
+        fathom_loop_step(&rig.loop, (uint32_t)(until_us - now_us));
+    return (unsigned)(rig.loop.sleeps - before);
+}
+
+static void send_bytes(size_t length)
+{
+    static const uint8_t bytes[16];
+    assert_int_equal(write(ends[1], bytes, length), length);
+}
+
+/* ---- pins ---- */
+
+static void add_pin(fathom_loop_pin_t *to, fake_sensor_t *sensor, int fd)
+{
+    fathom_loop_add_pin(&rig.loop, to, fd);
+    fake_sensor(sensor, (fake_source_t *)&to->source);
+}
+
+TEST(a_pin_is_polled_when_its_descriptor_becomes_ready_and_not_as_long_as_it_is)
+{
+    add_pin(&pin, &first, ends[0]);
+    assert_in_range(pass(SOON_US), 1, 3);
+    assert_int_equal(first.polls, 1);
+    send_bytes(1);
+    assert_in_range(pass(SOON_US), 1, 3);
+    assert_int_equal(first.polls, 2); /* though nothing has read it */
+    send_bytes(1);
+    (void)pass(SOON_US);
+    assert_int_equal(first.polls, 3);
+}
+
+TEST(what_was_there_before_the_pin_was_added_is_seen)
+{
+    send_bytes(1);
+    add_pin(&pin, &first, ends[0]);
+    (void)pass(1000);
+    assert_true(first.polls >= 1);
+}
+
+/* epoll_ctl(2): EPERM. It is polled every 10 ms. */
+TEST(a_descriptor_that_epoll_refuses_is_polled_all_the_same)
+{
+    char path[] = "/tmp/fathom-loop-XXXXXX";
+    const int file = mkstemp(path);
+    assert_true(file >= 0);
+    assert_int_equal(unlink(path), 0);
+    add_pin(&pin, &first, file);
+    assert_in_range(pass(200000), 5, 30);
+    assert_in_range(first.polls, 5, 25);
+    fathom_loop_remove(&pin.source);
+    (void)close(file);
+}
+
+/* epoll_ctl(2): EEXIST. */
+TEST(a_descriptor_of_two_pins_wakes_one_and_the_other_is_polled)
+{
+    add_pin(&pin, &first, ends[0]);
+    add_pin(&other, &second, ends[0]);
+    (void)pass(100000);
+    assert_int_equal(first.polls, 1);
+    assert_in_range(second.polls, 3, 12);
+    fathom_loop_remove(&other.source); /* which takes nothing from the first */
+    send_bytes(1);
+    (void)pass(SOON_US);
+    assert_int_equal(first.polls, 2);
+}
+
+TEST(a_pin_that_is_added_twice_is_there_once)
+{
+    add_pin(&pin, &first, ends[0]);
+    fathom_loop_add_pin(&rig.loop, &pin, ends[0]);
+    (void)pass(SOON_US);
+    assert_int_equal(first.polls, 1);
+}
+
+/* The kernel says that a line's chip has gone by EPOLLHUP and EPOLLERR; a level would go on as it was. 5, 10, 20, 40, 80 ms
+ * and each 80 from then on are 7 pauses in 400 ms. */
+TEST(a_pin_whose_chip_has_gone_is_lost_and_said_once_a_pause)
+{
+    line_rig_end();
+    line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 5000, .longest_pause_us = 80000});
+    add_pin(&pin, &first, ends[0]);
+    (void)pass(1000);
+    close_end(1);
+    assert_in_range(pass(400000), 4, 20);
+    assert_int_equal(first.port_errors, 1);
+    assert_in_range(rig.failed, 4, 9);
+    assert_int_equal(rig.opened, 1);
+    assert_string_equal(fathom_loop_error_text(&pin.source), "it is lost");
+}
+
+/* ---- bytes ---- */
+
+typedef struct {
+    fathom_loop_source_t source;
+    fathom_uart_t uart;
+    size_t capacity;
+    unsigned bytes;
+    bool is_lost;
+} stream_t;
+
+static stream_t stream;
+
+static int stream_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    const ssize_t n = recv(ends[0], bytes, capacity, MSG_DONTWAIT);
+    return n == 0 ? -1 : n < 0 ? 0 : (int)n;
+}
+
+static int stream_fd(const fathom_loop_source_t *source) { return ends[0]; }
+
+/* Reads once. */
+static bool stream_poll(fathom_loop_source_t *source)
+{
+    uint8_t bytes[64];
+    fathom_rx_t rx = {0, 0};
+    const int n = stream.uart.read(stream.uart.ctx, bytes, stream.capacity, &rx);
+    if (n > 0) stream.bytes += (unsigned)n;
+    stream.is_lost = n < 0;
+    return n >= 0;
+}
+
+static void add_stream(size_t capacity)
+{
+    static const fathom_loop_kind_t kind = {.fd = stream_fd, .poll = stream_poll};
+    const fathom_uart_t uart = {.read = stream_read};
+    memset(&stream, 0, sizeof stream);
+    stream.source.kind = &kind;
+    stream.source.reads_all = true;
+    stream.capacity = capacity;
+    stream.uart = fathom_loop_uart(&stream.source, &uart);
+    fathom_loop_add(&rig.loop, &stream.source);
+    (void)pass(1000);
+}
+
+TEST(what_one_read_does_not_bring_the_next_ones_do)
+{
+    add_stream(4);
+    send_bytes(14);
+    assert_in_range(pass(SOON_US), 4, 10);
+    assert_int_equal(stream.bytes, 14);
+}
+
+/* Bytes and the hang-up come as one event, and the read of the bytes is short. */
+TEST(a_hang_up_right_behind_the_last_bytes_is_seen)
+{
+    add_stream(64);
+    send_bytes(3);
+    close_end(1);
+    (void)pass(SOON_US);
+    assert_int_equal(stream.bytes, 3);
+    assert_true(stream.is_lost);
+    assert_int_equal(rig.failed, 1);
+}
+
+/* ---- lines ---- */
+
+static size_t write_all(void)
+{
+    static const uint8_t bytes[251];
+    const fathom_uart_t *const uart = &rig.lines[0].uart;
+    size_t total = 0;
+    while (uart->write(uart->ctx, bytes, sizeof bytes) > 0) total += sizeof bytes;
+    return total;
+}
+
+TEST(the_rest_of_a_request_leaves_when_the_kernel_has_room_again)
+{
+    uint8_t got[777];
+    posix_pty_open(&rig.ptys[0]);
+    line_rig_add(921600);
+    (void)pass(1000);
+    size_t total = 0, have = 0;
+    const uint64_t begin_us = fathom_posix_now_us();
+    while (rig.lines[0].source.events != (POLLIN | POLLOUT)) { /* the kernel's buffers fill behind its back */
+        total += write_all();
+        fathom_loop_wake(&rig.lines[0].source);
+        (void)pass(5000);
+        assert_true(fathom_posix_now_us() - begin_us < LONG_US);
+    }
+    while (have < total) {
+        have += posix_pty_receive(&rig.ptys[0], got, sizeof got);
+        fathom_loop_step(&rig.loop, 1000);
+        assert_true(fathom_posix_now_us() - begin_us < LONG_US);
+    }
+    (void)pass(1000);
+    assert_int_equal(rig.lines[0].source.events, POLLIN);
+}
+
+TEST(a_line_that_is_added_twice_is_refused)
+{
+    posix_pty_open(&rig.ptys[0]);
+    line_rig_add(9600);
+    const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+    assert_int_equal(fathom_loop_add_line(&rig.loop, &rig.lines[0], rig.ptys[0].path, &settings),
+                     FATHOM_POSIX_ERR_ARGUMENT);
+    assert_true(rig.lines[0].source.is_open);
+}
+
+TEST(a_line_that_is_lost_says_why_and_comes_back)
+{
+    line_rig_end();
+    line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 1000, .longest_pause_us = 1000});
+    posix_pty_open(&rig.ptys[0]);
+    line_rig_add(115200);
+    (void)pass(1000);
+    posix_pty_close(&rig.ptys[0]);
+    line_rig_until(&rig.port_errors[0], 1);
+    assert_non_null(strstr(fathom_loop_error_text(&rig.lines[0].source), rig.ptys[0].path));
+    posix_pty_open(&rig.ptys[0]);
+    const pid_t far_end = far_end_begin(rig.ptys, 1, 0);
+    line_rig_until(&rig.readings[0], 2);
+    far_end_end(far_end);
+    assert_int_equal(rig.port_errors[0], 1);
+    assert_int_equal(rig.errors[0], 0);
+}
+
+/* ---- stop, signals, and loops of another kind ---- */
+
+static void on_signal(int number) { fathom_loop_stop(&rig.loop); }
+static void on_other_signal(int number) { (void)number; }
+
+static void signal_soon(void (*handler)(int))
+{
+    struct sigaction action;
+    const struct itimerval soon = {{0, SOON_US}, {0, SOON_US}}; /* again and again: one comes in the sleep */
+    memset(&action, 0, sizeof action);
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART; /* even so */
+    assert_int_equal(sigaction(SIGALRM, &action, NULL), 0);
+    assert_int_equal(setitimer(ITIMER_REAL, &soon, NULL), 0);
+}
+
+static void no_more_signals(void)
+{
+    const struct itimerval never = {{0, 0}, {0, 0}};
+    assert_int_equal(setitimer(ITIMER_REAL, &never, NULL), 0);
+    (void)signal(SIGALRM, SIG_DFL);
+    posix_start_watchdog(0);
+}
+
+TEST(a_signal_handler_stops_the_run)
+{
+    signal_soon(on_signal);
+    fathom_loop_run(&rig.loop); /* nothing is on it: it would sleep for any time */
+    no_more_signals();
+    assert_in_range(rig.loop.sleeps, 1, 10);
+}
+
+TEST(a_signal_ends_the_sleep_of_a_step)
+{
+    signal_soon(on_other_signal);
+    const uint64_t begin_us = fathom_posix_now_us();
+    fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
+    assert_true(fathom_posix_now_us() - begin_us < LONG_US);
+    no_more_signals();
+}
+
+static void *stop_soon(void *arg)
+{
+    (void)poll(NULL, 0, SOON_US / 1000);
+    fathom_loop_stop(arg);
+    return NULL;
+}
+
+TEST(another_thread_stops_the_run_again_and_again)
+{
+    for (unsigned i = 0; i != 3; i++) {
+        pthread_t thread;
+        assert_int_equal(pthread_create(&thread, NULL, stop_soon, &rig.loop), 0);
+        fathom_loop_run(&rig.loop);
+        assert_int_equal(pthread_join(thread, NULL), 0);
+        assert_in_range(rig.loop.sleeps, 1, 3 * (i + 1));
+    }
+}
+
+static bool is_ready(void)
+{
+    struct pollfd entry = {fathom_loop_fd(&rig.loop), POLLIN, 0};
+    return poll(&entry, 1, 0) == 1;
+}
+
+TEST(a_loop_of_another_kind_sees_when_a_step_has_something_to_do)
+{
+    add_pin(&pin, &first, ends[0]);
+    first.due_us = 500000;
+    (void)pass(1000);
+    assert_false(is_ready());
+    assert_in_range(fathom_loop_due_us(&rig.loop), 1, 500000);
+    send_bytes(1);
+    assert_true(is_ready());
+    fathom_loop_step(&rig.loop, 0);
+    assert_int_equal(first.polls, 2);
+    assert_false(is_ready());
+}
+
+TEST(a_stop_wakes_a_loop_of_another_kind_once)
+{
+    fathom_loop_stop(&rig.loop);
+    assert_true(is_ready());
+    fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE); /* does not sleep */
+    assert_false(is_ready());
+}
+
+TEST(an_idle_loop_sleeps)
+{
+    add_pin(&pin, &first, ends[0]);
+    (void)pass(1000);
+    assert_in_range(pass(200000), 1, 3);
+}
