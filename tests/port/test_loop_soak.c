@@ -17,7 +17,7 @@ enum { LINES = 64, STEP_US = 1000, PHASE_US = 16384, PHASES = 128, BASE_MM = 100
 /* The time-outs, and in phases what those and a loop and a port take. A response that is late by LATE, which comes in the
  * quarantine, would be older. */
 enum { HPS_TIMEOUT_US = 200000, HPS_LATE_US = 300000, HPS_OLDEST = 15 };
-enum { A16_TIMEOUT_US = 600000, A16_LATE_US = 900000, A16_OLDEST = 45 };
+enum { A16_TIMEOUT_US = 300000, A16_LATE_US = 450000, A16_OLDEST = 21 };
 
 typedef struct {
     fathom_loop_source_t source; /* first */
@@ -227,9 +227,10 @@ static void add_place(unsigned number)
     fathom_sensor_t sensor;
     if (is_a16(place)) {
         assert_int_equal(
-            fathom_a16_modbus_init(
-                &place->a16_driver,
-                &(fathom_a16_modbus_config_t){.modbus.transport = &place->modbus, .value = FATHOM_REAL_TIME}),
+            fathom_a16_modbus_init(&place->a16_driver,
+                                   &(fathom_a16_modbus_config_t){.modbus.transport = &place->modbus,
+                                                                 .modbus.timeout_us = A16_TIMEOUT_US,
+                                                                 .value = FATHOM_REAL_TIME}),
             FATHOM_READY);
         sensor = fathom_a16_modbus_sensor(&place->a16_driver);
     } else {
