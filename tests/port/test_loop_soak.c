@@ -138,7 +138,7 @@ static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sampl
 static uint64_t loop_now_us(void *ctx) { return now_us; }
 
 /* Now and then a port is lost. */
-static void plug(void)
+static void lose_one(void)
 {
     place_t *const place = &places[draw(LINES)];
     if (draw(100) != 0) return;
@@ -156,7 +156,7 @@ static void sleep_a_step(void *ctx, fathom_loop_t *of_loop, uint32_t max_us)
     const uint32_t by_us = max_us < STEP_US ? max_us : STEP_US;
     fathom_sim_clock_advance(&time, by_us);
     now_us += by_us;
-    plug();
+    lose_one();
     for (unsigned i = 0; i != LINES; i++) {
         place_t *const place = &places[i];
         if (!place->is_plugged && now_us - place->unplugged_us > draw(3000000)) place->is_plugged = true;
