@@ -46,7 +46,7 @@ class Commands(e2e.Case):
         return there
 
     @e2e.each(those_of_the_first_page=('README.md', BLOCK, 1, 1),
-              those_of_the_manual=('examples/fathom/README.md', BLOCK, 14, 20),
+              those_of_the_manual=('examples/fathom/README.md', BLOCK, 14, 24),
               those_of_the_table_of_the_datasheets=('include/README.md', CELL, 51, 500))
     def shown(self, page, pattern, at_least, at_most):
         shown = re.findall(pattern, text_of(page), re.M)
