@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef GUEST_H
+#define GUEST_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/*
+ * The only program of a machine in QEMU: it runs cases, each in a process of its own, tells on the console what came of
+ * them, and turns the machine off. guest.py is at the other end of the console.
+ */
+typedef struct {
+    const char *name;
+    void (*run)(void);
+} guest_case_t;
+
+/* Never returns. What is printed is for the log. */
+void guest_run(const guest_case_t *cases, size_t count);
+
+/* Ends the case. */
+void guest_fail(const char *file, int line, const char *format, ...)
+    __attribute__((format(printf, 3, 4), noreturn));
+
+#define CHECK(condition) ((condition) ? (void)0 : guest_fail(__FILE__, __LINE__, "%s", #condition))
+
+#define CHECK_INT(got, expected) guest_check_int(__FILE__, __LINE__, #got, (long)(got), (long)(expected))
+void guest_check_int(const char *file, int line, const char *what, long got, long expected);
+
+/* `text` has `part` in it. */
+#define CHECK_SAYS(text, part) guest_check_says(__FILE__, __LINE__, (text), (part))
+void guest_check_says(const char *file, int line, const char *text, const char *part);
+
+/* low <= got <= high */
+#define CHECK_WITHIN(got, low, high)                                                                         \
+    guest_check_within(__FILE__, __LINE__, #got, (long)(got), (long)(low), (long)(high))
+void guest_check_within(const char *file, int line, const char *what, long got, long low, long high);
+
+/* Has the world outside do something (guest.py, do_...), and returns the number that it answers with, 0 if none. */
+long guest_ask(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+void guest_sleep_ms(unsigned ms);
+
+/* Runs it in another process, as that user; returns what it returns (0..255). */
+int guest_other_process(unsigned user, int (*run)(void *ctx), void *ctx);
+
+#endif

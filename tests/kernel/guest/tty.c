@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include "tty.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+fathom_posix_uart_t tty_port;
+
+fathom_uart_t tty_open(const char *path, uint32_t baud, fathom_parity_t parity, uint8_t stop_bits)
+{
+    const fathom_line_settings_t settings = {baud, (uint8_t)parity, stop_bits};
+    if (fathom_posix_open(&tty_port, path, &settings) != FATHOM_POSIX_OK)
+        guest_fail(__FILE__, __LINE__, "%s", fathom_posix_error_text(&tty_port));
+    return fathom_posix_uart(&tty_port);
+}
+
+int tty_raw(const char *path, speed_t speed, tcflag_t cflag)
+{
+    struct termios tty;
+    const int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    CHECK(fd >= 0);
+    CHECK_INT(tcgetattr(fd, &tty), 0);
+    cfmakeraw(&tty);
+    tty.c_iflag = 0;
+    tty.c_cflag = CS8 | CREAD | CLOCAL | cflag;
+    (void)cfsetospeed(&tty, speed);
+    (void)cfsetispeed(&tty, speed);
+    CHECK_INT(tcsetattr(fd, TCSANOW, &tty), 0);
+    return fd;
+}
+
+void tty_has(const char *path, tcflag_t cflag, speed_t speed)
+{
+    struct termios tty;
+    const int fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    CHECK(fd >= 0);
+    CHECK_INT(tcgetattr(fd, &tty), 0);
+    CHECK_INT(tty.c_cflag & (CSIZE | PARENB | PARODD | CSTOPB | CRTSCTS), CS8 | cflag);
+    CHECK_INT(cfgetospeed(&tty), speed);
+    CHECK_INT(cfgetispeed(&tty), speed);
+    (void)close(fd);
+}
+
+void tty_write(const fathom_uart_t *uart, const void *bytes, size_t length)
+{
+    CHECK_INT(uart->write(uart->ctx, bytes, length), length);
+    while (!uart->sent(uart->ctx)) guest_sleep_ms(1);
+}
+
+size_t tty_receive(int fd, void *bytes, size_t length, unsigned ms)
+{
+    const uint64_t end_us = fathom_posix_now_us() + ms * 1000ull;
+    size_t count = 0;
+    while (count != length && fathom_posix_now_us() < end_us) {
+        struct pollfd one = {fd, POLLIN, 0};
+        (void)poll(&one, 1, 10);
+        const ssize_t n = read(fd, (uint8_t *)bytes + count, length - count);
+        if (n > 0) count += (size_t)n;
+    }
+    return count;
+}
+
+fathom_status_t tty_read_hps167s(const fathom_uart_t *uart, fathom_sample_t *sample)
+{
+    static uint8_t frame[32];
+    static fathom_line_t line;
+    static fathom_hps167s_t gate;
+    const fathom_clock_t clock = fathom_posix_clock();
+    const fathom_line_config_t line_config = {.uart = uart,
+                                              .clock = &clock,
+                                              .frame = frame,
+                                              .frame_size = sizeof frame,
+                                              .find_echo = fathom_line_find_echo,
+                                              .silence_us = FATHOM_T3_5_US(19200, 11),
+                                              .gap_us = 25000};
+    CHECK_INT(fathom_line_init(&line, &line_config), FATHOM_READY);
+    const fathom_modbus_t modbus = fathom_modbus_client(&line);
+    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
+    CHECK_INT(fathom_hps167s_init(&gate, &config), FATHOM_READY);
+    const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
+    const fathom_status_t status = fathom_wait(&sensor, sample, fathom_posix_wait, &tty_port);
+    fathom_hps167s_deinit(&gate);
+    return status;
+}
