@@ -8,8 +8,9 @@
 #     sh tests/run.sh full    once for a larger piece of work: an hour or more; keeps its figures in CSV files
 #
 # It installs what is missing. With the packages in place it needs no root, and of the network only the one npm
-# package that tests/firmware/rp2040 names. It ends with a table of its stages: what each may take, and what it took.
-# The last line is "N passed, 0 failed", and the exit status 0, when all is well.
+# package that tests/firmware/rp2040 names and, for long, the two kernels that tests/kernel names. It ends with a table
+# of its stages: what each may take, and what it took. The last line is "N passed, 0 failed", and the exit status 0, when
+# all is well.
 set -eu
 cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1
@@ -24,6 +25,7 @@ clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
 simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
+qemu-system-x86 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
 libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'
 
 # Any node and npm will do.
@@ -92,7 +94,7 @@ show_costs() {
     cat build-gcc/bench.csv tests/firmware/figures.csv
 }
 
-slow='e2e|interop|second|check|selfcheck|faults|firmware' # kinds that say nothing else on another compiler
+slow='e2e|interop|second|check|selfcheck|faults|firmware|kernel' # kinds that say nothing else on another compiler
 build_and_test() { # PRESET
     stage 42 "$1: build" build "$1"
     stage 18 "$1: tests in C" run_tests "$1" "$1" --label-exclude "$slow"
@@ -100,7 +102,7 @@ build_and_test() { # PRESET
 
 run_short() {
     stage 75 'gcc: build, firmware too' build gcc
-    stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults'
+    stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults|kernel'
     stage 35 'planted faults' run_tests gcc faults --label-regex faults
     for preset in clang clang-sanitize; do build_and_test "$preset"; done
     stage 22 'coverage: build' build coverage
@@ -113,6 +115,7 @@ run_long() {
     build_and_test gcc-sanitize
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
+    stage 60 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
     stage 240 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
     export FATHOM_LONG=1
     stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"

@@ -120,8 +120,8 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
 
 /*
  * How the kernel's driver drives an RS-485 transceiver whose DE hangs on RTS. Of zeros: RTS is on while bytes leave, and
- * off otherwise. "On" is the kernel's word (TIOCM_RTS): at an RS-232 plug a positive voltage, at the pin of a chip mostly
- * the low level, so that many boards have an inverter there. The datasheet of the board knows.
+ * off otherwise. What the kernel calls on is not one level: at the pin of a PL011 it is high, at those of most other
+ * UARTs low. Where nothing leaves the board, try the other one.
  */
 typedef struct {
     bool rts_off_to_send; /* the other way round */

@@ -52,7 +52,10 @@ def build(architecture, compiler, programs):
     folder = os.path.join(FOLDER, architecture)
     made = compiled(compiler, os.path.join(folder, 'objects'), [one for one in sources if one not in LEFT_OUT])
     path = os.path.join(folder, 'init')
-    subprocess.run([compiler, '-static', *made, '-o', path], check=True)
+    done = subprocess.run([compiler, '-static', *made, '-o', path], text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, check=False)
+    if done.returncode != 0:  # it warns of getgrgid_r, which wants the system's libraries
+        raise RuntimeError(f'{compiler}: {done.stdout}')
     return path
 
 

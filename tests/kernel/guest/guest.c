@@ -56,7 +56,8 @@ long guest_ask(const char *format, ...)
     (void)vprintf(format, arguments);
     va_end(arguments);
     printf("\n");
-    while (length + 1 < sizeof answer && read(STDIN_FILENO, answer + length, 1) == 1 && answer[length] != '\n')
+    while (length + 1 < sizeof answer && read(STDIN_FILENO, answer + length, 1) == 1 &&
+           answer[length] != '\n')
         length++;
     answer[length] = 0;
     if (strncmp(answer, "failed", 6) == 0) guest_fail(__FILE__, __LINE__, "%s: %s", format, answer);

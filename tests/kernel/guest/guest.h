@@ -14,6 +14,10 @@ typedef struct {
     const char *name;
     void (*run)(void);
 } guest_case_t;
+#define GUEST_CASE(function)                                                                                 \
+    {                                                                                                        \
+        .name = #function, .run = (function)                                                                 \
+    }
 
 /* Never returns. What is printed is for the log. */
 void guest_run(const guest_case_t *cases, size_t count);

@@ -62,8 +62,16 @@ size_t tty_receive(int fd, void *bytes, size_t length, unsigned ms)
     return count;
 }
 
-fathom_status_t tty_read_hps167s(const fathom_uart_t *uart, fathom_sample_t *sample)
+void tty_is_2083(const fathom_sample_t *sample)
 {
+    CHECK_INT(sample->kind, FATHOM_TARGET);
+    CHECK_INT(sample->distance_mm, 2083);
+    CHECK_INT(sample->magnitude, 7231744);
+}
+
+void tty_reads_2083(const fathom_uart_t *uart)
+{
+    fathom_sample_t sample = {0};
     static uint8_t frame[32];
     static fathom_line_t line;
     static fathom_hps167s_t gate;
@@ -80,7 +88,7 @@ fathom_status_t tty_read_hps167s(const fathom_uart_t *uart, fathom_sample_t *sam
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     CHECK_INT(fathom_hps167s_init(&gate, &config), FATHOM_READY);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
-    const fathom_status_t status = fathom_wait(&sensor, sample, fathom_posix_wait, &tty_port);
+    CHECK_INT(fathom_wait(&sensor, &sample, fathom_posix_wait, &tty_port), FATHOM_READY);
+    tty_is_2083(&sample);
     fathom_hps167s_deinit(&gate);
-    return status;
 }

@@ -29,7 +29,8 @@ void tty_write(const fathom_uart_t *uart, const void *bytes, size_t length);
 /* Reads from a descriptor until there are so many, or the time is over; returns how many there were. */
 size_t tty_receive(int fd, void *bytes, size_t length, unsigned ms);
 
-/* Reads a distance by the library's HPS-167S, at its factory settings, over an open port. */
-fathom_status_t tty_read_hps167s(const fathom_uart_t *uart, fathom_sample_t *sample);
+/* Reads a distance over tty_port by the library's HPS-167S at its factory settings, which is table 18's 2083 mm. */
+void tty_reads_2083(const fathom_uart_t *uart);
+void tty_is_2083(const fathom_sample_t *sample);
 
 #endif
