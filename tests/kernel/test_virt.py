@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""port/posix on a PL011, by Debian's cloud-arm64 kernel on QEMU's `virt`. The console is on a PCI card, so that the PL011
-is free."""
+"""port/posix on a PL011 and port/gpio on a PL061, by Debian's cloud-arm64 kernel on QEMU's `virt`. The console is on a PCI
+card, so that the PL011 is free."""
 import re
 import threading
+import time
 
 import guest
+import pins
 
 # What a HPS-167S is asked for a measurement, and what it says: 2083 mm (tables 17 and 18).
 ASK = bytes.fromhex('01 03 00 08 00 04 C5 CB')
@@ -17,17 +19,23 @@ BREAK, PARITY, EVEN, TWO_STOP_BITS, EIGHT_BITS = 1, 2, 4, 8, 0x60
 RTS = 0x800
 CLOCK_HZ = 24000000  # virt's
 
+ECHO, TRIGGER = 5, 6  # lines of the PL061
+
 
 class Virt(guest.Guest):
     def __init__(self):
-        super().__init__('arm64', 'aarch64-linux-gnu-gcc', ['virt', 'virt_uart', 'tty'],
+        super().__init__('arm64', 'aarch64-linux-gnu-gcc', ['virt', 'virt_uart', 'virt_pins', 'tty'],
                          ['qemu-system-aarch64', '-M', 'virt', '-cpu', 'cortex-a53', '-m', '256'], 'console=ttyS0')
         self.command += ['-device', 'pci-serial,chardev=console', '-serial', 'chardev:wire',
                          '-chardev', f'socket,id=wire,path={self.path("wire")},server=on,wait=off',
-                         '-trace', 'pl011_write']
-        self.began = 0  # of listening, in the trace
+                         '-trace', 'pl011_write', '-qtest', f'unix:{self.path("qtest")}', '-qtest-log', '/dev/null']
+        self.pins = pins.Pins(self.path('qtest'))
+        self.began = 0, 0  # of listening, in the trace and of the outputs
 
     def begin(self):
+        device, = (one['name'] for one in self.order('qom-list', path='/machine/unattached')
+                   if one['type'] == 'child<pl061>')
+        self.pins.begin(f'/machine/unattached/{device}')
         wire = self.connect('wire')
 
         def live():
@@ -66,17 +74,17 @@ class Virt(guest.Guest):
         return self.registers()[LCR_H] & BREAK
 
     def do_listen(self):
-        self.began = len(list(self.writes()))
+        self.began = len(list(self.writes())), len(self.pins.seen)
         return 'done'
 
     def do_turned(self, level, before_ms, after_ms):
         """Was RTS so while the bytes that were sent since then left, and the other way otherwise?"""
         writes = list(self.writes())
-        rts = next(value for _, register, value in reversed(writes[:self.began]) if register == CR) & RTS
+        rts = next(value for _, register, value in reversed(writes[:self.began[0]]) if register == CR) & RTS
         sending = 0 if level == 'on' else RTS
         idle = RTS - sending
         rows = []  # (seconds, RTS, is a byte)
-        for seconds, register, value in writes[self.began:]:
+        for seconds, register, value in writes[self.began[0]:]:
             if register == CR:
                 rts = value & RTS
             if register in (CR, DR):
@@ -89,6 +97,50 @@ class Virt(guest.Guest):
         # No earlier, and not much later.
         assert -0.001 <= sent[0][0] - turned - int(before_ms) / 1000 < 0.1, rows
         assert -0.001 <= back - sent[-1][0] - int(after_ms) / 1000 < 0.1, rows
+        return 'done'
+
+    def do_set(self, line, level):
+        self.pins.set(line, level)
+        return 'done'
+
+    def do_level(self, line):
+        time.sleep(0.02)  # it comes by another way than the question
+        return self.pins.levels[int(line)]
+
+    def do_bounce(self, line, level):
+        self.pins.bounce(line, int(level))
+        return self.do_set(line, level)
+
+    def do_a16(self, kind, width_ms):
+        self.pins.trigger = TRIGGER
+        self.pins.a16(ECHO, kind, int(width_ms) / 1000)
+        return 'done'
+
+    def do_width(self):
+        """Of the last pulse of the A16, in us."""
+        time.sleep(0.01)
+        return self.pins.width_us
+
+    def do_pulses(self, count, low_ms, high_ms):
+        """The echo, which is high, goes low and high again so often. Returns the width of the widest of them, in us."""
+        widest = 0
+        for _ in range(int(count)):
+            self.pins.set(ECHO, 0)
+            time.sleep(int(low_ms) / 1000)
+            self.pins.set(ECHO, 1)
+            began = time.monotonic()
+            time.sleep(int(high_ms) / 1000)
+            widest = max(widest, time.monotonic() - began)
+        return round(1e6 * widest)
+
+    def do_triggered(self, count):
+        """Was the A16 triggered so often, each for 2 ms and 220 ms after the one before? The times are the host's."""
+        edges = [(at, level) for at, line, level in self.pins.seen[self.began[1]:] if line == TRIGGER]
+        falls = [at for at, level in edges if level == 0]
+        assert len(falls) >= int(count), edges
+        assert all(later - at > 0.215 for at, later in zip(falls, falls[1:])), edges
+        lows = [later - at for (at, level), (later, _) in zip(edges, edges[1:]) if level == 0]
+        assert all(low > 0.001 for low in lows), lows
         return 'done'
 
 

@@ -8,5 +8,7 @@
 
 extern const guest_case_t virt_uart_cases[];
 extern const size_t virt_uart_case_count;
+extern const guest_case_t virt_pins_cases[];
+extern const size_t virt_pins_case_count;
 
 #endif
