@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The lines of a GPIO chip in QEMU, seen and set from outside by qtest (QEMU, docs/devel/qtest.rst); and what an A16
-plays on them. Times are the host's: a busy one makes pulses longer, so what was played is measured."""
+plays on them. Times are the host's: a busy one makes pulses longer."""
 import queue
 import socket
 import threading
@@ -15,12 +15,10 @@ class Pins:
         self.server.listen(1)
         self.device, self.link = None, None
         self.lock, self.answers = threading.Lock(), queue.Queue()
-        self.seen = []     # (time, line, level) of outputs
-        self.levels = {}   # of outputs
+        self.levels = {}  # of outputs
         self.trigger = None
         self.jobs = queue.Queue()
-        self.play = None   # what follows a falling edge of the trigger
-        self.width_us = 0  # of the last pulse
+        self.play = None  # what follows a falling edge of the trigger
 
     def begin(self, device):
         self.server.settimeout(10)
@@ -37,7 +35,6 @@ class Pins:
                 self.answers.put(line)
                 continue
             number, level = int(words[2]), int(words[1] == 'raise')
-            self.seen.append((time.monotonic(), number, level))
             self.levels[number] = level
             if number == self.trigger and level == 0 and self.play is not None:
                 self.jobs.put(self.play)
@@ -57,12 +54,9 @@ class Pins:
         self.order(f'set_irq_in {self.device} unnamed-gpio-in {line} {level}')
 
     def pulse(self, line, width_s):
-        """A high one; returns how long it was."""
         self.set(line, 1)
-        began = time.monotonic()
         time.sleep(width_s)
         self.set(line, 0)
-        return time.monotonic() - began
 
     def bounce(self, line, level):
         """To the level, and back and to it again, three times."""
@@ -78,11 +72,11 @@ class Pins:
             time.sleep(0.005)  # the datasheet's 110 ms are no promise
             if kind == 'bounce':
                 self.bounce(line, 1)
-                self.width_us = round(1e6 * self.pulse(line, width_s))
+                self.pulse(line, width_s)
                 self.bounce(line, 0)
                 self.set(line, 0)
             elif kind == 'high':
                 self.set(line, 1)
             elif kind == 'pulse':
-                self.width_us = round(1e6 * self.pulse(line, width_s))
+                self.pulse(line, width_s)
         self.play = play if kind != 'nothing' else None

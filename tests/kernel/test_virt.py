@@ -3,6 +3,7 @@
 """port/posix on a PL011 and port/gpio on a PL061, by Debian's cloud-arm64 kernel on QEMU's `virt`. The console is on a PCI
 card, so that the PL011 is free."""
 import re
+import statistics
 import threading
 import time
 
@@ -28,9 +29,9 @@ class Virt(guest.Guest):
                          ['qemu-system-aarch64', '-M', 'virt', '-cpu', 'cortex-a53', '-m', '256'], 'console=ttyS0')
         self.command += ['-device', 'pci-serial,chardev=console', '-serial', 'chardev:wire',
                          '-chardev', f'socket,id=wire,path={self.path("wire")},server=on,wait=off',
-                         '-trace', 'pl011_write', '-qtest', f'unix:{self.path("qtest")}', '-qtest-log', '/dev/null']
+                         '-trace', 'pl011_write', '-trace', 'pl061_set_output', '-trace', 'pl061_input_change', '-qtest', f'unix:{self.path("qtest")}', '-qtest-log', '/dev/null']
         self.pins = pins.Pins(self.path('qtest'))
-        self.began = 0, 0  # of listening, in the trace and of the outputs
+        self.began = 0  # of listening, in the trace
 
     def begin(self):
         device, = (one['name'] for one in self.order('qom-list', path='/machine/unattached')
@@ -52,15 +53,23 @@ class Virt(guest.Guest):
                     wire.sendall(SAYS_2083)
         threading.Thread(target=live, daemon=True).start()
 
-    def writes(self):
+    @staticmethod
+    def writes(rows):
         """To the PL011: (seconds, register, value)."""
-        for seconds, text in self.trace():
+        for seconds, text in rows:
             found = re.match(r'pl011_write addr 0x(\w+) value 0x(\w+)', text)
             if found is not None:
                 yield seconds, int(found[1], 16), int(found[2], 16)
 
     def registers(self):
-        return {register: value for _, register, value in self.writes()}
+        return {register: value for _, register, value in self.writes(self.trace())}
+
+    def edges(self, pattern, line):
+        """Of a line, since listening began: (seconds, level)."""
+        for seconds, text in self.trace()[self.began:]:
+            found = re.search(pattern + r' (\d) (?:changed )?to (\d)', text)
+            if found is not None and int(found[1]) == line:
+                yield seconds, int(found[2])
 
     def do_chip(self, baud, parity, stop_bits):
         """Does it have these settings?"""
@@ -74,29 +83,29 @@ class Virt(guest.Guest):
         return self.registers()[LCR_H] & BREAK
 
     def do_listen(self):
-        self.began = len(list(self.writes())), len(self.pins.seen)
+        self.began = len(self.trace())
         return 'done'
 
     def do_turned(self, level, before_ms, after_ms):
         """Was RTS so while the bytes that were sent since then left, and the other way otherwise?"""
-        writes = list(self.writes())
-        rts = next(value for _, register, value in reversed(writes[:self.began[0]]) if register == CR) & RTS
+        rows = self.trace()
+        rts = [value for _, register, value in self.writes(rows[:self.began]) if register == CR][-1] & RTS
         sending = 0 if level == 'on' else RTS
         idle = RTS - sending
-        rows = []  # (seconds, RTS, is a byte)
-        for seconds, register, value in writes[self.began[0]:]:
+        seen = []  # (seconds, RTS, is a byte)
+        for seconds, register, value in self.writes(rows[self.began:]):
             if register == CR:
                 rts = value & RTS
             if register in (CR, DR):
-                rows.append((seconds, rts, register == DR))
-        sent = [row for row in rows if row[2]]
-        assert len(sent) == 5, rows
-        assert all(row[1] == sending for row in sent), rows
-        turned = next(row[0] for row in rows if row[1] == sending)
-        back = next(row[0] for row in rows if row[0] >= sent[-1][0] and row[1] == idle)
+                seen.append((seconds, rts, register == DR))
+        sent = [row for row in seen if row[2]]
+        assert len(sent) == 5, seen
+        assert all(row[1] == sending for row in sent), seen
+        turned = next(row[0] for row in seen if row[1] == sending)
+        back = next(row[0] for row in seen if row[0] >= sent[-1][0] and row[1] == idle)
         # No earlier, and not much later.
-        assert -0.001 <= sent[0][0] - turned - int(before_ms) / 1000 < 0.1, rows
-        assert -0.001 <= back - sent[-1][0] - int(after_ms) / 1000 < 0.1, rows
+        assert -0.001 <= sent[0][0] - turned - int(before_ms) / 1000 < 0.1, seen
+        assert -0.001 <= back - sent[-1][0] - int(after_ms) / 1000 < 0.1, seen
         return 'done'
 
     def do_set(self, line, level):
@@ -104,7 +113,7 @@ class Virt(guest.Guest):
         return 'done'
 
     def do_level(self, line):
-        time.sleep(0.02)  # it comes by another way than the question
+        time.sleep(0.02)  # it comes by another way
         return self.pins.levels[int(line)]
 
     def do_bounce(self, line, level):
@@ -117,30 +126,30 @@ class Virt(guest.Guest):
         return 'done'
 
     def do_width(self):
-        """Of the last pulse of the A16, in us."""
-        time.sleep(0.01)
-        return self.pins.width_us
+        """Of the last pulse of the echo that was no bounce, in us."""
+        edges = list(self.edges('input', ECHO))
+        widths = [later - at for (at, level), (later, _) in zip(edges, edges[1:]) if level == 1 and later - at > 0.01]
+        return round(1e6 * widths[-1])
 
     def do_pulses(self, count, low_ms, high_ms):
-        """The echo, which is high, goes low and high again so often. Returns the width of the widest of them, in us."""
-        widest = 0
+        """The echo, which is high, goes low and high again so often."""
         for _ in range(int(count)):
             self.pins.set(ECHO, 0)
             time.sleep(int(low_ms) / 1000)
             self.pins.set(ECHO, 1)
-            began = time.monotonic()
             time.sleep(int(high_ms) / 1000)
-            widest = max(widest, time.monotonic() - began)
-        return round(1e6 * widest)
+        return 'done'
 
     def do_triggered(self, count):
-        """Was the A16 triggered so often, each for 2 ms and 220 ms after the one before? The times are the host's."""
-        edges = [(at, level) for at, line, level in self.pins.seen[self.began[1]:] if line == TRIGGER]
+        """Was the A16 triggered so often, each time for 2 ms, and 220 ms after the one before? A guest may be stopped on
+        its way to a pin, by a busy machine: of the times, the one in the middle."""
+        edges = list(self.edges('output', TRIGGER))
         falls = [at for at, level in edges if level == 0]
         assert len(falls) >= int(count), edges
-        assert all(later - at > 0.215 for at, later in zip(falls, falls[1:])), edges
         lows = [later - at for (at, level), (later, _) in zip(edges, edges[1:]) if level == 0]
-        assert all(low > 0.001 for low in lows), lows
+        cycles = [later - at for at, later in zip(falls, falls[1:])]
+        assert statistics.median(lows) >= 0.002, lows
+        assert statistics.median(cycles) >= 0.22, cycles
         return 'done'
 
 

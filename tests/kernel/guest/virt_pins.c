@@ -146,21 +146,25 @@ static fathom_status_t wait_for(const fathom_sensor_t *sensor, fathom_sample_t *
 
 static int by_size(const void *a, const void *b) { return (int)(*(const long *)a - *(const long *)b); }
 
-/* Five cycles. What is measured differs by so much from what was played: of the five, the one in the middle, since the
- * machine that plays it may be busy. */
-static long difference_us(const fathom_sensor_t *sensor)
+/* Five readings, and errors of that kind between them (FATHOM_READY: none). What is measured differs by so much from what
+ * was played: of the five, the one in the middle, since the machine that plays it may be busy. */
+static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed)
 {
-    enum { CYCLES = 5 };
-    long off[CYCLES];
-    for (int i = 0; i != CYCLES; i++) {
+    enum { READINGS = 5, MOST_CYCLES = 20 };
+    long off[READINGS];
+    int readings = 0;
+    for (int cycles = 0; readings != READINGS; cycles++) {
         fathom_sample_t sample;
-        CHECK_INT(wait_for(sensor, &sample), FATHOM_READY);
+        const fathom_status_t status = wait_for(sensor, &sample);
+        CHECK(cycles != MOST_CYCLES);
+        if (status == allowed && status != FATHOM_READY) continue;
+        CHECK_INT(status, FATHOM_READY);
         CHECK_INT(sample.kind, FATHOM_TARGET);
         CHECK_INT(sample.distance_mm, (sample.raw * 4 + 11) / 23); /* SENSORS.md: us * 4 / 23, rounded */
-        off[i] = labs((long)sample.raw - guest_ask("width"));
+        off[readings++] = labs((long)sample.raw - guest_ask("width"));
     }
-    qsort(off, CYCLES, sizeof off[0], by_size);
-    return off[CYCLES / 2];
+    qsort(off, READINGS, sizeof off[0], by_size);
+    return off[READINGS / 2];
 }
 
 static void an_a16_is_triggered_and_measured(void)
@@ -168,7 +172,7 @@ static void an_a16_is_triggered_and_measured(void)
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 pulse 20");
     (void)guest_ask("listen");
-    CHECK_WITHIN(difference_us(&sensor), 0, 2000);
+    CHECK_WITHIN(difference_us(&sensor, FATHOM_READY), 0, 3000);
     (void)guest_ask("triggered 5"); /* at least so often, and as the datasheet wants it */
     CHECK_INT(echo.lost_events, 0);
     CHECK_INT(fathom_a16_pwm_deinit(&tank), FATHOM_READY);
@@ -179,7 +183,8 @@ static void a_pulse_whose_edges_bounce_is_measured(void)
 {
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 bounce 20");
-    CHECK_WITHIN(difference_us(&sensor), 0, 2000);
+    /* An edge that came too soon after another one may be missed: then there is no width, and none is made up. */
+    CHECK_WITHIN(difference_us(&sensor, FATHOM_ERR_NO_RESPONSE), 0, 3000);
     CHECK_WITHIN(echo.events, 30, 1000); /* of 10 edges in 5 cycles without */
     CHECK_WITHIN(tank.meter.noises, 5, 100);
 }
@@ -244,11 +249,12 @@ static void edges_that_the_queue_dropped_are_counted_and_make_no_pulse(void)
 
     (void)guest_ask("set %d 0", ECHO); /* and it goes on */
     capture.arm(capture.ctx);
-    const long width_us = guest_ask("pulses 1 8 20");
+    (void)guest_ask("pulses 1 8 20");
     (void)guest_ask("set %d 0", ECHO);
     guest_sleep_ms(20);
     CHECK_INT(capture.take(capture.ctx, &pulse), 1);
-    CHECK_WITHIN(pulse.width_us, width_us - 4000, width_us + 20000);
+    const long width_us = guest_ask("width");
+    CHECK_WITHIN(pulse.width_us, width_us - 5000, width_us + 5000);
 }
 
 static struct {
@@ -278,7 +284,7 @@ static void the_loop_reads_a_pin(void)
     const uint64_t began_us = fathom_posix_now_us();
     fathom_loop_run(&rig.loop);
     /* The third pulse ends 25 ms after its trigger, the cycles are of 221 ms: it does not wait for the end of one. */
-    CHECK_WITHIN(fathom_posix_now_us() - began_us, 2 * 221000, 2 * 221000 + 150000);
+    CHECK_WITHIN(fathom_posix_now_us() - began_us, 2 * 221000, 3 * 221000 - 20000);
     fathom_loop_deinit(&rig.loop);
 }
 
