@@ -166,6 +166,7 @@ class Guest:
 
     def run(self):
         """Boots it and lets it run to its end. True: all is well."""
+        began = time.monotonic()
         with subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT) as self.process:
             alarm = threading.Timer(MOST_S, self.process.kill)
@@ -186,12 +187,10 @@ class Guest:
         if self.wrong:
             print('the console:', *self.log, sep='\n    ')
         shutil.rmtree(self.folder)
+        print(f'{time.monotonic() - began:.1f} s')
         print(f'{len(self.passed)} passed, {len(self.wrong)} failed')
         return not self.wrong and bool(self.passed)
 
 
 def main(guest):
-    began = time.monotonic()
-    good = guest().run()
-    print(f'{time.monotonic() - began:.1f} s', file=sys.stderr)
-    sys.exit(0 if good else 1)
+    sys.exit(0 if guest().run() else 1)
