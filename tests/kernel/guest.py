@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A machine in QEMU: Debian's kernel, and as its only program the test, linked with the ports. What the test wants of
-the world outside it asks for on its console, and waits until that was done:
+"""A machine in QEMU: Debian's kernel, and as its first program the test, linked with the ports; the tool is there too.
+What the test wants of the world outside it asks for on its console, and waits until that was done:
     ask WORD ARGUMENT...        from the guest; answered with one line, of a function `do_WORD`
     ok NAME, FAILED NAME: WHY   what came of a case
     end                         all cases were run
@@ -24,39 +24,61 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 BUILD = os.environ.get('FATHOM_BUILD') or os.path.join(ROOT, 'build-gcc')
 FOLDER = os.path.join(BUILD, 'kernel')
 MOST_S = 40  # of a run; a guest that hangs is killed then
-LEFT_OUT = {'src/codec/crc16_small.c'}  # the other choice of the table
-OPTIONS = ('-std=c99 -O1 -g -D_DEFAULT_SOURCE -Wall -Wextra -Werror '
-           '-Iinclude -Iport/posix -Iport/gpio -Itests/kernel/guest').split()
+LIBRARY = ('src/*.c', 'src/*/*.c', 'port/posix/*.c', 'port/gpio/*.c')
+TOOL = ('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c', 'port/sim/*.c')
+# The other choices of a table, of pins and of Modbus TCP, which wants libmodbus.
+LEFT_OUT = {'src/codec/crc16_small.c', 'examples/fathom/shared/pins_none.c', 'examples/fathom/shared/tcp.c'}
+OPTIONS = ('-std=c99 -O1 -Wall -Wextra -Werror -Iinclude -Iport -Iport/posix -Iport/gpio '
+           '-Iexamples/fathom -Itests/kernel/guest').split()
 
 
-def compiled(compiler, objects, sources):
-    os.makedirs(objects, exist_ok=True)
+def sources(*patterns):
+    paths = (os.path.relpath(path, ROOT) for pattern in patterns
+             for path in sorted(glob.glob(os.path.join(ROOT, pattern))))
+    return [path for path in paths if path not in LEFT_OUT]
+
+
+def changed():
+    """When any of them was, or how they are built."""
+    paths = [os.path.abspath(__file__)]
+    for folder in ('include', 'src', 'port', 'examples/fathom', 'tests/kernel/guest'):
+        for here, _, names in os.walk(os.path.join(ROOT, folder)):
+            paths += (os.path.join(here, name) for name in names)
+    return max(os.stat(path).st_mtime for path in paths)
+
+
+def compiled(compiler, folder, paths):
+    newest = changed()
 
     def one(source):
-        path = os.path.join(objects, source.replace('/', '_') + '.o')
-        done = subprocess.run([compiler, *OPTIONS, '-c', source, '-o', path], cwd=ROOT, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
-        if done.returncode != 0:
-            raise RuntimeError(f'{compiler} {source}: {done.stdout}')
+        path = os.path.join(folder, source.replace('/', '_') + '.o')
+        if os.path.exists(path) and os.stat(path).st_mtime > newest:
+            return path
+        ended(compiler, *OPTIONS, '-c', source, '-o', path + '.part')
+        os.rename(path + '.part', path)
         return path
 
+    os.makedirs(folder, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        return list(pool.map(one, sources))
+        return list(pool.map(one, paths))
+
+
+def ended(*command):
+    done = subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    if done.returncode != 0:  # a linker that warns of getgrgid_r, which wants the system's libraries, has done well
+        raise RuntimeError(f'{" ".join(command)}: {done.stdout}')
 
 
 def build(architecture, compiler, programs):
-    """The static program of the library, the ports and the given sources of guest/."""
-    sources = ['tests/kernel/guest/guest.c', *(f'tests/kernel/guest/{name}.c' for name in programs)]
-    for pattern in ('src/*.c', 'src/*/*.c', 'port/posix/*.c', 'port/gpio/*.c'):
-        sources += (os.path.relpath(path, ROOT) for path in sorted(glob.glob(os.path.join(ROOT, pattern))))
+    """The static programs, by their names: `init` of the given sources of guest/, and `fathom`."""
     folder = os.path.join(FOLDER, architecture)
-    made = compiled(compiler, os.path.join(folder, 'objects'), [one for one in sources if one not in LEFT_OUT])
-    path = os.path.join(folder, 'init')
-    done = subprocess.run([compiler, '-static', *made, '-o', path], text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, check=False)
-    if done.returncode != 0:  # it warns of getgrgid_r, which wants the system's libraries
-        raise RuntimeError(f'{compiler}: {done.stdout}')
-    return path
+    own = [f'tests/kernel/guest/{name}.c' for name in ('guest', *programs)]
+    library, tool = sources(*LIBRARY), sources(*TOOL)
+    made = compiled(compiler, os.path.join(folder, 'objects'), own + library + tool)
+    linked = {'init': made[:len(own) + len(library)], 'fathom': made[len(own):]}
+    for name, objects in linked.items():
+        ended(compiler, '-static', '-s', *objects, '-o', os.path.join(folder, name), '-lm')
+    return {name: os.path.join(folder, name) for name in linked}
 
 
 def ramdisk(files, folders=('dev', 'proc', 'sys')):
@@ -85,10 +107,12 @@ class Guest:
         self.folder = tempfile.mkdtemp(prefix='fathom-kernel-')
         kernel, version = debian.kernel(FOLDER, architecture)
         print(f'Debian {version}, cloud-{architecture}', flush=True)
-        with open(build(architecture, compiler, programs), 'rb') as file:
-            content = ramdisk({'init': file.read()})
+        files = {}
+        for name, path in build(architecture, compiler, programs).items():
+            with open(path, 'rb') as file:
+                files[name] = file.read()
         with open(self.path('ramdisk'), 'wb') as file:
-            file.write(content)
+            file.write(ramdisk(files))
         self.command = [*qemu, '-accel', 'tcg', '-display', 'none', '-no-reboot', '-net', 'none', '-kernel', kernel,
                         '-initrd', self.path('ramdisk'), '-append', f'{append} quiet panic=-1',
                         '-chardev', 'stdio,id=console,signal=off', '-monitor', 'none',
@@ -147,7 +171,7 @@ class Guest:
         try:
             return str(getattr(self, f'do_{words[0]}')(*words[1:]))
         except Exception as error:  # pylint: disable=broad-except
-            return f'failed: {error!r}'
+            return f'failed: {error!r}'[:400]
 
     def take(self, line):
         verb, _, rest = line.partition(' ')

@@ -15,7 +15,6 @@ class Pins:
         self.server.listen(1)
         self.device, self.link = None, None
         self.lock, self.answers = threading.Lock(), queue.Queue()
-        self.levels = {}  # of outputs
         self.trigger = None
         self.jobs = queue.Queue()
         self.play = None  # what follows a falling edge of the trigger
@@ -35,7 +34,6 @@ class Pins:
                 self.answers.put(line)
                 continue
             number, level = int(words[2]), int(words[1] == 'raise')
-            self.levels[number] = level
             if number == self.trigger and level == 0 and self.play is not None:
                 self.jobs.put(self.play)
 
@@ -63,7 +61,7 @@ class Pins:
         for _ in range(3):
             for one in (level, 1 - level):
                 self.set(line, one)
-                time.sleep(0.0005)
+                time.sleep(0.0002)
 
     def a16(self, line, kind, width_s):
         """What an A16 with PWM output sends after each trigger: a pulse; one whose edges bounce; a level that stays

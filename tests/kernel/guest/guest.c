@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* the tty's flags, and what Linux has besides */
 #include "guest.h"
 
 #include <errno.h>
@@ -48,7 +49,7 @@ void guest_check_within(const char *file, int line, const char *what, long got, 
 
 long guest_ask(const char *format, ...)
 {
-    char answer[200];
+    char answer[500];
     size_t length = 0;
     va_list arguments;
     printf("ask ");
@@ -56,9 +57,8 @@ long guest_ask(const char *format, ...)
     (void)vprintf(format, arguments);
     va_end(arguments);
     printf("\n");
-    while (length + 1 < sizeof answer && read(STDIN_FILENO, answer + length, 1) == 1 &&
-           answer[length] != '\n')
-        length++;
+    for (char one; read(STDIN_FILENO, &one, 1) == 1 && one != '\n';)
+        if (length + 1 < sizeof answer) answer[length++] = one;
     answer[length] = 0;
     if (strncmp(answer, "failed", 6) == 0) guest_fail(__FILE__, __LINE__, "%s: %s", format, answer);
     return strtol(answer, NULL, 0);
@@ -80,6 +80,37 @@ int guest_other_process(unsigned user, int (*run)(void *ctx), void *ctx)
     }
     CHECK(child > 0 && waitpid(child, &status, 0) == child);
     CHECK(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+int guest_tool(const char *words, char *out, size_t size)
+{
+    char copy[200];
+    char *arguments[32] = {"fathom"};
+    size_t count = 1;
+    size_t length = 0;
+    int ends[2];
+    int status = 0;
+    (void)snprintf(copy, sizeof copy, "%s", words);
+    for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) arguments[count++] = word;
+    CHECK_INT(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        (void)dup2(ends[1], STDOUT_FILENO);
+        (void)dup2(ends[1], STDERR_FILENO);
+        (void)close(ends[0]);
+        (void)close(ends[1]);
+        (void)execv("/fathom", arguments);
+        _exit(127);
+    }
+    (void)close(ends[1]);
+    for (ssize_t n = 1; n > 0 && length + 1 < size; length += (size_t)(n > 0 ? n : 0))
+        n = read(ends[0], out + length, size - 1 - length);
+    out[length] = 0;
+    (void)close(ends[0]);
+    CHECK(child > 0 && waitpid(child, &status, 0) == child);
+    CHECK(WIFEXITED(status));
+    printf("fathom %s: %d\n%s\n", words, WEXITSTATUS(status), out);
     return WEXITSTATUS(status);
 }
 

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 /*
- * The only program of a machine in QEMU: it runs cases, each in a process of its own, tells on the console what came of
+ * The first program of a machine in QEMU: it runs cases, each in a process of its own, tells on the console what came of
  * them, and turns the machine off. guest.py is at the other end of the console.
  */
 typedef struct {
@@ -44,6 +44,9 @@ void guest_check_within(const char *file, int line, const char *what, long got, 
 long guest_ask(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 void guest_sleep_ms(unsigned ms);
+
+/* Runs the tool with these words, and returns its exit status; `out` is what it printed, to both. */
+int guest_tool(const char *words, char *out, size_t size);
 
 /* Runs it in another process, as that user; returns what it returns (0..255). */
 int guest_other_process(unsigned user, int (*run)(void *ctx), void *ctx);

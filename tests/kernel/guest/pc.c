@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* the tty's flags, and what Linux has besides */
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -354,6 +355,26 @@ static void the_loop_reads_loses_and_opens_it_again(void)
     fathom_loop_deinit(&rig.loop);
 }
 
+/* ---- the tool ---- */
+
+static void the_tool_reads_the_sensor(void)
+{
+    static char out[2000];
+    begin_sensor();
+    CHECK_INT(guest_tool("read hps167s --port " NEAR " --count 3 --format csv", out, sizeof out), 0);
+    CHECK_SAYS(out, "2083");
+}
+
+static void the_tool_says_why_it_cannot(void)
+{
+    static char out[2000];
+    CHECK_INT(guest_tool("read hps167s@" NEAR ",rs485=on --count 1", out, sizeof out), 1);
+    CHECK_SAYS(out, "fathom: " NEAR ": the driver of this port does not drive an RS-485 transceiver");
+    (void)tty_open(NEAR, 9600, FATHOM_PARITY_NONE, 1);
+    CHECK_INT(guest_tool("read hps167s --port " NEAR " --count 1", out, sizeof out), 1);
+    CHECK_SAYS(out, "fathom: " NEAR ": in use by another program");
+}
+
 int main(void)
 {
     static const guest_case_t cases[] = {
@@ -372,6 +393,8 @@ int main(void)
         GUEST_CASE(a_hang_up_is_a_lost_port),
         GUEST_CASE(a_write_finds_the_hang_up_too),
         GUEST_CASE(the_loop_reads_loses_and_opens_it_again),
+        GUEST_CASE(the_tool_reads_the_sensor),
+        GUEST_CASE(the_tool_says_why_it_cannot),
     };
     guest_run(cases, sizeof cases / sizeof cases[0]);
     return 0;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* the tty's flags, and what Linux has besides */
 #include "tty.h"
 
 #include <errno.h>

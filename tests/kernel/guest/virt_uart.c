@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* the tty's flags, and what Linux has besides */
 #include <fcntl.h>
 #include <linux/serial.h>
 #include <string.h>
@@ -145,6 +146,16 @@ static void a_sensor_is_read_with_rs485(void)
     CHECK_INT(fathom_posix_set_rs485(&tty_port, NULL), FATHOM_POSIX_OK);
 }
 
+static void the_tool_reads_it_with_rs485(void)
+{
+    static char out[2000];
+    CHECK_INT(guest_tool("read hps167s --port " PORT " --rs485 --count 3 --format csv", out, sizeof out), 0);
+    CHECK_SAYS(out, "2083");
+    driver_has(SER_RS485_ENABLED | SER_RS485_RTS_ON_SEND, 0, 0);
+    (void)tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
+    CHECK_INT(fathom_posix_set_rs485(&tty_port, NULL), FATHOM_POSIX_OK);
+}
+
 const guest_case_t virt_uart_cases[] = {
     GUEST_CASE(every_setting_is_what_the_chip_has),
     GUEST_CASE(a_break_holds_the_wire_low_until_it_ends),
@@ -154,5 +165,6 @@ const guest_case_t virt_uart_cases[] = {
     GUEST_CASE(a_delay_that_the_kernel_cuts_is_refused),
     GUEST_CASE(a_sensor_is_read),
     GUEST_CASE(a_sensor_is_read_with_rs485),
+    GUEST_CASE(the_tool_reads_it_with_rs485),
 };
 const size_t virt_uart_case_count = sizeof virt_uart_cases / sizeof virt_uart_cases[0];
