@@ -137,7 +137,7 @@ static void run_case(const guest_case_t *one)
         printf("FAILED %s: ended with %d\n", one->name, WEXITSTATUS(status));
 }
 
-void guest_run(const guest_case_t *cases, size_t count)
+void guest_begin(void)
 {
     struct termios console;
     (void)mount("dev", "/dev", "devtmpfs", 0, NULL); /* it may be there */
@@ -148,7 +148,15 @@ void guest_run(const guest_case_t *cases, size_t count)
         console.c_lflag &= ~(tcflag_t)ECHO;
         (void)tcsetattr(STDIN_FILENO, TCSANOW, &console);
     }
+}
+
+void guest_run(const guest_case_t *cases, size_t count)
+{
     for (size_t i = 0; i != count; i++) run_case(&cases[i]);
+}
+
+void guest_end(void)
+{
     printf("end\n");
     (void)tcdrain(STDOUT_FILENO);
     (void)reboot(RB_POWER_OFF);

@@ -19,7 +19,10 @@ typedef struct {
         .name = #function, .run = (function)                                                                 \
     }
 
-/* Never returns. What is printed is for the log. */
+/* Before the first case, each table of them, and after the last; what is printed besides is for the log. The last one turns
+ * the machine off. */
+void guest_begin(void);
+void guest_end(void);
 void guest_run(const guest_case_t *cases, size_t count);
 
 /* Ends the case. */

@@ -3,10 +3,9 @@
 
 int main(void)
 {
-    guest_case_t cases[64];
-    size_t count = 0;
-    for (size_t i = 0; i != virt_uart_case_count; i++) cases[count++] = virt_uart_cases[i];
-    for (size_t i = 0; i != virt_pins_case_count; i++) cases[count++] = virt_pins_cases[i];
-    guest_run(cases, count);
+    guest_begin();
+    guest_run(virt_uart_cases, virt_uart_case_count);
+    guest_run(virt_pins_cases, virt_pins_case_count);
+    guest_end();
     return 0;
 }

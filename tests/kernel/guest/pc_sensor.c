@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* the tty's flags, and what Linux has besides */
+#include <fcntl.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "fathom_loop.h"
+#include "pc.h"
+#include "tty.h"
+
+/* A sensor at the other end of the cable: read, lost, and read again; by the port, the loop and the tool. */
+
+/* A measurement, and its response (HPS-167S, tables 17 and 18). */
+static const uint8_t ask[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB};
+static const uint8_t says_2083[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
+                                    0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
+
+/* In another process; it ends with the case. */
+static void begin_sensor(void)
+{
+    uint8_t heard[sizeof ask] = {0};
+    const int fd = tty_raw(FAR, B19200, PARENB);
+    if (fork() != 0) {
+        (void)close(fd);
+        return;
+    }
+    for (;;) {
+        uint8_t byte;
+        if (tty_receive(fd, &byte, 1, 1000) != 1) continue;
+        memmove(heard, heard + 1, sizeof heard - 1);
+        heard[sizeof heard - 1] = byte;
+        if (memcmp(heard, ask, sizeof ask) == 0 && write(fd, says_2083, sizeof says_2083) < 0) _exit(1);
+    }
+}
+
+static void a_sensor_is_read_from_tty_to_tty(void)
+{
+    const fathom_uart_t uart = tty_open(NEAR, 19200, FATHOM_PARITY_EVEN, 1);
+    begin_sensor();
+    for (int i = 0; i != 5; i++) tty_reads_2083(&uart);
+}
+
+/* ---- hang-up ---- */
+
+static void hang_up(void)
+{
+    const int fd = open(NEAR, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    CHECK(fd >= 0);
+    CHECK_INT(ioctl(fd, TIOCVHANGUP), 0);
+    (void)close(fd);
+}
+
+static void a_hang_up_is_a_lost_port(void)
+{
+    const fathom_uart_t uart = tty_open(NEAR, 19200, FATHOM_PARITY_EVEN, 1);
+    fathom_posix_line_errors_t errors;
+    uint8_t byte;
+    fathom_rx_t rx = {0};
+    CHECK_INT(uart.read(uart.ctx, &byte, 1, &rx), 0);
+    hang_up();
+    const uint64_t began_us = fathom_posix_now_us();
+    fathom_posix_wait(&tty_port, 5000000);
+    CHECK_WITHIN(fathom_posix_now_us() - began_us, 0, 1000000); /* it wakes a program */
+    CHECK_INT(uart.read(uart.ctx, &byte, 1, &rx), -1);
+    CHECK_INT(fathom_posix_error(&tty_port), FATHOM_POSIX_ERR_LOST);
+    CHECK_INT(uart.write(uart.ctx, &byte, 1), -1);
+    CHECK_INT(fathom_posix_line_errors(&tty_port, &errors), FATHOM_POSIX_ERR_LOST);
+    CHECK_INT(fathom_posix_set_rs485(&tty_port, NULL), FATHOM_POSIX_ERR_LOST);
+    CHECK(uart.sent(uart.ctx)); /* so that no caller waits */
+    fathom_posix_close(&tty_port);
+    (void)tty_open(NEAR, 19200, FATHOM_PARITY_EVEN, 1); /* and it can be opened again */
+}
+
+static void a_write_finds_the_hang_up_too(void)
+{
+    const fathom_uart_t uart = tty_open(NEAR, 19200, FATHOM_PARITY_EVEN, 1);
+    hang_up();
+    CHECK_INT(uart.write(uart.ctx, (const uint8_t *)"x", 1), -1);
+    CHECK_INT(fathom_posix_error(&tty_port), FATHOM_POSIX_ERR_LOST);
+}
+
+/* ---- the loop ---- */
+
+static struct {
+    fathom_loop_t loop;
+    fathom_loop_line_t line;
+    fathom_hps167s_t gate;
+    fathom_loop_sensor_t sensor;
+    fathom_sample_t sample;
+    int readings, port_errors, opened, lost;
+} rig;
+
+static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sample)
+{
+    (void)ctx;
+    CHECK(status == FATHOM_READY || status == FATHOM_ERR_PORT);
+    if (status == FATHOM_ERR_PORT) {
+        rig.port_errors++;
+        return;
+    }
+    tty_is_2083(sample);
+    rig.readings++;
+    if (rig.readings % 5 == 0) fathom_loop_stop(&rig.loop);
+}
+
+static void tell(void *ctx, const fathom_loop_source_t *source, bool is_open)
+{
+    (void)ctx;
+    if (is_open) {
+        rig.opened++;
+        return;
+    }
+    rig.lost++;
+    CHECK_SAYS(fathom_loop_error_text(source), NEAR ": the device was unplugged or its far end closed");
+}
+
+static uint64_t processor_us(void)
+{
+    struct rusage used;
+    CHECK_INT(getrusage(RUSAGE_SELF, &used), 0);
+    return (uint64_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) * 1000000u +
+           (uint64_t)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+static void the_loop_reads_loses_and_opens_it_again(void)
+{
+    const fathom_loop_config_t config = {.tell = tell};
+    CHECK_INT(fathom_loop_init(&rig.loop, &config), FATHOM_POSIX_OK);
+    const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
+    begin_sensor();
+    CHECK_INT(fathom_loop_add_line(&rig.loop, &rig.line, NEAR, &settings), FATHOM_POSIX_OK);
+    const fathom_hps167s_config_t hps167s = {.modbus.transport = &rig.line.modbus};
+    CHECK_INT(fathom_hps167s_init(&rig.gate, &hps167s), FATHOM_READY);
+    rig.sensor.take = take;
+    rig.sensor.sensor = fathom_hps167s_sensor(&rig.gate);
+    fathom_loop_add_sensor(&rig.line.source, &rig.sensor);
+    fathom_loop_run(&rig.loop);
+    CHECK_INT(rig.readings, 5);
+    CHECK_INT(rig.opened, 1);
+
+    hang_up();
+    while (rig.lost == 0) fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
+    const uint64_t began_us = fathom_posix_now_us();
+    const uint64_t used_us = processor_us();
+    while (rig.opened == 1) fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
+    /* The first pause is 500 ms. It is slept through: a loop that spins would take all of it. */
+    CHECK_WITHIN(fathom_posix_now_us() - began_us, 450000, 1500000);
+    CHECK_WITHIN(processor_us() - used_us, 0, 100000);
+    CHECK_INT(rig.lost, 1);
+    CHECK_INT(rig.port_errors, 1);
+
+    fathom_loop_run(&rig.loop);
+    CHECK_INT(rig.readings, 10);
+    fathom_loop_deinit(&rig.loop);
+}
+
+/* ---- the tool ---- */
+
+static void the_tool_reads_the_sensor(void)
+{
+    static char out[2000];
+    begin_sensor();
+    CHECK_INT(guest_tool("read hps167s --port " NEAR " --count 3 --format csv", out, sizeof out), 0);
+    CHECK_SAYS(out, "2083");
+}
+
+static void the_tool_says_why_it_cannot(void)
+{
+    static char out[2000];
+    CHECK_INT(guest_tool("read hps167s@" NEAR ",rs485=on --count 1", out, sizeof out), 1);
+    CHECK_SAYS(out, "fathom: " NEAR ": the driver of this port does not drive an RS-485 transceiver");
+    (void)tty_open(NEAR, 9600, FATHOM_PARITY_NONE, 1);
+    CHECK_INT(guest_tool("read hps167s --port " NEAR " --count 1", out, sizeof out), 1);
+    CHECK_SAYS(out, "fathom: " NEAR ": in use by another program");
+}
+
+const guest_case_t pc_sensor_cases[] = {
+    GUEST_CASE(a_sensor_is_read_from_tty_to_tty), GUEST_CASE(a_hang_up_is_a_lost_port),
+    GUEST_CASE(a_write_finds_the_hang_up_too),    GUEST_CASE(the_loop_reads_loses_and_opens_it_again),
+    GUEST_CASE(the_tool_reads_the_sensor),        GUEST_CASE(the_tool_says_why_it_cannot),
+};
+const size_t pc_sensor_case_count = sizeof pc_sensor_cases / sizeof pc_sensor_cases[0];
