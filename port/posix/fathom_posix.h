@@ -119,9 +119,9 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
                                             const fathom_line_settings_t *settings);
 
 /*
- * How the kernel's driver drives an RS-485 transceiver whose DE hangs on RTS. Of zeros: RTS is on while bytes leave, and
- * off otherwise. What the kernel calls on is not one level: at the pin of a PL011 it is high, at those of most other
- * UARTs low. Where nothing leaves the board, try the other one.
+ * How the kernel's driver drives an RS-485 transceiver whose DE hangs on RTS. Of zeros: RTS is on while bytes leave,
+ * and off otherwise. What the kernel calls on is not one level: at the pin of a PL011 it is high, at that of an 8250
+ * low. Where nothing leaves the board, try the other one.
  */
 typedef struct {
     bool rts_off_to_send; /* the other way round */
@@ -131,8 +131,8 @@ typedef struct {
 
 /*
  * Lets the driver of an open port turn the transceiver round (TIOCSRS485), and reads that back (TIOCGRS485). It holds
- * until it is set again, over fathom_posix_set_line and after close. Whether the UART hears what it sends is left to the
- * driver: a line finds that out (line.h).
+ * until it is set again, over fathom_posix_set_line and after close. Whether the UART hears what it sends is left to
+ * the driver: a line finds that out (line.h).
  *
  * rs485: NULL: RTS is left alone again.
  *

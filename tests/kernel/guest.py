@@ -21,7 +21,7 @@ import debian
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-BUILD = os.environ.get('FATHOM_BUILD') or os.path.join(ROOT, 'build-gcc')
+BUILD = os.path.abspath(os.environ.get('FATHOM_BUILD') or os.path.join(ROOT, 'build-gcc'))
 FOLDER = os.path.join(BUILD, 'kernel')
 MOST_S = 40  # of a run; a guest that hangs is killed then
 LIBRARY = ('src/*.c', 'src/*/*.c', 'port/posix/*.c', 'port/gpio/*.c')

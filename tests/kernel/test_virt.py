@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""port/posix on a PL011 and port/gpio on a PL061, by Debian's cloud-arm64 kernel on QEMU's `virt`. The console is on a PCI
-card, so that the PL011 is free."""
+"""port/posix on a PL011 and port/gpio on a PL061, by Debian's cloud-arm64 kernel on QEMU's `virt`. The console is on a
+PCI card, so that the PL011 is free."""
 import re
 import statistics
 import threading
@@ -29,7 +29,8 @@ class Virt(guest.Guest):
                          ['qemu-system-aarch64', '-M', 'virt', '-cpu', 'cortex-a53', '-m', '256'], 'console=ttyS0')
         self.command += ['-device', 'pci-serial,chardev=console', '-serial', 'chardev:wire',
                          '-chardev', f'socket,id=wire,path={self.path("wire")},server=on,wait=off',
-                         '-trace', 'pl011_write', '-trace', 'pl061_set_output', '-trace', 'pl061_input_change', '-qtest', f'unix:{self.path("qtest")}', '-qtest-log', '/dev/null']
+                         '-trace', 'pl011_write', '-trace', 'pl061_set_output', '-trace', 'pl061_input_change',
+                         '-qtest', f'unix:{self.path("qtest")}', '-qtest-log', '/dev/null']
         self.pins = pins.Pins(self.path('qtest'))
         self.began = 0  # of listening, in the trace
 
@@ -75,7 +76,7 @@ class Virt(guest.Guest):
         """Does it have these settings?"""
         now = self.registers()
         real = CLOCK_HZ * 4 / (64 * now[IBRD] + now[FBRD])
-        bits = {'N': 0, 'E': PARITY | EVEN, 'O': PARITY}[parity] | EIGHT_BITS | (TWO_STOP_BITS if stop_bits == '2' else 0)
+        bits = EIGHT_BITS | {'N': 0, 'E': PARITY | EVEN, 'O': PARITY}[parity] | {'1': 0, '2': TWO_STOP_BITS}[stop_bits]
         frame = now[LCR_H] & (PARITY | EVEN | TWO_STOP_BITS | EIGHT_BITS)
         return int(abs(real / int(baud) - 1) < 0.01 and frame == bits)
 
@@ -126,8 +127,8 @@ class Virt(guest.Guest):
         return 'done'
 
     def do_width(self, seen_us):
-        """Of the pulse of the echo in the last cycle that was most like the one that was seen, in us. A busy machine makes
-        a long pulse of a bounce."""
+        """Of the pulse of the echo in the last cycle that was most like the one that was seen, in us. A busy machine
+        makes a long pulse of a bounce."""
         last = max((at for at, level in self.edges('output', TRIGGER) if level == 0), default=0)
         edges = [edge for edge in self.edges('input', ECHO) if edge[0] > last]
         widths = [1e6 * (later - at) for (at, level), (later, _) in zip(edges, edges[1:]) if level == 1]
@@ -143,8 +144,8 @@ class Virt(guest.Guest):
         return 'done'
 
     def do_triggered(self, count):
-        """Was the A16 triggered so often, each time for 2 ms, and 220 ms after the one before? A guest may be stopped on
-        its way to a pin, by a busy machine: of the times, the one in the middle."""
+        """Was the A16 triggered so often, each time for 2 ms, and 220 ms after the one before? A guest may be stopped
+        on its way to a pin, by a busy machine: of the times, the one in the middle."""
         edges = list(self.edges('output', TRIGGER))
         falls = [at for at, level in edges if level == 0]
         assert len(falls) >= int(count), edges

@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 /*
- * The first program of a machine in QEMU: it runs cases, each in a process of its own, tells on the console what came of
- * them, and turns the machine off. guest.py is at the other end of the console.
+ * The first program of a machine in QEMU: it runs cases, each in a process of its own, tells on the console what came
+ * of them, and turns the machine off. guest.py is at the other end of the console.
  */
 typedef struct {
     const char *name;
@@ -19,8 +19,8 @@ typedef struct {
         .name = #function, .run = (function)                                                                 \
     }
 
-/* Before the first case, each table of them, and after the last; what is printed besides is for the log. The last one turns
- * the machine off. */
+/* Before the first case; after the last, which turns the machine off; and each table of them. What is printed besides
+ * is for the log. */
 void guest_begin(void);
 void guest_end(void);
 void guest_run(const guest_case_t *cases, size_t count);

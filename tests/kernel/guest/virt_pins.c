@@ -147,8 +147,8 @@ static fathom_status_t wait_for(const fathom_sensor_t *sensor, fathom_sample_t *
 
 static int by_size(const void *a, const void *b) { return (int)(*(const long *)a - *(const long *)b); }
 
-/* Five readings, and errors of that kind between them (FATHOM_READY: none). What is measured differs by so much from what
- * was played: of the five, the one in the middle, since the machine that plays it may be busy. */
+/* Five readings, and errors of that kind between them (FATHOM_READY: none). What is measured differs by so much from
+ * what was played: of the five, the second best, since the machine that all of this runs on may be busy. */
 static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed)
 {
     enum { READINGS = 5, MOST_CYCLES = 20 };
@@ -165,7 +165,7 @@ static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed
         off[readings++] = labs((long)sample.raw - guest_ask("width %lu", (unsigned long)sample.raw));
     }
     qsort(off, READINGS, sizeof off[0], by_size);
-    return off[READINGS / 2];
+    return off[1];
 }
 
 static void an_a16_is_triggered_and_measured(void)
@@ -173,7 +173,7 @@ static void an_a16_is_triggered_and_measured(void)
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 pulse 20");
     (void)guest_ask("listen");
-    CHECK_WITHIN(difference_us(&sensor, FATHOM_READY), 0, 5000);
+    CHECK_WITHIN(difference_us(&sensor, FATHOM_READY), 0, 3000);
     (void)guest_ask("triggered 5"); /* at least so often, and as the datasheet wants it */
     CHECK_INT(echo.lost_events, 0);
     CHECK_INT(fathom_a16_pwm_deinit(&tank), FATHOM_READY);
@@ -185,7 +185,7 @@ static void a_pulse_whose_edges_bounce_is_measured(void)
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 bounce 20");
     /* An edge that came too soon after another one may be missed: then there is no width, and none is made up. */
-    CHECK_WITHIN(difference_us(&sensor, FATHOM_ERR_NO_RESPONSE), 0, 5000);
+    CHECK_WITHIN(difference_us(&sensor, FATHOM_ERR_NO_RESPONSE), 0, 3000);
     CHECK_WITHIN(echo.events, 20, 1000); /* 10 edges in 5 cycles without */
     CHECK_WITHIN(tank.meter.noises, 5, 100);
 }
@@ -230,9 +230,9 @@ static void edges_that_the_queue_dropped_are_counted_and_make_no_pulse(void)
     CHECK(is_readable(&echo, 1000));
     CHECK_INT(capture.take(capture.ctx, &pulse), 0); /* it has begun */
 
-    /* Down and up 35 times: low for 8 ms, high for 2, or what a busy machine makes of it. Of 70 edges the kernel keeps the
-     * last 64, of which the oldest is a fall: it ends a pulse whose rise was dropped, and not the one that has begun, which
-     * would be 38 ms wide. 31 pulses follow, unless two edges were so near that they came as one. */
+    /* Down and up 35 times: low for 8 ms, high for 2, or what a busy machine makes of it. Of 70 edges the kernel keeps
+     * the last 64, of which the oldest is a fall: it ends a pulse whose rise was dropped, and not the one that has
+     * begun, which would be 38 ms wide. 31 pulses follow, unless two edges were so near that they came as one. */
     (void)guest_ask("pulses 35 8 2");
     guest_sleep_ms(50);
     for (;;) {
