@@ -120,8 +120,8 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
 
 /*
  * How the kernel's driver drives an RS-485 transceiver whose DE hangs on RTS. Of zeros: RTS is on while bytes leave,
- * and off otherwise. What the kernel calls on is not one level: at the pin of a PL011 it is high, at that of an 8250
- * low. Where nothing leaves the board, try the other one.
+ * and off otherwise. Which level that is at the pin is the driver's: a PL011's is high, others differ. Where nothing
+ * leaves the board, try the other one.
  */
 typedef struct {
     bool rts_off_to_send; /* the other way round */
