@@ -28,7 +28,7 @@ LIBRARY = ('src/*.c', 'src/*/*.c', 'port/posix/*.c', 'port/gpio/*.c')
 TOOL = ('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c', 'port/sim/*.c')
 # The other choices of a table, of pins and of Modbus TCP, which wants libmodbus.
 LEFT_OUT = {'src/codec/crc16_small.c', 'examples/fathom/shared/pins_none.c', 'examples/fathom/shared/tcp.c'}
-OPTIONS = ('-std=c99 -O1 -Wall -Wextra -Werror -Iinclude -Iport -Iport/posix -Iport/gpio '
+OPTIONS = ('-std=c99 -Wall -Wextra -Werror -Iinclude -Iport -Iport/posix -Iport/gpio '
            '-Iexamples/fathom -Itests/kernel/guest').split()
 
 
