@@ -145,7 +145,7 @@ class Raw(e2e.Case):
         self.plays([[self.request()]], 0, 1)
 
     def test_a_response_behind_another_units_is_read(self):
-        self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unasked frames 1\n')
+        self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unasked frames 1,')
 
     def test_random_bytes(self):
         """A good response between."""
