@@ -52,5 +52,5 @@ int main(int argc, char **argv)
     fathom_loop_read(&north.source, &(fathom_loop_sensor_t){0}, fathom_hps167s_sensor(&gate), take, "gate");
     fathom_loop_read(&west.source, &(fathom_loop_sensor_t){0}, fathom_a16_modbus_sensor(&tank), take, "tank");
     fathom_loop_read(&pin.source, &(fathom_loop_sensor_t){0}, fathom_a05_relay_sensor(&door), take, "door");
-    fathom_loop_run(&loop);
+    return fathom_loop_run(&loop), 1; /* a broken output alone ends it */
 }

@@ -52,7 +52,9 @@ struct fathom_loop_sensor {
     /*
      * What fathom_poll has returned, whatever it is but FATHOM_PENDING. sample: NULL unless that is FATHOM_READY.
      * FATHOM_ERR_PORT comes once when the port was lost, to each of its sensors, and not again before the port was
-     * back; the source's error_text has the reason. It may stop the loop and add to it; it removes nothing.
+     * back; the source's error_text has the reason. What a sensor has to say right when its port is back, of the time
+     * in which it was away, is dropped. It may stop the loop and add to it; it removes nothing, and a step or a run
+     * from here does nothing.
      */
     void (*take)(void *ctx, fathom_status_t status, const fathom_sample_t *sample);
     void *ctx;
@@ -142,11 +144,14 @@ void fathom_loop_deinit(fathom_loop_t *loop);
 
 /*
  * Adds a source whose kind is set and whose other members are zeros, and tries to open it. A source that cannot be
- * opened is no failure: that is told, and it is tried again.
+ * opened is no failure: that is told, and it is tried again. One that is part of the loop already: nothing happens.
+ *
+ * A descriptor that epoll does not take, a file say, or one that another source has, is polled every 10 ms. A source that
+ * is due at once 16 times in a row is polled each millisecond from then on, and any one every 35 minutes at least.
  */
 void fathom_loop_add(fathom_loop_t *loop, fathom_loop_source_t *source);
 
-/* Closes it; it is the caller's again. Not from a callback of the loop. */
+/* Closes it; it is the caller's again. Not from a callback of the loop; of a pin, before its descriptor is closed. */
 void fathom_loop_remove(fathom_loop_source_t *source);
 
 /* sensor->sensor and take are set; it is polled after those that were added before. */
@@ -157,14 +162,15 @@ void fathom_loop_read(fathom_loop_source_t *source, fathom_loop_sensor_t *node, 
                       void (*take)(void *ctx, fathom_status_t status, const fathom_sample_t *sample),
                       void *ctx);
 
-/* Sleeps and polls until fathom_loop_stop is called. */
+/* Sleeps and polls until fathom_loop_stop is called; then it may be run again. */
 void fathom_loop_run(fathom_loop_t *loop);
 
 /* Once: sleeps until something is ready or due, no longer than max_us (FATHOM_NO_DEADLINE: any time), and polls it. For a
  * program that has something else to do. Signals end the sleep. */
 void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us);
 
-/* Ends fathom_loop_run, soon; it may be called from a signal handler and from another thread. */
+/* Ends fathom_loop_run, soon; where none runs, the next one. It may be called from a signal handler and from another
+ * thread. */
 void fathom_loop_stop(fathom_loop_t *loop);
 
 /* For a loop of another kind: a descriptor that can be read whenever fathom_loop_step has something to do for what has
@@ -194,7 +200,7 @@ typedef struct {
     fathom_uart_t uart;
     fathom_clock_t clock;
     /* Set by fathom_loop_add_line: it finds out whether there is echo, the silence of the settings, a gap of 25 ms, no
-     * counters. May be changed before the first step. */
+     * counters. May be changed before the first step, but for `echo`, which fathom_loop_add_line has read. */
     fathom_line_config_t config;
     fathom_line_t line;
     fathom_modbus_t modbus;
