@@ -131,7 +131,7 @@ class Site(e2e.Case):
         self.gate(2083)
         self.tank(1953)
         with open('/dev/full', 'w', encoding='utf-8') as full:
-            self.ends(self.site(stdout=full), 0)
+            self.ends(self.site(stdout=full), 1)
 
     def test_a_chip_that_is_not_there_is_said(self):
         self.ends(self.start([PROGRAM, 'x', 'y', '/nowhere']), 1, '/nowhere', out='')
