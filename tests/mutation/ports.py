@@ -13,7 +13,7 @@ import threading
 
 from bench import ROOT, Bench, command
 
-HOST = ('port/posix', 'port/serial', 'port/sim', 'port/libmodbus')
+HOST = ('port/posix', 'port/gpio', 'port/serial', 'port/sim', 'port/libmodbus')
 
 
 @dataclasses.dataclass(frozen=True)
