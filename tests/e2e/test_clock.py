@@ -7,6 +7,7 @@ import subprocess
 import e2e
 
 WRAP = 1 << 32
+MOST = 71 * 60 * 1000000  # us, as long ago a time may be
 FOLDERS = ('include', 'port', 'port/posix', 'examples/fathom')
 
 
@@ -38,7 +39,9 @@ class Clock(e2e.Case):
                         f'{e2e.HERE}/extend_check.c', f'{e2e.ROOT}/examples/fathom/shared/timestamp.c'], check=True)
         cases = [(5 * WRAP + 10, 10, 5 * WRAP + 10), (5 * WRAP + 10, 9, 5 * WRAP + 9),
                  (5 * WRAP + 10, WRAP - 1, 5 * WRAP - 1), (5 * WRAP, WRAP - 1, 5 * WRAP - 1),
-                 (5 * WRAP, 0, 5 * WRAP), (5 * WRAP - 1, 0, 4 * WRAP), (WRAP + 5, 11, 11)]
+                 (5 * WRAP, 0, 5 * WRAP), (5 * WRAP + 10, WRAP + 10 - MOST, 5 * WRAP + 10 - MOST),
+                 # What is 1 us, and half a minute, ahead is now.
+                 (5 * WRAP - 1, 0, 5 * WRAP - 1), (WRAP + 5, 30000005, WRAP + 5)]
         told = self.start([program, *(number for case in cases for number in case[:2])]).finish()
         self.assertEqual([int(line) for line in told.out.split()], [case[2] for case in cases])
 

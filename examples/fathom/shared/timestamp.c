@@ -9,7 +9,8 @@
 
 uint64_t time_extend(uint64_t now_us, uint32_t then_us)
 {
-    return now_us - fathom_elapsed_us((uint32_t)now_us, then_us);
+    const uint32_t ago_us = fathom_elapsed_us((uint32_t)now_us, then_us);
+    return ago_us <= TIME_LONGEST_US ? now_us - ago_us : now_us;
 }
 
 const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
