@@ -19,10 +19,6 @@ struct station {
     const model_mode_t *mode;
     fathom_line_settings_t line; /* at which it is asked */
     size_t port;                 /* its row in sensor_options_t.ports */
-    uint8_t address;
-    /* The user's; else "a16:1", of one without an address "a16". Where others at other ports have the same: "a16:1@tty". */
-    char name[STATION_NAME];
-    bool has_own_name; /* the user's */
     reader_t reader;
     counters_t counters;
     pulses_t pulses;
@@ -30,12 +26,16 @@ struct station {
         own_listener;     /* where several sensors are asked: what was heard while it was this one's turn */
     listener_t *listener; /* the line's or its own */
     uint64_t next_us;     /* when the present attempt began, or will */
+    station_t *next;      /* on the same port; the poll loop's */
     bool skipping;        /* the present response came before it */
     bool answering;       /* the present attempt has begun to hand over a response, ... */
     bool has_failed;      /* ... or a part of it was an error */
     bool is_raise_told;   /* by station_is_raised */
     bool has_good;        /* there has been a reading that is not unknown */
-    station_t *next;      /* on the same port; the poll loop's */
+    bool has_own_name;    /* the user's */
+    uint8_t address;
+    /* The user's; else "a16:1", of one without an address "a16". Where others at other ports have the same: "a16:1@tty". */
+    char name[STATION_NAME];
 };
 
 /*
