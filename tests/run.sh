@@ -115,6 +115,7 @@ run_long() {
     build_and_test gcc-sanitize
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
+    stage 60 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
     stage 60 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
     stage 240 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
     export FATHOM_LONG=1
