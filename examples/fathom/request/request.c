@@ -6,6 +6,7 @@
 #include "request/request_ask.h"
 #include "request/request_effects.h"
 #include "request/request_report.h"
+#include "shared/options.h"
 
 /* fathom request: one Modbus request, as the user has written it. */
 
@@ -23,7 +24,8 @@ static void help(FILE *to)
         "hex\n\n"
         "UNIT, FUNCTION, REGISTER, COUNT and VALUE are decimal, or hex behind 0x; REGISTER is the address on "
         "the wire,\nas the datasheets print it (0x0101), not one more. A VALUE may be negative.\n\n"
-        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or tcp:HOST[:PORT]\n"
+        "  --port PATH       the serial port: /dev/ttyUSB0, or the link of `fathom sim`; or "
+        "tcp:HOST[:PORT]\n" OPTIONS_PORT_HELP
         "  --sensor MODEL    a16, a05 or hps167s: its line settings, and what the response means\n"
         "  --baud N          if not the sensor's, or 9600: 19200, 38400, 57600, 115200 or 230400\n"
         "  --parity P        if not the sensor's, or none: even or odd\n"
@@ -41,7 +43,8 @@ static void help(FILE *to)
         "                    0x0009\n\n"
         "JSON has unit, function, status (answered, answered_or_echo, sent, exception, unexpected, damaged, "
         "no_response,\n"
-        "failed), the bytes as sent and received, or heard where no response was whole; of a read registers, "
+        "failed), the bytes as sent and received, or heard where no response is certain; of a read "
+        "registers, "
         "of "
         "an exception\n"
         "its code and name, and with --sensor meanings.\n\n"
@@ -51,8 +54,10 @@ static void help(FILE *to)
         "an HPS-167S.\nNothing is repeated. Unit 0 is all units: none answers, and none is waited for (a "
         "read "
         "waits: an A16 or\nA05 may have that address).\n"
-        "Exit status: 0 when it was answered, or sent to all units; 1 when not, when the unit refused it or "
-        "the\nresponse was damaged; 2 for wrong usage, or without --yes.\n\n"
+        "Exit status: 0 when it was answered, also where that may be an echo (answered_or_echo), or sent to "
+        "all\n"
+        "units; 1 when not, when the unit refused it or the response was damaged; 2 for wrong usage, or "
+        "without --yes.\n\n"
         "examples:\n"
         "  fathom request 1 3 0x0101 --port /dev/ttyUSB0 --sensor a16\n"
         "  fathom request 7 3 0x0008 4 --port /dev/ttyUSB0 --sensor hps167s\n"

@@ -31,7 +31,7 @@ static const struct option table[OPTIONS + 1] = {
 
 /* As long as a broadcast gives the units (MODBUS over Serial Line V1.02, 2.4.1: 100 to 200 ms). */
 enum { TURNAROUND_US = 200000, TIMEOUT_MS = 1000, MAX_TIMEOUT_MS = 600000 };
-enum { MAX_BYTES = 251, MAX_FUNCTION = 127, MAX_WORDS = 300, WORD = 8 };
+enum { MAX_BYTES = 251, MAX_FUNCTION = 127, MAX_WORDS = 300, WORD = 16 };
 
 uint16_t request_word(const request_t *request, size_t at) { return decode_get16(request->frame + at); }
 
@@ -59,11 +59,28 @@ static bool parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
     return true;
 }
 
+/* As the user has written it: see hide_minus. */
+static const char *as_given(const char *text) { return text + (text[0] == ' ' ? 1 : 0); }
+
 static bool take(const char *name, const char *text, uint32_t min, uint32_t max, uint32_t *number)
 {
     if (parse(text, min, max, number)) return true;
     (void)usage_error(command, "%s is from %" PRIu32 " to %" PRIu32 ", in decimal or as 0x in hex, not '%s'",
-                      name, min, max, text);
+                      name, min, max, as_given(text));
+    return false;
+}
+
+/* A negative one is on the wire in two's complement. */
+static bool take_value(const char *text, uint32_t *value)
+{
+    const char *const given = as_given(text);
+    uint32_t size = 0;
+    if (given[0] == '-' && number_parse(given + 1, 1, -INT16_MIN, &size)) {
+        *value = UINT16_MAX + 1u - size;
+        return true;
+    }
+    if (parse(text, 0, UINT16_MAX, value)) return true;
+    (void)usage_error(command, "VALUE is from -32768 to 65535, in decimal or as 0x in hex, not '%s'", given);
     return false;
 }
 
@@ -108,7 +125,7 @@ static bool take_values(request_t *request, char **words, int count)
 {
     for (int i = 0; i != count; i++) {
         uint32_t value = 0;
-        if (!take("VALUE", words[i], 0, UINT16_MAX, &value)) return false;
+        if (!take_value(words[i], &value)) return false;
         put16(request, value);
     }
     return true;
@@ -194,18 +211,17 @@ static bool take_frame(request_t *request, char **words, int count)
 
 /* ---- options ---- */
 
-/* A negative value is no option: as on the wire, in two's complement. */
-static bool without_minus(int argc, char **argv, char *copy[MAX_WORDS + 1], char texts[MAX_WORDS][WORD])
+/* A negative value is no option: a blank before it keeps getopt from it. */
+static bool hide_minus(int argc, char **argv, char *copy[MAX_WORDS + 1], char texts[MAX_WORDS][WORD])
 {
     if (argc > MAX_WORDS) {
         (void)usage_error(command, "there are too many words");
         return false;
     }
     for (int i = 0; i != argc; i++) {
-        uint32_t size = 0;
         copy[i] = argv[i];
-        if (argv[i][0] != '-' || !number_parse(argv[i] + 1, 1, -INT16_MIN, &size)) continue;
-        (void)snprintf(texts[i], WORD, "0x%04X", (unsigned)(UINT16_MAX + 1u - size));
+        if (argv[i][0] != '-' || argv[i][1] < '0' || argv[i][1] > '9') continue;
+        (void)snprintf(texts[i], WORD, " %s", argv[i]);
         copy[i] = texts[i];
     }
     copy[argc] = NULL;
@@ -253,7 +269,7 @@ bool request_options(request_t *request, int argc, char **argv, bool *wants_help
     char *copy[MAX_WORDS + 1];
     char texts[MAX_WORDS][WORD];
     memset(request, 0, sizeof *request);
-    if (!without_minus(argc, argv, copy, texts)) return false;
+    if (!hide_minus(argc, argv, copy, texts)) return false;
     const int rest = options_parse(command, argc, copy, table, values);
     if (rest < 0) return false;
     *wants_help = values[HELP] != NULL;
