@@ -153,6 +153,30 @@ class Files(e2e.Case):
         rows = self.content('log.csv').splitlines()
         self.assertEqual({row.split(',')[0] for row in rows}, {'hps167s:7'})
 
+    def test_a_file_whose_header_has_other_columns_is_not_added_to(self):
+        sim, log = self.sim('hps167s:7 --distance 2083'), self.path('log.csv')
+        read = f'read hps167s:7 --port {sim} --count 1 --format csv --output {log}'
+        with open(log, 'w', encoding='ascii') as file:
+            file.write(f'{HEADER}\n')
+        self.ends(read, 1, f'fathom: {log} has a header with other columns', out='')
+        self.assertEqual(self.content('log.csv'), f'{HEADER}\n')
+        self.ends(f'{read} --no-header', 0, out='')
+        self.assertEqual(len(self.content('log.csv').splitlines()), 2)
+
+    def test_one_without_a_header_is_added_to(self):
+        sim, log = self.sim('hps167s:7 --distance 2083'), self.path('log.csv')
+        for options in ('--no-header', ''):
+            self.ends(f'read hps167s:7 --port {sim} --count 1 --format csv --output {log} {options}', 0, out='')
+        self.assertEqual([line.split(',')[0] for line in self.content('log.csv').splitlines()], ['hps167s:7'] * 2)
+
+    def test_a_pipe_gets_a_header(self):
+        sim, pipe = self.sim('hps167s:7 --distance 2083'), self.path('pipe')
+        os.mkfifo(pipe)
+        end = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+        self.addCleanup(os.close, end)
+        self.ends(f'read hps167s:7 --port {sim} --count 1 --format csv --output {pipe}', 0, out='')
+        self.assertTrue(os.read(end, 1000).startswith(f'{HEADER},magnitude'.encode()))
+
     def test_a_file_of_json(self):
         sim = self.sim('a16:1:modbus --distance 754')
         for _ in range(2):

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "shared/timestamp.h"
@@ -24,20 +25,33 @@ static void name_of(const output_file_t *file, uint64_t utc_us, char name[OUTPUT
                    (int)DAY, utc, file->path + stem);
 }
 
-bool output_file_turn(output_file_t *file, uint64_t utc_us, bool *is_empty)
+output_file_turn_t output_file_turn(output_file_t *file, uint64_t utc_us)
 {
     char name[OUTPUT_FILE_NAME];
-    if (file->path == NULL) return true;
+    if (file->path == NULL) return OUTPUT_FILE_SAME;
     name_of(file, utc_us, name);
-    *is_empty = false;
-    if (strcmp(name, file->name) == 0) return true;
+    if (strcmp(name, file->name) == 0) return OUTPUT_FILE_SAME;
     const int fd = open(name, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-    if (fd < 0) return false;
-    *is_empty = lseek(fd, 0, SEEK_END) == 0;
+    if (fd < 0) return OUTPUT_FILE_FAILED;
+    const bool is_empty = lseek(fd, 0, SEEK_END) <= 0; /* -1: a pipe, which has nothing yet */
     const bool is_done = dup2(fd, STDOUT_FILENO) == STDOUT_FILENO;
     const int error = errno;
     (void)close(fd);
     errno = error;
-    if (is_done) memcpy(file->name, name, sizeof name);
-    return is_done;
+    if (!is_done) return OUTPUT_FILE_FAILED;
+    memcpy(file->name, name, sizeof name);
+    return is_empty ? OUTPUT_FILE_EMPTY : OUTPUT_FILE_FILLED;
+}
+
+bool output_file_begins(const output_file_t *file, const char *text, size_t length)
+{
+    struct stat about;
+    bool is_same = true;
+    /* To open a pipe or a device would wait. */
+    if (stat(file->name, &about) != 0 || !S_ISREG(about.st_mode)) return false;
+    FILE *const from = fopen(file->name, "r");
+    if (from == NULL) return false;
+    for (size_t i = 0; i != length && is_same; i++) is_same = fgetc(from) == (unsigned char)text[i];
+    (void)fclose(from);
+    return is_same;
 }

@@ -3,6 +3,7 @@
 #define OUTPUT_FILE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* A file that stands in for the standard output, or one for each day. Rows are added to what it has. */
@@ -15,11 +16,17 @@ typedef struct {
     char name[OUTPUT_FILE_NAME]; /* of what is open */
 } output_file_t;
 
-/*
- * What is written to stdout from now on is for this time of day, in UTC; nothing may stand in stdout's buffer. *is_empty:
- * it is another file than before, and nothing is in it; left as it is where there is no file. False, with errno: it
- * cannot be opened, and stdout is what it was.
- */
-bool output_file_turn(output_file_t *file, uint64_t utc_us, bool *is_empty);
+typedef enum {
+    OUTPUT_FILE_SAME,  /* it is the one before, or none */
+    OUTPUT_FILE_EMPTY, /* it is another one, with nothing in it */
+    OUTPUT_FILE_FILLED,
+    OUTPUT_FILE_FAILED /* with errno: it cannot be opened, and stdout is what it was */
+} output_file_turn_t;
+
+/* What is written to stdout from now on is for this time of day, in UTC; nothing may stand in stdout's buffer. */
+output_file_turn_t output_file_turn(output_file_t *file, uint64_t utc_us);
+
+/* Does what is open begin with this? Not where that cannot be told. */
+bool output_file_begins(const output_file_t *file, const char *text, size_t length);
 
 #endif

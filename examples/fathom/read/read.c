@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
@@ -8,12 +9,15 @@
 #include "stations/poll_loop.h"
 #include "stations/results.h"
 
+/* In place of an errno: the file has rows, and its header is another one. */
+enum { OTHER_COLUMNS = -1 };
+
 typedef struct {
     read_options_t options;
     poll_loop_t loop;
     results_t results;
     uint64_t stats_us; /* when all counters are told next */
-    int output_error;  /* errno */
+    int output_error;  /* errno; or OTHER_COLUMNS */
     bool has_begun;    /* the output */
     bool is_alarmed;   /* a change was told after which an alarm is on */
 } reading_run_t;
@@ -50,18 +54,31 @@ static uint8_t all_columns(const reading_run_t *run)
     return columns;
 }
 
+/* Has what is added to a header, and another one? Where it was emptied meanwhile, or --no-header was given, it has none. */
+static bool has_other_columns(const reading_run_t *run)
+{
+    enum { HEADER = 512 };
+    char header[HEADER] = "";
+    FILE *const to = fmemopen(header, sizeof header, "w");
+    if (to == NULL) return false;
+    run->options.format->begin(to, all_columns(run));
+    (void)fclose(to);
+    return output_file_begins(&run->options.file, header, strcspn(header, ",") + 1) &&
+           !output_file_begins(&run->options.file, header, strlen(header));
+}
+
 /* Before each row: what is to be written first. The alarms have some while the port is still waited for. */
 static void begin_output(reading_run_t *run, uint64_t utc_us)
 {
     const format_t *const format = run->options.format;
-    bool is_empty = !run->has_begun;
+    const bool is_first = run->options.file.path == NULL && !run->has_begun;
     run->has_begun = true;
     errno = 0;
-    if (!output_file_turn(&run->options.file, utc_us, &is_empty)) {
-        run->output_error = errno;
-        return;
-    }
-    if (!is_empty || format->begin == NULL || run->options.no_header) return;
+    const output_file_turn_t turn = output_file_turn(&run->options.file, utc_us);
+    if (turn == OUTPUT_FILE_FAILED) run->output_error = errno;
+    if (turn == OUTPUT_FILE_FAILED || format->begin == NULL || run->options.no_header) return;
+    if (turn == OUTPUT_FILE_FILLED && has_other_columns(run)) run->output_error = OTHER_COLUMNS;
+    if (turn != OUTPUT_FILE_EMPTY && !is_first) return;
     format->begin(stdout, all_columns(run));
     flush(run);
 }
@@ -226,7 +243,12 @@ static int finish(reading_run_t *run)
     if (run->output_error == EINTR && host->has_ended(host->ctx)) run->output_error = 0;
     /* The reader of a pipe has seen enough, as head does: no reason for words. */
     if (run->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
-    if (run->output_error != 0)
+    if (run->output_error == OTHER_COLUMNS)
+        (void)fprintf(stderr,
+                      "fathom: %s has a header with other columns; choose another --output, or --no-header "
+                      "adds the rows all the same\n",
+                      run->options.file.name);
+    else if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written%s%s: %s\n", path != NULL ? " to " : "",
                       path != NULL ? path : "", strerror(run->output_error));
     get_account(run, &account);
@@ -266,4 +288,4 @@ static int run_read(const host_t *host, int argc, char **argv)
     return exit_status(&run, status);
 }
 
-const command_t read_command = {"read", "reads sensors on a serial port", read_help, run_read};
+const command_t read_command = {"read", "reads sensors on serial ports and pins", read_help, run_read};
