@@ -100,6 +100,11 @@ WRONG = [
     ('a_port_of_each_sensor', 'read', [
         ('a16@', 'a16@: the port is missing behind @, such as @/dev/ttyUSB0'),
         ('a16@,baud=9600', 'the port is missing behind @'),
+        ('a16:pwm', 'the GPIO lines are missing; they stand behind the sensor: a16:pwm@gpiochip0,trigger=17,echo=27'),
+        ('a05:relay', 'behind the sensor: a05:relay@gpiochip0,in=5'),
+        ('hps167s --port /nowhere,baud=57600',
+         '--port takes no keys; they stand behind the sensor: hps167s@/nowhere,baud=57600'),
+        ('a16:switch -p gpiochip0,in=6', 'they stand behind the sensor: a16:switch@gpiochip0,in=6'),
         ('a16@/nowhere a05:2', '--port is missing, such as --port /dev/ttyUSB0; or behind the sensor: '
                                'a05:2@/dev/ttyUSB0'),
         ('a16 --port /nowhere --port /elsewhere', '--port stands twice, and takes one'),
@@ -313,6 +318,8 @@ class Help(e2e.Case):
         text = self.told(f'{command} --help')
         for word in (*words.split(), *more, 'Exit status'):
             self.assertIn(word, text)
+        for line in text.splitlines():
+            self.assertLessEqual(len(line), 120, line)
 
     def test_help_wins_over_what_is_missing(self):
         self.assertEqual(self.told('read a17 --help'), self.told('read --help'))

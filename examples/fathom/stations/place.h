@@ -11,7 +11,7 @@
  *     word   = [ NAME "=" ] sensor [ "@" PORT { "," key "=" value } ]
  *     sensor = model [ ":" [ ADDRESS ] ] [ ":" MODE ]
  *
- * No comma is in a PORT, which else is any path; what stands in one may stand in --port.
+ * No comma is in a PORT, which else is any path; with one, but no key behind it, it may stand in --port.
  */
 enum { PLACE_NAME = 32 };
 

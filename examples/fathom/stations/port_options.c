@@ -106,6 +106,18 @@ static void set(port_keys_t *keys, size_t key, uint32_t value)
     keys->given |= (uint16_t)(1u << key);
 }
 
+bool port_path_has_keys(const char *path)
+{
+    const char *const comma = strchr(path, ',');
+    if (comma == NULL) return false;
+    const size_t length = strcspn(comma + 1, "=");
+    for (size_t key = 0; key != PORT_KEYS; key++)
+        if (strlen(rows[key].name) == length && strncmp(rows[key].name, comma + 1, length) == 0 &&
+            comma[1 + length] == '=')
+            return true;
+    return false;
+}
+
 /* PORT_KEYS: there is none, which is said. */
 static size_t find(const char *command, const char *word, port_kind_t kind, const char *name, size_t length)
 {
@@ -251,8 +263,8 @@ void port_options_help(FILE *to)
         "                    Modbus TCP server or gateway, for mode modbus: tcp:HOST, tcp:HOST:PORT (502 if "
         "not "
         "given),\n"
-        "                    tcp:[IPV6]:PORT; or a GPIO chip, for modes on pins: "
-        "gpiochip0\n" OPTIONS_PORT_HELP
+        "                    tcp:[IPV6]:PORT; or, of read and watch, a GPIO chip for modes on "
+        "pins: gpiochip0\n" OPTIONS_PORT_HELP
         "  --baud N          of serial ports, if not the factory's: 9600, 19200, 38400, 57600, 115200 or "
         "230400\n"
         "  --parity P        if not the factory's: none, even or odd\n"

@@ -49,6 +49,9 @@ typedef struct {
 
 bool port_keys_has(const port_keys_t *keys, port_key_t key);
 
+/* Do a comma, a key and "=" follow in it? Then they were meant to stand behind a sensor. */
+bool port_path_has_keys(const char *path);
+
 /* As a user writes it. */
 const char *port_key_name(port_key_t key);
 

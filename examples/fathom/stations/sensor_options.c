@@ -80,16 +80,31 @@ static size_t port_of(sensor_options_t *options, const char *path)
     return i;
 }
 
-static bool take_port(sensor_options_t *options, const char *command, station_t *station,
-                      const sensor_place_t *place, const char *path)
+/* path: of all sensors that have none of their own; NULL: not given. */
+static bool check_common_port(const char *command, const sensor_place_t *place, const char *path)
 {
-    if (place->port != NULL) path = place->port;
-    if (path == NULL) {
+    char example[STATION_PORT];
+    if (path != NULL && !port_path_has_keys(path)) return true;
+    if (path != NULL)
+        (void)usage_error(command, "--port takes no keys; they stand behind the sensor: %s@%s", place->word,
+                          path);
+    else if (station_port_example(place, example))
+        (void)usage_error(command, "the GPIO lines are missing; they stand behind the sensor: %s@%s",
+                          place->word, example);
+    else
         (void)usage_error(command,
                           "--port is missing, such as --port /dev/ttyUSB0; or behind the sensor: %s@%s",
                           place->word, "/dev/ttyUSB0");
+    return false;
+}
+
+static bool take_port(sensor_options_t *options, const char *command, station_t *station,
+                      const sensor_place_t *place, const char *path)
+{
+    if (place->port != NULL)
+        path = place->port;
+    else if (!check_common_port(command, place, path))
         return false;
-    }
     station->port = port_of(options, path);
     port_options_t *const port = &options->ports[station->port];
     port->station_count++;

@@ -71,6 +71,19 @@ static void pins_text(const model_mode_t *mode, char *text, size_t capacity)
     }
 }
 
+bool station_port_example(const sensor_place_t *place, char text[STATION_PORT])
+{
+    static const char chip[] = "gpiochip0,";
+    const model_mode_t *const modes = place->sensor.model->modes;
+    for (size_t i = 0; place->sensor.mode != NULL && i != MODEL_MODES && modes[i].name != NULL; i++) {
+        if (modes[i].pins == 0 || strcmp(place->sensor.mode, modes[i].name) != 0) continue;
+        memcpy(text, chip, sizeof chip);
+        pins_text(&modes[i], text + sizeof chip - 1, STATION_PORT - (sizeof chip - 1));
+        return true;
+    }
+    return false;
+}
+
 static bool suits_chip(const station_t *station, const port_options_t *port, const char *command)
 {
     const model_mode_t *const mode = station->mode;

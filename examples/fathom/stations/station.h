@@ -49,6 +49,10 @@ bool station_take(station_t *station, const char *command, const sensor_place_t 
 /* Can it be read in its mode at this port? False after a usage error. */
 bool station_suits(const station_t *station, const port_options_t *port, const char *command);
 
+/* "gpiochip0,in=5", a port for the mode on pins that the user has named. False: no such mode. */
+enum { STATION_PORT = 80 };
+bool station_port_example(const sensor_place_t *place, char text[STATION_PORT]);
+
 /* Its name, by its model, mode and address, if the user has given none. */
 void station_name(station_t *station);
 
