@@ -47,6 +47,7 @@ class Stats(e2e.Case):
         # long one
         self.assertEqual(one['line'], dict(zip(LINE, (3, 7 + 9 + 7, 0, 2, 1, 1, 1, 0, 1, 0))))
         self.assertEqual(one['unit'], {'responses': 3, 'failures': 5})
+        self.assertEqual([unit['name'] for unit in one['units']], ['a16:1'])
         self.assertEqual((one['stream'], one['port']), (None, None))
         times = one['response_us']
         self.assertEqual(times['responses'], 2)

@@ -224,8 +224,8 @@ static void print_json_group(const group_t *group, FILE *to)
 static void print_json_unit(const station_t *station, FILE *to)
 {
     const uint64_t *const counts = station->counters.total.unit;
-    (void)fprintf(to, "{\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", station->model->name,
-                  station->mode->name, station->address);
+    (void)fprintf(to, "{\"name\":\"%s\",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", station->name,
+                  station->model->name, station->mode->name, station->address);
     print_json_attempts(&station->counters, to);
     (void)fprintf(to,
                   ",\"responses\":%" PRIu64 ",\"failures\":%" PRIu64
