@@ -89,9 +89,10 @@ typedef struct {
 } fathom_gpio_t;
 
 /*
- * chip: "gpiochip0", or a path of up to 127 characters; used during the call only. line: its number on the chip ("GPIO17" of a Raspberry Pi is
- * line 17 of gpiochip0, or of gpiochip4 on early kernels of a Pi 5). The line is taken for this program alone, and given
- * back by fathom_gpio_close; what an output does then is the driver's: mostly it keeps its level.
+ * chip: "gpiochip0", or a path of up to 127 characters; used during the call only. line: its number on the chip, from 0
+ * ("GPIO17" of a Raspberry Pi is line 17 of gpiochip0, or of gpiochip4 on early kernels of a Pi 5). high: the level that
+ * an output begins with. The line is taken for this program alone, and given back by fathom_gpio_close; what an output
+ * does then is the driver's: mostly it keeps its level.
  *
  * Returns FATHOM_GPIO_OK, or what went wrong: then nothing is left open, and gpio has the text.
  */

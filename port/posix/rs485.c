@@ -39,7 +39,7 @@ static fathom_posix_status_t fail(fathom_posix_uart_t *port, int code)
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_UNSUPPORTED,
                                  "the driver of this port does not drive an RS-485 transceiver by RTS; use a "
                                  "UART whose driver does (TIOCSRS485), or an adapter that turns round by "
-                                 "itself, and ask for none");
+                                 "itself, and leave RS-485 to it");
     return fathom_posix_fail_system(port, "setting RS-485", code);
 }
 
