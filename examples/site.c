@@ -3,7 +3,7 @@
  * Two lines and a pin, read in one thread: an HPS-167S at a gate, an A16 by Modbus over a tank, and the relay of an A05 at
  * a door, which closes to ground, on line 17 of a GPIO chip. A port that is lost, or not there yet, is opened as soon as
  * it can be; the others go on meanwhile. What stands in main lives as long as the loop runs. It never ran on a board: the
- * pin of its test is a stand-in.
+ * pin of its test is a stand-in. After sh examples/demo.sh, which builds the libraries:
  *
  *     cc -Iinclude -Iport/posix -Iport/gpio examples/site.c build/port/libfathom_gpio.a build/port/libfathom_posix.a \
  *         build/libfathom.a -o site

@@ -30,38 +30,38 @@ extern "C" {
  * Voltage: the pins of most boards take 3.3 V and no more. An A16's TX is 3 V when it is high, and its RX stands 5 V
  * (A16 1, remark); a relay's contact goes to ground or to 3.3 V, never to 5 V.
  *
- * How exact a width is depends on how soon the kernel's interrupt handler runs after each edge: on the processor's load,
- * its sleep states, and the driver of the chip (one behind I2C or USB stamps milliseconds late). Measure it on the board:
- * `fathom read --stats` prints the spread, and how much was rejected.
+ * How exact a width is depends on how soon the kernel's interrupt handler runs after each edge: on the processor's
+ * load, its sleep states, and the driver of the chip (one behind I2C or USB stamps milliseconds late). Measure it on
+ * the board: `fathom read --stats` prints the spread, and how much was rejected.
  *
  * Lost edges: the kernel's queue has place for FATHOM_GPIO_QUEUE, and drops the oldest. Their numbers tell. What they
  * belonged to is given up, and so is all up to the next falling edge: a pulse is one whose two edges came one after the
  * other.
  *
- * Memory: all is the caller's, may not be moved while it is open, and nothing is allocated. One thread at a time. Nothing
- * waits. It needs port/posix beside it.
+ * Memory: all is the caller's, may not be moved while it is open, and nothing is allocated. One thread at a time.
+ * Nothing waits. It needs port/posix beside it.
  *
- * What has run: all of it, on system calls that tests stand in for, and on a PL061 in QEMU, by Debian's kernel for arm64.
- * It has never run on a board.
+ * What has run: all of it, on system calls that tests stand in for, and on a PL061 in QEMU, by Debian's kernel for
+ * arm64. It has never run on a board.
  */
 enum { FATHOM_GPIO_QUEUE = 64 };
 
 typedef enum {
     FATHOM_GPIO_OK = 0,
-    FATHOM_GPIO_ERR_ARGUMENT = -1,
-    FATHOM_GPIO_ERR_NOT_FOUND = -2,  /* no such chip */
-    FATHOM_GPIO_ERR_PERMISSION = -3, /* the text names the group to join */
+    FATHOM_GPIO_ERR_ARGUMENT = -1,   /* a NULL, no name, or a path that is too long */
+    FATHOM_GPIO_ERR_NOT_FOUND = -2,  /* no such chip, or none behind this name */
+    FATHOM_GPIO_ERR_PERMISSION = -3, /* the text names the group to join; or the line is not for programs */
     FATHOM_GPIO_ERR_IN_USE = -4,     /* another program, or a driver of the kernel, has this line */
     FATHOM_GPIO_ERR_NOT_A_CHIP = -5, /* a file, a device of another kind */
     FATHOM_GPIO_ERR_NO_LINE = -6,    /* the chip has fewer lines; the text says how many */
     /* This line cannot be an output, tell edges, or have that resistor; or the kernel is older than 5.10. */
     FATHOM_GPIO_ERR_UNSUPPORTED = -7,
-    FATHOM_GPIO_ERR_LOST = -8,  /* the chip has gone */
+    FATHOM_GPIO_ERR_LOST = -8,  /* the chip has gone, or the kernel does not read or set the line any more */
     FATHOM_GPIO_ERR_SYSTEM = -9 /* anything else that the system said; the text has its words */
 } fathom_gpio_status_t;
 
-/* The resistor of an input. AS_IS: what the board or the boot loader has set. Most drivers of chips that have no resistors
- * take any of them without a word: the kernel does not tell. */
+/* The resistor of an input. AS_IS: what the board or the boot loader has set. Most drivers of chips that have no
+ * resistors take any of them without a word: the kernel does not tell. */
 typedef enum {
     FATHOM_GPIO_BIAS_AS_IS = 0,
     FATHOM_GPIO_BIAS_PULL_UP = 1,
@@ -90,11 +90,14 @@ typedef struct {
 
 /*
  * chip: "gpiochip0", or a path of up to 127 characters; used during the call only. line: its number on the chip, from 0
- * ("GPIO17" of a Raspberry Pi is line 17 of gpiochip0, or of gpiochip4 on early kernels of a Pi 5). high: the level that
- * an output begins with. The line is taken for this program alone, and given back by fathom_gpio_close; what an output
- * does then is the driver's: mostly it keeps its level.
+ * ("GPIO17" of a Raspberry Pi is line 17 of gpiochip0, or of gpiochip4 on early kernels of a Pi 5). high: the level
+ * that an output begins with. The line is taken for this program alone, and given back by fathom_gpio_close; what an
+ * output does then is the driver's: mostly it keeps its level.
  *
- * Returns FATHOM_GPIO_OK, or what went wrong: then nothing is left open, and gpio has the text.
+ * gpio: any content; one that is open must be closed first, or its line stays taken until the program ends.
+ *
+ * Returns FATHOM_GPIO_OK, or what went wrong: then nothing is left open, and gpio has the text. LOST is no result of
+ * these, but of fathom_gpio_error later.
  */
 fathom_gpio_status_t fathom_gpio_open_output(fathom_gpio_t *gpio, const char *chip, uint32_t line, bool high);
 fathom_gpio_status_t fathom_gpio_open_input(fathom_gpio_t *gpio, const char *chip, uint32_t line,
@@ -112,9 +115,9 @@ void fathom_gpio_close(fathom_gpio_t *gpio);
  */
 fathom_pin_t fathom_gpio_pin(fathom_gpio_t *gpio);
 
-/* Of one with edges. take < 0: the chip has gone. arm forgets what has come, also what is still in the queue. What comes
- * between two cycles stays there, and the descriptor ready: wait edge-triggered (EPOLLET), as fathom_loop.h does, or call
- * `get`. */
+/* Of one with edges. take < 0: the chip has gone. arm forgets what has come, also what is still in the queue. What
+ * comes between two cycles stays there, and the descriptor ready: wait edge-triggered (EPOLLET), as fathom_loop.h
+ * does, or call `get`. */
 fathom_capture_t fathom_gpio_capture(fathom_gpio_t *gpio);
 
 /* For poll(2) and epoll(7): can be read when edges have come. -1: closed. */

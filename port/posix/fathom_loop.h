@@ -36,8 +36,8 @@ extern "C" {
  * for it takes all of a processor. Here a source is polled when its descriptor has become ready, or when the time that
  * its due_us has told is over; a source that was lost is closed, and opened again after a pause that grows.
  *
- * All memory is the caller's; nothing is allocated, and nothing may be moved while it is part of a loop. One thread; only
- * fathom_loop_stop may be called from another one, or from a signal handler. It waits in fathom_loop_run and
+ * All memory is the caller's; nothing is allocated, and nothing may be moved while it is part of a loop. One thread;
+ * only fathom_loop_stop may be called from another one, or from a signal handler. It waits in fathom_loop_run and
  * fathom_loop_step alone (opening a USB port may take the driver some milliseconds).
  */
 typedef struct fathom_loop fathom_loop_t;
@@ -113,11 +113,12 @@ typedef struct {
      * each time up to the longest, 8 s. One that was open for 1 s begins with the first one again. */
     uint32_t first_pause_us;
     uint32_t longest_pause_us;
-    /* At most once a source and pause: it could not be opened, or was lost (is_open false), or is open, again or for the
-     * first time. fathom_loop_error_text has the reason. It may not change the loop, but stop it. NULL: not told. */
+    /* At most once a source and pause: it could not be opened, or was lost (is_open false), or is open, again or for
+     * the first time. fathom_loop_error_text has the reason. It may not change the loop, but stop it. NULL: not
+     * told. */
     void (*tell)(void *ctx, const fathom_loop_source_t *source, bool is_open);
-    /* For simulated time; NULL: CLOCK_MONOTONIC and epoll. sleep: returns after max_us (FATHOM_NO_DEADLINE: any time) at
-     * the latest, and has called fathom_loop_wake for each source that may have something. */
+    /* For simulated time; NULL: CLOCK_MONOTONIC and epoll. sleep: returns after max_us (FATHOM_NO_DEADLINE: any time)
+     * at the latest, and has called fathom_loop_wake for each source that may have something. */
     uint64_t (*now_us)(void *ctx);
     void (*sleep)(void *ctx, fathom_loop_t *loop, uint32_t max_us);
     void *ctx;
@@ -146,8 +147,8 @@ void fathom_loop_deinit(fathom_loop_t *loop);
  * Adds a source whose kind is set and whose other members are zeros, and tries to open it. A source that cannot be
  * opened is no failure: that is told, and it is tried again. One that is part of the loop already: nothing happens.
  *
- * A descriptor that epoll does not take, a file say, or one that another source has, is polled every 10 ms. A source that
- * is due at once 16 times in a row is polled each millisecond from then on, and any one every 35 minutes at least.
+ * A descriptor that epoll does not take, a file say, or one that another source has, is polled every 10 ms. A source
+ * that is due at once 16 times in a row is polled each millisecond from then on, and any one every 35 minutes at least.
  */
 void fathom_loop_add(fathom_loop_t *loop, fathom_loop_source_t *source);
 
@@ -165,8 +166,8 @@ void fathom_loop_read(fathom_loop_source_t *source, fathom_loop_sensor_t *node, 
 /* Sleeps and polls until fathom_loop_stop is called; then it may be run again. */
 void fathom_loop_run(fathom_loop_t *loop);
 
-/* Once: sleeps until something is ready or due, no longer than max_us (FATHOM_NO_DEADLINE: any time), and polls it. For a
- * program that has something else to do. Signals end the sleep. */
+/* Once: sleeps until something is ready or due, no longer than max_us (FATHOM_NO_DEADLINE: any time), and polls it.
+ * For a program that has something else to do. Signals end the sleep. */
 void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us);
 
 /* Ends fathom_loop_run, soon; where none runs, the next one. It may be called from a signal handler and from another
@@ -174,7 +175,8 @@ void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us);
 void fathom_loop_stop(fathom_loop_t *loop);
 
 /* For a loop of another kind: a descriptor that can be read whenever fathom_loop_step has something to do for what has
- * come, and how long until it has for time alone. */
+ * come (-1 with a `sleep` of the config), and how long until it has for time alone (FATHOM_NO_DEADLINE: nothing). Ask
+ * again after each step, and after what was added. */
 int fathom_loop_fd(const fathom_loop_t *loop);
 uint32_t fathom_loop_due_us(const fathom_loop_t *loop);
 
@@ -194,6 +196,7 @@ fathom_uart_t fathom_loop_uart(fathom_loop_source_t *source, const fathom_uart_t
  * used as soon as it was added, also while the port is not there. */
 typedef struct {
     fathom_loop_source_t source;
+    /* For fathom_posix_set_rs485 and fathom_posix_line_errors, as long as source.is_open. */
     fathom_posix_uart_t port;
     const char *path; /* the caller's */
     fathom_line_settings_t settings;
@@ -207,8 +210,9 @@ typedef struct {
     uint8_t frame[255];
 } fathom_loop_line_t;
 
-/* path and settings as fathom_posix_open has them; path is the caller's. FATHOM_POSIX_OK, also where the port is not
- * there; or ARGUMENT. */
+/* Sets all of *line, and adds it. path and settings as fathom_posix_open has them; path is the caller's, as long as the
+ * line is part of the loop. FATHOM_POSIX_OK, also where the port is not there; or ARGUMENT: a NULL, settings that
+ * fathom_posix_open does not allow, or a line that is part of the loop already. */
 fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line_t *line, const char *path,
                                            const fathom_line_settings_t *settings);
 
@@ -219,6 +223,8 @@ typedef struct {
     int fd;
 } fathom_loop_pin_t;
 
+/* Sets all of *pin, and adds it. fd: open as long as the pin is part of the loop, such as fathom_gpio_fd of one with
+ * edges. One that is part of the loop already: nothing happens. */
 void fathom_loop_add_pin(fathom_loop_t *loop, fathom_loop_pin_t *pin, int fd);
 
 #ifdef __cplusplus

@@ -125,14 +125,16 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
  */
 typedef struct {
     bool rts_off_to_send; /* the other way round */
-    uint8_t before_ms;    /* from RTS to the first start bit, and ... */
-    uint8_t after_ms;     /* ... from the last stop bit to RTS; most drivers allow 0 to 100 */
+    /* From RTS to the first start bit, and from the last stop bit to RTS. What a driver cuts off, mostly above 100, is
+     * REFUSED. */
+    uint8_t before_ms;
+    uint8_t after_ms;
 } fathom_posix_rs485_t;
 
 /*
  * Lets the driver of an open port turn the transceiver round (TIOCSRS485), and reads that back (TIOCGRS485). It holds
- * until it is set again, over fathom_posix_set_line and after close. Whether the UART hears what it sends is left to
- * the driver: a line finds that out (line.h).
+ * until it is set again, over fathom_posix_set_line and after close. The UART is asked not to hear what it sends (no
+ * SER_RS485_RX_DURING_TX), but the driver may leave that: a line finds it out (line.h).
  *
  * rs485: NULL: RTS is left alone again.
  *
@@ -212,8 +214,8 @@ void fathom_posix_wait(void *port, uint32_t max_us);
  * POLLIN, and POLLOUT while the port keeps the rest of a request. Not for reading or writing.
  *
  * For several ports there is such a loop, fathom_loop.h. One of your own that polls all sensors whenever one port has
- * become ready takes about twice the processor time with 32 ports: nearly all of its reads bring nothing. And a port that
- * is lost stays ready: close it when a poll returns FATHOM_ERR_PORT, or the loop spins.
+ * become ready takes about twice the processor time with 32 ports: nearly all of its reads bring nothing. And a port
+ * that is lost stays ready: close it when a poll returns FATHOM_ERR_PORT, or the loop spins.
  */
 int fathom_posix_fd(const fathom_posix_uart_t *port);
 short fathom_posix_poll_events(const fathom_posix_uart_t *port);
