@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """fathom read --stats: every counter by its name, and every reading that did not come has one."""
 import json
+import os
 
 import e2e
 
@@ -53,6 +54,16 @@ class Stats(e2e.Case):
         self.assertEqual(times['responses'], 2)
         # eight characters of ten bits at 9600 baud leave before a response is looked for
         self.assertTrue(0 < times['min'] <= times['mean'] <= times['max'] < 400000 + 60000, times)
+
+    def test_a_name_that_is_made_up_of_a_port_needs_no_quotes(self):
+        words = []
+        for name in ('plain', 'a"b\\c'):
+            os.symlink(self.sim('hps167s --distance 2083').port, self.path(name))
+            words.append(f'hps167s:1@{self.path(name)}')
+        done = self.ends(self.fathom(f'read --count 1 {JSON}', words), 0)
+        names = ['hps167s:1@plain', 'hps167s:1@a_b_c']
+        self.assertEqual([unit['name'] for unit in self.told(done)['units']], names)
+        self.assertEqual(sorted(one['name'] for one in done.all_json), sorted(names))
 
     def test_text_has_every_counter_too(self):
         lines = self.ask([GOOD, b''], '--stats').err.splitlines()[1:]

@@ -52,13 +52,7 @@ bool fields_has_probe(const reading_t *reading)
     return !fields_is_contact(reading) || reading->model->probes == 1;
 }
 
-/* A part of a port's path may stand in it. */
-static void put_name(const reading_t *reading, char text[VALUE_TEXT])
-{
-    put_string(text, reading->name);
-    for (char *at = text; *at != '\0'; at++)
-        if (*at == '"' || *at == '\\' || *at == ',' || (unsigned char)*at < ' ') *at = '_';
-}
+static void put_name(const reading_t *reading, char text[VALUE_TEXT]) { put_string(text, reading->name); }
 
 static void put_sensor(const reading_t *reading, char text[VALUE_TEXT])
 {

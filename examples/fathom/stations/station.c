@@ -146,18 +146,22 @@ static bool has_namesake(const station_t *stations, size_t count, const station_
     return false;
 }
 
+/* Behind the name that was made up; what JSON or CSV would have to quote is "_". */
+static void add_port(station_t *station, const char *path)
+{
+    const size_t length = strlen(station->name);
+    (void)snprintf(station->name + length, sizeof station->name - length, "@%s", port_last_part(path));
+    for (char *at = station->name; *at != '\0'; at++)
+        if (*at == '"' || *at == '\\' || *at == ',' || (unsigned char)*at < ' ') *at = '_';
+}
+
 bool stations_name(station_t *stations, size_t count, const port_options_t *ports, const char *command)
 {
     bool is_ambiguous[MAX_STATIONS];
     for (size_t i = 0; i != count; i++)
         is_ambiguous[i] = !stations[i].has_own_name && has_namesake(stations, count, &stations[i], true);
-    for (size_t i = 0; i != count; i++) {
-        station_t *const station = &stations[i];
-        const size_t length = strlen(station->name);
-        if (is_ambiguous[i])
-            (void)snprintf(station->name + length, sizeof station->name - length, "@%s",
-                           port_last_part(ports[station->port].path));
-    }
+    for (size_t i = 0; i != count; i++)
+        if (is_ambiguous[i]) add_port(&stations[i], ports[stations[i].port].path);
     for (size_t i = 0; i != count; i++) {
         if (!has_namesake(stations, i, &stations[i], false)) continue;
         (void)usage_error(command, "two sensors have the name %s; give each one of its own, such as one=%s",
