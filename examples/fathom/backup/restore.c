@@ -206,7 +206,8 @@ static int run(const host_t *host, int argc, char **argv)
     const char *values[OPTIONS] = {NULL};
     int status = STATUS_OK;
     backup_t file;
-    if (!session_alone(&session, &restore_command, argc, argv, table, values, &status)) return status;
+    if (!session_options_of_one(&session, &restore_command, argc, argv, table, values, &status))
+        return status;
     const char *const path = values[FILE_NAME];
     if (path == NULL) return usage_error(command, "--file is missing, as fathom save has written it");
     if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");

@@ -72,7 +72,7 @@ static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     int status = STATUS_OK;
-    if (!session_alone(&session, &save_command, argc, argv, table, values, &status)) return status;
+    if (!session_options_of_one(&session, &save_command, argc, argv, table, values, &status)) return status;
     if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
     if (!session_set_mode(&session, command, values, "modbus")) return STATUS_USAGE;
     if (values[FILE_NAME] != NULL && !new_file_is_free(values[FILE_NAME])) return STATUS_FAILED;

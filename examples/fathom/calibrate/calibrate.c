@@ -120,7 +120,8 @@ static int run(const host_t *host, int argc, char **argv)
     uint32_t known_mm = 0;
     calibrate_batch_t asked = {.samples = CALIBRATE_SAMPLES, .spread_mm = SPREAD_MM};
     calibrate_plan_t plan;
-    if (!session_alone(&session, &calibrate_command, argc, argv, table, values, &status)) return status;
+    if (!session_options_of_one(&session, &calibrate_command, argc, argv, table, values, &status))
+        return status;
     if (session.station->model->id != FATHOM_HPS167S)
         return usage_error(command, "only an hps167s has a distance offset; %s has none",
                            session.station->model->name);

@@ -173,7 +173,8 @@ static int run_info(const host_t *host, int argc, char **argv)
 {
     const char *values[SESSION_OPTIONS] = {NULL};
     int status = STATUS_OK;
-    if (!session_several(&session, &info_command, argc, argv, session_table, values, &status)) return status;
+    if (!session_options_of_several(&session, &info_command, argc, argv, session_table, values, &status))
+        return status;
     const sensor_options_t *const options = &session.options;
     status = STATUS_OK;
     for (size_t i = 0; i != options->station_count; i++) {

@@ -99,7 +99,7 @@ static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     int status = STATUS_OK;
-    if (!session_alone(&session, &reset_command, argc, argv, table, values, &status)) return status;
+    if (!session_options_of_one(&session, &reset_command, argc, argv, table, values, &status)) return status;
     if (session.station->model->reset.restore == NULL)
         return usage_error(command, "only an hps167s can be reset; %s has no such command",
                            session.station->model->name);

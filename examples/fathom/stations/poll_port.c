@@ -38,7 +38,7 @@ static void take_counters(poll_port_t *port)
         counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
 }
 
-static void leave(poll_port_t *port)
+static void end_with_counters(poll_port_t *port)
 {
     take_counters(port);
     finish(port);
@@ -131,7 +131,7 @@ static void take_absence(poll_port_t *port)
     tell(port, text, port->waits ? POLL_PORT_WAITED_FOR : POLL_PORT_GIVEN_UP);
     if (port->waits) return;
     port->loop->has_failed = true;
-    leave(port);
+    end_with_counters(port);
 }
 
 /* What is there and cannot be opened has to be told some time. */
@@ -151,13 +151,13 @@ static void take_failed_try(poll_port_t *port)
 }
 
 /* False: it cannot be used. */
-static bool take_port(poll_port_t *port)
+static bool begin_reading(poll_port_t *port)
 {
     /* A tty; what stands in for one in a test need not. */
     port->source.reads_all = port->channel.tcp == NULL && fathom_posix_fd(&port->channel.port) >= 0;
     if (!begin_stations(port)) {
         port->loop->has_failed = true;
-        leave(port);
+        end_with_counters(port);
         return false;
     }
     if (port->is_lost) {
@@ -179,7 +179,7 @@ static bool open_port(fathom_loop_source_t *source)
     const fathom_status_t status = connect_port(port);
     port->is_waiting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) take_failed_try(port);
-    if (status != FATHOM_READY || take_port(port)) return status != FATHOM_ERR_PORT;
+    if (status != FATHOM_READY || begin_reading(port)) return status != FATHOM_ERR_PORT;
     channel_close(&port->channel);
     return false;
 }
@@ -190,7 +190,7 @@ static bool wait_for_connection(poll_port_t *port)
     const fathom_status_t status = channel_go_on(&port->channel);
     port->is_waiting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) take_failed_try(port);
-    return status == FATHOM_READY ? take_port(port) : status == FATHOM_PENDING;
+    return status == FATHOM_READY ? begin_reading(port) : status == FATHOM_PENDING;
 }
 
 static void close_port(fathom_loop_source_t *source) { channel_close(&port_of(source)->channel); }
@@ -221,7 +221,7 @@ static void lose(poll_port_t *port)
     }
     take_counters(port);
     if (!port->waits) {
-        leave(port);
+        end_with_counters(port);
     } else if (sysfs->vendor[0] != '\0' && sysfs->needs_socket) {
         (void)snprintf(text, sizeof text,
                        "%s: this adapter has no serial number of its own: use the same USB socket again",
@@ -300,7 +300,7 @@ static bool poll_port(fathom_loop_source_t *source)
         }
         if (!has_come) break;
     }
-    if (port->is_done && !port->is_left && poll_port_end_stations(port)) leave(port);
+    if (port->is_done && !port->is_left && poll_port_end_stations(port)) end_with_counters(port);
     return true;
 }
 

@@ -13,14 +13,6 @@ const struct option session_table[SESSION_OPTIONS + 1] = {
     SESSION_OPTION_ROWS,
 };
 
-static bool take_format(session_t *session, const char *command, const char *text)
-{
-    session->is_json = text != NULL && strcmp(text, "json") == 0;
-    if (text == NULL || session->is_json || strcmp(text, "text") == 0) return true;
-    (void)usage_error(command, "--format takes text or json, not '%s'", text);
-    return false;
-}
-
 /* Nothing can be asked for in a mode in which a sensor is only listened to, or on pins. */
 static bool check_modes(const sensor_options_t *options, const char *command)
 {
@@ -45,7 +37,7 @@ static bool take_options(session_t *session, const char *command, int argc, char
     if (*wants_help) return true;
     const int taken = argc - rest < most ? argc - rest : most;
     session->options.asks_all = true;
-    if (!take_format(session, command, values[SESSION_FORMAT]) ||
+    if (!option_json(command, values[SESSION_FORMAT], &session->is_json) ||
         !sensor_options(&session->options, command, argv + rest, taken, values, values[SESSION_ADDRESS],
                         values[SESSION_MODE]) ||
         !check_modes(&session->options, command))
@@ -79,14 +71,14 @@ static bool take_sensors(session_t *session, const command_t *command, int argc,
     return !wants_help && count == 0;
 }
 
-bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
-                   const struct option *table, const char **values, int *status)
+bool session_options_of_one(session_t *session, const command_t *command, int argc, char **argv,
+                            const struct option *table, const char **values, int *status)
 {
     return take_sensors(session, command, argc, argv, table, values, 1, status);
 }
 
-bool session_several(session_t *session, const command_t *command, int argc, char **argv,
-                     const struct option *table, const char **values, int *status)
+bool session_options_of_several(session_t *session, const command_t *command, int argc, char **argv,
+                                const struct option *table, const char **values, int *status)
 {
     return take_sensors(session, command, argc, argv, table, values, INT_MAX, status);
 }

@@ -10,7 +10,7 @@
 /* A session with one sensor at a port: what all commands share that ask for, or change, more than distances. */
 typedef struct {
     sensor_options_t options;
-    station_t *station; /* the only one; with session_several each in turn */
+    station_t *station; /* the only one; with session_options_of_several each in turn */
     bool has_begun;     /* the host */
     channel_t channel;
     port_counts_t port_counts;
@@ -37,12 +37,12 @@ bool session_options(session_t *session, const char *command, int argc, char **a
 
 /* The same for a command that takes a sensor and no word behind it. False: the command is over, and *status is its exit
  * status: --help was printed, or a usage error. */
-bool session_alone(session_t *session, const command_t *command, int argc, char **argv,
-                   const struct option *table, const char **values, int *status);
+bool session_options_of_one(session_t *session, const command_t *command, int argc, char **argv,
+                            const struct option *table, const char **values, int *status);
 
 /* The same for a command that takes several sensors, and nothing else. */
-bool session_several(session_t *session, const command_t *command, int argc, char **argv,
-                     const struct option *table, const char **values, int *status);
+bool session_options_of_several(session_t *session, const command_t *command, int argc, char **argv,
+                                const struct option *table, const char **values, int *status);
 
 /* Its port. */
 const port_options_t *session_port(const session_t *session);
