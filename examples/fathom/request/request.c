@@ -47,7 +47,7 @@ static void help(FILE *to)
         "registers, "
         "of "
         "an exception\n"
-        "its code and name, and with --sensor meanings.\n\n"
+        "its code and name, and meanings, empty without --sensor.\n\n"
         "What the request may do is said before it is sent; without --yes what is dangerous is not sent. Any "
         "request\nends the automatic output of an A16 with RS232 or an A05 with UART. A read of 0x0009 "
         "resets "
