@@ -98,6 +98,26 @@ class Lost(Case):
         self.ends(reader, 1)
 
 
+class Paths(Case):
+    """One serial port by two names, such as /dev/ttyUSB0 and what stands for it in /dev/serial/by-id."""
+
+    def begin_bus(self):
+        link = self.path('bus')
+        sim = self.sim(f'hps167s:1 hps167s:7 --link {link}')
+        return link, str(sim)
+
+    def test_two_sensors_share_it(self):
+        link, port = self.begin_bus()
+        for other in (port, f'{self.folder}/./bus'):
+            self.ends(['read', f'one=hps167s:1@{link}', f'seven=hps167s:7@{other}', '--count', '2', '--stats'], 0,
+                      'one: attempts 2, failed 0', 'seven: attempts 2, failed 0')
+
+    def test_what_they_may_not_share_is_said(self):
+        link, port = self.begin_bus()
+        self.ends(['read', f'one=hps167s:1@{link}', f'two=hps167s:1@{port}', '--count', '2'], 2,
+                  'one and two have the same address, so both would answer at once')
+
+
 class Connections(Case):
     def test_a_connection_that_does_not_come_to_stand_does_not_keep_the_others_waiting(self):
         reader = self.begin(self.sensor('one'), f'far=hps167s@{self.full()}', options='--reconnect --duration 7 --stats')

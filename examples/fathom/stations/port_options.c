@@ -2,6 +2,7 @@
 #include "stations/port_options.h"
 
 #include <string.h>
+#include <sys/stat.h>
 
 #include "shared/command.h"
 #include "shared/line_text.h"
@@ -21,6 +22,15 @@ const char *port_last_part(const char *path)
 {
     const char *const slash = strrchr(path, '/');
     return slash != NULL ? slash + 1 : path;
+}
+
+bool port_is_same(const char *one, const char *other)
+{
+    struct stat first;
+    struct stat second;
+    if (strcmp(one, other) == 0) return true;
+    return stat(one, &first) == 0 && stat(other, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
 }
 
 /* ---- values ---- */

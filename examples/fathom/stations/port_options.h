@@ -24,6 +24,10 @@ port_kind_t port_kind(const char *path, size_t length);
 /* Behind its last slash. */
 const char *port_last_part(const char *path);
 
+/* Do both paths lead to the same port, as a link and what it leads to do? Of one that is not there only its path is
+ * known. */
+bool port_is_same(const char *one, const char *other);
+
 /* ---- keys ---- */
 
 typedef enum {

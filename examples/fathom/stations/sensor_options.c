@@ -73,7 +73,7 @@ static size_t port_of(sensor_options_t *options, const char *path)
 {
     const bool is_chip = port_kind(path, strlen(path)) == PORT_CHIP;
     size_t i = 0;
-    while (i != options->port_count && (is_chip || strcmp(options->ports[i].path, path) != 0)) i++;
+    while (i != options->port_count && (is_chip || !port_is_same(options->ports[i].path, path))) i++;
     if (i != options->port_count) return i;
     options->port_count++;
     options->ports[i] = (port_options_t){.path = path, .is_chip = is_chip};
