@@ -257,6 +257,17 @@ class End(Case):
         it.send(number)
         self.ends(it)
 
+    def test_a_signal_ends_it_at_a_terminal_that_takes_nothing(self):
+        """Ctrl-S: nothing can be written before Ctrl-Q, neither the rest of the picture nor a summary."""
+        _, it = self.begin()
+        it.type(b'\x13')
+        while e2e.is_ready(it.master, 0.5):
+            it.take()
+        it.send(signal.SIGTERM)
+        self.assertTrue(e2e.is_ready(it.pidfd, 5))
+        self.assertEqual(termios.tcgetattr(it.slave), it.before)
+        self.assertEqual(it.finish(), 1)
+
     def test_ctrl_z_and_ctrl_backslash_do_nothing(self):
         _, it = self.begin()
         it.type(b'\x1a\x1c')

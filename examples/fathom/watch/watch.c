@@ -190,7 +190,7 @@ static int finish(watch_t *watch)
 {
     const host_t *const host = watch->loop.host;
     account_t account;
-    terminal_give_back();
+    if (!terminal_give_back()) return STATUS_FAILED;
     if (watch->output_error == EINTR && host->has_ended(host->ctx)) watch->output_error = 0;
     if (watch->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (watch->output_error != 0)
@@ -285,8 +285,7 @@ static int run(const host_t *host, int argc, char **argv)
         poll_loop_run(loop);
         status = finish(&watch);
     } else {
-        terminal_give_back();
-        if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.loss);
+        if (terminal_give_back() && watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.loss);
     }
     poll_loop_close(loop);
     return status;

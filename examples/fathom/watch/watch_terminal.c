@@ -3,6 +3,7 @@
 #include "watch/watch_terminal.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -11,7 +12,7 @@
 
 #include "shared/events.h"
 
-enum { OUTPUT = 65536, MARGIN = 64 };
+enum { OUTPUT = 65536, MARGIN = 64, STUCK_MS = 200 };
 
 static struct {
     struct termios before;
@@ -49,11 +50,19 @@ bool terminal_is_utf8(void)
     return false;
 }
 
-/* A signal that asks to end also ends a write to a terminal that was stopped (Ctrl-S). */
+/* Has it no room for so long, as one that was stopped (Ctrl-S), or whose other end reads nothing? */
+static bool is_stuck(void)
+{
+    struct pollfd entry = {STDOUT_FILENO, POLLOUT, 0};
+    return poll(&entry, 1, STUCK_MS) == 0;
+}
+
+/* A signal that asks to end also ends a write to a terminal that is stuck; then nothing more is written to it. */
 static int write_all(const char *text)
 {
     size_t left = strlen(text);
     while (left != 0) {
+        if (events_ended() && is_stuck()) return EINTR;
         const ssize_t n = write(STDOUT_FILENO, text, left);
         if (n < 0 && (errno != EINTR || events_ended())) return errno;
         if (n < 0) continue;
@@ -84,13 +93,15 @@ void terminal_take(void)
     (void)write_all("\x1B[?1049h\x1B[?25l\x1B[?7l\x1B[2J");
 }
 
-void terminal_give_back(void)
+bool terminal_give_back(void)
 {
-    if (!terminal.is_taken) return;
+    if (!terminal.is_taken) return true;
     terminal.is_taken = false;
-    (void)write_all("\x1B[0m\x1B[?7h\x1B[?25h\x1B[?1049l");
-    /* What was typed meanwhile was meant for no program. */
-    if (terminal.has_input) (void)tcsetattr(STDIN_FILENO, TCSAFLUSH, &terminal.before);
+    const bool is_shown = write_all("\x1B[0m\x1B[?7h\x1B[?25h\x1B[?1049l") != EINTR;
+    /* What was typed meanwhile was meant for no program. TCSAFLUSH would wait for what cannot leave. */
+    if (terminal.has_input) (void)tcsetattr(STDIN_FILENO, is_shown ? TCSAFLUSH : TCSANOW, &terminal.before);
+    if (terminal.has_input && !is_shown) (void)tcflush(STDIN_FILENO, TCIFLUSH);
+    return is_shown;
 }
 
 bool terminal_has_keys(void) { return terminal.is_taken && terminal.has_input; }

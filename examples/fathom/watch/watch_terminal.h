@@ -19,7 +19,8 @@ bool terminal_is_utf8(void);
 bool terminal_has_colours(void);
 
 void terminal_take(void);
-void terminal_give_back(void); /* twice is no error */
+/* Twice is no error. False: a signal has ended the command, and the terminal takes nothing. */
+bool terminal_give_back(void);
 
 /* Are keys read: is its standard input a terminal too, and taken? */
 bool terminal_has_keys(void);
