@@ -221,7 +221,6 @@ TEST(wrong_usage_is_told_and_nothing_leaves)
         {"1 6 1 2 3 --yes", "function 6 writes one value (several: function 16), not 2"},
         {"1 6 1 65536 --yes", "VALUE is from -32768 to 65535"},
         {"1 6 1 -32769 --yes", "VALUE is from -32768 to 65535, in decimal or as 0x in hex, not '-32769'"},
-        {"1 6 1 -32769 --yes", "there is no option -"},
         {"1 16 1 --yes", "function 16 writes 1 to 123 values"},
         {"1 16 0xFFFF 1 2 --yes", "function 16 writes 1 to 123 values, up to register 0xFFFF"},
         {"1 43 0e 100 --yes", "function 43 takes bytes in hex, such as 0e, not '100'"},
