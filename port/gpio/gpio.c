@@ -192,7 +192,6 @@ static fathom_gpio_status_t take_line(fathom_gpio_t *gpio, int chip_fd, uint64_t
     if (fcntl(gpio->fd, F_SETFL, O_NONBLOCK) == 0) return FATHOM_GPIO_OK;
     const int code = errno;
     (void)close(gpio->fd);
-    gpio->fd = -1;
     return fathom_gpio_fail_system(gpio, "making its reads return at once", code);
 }
 
@@ -201,7 +200,6 @@ static fathom_gpio_status_t open_line(fathom_gpio_t *gpio, const char *chip, uin
 {
     if (gpio == NULL) return FATHOM_GPIO_ERR_ARGUMENT;
     memset(gpio, 0, sizeof *gpio);
-    gpio->fd = -1;
     gpio->line = line;
     gpio->is_output = (flags & GPIO_V2_LINE_FLAG_OUTPUT) != 0;
     gpio->has_edges = (flags & GPIO_V2_LINE_FLAG_EDGE_RISING) != 0;
@@ -252,7 +250,6 @@ void fathom_gpio_close(fathom_gpio_t *gpio)
 {
     if (gpio == NULL || !gpio->is_open) return;
     (void)close(gpio->fd); /* EINTR: Linux has closed it all the same */
-    gpio->fd = -1;
     gpio->is_open = false;
 }
 

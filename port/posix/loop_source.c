@@ -30,16 +30,12 @@ static short events_of(const fathom_loop_source_t *source)
     return source->kind->events != NULL ? source->kind->events(source) : POLLIN;
 }
 
+/* False: the descriptor is not one that epoll waits for: a file, one that it waits for already, or -1; nor has a loop in
+ * simulated time any epoll. */
 static bool control(fathom_loop_source_t *source, int operation)
 {
     struct epoll_event event = {.events = EPOLLET | (uint32_t)source->events, .data.ptr = source};
     return epoll_ctl(source->loop->epoll_fd, operation, source->fd, &event) == 0;
-}
-
-/* Is the descriptor one that epoll waits for? Not a file; nor one that it waits for already. */
-static bool is_in_epoll(const fathom_loop_source_t *source)
-{
-    return source->is_watched && source->fd >= 0 && source->loop->config.sleep == NULL;
 }
 
 static void watch(fathom_loop_source_t *source)
@@ -48,10 +44,7 @@ static void watch(fathom_loop_source_t *source)
     source->events = events_of(source);
     source->is_hung_up = false;
     source->is_readable = true; /* perhaps: it became so before it was watched */
-    if (source->loop->config.sleep != NULL)
-        source->is_watched = true;
-    else
-        source->is_watched = source->fd >= 0 && control(source, EPOLL_CTL_ADD);
+    source->is_watched = source->loop->config.sleep != NULL || control(source, EPOLL_CTL_ADD);
 }
 
 static void pause_source(fathom_loop_source_t *source, uint64_t now_us)
@@ -83,7 +76,7 @@ static bool is_well(const fathom_loop_source_t *source)
 
 void fathom_loop_close(fathom_loop_source_t *source)
 {
-    if (is_in_epoll(source)) (void)control(source, EPOLL_CTL_DEL);
+    if (source->is_watched) (void)control(source, EPOLL_CTL_DEL);
     source->is_watched = false;
     source->is_open = false;
     if (source->kind->close != NULL) source->kind->close(source);
@@ -155,7 +148,7 @@ static uint32_t due_us(fathom_loop_source_t *source)
 {
     uint32_t us = source->kind->due_us != NULL ? source->kind->due_us(source) : FATHOM_NO_DEADLINE;
     uint32_t most_us = SELDOM_US;
-    for (const fathom_loop_sensor_t *node = source->sensors; node != NULL && us != 0; node = node->next) {
+    for (const fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next) {
         const uint32_t this_us = fathom_due_us(&node->sensor, 1);
         if (this_us < us) us = this_us;
     }
@@ -184,7 +177,7 @@ void fathom_loop_turn(fathom_loop_source_t *source)
     const short events = events_of(source);
     if (events != source->events) {
         source->events = events;
-        if (is_in_epoll(source)) (void)control(source, EPOLL_CTL_MOD);
+        if (source->is_watched) (void)control(source, EPOLL_CTL_MOD);
     }
     if (source->is_due) return; /* one of its sensors has woken it */
     uint32_t us = status == FATHOM_READY ? 0 : due_us(source);

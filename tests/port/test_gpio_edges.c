@@ -277,6 +277,22 @@ TEST(what_was_lost_before_arm_is_counted_and_costs_nothing)
     assert_int_equal(gpio.lost_events, 2);
 }
 
+/* They bounce, so that none of them makes a pulse. 64 lines of 16 events are what the kernel's queue has at most. */
+TEST(events_that_come_as_fast_as_they_are_read_hold_nothing_up)
+{
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    fathom_pulse_t taken;
+    chip.is_endless = true;
+    assert_int_equal(capture.take(capture.ctx, &taken), 0);
+    assert_true(gpio.events >= 64 * 16);
+    uint32_t before = gpio.events;
+    assert_true(pin.get(pin.ctx));
+    assert_true(gpio.events - before >= 64 * 16);
+    before = gpio.events;
+    capture.arm(capture.ctx);
+    assert_true(gpio.events - before >= 64 * 16);
+}
+
 /* ---- when a system call fails ---- */
 
 TEST(an_interrupted_read_is_repeated)

@@ -261,8 +261,11 @@ TEST(what_the_chip_cannot_do_is_told)
         expect_failure(EDGES, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED,
                        "refuses an input like this, with edges");
     }
-    chip.request_error = EPERM;
-    expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_PERMISSION, "this line is not for programs");
+    static const int denials[] = {EPERM, EACCES};
+    for (unsigned i = 0; i != 2; i++) {
+        chip.request_error = denials[i];
+        expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_PERMISSION, "this line is not for programs");
+    }
     chip.request_error = ENOMEM;
     expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_SYSTEM, "taking it: Cannot allocate memory");
 }
@@ -276,6 +279,15 @@ static int open_is_denied(void *path)
                    strstr(text, "GROUP=\"gpio\"") != NULL
                ? 0
                : 2;
+}
+
+TEST(a_denied_permission_has_two_numbers)
+{
+    static const int denials[] = {EPERM, EACCES};
+    for (unsigned i = 0; i != 2; i++) {
+        chip.open_error = denials[i];
+        expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_PERMISSION, "line 17: permission denied");
+    }
 }
 
 /* As Debian has it: root's alone. */

@@ -62,10 +62,16 @@ TEST(the_first_of_the_sensors_on_a_source_says_when_it_is_due)
     first.due_us = 7000;
     second.due_us = 5000;
     step();
+    first.due_us = 3000;
     step();
     assert_int_equal(fake_elapsed_us(), 5000);
     assert_int_equal(first.polls, 2);
     assert_int_equal(second.polls, 2);
+    one.due_us = 2000;
+    step();
+    assert_int_equal(fake_elapsed_us(), 5000 + 3000);
+    step();
+    assert_int_equal(fake_elapsed_us(), 8000 + 2000);
 }
 
 TEST(what_has_come_is_polled_before_it_is_due_and_then_its_time_begins_anew)
@@ -114,20 +120,40 @@ TEST(one_that_is_due_again_at_once_keeps_no_other_waiting)
     assert_in_range(two.polls, 2, 3);
 }
 
-/* 16 times at once, and then each millisecond: 1 s of it is 16 and 1000 polls, and not as many as a processor can do. */
+/* The first poll and 16 at once, and then one each millisecond: not as many as a processor can do. */
+static void spins_no_longer(void)
+{
+    const uint64_t begin_us = fake.now_us;
+    for (unsigned i = 0; i != 17; i++) step();
+    assert_int_equal(fake.now_us - begin_us, 0);
+    for (unsigned i = 1; i != 1000; i++) {
+        step();
+        assert_int_equal(fake.now_us - begin_us, 1000 * i);
+    }
+}
+
 TEST(one_that_is_due_at_once_without_end_does_not_spin)
 {
     one.due_us = 0;
     add(&one);
-    fake_pass(1000000);
-    assert_in_range(one.polls, 1000, 1020);
+    spins_no_longer();
     one.due_us = 100000; /* and once that is over it begins anew */
     fake_pass(200000);
     one.due_us = 0;
     fake_wake_in(&one, 0);
-    const unsigned before = one.polls;
-    for (unsigned i = 0; i != 10; i++) step();
-    assert_int_equal(one.polls, before + 10);
+    spins_no_longer();
+}
+
+TEST(one_that_was_away_may_be_due_at_once_as_often_again)
+{
+    one.due_us = 0;
+    add(&one);
+    spins_no_longer();
+    one.is_lost = true;
+    step();
+    one.is_lost = false;
+    step(); /* open again */
+    spins_no_longer();
 }
 
 /* hal.h: whatever is polled is polled at least every 71 minutes, 4294 s. */
@@ -316,6 +342,24 @@ TEST(a_callback_may_wake_its_own_source)
     step();
     assert_int_equal(one.polls, before + 1);
     assert_int_equal(fake_elapsed_us(), 0);
+}
+
+static void wake_two(fathom_status_t status) { fathom_loop_wake(&two.source); }
+
+TEST(a_callback_that_wakes_what_this_step_polls_anyway_adds_no_poll)
+{
+    one.due_us = two.due_us = 1000;
+    add(&one);
+    add(&two);
+    fake_sensor(&first, &one);
+    step();
+    first.script[0] = FATHOM_READY;
+    first.when_taken = wake_two;
+    step();
+    assert_int_equal(two.polls, 2);
+    step();
+    assert_int_equal(fake_elapsed_us(), 2000);
+    assert_int_equal(two.polls, 3);
 }
 
 static void add_sensor_to_two(fathom_status_t status)

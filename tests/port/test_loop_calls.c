@@ -1,11 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #define _GNU_SOURCE 1 /* syscall */
 #include <errno.h>
+#include <fcntl.h>
+#include <linux/time_types.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <sys/epoll.h>
+#include <sys/eventfd.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "loop_fake.h"
 #include "loop_line_rig.h"
 
 /* What fathom_loop.h asks of the system: calls are counted, not times. */
@@ -15,7 +20,10 @@ enum { SIXTH = 6 };
 typedef struct {
     unsigned reads, empty_reads, writes, ioctls, opens, sleeps;
     int sleep_error; /* of epoll_pwait2; 0: none */
-    unsigned polls;  /* ppoll(2) */
+    int poll_error;  /* of ppoll(2), which takes its place */
+    /* What the last of both was asked for. */
+    bool is_endless;
+    int64_t seconds, nanoseconds;
 } calls_t;
 
 static calls_t calls;
@@ -31,6 +39,15 @@ int __real_open(const char *path, int flags, ...);
 int __wrap_open(const char *path, int flags, ...);
 long __real_syscall(long number, ...);
 long __wrap_syscall(long number, ...);
+int __real_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask);
+int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask);
+
+static void asked_for(bool is_endless, int64_t seconds, int64_t nanoseconds)
+{
+    calls.is_endless = is_endless;
+    calls.seconds = seconds;
+    calls.nanoseconds = nanoseconds;
+}
 
 ssize_t __wrap_read(int fd, void *bytes, size_t length)
 {
@@ -70,11 +87,22 @@ long __wrap_syscall(long number, ...)
     for (unsigned i = 0; i != SIXTH; i++) a[i] = va_arg(arguments, long);
     va_end(arguments);
     calls.sleeps++;
+    const struct __kernel_timespec *const limit = (const void *)a[3];
+    asked_for(limit == NULL, limit != NULL ? limit->tv_sec : 0, limit != NULL ? limit->tv_nsec : 0);
     if (calls.sleep_error != 0) {
         errno = calls.sleep_error;
         return -1;
     }
     return __real_syscall(number, a[0], a[1], a[2], a[3], a[4], a[5]);
+}
+
+int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask)
+{
+    assert_int_equal(count, 1);
+    asked_for(limit == NULL, limit != NULL ? limit->tv_sec : 0, limit != NULL ? limit->tv_nsec : 0);
+    if (calls.poll_error == 0) return __real_ppoll(entries, count, limit, mask);
+    errno = calls.poll_error;
+    return -1;
 }
 /* NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming) */
 
@@ -173,6 +201,8 @@ TEST(a_lost_port_costs_a_sleep_and_an_open_a_pause)
     line_rig_end();
     line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 5000, .longest_pause_us = 80000});
     posix_pty_open(&rig.ptys[0]);
+    const int held = open(rig.ptys[0].path, O_RDWR | O_NOCTTY); /* so that no other program gets its path */
+    assert_true(held >= 0);
     line_rig_add(115200);
     fathom_loop_step(&rig.loop, 1000);
     posix_pty_close(&rig.ptys[0]);
@@ -186,6 +216,7 @@ TEST(a_lost_port_costs_a_sleep_and_an_open_a_pause)
     assert_int_equal(calls.reads + calls.writes + calls.ioctls, 0);
     assert_int_equal(rig.failed, 1 + calls.opens);
     assert_int_equal(rig.port_errors[0], 1);
+    (void)close(held);
 }
 
 /* Linux before 5.11 says ENOSYS, a sandbox that does not know it EPERM. */
@@ -218,6 +249,39 @@ TEST(there_too_a_sleep_ends_after_its_time_and_not_before)
     assert_in_range(least_us, 200, 900); /* not rounded up to milliseconds */
 }
 
+/* Signals end all of these at once. */
+static void expect_limits(void)
+{
+    static const struct {
+        uint32_t max_us;
+        int64_t seconds, nanoseconds;
+    } rows[] = {{1, 0, 1000},    {999999, 0, 999999000}, {1000000, 1, 0},
+                {2000000, 2, 0}, {7000003, 7, 3000},     {4294967294u, 4294, 967294000}};
+    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        fathom_loop_step(&rig.loop, rows[i].max_us);
+        assert_false(calls.is_endless);
+        assert_int_equal(calls.seconds, rows[i].seconds);
+        assert_int_equal(calls.nanoseconds, rows[i].nanoseconds);
+    }
+    fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
+    assert_true(calls.is_endless);
+}
+
+TEST(a_sleep_is_asked_for_to_the_microsecond_with_epoll_pwait2)
+{
+    calls.sleep_error = EINTR;
+    expect_limits();
+    assert_false(rig.loop.has_no_pwait2);
+}
+
+TEST(a_sleep_is_asked_for_to_the_microsecond_without_it)
+{
+    calls.sleep_error = ENOSYS;
+    calls.poll_error = EINTR;
+    expect_limits();
+    assert_true(rig.loop.has_no_pwait2);
+}
+
 /* A signal is not what has_no_pwait2 is about. */
 TEST(an_interrupted_sleep_is_over_and_no_more)
 {
@@ -226,6 +290,34 @@ TEST(an_interrupted_sleep_is_over_and_no_more)
     assert_false(rig.loop.has_no_pwait2);
     assert_int_equal(calls.sleeps, 1);
 }
+
+/* 64 are what one sleep tells of; the others come with the next one. */
+static void more_than_a_sleep_tells_of(void **state)
+{
+    static fake_source_t sources[100];
+    calls.sleep_error = *(const int *)*state;
+    for (unsigned i = 0; i != 100; i++) {
+        fake_source(&sources[i]);
+        sources[i].due_us = FATHOM_NO_DEADLINE;
+        sources[i].fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+        fathom_loop_add(&rig.loop, &sources[i].source);
+    }
+    fathom_loop_step(&rig.loop, 0);
+    for (unsigned i = 0; i != 100; i++) {
+        assert_int_equal(sources[i].polls, 1);
+        assert_int_equal(eventfd_write(sources[i].fd, 1), 0);
+    }
+    fathom_loop_step(&rig.loop, 0);
+    fathom_loop_step(&rig.loop, 0);
+    for (unsigned i = 0; i != 100; i++) {
+        assert_int_equal(sources[i].polls, 2);
+        fathom_loop_remove(&sources[i].source);
+        (void)close(sources[i].fd);
+    }
+}
+static int no_error;
+TEST_ROW(a_hundred_that_are_ready_at_once_are_all_polled, more_than_a_sleep_tells_of, &no_error)
+TEST_ROW(a_hundred_are_so_without_epoll_pwait2_too, more_than_a_sleep_tells_of, &no_such_call)
 
 /* Each loss is of another pseudo terminal. */
 TEST(a_thousand_losses_leave_no_descriptor_behind)

@@ -5,68 +5,19 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
-#include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
 
-#include "loop_fake.h"
-#include "loop_line_rig.h"
+#include "loop_ends_rig.h"
 
 /* What wakes fathom_loop.h, and what ends its sleep, on real descriptors. */
 
-enum { SOON_US = 30000, LONG_US = 10000000 };
+static fathom_loop_pin_t other;
+static fake_sensor_t second;
 
-static fathom_loop_pin_t pin, other;
-static fake_sensor_t first, second;
-static int ends[2]; /* [0] is the loop's */
-
-static int set_up(void **state)
-{
-    posix_start_watchdog(0);
-    line_rig_begin(NULL);
-    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);
-    return 0;
-}
-
-static void close_end(unsigned i)
-{
-    if (ends[i] >= 0) (void)close(ends[i]);
-    ends[i] = -1;
-}
-
-static int tear_down(void **state)
-{
-    line_rig_end();
-    close_end(0);
-    close_end(1);
-    return 0;
-}
-
-static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
-
-/* Steps for so long; how many. */
-static unsigned pass(uint64_t us)
-{
-    const uint64_t until_us = fathom_posix_now_us() + us;
-    const uint64_t before = rig.loop.sleeps;
-    for (uint64_t now_us; (now_us = fathom_posix_now_us()) < until_us;)
-        fathom_loop_step(&rig.loop, (uint32_t)(until_us - now_us));
-    return (unsigned)(rig.loop.sleeps - before);
-}
-
-static void send_bytes(size_t length)
-{
-    static const uint8_t bytes[16];
-    assert_int_equal(write(ends[1], bytes, length), length);
-}
+static const suite_t suite = {.set_up = ends_set_up, .tear_down = ends_tear_down};
 
 /* ---- pins ---- */
-
-static void add_pin(fathom_loop_pin_t *to, fake_sensor_t *sensor, int fd)
-{
-    fathom_loop_add_pin(&rig.loop, to, fd);
-    fake_sensor(sensor, (fake_source_t *)&to->source);
-}
 
 TEST(a_pin_is_polled_when_its_descriptor_becomes_ready_and_not_as_long_as_it_is)
 {
@@ -133,7 +84,7 @@ TEST(a_pin_whose_chip_has_gone_is_lost_and_said_once_a_pause)
     line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 5000, .longest_pause_us = 80000});
     add_pin(&pin, &first, ends[0]);
     (void)pass(1000);
-    close_end(1);
+    ends_close(1);
     assert_in_range(pass(400000), 4, 20);
     assert_int_equal(first.port_errors, 1);
     assert_in_range(rig.failed, 4, 9);
@@ -142,48 +93,6 @@ TEST(a_pin_whose_chip_has_gone_is_lost_and_said_once_a_pause)
 }
 
 /* ---- bytes ---- */
-
-typedef struct {
-    fathom_loop_source_t source;
-    fathom_uart_t uart;
-    size_t capacity;
-    unsigned bytes;
-    bool is_lost;
-} stream_t;
-
-static stream_t stream;
-
-static int stream_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
-{
-    const ssize_t n = recv(ends[0], bytes, capacity, MSG_DONTWAIT);
-    return n == 0 ? -1 : n < 0 ? 0 : (int)n;
-}
-
-static int stream_fd(const fathom_loop_source_t *source) { return ends[0]; }
-
-/* Reads once. */
-static bool stream_poll(fathom_loop_source_t *source)
-{
-    uint8_t bytes[64];
-    fathom_rx_t rx = {0, 0};
-    const int n = stream.uart.read(stream.uart.ctx, bytes, stream.capacity, &rx);
-    if (n > 0) stream.bytes += (unsigned)n;
-    stream.is_lost = n < 0;
-    return n >= 0;
-}
-
-static void add_stream(size_t capacity)
-{
-    static const fathom_loop_kind_t kind = {.fd = stream_fd, .poll = stream_poll};
-    const fathom_uart_t uart = {.read = stream_read};
-    memset(&stream, 0, sizeof stream);
-    stream.source.kind = &kind;
-    stream.source.reads_all = true;
-    stream.capacity = capacity;
-    stream.uart = fathom_loop_uart(&stream.source, &uart);
-    fathom_loop_add(&rig.loop, &stream.source);
-    (void)pass(1000);
-}
 
 TEST(what_one_read_does_not_bring_the_next_ones_do)
 {
@@ -198,7 +107,7 @@ TEST(a_hang_up_right_behind_the_last_bytes_is_seen)
 {
     add_stream(64);
     send_bytes(3);
-    close_end(1);
+    ends_close(1);
     (void)pass(SOON_US);
     assert_int_equal(stream.bytes, 3);
     assert_true(stream.is_lost);
@@ -324,12 +233,6 @@ TEST(another_thread_stops_the_run_again_and_again)
         assert_int_equal(pthread_join(thread, NULL), 0);
         assert_in_range(rig.loop.sleeps, 1, 3 * (i + 1));
     }
-}
-
-static bool is_ready(void)
-{
-    struct pollfd entry = {fathom_loop_fd(&rig.loop), POLLIN, 0};
-    return poll(&entry, 1, 0) == 1;
 }
 
 TEST(a_loop_of_another_kind_sees_when_a_step_has_something_to_do)

@@ -108,6 +108,17 @@ TEST(a_driver_that_goes_on_after_all_is_refused)
     set_fails(NULL, FATHOM_POSIX_ERR_REFUSED);
     port_rig_says(
         "asked for RTS left alone, the driver set RTS on while sending, from 0 ms before to 0 ms after");
+    driver.rs485_adds = ENABLED;
+    set_fails(NULL, FATHOM_POSIX_ERR_REFUSED);
+}
+
+/* Which level it had before is of no use to one that is left alone. */
+TEST(a_driver_that_stops_and_keeps_its_levels_has_stopped)
+{
+    open_wire();
+    driver.rs485_adds = ON_SEND | AFTER_SEND;
+    assert_int_equal(fathom_posix_set_rs485(&rig.port, NULL), FATHOM_POSIX_OK);
+    driver_has(ON_SEND | AFTER_SEND, 0, 0);
 }
 
 TEST(a_driver_that_does_not_take_it_is_told_with_the_systems_words)
@@ -126,6 +137,7 @@ TEST(a_device_that_goes_is_lost_before_meanwhile_and_after)
         driver.rs485_get_error_after = after;
         set_fails(&with_delays, FATHOM_POSIX_ERR_LOST);
         assert_true(port_rig_read_one() < 0);
+        assert_int_equal(driver.rs485_sets, 2 * after); /* none, or it and what was before */
         fathom_posix_close(&rig.port);
         driver.rs485_get_error = 0;
     }
@@ -134,6 +146,22 @@ TEST(a_device_that_goes_is_lost_before_meanwhile_and_after)
     set_fails(&with_delays, FATHOM_POSIX_ERR_LOST);
     driver.rs485_error = 0;
     set_fails(&with_delays, FATHOM_POSIX_ERR_LOST); /* until it is opened again */
+}
+
+/* Also where that is to be nothing, which is what a read that failed seems to have brought. */
+TEST(what_cannot_be_read_back_is_taken_back)
+{
+    static const fathom_posix_rs485_t *const asked[] = {&with_delays, NULL};
+    open_wire();
+    const fathom_posix_rs485_t before = {.before_ms = 7, .after_ms = 8};
+    assert_int_equal(fathom_posix_set_rs485(&rig.port, &before), FATHOM_POSIX_OK);
+    for (unsigned i = 0; i != 2; i++) {
+        driver.rs485_get_error = EINVAL;
+        driver.rs485_get_error_after = 1;
+        set_fails(asked[i], FATHOM_POSIX_ERR_SYSTEM);
+        port_rig_says("setting RS-485: Invalid argument");
+        driver_has(ENABLED | ON_SEND, 7, 8);
+    }
 }
 
 TEST(bytes_that_are_leaving_come_before_rs485)

@@ -128,6 +128,7 @@ ssize_t __wrap_read(int fd, void *bytes, size_t length)
     /* One that would wait fails the test, instead of never ending. */
     if ((fcntl(fd, F_GETFL) & O_NONBLOCK) == 0) return give(EDEADLK);
     if (chip.short_read != 0) return chip.short_read;
+    if (line->events == 0 && chip.is_endless) chip_edge(line, true, 0);
     if (line->events == 0) return give(EAGAIN);
     if (length < sizeof line->queue[0]) return give(EINVAL);
     memcpy(bytes, &line->queue[line->first], sizeof line->queue[0]);
