@@ -112,7 +112,7 @@ void fathom_loop_stop(fathom_loop_t *loop)
     const uint64_t one = 1;
     const int saved = errno;
     __atomic_store_n(&loop->is_stopped, 1, __ATOMIC_SEQ_CST);
-    if (loop->stop_fd >= 0 && write(loop->stop_fd, &one, sizeof one) < 0) errno = saved;
+    if (write(loop->stop_fd, &one, sizeof one) < 0) errno = saved; /* full; or -1, in simulated time */
 }
 
 int fathom_loop_fd(const fathom_loop_t *loop) { return loop->epoll_fd; }
@@ -151,7 +151,7 @@ void fathom_loop_add_sensor(fathom_loop_source_t *source, fathom_loop_sensor_t *
     if (*at != NULL) return;
     *at = sensor;
     sensor->next = NULL;
-    if (source->is_open) fathom_loop_wake(source);
+    fathom_loop_wake(source);
 }
 
 void fathom_loop_read(fathom_loop_source_t *source, fathom_loop_sensor_t *node, fathom_sensor_t sensor,

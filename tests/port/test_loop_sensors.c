@@ -88,6 +88,7 @@ TEST(a_sensor_that_is_added_twice_is_there_once)
     fake_sensor(&first, &one);
     fake_sensor(&second, &one);
     fathom_loop_add_sensor(&one.source, &first.node);
+    assert_ptr_equal(first.node.next, &second.node);
     fathom_loop_add_sensor(&one.source, &second.node);
     step();
     assert_int_equal(first.polls, 1);
@@ -95,6 +96,39 @@ TEST(a_sensor_that_is_added_twice_is_there_once)
     assert_ptr_equal(one.source.sensors, &first.node);
     assert_ptr_equal(first.node.next, &second.node);
     assert_null(second.node.next);
+}
+
+TEST(what_else_is_in_a_sensor_that_is_added_does_not_matter)
+{
+    fathom_loop_sensor_t node;
+    fake_sensor(&first, &one);
+    memset(&node, 0xA5, sizeof node);
+    node.sensor = first.node.sensor;
+    node.take = first.node.take;
+    node.ctx = &first;
+    fake_source(&two);
+    add(&two);
+    fathom_loop_add_sensor(&two.source, &node);
+    first.script[0] = FATHOM_READY;
+    step();
+    assert_int_equal(first.readings, 1);
+    fathom_loop_remove(&two.source);
+}
+
+TEST(fathom_loop_read_is_the_same_in_one_line)
+{
+    fathom_loop_sensor_t node;
+    fake_sensor(&first, &one);
+    memset(&node, 0xA5, sizeof node);
+    add(&two);
+    fathom_loop_read(&two.source, &node, first.node.sensor, first.node.take, &first);
+    first.script[0] = FATHOM_READY;
+    first.script[1] = FATHOM_ERR_CHECKSUM;
+    step();
+    assert_int_equal(first.readings, 1);
+    assert_int_equal(first.errors, 1);
+    assert_ptr_equal(two.source.sensors, &node);
+    fathom_loop_remove(&two.source);
 }
 
 TEST(sensors_may_be_there_before_their_source)

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* struct sigaction, sockets */
+#include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/eventfd.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -206,6 +208,17 @@ TEST(a_signal_handler_stops_the_run)
     fathom_loop_run(&rig.loop); /* nothing is on it: it would sleep for any time */
     no_more_signals();
     assert_in_range(rig.loop.sleeps, 1, 10);
+}
+
+/* An eventfd that is full refuses (eventfd(2): EAGAIN); what a signal handler calls leaves errno alone. */
+TEST(a_stop_leaves_errno_alone)
+{
+    assert_int_equal(eventfd_write(rig.loop.stop_fd, UINT64_MAX - 1), 0);
+    errno = 300;
+    fathom_loop_stop(&rig.loop);
+    assert_int_equal(errno, 300);
+    fathom_loop_run(&rig.loop);
+    assert_int_equal(rig.loop.sleeps, 0);
 }
 
 TEST(a_signal_ends_the_sleep_of_a_step)
