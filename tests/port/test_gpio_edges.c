@@ -263,6 +263,14 @@ TEST(the_numbers_of_events_wrap)
     expect_goes_on(2);
 }
 
+TEST(more_than_16_bits_of_lost_events_are_counted)
+{
+    for (unsigned i = 0; i != 70000; i++) chip_lose(wire, i % 2 == 0);
+    chip_edge(wire, true, 5000);
+    chip_edge(wire, false, 8000);
+    expect_goes_on(70000);
+}
+
 TEST(what_was_lost_before_arm_is_counted_and_costs_nothing)
 {
     chip_lose(wire, true);
@@ -357,6 +365,24 @@ TEST(one_that_was_closed_is_no_use_and_one_that_was_opened_again_begins_anew)
     pulse(500000, 503000); /* the first event has the number 1 again */
     expect_pulse(3000, 503000);
     assert_int_equal(gpio.lost_events, 0);
+}
+
+/* The system gives the number of its descriptor to the next one that is opened. */
+TEST(one_that_is_closed_takes_no_events_of_the_others)
+{
+    static fathom_gpio_t next;
+    const int fd = fathom_gpio_fd(&gpio);
+    fathom_gpio_close(&gpio);
+    assert_int_equal(fathom_gpio_open_edges(&next, "gpiochip0", 22, FATHOM_GPIO_BIAS_AS_IS), FATHOM_GPIO_OK);
+    assert_int_equal(fathom_gpio_fd(&next), fd);
+    chip_edge(wire, true, 1000);
+    capture.arm(capture.ctx);
+    fathom_pulse_t taken;
+    assert_true(capture.take(capture.ctx, &taken) < 0);
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    assert_false(pin.get(pin.ctx));
+    assert_int_equal(wire->events, 1);
+    fathom_gpio_close(&next);
 }
 
 TEST(a_line_that_is_high_when_it_is_opened_has_no_rise)

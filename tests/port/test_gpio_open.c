@@ -150,9 +150,47 @@ TEST(an_output_of_a_chip_that_has_gone_is_told)
     chip.set_error = ENODEV;
     pin.set(pin.ctx, false);
     assert_int_equal(fathom_gpio_error(&gpio), FATHOM_GPIO_ERR_LOST);
+    gpio_says(&gpio, "/dev/gpiochip0, line 17: the chip has gone (No such device)");
     chip.set_error = 0;
     pin.set(pin.ctx, false);
     assert_int_equal(chip.lines[0].sets, 0);
+    static const struct {
+        int error;
+        const char *text;
+    } rows[] = {{ENXIO, "the chip has gone (No such device or address)"},
+                {EIO, "setting it: Input/output error"}};
+    for (unsigned i = 0; i != 2; i++) {
+        fathom_gpio_close(&gpio);
+        assert_int_equal(open_as(OUTPUT, "gpiochip0", 17), FATHOM_GPIO_OK);
+        chip.set_error = rows[i].error;
+        pin.set(pin.ctx, false);
+        gpio_says(&gpio, rows[i].text);
+        chip.set_error = 0;
+    }
+}
+
+/* The system gives the number of its descriptor to the next one that is opened. */
+TEST(a_pin_that_is_closed_leaves_the_others_alone)
+{
+    static fathom_gpio_t next;
+    assert_int_equal(open_as(OUTPUT, "gpiochip0", 17), FATHOM_GPIO_OK);
+    const fathom_pin_t pin = fathom_gpio_pin(&gpio);
+    const int fd = fathom_gpio_fd(&gpio);
+    fathom_gpio_close(&gpio);
+    assert_int_equal(fathom_gpio_open_output(&next, "gpiochip0", 18, true), FATHOM_GPIO_OK);
+    assert_int_equal(fathom_gpio_fd(&next), fd);
+    pin.set(pin.ctx, false);
+    assert_int_equal(chip.lines[0].sets, 0);
+    fathom_gpio_close(&gpio);
+    assert_int_equal(chip.lines[0].fd, fd);
+    fathom_gpio_close(&next);
+}
+
+TEST(a_line_whose_reads_would_wait_is_given_back)
+{
+    chip.is_rigid = true;
+    expect_failure(EDGES, "gpiochip0", 27, FATHOM_GPIO_ERR_SYSTEM,
+                   "making its reads return at once: Bad file descriptor");
 }
 
 TEST(a_call_that_was_interrupted_is_repeated)
@@ -183,8 +221,11 @@ TEST(a_missing_chip_is_told_as_such)
     expect_failure(OUTPUT, "gpiochip77", 1, FATHOM_GPIO_ERR_NOT_FOUND,
                    "/dev/gpiochip77, line 1: no such chip; ls ");
     expect_failure(OUTPUT, "/dev/null/gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no such chip");
-    chip.open_error = ENODEV; /* it was pulled out a moment ago */
-    expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+    static const int gone[] = {ENODEV, ENXIO};
+    for (unsigned i = 0; i != 2; i++) {
+        chip.open_error = gone[i]; /* it was pulled out a moment ago */
+        expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+    }
     chip.open_error = EMFILE;
     expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_SYSTEM, "opening it: Too many open files");
     chip.open_error = 0;
@@ -194,12 +235,14 @@ TEST(a_missing_chip_is_told_as_such)
 
 TEST(wrong_arguments_are_told_as_such)
 {
-    char path[140] = "/dev/";
-    memset(path + 5, 'x', 134);
+    char path[300] = "/dev/";
+    memset(path + 5, 'x', 294);
     assert_int_equal(fathom_gpio_open_input(NULL, "gpiochip0", 1, FATHOM_GPIO_BIAS_AS_IS),
                      FATHOM_GPIO_ERR_ARGUMENT);
-    expect_failure(INPUT, NULL, 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
+    expect_failure(INPUT, NULL, 1, FATHOM_GPIO_ERR_ARGUMENT, "pin, line 1: no chip was named");
     expect_failure(INPUT, "", 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
+    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
+    path[139] = '\0';
     expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
     path[128] = '\0';
     expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");

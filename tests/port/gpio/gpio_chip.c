@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* O_PATH */
 #include "gpio_chip.h"
 
 #include <errno.h>
@@ -64,7 +65,7 @@ static int take_line(struct gpio_v2_line_request *request)
         memset(line, 0, sizeof *line);
         line->request = *request;
         line->level = request->config.num_attrs != 0 && (request->config.attrs[0].attr.values & 1u) != 0;
-        request->fd = line->fd = __real_open("/dev/null", O_RDONLY);
+        request->fd = line->fd = __real_open("/dev/null", chip.is_rigid ? O_PATH : O_RDONLY);
         chip.opened++;
         return 0;
     }

@@ -32,6 +32,7 @@ typedef struct {
     int open_error, chip_error, info_error, request_error, level_error, set_error, read_error;
     int interrupts;    /* so many of the wrapped calls that it gets give EINTR first */
     int short_read;    /* a read gives so many bytes */
+    bool is_rigid;     /* a line's descriptor takes no F_SETFL */
     bool is_endless;   /* each read of an event finds another rise, at the same time */
     int open_flags;    /* as it was opened */
     int open_chips;    /* now */
