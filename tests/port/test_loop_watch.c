@@ -2,6 +2,7 @@
 #define _DEFAULT_SOURCE 1 /* mkstemp, sockets */
 #include <fcntl.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include "loop_ends_rig.h"
 
@@ -168,4 +169,58 @@ TEST(a_loop_without_a_config_tells_nothing_and_goes_on)
     assert_int_equal(one.opens, 1);
     fathom_loop_deinit(&loop);
     assert_null(loop.sources);
+}
+
+/* ---- the loop's own descriptors ---- */
+
+/* The lowest number that is free. */
+static int next_fd(void)
+{
+    const int fd = fcntl(ends[0], F_DUPFD_CLOEXEC, 0);
+    assert_true(fd >= 0);
+    (void)close(fd);
+    return fd;
+}
+
+/* With room for none, and for the first of the two. */
+TEST(a_loop_that_gets_no_descriptor_says_so_and_keeps_none)
+{
+    static fathom_loop_t loop;
+    struct rlimit usual;
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
+    for (unsigned room = 0; room != 2; room++) {
+        const int next = next_fd();
+        struct rlimit few = usual;
+        few.rlim_cur = (rlim_t)next + room;
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
+        const fathom_posix_status_t status = fathom_loop_init(&loop, NULL);
+        assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
+        assert_int_equal(status, FATHOM_POSIX_ERR_SYSTEM);
+        assert_int_equal(next_fd(), next);
+    }
+}
+
+TEST(a_loop_may_have_the_descriptor_0)
+{
+    static fathom_loop_t loop;
+    put_at_0(ends[0]);
+    (void)close(0);
+    assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
+    assert_int_equal(fathom_loop_fd(&loop), 0);
+    fathom_loop_deinit(&loop);
+    assert_int_equal(next_fd(), 0);
+}
+
+TEST(a_second_deinit_closes_nothing_that_was_opened_since)
+{
+    static fathom_loop_t loop;
+    assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
+    const int number = fathom_loop_fd(&loop);
+    fathom_loop_deinit(&loop);
+    put_at_0(ends[0]); /* also not 0 */
+    const int others = fcntl(ends[0], F_DUPFD_CLOEXEC, number);
+    const unsigned before = posix_count_fds();
+    fathom_loop_deinit(&loop);
+    assert_int_equal(posix_count_fds(), before);
+    (void)close(others);
 }
