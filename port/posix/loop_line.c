@@ -137,8 +137,8 @@ static int pin_fd(const fathom_loop_source_t *source) { return ((const fathom_lo
 /* Its chip may have gone, which a level does not tell. */
 static bool open_pin(fathom_loop_source_t *source)
 {
-    struct pollfd entry = {pin_fd(source), POLLIN, 0};
-    return poll(&entry, 1, 0) <= 0 || (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) == 0;
+    struct pollfd entry = {.fd = pin_fd(source)}; /* a hang-up and errors are told unasked */
+    return poll(&entry, 1, 0) <= 0;
 }
 
 static bool poll_pin(fathom_loop_source_t *source) { return !source->is_hung_up; }

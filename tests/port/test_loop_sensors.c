@@ -188,18 +188,21 @@ static void wake_two(fathom_status_t status) { fathom_loop_wake(&two.source); }
 
 TEST(a_callback_that_wakes_what_this_step_polls_anyway_adds_no_poll)
 {
-    one.due_us = two.due_us = 1000;
+    one.due_us = 1000;
+    two.due_us = 2000;
     add(&one);
     add(&two);
     fake_sensor(&first, &one);
     step();
-    first.script[0] = FATHOM_READY;
+    first.script[first.at] = FATHOM_READY;
     first.when_taken = wake_two;
+    fake.now_us += 5000; /* both are due, `two` after `one` */
     step();
+    assert_int_equal(first.readings, 1);
     assert_int_equal(two.polls, 2);
     step();
-    assert_int_equal(fake_elapsed_us(), 2000);
-    assert_int_equal(two.polls, 3);
+    assert_int_equal(fake_elapsed_us(), 6000);
+    assert_int_equal(two.polls, 2);
 }
 
 static void add_sensor_to_two(fathom_status_t status)

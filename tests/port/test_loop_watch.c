@@ -44,6 +44,7 @@ static void put_at_0(int fd)
 
 TEST(a_pin_that_was_removed_wakes_nothing)
 {
+    memset(&pin, 0xA5, sizeof pin); /* any content will do */
     add_pin(&pin, &first, ends[0]);
     (void)pass(1000);
     fathom_loop_remove(&pin.source);
