@@ -183,16 +183,16 @@ static int next_fd(void)
     return fd;
 }
 
-/* With room for none, and for the first of the two. */
+/* With a limit that lets it have none, and the first of the two. */
 TEST(a_loop_that_gets_no_descriptor_says_so_and_keeps_none)
 {
     static fathom_loop_t loop;
     struct rlimit usual;
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &usual), 0);
-    for (unsigned room = 0; room != 2; room++) {
+    for (unsigned fds = 0; fds != 2; fds++) {
         const int next = next_fd();
         struct rlimit few = usual;
-        few.rlim_cur = (rlim_t)next + room;
+        few.rlim_cur = (rlim_t)next + fds;
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &few), 0);
         const fathom_posix_status_t status = fathom_loop_init(&loop, NULL);
         assert_int_equal(setrlimit(RLIMIT_NOFILE, &usual), 0);
