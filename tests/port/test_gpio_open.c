@@ -210,6 +210,7 @@ TEST(what_is_no_chip_is_told_as_such)
     expect_failure(INPUT, file, 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip; ls /dev/gpiochip* lists");
     assert_int_equal(unlink(file), 0);
     expect_failure(INPUT, "/dev/null", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/dev/null, line 1: not a GPIO chip");
+    expect_failure(INPUT, "/", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/, line 1: not a GPIO chip");
     expect_failure(INPUT, "/tmp", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip");
     expect_failure(INPUT, "null", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/dev/null, line 1: ");
     chip.chip_error = EINVAL; /* a character device that takes no such call */
@@ -269,6 +270,8 @@ TEST(a_line_in_use_is_told_with_its_user)
     (void)snprintf(chip.consumer, sizeof chip.consumer, "spi0 CS0");
     expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE,
                    "in use by \"spi0 CS0\"; end that program");
+    (void)snprintf(chip.consumer, sizeof chip.consumer, "y");
+    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE, "in use by \"y\"; end that program");
     memset(chip.consumer, 'x', sizeof chip.consumer); /* not ended by a zero */
     expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE, "xxx\"; end that program");
 }

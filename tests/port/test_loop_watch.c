@@ -123,8 +123,8 @@ TEST(events_that_have_changed_are_waited_for_from_the_next_poll_on)
 TEST(a_stream_that_cannot_be_waited_for_is_read_every_10_ms)
 {
     add_pin(&pin, &first, ends[0]);
-    add_stream(1);
     for (unsigned i = 0; i != 10; i++) send_bytes(16);
+    add_stream(1);
     const unsigned before = stream.bytes;
     (void)pass(200000);
     assert_in_range(stream.bytes - before, 5, 25);
