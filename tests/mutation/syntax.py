@@ -10,7 +10,7 @@ from expressions import NARROWER, Expressions
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LAYERS = ['src/codec', 'src/engine', 'src/sensor']  # what stands there includes headers beside it
-INCLUDE = ['include', 'src', *LAYERS, 'port', 'port/posix', 'port/libmodbus', '/usr/include/modbus']
+INCLUDE = ['include', 'src', *LAYERS, 'port', 'port/posix', 'port/gpio', 'port/libmodbus', '/usr/include/modbus']
 
 JUMPS = (Kind.RETURN_STMT, Kind.BREAK_STMT, Kind.CONTINUE_STMT)
 

@@ -18,6 +18,7 @@ typedef struct {
 enum { POSIX_LIMIT_MS = 10000 };
 
 void posix_pty_open(posix_pty_t *pty);
+/* path is one that no terminal has, from then on. */
 void posix_pty_close(posix_pty_t *pty);
 
 /* Sends all bytes to the slave. */

@@ -167,9 +167,10 @@ TEST(a_line_that_is_lost_says_why_and_comes_back)
     posix_pty_open(&rig.ptys[0]);
     line_rig_add(115200);
     (void)pass(1000);
+    const posix_pty_t lost = rig.ptys[0];
     posix_pty_close(&rig.ptys[0]);
     line_rig_until(&rig.port_errors[0], 1);
-    assert_non_null(strstr(fathom_loop_error_text(&rig.lines[0].source), rig.ptys[0].path));
+    assert_non_null(strstr(fathom_loop_error_text(&rig.lines[0].source), lost.path));
     posix_pty_open(&rig.ptys[0]);
     const pid_t far_end = far_end_begin(rig.ptys, 1, 0);
     line_rig_until(&rig.readings[0], 2);
