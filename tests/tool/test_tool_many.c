@@ -15,7 +15,7 @@ static struct {
     fathom_sim_a16_t a16;
     fathom_sim_fixed_t scene;
     tool_port_t ports[PORTS];
-    char paths[PORTS][8]; /* p0, p1 ... */
+    char paths[PORTS][24]; /* p0, p1 ... */
     tool_line_t tool;
     uint64_t passed_us;
     size_t pulled; /* this port is away ... */
