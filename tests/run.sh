@@ -3,7 +3,7 @@
 #
 # Everything that has to pass, on Debian 12, in three steps; tests/README.md says what is in each.
 #
-#     sh tests/run.sh         before a change is believed: 8 to 11 minutes on two idle cores
+#     sh tests/run.sh         before a change is believed: 10 to 12 minutes on two idle cores
 #     sh tests/run.sh long    before it is merged: 20 minutes more
 #     sh tests/run.sh full    once for a larger piece of work: an hour or more; keeps its figures in CSV files
 #

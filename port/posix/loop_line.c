@@ -109,7 +109,6 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
         return FATHOM_POSIX_ERR_ARGUMENT;
     memset(line, 0, sizeof *line);
     if (fathom_posix_check(&line->port, settings) != FATHOM_POSIX_OK) return FATHOM_POSIX_ERR_ARGUMENT;
-    const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
     line->source.kind = &kind;
     line->source.reads_all = true;
     line->path = path;
@@ -122,7 +121,7 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
     line->config.frame = line->frame;
     line->config.frame_size = sizeof line->frame;
     line->config.find_echo = fathom_line_find_echo;
-    line->config.silence_us = FATHOM_T3_5_US(settings->baud, bits);
+    line->config.silence_us = FATHOM_T3_5_US(settings->baud, fathom_posix_bits(settings));
     line->config.gap_us = GAP_US;
     (void)fathom_line_init(&line->line, &line->config); /* all of it is there */
     line->modbus = fathom_modbus_client(&line->line);

@@ -18,8 +18,7 @@ enum { PTY_MAJOR_FIRST = 136, PTY_MAJOR_LAST = 143 };
 
 static uint64_t duration_us(const fathom_line_settings_t *line, size_t length)
 {
-    const unsigned bits = 1u + 8u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
-    return ((uint64_t)length * bits * 1000000u + line->baud - 1) / line->baud;
+    return ((uint64_t)length * fathom_posix_bits(line) * 1000000u + line->baud - 1) / line->baud;
 }
 
 /* Hands bytes to the kernel. Returns how many it took; -1 when the port is lost. */

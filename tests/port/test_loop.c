@@ -1,25 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "loop_fake.h"
+#include "loop_three.h"
 #include "suite.h"
 
 /* When fathom_loop.h polls what, in simulated time: pauses and what is told of them are in test_loop_lost.c. */
 
-static fake_source_t one, two, three;
-static fake_sensor_t first, second;
-
-static int set_up(void **state)
-{
-    (void)fake_set_up(state);
-    fake_source(&one);
-    fake_source(&two);
-    fake_source(&three);
-    return 0;
-}
-
 static const suite_t suite = {.set_up = set_up, .tear_down = fake_tear_down};
-
-static void add(fake_source_t *source) { fathom_loop_add(&fake.loop, &source->source); }
-static void step(void) { fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE); }
 
 static int tear_down_none(void **state) { return 0; }
 static const suite_t plain = {.tear_down = tear_down_none};

@@ -1,27 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include <poll.h>
 
-#include "loop_fake.h"
+#include "loop_three.h"
 #include "suite.h"
 
 /* What fathom_loop.h does with a source that cannot be opened, or is lost, in simulated time. */
 
-static fake_source_t one, two;
-static fake_sensor_t first, second;
-
-static int set_up(void **state)
-{
-    (void)fake_set_up(state);
-    fake_source(&one);
-    fake_source(&two);
-    return 0;
-}
-
 static const suite_t suite = {.set_up = set_up, .tear_down = fake_tear_down};
 static const suite_t plain = {.tear_down = fake_tear_down};
-
-static void add(fake_source_t *source) { fathom_loop_add(&fake.loop, &source->source); }
-static void step(void) { fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE); }
 
 /* What was told, one after the other: so long after the beginning it was open, or not. */
 static void assert_news(unsigned n, uint64_t at_us, bool is_open)

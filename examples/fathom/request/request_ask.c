@@ -5,6 +5,7 @@
 
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
+#include "shared/line_text.h"
 
 enum { FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 5 };
 enum { LEAST_LENGTH = 4, MAX_LENGTH = 255, EXCEPTION_LENGTH = 5, READ_OVERHEAD = 5, WRITE_LENGTH = 8 };
@@ -123,8 +124,7 @@ static const fathom_protocol_t *protocol_of(const request_t *request)
 static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *channel)
 {
     const request_t *const request = ask->request;
-    const uint64_t bits =
-        9u + (request->line.parity != FATHOM_PARITY_NONE ? 1u : 0u) + request->line.stop_bits;
+    const uint64_t bits = line_bits(&request->line);
     const uint64_t wire_us = request->length * bits * 1000000u / request->line.baud;
     const uint64_t silence_us = FATHOM_T3_5_US(request->line.baud, bits);
     const uint64_t took_us = ask->evidence.slowest_us;

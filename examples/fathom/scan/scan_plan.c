@@ -4,6 +4,7 @@
 #include "fathom/engine/line.h"
 #include "models/dyp.h"
 #include "models/hps167s/hps167s.h"
+#include "shared/line_text.h"
 
 const fathom_line_settings_t scan_dyp_line = DYP_LINE;
 const fathom_line_settings_t scan_hps167s_line = HPS167S_LINE;
@@ -12,11 +13,6 @@ enum { REQUEST_BYTES = 8 };
 
 /* The system wakes a program late, and a USB adapter tells late that a request has left. */
 enum { LATENESS_US = 5000 };
-
-static unsigned bits(const fathom_line_settings_t *line)
-{
-    return 9u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
-}
 
 uint8_t scan_factory_parity(uint32_t baud)
 {
@@ -39,7 +35,7 @@ uint16_t scan_silence_us(const scan_plan_t *plan)
     uint16_t longest_us = 0;
     for (uint8_t i = 0; i != plan->setting_count; i++) {
         const fathom_line_settings_t *const line = &plan->settings[i];
-        const uint16_t us = FATHOM_T3_5_US(line->baud, bits(line));
+        const uint16_t us = FATHOM_T3_5_US(line->baud, line_bits(line));
         if (us > longest_us) longest_us = us;
     }
     return longest_us;
@@ -47,7 +43,7 @@ uint16_t scan_silence_us(const scan_plan_t *plan)
 
 static uint32_t request_us(const fathom_line_settings_t *line)
 {
-    return (uint32_t)(REQUEST_BYTES * bits(line) * UINT32_C(1000000) / line->baud);
+    return (uint32_t)(REQUEST_BYTES * line_bits(line) * UINT32_C(1000000) / line->baud);
 }
 
 uint32_t scan_addresses(const scan_plan_t *plan) { return (uint32_t)(plan->last - plan->first + 1); }

@@ -5,17 +5,17 @@
 #include <string.h>
 
 #include "fathom/codec/hps167s_registers.h"
+#include "shared/line_text.h"
 #include "shared/options.h"
 #include "shared/tcp_address.h"
 
 /* What the line has to know of a serial port, ... */
 static void suit_serial(channel_t *channel, const fathom_line_settings_t *settings)
 {
-    const unsigned bits = 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
     /* An HPS-167S may move to 19200 baud, by its reset too: the slowest rate that is used counts (line.h). */
     const uint32_t baud =
         settings->baud > FATHOM_HPS167S_FACTORY_BAUD ? FATHOM_HPS167S_FACTORY_BAUD : settings->baud;
-    channel->config.silence_us = FATHOM_T3_5_US(baud, bits);
+    channel->config.silence_us = FATHOM_T3_5_US(baud, line_bits(settings));
     channel->config.gap_us = CHANNEL_RESPONSE_GAP_US;
     channel->config.echo = channel->echo;
 }
@@ -99,7 +99,10 @@ bool channel_open_pins(channel_t *channel, const host_t *host, const char *chip,
 {
     channel->host = host;
     channel->is_chip = host->open_pins(host->ctx, chip, wanted, &channel->pins, &channel->port);
-    if (!channel->is_chip) return false;
+    if (!channel->is_chip) {
+        tell_environment(&channel->port, chip);
+        return false;
+    }
     channel->clock = (fathom_clock_t){now_us, channel};
     listener_begin(&channel->listener, &channel->uart, &channel->clock); /* hears nothing */
     return true;

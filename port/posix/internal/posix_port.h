@@ -16,6 +16,12 @@ fathom_posix_status_t fathom_posix_fail_lost(fathom_posix_uart_t *port, int code
 /* OK, or fails with CLOSED or LOST. */
 fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port);
 
+/* Bits of a character, with its start, parity and stop bits. */
+static inline unsigned fathom_posix_bits(const fathom_line_settings_t *line)
+{
+    return 9u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
+}
+
 /* settings.c: OK, or fails with ARGUMENT. */
 fathom_posix_status_t fathom_posix_check(fathom_posix_uart_t *port, const fathom_line_settings_t *settings);
 
