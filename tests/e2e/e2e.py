@@ -5,6 +5,7 @@ Nothing here waits for a while: every wait is for something that happens, with a
 fails. Programs are ended with the test that started them. The cases of a file run side by side, because they
 mostly wait; so none may hang on another."""
 import concurrent.futures
+import contextlib
 import csv
 import io
 import json
@@ -110,6 +111,7 @@ class Program:
             self.poller.register(fd, select.POLLIN)
         self.done = None
         self.port = ''
+        self.link = None  # to the port
 
     def __str__(self):
         return self.port
@@ -183,7 +185,11 @@ class Program:
         return self.done
 
     def end(self, number=signal.SIGTERM):
+        """The terminal of one that is gone may be another test's at once. So no link leads there any more."""
         if self.done is None:
+            if number == signal.SIGKILL and self.link:  # which the others remove themselves
+                with contextlib.suppress(FileNotFoundError):
+                    os.unlink(self.link)
             self.send(number)
         return self.finish()
 
@@ -257,7 +263,9 @@ class Case(unittest.TestCase):
     def sim(self, *line):
         """A simulated sensor that is ready."""
         program = self.fathom('sim', *line)
+        words = program.command
         program.port = program.expect(r'^(/dev/pts/\d+)$')[1]
+        program.link = words[words.index('--link') + 1] if '--link' in words else None
         return program
 
     def device(self):

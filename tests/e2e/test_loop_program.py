@@ -6,6 +6,7 @@ pin is a stand-in."""
 import os
 import re
 import shlex
+import signal
 import struct
 import subprocess
 import time
@@ -46,11 +47,7 @@ class Site(e2e.Case):
 
     def plug(self, name, sensor):
         """A simulated sensor behind the link of this name."""
-        sim = self.sim(sensor)
-        if os.path.lexists(self.path(name)):
-            os.unlink(self.path(name))
-        os.symlink(sim.port, self.path(name))
-        return sim
+        return self.sim(sensor, ['--link', self.path(name)])
 
     def gate(self, mm):
         return self.plug('gate', f'hps167s --distance {mm}')
@@ -108,8 +105,7 @@ class Site(e2e.Case):
         self.tank(1953)
         site = self.site()
         site.expect('^gate: 2083 mm$')
-        os.unlink(self.path('gate'))
-        gate.end()
+        gate.end(signal.SIGKILL)
         site.expect('^gate: PORT$')
         site.expect(LOST, 'err')
         used, rows, began = self.cpu(site), len(site.lines()), time.monotonic()

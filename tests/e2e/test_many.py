@@ -50,7 +50,6 @@ class Lost(Case):
         one, two, three = (self.sensor(name) for name in ('one', 'two', 'three'))
         reader = self.begin(one, two, three, options='--reconnect --stats')
         self.has(reader, 'two', 5)
-        os.unlink(self.path('two'))  # first, for the terminal may be another program's at once
         self.sims['two'].end(signal.SIGKILL)
         reader.expect(f'{self.path("two")}: .*; waiting until it is back$', 'err')
         before = len(self.times(reader, 'two'))

@@ -67,7 +67,9 @@ class Link(Case):
             self.assertFalse(os.path.lexists(self.link))
 
     def test_a_link_that_was_left_behind_is_replaced(self):
-        self.sim(f'a16 --link {self.link}').end(signal.SIGKILL)
+        sim = self.sim(f'a16 --link {self.link}')
+        sim.send(signal.SIGKILL)
+        sim.finish()
         self.assertTrue(os.path.lexists(self.link))
         os.unlink(self.link)
         os.symlink('/dev/pts/99999999', self.link)  # because another test may have got its number by now
