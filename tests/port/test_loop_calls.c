@@ -19,11 +19,17 @@ enum { SIXTH = 6 };
 
 typedef struct {
     unsigned reads, empty_reads, writes, ioctls, opens, sleeps;
-    int sleep_error; /* of epoll_pwait2; 0: none */
-    int poll_error;  /* of ppoll(2), which takes its place */
+    int sleep_error;        /* of epoll_pwait2; 0: none */
+    int poll_error;         /* of ppoll(2), which takes its place */
+    int control_error;      /* of epoll_ctl */
+    unsigned adds, changes; /* of it: calls with EPOLL_CTL_ADD, and EPOLL_CTL_MOD */
+    size_t write_most;      /* bytes that one write takes; 0: all */
     /* What the last of both was asked for. */
     bool is_endless;
     int64_t seconds, nanoseconds;
+    /* The longest limit of a first sleep behind a write. */
+    bool has_written;
+    int64_t longest_us;
 } calls_t;
 
 static calls_t calls;
@@ -42,11 +48,18 @@ long __wrap_syscall(long number, ...);
 int __real_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask);
 int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask);
 
+int __real_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event);
+int __wrap_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event);
+
 static void asked_for(bool is_endless, int64_t seconds, int64_t nanoseconds)
 {
     calls.is_endless = is_endless;
     calls.seconds = seconds;
     calls.nanoseconds = nanoseconds;
+    if (!calls.has_written || is_endless) return;
+    calls.has_written = false;
+    const int64_t us = seconds * 1000000 + nanoseconds / 1000;
+    if (us > calls.longest_us) calls.longest_us = us;
 }
 
 ssize_t __wrap_read(int fd, void *bytes, size_t length)
@@ -60,7 +73,9 @@ ssize_t __wrap_read(int fd, void *bytes, size_t length)
 ssize_t __wrap_write(int fd, const void *bytes, size_t length)
 {
     calls.writes++;
-    return __real_write(fd, bytes, length);
+    calls.has_written = true;
+    return __real_write(fd, bytes,
+                        calls.write_most != 0 && length > calls.write_most ? calls.write_most : length);
 }
 
 int __wrap_ioctl(int fd, unsigned long request, ...)
@@ -102,6 +117,15 @@ int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *li
     asked_for(limit == NULL, limit != NULL ? limit->tv_sec : 0, limit != NULL ? limit->tv_nsec : 0);
     if (calls.poll_error == 0) return __real_ppoll(entries, count, limit, mask);
     errno = calls.poll_error;
+    return -1;
+}
+
+int __wrap_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event)
+{
+    calls.adds += operation == EPOLL_CTL_ADD;
+    calls.changes += operation == EPOLL_CTL_MOD;
+    if (calls.control_error == 0) return __real_epoll_ctl(epoll, operation, fd, event);
+    errno = calls.control_error;
     return -1;
 }
 /* NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming) */
@@ -174,23 +198,25 @@ TEST(a_line_that_has_nothing_to_say_is_read_once)
     assert_int_equal(calls.writes, 1);
 }
 
-/* fathom_posix.h: leaves_in_us. At 1200 baud the 8 bytes of the request leave for 67 ms; the response comes after 100. It
+/* fathom_posix.h: leaves_in_us. At 1200 baud the 80 bits of the request leave for 66.7 ms; the response comes after 100. It
  * sleeps for the silence before the request, the end of the request, and the response; and where the port does not tell
- * when that end is, each millisecond. */
+ * when that end is, a millisecond at most. How long is what it asks for: on a busy machine it sleeps longer, less often. */
 TEST(the_loop_wakes_once_for_the_end_of_a_request)
 {
     begin_late(1, 1200, 100);
     line_rig_until(&rig.readings[0], 1);
     memset(&calls, 0, sizeof calls);
-    line_rig_until(&rig.readings[0], 4);
-    /* Fewer where the machine was busy with others for as long as the silence lasts. */
-    assert_in_range(calls.sleeps, 3 * 2, 3 * 3 + 3);
-    assert_int_equal(calls.ioctls, 3);
-    rig.lines[0].uart.leaves_in_us = NULL;
     line_rig_until(&rig.readings[0], 5);
-    memset(&calls, 0, sizeof calls);
+    /* 12; one more for each 100 ms that a busy machine delays a response. Each millisecond: 66 a request. */
+    assert_in_range(calls.sleeps, 4, 4 * 3 + 12);
+    assert_in_range(calls.ioctls, 1, 4 * 2); /* 4 where no other program delays it */
+    assert_in_range(calls.longest_us, 50000, 67000);
+    rig.lines[0].uart.leaves_in_us = NULL;
     line_rig_until(&rig.readings[0], 6);
-    assert_in_range(calls.sleeps, 20, 100);
+    memset(&calls, 0, sizeof calls);
+    line_rig_until(&rig.readings[0], 8);
+    assert_true(calls.writes > 0);
+    assert_in_range(calls.longest_us, 1, 1000);
     assert_int_equal(calls.empty_reads, 0);
     assert_int_equal(rig.errors[0], 0);
 }
@@ -237,7 +263,8 @@ TEST(there_too_a_sleep_ends_after_its_time_and_not_before)
 {
     calls.sleep_error = ENOSYS;
     uint64_t least_us = UINT64_MAX;
-    for (unsigned i = 0; i != 20; i++) {
+    /* On a busy machine many of them are long. */
+    for (unsigned i = 0; i != 1000 && least_us > 900; i++) {
         const uint64_t begin_us = fathom_posix_now_us();
         fathom_loop_step(&rig.loop, 200);
         const uint64_t took_us = fathom_posix_now_us() - begin_us;
@@ -337,6 +364,32 @@ TEST(a_thousand_losses_leave_no_descriptor_behind)
     far_end = far_end_begin(rig.ptys, 1, 0);
     line_rig_until(&rig.readings[0], 1);
 }
+
+TEST(a_loop_that_cannot_watch_its_own_end_is_an_error_and_leaves_no_descriptor)
+{
+    fathom_loop_t loop;
+    const unsigned before = posix_count_fds();
+    calls.control_error = ENOMEM;
+    assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_ERR_SYSTEM);
+    calls.control_error = 0;
+    assert_int_equal(posix_count_fds(), before);
+}
+
+/* A descriptor that epoll refuses is none of its own: it may be another source's, which a change would take away. */
+static void leaves_in_parts(void **state)
+{
+    calls.control_error = *(const int *)*state;
+    calls.write_most = 1; /* so that it waits for room too */
+    posix_pty_open(&rig.ptys[0]);
+    line_rig_add(115200);
+    for (unsigned i = 0; i != 20; i++) fathom_loop_step(&rig.loop, 10000);
+    assert_true(calls.writes > 0);
+    assert_true(calls.adds > 0);
+    assert_int_equal(calls.changes > 0, calls.control_error == 0);
+}
+
+TEST_ROW(a_line_whose_request_leaves_in_parts_waits_for_room, leaves_in_parts, &no_error)
+TEST_ROW(a_line_that_epoll_does_not_wait_for_is_never_changed_there, leaves_in_parts, &not_allowed)
 
 /* 0, 1, 2 and the two of the loop are what others have; each init takes two, and gives them back. */
 TEST(init_and_deinit_leave_no_descriptor_behind)
