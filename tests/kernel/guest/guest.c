@@ -126,8 +126,8 @@ static void run_case(const guest_case_t *one)
         exit(0);
     }
     (void)waitpid(child, &status, 0);
-    (void)kill(-child, SIGKILL); /* what it has left behind */
-    while (waitpid(-1, NULL, WNOHANG) > 0) continue;
+    (void)kill(-child, SIGKILL); /* what it has left behind, which may hold a port until it is gone */
+    while (waitpid(-child, NULL, 0) > 0) continue;
     if (WIFSIGNALED(status))
         printf("FAILED %s: ended by signal %d%s\n", one->name, WTERMSIG(status),
                WTERMSIG(status) == SIGALRM ? ", it took too long" : "");
