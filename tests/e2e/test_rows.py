@@ -183,6 +183,15 @@ class Files(e2e.Case):
             self.ends(f'read a16:1 --port {sim} --count 1 --format json --output {self.path("log")}', 0, out='')
         self.assertEqual(self.content('log').count('"distance_mm":754,'), 2)
 
+    def test_a_file_that_may_not_grow_ends_it_and_has_whole_rows(self):
+        sim, log = self.sim('hps167s:7 --distance 2083'), self.path('log.csv')
+        for limit in range(400, 480, 13):  # a row has some 80 bytes
+            self.ends(self.start(['prlimit', f'--fsize={limit}', e2e.FATHOM, 'read', 'hps167s:7', '--port', str(sim),
+                                  '--format', 'csv', '--output', log]), 1, f'{log}: File too large')
+            self.assertLessEqual(os.path.getsize(log), limit)
+            self.assertTrue(all(row.endswith(',723.1744,1,0') for row in self.content('log.csv').splitlines()[1:]))
+            self.assertEqual(self.content('log.csv')[-1], '\n')
+
     @e2e.each(that_cannot_be_opened=('nowhere/log.csv', 'No such file or directory'),
               that_is_full=('/dev/full', 'No space left on device'))
     def file(self, name, words):

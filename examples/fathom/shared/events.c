@@ -67,6 +67,7 @@ bool events_begin(void)
     handle(SIGTERM, on_end);
     if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN) handle(SIGHUP, on_end);
     (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
     return true;
 }
 

@@ -10,7 +10,7 @@
 /*
  * What a command waits for: its port, the time, and the wish to end it. SIGINT, SIGTERM and SIGHUP (unless
  * nohup has it ignored) only leave a mark, which cannot be missed between looking and sleeping; a broken
- * output is told by write errors, not by SIGPIPE.
+ * or limited output is told by write errors, not by SIGPIPE or SIGXFSZ.
  */
 
 /* False, after saying why, when the system has no descriptor left. */
