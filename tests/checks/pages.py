@@ -18,7 +18,7 @@ common.COPIED = (*common.COPIED, 'tests', 'README.md', 'CHANGELOG.md', 'CMakeLis
 
 COLUMNS, SCREEN, FIRST_PAGE = 120, 45, 12 * 1024
 FOLDERS = ('.', 'include', 'src', 'src/codec', 'src/engine', 'src/sensor', 'port', 'examples', 'examples/fathom',
-           'tests', 'tests/bench', 'tests/checks', 'tests/e2e', 'tests/firmware', 'tests/golden', 'tests/interop',
+           'tests', 'tests/bench', 'tests/chaos', 'tests/checks', 'tests/e2e', 'tests/firmware', 'tests/golden', 'tests/interop',
            'tests/libmodbus', 'tests/mutation', 'tests/port', 'tests/property', 'tests/second', 'tests/sim',
            'tests/soak', 'tests/support', 'tests/tool', 'tests/unit', 'port/sim')
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Werror']
