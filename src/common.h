@@ -9,18 +9,18 @@
 
 static inline uint32_t clock_us(const fathom_clock_t *clock) { return clock->now_us(clock->ctx); }
 
-static inline uint32_t least_us(uint32_t a, uint32_t b) { return a < b ? a : b; }
+static inline uint32_t least_us(uint32_t a, uint32_t b) { return (a < b) ? a : b; }
 
 /* How much of `us` is left when so much of it has passed. */
 static inline uint32_t rest_us(uint32_t us, uint32_t passed_us)
 {
-    return us > passed_us ? us - passed_us : 0;
+    return (us > passed_us) ? (us - passed_us) : 0;
 }
 
 /* A member of a config of which 0 means its default. */
 static inline uint32_t or_default(uint32_t value, uint32_t default_value)
 {
-    return value != 0 ? value : default_value;
+    return (value != 0) ? value : default_value;
 }
 
 /* A counter that stops at 65535. */

@@ -9,7 +9,7 @@ const char *fathom_status_name(fathom_status_t status)
         "STALE\0CANCELLED\0BUSY\0CAPACITY\0ECHO\0UNSUPPORTED\0WARMING_UP\0"
         "UNCONFIRMED\0IN_USE\0DIFFERS";
     const char *name = names;
-    if (status > FATHOM_READY || status < FATHOM_ERR_DIFFERS) return "?";
+    if ((status > FATHOM_READY) || (status < FATHOM_ERR_DIFFERS)) return "?";
     for (int left = FATHOM_READY - (int)status; left != 0; left--)
         while (*name++ != '\0') {
         }

@@ -27,7 +27,7 @@ static const place_t places[] = {{(volatile uint32_t *)0x40004000u, 0},
 /* 0: not within 2.5 %, or not 8N1, which is all that these UARTs have. */
 static uint32_t divider(const fathom_line_settings_t *line)
 {
-    return line->parity != FATHOM_PARITY_NONE || line->stop_bits != 1
+    return ((line->parity != FATHOM_PARITY_NONE) || (line->stop_bits != 1))
                ? 0
                : fathom_serial_divider(FATHOM_MPS2_HZ, line, MIN_BAUDDIV, MAX_BAUDDIV);
 }
@@ -43,7 +43,7 @@ void fathom_mps2_uart_interrupt(fathom_mps2_uart_t *uart)
         if (is_overrun) registers[STATE] = STATE_RXOVERRUN;
         fathom_serial_put(&uart->serial, (uint8_t)registers[DATA], is_overrun ? FATHOM_RX_OVERRUN : 0);
     }
-    if ((why & INTSTATUS_TX) == 0 || !uart->serial.leaving) return;
+    if (((why & INTSTATUS_TX) == 0) || !uart->serial.leaving) return;
     if (fathom_serial_next(&uart->serial, &byte)) {
         registers[DATA] = byte;
         return;
@@ -61,8 +61,8 @@ static bool uart_sent(void *ctx)
 {
     fathom_mps2_uart_t *const uart = ctx;
     if (uart->is_sending && !uart->serial.leaving &&
-        fathom_elapsed_us(fathom_mps2_clock.now_us(NULL), uart->taken_us) >
-            CHARACTER_BITS * 1000000u / uart->baud)
+        (fathom_elapsed_us(fathom_mps2_clock.now_us(NULL), uart->taken_us) >
+         (CHARACTER_BITS * 1000000u / uart->baud)))
         uart->is_sending = false;
     return !uart->is_sending;
 }
@@ -100,8 +100,8 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 
 bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_config_t *config)
 {
-    if (config->number >= sizeof places / sizeof places[0] || config->request == NULL ||
-        config->request_size == 0)
+    if ((config->number >= (sizeof places / sizeof places[0])) || (config->request == NULL) ||
+        (config->request_size == 0))
         return false;
     const uint32_t by = divider(&config->line);
     if (by == 0) return false;
@@ -114,7 +114,7 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
     uart->registers[BAUDDIV] = by;
     uart->registers[INTSTATUS] = INTSTATUS_TX | INTSTATUS_RX;
     __asm__ volatile("" ::: "memory"); /* all that is stored before the interrupts are enabled */
-    NVIC_ISER[place->interrupt / 32] = 3u << place->interrupt % 32;
+    NVIC_ISER[place->interrupt / 32] = 3u << (place->interrupt % 32);
     uart->registers[CTRL] = CTRL_TX | CTRL_RX | CTRL_TX_INTERRUPT | CTRL_RX_INTERRUPT;
     return true;
 }

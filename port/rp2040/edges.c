@@ -22,6 +22,6 @@ void fathom_rp2040_edges_interrupt(fathom_rp2040_edges_t *pin)
     /* Cleared before the level is read: an edge in between is seen in the level, and interrupts once more; the other
      * way round it would be lost. */
     RP2040_IO_INTR(gpio) = RP2040_IO_EDGES(gpio);
-    fathom_edges_feed(pin->edges, (RP2040_SIO_GPIO_IN >> gpio & 1u) != 0, now_us);
+    fathom_edges_feed(pin->edges, ((RP2040_SIO_GPIO_IN >> gpio) & 1u) != 0, now_us);
     if (pin->idle != NULL) pin->idle->has_news = true;
 }

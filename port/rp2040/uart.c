@@ -47,7 +47,8 @@ static bool gather(fathom_rp2040_uart_t *uart)
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint8_t taken = uart->taken;
     uint8_t written = uart->written;
-    while ((hardware->fr & RP2040_UART_FR_RXFE) == 0 && (uint8_t)(written - taken) != FATHOM_RP2040_RX_RING) {
+    while (((hardware->fr & RP2040_UART_FR_RXFE) == 0) &&
+           ((uint8_t)(written - taken) != FATHOM_RP2040_RX_RING)) {
         uart->ring[written % FATHOM_RP2040_RX_RING] = (uint16_t)hardware->dr;
         written++;
     }
@@ -65,7 +66,7 @@ static void note_silence(fathom_rp2040_uart_t *uart)
 
 static void count(uint16_t *counter, bool is_so)
 {
-    if (is_so && *counter != UINT16_MAX) (*counter)++;
+    if (is_so && (*counter != UINT16_MAX)) (*counter)++;
 }
 
 static uint8_t flags_of(fathom_rp2040_uart_t *uart, unsigned errors)
@@ -86,20 +87,20 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     fathom_rp2040_uart_t *const uart = ctx;
     rp2040_uart_t *const hardware = hardware_of(uart);
     uint8_t taken = uart->taken;
-    if (taken == uart->written && (hardware->fr & RP2040_UART_FR_RXFE) != 0) return 0;
+    if ((taken == uart->written) && ((hardware->fr & RP2040_UART_FR_RXFE) != 0)) return 0;
     rp2040_clear(&hardware->imsc, RECEIVE);
     keep_order();
     (void)gather(uart);
     const uint8_t end = uart->written;
     int n = 0;
-    while (taken != end && (size_t)n < capacity) {
+    while ((taken != end) && ((size_t)n < capacity)) {
         const unsigned entry = uart->ring[taken % FATHOM_RP2040_RX_RING];
         const unsigned errors = entry & ERRORS;
-        if (errors != 0 && n != 0) break;
+        if ((errors != 0) && (n != 0)) break;
         bytes[n++] = (uint8_t)entry;
         taken++;
         rx->flags = flags_of(uart, errors);
-        if (uart->is_silent && taken == uart->silent_at) {
+        if (uart->is_silent && (taken == uart->silent_at)) {
             rx->flags |= FATHOM_RX_TIMED;
             rx->last_us = uart->silent_us;
             uart->is_silent = false;
@@ -120,7 +121,7 @@ static void feed(fathom_rp2040_uart_t *uart)
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint8_t length = uart->length;
     uint8_t given = uart->given;
-    while (given != length && (hardware->fr & RP2040_UART_FR_TXFF) == 0)
+    while ((given != length) && ((hardware->fr & RP2040_UART_FR_TXFF) == 0))
         hardware->dr = uart->config->request[given++];
     uart->given = given;
     if (given == length)
@@ -132,20 +133,20 @@ static void feed(fathom_rp2040_uart_t *uart)
 static bool uart_sent(void *ctx)
 {
     const fathom_rp2040_uart_t *const uart = ctx;
-    return uart->given == uart->length && (hardware_of(uart)->fr & RP2040_UART_FR_BUSY) == 0;
+    return (uart->given == uart->length) && ((hardware_of(uart)->fr & RP2040_UART_FR_BUSY) == 0);
 }
 
 static uint32_t uart_leaves_in_us(void *ctx)
 {
     const fathom_rp2040_uart_t *const uart = ctx;
     const uint32_t left_us = uart->end_us - RP2040_TIMER_RAWL;
-    return uart_sent(ctx) || left_us > INT32_MAX ? 0 : left_us;
+    return (uart_sent(ctx) || (left_us > INT32_MAX)) ? 0 : left_us;
 }
 
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_rp2040_uart_t *const uart = ctx;
-    if (length == 0 || length > uart->config->request_size) return -1;
+    if ((length == 0) || (length > uart->config->request_size)) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0;
     for (size_t i = 0; i < length; i++) uart->config->request[i] = bytes[i];
     keep_order();
@@ -177,8 +178,8 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     fathom_rp2040_uart_t *const uart = ctx;
     const fathom_line_settings_t *const line = &uart->line;
-    if (line->baud == settings->baud && line->parity == settings->parity &&
-        line->stop_bits == settings->stop_bits)
+    if ((line->baud == settings->baud) && (line->parity == settings->parity) &&
+        (line->stop_bits == settings->stop_bits))
         return 1;
     if (uart->is_break || !uart_sent(uart)) return 0;
     if (!fathom_rp2040_uart_set_line(&uart->config->wiring, settings)) return -1;
@@ -211,7 +212,7 @@ void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
         /* With no room the bytes wait in the hardware, and read lets the interrupt through again. */
         const bool has_room = gather(uart);
         if (!has_room) rp2040_clear(&hardware->imsc, RECEIVE);
-        if (has_room && (pending & RP2040_UART_INT_RT) != 0) note_silence(uart);
+        if (has_room && ((pending & RP2040_UART_INT_RT) != 0)) note_silence(uart);
         tell(uart);
     }
     if ((pending & RP2040_UART_INT_TX) != 0) feed(uart);
@@ -219,7 +220,7 @@ void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
 
 bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config)
 {
-    if (config->request == NULL || config->request_size == 0) return false;
+    if ((config->request == NULL) || (config->request_size == 0)) return false;
     uart->config = config;
     uart->line = config->line;
     uart->parity = uart->framing = uart->overruns = 0;

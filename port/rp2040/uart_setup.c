@@ -14,26 +14,26 @@ static uint32_t divider(uint32_t clk_peri_hz, uint32_t baud)
 {
     const uint32_t steps_hz = clk_peri_hz * (FRACTIONS / 16);
     const uint32_t fastest = steps_hz / FRACTIONS;
-    if (baud == 0 || baud > fastest + fastest / MAX_ERROR_DIVIDER) return 0;
-    uint32_t result = (steps_hz + baud / 2) / baud;
+    if ((baud == 0) || (baud > (fastest + (fastest / MAX_ERROR_DIVIDER)))) return 0;
+    uint32_t result = (steps_hz + (baud / 2)) / baud;
     if (result < FRACTIONS) result = FRACTIONS;
-    if (result > (uint32_t)MAX_DIVIDER * FRACTIONS) result = (uint32_t)MAX_DIVIDER * FRACTIONS;
+    if (result > ((uint32_t)MAX_DIVIDER * FRACTIONS)) result = (uint32_t)MAX_DIVIDER * FRACTIONS;
     const uint32_t hz = result * baud;
-    const uint32_t off_hz = hz > steps_hz ? hz - steps_hz : steps_hz - hz;
-    return off_hz > hz / MAX_ERROR_DIVIDER ? 0 : result;
+    const uint32_t off_hz = (hz > steps_hz) ? (hz - steps_hz) : (steps_hz - hz);
+    return (off_hz > (hz / MAX_ERROR_DIVIDER)) ? 0 : result;
 }
 
 unsigned fathom_rp2040_uart_bits(const fathom_line_settings_t *line)
 {
-    return 9u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
+    return 9u + ((line->parity != FATHOM_PARITY_NONE) ? 1u : 0u) + line->stop_bits;
 }
 
 bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fathom_line_settings_t *line)
 {
     const uint32_t divide = divider(wiring->clk_peri_hz, line->baud);
     uint32_t format = RP2040_UART_LCR_H_WLEN_8 | RP2040_UART_LCR_H_FEN;
-    if (divide == 0 || line->parity > FATHOM_PARITY_ODD) return false;
-    if (line->stop_bits != 1 && line->stop_bits != 2) return false;
+    if ((divide == 0) || (line->parity > FATHOM_PARITY_ODD)) return false;
+    if ((line->stop_bits != 1) && (line->stop_bits != 2)) return false;
     if (line->parity != FATHOM_PARITY_NONE) format |= RP2040_UART_LCR_H_PEN;
     if (line->parity == FATHOM_PARITY_EVEN) format |= RP2040_UART_LCR_H_EPS;
     if (line->stop_bits == 2) format |= RP2040_UART_LCR_H_STP2;
@@ -52,19 +52,21 @@ bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fat
 /* 1.4.3, function 2: TX and RX stand at GPIO 0 and 1 of every four, which belong to UART0, 1, 1, 0 in turns. */
 static bool is_pin(const fathom_rp2040_wiring_t *wiring, unsigned gpio, unsigned of_four)
 {
-    return gpio < FATHOM_RP2040_GPIOS && gpio % 4 == of_four && (gpio + 4) / 8 % 2 == wiring->number;
+    return (gpio < FATHOM_RP2040_GPIOS) && ((gpio % 4) == of_four) &&
+           (((gpio + 4) / 8 % 2) == wiring->number);
 }
 
 bool fathom_rp2040_uart_setup(const fathom_rp2040_wiring_t *wiring, const fathom_line_settings_t *line)
 {
-    if (wiring->number > 1 || !is_pin(wiring, wiring->tx, 0) || !is_pin(wiring, wiring->rx, 1)) return false;
+    if ((wiring->number > 1) || !is_pin(wiring, wiring->tx, 0) || !is_pin(wiring, wiring->rx, 1))
+        return false;
     if (wiring->has_driver &&
-        (wiring->driver >= FATHOM_RP2040_GPIOS || wiring->alarm >= FATHOM_RP2040_ALARMS))
+        ((wiring->driver >= FATHOM_RP2040_GPIOS) || (wiring->alarm >= FATHOM_RP2040_ALARMS)))
         return false;
 
     rp2040_uart_t *const hardware = RP2040_UART(wiring->number);
     const uint32_t blocks =
-        (uint32_t)RP2040_RESETS_UART0 << wiring->number | RP2040_RESETS_IO_BANK0 | RP2040_RESETS_PADS_BANK0;
+        ((uint32_t)RP2040_RESETS_UART0 << wiring->number) | RP2040_RESETS_IO_BANK0 | RP2040_RESETS_PADS_BANK0;
     rp2040_set(&RP2040_RESETS_RESET, (uint32_t)RP2040_RESETS_UART0 << wiring->number);
     rp2040_clear(&RP2040_RESETS_RESET, blocks);
     for (unsigned tries = RESET_TRIES; (RP2040_RESETS_RESET_DONE & blocks) != blocks; tries--)

@@ -110,9 +110,9 @@ static inline int fathom_serial_read(fathom_serial_t *serial, uint8_t *bytes, si
     const uint8_t put = serial->put;
     uint8_t got = serial->got;
     size_t count = 0;
-    while (got != put && count < capacity) {
+    while ((got != put) && (count < capacity)) {
         const uint8_t flags = serial->flags[got % FATHOM_SERIAL_RING];
-        if (flags != 0 && count != 0) break;
+        if ((flags != 0) && (count != 0)) break;
         bytes[count++] = serial->bytes[got % FATHOM_SERIAL_RING];
         got++;
         rx->flags |= flags;
@@ -126,7 +126,7 @@ static inline int fathom_serial_read(fathom_serial_t *serial, uint8_t *bytes, si
  * `leaving` is true until the interrupt ends it. */
 static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *bytes, size_t length)
 {
-    if (length == 0 || length > serial->size) return -1;
+    if ((length == 0) || (length > serial->size)) return -1;
     if (serial->leaving) return 0;
     /* Volatile, so that it is in place before the rest tells of it. */
     volatile uint8_t *const kept = serial->request;
@@ -145,14 +145,14 @@ static inline uint32_t fathom_serial_leaves_in_us(const fathom_serial_t *serial,
     const uint32_t character_bits = 9u + (line->parity != FATHOM_PARITY_NONE) + line->stop_bits;
     uint32_t left = serial->length - (uint32_t)serial->at + held;
     if (left > serial->length) left = serial->length;
-    return (left * character_bits * 1000000u + line->baud - 1) / line->baud; /* 255 of 12 bits fit */
+    return ((left * character_bits * 1000000u) + line->baud - 1) / line->baud; /* 255 of 12 bits fit */
 }
 
 /* ---- for set_line ---- */
 
 static inline bool fathom_serial_is_same(const fathom_line_settings_t *a, const fathom_line_settings_t *b)
 {
-    return a->baud == b->baud && a->parity == b->parity && a->stop_bits == b->stop_bits;
+    return (a->baud == b->baud) && (a->parity == b->parity) && (a->stop_bits == b->stop_bits);
 }
 
 /* What clock_hz is to be divided by for these settings, least..most; 0: that does not come within 2.5 %, is faster than
@@ -161,13 +161,13 @@ static inline uint32_t fathom_serial_divider(uint32_t clock_hz, const fathom_lin
                                              uint32_t least, uint32_t most)
 {
     const uint32_t baud = line->baud;
-    if (baud == 0 || baud > clock_hz / least || line->parity > FATHOM_PARITY_ODD || line->stop_bits < 1 ||
-        line->stop_bits > 2)
+    if ((baud == 0) || (baud > (clock_hz / least)) || (line->parity > FATHOM_PARITY_ODD) ||
+        (line->stop_bits < 1) || (line->stop_bits > 2))
         return 0;
-    const uint32_t by = (clock_hz + baud / 2) / baud;
+    const uint32_t by = (clock_hz + (baud / 2)) / baud;
     const uint32_t real = clock_hz / by;
-    const uint32_t off = real > baud ? real - baud : baud - real;
-    return by < least || by > most || off > baud / 40 ? 0 : by;
+    const uint32_t off = (real > baud) ? (real - baud) : (baud - real);
+    return ((by < least) || (by > most) || (off > (baud / 40))) ? 0 : by;
 }
 
 #ifdef __cplusplus

@@ -52,7 +52,7 @@ static void set_up(fathom_stm32f4_usart_t *usart, const fathom_line_settings_t *
     if (line->parity == FATHOM_PARITY_ODD) control |= CR1_PS;
     usart->registers[CR1] = 0;
     usart->registers[BRR] = by;
-    usart->registers[CR2] = line->stop_bits == 2 ? CR2_STOP_2 : 0;
+    usart->registers[CR2] = (line->stop_bits == 2) ? CR2_STOP_2 : 0;
     usart->registers[CR1] = control;
     usart->line = *line;
 }
@@ -77,12 +77,12 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart)
     const uint32_t control = registers[CR1];
     uint8_t byte;
     if ((why & (SR_RXNE | SR_ORE)) != 0) receive(usart, why);
-    if ((control & CR1_TXEIE) != 0 && (why & SR_TXE) != 0) {
+    if (((control & CR1_TXEIE) != 0) && ((why & SR_TXE) != 0)) {
         if (fathom_serial_next(&usart->serial, &byte))
             registers[DR] = byte; /* after SR, which clears TC */
         else
             registers[CR1] = (control & ~(uint32_t)CR1_TXEIE) | CR1_TCIE;
-    } else if ((control & CR1_TCIE) != 0 && (why & SR_TC) != 0) {
+    } else if (((control & CR1_TCIE) != 0) && ((why & SR_TC) != 0)) {
         fathom_stm32f4_pin_set(&usart->driver, false);
         registers[CR1] = control & ~(uint32_t)CR1_TCIE;
         usart->serial.leaving = false;
@@ -142,8 +142,8 @@ static int usart_set_break(void *ctx, bool on)
 
 bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config)
 {
-    if (config->number < 1 || config->number > sizeof places / sizeof places[0] || config->request == NULL ||
-        config->request_size == 0 || !fathom_stm32f4_is_pin(&config->tx) ||
+    if ((config->number < 1) || (config->number > (sizeof places / sizeof places[0])) ||
+        (config->request == NULL) || (config->request_size == 0) || !fathom_stm32f4_is_pin(&config->tx) ||
         !fathom_stm32f4_is_pin(&config->rx))
         return false;
     const uint32_t by = divider(config->bus_hz, &config->line);

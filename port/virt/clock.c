@@ -10,7 +10,7 @@ uint64_t fathom_virt_ticks(void)
         const uint32_t high = VIRT_MTIME[1];
         const uint32_t low = VIRT_MTIME[0];
         if (VIRT_MTIME[1] == high)
-            return (uint64_t)high << 32 | low; /* else the low half wrapped in between */
+            return ((uint64_t)high << 32) | low; /* else the low half wrapped in between */
     }
 }
 

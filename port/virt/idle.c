@@ -22,8 +22,8 @@ void fathom_virt_idle(void *ctx, uint32_t max_us)
     /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
      * end it. An interrupt that is pending ends WFI, and runs afterwards. */
     __asm__ volatile("csrc mstatus, %0" ::"r"(VIRT_MSTATUS_MIE) : "memory");
-    if (uart == NULL || !fathom_serial_waits(&uart->serial)) {
-        set_alarm(fathom_virt_ticks() + (uint64_t)max_us * (FATHOM_VIRT_TIMER_HZ / 1000000u));
+    if ((uart == NULL) || !fathom_serial_waits(&uart->serial)) {
+        set_alarm(fathom_virt_ticks() + ((uint64_t)max_us * (FATHOM_VIRT_TIMER_HZ / 1000000u)));
         __asm__ volatile("csrs mie, %0" ::"r"(VIRT_MIE_MTIE) : "memory");
         __asm__ volatile("wfi" ::: "memory");
         fathom_virt_timer_interrupt();

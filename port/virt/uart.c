@@ -138,7 +138,7 @@ static int uart_set_break(void *ctx, bool on)
     fathom_virt_uart_t *const uart = ctx;
     if (!uart_sent(uart)) return 0;
     const unsigned control = UART[LCR];
-    UART[LCR] = (uint8_t)(on ? control | LCR_BREAK : control & ~(unsigned)LCR_BREAK);
+    UART[LCR] = (uint8_t)(on ? (control | LCR_BREAK) : (control & ~(unsigned)LCR_BREAK));
     uart->is_break = on;
     return 1;
 }
@@ -146,7 +146,7 @@ static int uart_set_break(void *ctx, bool on)
 bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_config_t *config)
 {
     const uint32_t by = divider(config->clock_hz, &config->line);
-    if (by == 0 || config->request == NULL || config->request_size == 0) return false;
+    if ((by == 0) || (config->request == NULL) || (config->request_size == 0)) return false;
     fathom_serial_init(&uart->serial, config->request, config->request_size);
     uart->clock_hz = config->clock_hz;
     uart->is_break = false;
@@ -154,7 +154,7 @@ bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_con
     UART[FCR] = FCR_ON | FCR_CLEAR;
     set_up(uart, &config->line, by);
     VIRT_PLIC_PRIORITY[VIRT_UART_SOURCE] = 1;
-    VIRT_PLIC_ENABLE[VIRT_UART_SOURCE / 32] |= 1u << VIRT_UART_SOURCE % 32;
+    VIRT_PLIC_ENABLE[VIRT_UART_SOURCE / 32] |= 1u << (VIRT_UART_SOURCE % 32);
     VIRT_PLIC_THRESHOLD = 0;
     __asm__ volatile("csrs mie, %0" ::"r"(VIRT_MIE_MEIE) : "memory");
     return true;

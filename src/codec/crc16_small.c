@@ -12,8 +12,8 @@ uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
     unsigned crc = 0xFFFF;
     for (; length != 0; length--) {
         crc ^= *bytes++;
-        crc = crc >> 4 ^ table[crc & 15];
-        crc = crc >> 4 ^ table[crc & 15];
+        crc = (crc >> 4) ^ table[crc & 15];
+        crc = (crc >> 4) ^ table[crc & 15];
     }
     return (uint16_t)crc;
 }

@@ -11,13 +11,13 @@ enum { START = 0x55, SECOND_START = 0xAA };
 uint8_t fathom_dyp_55aa_values(uint8_t command)
 {
     if (command == FATHOM_DYP_ALL_PROBES) return FATHOM_DYP_PROBES;
-    return (uint8_t)(command - FATHOM_DYP_FIRST_PROBE) < FATHOM_DYP_PROBES ? 1 : 0;
+    return ((uint8_t)(command - FATHOM_DYP_FIRST_PROBE) < FATHOM_DYP_PROBES) ? 1 : 0;
 }
 
 uint8_t fathom_dyp_55aa_response_length(uint8_t command)
 {
     const uint8_t values = fathom_dyp_55aa_values(command);
-    return values != 0 || command == FATHOM_DYP_SET_ADDRESS ? (uint8_t)(OVERHEAD + 2 * values) : 0;
+    return ((values != 0) || (command == FATHOM_DYP_SET_ADDRESS)) ? (uint8_t)(OVERHEAD + (2 * values)) : 0;
 }
 
 static uint8_t *put_head(uint8_t *frame, uint8_t address, uint8_t command)
@@ -43,8 +43,8 @@ uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t 
 
 uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have)
 {
-    if (bytes[0] != START || (have > 1 && bytes[1] != SECOND_START)) return 0;
-    return have > COMMAND ? fathom_dyp_55aa_response_length(bytes[COMMAND]) : COMMAND + 1;
+    if ((bytes[0] != START) || ((have > 1) && (bytes[1] != SECOND_START))) return 0;
+    return (have > COMMAND) ? fathom_dyp_55aa_response_length(bytes[COMMAND]) : (COMMAND + 1);
 }
 
 bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length)

@@ -13,12 +13,12 @@ bool fathom_dyp_stream_valid(const uint8_t *frame, uint8_t length)
     const uint8_t start = *frame;
     uint8_t sum = 0;
     while (--length != 0) sum = (uint8_t)(sum + *frame++);
-    return start == FATHOM_DYP_START && sum == *frame;
+    return (start == FATHOM_DYP_START) && (sum == *frame);
 }
 
 void fathom_dyp_stream_decode(const uint8_t *frame, uint16_t *values, uint8_t probes)
 {
-    for (frame++; probes != 0; probes--, frame += 2) *values++ = (uint16_t)(frame[0] * 256u + frame[1]);
+    for (frame++; probes != 0; probes--, frame += 2) *values++ = (uint16_t)((frame[0] * 256u) + frame[1]);
 }
 
 uint8_t fathom_dyp_stream_encode(uint8_t *frame, const uint16_t *values, uint8_t probes)

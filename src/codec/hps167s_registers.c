@@ -19,13 +19,13 @@ uint32_t fathom_hps167s_baud(uint16_t code)
 {
     if (code == 2) return 57600ul;
     if (code == 3) return 115200ul;
-    return code == 4 ? 230400ul : FATHOM_HPS167S_FACTORY_BAUD;
+    return (code == 4) ? 230400ul : FATHOM_HPS167S_FACTORY_BAUD;
 }
 
 uint8_t fathom_hps167s_baud_code(uint32_t baud)
 {
     uint8_t code = FATHOM_HPS167S_BAUD_CODES;
-    while (code != 0 && fathom_hps167s_baud(code) != baud) code--;
+    while ((code != 0) && (fathom_hps167s_baud(code) != baud)) code--;
     return code;
 }
 
@@ -41,7 +41,7 @@ void fathom_hps167s_decode_version(const uint16_t registers[3], fathom_hps167s_v
 
 bool fathom_hps167s_is_date(uint8_t month, uint8_t day)
 {
-    return month >= 1 && month <= 12 && day >= 1 && day <= 31;
+    return (month >= 1) && (month <= 12) && (day >= 1) && (day <= 31);
 }
 
 void fathom_hps167s_decode_details(const uint16_t registers[11], fathom_hps167s_details_t *details)
@@ -65,7 +65,7 @@ bool fathom_hps167s_may_be_details(const uint16_t registers[11])
 
 uint32_t fathom_hps167s_reconnect_time_ms(uint16_t first, uint16_t second, bool low_word_first)
 {
-    return low_word_first ? (uint32_t)second << 16 | first : (uint32_t)first << 16 | second;
+    return low_word_first ? (((uint32_t)second << 16) | first) : (((uint32_t)first << 16) | second);
 }
 
 void fathom_hps167s_encode_reconnect_time(uint32_t ms, bool low_word_first, uint16_t registers[2])
@@ -78,8 +78,8 @@ uint32_t fathom_hps167s_told_reconnect_time_ms(const uint16_t registers[4], bool
 {
     enum { FIRST = FATHOM_HPS167S_RECONNECT_BYTE };
     return fathom_hps167s_reconnect_time_ms(
-        (uint16_t)(byte(registers, FIRST) * 256u + byte(registers, FIRST + 1)),
-        (uint16_t)(byte(registers, FIRST + 2) * 256u + byte(registers, FIRST + 3)), low_word_first);
+        (uint16_t)((byte(registers, FIRST) * 256u) + byte(registers, FIRST + 1)),
+        (uint16_t)((byte(registers, FIRST + 2) * 256u) + byte(registers, FIRST + 3)), low_word_first);
 }
 
 void fathom_hps167s_decode_configuration(const uint16_t registers[4], bool low_word_first,
@@ -93,7 +93,7 @@ void fathom_hps167s_decode_configuration(const uint16_t registers[4], bool low_w
     configuration->baud = fathom_hps167s_baud(configuration->baud_code);
 }
 
-static bool is_switch(uint8_t value) { return value == FATHOM_HPS167S_OFF || value == FATHOM_HPS167S_ON; }
+static bool is_switch(uint8_t value) { return (value == FATHOM_HPS167S_OFF) || (value == FATHOM_HPS167S_ON); }
 
 bool fathom_hps167s_may_be_configuration(const uint16_t registers[4])
 {
@@ -106,9 +106,9 @@ bool fathom_hps167s_may_be_configuration(const uint16_t registers[4])
 /* (F - 32) * 50 / 9; an odd divisor or one that is 9 times something has no halves to round. */
 int32_t fathom_hps167s_temperature_dc(int16_t fahrenheit, uint8_t steps_per_degree)
 {
-    const int32_t dividend = ((int32_t)fahrenheit - 32 * (int32_t)steps_per_degree) * 50;
+    const int32_t dividend = ((int32_t)fahrenheit - (32 * (int32_t)steps_per_degree)) * 50;
     const int32_t divisor = 9 * (int32_t)steps_per_degree;
-    return (dividend >= 0 ? dividend + divisor / 2 : dividend - divisor / 2) / divisor;
+    return ((dividend >= 0) ? (dividend + (divisor / 2)) : (dividend - (divisor / 2))) / divisor;
 }
 
 /* ---- #5 ---- */
@@ -118,14 +118,15 @@ fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits)
     if (limits->max_mm == 0) limits->max_mm = MAX_MM;
     if (limits->over_range_mm == 0) limits->over_range_mm = MIN_OVER_RANGE;
     if (limits->min_mm == 0) limits->min_mm = MIN_MM;
-    const bool is_good = limits->min_mm <= limits->max_mm && limits->max_mm < limits->over_range_mm &&
-                         limits->over_range_mm < FAILURE;
+    const bool is_good = (limits->min_mm <= limits->max_mm) && (limits->max_mm < limits->over_range_mm) &&
+                         (limits->over_range_mm < FAILURE);
     return is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
 }
 
 bool fathom_hps167s_is_abnormal(const uint16_t registers[4])
 {
-    return (registers[0] & registers[3]) == 0xFFFF && registers[1] == 0 && (uint8_t)registers[2] == 0xFF;
+    return ((registers[0] & registers[3]) == 0xFFFF) && (registers[1] == 0) &&
+           ((uint8_t)registers[2] == 0xFF);
 }
 
 fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,
@@ -146,7 +147,8 @@ fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limi
     }
     if (!fathom_hps167s_is_abnormal(registers)) {
         kind = FATHOM_NO_TARGET;
-        if (raw == 0 || raw == FAILURE || exponent > FATHOM_HPS167S_MAX_EXPONENT) return FATHOM_ERR_MALFORMED;
+        if ((raw == 0) || (raw == FAILURE) || (exponent > FATHOM_HPS167S_MAX_EXPONENT))
+            return FATHOM_ERR_MALFORMED;
         if (raw < over_range_mm) {
             if (raw > max_mm) return FATHOM_ERR_MALFORMED;
             kind = FATHOM_UNKNOWN;

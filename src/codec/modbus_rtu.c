@@ -24,7 +24,7 @@ static uint8_t *put16(uint8_t *at, uint16_t value)
     return at;
 }
 
-static uint16_t get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
+static uint16_t get16(const uint8_t *at) { return (uint16_t)((at[0] * 256u) + at[1]); }
 
 static uint8_t *put_values(uint8_t *at, const uint16_t *values, uint8_t count)
 {
@@ -41,7 +41,7 @@ static uint8_t *put_head(uint8_t *at, const fathom_modbus_message_t *message)
 {
     const uint8_t *from = message->head;
     do *at++ = *from++;
-    while (from != message->head + HEAD);
+    while (from != (message->head + HEAD));
     return at;
 }
 
@@ -97,8 +97,8 @@ uint8_t fathom_modbus_rtu_frame_size(const fathom_modbus_message_t *message)
         overhead = WRITE_MANY_OVERHEAD;
     }
     if ((uint8_t)(count - 1) >= most) return 0;
-    const uint8_t frame_size = (uint8_t)(2 * count + overhead);
-    return frame_size > FIXED_LENGTH ? frame_size : FIXED_LENGTH;
+    const uint8_t frame_size = (uint8_t)((2 * count) + overhead);
+    return (frame_size > FIXED_LENGTH) ? frame_size : FIXED_LENGTH;
 }
 
 uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message, uint8_t *frame)
@@ -126,24 +126,24 @@ uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
     const uint8_t size = bytes[SIZE];
     uint8_t length = FIXED_LENGTH;
     if (function == READ) {
-        const bool is_size = (size & 1) == 0 && (uint8_t)(size - 1) < 2 * FATHOM_MODBUS_MAX_READ;
+        const bool is_size = ((size & 1) == 0) && ((uint8_t)(size - 1) < (2 * FATHOM_MODBUS_MAX_READ));
         length = is_size ? (uint8_t)(size + READ_OVERHEAD) : 0;
-    } else if (function != WRITE && function != WRITE_MANY) {
+    } else if ((function != WRITE) && (function != WRITE_MANY)) {
         return 0;
     }
-    return function == bytes[FUNCTION] ? length : EXCEPTION_LENGTH;
+    return (function == bytes[FUNCTION]) ? length : EXCEPTION_LENGTH;
 }
 
 bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const uint8_t *bytes, uint8_t have)
 {
-    return is_alike(bytes, message->head, have < HEAD ? have : HEAD);
+    return is_alike(bytes, message->head, (have < HEAD) ? have : HEAD);
 }
 
 fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *message, const uint8_t *frame)
 {
     uint8_t *const head = message->head;
     const uint8_t function = head[FUNCTION];
-    if (frame[UNIT] != head[UNIT] && head[UNIT] != FATHOM_MODBUS_ANY_UNIT) return FATHOM_PENDING;
+    if ((frame[UNIT] != head[UNIT]) && (head[UNIT] != FATHOM_MODBUS_ANY_UNIT)) return FATHOM_PENDING;
     if (frame[FUNCTION] == (function | EXCEPTION)) {
         message->exception = frame[SIZE];
         return FATHOM_ERR_EXCEPTION;
@@ -154,7 +154,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
         if (!is_alike(frame + FIRST, head + FIRST, HEAD - FIRST)) return FATHOM_ERR_MALFORMED;
     } else {
         const uint8_t count = head[COUNT];
-        if (frame[SIZE] != 2 * count) return FATHOM_ERR_MALFORMED;
+        if (frame[SIZE] != (2 * count)) return FATHOM_ERR_MALFORMED;
         get_values(message->values, frame + SIZE + 1, count);
     }
     head[UNIT] = frame[UNIT];
@@ -166,9 +166,9 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
 uint8_t fathom_modbus_rtu_request_length(const uint8_t *bytes, uint8_t have)
 {
     if (have <= FUNCTION) return FUNCTION + 1;
-    if (bytes[FUNCTION] != WRITE_MANY) return bytes[FUNCTION] < EXCEPTION ? FIXED_LENGTH : 0;
+    if (bytes[FUNCTION] != WRITE_MANY) return (bytes[FUNCTION] < EXCEPTION) ? FIXED_LENGTH : 0;
     if (have < DATA) return DATA;
-    return bytes[HEAD] > 2 * FATHOM_MODBUS_MAX_WRITE ? 0 : (uint8_t)(bytes[HEAD] + WRITE_MANY_OVERHEAD);
+    return (bytes[HEAD] > (2 * FATHOM_MODBUS_MAX_WRITE)) ? 0 : (uint8_t)(bytes[HEAD] + WRITE_MANY_OVERHEAD);
 }
 
 fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message, const uint8_t *frame,
@@ -179,12 +179,12 @@ fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message
     const uint8_t function = frame[FUNCTION];
     const uint8_t count = frame[COUNT];
     if (function == WRITE) return FATHOM_READY;
-    if (function != READ && function != WRITE_MANY) {
+    if ((function != READ) && (function != WRITE_MANY)) {
         message->exception = FATHOM_MODBUS_ILLEGAL_FUNCTION;
         return FATHOM_ERR_EXCEPTION;
     }
-    if (frame[COUNT_HIGH] != 0 || count > capacity || fathom_modbus_rtu_frame_size(message) == 0 ||
-        (function == WRITE_MANY && frame[HEAD] != 2 * count)) {
+    if ((frame[COUNT_HIGH] != 0) || (count > capacity) || (fathom_modbus_rtu_frame_size(message) == 0) ||
+        ((function == WRITE_MANY) && (frame[HEAD] != (2 * count)))) {
         message->exception = FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
         return FATHOM_ERR_EXCEPTION;
     }

@@ -4,14 +4,17 @@
 /* More than 65535 mm at any temperature, and little enough for the products below. */
 #define LONGEST_US 500000ul
 
-static uint32_t bounded_us(uint32_t width_us) { return width_us < LONGEST_US ? width_us : LONGEST_US; }
+static uint32_t bounded_us(uint32_t width_us) { return (width_us < LONGEST_US) ? width_us : LONGEST_US; }
 
 static uint16_t bounded_mm(uint32_t mm)
 {
-    return mm < FATHOM_PULSE_WIDTH_MAX_MM ? (uint16_t)mm : FATHOM_PULSE_WIDTH_MAX_MM;
+    return (mm < FATHOM_PULSE_WIDTH_MAX_MM) ? (uint16_t)mm : FATHOM_PULSE_WIDTH_MAX_MM;
 }
 
-uint16_t fathom_pulse_width_mm(uint32_t width_us) { return bounded_mm((bounded_us(width_us) * 4 + 11) / 23); }
+uint16_t fathom_pulse_width_mm(uint32_t width_us)
+{
+    return bounded_mm(((bounded_us(width_us) * 4) + 11) / 23);
+}
 
 /*
  * The speed v, in units of 0.1 mm/s, is 3313000 and 606 for each tenth of a degree: 3070600 at -40 degC. There and
@@ -22,10 +25,11 @@ uint16_t fathom_pulse_width_mm_in_air(uint32_t width_us, int16_t air_dc)
     if (air_dc < FATHOM_PULSE_WIDTH_MIN_AIR_DC) air_dc = FATHOM_PULSE_WIDTH_MIN_AIR_DC;
     if (air_dc > FATHOM_PULSE_WIDTH_MAX_AIR_DC) air_dc = FATHOM_PULSE_WIDTH_MAX_AIR_DC;
     const uint32_t us = bounded_us(width_us);
-    const uint32_t v = UINT32_C(3070600) + UINT32_C(606) * (uint16_t)(air_dc - FATHOM_PULSE_WIDTH_MIN_AIR_DC);
+    const uint32_t v =
+        UINT32_C(3070600) + (UINT32_C(606) * (uint16_t)(air_dc - FATHOM_PULSE_WIDTH_MIN_AIR_DC));
     const uint32_t high = us * (v / 1000);
     const uint32_t low = us * (v % 1000);
     const uint32_t mm = high / 20000;
-    const uint32_t rest = (high - mm * 20000) * 1000 + low;
-    return bounded_mm(mm + (rest + 10000000) / 20000000);
+    const uint32_t rest = ((high - (mm * 20000)) * 1000) + low;
+    return bounded_mm(mm + ((rest + 10000000) / 20000000));
 }

@@ -18,7 +18,7 @@ static void settle(fathom_contact_t *contact)
 fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing)
 {
     fathom_contact_timing_t *const own = &contact->timing;
-    if (contact->pin == NULL || contact->pin->get == NULL || contact->clock == NULL)
+    if ((contact->pin == NULL) || (contact->pin->get == NULL) || (contact->clock == NULL))
         return FATHOM_ERR_ARGUMENT;
     own->settle_us = or_default(timing->settle_us, FATHOM_CONTACT_DEFAULT_SETTLE_US);
     own->period_us = timing->period_us;
@@ -48,7 +48,7 @@ void fathom_contact_hold(fathom_contact_t *contact, bool hold) { contact->is_hel
 static bool is_clear(const fathom_contact_t *contact)
 {
     const fathom_contact_guard_t *const guard = contact->guard;
-    return !contact->is_held && (guard == NULL || guard->is_clear(guard->ctx, contact->sampled_us));
+    return !contact->is_held && ((guard == NULL) || guard->is_clear(guard->ctx, contact->sampled_us));
 }
 
 /* Does the level count? */
@@ -58,7 +58,7 @@ static bool look(fathom_contact_t *contact, uint32_t passed_us)
     const bool was_high = contact->is_high;
     contact->is_clear = is_clear(contact);
     contact->is_high = is_high_now(contact);
-    if (was_clear && contact->is_clear && contact->is_high == was_high)
+    if (was_clear && contact->is_clear && (contact->is_high == was_high))
         return fathom_count_down(&contact->settle_us, passed_us);
     settle(contact);
     return false;
@@ -66,7 +66,7 @@ static bool look(fathom_contact_t *contact, uint32_t passed_us)
 
 static void set_sample(fathom_contact_t *contact, uint8_t kind, fathom_sample_t *sample)
 {
-    sample->time_us = kind == contact->last_kind ? contact->sampled_us : contact->since_us;
+    sample->time_us = (kind == contact->last_kind) ? contact->sampled_us : contact->since_us;
     sample->magnitude = 0;
     sample->raw = contact->is_high;
     sample->sequence = ++contact->sequence;
@@ -87,17 +87,17 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_contact_t *const contact = ctx;
     const fathom_contact_timing_t *const timing = &contact->timing;
     const fathom_contact_guard_t *const guard = contact->guard;
-    const fathom_status_t beside = guard != NULL ? guard->poll(guard->ctx) : FATHOM_PENDING;
+    const fathom_status_t beside = (guard != NULL) ? guard->poll(guard->ctx) : FATHOM_PENDING;
     const uint32_t now_us = clock_us(contact->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, contact->sampled_us);
     /* The level counted until the look before this one; when it ceased to is not known. */
     const bool counted = contact->settle_us == 0;
-    const bool repeats = fathom_count_down(&contact->period_us, passed_us) && timing->period_us != 0;
+    const bool repeats = fathom_count_down(&contact->period_us, passed_us) && (timing->period_us != 0);
     contact->sampled_us = now_us;
     if (counted) contact->stale_us = timing->stale_us;
     if (look(contact, passed_us)) {
-        const uint8_t kind = contact->is_high == contact->near_is_high ? FATHOM_NEAR : FATHOM_FAR;
-        if (kind != contact->last_kind || repeats) {
+        const uint8_t kind = (contact->is_high == contact->near_is_high) ? FATHOM_NEAR : FATHOM_FAR;
+        if ((kind != contact->last_kind) || repeats) {
             set_sample(contact, kind, sample);
             return FATHOM_READY;
         }
@@ -122,7 +122,7 @@ static uint32_t due_us(void *ctx)
         us = least_us(us, contact->period_us);
     if (us != FATHOM_NO_DEADLINE)
         us = rest_us(us, fathom_elapsed_us(clock_us(contact->clock), contact->sampled_us));
-    return guard != NULL ? least_us(us, guard->due_us(guard->ctx)) : us;
+    return (guard != NULL) ? least_us(us, guard->due_us(guard->ctx)) : us;
 }
 
 fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact) { return sensor_of(poll, due_us, contact); }

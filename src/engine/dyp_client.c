@@ -13,15 +13,15 @@ enum { ADDRESS_REGISTER = 0x0200 };
 static uint8_t command_of_read(const uint8_t *head)
 {
     const uint8_t count = head[5];
-    const uint16_t probe = (uint16_t)(head[2] * 256u + head[3] - FATHOM_DYP_FIRST_REGISTER);
-    if (head[4] != 0 || probe >= FATHOM_DYP_PROBES) return 0;
+    const uint16_t probe = (uint16_t)((head[2] * 256u) + head[3] - FATHOM_DYP_FIRST_REGISTER);
+    if ((head[4] != 0) || (probe >= FATHOM_DYP_PROBES)) return 0;
     if (count == 1) return (uint8_t)(FATHOM_DYP_FIRST_PROBE + probe);
-    return count == FATHOM_DYP_PROBES && probe == 0 ? FATHOM_DYP_ALL_PROBES : 0;
+    return ((count == FATHOM_DYP_PROBES) && (probe == 0)) ? FATHOM_DYP_ALL_PROBES : 0;
 }
 
 static uint8_t command_of(const uint8_t *head)
 {
-    return head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS ? command_of_read(head) : FATHOM_DYP_SET_ADDRESS;
+    return (head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) ? command_of_read(head) : FATHOM_DYP_SET_ADDRESS;
 }
 
 static const fathom_modbus_message_t *message_of(const fathom_transaction_t *transaction)
@@ -42,7 +42,7 @@ static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
  */
 static uint16_t check(const uint8_t *frame, uint8_t length)
 {
-    if (length == FATHOM_DYP_MAX_RESPONSE && frame[NEXT] == frame[0] && frame[NEXT + 1] == frame[1] &&
+    if ((length == FATHOM_DYP_MAX_RESPONSE) && (frame[NEXT] == frame[0]) && (frame[NEXT + 1] == frame[1]) &&
         fathom_dyp_55aa_valid(frame, NEXT))
         return 1;
     return !fathom_dyp_55aa_valid(frame, length);
@@ -51,7 +51,7 @@ static uint16_t check(const uint8_t *frame, uint8_t length)
 static bool is_request(const fathom_transaction_t *transaction, const uint8_t *frame, uint8_t have)
 {
     const uint8_t *const head = message_of(transaction)->head;
-    return have < NEXT || (frame[ADDRESS] == head[0] && frame[COMMAND] == command_of(head));
+    return (have < NEXT) || ((frame[ADDRESS] == head[0]) && (frame[COMMAND] == command_of(head)));
 }
 
 static fathom_status_t parse_response(fathom_transaction_t *transaction, const uint8_t *frame)
@@ -77,15 +77,15 @@ static fathom_status_t start(fathom_line_t *line, fathom_modbus_request_t *reque
 fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
     const uint8_t *const head = request->message.head;
-    if (head[1] != FATHOM_MODBUS_READ_HOLDING_REGISTERS || command_of_read(head) == 0)
+    if ((head[1] != FATHOM_MODBUS_READ_HOLDING_REGISTERS) || (command_of_read(head) == 0))
         return FATHOM_ERR_UNSUPPORTED;
-    return head[0] != FATHOM_LINE_ALL_UNITS ? start(line, request) : FATHOM_ERR_ARGUMENT;
+    return (head[0] != FATHOM_LINE_ALL_UNITS) ? start(line, request) : FATHOM_ERR_ARGUMENT;
 }
 
 fathom_status_t fathom_dyp_client_set_every_address(fathom_line_t *line, fathom_modbus_request_t *request,
                                                     uint8_t address)
 {
-    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT)) return FATHOM_ERR_ARGUMENT;
     if (fathom_line_has(line, &request->transaction)) return FATHOM_ERR_BUSY;
     fathom_modbus_write_single_register(&request->message, address, ADDRESS_REGISTER, address);
     return start(line, request);

@@ -12,7 +12,7 @@ static void count(volatile uint8_t *counter)
 
 static bool is_high(const fathom_edges_t *edges)
 {
-    return edges->pin != NULL ? edges->pin->get(edges->pin->ctx) : edges->high;
+    return (edges->pin != NULL) ? edges->pin->get(edges->pin->ctx) : edges->high;
 }
 
 /* ---- in the interrupt ---- */
@@ -24,7 +24,7 @@ static void rise(fathom_edges_t *edges, uint32_t time_us)
         edges->timed = true;
         edges->high = true;
         edges->rises = (uint8_t)(edges->rises + 1);
-    } else if (edges->timed && fathom_elapsed_us(time_us, edges->rise_us) > edges->same_us) {
+    } else if (edges->timed && (fathom_elapsed_us(time_us, edges->rise_us) > edges->same_us)) {
         edges->timed = false;
         count(&edges->missed);
     }
@@ -73,7 +73,7 @@ static int take(void *ctx, fathom_pulse_t *pulse)
     while (taken != edges->written) {
         const volatile fathom_edges_pulse_t *const from = &edges->pulses[taken % FATHOM_EDGES_PULSES];
         const uint8_t since = (uint8_t)(from->rise - edges->armed);
-        const bool is_new = since != 0 && since < MAX_RISES;
+        const bool is_new = (since != 0) && (since < MAX_RISES);
         if (is_new) {
             pulse->width_us = from->width_us;
             pulse->end_us = from->end_us;
@@ -96,7 +96,7 @@ void fathom_edges_init(fathom_edges_t *edges, const fathom_pin_t *pin)
     edges->taken = 0;
     edges->armed = 0;
     edges->same_us = FATHOM_EDGES_DEFAULT_SAME_US;
-    edges->high = pin != NULL && pin->get(pin->ctx);
+    edges->high = (pin != NULL) && pin->get(pin->ctx);
 }
 
 fathom_capture_t fathom_edges_capture(fathom_edges_t *edges)

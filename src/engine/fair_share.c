@@ -8,7 +8,7 @@ static fathom_fair_share_unit_t *unit_of(fathom_fair_share_t *share, uint8_t add
     return &share->units[address % FATHOM_FAIR_SHARE_UNITS];
 }
 
-static uint16_t at_most_16_bits(uint32_t us) { return us > UINT16_MAX ? UINT16_MAX : (uint16_t)us; }
+static uint16_t at_most_16_bits(uint32_t us) { return (us > UINT16_MAX) ? UINT16_MAX : (uint16_t)us; }
 
 /* The time since the last count is this unit's. */
 static uint32_t bill(fathom_fair_share_t *share, fathom_fair_share_unit_t *unit, uint32_t now_us)
@@ -56,7 +56,7 @@ static fathom_transaction_t *next(fathom_line_turns_t *turns, const fathom_line_
     for (fathom_transaction_t *x = line->head; x != NULL; x = x->link.next) {
         fathom_fair_share_unit_t *const unit = unit_of(share, x->address);
         if (fathom_line_is_quarantined(line, x->address) ||
-            (best != NULL && unit->ahead_us >= best->ahead_us))
+            ((best != NULL) && (unit->ahead_us >= best->ahead_us)))
             continue;
         best = unit;
         chosen = x;
@@ -67,8 +67,8 @@ static fathom_transaction_t *next(fathom_line_turns_t *turns, const fathom_line_
     for (uint8_t i = 0; i != FATHOM_FAIR_SHARE_UNITS; i++) {
         fathom_fair_share_unit_t *const unit = &share->units[i];
         const uint32_t ended_us = fathom_elapsed_us(line->polled_us, unit->ended_us);
-        if (unit->ahead_us >= best->ahead_us || unit->again_us >= best->hold_us ||
-            ended_us >= best->hold_us || fathom_line_is_quarantined(line, i))
+        if ((unit->ahead_us >= best->ahead_us) || (unit->again_us >= best->hold_us) ||
+            (ended_us >= best->hold_us) || fathom_line_is_quarantined(line, i))
             continue;
         share->held_for = unit;
         turns->wait_us = best->hold_us - ended_us;

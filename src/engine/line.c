@@ -8,8 +8,8 @@ enum { MAX_READS = 16, LEAST_FRAME = 8, SEND_POLL_US = 1000 };
 fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_t *config,
                                   const fathom_line_kind_t *kind)
 {
-    if (config->uart == NULL || config->clock == NULL || config->frame == NULL ||
-        config->frame_size < LEAST_FRAME)
+    if ((config->uart == NULL) || (config->clock == NULL) || (config->frame == NULL) ||
+        (config->frame_size < LEAST_FRAME))
         return FATHOM_ERR_ARGUMENT;
     /* volatile: or compilers make it a call of memset, which costs more than all of this. */
     for (volatile uint8_t *byte = (uint8_t *)line; byte != (uint8_t *)(line + 1); byte++) *byte = 0;
@@ -27,7 +27,7 @@ static inline uint32_t look(fathom_line_t *line)
     const uint32_t now_us = clock_us(line->config->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
     line->polled_us = now_us;
-    if (line->quarantined != 0 && fathom_count_down(&line->quarantine_left_us, passed_us))
+    if ((line->quarantined != 0) && fathom_count_down(&line->quarantine_left_us, passed_us))
         line->quarantined = 0;
     fathom_count_down(&line->left_us, passed_us);
     return passed_us;
@@ -38,7 +38,7 @@ uint32_t fathom_line_look(fathom_line_t *line) { return look(line); }
 /* Has the line been silent for the listener's gap? */
 static bool is_listeners_gap(const fathom_line_t *line)
 {
-    return line->listener != NULL && line->silent_us >= line->listener->gap_us;
+    return (line->listener != NULL) && (line->silent_us >= line->listener->gap_us);
 }
 
 void fathom_line_leave(fathom_line_t *line, uint8_t length)
@@ -101,15 +101,15 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
             if (n < 0) return fathom_line_broken(line);
             break;
         }
-        if (had == 0 && is_listeners_gap(line)) line->known |= AFTER_GAP;
+        if ((had == 0) && is_listeners_gap(line)) line->known |= AFTER_GAP;
         line->known &= (uint8_t)~LATE;
         came = (uint8_t)n;
     }
-    if (line->have != 0 && line->silent_us >= gap_us(line)) line->kind->scan(line, true);
+    if ((line->have != 0) && (line->silent_us >= gap_us(line))) line->kind->scan(line, true);
     return line->kind->go_on(line);
 }
 
-bool fathom_line_is_idle(const fathom_line_t *line) { return !is_busy(line) && line->have == 0; }
+bool fathom_line_is_idle(const fathom_line_t *line) { return !is_busy(line) && (line->have == 0); }
 
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
@@ -120,18 +120,18 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     fathom_line_look(line);
     if (is_set <= 0) {
         /* A port that does not end a break gets as much time as one that does not take a request. */
-        if (!on && (line->state == IN_BREAK || line->state == ENDING)) {
+        if (!on && ((line->state == IN_BREAK) || (line->state == ENDING))) {
             if (line->state == IN_BREAK) line->left_us = FATHOM_LINE_SEND_US;
             line->state = ENDING;
-            if (is_set < 0 || line->left_us == 0) return fathom_line_broken(line);
+            if ((is_set < 0) || (line->left_us == 0)) return fathom_line_broken(line);
         }
-        return is_set < 0 ? FATHOM_ERR_PORT : FATHOM_PENDING;
+        return (is_set < 0) ? FATHOM_ERR_PORT : FATHOM_PENDING;
     }
     line->state = IN_BREAK;
     if (!on) {
         line->state = IDLE; /* a port that refused a request gets its time anew */
         /* the silence before a request begins here; the listener's has gone on */
-        if (line->have == 0 && is_listeners_gap(line)) line->known |= AFTER_GAP;
+        if ((line->have == 0) && is_listeners_gap(line)) line->known |= AFTER_GAP;
         line->silent_us = 0;
     }
     return FATHOM_READY;
@@ -143,27 +143,27 @@ uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_u
 static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_uart_t *const uart = line->config->uart;
-    const uint32_t us = uart->leaves_in_us != NULL ? uart->leaves_in_us(uart->ctx) : 0;
-    return us != 0 ? us + passed_us : SEND_POLL_US;
+    const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0;
+    return (us != 0) ? (us + passed_us) : SEND_POLL_US;
 }
 
 uint32_t fathom_line_due_us(const fathom_line_t *line)
 {
     const uint32_t passed_us = fathom_elapsed_us(clock_us(line->config->clock), line->polled_us);
     uint32_t due_us;
-    if (phase(line) == SENDING || line->state == REFUSED) {
+    if ((phase(line) == SENDING) || (line->state == REFUSED)) {
         due_us = port_due_us(line, passed_us);
     } else {
         /* With part of a frame there neither a time-out nor the next request comes before the end of it. */
         due_us = FATHOM_NO_DEADLINE;
-        if (line->have == 0 && is_busy(line))
+        if ((line->have == 0) && is_busy(line))
             due_us = line->left_us;
-        else if (line->have == 0 && line->state == IDLE && line->head != NULL)
+        else if ((line->have == 0) && (line->state == IDLE) && (line->head != NULL))
             due_us = line->kind->due_us(line);
     }
-    if (line->have != 0 || (line->state & RESPONSE_BAD) != 0)
+    if ((line->have != 0) || ((line->state & RESPONSE_BAD) != 0))
         due_us = least_us(due_us, rest_us(gap_us(line), line->silent_us));
-    if (line->listener != NULL && line->silent_us < line->listener->gap_us)
+    if ((line->listener != NULL) && (line->silent_us < line->listener->gap_us))
         due_us = least_us(due_us, rest_us(line->listener->gap_us, line->silent_us));
-    return due_us == FATHOM_NO_DEADLINE ? due_us : rest_us(due_us, passed_us);
+    return (due_us == FATHOM_NO_DEADLINE) ? due_us : rest_us(due_us, passed_us);
 }

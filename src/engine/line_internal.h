@@ -61,7 +61,7 @@ static inline uint16_t silence_us(const fathom_line_t *line)
 
 static inline void set_silent(fathom_line_t *line, uint32_t us)
 {
-    line->silent_us = us > UINT16_MAX ? UINT16_MAX : (uint16_t)us;
+    line->silent_us = (us > UINT16_MAX) ? UINT16_MAX : (uint16_t)us;
 }
 
 static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
@@ -75,7 +75,7 @@ static inline bool expects_response(const fathom_line_t *line) { return line->se
 /* The bits of `quarantined` for a unit; all of them for any unit. */
 static inline uint16_t quarantine_bits(uint8_t address)
 {
-    return (uint16_t)(address == FATHOM_LINE_ANY_UNIT ? UINT16_MAX : 1u << (address & 15));
+    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address & 15)));
 }
 
 /* A device sends by itself, and there has been time for a request. */

@@ -10,10 +10,11 @@ uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t ca
     uint8_t *to = line->config->frame;
     const uint8_t *from = to + line->have;
     const uint8_t flags = rx->flags;
-    if ((flags & FATHOM_RX_SILENCE) != 0 && line->have == 0) line->known |= AFTER_GAP;
+    if (((flags & FATHOM_RX_SILENCE) != 0) && (line->have == 0)) line->known |= AFTER_GAP;
     if ((flags & FATHOM_RX_TIMED) != 0) {
         const uint32_t silent_us = fathom_elapsed_us(line->polled_us, rx->last_us);
-        set_silent(line, silent_us <= INT32_MAX ? silent_us : 0); /* a stamp later than the clock is "now" */
+        set_silent(line,
+                   (silent_us <= INT32_MAX) ? silent_us : 0); /* a stamp later than the clock is "now" */
     }
     if ((flags & MARKED) == 0) return came;
     /* What had come before is over. */

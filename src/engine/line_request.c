@@ -8,14 +8,14 @@
 fathom_transaction_t **fathom_line_find(fathom_line_t *line, const fathom_transaction_t *transaction)
 {
     fathom_transaction_t **link = &line->head;
-    while (*link != NULL && *link != transaction) link = &(*link)->link.next;
+    while ((*link != NULL) && (*link != transaction)) link = &(*link)->link.next;
     return link;
 }
 
 void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom_status_t status)
 {
     fathom_transaction_t *const transaction = *link;
-    if (link == &line->head && line->state >= REFUSED) {
+    if ((link == &line->head) && (line->state >= REFUSED)) {
         line->state = IDLE;
         line->sent = 0;
     }
@@ -33,9 +33,9 @@ static void quarantine(fathom_line_t *line)
 {
     const fathom_transaction_t *const transaction = line->head;
     if (!expects_response(line)) return;
-    uint32_t longest_us = phase(line) == SENDING ? transaction->timeout_us : line->left_us;
+    uint32_t longest_us = (phase(line) == SENDING) ? transaction->timeout_us : line->left_us;
     if ((line->state & RESPONSE_CORRUPT) == 0) longest_us += transaction->timeout_us;
-    if (line->quarantined == 0 || line->quarantine_left_us < longest_us)
+    if ((line->quarantined == 0) || (line->quarantine_left_us < longest_us))
         line->quarantine_left_us = longest_us;
     line->quarantined |= quarantine_bits(transaction->address);
 }
@@ -53,7 +53,8 @@ void fathom_line_end_attempt(fathom_line_t *line)
         error = FATHOM_ERR_MALFORMED;
     count(line, (uint8_t)-error, 1);
     quarantine(line);
-    if ((line->state & (ECHOED | RESPONSE_BAD | RESPONSE_UNEXPECTED)) == ECHOED && (line->known & ECHO) == 0)
+    if (((line->state & (ECHOED | RESPONSE_BAD | RESPONSE_UNEXPECTED)) == ECHOED) &&
+        ((line->known & ECHO) == 0))
         error = FATHOM_ERR_ECHO;
     line->state = IDLE;
     line->sent = 0;
@@ -65,7 +66,7 @@ void fathom_line_end_attempt(fathom_line_t *line)
 /* Does a frame from this address concern the transaction? */
 static bool is_of(const fathom_transaction_t *transaction, uint8_t address)
 {
-    return transaction->address == address || transaction->address == FATHOM_LINE_ANY_UNIT;
+    return (transaction->address == address) || (transaction->address == FATHOM_LINE_ANY_UNIT);
 }
 
 bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t address)
@@ -85,18 +86,19 @@ bool fathom_line_deliver(fathom_line_t *line)
         line->state |= RESPONSE_UNEXPECTED;
     } else {
         const uint16_t quarantined = line->quarantined & (uint16_t)~quarantine_bits(address);
-        const bool is_outstanding = quarantined != line->quarantined && (line->known & ECHO_DUE) == 0;
+        const bool is_outstanding = (quarantined != line->quarantined) && ((line->known & ECHO_DUE) == 0);
         line->known &= (uint8_t)~ECHO_DUE;
         count(line, is_outstanding ? FATHOM_LINE_LATE_RESPONSES : FATHOM_LINE_STRAYS, 1);
         if (!is_outstanding) return false;
         line->quarantined = quarantined;
     }
     for (fathom_transaction_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
-        if (x->attempts == 0 || !is_of(x, address) || x->protocol->parse_response != protocol->parse_response)
+        if ((x->attempts == 0) || !is_of(x, address) ||
+            (x->protocol->parse_response != protocol->parse_response))
             continue;
         const fathom_status_t status = protocol->parse_response(x, frame);
-        if (status != FATHOM_READY && status != FATHOM_ERR_EXCEPTION) continue;
-        count(line, status > 0 ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
+        if ((status != FATHOM_READY) && (status != FATHOM_ERR_EXCEPTION)) continue;
+        count(line, (status > 0) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
         fathom_line_finish(line, link, status);
         if (before == 0) fathom_line_learn(line, FATHOM_LINE_ECHO_OFF);
         return true;
@@ -110,7 +112,7 @@ bool fathom_line_deliver(fathom_line_t *line)
 static fathom_transaction_t *next(const fathom_line_t *line)
 {
     fathom_transaction_t *x = line->head;
-    while (x != NULL && (line->quarantined & quarantine_bits(x->address)) != 0) x = x->link.next;
+    while ((x != NULL) && ((line->quarantined & quarantine_bits(x->address)) != 0)) x = x->link.next;
     return x;
 }
 
@@ -146,11 +148,11 @@ static fathom_status_t go_on(fathom_line_t *line)
     }
     if (line->have != 0) return FATHOM_PENDING;
     if (is_busy(line)) {
-        if (line->left_us != 0 && ((line->state & RESPONSE_BAD) == 0 || line->silent_us < gap_us(line)))
+        if ((line->left_us != 0) && (((line->state & RESPONSE_BAD) == 0) || (line->silent_us < gap_us(line))))
             return FATHOM_PENDING;
         fathom_line_end_attempt(line);
     }
-    if (line->state == IN_BREAK || line->state == ENDING || !may_send(line)) return FATHOM_PENDING;
+    if ((line->state == IN_BREAK) || (line->state == ENDING) || !may_send(line)) return FATHOM_PENDING;
     return fathom_line_send(line);
 }
 
@@ -166,7 +168,7 @@ static const fathom_line_kind_t requesting = {fathom_line_scan_responses, go_on,
 
 fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config)
 {
-    if (config->echo == FATHOM_LINE_ECHO_AUTO && config->find_echo == NULL) return FATHOM_ERR_ARGUMENT;
+    if ((config->echo == FATHOM_LINE_ECHO_AUTO) && (config->find_echo == NULL)) return FATHOM_ERR_ARGUMENT;
     return fathom_line_begin(line, config, &requesting);
 }
 
@@ -187,7 +189,7 @@ void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction)
 {
     fathom_transaction_t **const link = fathom_line_find(line, transaction);
     if (*link == NULL) return;
-    if (link == &line->head && is_busy(line)) {
+    if ((link == &line->head) && is_busy(line)) {
         quarantine(line);
         if ((line->state & ECHOED) == 0) line->known |= ECHO_DUE;
     }
@@ -205,7 +207,7 @@ void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
 bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction)
 {
     const fathom_transaction_t *x = line->head;
-    while (x != NULL && x != transaction) x = x->link.next;
+    while ((x != NULL) && (x != transaction)) x = x->link.next;
     return x != NULL;
 }
 

@@ -20,13 +20,13 @@ static void leave(fathom_line_t *line, uint8_t length)
 {
     fathom_line_leave(line, length);
     if (!expects_response(line)) {
-        const uint16_t known = (uint16_t)(line->known + length * ONE_UNASKED);
-        line->known = (uint8_t)(known < OTHERS_SEND ? known : line->known | OTHERS_SEND);
+        const uint16_t known = (uint16_t)(line->known + (length * ONE_UNASKED));
+        line->known = (uint8_t)((known < OTHERS_SEND) ? known : (line->known | OTHERS_SEND));
         return;
     }
     /* It may be what is left of its response. A whole frame hides no echo. */
     if (length == 1) line->state |= NOISY;
-    if (line->left_us == 0 && phase(line) == LISTENING) fathom_line_end_attempt(line);
+    if ((line->left_us == 0) && (phase(line) == LISTENING)) fathom_line_end_attempt(line);
 }
 
 /* What is no frame may be the request; so may a frame that is all of it, or all but its last byte. */
@@ -35,11 +35,11 @@ static uint8_t match_echo(const fathom_line_t *line, uint8_t frame_length)
     const fathom_protocol_t *const protocol = line->protocol;
     const uint8_t *const frame = line->config->frame;
     const uint8_t sent = line->sent;
-    if (sent == 0 ||
-        (frame_length != 0 && ((line->state & ECHOED) != 0 || (uint8_t)(sent - frame_length) > 1)))
+    if ((sent == 0) ||
+        ((frame_length != 0) && (((line->state & ECHOED) != 0) || ((uint8_t)(sent - frame_length) > 1))))
         return 0;
     if (!protocol->is_request(line->head, frame, line->have)) return 0;
-    return sent > line->have || protocol->check(frame, sent) == 0 ? sent : 0;
+    return ((sent > line->have) || (protocol->check(frame, sent) == 0)) ? sent : 0;
 }
 
 enum { TAKEN = 0x100 };
@@ -51,23 +51,24 @@ static int judge(fathom_line_t *line, bool over)
     const fathom_protocol_t *const protocol = line->protocol;
     const uint8_t *const frame = line->config->frame;
     const uint8_t have = line->have;
-    if (!expects_response(line) && line->quarantined == 0) return have;
+    if (!expects_response(line) && (line->quarantined == 0)) return have;
     const uint8_t length = protocol->length(frame, have);
-    if (length > have && length <= line->config->frame_size && !over) return -length;
+    if ((length > have) && (length <= line->config->frame_size) && !over) return -length;
     const bool is_whole = (uint8_t)(length - 1) < have;
-    const bool is_frame = is_whole && protocol->check(frame, length) == 0;
+    const bool is_frame = is_whole && (protocol->check(frame, length) == 0);
     const uint8_t echo = match_echo(line, is_frame ? length : 0);
-    if (echo > have && !over) return -echo;
+    if ((echo > have) && !over) return -echo;
     if ((uint8_t)(echo - 1) < have) {
         if (!is_frame) fathom_line_learn(line, FATHOM_LINE_ECHO_ON); /* which may equal the response */
         line->state |= ECHOED;
         return echo | TAKEN;
     }
-    if (is_frame) return fathom_line_deliver(line) ? length | TAKEN : length;
+    if (is_frame) return fathom_line_deliver(line) ? (length | TAKEN) : length;
     /* While the request leaves, noise is likelier than a response. */
-    if (length != 0 && have >= LEAST_TRUNCATED && fathom_line_expects_unit(line, frame[protocol->address_at]))
+    if ((length != 0) && (have >= LEAST_TRUNCATED) &&
+        fathom_line_expects_unit(line, frame[protocol->address_at]))
         line->state |=
-            (uint8_t)(is_whole && phase(line) == LISTENING ? RESPONSE_CORRUPT : RESPONSE_TRUNCATED);
+            (uint8_t)((is_whole && (phase(line) == LISTENING)) ? RESPONSE_CORRUPT : RESPONSE_TRUNCATED);
     return 1;
 }
 

@@ -18,7 +18,7 @@ fathom_status_t fathom_line_send(fathom_line_t *line)
     uint8_t length = 0;
     int n = 1;
     if (x->line_settings != NULL)
-        n = uart->set_line != NULL ? uart->set_line(uart->ctx, x->line_settings) : -1;
+        n = (uart->set_line != NULL) ? uart->set_line(uart->ctx, x->line_settings) : -1;
     if (n < 0) {
         fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);
         return FATHOM_PENDING;
@@ -26,18 +26,18 @@ fathom_status_t fathom_line_send(fathom_line_t *line)
     if (n != 0) {
         length = x->protocol->encode(x, line->config->frame);
         n = uart->write(uart->ctx, line->config->frame, length);
-        if (n != 0 && n != length) return fathom_line_broken(line);
+        if ((n != 0) && (n != length)) return fathom_line_broken(line);
     }
     if (n != 0) {
         x->attempts++;
         line->protocol = x->protocol;
-        if (x->address != FATHOM_LINE_ALL_UNITS || x->protocol->zero_answers) line->sent = length;
+        if ((x->address != FATHOM_LINE_ALL_UNITS) || x->protocol->zero_answers) line->sent = length;
         line->known &= (uint8_t)~ECHO_DUE;
-        line->state = (uint8_t)(SENDING | (unsigned)(line->known & FATHOM_LINE_ECHO_OFF) * ECHOED);
+        line->state = (uint8_t)(SENDING | ((unsigned)(line->known & FATHOM_LINE_ECHO_OFF) * ECHOED));
     } else if (line->state == IDLE) {
         line->state = REFUSED;
     } else {
-        return line->left_us != 0 ? FATHOM_PENDING : fathom_line_broken(line);
+        return (line->left_us != 0) ? FATHOM_PENDING : fathom_line_broken(line);
     }
     line->left_us = FATHOM_LINE_SEND_US;
     return FATHOM_PENDING;

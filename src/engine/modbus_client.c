@@ -24,7 +24,7 @@ fathom_status_t fathom_modbus_client_parse_response(fathom_transaction_t *transa
 /* Zeros are what noise is made of: no frame of unit 0 is looked for. */
 static uint8_t length(const uint8_t *frame, uint8_t have)
 {
-    return frame[0] != FATHOM_MODBUS_BROADCAST ? fathom_modbus_rtu_response_length(frame, have) : 0;
+    return (frame[0] != FATHOM_MODBUS_BROADCAST) ? fathom_modbus_rtu_response_length(frame, have) : 0;
 }
 
 static const fathom_protocol_t protocol = {

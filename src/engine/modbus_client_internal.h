@@ -16,8 +16,8 @@ fathom_status_t fathom_modbus_client_start(fathom_line_t *line, fathom_modbus_re
 
 static inline bool fathom_modbus_client_reads_0(const fathom_modbus_request_t *request)
 {
-    return request->message.head[0] == FATHOM_MODBUS_BROADCAST &&
-           request->message.head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    return (request->message.head[0] == FATHOM_MODBUS_BROADCAST) &&
+           (request->message.head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS);
 }
 
 #endif

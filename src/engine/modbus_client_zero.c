@@ -14,7 +14,7 @@ static const fathom_protocol_t protocol = {fathom_modbus_client_encode,
 
 fathom_status_t fathom_modbus_client_submit_with_zero(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    if (fathom_modbus_client_reads_0(request) || request->message.head[0] == FATHOM_MODBUS_ANY_UNIT)
+    if (fathom_modbus_client_reads_0(request) || (request->message.head[0] == FATHOM_MODBUS_ANY_UNIT))
         return fathom_modbus_client_start(line, request, &protocol);
     return fathom_modbus_client_submit(line, request);
 }

@@ -24,15 +24,15 @@ static uint16_t setting_bit(const fathom_modbus_unit_t *unit)
 
 static bool moves(const fathom_modbus_setting_t *setting)
 {
-    return setting->address != 0 || setting->line_settings != NULL;
+    return (setting->address != 0) || (setting->line_settings != NULL);
 }
 
 /* Can the value that the device reports be trusted? Not where it was written and has not read back since, unless this
  * very value was written last, and was acknowledged or another one was read before. */
 static bool is_certain(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
-    return moves(setting) || (unit->unconfirmed & setting_bit(unit)) == 0 ||
-           (unit->last_written == unit->setting && unit->last_written_value == (uint16_t)setting->value);
+    return moves(setting) || ((unit->unconfirmed & setting_bit(unit)) == 0) ||
+           ((unit->last_written == unit->setting) && (unit->last_written_value == (uint16_t)setting->value));
 }
 
 /* After the first read: is there anything to do? */
@@ -40,7 +40,7 @@ static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_mod
                                     fathom_status_t status, uint32_t value)
 {
     const bool is_so = value == setting->value;
-    if (status < 0 || (is_so && is_certain(unit, setting))) return status;
+    if ((status < 0) || (is_so && is_certain(unit, setting))) return status;
     unit->step = is_so ? WRITE_UNREAD : WRITE;
     if (setting->address != 0) {
         unit->step = PROBE_NEW;
@@ -55,8 +55,8 @@ static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_
     restore_address(unit);
     unit->step = WRITE;
     if (status == FATHOM_ERR_NO_RESPONSE) return FATHOM_PENDING;
-    const bool is_heard = status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION ||
-                          status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+    const bool is_heard = (status == FATHOM_READY) || (status == FATHOM_ERR_EXCEPTION) ||
+                          (status == FATHOM_ERR_CHECKSUM) || (status == FATHOM_ERR_MALFORMED);
     return is_heard ? FATHOM_ERR_IN_USE : status;
 }
 
@@ -65,10 +65,10 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
 {
     unit->outcome = (int8_t)status;
     if (status == FATHOM_ERR_UNSUPPORTED) unit->is_written = false; /* submitted, and it could not leave */
-    if (!unit->is_written || status == FATHOM_ERR_EXCEPTION) return status;
+    if (!unit->is_written || (status == FATHOM_ERR_EXCEPTION)) return status;
     unit->unconfirmed |= setting_bit(unit);
     /* The value may have read so before: only the acknowledgement shows that it was taken. */
-    const bool is_lost = unit->step == WRITE_UNREAD && status < 0;
+    const bool is_lost = (unit->step == WRITE_UNREAD) && (status < 0);
     unit->last_written = is_lost ? 0 : unit->setting;
     unit->last_written_value = (uint16_t)setting->value;
     if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
@@ -85,7 +85,7 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
 static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                  fathom_status_t status, uint32_t value)
 {
-    if (status == FATHOM_READY && value == setting->value) {
+    if ((status == FATHOM_READY) && (value == setting->value)) {
         unit->unconfirmed &= (uint16_t)~setting_bit(unit);
         return FATHOM_READY;
     }
@@ -95,7 +95,7 @@ static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus
         return FATHOM_PENDING;
     }
     if (status < 0) return FATHOM_ERR_UNCONFIRMED;
-    return unit->outcome < 0 ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS;
+    return (unit->outcome < 0) ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS;
 }
 
 static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
@@ -127,16 +127,17 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
     if (unit->setting == 0) {
         unit->setting = setting->write.id;
         unit->is_written = false;
-        unit->step = setting->read != NULL && !unit->is_blind ? READ_OLD : WRITE_UNREAD;
+        unit->step = ((setting->read != NULL) && !unit->is_blind) ? READ_OLD : WRITE_UNREAD;
         unit->known_address = unit->address;
         unit->known_line_settings = unit->line_settings;
     } else if (unit->setting != setting->write.id) {
         return FATHOM_ERR_BUSY;
     }
     do {
-        const bool is_write = setting->read == NULL || unit->step == WRITE || unit->step == WRITE_UNREAD;
+        const bool is_write =
+            (setting->read == NULL) || (unit->step == WRITE) || (unit->step == WRITE_UNREAD);
         uint32_t value = 0;
-        unit->step = (uint8_t)(unit->step | (is_write ? IN_SETTING | ONCE : IN_SETTING));
+        unit->step = (uint8_t)(unit->step | (is_write ? (IN_SETTING | ONCE) : IN_SETTING));
         status = is_write ? fathom_modbus_unit_ask(unit, &setting->write) : setting->read(setting, &value);
         unit->step &= STEP;
         if (status == FATHOM_PENDING) return status;

@@ -15,5 +15,5 @@ fathom_status_t fathom_output_set_break(const void *ctx, uint8_t level)
     if (level == FATHOM_OUTPUT_REST) return FATHOM_READY;
     const int is_set = uart->set_break(uart->ctx, level == FATHOM_OUTPUT_LOW);
     if (is_set < 0) return FATHOM_ERR_PORT;
-    return is_set > 0 ? FATHOM_READY : FATHOM_PENDING;
+    return (is_set > 0) ? FATHOM_READY : FATHOM_PENDING;
 }

@@ -9,7 +9,7 @@ enum { MAX_TAKES = 8 };
 static uint8_t kind_of(const fathom_pulse_meter_t *meter, uint32_t width_us)
 {
     if (width_us > meter->stuck_us) return FATHOM_FAULT;
-    return width_us < meter->no_target_us ? FATHOM_TARGET : FATHOM_NO_TARGET;
+    return (width_us < meter->no_target_us) ? FATHOM_TARGET : FATHOM_NO_TARGET;
 }
 
 static fathom_status_t take(fathom_pulse_meter_t *meter, fathom_pulse_reading_t *reading)
@@ -52,10 +52,11 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
     meter->waiting = false;
     trigger->output = config->trigger;
     trigger->clock = config->clock;
-    trigger->period_us = cycle_us > FATHOM_PULSE_DEFAULT_CYCLE_US ? cycle_us : FATHOM_PULSE_DEFAULT_CYCLE_US;
+    trigger->period_us =
+        (cycle_us > FATHOM_PULSE_DEFAULT_CYCLE_US) ? cycle_us : FATHOM_PULSE_DEFAULT_CYCLE_US;
     trigger->low_us = config->low_us;
-    if (config->clock == NULL || meter->capture == NULL || meter->noise_us >= meter->no_target_us ||
-        meter->no_target_us > meter->stuck_us)
+    if ((config->clock == NULL) || (meter->capture == NULL) || (meter->noise_us >= meter->no_target_us) ||
+        (meter->no_target_us > meter->stuck_us))
         return FATHOM_ERR_ARGUMENT;
     return fathom_trigger_init(trigger);
 }
@@ -70,7 +71,7 @@ fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_read
     if (!meter->waiting && fathom_trigger_is_due(trigger)) capture->arm(capture->ctx);
     const fathom_status_t driven = fathom_trigger_drive(trigger, !meter->waiting);
     if (driven == FATHOM_READY) meter->waiting = true;
-    return status != FATHOM_PENDING || driven == FATHOM_READY ? status : driven;
+    return ((status != FATHOM_PENDING) || (driven == FATHOM_READY)) ? status : driven;
 }
 
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter)

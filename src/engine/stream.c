@@ -20,7 +20,7 @@ static void accept(fathom_stream_t *stream, bool by_silence)
     const uint8_t *from = stream->storage;
     uint8_t length = stream->length;
     if (stream->candidate == 0) return;
-    stream->sure = stream->candidate + by_silence >= SURE; /* FIRST and a silence behind it is as good */
+    stream->sure = (stream->candidate + by_silence) >= SURE; /* FIRST and a silence behind it is as good */
     stream->candidate = 0;
     stream->time_us = stream->candidate_us;
     if (stream->fresh) count(stream, FATHOM_STREAM_MISSED);
@@ -36,11 +36,11 @@ static void judge(fathom_stream_t *stream, uint32_t time_us)
     uint8_t candidate = 0;
     uint8_t last = 0;
     uint8_t why = FATHOM_STREAM_UNSURE;
-    if (stream->gap && stream->to_whole == 1) candidate = FIRST;
+    if (stream->gap && (stream->to_whole == 1)) candidate = FIRST;
     if (stream->to_step > 1) {
         last = OVERLAPS;
         why = FATHOM_STREAM_AMBIGUOUS;
-    } else if (stream->to_step == 1 && before != OVERLAPS) {
+    } else if ((stream->to_step == 1) && (before != OVERLAPS)) {
         last = STEP;
         if (before == STEP)
             candidate = SURE;
@@ -72,7 +72,7 @@ static void take(fathom_stream_t *stream, uint8_t byte, uint32_t time_us)
     count(stream, FATHOM_STREAM_BYTES);
     count_down(&stream->to_whole);
     count_down(&stream->to_step);
-    if (stream->to_whole <= 1 && fathom_dyp_stream_valid(window, length)) judge(stream, time_us);
+    if ((stream->to_whole <= 1) && fathom_dyp_stream_valid(window, length)) judge(stream, time_us);
 }
 
 void fathom_stream_receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count_of_bytes,
@@ -115,8 +115,8 @@ void fathom_stream_begin(fathom_stream_t *stream, uint32_t now_us)
 fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_config_t *config,
                                    uint32_t now_us)
 {
-    if (config->storage == NULL ||
-        (config->length != FATHOM_DYP_A16_LENGTH && config->length != FATHOM_DYP_A05_LENGTH))
+    if ((config->storage == NULL) ||
+        ((config->length != FATHOM_DYP_A16_LENGTH) && (config->length != FATHOM_DYP_A05_LENGTH)))
         return FATHOM_ERR_ARGUMENT;
     stream->listener.gap_us = config->gap_us;
     stream->storage = config->storage;

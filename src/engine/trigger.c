@@ -11,10 +11,10 @@ static fathom_status_t hold(fathom_trigger_t *trigger, bool low)
     const fathom_output_t *const output = &trigger->output;
     const fathom_status_t status = output->set(output->ctx, low ? FATHOM_OUTPUT_LOW : FATHOM_OUTPUT_HIGH);
     const bool was_refused = trigger->refused;
-    trigger->refused = status != FATHOM_READY && status != FATHOM_ERR_PORT;
+    trigger->refused = (status != FATHOM_READY) && (status != FATHOM_ERR_PORT);
     if (!trigger->refused) return status;
     const uint32_t now_us = clock_us(trigger->clock);
-    if (was_refused && fathom_elapsed_us(now_us, trigger->refused_us) < FATHOM_TRIGGER_REFUSED_US)
+    if (was_refused && (fathom_elapsed_us(now_us, trigger->refused_us) < FATHOM_TRIGGER_REFUSED_US))
         return FATHOM_PENDING;
     trigger->refused_us = now_us;
     return was_refused ? FATHOM_ERR_PORT : FATHOM_PENDING;
@@ -48,7 +48,8 @@ static uint32_t low_left_us(const fathom_trigger_t *trigger)
 fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin)
 {
     const bool was_low = trigger->low;
-    if (was_low ? low_left_us(trigger) != 0 : !may_begin || trigger->left_us != 0) return FATHOM_PENDING;
+    if (was_low ? (low_left_us(trigger) != 0) : (!may_begin || (trigger->left_us != 0)))
+        return FATHOM_PENDING;
     const fathom_status_t status = hold(trigger, !was_low);
     if (status != FATHOM_READY) return status;
     trigger->low = !was_low;

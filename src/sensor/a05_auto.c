@@ -40,9 +40,9 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
         level = FATHOM_OUTPUT_LOW;
     else if (sensor->selecting)
         level = FATHOM_OUTPUT_HIGH;
-    const bool is_needed = low || sensor->select.set != NULL;
+    const bool is_needed = low || (sensor->select.set != NULL);
     const fathom_status_t status = is_needed ? fathom_output_set(&sensor->select, level) : FATHOM_READY;
-    if (status != FATHOM_READY) return status == FATHOM_PENDING ? FATHOM_ERR_BUSY : status;
+    if (status != FATHOM_READY) return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
     sensor->selecting = low;
     sensor->select_left_us = FATHOM_A05_SELECT_US;
     sensor->polled_us = clock_us(base->line->config->clock);
@@ -66,7 +66,7 @@ static fathom_status_t release(fathom_a05_auto_t *sensor)
     sensor->polled_us = now_us;
     if (!sensor->selecting || !fathom_count_down(&sensor->select_left_us, passed_us)) return FATHOM_PENDING;
     const fathom_status_t status = end_selection(sensor);
-    return status == FATHOM_READY ? FATHOM_PENDING : status;
+    return (status == FATHOM_READY) ? FATHOM_PENDING : status;
 }
 
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
@@ -82,8 +82,8 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 {
     const uint16_t *value = sensor->values;
     for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1), value++)
-        if ((sensor->probes & bit) != 0 &&
-            fathom_dyp_meaning(&sensor->base.measurement.window, *value) == FATHOM_MEANS_REFUSED)
+        if (((sensor->probes & bit) != 0) &&
+            (fathom_dyp_meaning(&sensor->base.measurement.window, *value) == FATHOM_MEANS_REFUSED))
             return bit;
     return 0;
 }
@@ -92,7 +92,7 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 static uint8_t believed(fathom_a05_auto_t *sensor)
 {
     const uint8_t odd = odd_probe(sensor);
-    const bool is_whole = odd == 0 || (sensor->base.stream.sure && sensor->was_odd);
+    const bool is_whole = (odd == 0) || (sensor->base.stream.sure && sensor->was_odd);
     sensor->was_odd = odd != 0;
     return is_whole ? sensor->probes : odd;
 }
@@ -109,7 +109,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         measurement->left = believed(sensor);
         status = fathom_dyp_measurement_next(measurement, sample);
     }
-    return status != FATHOM_PENDING ? status : rx;
+    return (status != FATHOM_PENDING) ? status : rx;
 }
 
 static uint32_t due_us(void *ctx)

@@ -12,13 +12,13 @@ static bool is_one(uint8_t probes) { return (probes & (probes - 1)) == 0; }
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const uint8_t probes = config->probes != 0 ? config->probes : ALL_PROBES;
-    if (config->modbus.address_zero || probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+    const uint8_t probes = (config->probes != 0) ? config->probes : ALL_PROBES;
+    if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
     uint8_t first = 0;
     if (is_single)
-        while ((probes >> first & 1) == 0) first++;
+        while (((probes >> first) & 1) == 0) first++;
     base->request.first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
     base->request.last = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;
@@ -70,7 +70,7 @@ fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8
     fathom_modbus_unit_t *const unit = &sensor->base.unit;
     const fathom_modbus_t *const transport = unit->transport;
     fathom_modbus_setting_t setting;
-    if (address == FATHOM_LINE_ALL_UNITS || address == FATHOM_LINE_ANY_UNIT || unit->is_blind)
+    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) || unit->is_blind)
         return FATHOM_ERR_ARGUMENT;
     fathom_modbus_unit_poll(unit);
     const fathom_modbus_t either = fathom_modbus_over_line(transport->ctx, submit_either);

@@ -11,7 +11,8 @@ fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a
                          (config->level == FATHOM_A05_RELAY_CONDUCTS_HIGH);
     base->model = FATHOM_A05;
     base->address = 0;
-    if (config->wiring > FATHOM_A05_RELAY_NORMALLY_CLOSED || config->level > FATHOM_A05_RELAY_CONDUCTS_HIGH)
+    if ((config->wiring > FATHOM_A05_RELAY_NORMALLY_CLOSED) ||
+        (config->level > FATHOM_A05_RELAY_CONDUCTS_HIGH))
         return FATHOM_ERR_ARGUMENT;
     return fathom_contact_init(base, &config->timing);
 }

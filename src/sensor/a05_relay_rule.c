@@ -7,19 +7,19 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
                                            const fathom_a05_relay_rule_config_t *config)
 {
     fathom_debounce_config_t own;
-    own.hold_us = config->hold_us != 0 ? config->hold_us : FATHOM_A05_RELAY_HOLD_US;
+    own.hold_us = (config->hold_us != 0) ? config->hold_us : FATHOM_A05_RELAY_HOLD_US;
     own.unknown_us = config->unknown_us;
     own.threshold_mm =
-        config->threshold_mm != 0 ? config->threshold_mm : (uint16_t)FATHOM_A05_RELAY_DEFAULT_MM;
+        (config->threshold_mm != 0) ? config->threshold_mm : (uint16_t)FATHOM_A05_RELAY_DEFAULT_MM;
     own.near_count = 1; /* A05 4 knows no rows */
     own.far_count = 1;
     own.equal = config->equal;
     rule->sequence = 0;
-    rule->probes = config->probes != 0 ? config->probes : (uint8_t)ALL_PROBES;
+    rule->probes = (config->probes != 0) ? config->probes : (uint8_t)ALL_PROBES;
     rule->missing = rule->probes;
     rule->verdict = FATHOM_FAR;
-    if (own.threshold_mm < FATHOM_A05_RELAY_MIN_MM || own.threshold_mm > FATHOM_A05_RELAY_MAX_MM ||
-        config->probes > ALL_PROBES)
+    if ((own.threshold_mm < FATHOM_A05_RELAY_MIN_MM) || (own.threshold_mm > FATHOM_A05_RELAY_MAX_MM) ||
+        (config->probes > ALL_PROBES))
         return FATHOM_ERR_ARGUMENT;
     return fathom_debounce_init(&rule->debounce, &own);
 }
@@ -29,7 +29,7 @@ static uint8_t verdict_of(const fathom_a05_relay_rule_t *rule, const fathom_samp
 {
     if (sample->kind == FATHOM_TARGET) return fathom_debounce_compare(&rule->debounce, sample->distance_mm);
     if (sample->kind == FATHOM_NO_TARGET) return FATHOM_FAR;
-    return sample->kind == FATHOM_NEAR ? (uint8_t)FATHOM_NEAR : (uint8_t)FATHOM_UNKNOWN;
+    return (sample->kind == FATHOM_NEAR) ? (uint8_t)FATHOM_NEAR : (uint8_t)FATHOM_UNKNOWN;
 }
 
 bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
@@ -46,5 +46,5 @@ bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sa
     rule->missing &= (uint8_t)~bit;
     if (verdict != FATHOM_FAR) rule->verdict = verdict;
     if (verdict == FATHOM_NEAR) rule->missing = 0; /* the others cannot change that */
-    return rule->missing == 0 && fathom_debounce_verdict(&rule->debounce, rule->verdict, sample->time_us);
+    return (rule->missing == 0) && fathom_debounce_verdict(&rule->debounce, rule->verdict, sample->time_us);
 }

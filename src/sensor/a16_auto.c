@@ -20,9 +20,9 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
     sensor->value = FATHOM_PROCESSED;
     fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
     if (status < 0) return status;
-    if (sensor->select.set != NULL || config->value != FATHOM_PROCESSED) {
+    if ((sensor->select.set != NULL) || (config->value != FATHOM_PROCESSED)) {
         status = fathom_a16_auto_select(sensor, (fathom_dyp_value_t)config->value);
-        if (status != FATHOM_READY) return status == FATHOM_PENDING ? FATHOM_ERR_BUSY : status;
+        if (status != FATHOM_READY) return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
     }
     fathom_line_listen(base->line, &base->stream.listener);
     return FATHOM_READY;
@@ -32,7 +32,7 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_val
 {
     if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
     /* FATHOM_OUTPUT_HIGH or _LOW; a TX that was not held low is left alone */
-    const bool is_driven = value != FATHOM_PROCESSED || sensor->value != FATHOM_PROCESSED;
+    const bool is_driven = (value != FATHOM_PROCESSED) || (sensor->value != FATHOM_PROCESSED);
     const uint8_t level = (uint8_t)(is_driven ? (unsigned)value : (unsigned)FATHOM_OUTPUT_REST);
     const fathom_status_t status = fathom_output_set(&sensor->select, level);
     if (status == FATHOM_READY) sensor->value = (uint8_t)value;
@@ -52,7 +52,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a16_auto_t *const sensor = ctx;
     const fathom_status_t status = fathom_dyp_auto_take(&sensor->base);
-    return status == FATHOM_READY ? fathom_dyp_measurement_next(&sensor->base.measurement, sample) : status;
+    return (status == FATHOM_READY) ? fathom_dyp_measurement_next(&sensor->base.measurement, sample) : status;
 }
 
 static uint32_t due_us(void *ctx)

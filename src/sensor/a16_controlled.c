@@ -6,8 +6,8 @@
 /* Did what came last, between came_us and time_us, come in time? What came before the edge is far beyond latest_us. */
 static bool is_in_time(const fathom_a16_controlled_t *sensor, uint32_t time_us)
 {
-    return sensor->waiting && fathom_elapsed_us(time_us, sensor->edge_us) >= sensor->earliest_us &&
-           fathom_elapsed_us(sensor->came_us, sensor->edge_us) <= sensor->latest_us;
+    return sensor->waiting && (fathom_elapsed_us(time_us, sensor->edge_us) >= sensor->earliest_us) &&
+           (fathom_elapsed_us(sensor->came_us, sensor->edge_us) <= sensor->latest_us);
 }
 
 static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
@@ -15,7 +15,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t c
 {
     fathom_a16_controlled_t *const sensor = (fathom_a16_controlled_t *)listener;
     /* a port without time stamps: it is the time of the line's poll */
-    sensor->came_us = time_us == sensor->line->polled_us ? sensor->trigger.polled_us : time_us;
+    sensor->came_us = (time_us == sensor->line->polled_us) ? sensor->trigger.polled_us : time_us;
     if (is_in_time(sensor, time_us)) sensor->heard = true;
     fathom_stream_receive(listener, bytes, count, after_gap, time_us);
 }
@@ -49,7 +49,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     /* its deadline means nothing here: without a trigger the sensor is silent */
     if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_READY)
         status = judge(sensor, sample);
-    if (sensor->waiting && sensor->stream.candidate == 0 && response_left_us(sensor) == 0) {
+    if (sensor->waiting && (sensor->stream.candidate == 0) && (response_left_us(sensor) == 0)) {
         sensor->waiting = false;
         status = sensor->heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE;
     }
@@ -59,7 +59,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         sensor->waiting = true;
         sensor->heard = false;
     }
-    return status != FATHOM_PENDING || driven == FATHOM_READY ? status : driven;
+    return ((status != FATHOM_PENDING) || (driven == FATHOM_READY)) ? status : driven;
 }
 
 static uint32_t due_us(void *ctx)
@@ -90,14 +90,14 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
     measurement->model = FATHOM_A16;
     measurement->address = 0;
     measurement->first = 1;
-    if (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) < 0 || line == NULL ||
-        sensor->earliest_us > sensor->latest_us)
+    if ((fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) < 0) || (line == NULL) ||
+        (sensor->earliest_us > sensor->latest_us))
         return FATHOM_ERR_ARGUMENT;
     sensor->late = 0;
     sensor->waiting = false;
     trigger->output = config->trigger;
     trigger->clock = line->config->clock;
-    trigger->period_us = period_us > FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US
+    trigger->period_us = (period_us > FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US)
                              ? period_us
                              : FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US;
     trigger->low_us = config->low_us;

@@ -33,7 +33,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     if (reading.kind == FATHOM_TARGET) {
         mm = sensor->in_air ? fathom_pulse_width_mm_in_air(reading.width_us, sensor->air_dc)
                             : fathom_pulse_width_mm(reading.width_us);
-        if (mm < sensor->window.min_mm || mm > sensor->window.max_mm) {
+        if ((mm < sensor->window.min_mm) || (mm > sensor->window.max_mm)) {
             count_one(&sensor->implausible);
             return FATHOM_ERR_MALFORMED;
         }

@@ -15,7 +15,7 @@ fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dy
 {
     if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
     const uint16_t address =
-        value == FATHOM_REAL_TIME ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
+        (value == FATHOM_REAL_TIME) ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
     const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, sensor->values);
     if (status != FATHOM_READY) return status;
     sensor->base.measurement.address = sensor->base.unit.address;
@@ -84,7 +84,7 @@ fathom_status_t fathom_a16_modbus_switch_threshold_mm(fathom_a16_modbus_t *senso
 
 fathom_status_t fathom_a16_modbus_set_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t threshold_mm)
 {
-    if (threshold_mm == 0 || threshold_mm > FATHOM_A16_MAX_MM) return FATHOM_ERR_ARGUMENT;
+    if ((threshold_mm == 0) || (threshold_mm > FATHOM_A16_MAX_MM)) return FATHOM_ERR_ARGUMENT;
     return fathom_dyp_modbus_set(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
 }
 

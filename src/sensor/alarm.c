@@ -6,17 +6,17 @@
 /* What alarm->side may be beside FATHOM_ALARM_ON, _OFF and _UNKNOWN: a distance between the thresholds, or at one. */
 enum { BETWEEN = 0 };
 
-static bool is_side(uint8_t state) { return state == FATHOM_ALARM_ON || state == FATHOM_ALARM_OFF; }
+static bool is_side(uint8_t state) { return (state == FATHOM_ALARM_ON) || (state == FATHOM_ALARM_OFF); }
 
 /* The two thresholds by where they are, whichever of them switches on. */
 static uint16_t nearer_mm(const fathom_alarm_config_t *config)
 {
-    return config->when == FATHOM_NEAR ? config->on_mm : config->off_mm;
+    return (config->when == FATHOM_NEAR) ? config->on_mm : config->off_mm;
 }
 
 static uint16_t farther_mm(const fathom_alarm_config_t *config)
 {
-    return config->when == FATHOM_NEAR ? config->off_mm : config->on_mm;
+    return (config->when == FATHOM_NEAR) ? config->off_mm : config->on_mm;
 }
 
 fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config)
@@ -26,8 +26,8 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
     alarm->config.unknown_us = or_default(config->unknown_us, FATHOM_ALARM_DEFAULT_UNKNOWN_US);
     alarm->state = FATHOM_ALARM_UNKNOWN;
     alarm->was = config->if_unknown;
-    return (config->when == FATHOM_NEAR || config->when == FATHOM_FAR) && is_side(config->if_unknown) &&
-                   is_side(config->if_no_response) && nearer_mm(config) <= farther_mm(config)
+    return (((config->when == FATHOM_NEAR) || (config->when == FATHOM_FAR)) && is_side(config->if_unknown) &&
+            is_side(config->if_no_response) && (nearer_mm(config) <= farther_mm(config)))
                ? FATHOM_READY
                : FATHOM_ERR_ARGUMENT;
 }
@@ -36,7 +36,7 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
 static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_t *sample)
 {
     uint8_t kind = sample->kind;
-    if (kind == FATHOM_NO_TARGET && !config->no_target_is_unknown) kind = FATHOM_FAR;
+    if ((kind == FATHOM_NO_TARGET) && !config->no_target_is_unknown) kind = FATHOM_FAR;
     if (kind == FATHOM_TARGET) {
         if (sample->distance_mm < nearer_mm(config))
             kind = FATHOM_NEAR;
@@ -45,8 +45,8 @@ static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_
         else
             return BETWEEN;
     }
-    if (kind != FATHOM_NEAR && kind != FATHOM_FAR) return FATHOM_ALARM_UNKNOWN;
-    return kind == config->when ? FATHOM_ALARM_ON : FATHOM_ALARM_OFF;
+    if ((kind != FATHOM_NEAR) && (kind != FATHOM_FAR)) return FATHOM_ALARM_UNKNOWN;
+    return (kind == config->when) ? FATHOM_ALARM_ON : FATHOM_ALARM_OFF;
 }
 
 /* Is it more than unknown_us since the last distance? */
@@ -57,7 +57,7 @@ static bool is_too_long(fathom_alarm_t *alarm, uint32_t now_us)
     alarm->is_fed = true;
     const uint32_t passed_us = fathom_elapsed_us(now_us, alarm->fed_us);
     /* Half a turn of the clock and more: it is a time before the distance. */
-    return passed_us > alarm->config.unknown_us && passed_us <= INT32_MAX;
+    return (passed_us > alarm->config.unknown_us) && (passed_us <= INT32_MAX);
 }
 
 static void look_at_time(fathom_alarm_t *alarm, uint32_t now_us)
@@ -71,8 +71,8 @@ bool fathom_alarm_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t
 {
     const uint8_t before = alarm->state;
     if (status != FATHOM_PENDING)
-        alarm->responds = status == FATHOM_READY || status == FATHOM_ERR_MALFORMED ||
-                          status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_WARMING_UP;
+        alarm->responds = (status == FATHOM_READY) || (status == FATHOM_ERR_MALFORMED) ||
+                          (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_WARMING_UP);
     look_at_time(alarm, now_us);
     return alarm->state != before;
 }
@@ -88,7 +88,7 @@ bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
     alarm->responds = true;
     if (alarm->side != side) alarm->since_us = now_us;
     alarm->side = side;
-    const uint32_t hold_us = side == FATHOM_ALARM_ON ? alarm->config.on_hold_us : alarm->config.off_hold_us;
+    const uint32_t hold_us = (side == FATHOM_ALARM_ON) ? alarm->config.on_hold_us : alarm->config.off_hold_us;
     if (side == BETWEEN)
         alarm->state = alarm->was;
     else if (fathom_elapsed_us(now_us, alarm->since_us) >= hold_us)

@@ -7,19 +7,19 @@
 
 /* Of FFFD, FFFE, FFFF and 0, four bits each, the first one last. */
 enum {
-    MEANINGS = FATHOM_MEANS_NO_TARGET | FATHOM_MEANS_INTERFERENCE << 4 | FATHOM_MEANS_REFUSED << 8 |
-               FATHOM_MEANS_UNKNOWN << 12
+    MEANINGS = FATHOM_MEANS_NO_TARGET | (FATHOM_MEANS_INTERFERENCE << 4) | (FATHOM_MEANS_REFUSED << 8) |
+               (FATHOM_MEANS_UNKNOWN << 12)
 };
 
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value)
 {
     const uint16_t special = (uint16_t)(value + 3);
     if (special > 3)
-        return value >= window->min_mm && value <= window->max_mm ? (uint8_t)FATHOM_TARGET
-                                                                  : (uint8_t)FATHOM_MEANS_REFUSED;
+        return ((value >= window->min_mm) && (value <= window->max_mm)) ? (uint8_t)FATHOM_TARGET
+                                                                        : (uint8_t)FATHOM_MEANS_REFUSED;
     const uint8_t meaning = ((const uint8_t *)window)[offsetof(fathom_dyp_window_t, value_fffd) + special];
     if (meaning != FATHOM_MEANS_DEFAULT) return meaning;
-    return (uint8_t)(MEANINGS >> 4 * special & 15);
+    return (uint8_t)((MEANINGS >> (4 * special)) & 15);
 }
 
 fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measurement, fathom_sample_t *sample)
@@ -73,5 +73,5 @@ fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measuremen
     measurement->implausible = 0;
     measurement->refused_raw = 0;
     measurement->refused_probe = 0;
-    return window->min_mm > window->max_mm ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
+    return (window->min_mm > window->max_mm) ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
 }

@@ -9,13 +9,13 @@ enum { MEASURE = 1, WRITES = 64 }; /* ids of requests */
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
                                        uint32_t timeout_us, uint32_t pace_us)
 {
-    const uint16_t max_mm = sensor->measurement.model == FATHOM_A16 ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
+    const uint16_t max_mm = (sensor->measurement.model == FATHOM_A16) ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
     const fathom_status_t status = fathom_dyp_measurement_init(&sensor->measurement, max_mm);
     sensor->request.values = sensor->measurement.values;
     sensor->request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     sensor->request.id = MEASURE;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
-    return status < 0 ? status : fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us);
+    return (status < 0) ? status : fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us);
 }
 
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
@@ -31,7 +31,7 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor)
 /* By what registers differ: they are 0010.., 0100.. and 0200... */
 static uint8_t id_of(uint16_t address)
 {
-    return (uint8_t)(FATHOM_MODBUS_COMMAND | (address >> 4 & 0x30) | (address & 0x0F));
+    return (uint8_t)(FATHOM_MODBUS_COMMAND | ((address >> 4) & 0x30) | (address & 0x0F));
 }
 
 fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
@@ -93,10 +93,10 @@ static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16
     const bool is_address = address == FATHOM_DYP_REGISTER_ADDRESS;
     fathom_modbus_setting_t setting;
     if (is_address && unit->is_blind) return FATHOM_ERR_ARGUMENT;
-    if (unit->address == FATHOM_MODBUS_BROADCAST && unit->setting == 0) return FATHOM_ERR_ARGUMENT;
+    if ((unit->address == FATHOM_MODBUS_BROADCAST) && (unit->setting == 0)) return FATHOM_ERR_ARGUMENT;
     fathom_dyp_modbus_describe(sensor, &setting, address, value);
     setting.read = its_read;
-    if (is_address) setting.address = value != 0 ? value : ZERO_ADDRESS;
+    if (is_address) setting.address = (value != 0) ? value : ZERO_ADDRESS;
     return fathom_modbus_set(&sensor->unit, &setting);
 }
 
@@ -109,7 +109,7 @@ fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t addr
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
     fathom_modbus_unit_poll(&sensor->unit);
-    if (sensor->unit.setting == 0 && !sensor->unit.is_blind) {
+    if ((sensor->unit.setting == 0) && !sensor->unit.is_blind) {
         sensor->unit.is_written = false; /* nor will it be before this read has ended */
         const fathom_status_t status =
             fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);
@@ -120,7 +120,8 @@ fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t ad
 
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address)
 {
-    if (address == FATHOM_MODBUS_BROADCAST || address == FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_ARGUMENT;
+    if ((address == FATHOM_MODBUS_BROADCAST) || (address == FATHOM_MODBUS_ANY_UNIT))
+        return FATHOM_ERR_ARGUMENT;
     return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address);
 }
 
@@ -149,7 +150,7 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
     find->is_asked = false;
     if (status != FATHOM_READY) return status;
     const uint16_t found =
-        request->message.head[0] != FATHOM_MODBUS_ANY_UNIT ? request->message.head[0] : find->value;
+        (request->message.head[0] != FATHOM_MODBUS_ANY_UNIT) ? request->message.head[0] : find->value;
     if (found >= FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_MALFORMED;
     *address = (uint8_t)found;
     return status;
@@ -181,7 +182,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us(void *ctx)
 {
     const fathom_dyp_modbus_t *const sensor = ctx;
-    return sensor->measurement.left != 0 ? 0 : fathom_modbus_unit_due_us(&sensor->unit);
+    return (sensor->measurement.left != 0) ? 0 : fathom_modbus_unit_due_us(&sensor->unit);
 }
 
 fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)

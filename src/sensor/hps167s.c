@@ -9,12 +9,12 @@ enum { MAX_SAME_RESPONSES = 8 };
 
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
 {
-    if (config->modbus.address > FATHOM_HPS167S_MAX_ADDRESS || config->modbus.address_zero ||
-        config->same_responses > MAX_SAME_RESPONSES)
+    if ((config->modbus.address > FATHOM_HPS167S_MAX_ADDRESS) || config->modbus.address_zero ||
+        (config->same_responses > MAX_SAME_RESPONSES))
         return FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
     sensor->warm_up_s = config->warm_up_s;
-    if (config->warm_up_s == 0 && !config->no_warm_up) sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
+    if ((config->warm_up_s == 0) && !config->no_warm_up) sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
     sensor->same_responses = config->same_responses;
     sensor->steps_per_degree = config->steps_per_degree;
     sensor->low_word_first = config->low_word_first;
@@ -49,13 +49,13 @@ void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
 fathom_status_t fathom_hps167s_ask(fathom_hps167s_t *sensor, uint8_t id, uint8_t count)
 {
     fathom_modbus_unit_request_t *const request = &sensor->request;
-    request->values = id < FATHOM_MODBUS_COMMAND ? sensor->measurement : sensor->values;
+    request->values = (id < FATHOM_MODBUS_COMMAND) ? sensor->measurement : sensor->values;
     request->first = id % FATHOM_MODBUS_COMMAND;
     request->last = count;
     request->function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     request->id = id;
     const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, request);
-    if (status != FATHOM_PENDING && sensor->follow != NULL) sensor->follow(sensor, status);
+    if ((status != FATHOM_PENDING) && (sensor->follow != NULL)) sensor->follow(sensor, status);
     return status;
 }
 
@@ -69,8 +69,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     if (status != FATHOM_READY) return status;
     if (fathom_modbus_unit_is_warming_up(&sensor->unit) && fathom_hps167s_is_abnormal(response))
         return FATHOM_ERR_WARMING_UP;
-    if ((sensor->is_new != NULL && !sensor->is_new(sensor)) ||
-        fathom_hps167s_decode_within(sensor->limits, response, sample) < 0) {
+    if (((sensor->is_new != NULL) && !sensor->is_new(sensor)) ||
+        (fathom_hps167s_decode_within(sensor->limits, response, sample) < 0)) {
         count_one(&sensor->implausible);
         return FATHOM_ERR_MALFORMED;
     }

@@ -15,9 +15,9 @@ static bool fits(const fathom_hps167s_auto_t *sensor)
 {
     const uint8_t *const bytes = sensor->bytes;
     if (bytes[ADDRESS] != *sensor->from) return false;
-    if (sensor->have > FUNCTION && bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS) return false;
-    if (sensor->have > SIZE && bytes[SIZE] != DATA_SIZE) return false;
-    return sensor->have != LENGTH || fathom_crc16(bytes, LENGTH) == 0;
+    if ((sensor->have > FUNCTION) && (bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS)) return false;
+    if ((sensor->have > SIZE) && (bytes[SIZE] != DATA_SIZE)) return false;
+    return (sensor->have != LENGTH) || (fathom_crc16(bytes, LENGTH) == 0);
 }
 
 /* The first byte begins nothing: the next may. volatile: or compilers make it a call of memmove. */
@@ -32,9 +32,9 @@ static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
     const uint8_t *at = sensor->bytes + DATA;
     uint16_t registers[4];
-    for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)(at[0] * 256u + at[1]);
+    for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)((at[0] * 256u) + at[1]);
     sensor->have = 0;
-    if (sensor->driver != NULL && !sensor->heard(sensor->driver, registers, time_us)) {
+    if ((sensor->driver != NULL) && !sensor->heard(sensor->driver, registers, time_us)) {
         count_one(&sensor->implausible);
         return;
     }
@@ -53,7 +53,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
     if (length == 0) sensor->have = 0;
     for (; length != 0; length--) {
         sensor->bytes[sensor->have++] = *bytes++;
-        while (sensor->have != 0 && !fits(sensor)) slip(sensor);
+        while ((sensor->have != 0) && !fits(sensor)) slip(sensor);
         if (sensor->have == LENGTH) take(sensor, time_us);
     }
 }
@@ -61,14 +61,14 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
 fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
                                          const fathom_hps167s_auto_config_t *config)
 {
-    if (config->line == NULL || config->address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
+    if ((config->line == NULL) || (config->address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
     sensor->listener.receive = receive;
     sensor->line = config->line;
     sensor->stale_us = or_default(config->stale_us, STALE_US);
     sensor->left_us = sensor->stale_us;
     sensor->polled_us = clock_us(sensor->line->config->clock);
-    sensor->address = config->address != 0 ? config->address : 1;
+    sensor->address = (config->address != 0) ? config->address : 1;
     sensor->from = &sensor->address;
     fathom_line_listen(sensor->line, &sensor->listener);
     return FATHOM_READY;

@@ -29,7 +29,7 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
 static bool same_4(const uint16_t *a, const uint16_t *b)
 {
     uint8_t i = 0;
-    while (i != 4 && a[i] == b[i]) i++;
+    while ((i != 4) && (a[i] == b[i])) i++;
     return i == 4;
 }
 
@@ -67,7 +67,7 @@ bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4],
         sensor->is_outstanding = false;
         return false;
     }
-    if (sensor->unit.current == fathom_hps167s_id(FATHOM_HPS167S_CONFIGURATION) &&
+    if ((sensor->unit.current == fathom_hps167s_id(FATHOM_HPS167S_CONFIGURATION)) &&
         fathom_hps167s_may_be_configuration(registers))
         return false;
     copy_4(sensor->last_measurement, registers);
@@ -79,7 +79,7 @@ static bool is_believed(fathom_hps167s_t *sensor)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
     const uint16_t *const values = sensor->values;
-    uint8_t needed = sensor->same_responses != 0 ? sensor->same_responses : SAME_RESPONSES;
+    uint8_t needed = (sensor->same_responses != 0) ? sensor->same_responses : SAME_RESPONSES;
     if (sensor->responses++ == 0) sensor->agreed = 0;
     if (!fathom_hps167s_may_be_configuration(values) || same_4(values, sensor->last_measurement)) {
         copy_4(sensor->last_measurement, values);
@@ -92,11 +92,11 @@ static bool is_believed(fathom_hps167s_t *sensor)
     }
     if (fathom_elapsed_us(unit->polled_us, sensor->unasked_us) >= UNASKED_US)
         sensor->is_among_unasked = false;
-    if (sensor->is_among_unasked && needed < RESPONSES_AMONG_UNASKED) needed = RESPONSES_AMONG_UNASKED;
+    if (sensor->is_among_unasked && (needed < RESPONSES_AMONG_UNASKED)) needed = RESPONSES_AMONG_UNASKED;
     if (sensor->agreed >= needed) return true;
     /* A request in step with what the device sends by itself would get an unasked frame each time. */
     if (sensor->is_among_unasked)
-        unit->pause_us += (uint32_t)((2u * sensor->responses + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2));
+        unit->pause_us += (uint32_t)(((2u * sensor->responses) + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2));
     return false;
 }
 
@@ -104,7 +104,7 @@ static bool is_believed(fathom_hps167s_t *sensor)
  * measurement: until it cannot come any more there is no outcome, or another driver's next request would meet it. */
 static fathom_status_t give_up(const fathom_hps167s_t *sensor)
 {
-    return sensor->is_outstanding && sensor->unit.pause_us != 0 ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;
+    return (sensor->is_outstanding && (sensor->unit.pause_us != 0)) ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;
 }
 
 fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
@@ -112,12 +112,12 @@ fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
     fathom_status_t status;
     be_wary(sensor);
     for (;;) {
-        status = sensor->responses == MAX_RESPONSES
+        status = (sensor->responses == MAX_RESPONSES)
                      ? give_up(sensor)
                      : fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION,
                                                FATHOM_HPS167S_CONFIGURATION_COUNT);
-        if (status == FATHOM_PENDING || status == FATHOM_ERR_BUSY) return status;
-        if (status != FATHOM_READY || is_believed(sensor)) break;
+        if ((status == FATHOM_PENDING) || (status == FATHOM_ERR_BUSY)) return status;
+        if ((status != FATHOM_READY) || is_believed(sensor)) break;
         if (sensor->responses == MAX_RESPONSES) sensor->unit.pause_us = sensor->unit.command_timeout_us;
     }
     sensor->responses = 0;
@@ -150,8 +150,8 @@ fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps1
     if (status != FATHOM_READY) return status;
     const int16_t raw = fathom_hps167s_signed(sensor->values[0]);
     const int32_t temperature_dc =
-        fathom_hps167s_temperature_dc(raw, sensor->steps_per_degree != 0 ? sensor->steps_per_degree : 1);
-    if (temperature_dc > INT16_MAX || temperature_dc < INT16_MIN) return FATHOM_ERR_MALFORMED;
+        fathom_hps167s_temperature_dc(raw, (sensor->steps_per_degree != 0) ? sensor->steps_per_degree : 1);
+    if ((temperature_dc > INT16_MAX) || (temperature_dc < INT16_MIN)) return FATHOM_ERR_MALFORMED;
     out->fahrenheit = raw;
     out->temperature_dc = (int16_t)temperature_dc;
     return FATHOM_READY;

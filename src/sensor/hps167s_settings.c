@@ -12,7 +12,7 @@ enum { READ_BACK = 0, WRITE_ONLY = 1, TO_ALL = 0x40 };
 static const fathom_line_settings_t *with_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const fathom_line_settings_t *const old = sensor->unit.line_settings;
-    fathom_line_settings_t *const there = &sensor->moved[old == &sensor->moved[0] ? 1 : 0];
+    fathom_line_settings_t *const there = &sensor->moved[(old == &sensor->moved[0]) ? 1 : 0];
     there->baud = baud;
     there->parity = old->parity;
     there->stop_bits = old->stop_bits;
@@ -36,16 +36,16 @@ static void seek(fathom_hps167s_t *sensor, const fathom_line_settings_t *other)
 /* Power-on, or a request has ended: does it show where the device is? No setting begins before that is known. */
 static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
 {
-    if (status == FATHOM_PENDING && sensor->next_baud != 0) {
+    if ((status == FATHOM_PENDING) && (sensor->next_baud != 0)) {
         seek(sensor, with_baud(sensor, sensor->next_baud));
         sensor->next_baud = 0;
         change_over(sensor);
     }
     if (!sensor->is_seeking) return;
     if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.transaction.status;
-    if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED)
+    if ((status == FATHOM_READY) || (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_MALFORMED))
         sensor->is_seeking = false;
-    else if (status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_CHECKSUM)
+    else if ((status == FATHOM_ERR_NO_RESPONSE) || (status == FATHOM_ERR_CHECKSUM))
         change_over(sensor);
 }
 
@@ -53,7 +53,7 @@ static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
 
 static bool is_at_home(const fathom_modbus_unit_t *unit)
 {
-    return unit->address == unit->known_address && unit->line_settings == unit->known_line_settings;
+    return (unit->address == unit->known_address) && (unit->line_settings == unit->known_line_settings);
 }
 
 /*
@@ -62,18 +62,18 @@ static bool is_at_home(const fathom_modbus_unit_t *unit)
  */
 static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
 {
-    const bool is_done = sensor->reset_response == FATHOM_HPS167S_RESET_DONE || !is_at_home(&sensor->unit);
+    const bool is_done = (sensor->reset_response == FATHOM_HPS167S_RESET_DONE) || !is_at_home(&sensor->unit);
     const bool is_first = !sensor->is_looked_at;
     sensor->is_looked_at = true;
-    if (!is_done && !is_first && sensor->unit.address == 1) return FATHOM_ERR_UNCONFIRMED;
+    if (!is_done && !is_first && (sensor->unit.address == 1)) return FATHOM_ERR_UNCONFIRMED;
     *value = is_done ? FATHOM_HPS167S_RESET_DONE : 0;
     return FATHOM_READY;
 }
 
 static bool is_reset_refused(const fathom_hps167s_t *sensor)
 {
-    return sensor->reset_response != FATHOM_HPS167S_NO_RESET_RESPONSE &&
-           sensor->reset_response != FATHOM_HPS167S_RESET_DONE;
+    return (sensor->reset_response != FATHOM_HPS167S_NO_RESET_RESPONSE) &&
+           (sensor->reset_response != FATHOM_HPS167S_RESET_DONE);
 }
 
 /* The code of the rate; for a code without a rate of its own, that at which the response came. */
@@ -96,7 +96,7 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
         return fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
     }
     /* It reported that it was not reset, so it is where it was: nothing is to be read. */
-    if (command == FATHOM_HPS167S_RESET && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
+    if ((command == FATHOM_HPS167S_RESET) && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
     status = fathom_hps167s_read_configuration(sensor);
     if (status != FATHOM_READY) return status;
     switch (command) {
@@ -135,14 +135,14 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
     fathom_modbus_unit_poll(unit);
     if (unit->setting != 0) /* to load the user's settings is not to load the factory's */
-        return unit->setting == id && setting->value == value ? FATHOM_READY : FATHOM_ERR_BUSY;
+        return ((unit->setting == id) && (setting->value == value)) ? FATHOM_READY : FATHOM_ERR_BUSY;
     unit->is_written = false; /* nor will it be before this read has ended */
-    if (!unit->is_blind && (sensor->is_seeking || kind == WRITE_ONLY)) {
+    if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
         const fathom_status_t status =
             fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
         if (status != FATHOM_READY) return status;
     }
-    setting->read = kind == WRITE_ONLY ? NULL : look;
+    setting->read = (kind == WRITE_ONLY) ? NULL : look;
     setting->driver = sensor;
     setting->value = value;
     setting->line_settings = NULL;
@@ -162,7 +162,7 @@ static fathom_status_t go_on(fathom_hps167s_t *sensor)
 static fathom_status_t set(fathom_hps167s_t *sensor, uint8_t command, uint16_t value, uint8_t kind)
 {
     const fathom_status_t status = begin(sensor, command, value, kind);
-    return status == FATHOM_READY ? go_on(sensor) : status;
+    return (status == FATHOM_READY) ? go_on(sensor) : status;
 }
 
 fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor)
@@ -214,7 +214,7 @@ fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, 
 fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, uint32_t reconnect_time_ms)
 {
     fathom_modbus_unit_request_t *const write = &sensor->setting.write;
-    if (reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS != 0) return FATHOM_ERR_ARGUMENT;
+    if ((reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS) != 0) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, READ_BACK);
     if (status != FATHOM_READY) return status;
     fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
@@ -256,7 +256,7 @@ fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *se
 
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
 {
-    if (address == 0 || address > FATHOM_HPS167S_MAX_ADDRESS) return FATHOM_ERR_ARGUMENT;
+    if ((address == 0) || (address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, READ_BACK);
     if (status != FATHOM_READY) return status;
     sensor->setting.address = address;
@@ -268,7 +268,7 @@ fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t add
 static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t address)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
-    if (is == NULL || is->baud == baud) return;
+    if ((is == NULL) || (is->baud == baud)) return;
     sensor->setting.line_settings = with_baud(sensor, baud);
     sensor->setting.address = address;
 }
@@ -277,20 +277,20 @@ static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t addres
 static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
-    sensor->next_baud = is != NULL && is->baud != baud ? baud : 0;
+    sensor->next_baud = ((is != NULL) && (is->baud != baud)) ? baud : 0;
     sensor->follow = follow;
 }
 
 fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const uint8_t code = fathom_hps167s_baud_code(baud);
-    if (code == 0 || sensor->unit.line_settings == NULL) return FATHOM_ERR_ARGUMENT;
+    if ((code == 0) || (sensor->unit.line_settings == NULL)) return FATHOM_ERR_ARGUMENT;
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, READ_BACK);
     if (status != FATHOM_READY) return status;
     move_to_baud(sensor, baud, sensor->unit.address);
     status = go_on(sensor);
     if (status == FATHOM_READY) expect_baud(sensor, baud);
-    if (status == FATHOM_ERR_UNCONFIRMED && sensor->setting.line_settings != NULL) {
+    if ((status == FATHOM_ERR_UNCONFIRMED) && (sensor->setting.line_settings != NULL)) {
         seek(sensor, sensor->setting.line_settings);
         sensor->follow = follow;
     }
@@ -316,5 +316,5 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
         expect_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD);
         sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
     }
-    return status == FATHOM_ERR_UNCONFIRMED && is_reset_refused(sensor) ? FATHOM_ERR_EXCEPTION : status;
+    return ((status == FATHOM_ERR_UNCONFIRMED) && is_reset_refused(sensor)) ? FATHOM_ERR_EXCEPTION : status;
 }

@@ -14,7 +14,8 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
     copy(own, config, sizeof *own);
     own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
     if (own->gate_row == 0) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
-    return own->window == NULL || own->count < FATHOM_MEDIAN_MIN_COUNT || own->count > FATHOM_MEDIAN_MAX_COUNT
+    return ((own->window == NULL) || (own->count < FATHOM_MEDIAN_MIN_COUNT) ||
+            (own->count > FATHOM_MEDIAN_MAX_COUNT))
                ? FATHOM_ERR_ARGUMENT
                : FATHOM_READY;
 }
@@ -25,8 +26,8 @@ static bool is_spike(const fathom_median_t *median, uint16_t mm)
 {
     const uint32_t gate_mm = median->config.gate_mm;
     const uint16_t value = median->value;
-    if (gate_mm == 0 || !is_full(median)) return false;
-    return (mm == FARTHER) != (value == FARTHER) || mm > value + gate_mm || value > mm + gate_mm;
+    if ((gate_mm == 0) || !is_full(median)) return false;
+    return ((mm == FARTHER) != (value == FARTHER)) || (mm > (value + gate_mm)) || (value > (mm + gate_mm));
 }
 
 /* The one of a full window before which there are less than half, and after which there are not more than half. */
@@ -41,7 +42,7 @@ static uint16_t middle_of(const fathom_median_t *median)
             if (median->config.window[i] < *at) nearer++;
             if (median->config.window[i] <= *at) as_near++;
         }
-        if (nearer <= before && as_near > before) return *at; /* of one of them it is so */
+        if ((nearer <= before) && (as_near > before)) return *at; /* of one of them it is so */
     }
 }
 
@@ -49,7 +50,8 @@ bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, median->fed_us);
     /* Half a turn of the clock and more: it is a time before the sample. */
-    if (median->have == 0 || passed_us <= median->config.unknown_us || passed_us > INT32_MAX) return false;
+    if ((median->have == 0) || (passed_us <= median->config.unknown_us) || (passed_us > INT32_MAX))
+        return false;
     median->have = 0;
     return true;
 }
@@ -82,7 +84,7 @@ bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample
     uint8_t kind = FATHOM_TARGET;
     if (sample->kind == FATHOM_TARGET)
         mm = sample->distance_mm;
-    else if (sample->kind == FATHOM_NO_TARGET || sample->kind == FATHOM_FAR)
+    else if ((sample->kind == FATHOM_NO_TARGET) || (sample->kind == FATHOM_FAR))
         mm = FARTHER;
     else if (sample->kind != FATHOM_NEAR)
         return false;

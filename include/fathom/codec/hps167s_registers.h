@@ -80,13 +80,13 @@ enum {
 /* Byte n of a response's registers, 0 the first, in the order of the wire. */
 static inline uint8_t fathom_hps167s_byte(const uint16_t *registers, uint8_t n)
 {
-    return (uint8_t)(n % 2 == 0 ? registers[n / 2] >> 8 : registers[n / 2]);
+    return (uint8_t)(((n % 2) == 0) ? (registers[n / 2] >> 8) : registers[n / 2]);
 }
 
 /* A register that has a sign: #4, #12, #14. */
 static inline int16_t fathom_hps167s_signed(uint16_t value)
 {
-    return (int16_t)(value < 0x8000u ? (int32_t)value : (int32_t)value - 0x10000);
+    return (int16_t)((value < 0x8000u) ? (int32_t)value : ((int32_t)value - 0x10000));
 }
 
 /* #9: the rate of a code, of which all but 1..4 mean 19200; and the code of a rate, 0 where there is none. */

@@ -61,7 +61,7 @@ static inline fathom_output_t fathom_output_break(const fathom_uart_t *uart)
 /* As output->set; FATHOM_ERR_UNSUPPORTED where there is no output. */
 static inline fathom_status_t fathom_output_set(const fathom_output_t *output, uint8_t level)
 {
-    return output->set != NULL ? output->set(output->ctx, level) : FATHOM_ERR_UNSUPPORTED;
+    return (output->set != NULL) ? output->set(output->ctx, level) : FATHOM_ERR_UNSUPPORTED;
 }
 
 #ifdef __cplusplus
