@@ -14,13 +14,14 @@ static inline uint32_t least_us(uint32_t a, uint32_t b) { return (a < b) ? a : b
 /* How much of `us` is left when so much of it has passed. */
 static inline uint32_t rest_us(uint32_t us, uint32_t passed_us)
 {
-    return (us > passed_us) ? (us - passed_us) : 0;
+    if (us <= passed_us) return 0;
+    return us - passed_us;
 }
 
 /* A member of a config of which 0 means its default. */
 static inline uint32_t or_default(uint32_t value, uint32_t default_value)
 {
-    return (value != 0) ? value : default_value;
+    return (value != 0u) ? value : default_value;
 }
 
 /* A counter that stops at 65535. */
@@ -33,7 +34,7 @@ static inline void count_one(uint16_t *counter)
 static inline void clear(void *object, size_t size)
 {
     volatile uint8_t *at = object;
-    while (size-- != 0) *at++ = 0;
+    while (size-- != 0u) *at++ = 0;
 }
 
 /* All bytes of one into another, which may be the same; volatile for the same reason. */
@@ -41,7 +42,7 @@ static inline void copy(void *to, const void *from, size_t size)
 {
     volatile uint8_t *at = to;
     const uint8_t *of = from;
-    while (size-- != 0) *at++ = *of++;
+    while (size-- != 0u) *at++ = *of++;
 }
 
 static inline fathom_sensor_t sensor_of(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),

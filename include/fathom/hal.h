@@ -136,8 +136,8 @@ static inline uint32_t fathom_elapsed_us(uint32_t now_us, uint32_t since_us)
 /* Moves a count-down on by `by_us`; it stops at 0. True when it stands at 0. */
 static inline bool fathom_count_down(uint32_t *left_us, uint32_t by_us)
 {
-    *left_us = (*left_us > by_us) ? (uint32_t)(*left_us - by_us) : 0;
-    return *left_us == 0;
+    *left_us = (*left_us > by_us) ? (uint32_t)(*left_us - by_us) : 0u;
+    return *left_us == 0u;
 }
 
 #ifdef __cplusplus

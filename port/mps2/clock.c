@@ -11,7 +11,7 @@
 
 void fathom_mps2_clock_begin(void)
 {
-    FPGAIO[PRESCALE] = (FATHOM_MPS2_HZ / 1000000u) - 1;
+    FPGAIO[PRESCALE] = (FATHOM_MPS2_HZ / 1000000u) - 1u;
     FPGAIO[PSCNTR] = 0;
     FPGAIO[COUNTER] = 0;
 }

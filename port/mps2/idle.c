@@ -26,7 +26,7 @@ static bool byte_waits(const fathom_mps2_idle_t *idle)
 
 void fathom_mps2_idle(void *ctx, uint32_t max_us)
 {
-    if (max_us == 0) return;
+    if (max_us == 0u) return;
     if (max_us > LONGEST_US) max_us = LONGEST_US;
     /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
      * end it. An interrupt that is pending ends WFI, and runs afterwards. */

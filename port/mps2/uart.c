@@ -27,8 +27,8 @@ static const place_t places[] = {{(volatile uint32_t *)0x40004000u, 0},
 /* 0: not within 2.5 %, or not 8N1, which is all that these UARTs have. */
 static uint32_t divider(const fathom_line_settings_t *line)
 {
-    return ((line->parity != FATHOM_PARITY_NONE) || (line->stop_bits != 1))
-               ? 0
+    return ((line->parity != FATHOM_PARITY_NONE) || (line->stop_bits != 1u))
+               ? 0u
                : fathom_serial_divider(FATHOM_MPS2_HZ, line, MIN_BAUDDIV, MAX_BAUDDIV);
 }
 
@@ -38,12 +38,12 @@ void fathom_mps2_uart_interrupt(fathom_mps2_uart_t *uart)
     const uint32_t why = registers[INTSTATUS];
     uint8_t byte;
     registers[INTSTATUS] = why; /* before the bytes: one that comes after this interrupts again */
-    while ((registers[STATE] & STATE_RXFULL) != 0) {
-        const bool is_overrun = (registers[STATE] & STATE_RXOVERRUN) != 0;
+    while ((registers[STATE] & STATE_RXFULL) != 0u) {
+        const bool is_overrun = (registers[STATE] & STATE_RXOVERRUN) != 0u;
         if (is_overrun) registers[STATE] = STATE_RXOVERRUN;
         fathom_serial_put(&uart->serial, (uint8_t)registers[DATA], is_overrun ? FATHOM_RX_OVERRUN : 0);
     }
-    if (((why & INTSTATUS_TX) == 0) || !uart->serial.leaving) return;
+    if (((why & INTSTATUS_TX) == 0u) || !uart->serial.leaving) return;
     if (fathom_serial_next(&uart->serial, &byte)) {
         registers[DATA] = byte;
         return;
@@ -71,7 +71,7 @@ static uint32_t uart_leaves_in_us(void *ctx)
 {
     const fathom_mps2_uart_t *const uart = ctx;
     const fathom_line_settings_t line = {uart->baud, FATHOM_PARITY_NONE, 1};
-    return uart_sent(ctx) ? 0 : fathom_serial_leaves_in_us(&uart->serial, &line, HELD);
+    return uart_sent(ctx) ? 0u : fathom_serial_leaves_in_us(&uart->serial, &line, HELD);
 }
 
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
@@ -90,7 +90,7 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     fathom_mps2_uart_t *const uart = ctx;
     const uint32_t by = divider(settings);
-    if (by == 0) return -1;
+    if (by == 0u) return -1;
     if (settings->baud == uart->baud) return 1;
     if (!uart_sent(uart)) return 0;
     uart->registers[BAUDDIV] = by;
@@ -101,10 +101,10 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_config_t *config)
 {
     if ((config->number >= (sizeof places / sizeof places[0])) || (config->request == NULL) ||
-        (config->request_size == 0))
+        (config->request_size == 0u))
         return false;
     const uint32_t by = divider(&config->line);
-    if (by == 0) return false;
+    if (by == 0u) return false;
     const place_t *const place = &places[config->number];
     fathom_serial_init(&uart->serial, config->request, config->request_size);
     uart->registers = place->registers;
@@ -114,7 +114,7 @@ bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_con
     uart->registers[BAUDDIV] = by;
     uart->registers[INTSTATUS] = INTSTATUS_TX | INTSTATUS_RX;
     __asm__ volatile("" ::: "memory"); /* all that is stored before the interrupts are enabled */
-    NVIC_ISER[place->interrupt / 32] = 3u << (place->interrupt % 32);
+    NVIC_ISER[place->interrupt / 32u] = 3u << (place->interrupt % 32u);
     uart->registers[CTRL] = CTRL_TX | CTRL_RX | CTRL_TX_INTERRUPT | CTRL_RX_INTERRUPT;
     return true;
 }

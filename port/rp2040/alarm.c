@@ -10,8 +10,8 @@ void fathom_rp2040_alarm_set(unsigned alarm, uint32_t in_us)
     const uint32_t bit = UINT32_C(1) << alarm;
     const uint32_t at_us = RP2040_TIMER_RAWL + in_us;
     RP2040_TIMER_ALARM(alarm) = at_us;
-    const bool is_over = (uint32_t)(RP2040_TIMER_RAWL - at_us) <= INT32_MAX;
-    if (is_over && ((RP2040_TIMER_ARMED & bit) != 0)) rp2040_set(&RP2040_TIMER_INTF, bit);
+    const bool is_over = (uint32_t)(RP2040_TIMER_RAWL - at_us) <= (UINT32_MAX / 2u);
+    if (is_over && ((RP2040_TIMER_ARMED & bit) != 0u)) rp2040_set(&RP2040_TIMER_INTF, bit);
 }
 
 void fathom_rp2040_alarm_clear(unsigned alarm)

@@ -6,9 +6,9 @@ enum { HZ_PER_MHZ = 1000000 };
 
 void fathom_rp2040_clock_begin(uint32_t ref_hz)
 {
-    if (ref_hz != 0) RP2040_WATCHDOG_TICK = (ref_hz / HZ_PER_MHZ) | RP2040_WATCHDOG_TICK_ENABLE;
+    if (ref_hz != 0u) RP2040_WATCHDOG_TICK = (ref_hz / HZ_PER_MHZ) | RP2040_WATCHDOG_TICK_ENABLE;
     rp2040_clear(&RP2040_RESETS_RESET, RP2040_RESETS_TIMER);
-    while ((RP2040_RESETS_RESET_DONE & RP2040_RESETS_TIMER) == 0) { /* some cycles of clk_sys */
+    while ((RP2040_RESETS_RESET_DONE & RP2040_RESETS_TIMER) == 0u) { /* some cycles of clk_sys */
     }
 }
 

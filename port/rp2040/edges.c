@@ -18,10 +18,10 @@ void fathom_rp2040_edges_interrupt(fathom_rp2040_edges_t *pin)
 {
     const uint32_t now_us = RP2040_TIMER_RAWL; /* first of all */
     const unsigned gpio = pin->gpio;
-    if ((RP2040_IO_PROC0_INTS(gpio) & RP2040_IO_EDGES(gpio)) == 0) return;
+    if ((RP2040_IO_PROC0_INTS(gpio) & RP2040_IO_EDGES(gpio)) == 0u) return;
     /* Cleared before the level is read: an edge in between is seen in the level, and interrupts once more; the other
      * way round it would be lost. */
     RP2040_IO_INTR(gpio) = RP2040_IO_EDGES(gpio);
-    fathom_edges_feed(pin->edges, ((RP2040_SIO_GPIO_IN >> gpio) & 1u) != 0, now_us);
+    fathom_edges_feed(pin->edges, ((RP2040_SIO_GPIO_IN >> gpio) & 1u) != 0u, now_us);
     if (pin->idle != NULL) pin->idle->has_news = true;
 }

@@ -12,9 +12,10 @@ void fathom_rp2040_idle(void *ctx, uint32_t max_us)
 {
     fathom_rp2040_idle_t *const idle = ctx;
     __asm__ volatile("cpsid i" ::: "memory");
-    if (!idle->has_news && (max_us != 0)) {
+    if (!idle->has_news && (max_us != 0u)) {
         const bool has_deadline = max_us != FATHOM_NO_DEADLINE;
-        if (has_deadline) fathom_rp2040_alarm_set(idle->alarm, (max_us < INT32_MAX) ? max_us : INT32_MAX);
+        if (has_deadline)
+            fathom_rp2040_alarm_set(idle->alarm, (max_us < (UINT32_MAX / 2u)) ? max_us : (UINT32_MAX / 2u));
         __asm__ volatile("dsb\n\twfi" ::: "memory");
         if (has_deadline) fathom_rp2040_alarm_clear(idle->alarm);
     }

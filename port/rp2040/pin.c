@@ -13,7 +13,7 @@ static void set(void *ctx, bool high)
         RP2040_SIO_GPIO_OUT_CLR = mask_of(ctx);
 }
 
-static bool get(void *ctx) { return (RP2040_SIO_GPIO_IN & mask_of(ctx)) != 0; }
+static bool get(void *ctx) { return (RP2040_SIO_GPIO_IN & mask_of(ctx)) != 0u; }
 
 static void *begin(unsigned gpio)
 {

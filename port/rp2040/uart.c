@@ -47,7 +47,7 @@ static bool gather(fathom_rp2040_uart_t *uart)
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint8_t taken = uart->taken;
     uint8_t written = uart->written;
-    while (((hardware->fr & RP2040_UART_FR_RXFE) == 0) &&
+    while (((hardware->fr & RP2040_UART_FR_RXFE) == 0u) &&
            ((uint8_t)(written - taken) != FATHOM_RP2040_RX_RING)) {
         uart->ring[written % FATHOM_RP2040_RX_RING] = (uint16_t)hardware->dr;
         written++;
@@ -71,10 +71,10 @@ static void count(uint16_t *counter, bool is_so)
 
 static uint8_t flags_of(fathom_rp2040_uart_t *uart, unsigned errors)
 {
-    const bool parity = (errors & RP2040_UART_DR_PE) != 0;
-    const bool framing = (errors & FRAMING) != 0;
+    const bool parity = (errors & RP2040_UART_DR_PE) != 0u;
+    const bool framing = (errors & FRAMING) != 0u;
     /* Not of this byte: others were lost before it (PL011 TRM 2.4.2). */
-    const bool overrun = (errors & RP2040_UART_DR_OE) != 0;
+    const bool overrun = (errors & RP2040_UART_DR_OE) != 0u;
     count(&uart->parity, parity);
     count(&uart->framing, framing);
     count(&uart->overruns, overrun);
@@ -87,7 +87,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     fathom_rp2040_uart_t *const uart = ctx;
     rp2040_uart_t *const hardware = hardware_of(uart);
     uint8_t taken = uart->taken;
-    if ((taken == uart->written) && ((hardware->fr & RP2040_UART_FR_RXFE) != 0)) return 0;
+    if ((taken == uart->written) && ((hardware->fr & RP2040_UART_FR_RXFE) != 0u)) return 0;
     rp2040_clear(&hardware->imsc, RECEIVE);
     keep_order();
     (void)gather(uart);
@@ -96,7 +96,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     while ((taken != end) && ((size_t)n < capacity)) {
         const unsigned entry = uart->ring[taken % FATHOM_RP2040_RX_RING];
         const unsigned errors = entry & ERRORS;
-        if ((errors != 0) && (n != 0)) break;
+        if ((errors != 0u) && (n != 0)) break;
         bytes[n++] = (uint8_t)entry;
         taken++;
         rx->flags = flags_of(uart, errors);
@@ -106,7 +106,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
             uart->is_silent = false;
             break;
         }
-        if (errors != 0) break;
+        if (errors != 0u) break;
     }
     uart->taken = taken;
     keep_order();
@@ -121,7 +121,7 @@ static void feed(fathom_rp2040_uart_t *uart)
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint8_t length = uart->length;
     uint8_t given = uart->given;
-    while ((given != length) && ((hardware->fr & RP2040_UART_FR_TXFF) == 0))
+    while ((given != length) && ((hardware->fr & RP2040_UART_FR_TXFF) == 0u))
         hardware->dr = uart->config->request[given++];
     uart->given = given;
     if (given == length)
@@ -133,20 +133,20 @@ static void feed(fathom_rp2040_uart_t *uart)
 static bool uart_sent(void *ctx)
 {
     const fathom_rp2040_uart_t *const uart = ctx;
-    return (uart->given == uart->length) && ((hardware_of(uart)->fr & RP2040_UART_FR_BUSY) == 0);
+    return (uart->given == uart->length) && ((hardware_of(uart)->fr & RP2040_UART_FR_BUSY) == 0u);
 }
 
 static uint32_t uart_leaves_in_us(void *ctx)
 {
     const fathom_rp2040_uart_t *const uart = ctx;
     const uint32_t left_us = uart->end_us - RP2040_TIMER_RAWL;
-    return (uart_sent(ctx) || (left_us > INT32_MAX)) ? 0 : left_us;
+    return (uart_sent(ctx) || (left_us > (UINT32_MAX / 2u))) ? 0u : left_us;
 }
 
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_rp2040_uart_t *const uart = ctx;
-    if ((length == 0) || (length > uart->config->request_size)) return -1;
+    if ((length == 0u) || (length > uart->config->request_size)) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0;
     for (size_t i = 0; i < length; i++) uart->config->request[i] = bytes[i];
     keep_order();
@@ -207,20 +207,20 @@ void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
 {
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint32_t pending = hardware->mis;
-    if ((pending & RECEIVE) != 0) {
+    if ((pending & RECEIVE) != 0u) {
         hardware->icr = RP2040_UART_INT_RT; /* which need not end when the main loop has emptied the FIFO */
         /* With no room the bytes wait in the hardware, and read lets the interrupt through again. */
         const bool has_room = gather(uart);
         if (!has_room) rp2040_clear(&hardware->imsc, RECEIVE);
-        if (has_room && ((pending & RP2040_UART_INT_RT) != 0)) note_silence(uart);
+        if (has_room && ((pending & RP2040_UART_INT_RT) != 0u)) note_silence(uart);
         tell(uart);
     }
-    if ((pending & RP2040_UART_INT_TX) != 0) feed(uart);
+    if ((pending & RP2040_UART_INT_TX) != 0u) feed(uart);
 }
 
 bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config)
 {
-    if ((config->request == NULL) || (config->request_size == 0)) return false;
+    if ((config->request == NULL) || (config->request_size == 0u)) return false;
     uart->config = config;
     uart->line = config->line;
     uart->parity = uart->framing = uart->overruns = 0;

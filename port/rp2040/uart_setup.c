@@ -14,13 +14,13 @@ static uint32_t divider(uint32_t clk_peri_hz, uint32_t baud)
 {
     const uint32_t steps_hz = clk_peri_hz * (FRACTIONS / 16);
     const uint32_t fastest = steps_hz / FRACTIONS;
-    if ((baud == 0) || (baud > (fastest + (fastest / MAX_ERROR_DIVIDER)))) return 0;
-    uint32_t result = (steps_hz + (baud / 2)) / baud;
+    if ((baud == 0u) || (baud > (fastest + (fastest / MAX_ERROR_DIVIDER)))) return 0;
+    uint32_t result = (steps_hz + (baud / 2u)) / baud;
     if (result < FRACTIONS) result = FRACTIONS;
     if (result > ((uint32_t)MAX_DIVIDER * FRACTIONS)) result = (uint32_t)MAX_DIVIDER * FRACTIONS;
     const uint32_t hz = result * baud;
     const uint32_t off_hz = (hz > steps_hz) ? (hz - steps_hz) : (steps_hz - hz);
-    return (off_hz > (hz / MAX_ERROR_DIVIDER)) ? 0 : result;
+    return (off_hz > (hz / MAX_ERROR_DIVIDER)) ? 0u : result;
 }
 
 unsigned fathom_rp2040_uart_bits(const fathom_line_settings_t *line)
@@ -32,11 +32,11 @@ bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fat
 {
     const uint32_t divide = divider(wiring->clk_peri_hz, line->baud);
     uint32_t format = RP2040_UART_LCR_H_WLEN_8 | RP2040_UART_LCR_H_FEN;
-    if ((divide == 0) || (line->parity > FATHOM_PARITY_ODD)) return false;
-    if ((line->stop_bits != 1) && (line->stop_bits != 2)) return false;
+    if ((divide == 0u) || (line->parity > FATHOM_PARITY_ODD)) return false;
+    if ((line->stop_bits != 1u) && (line->stop_bits != 2u)) return false;
     if (line->parity != FATHOM_PARITY_NONE) format |= RP2040_UART_LCR_H_PEN;
     if (line->parity == FATHOM_PARITY_EVEN) format |= RP2040_UART_LCR_H_EPS;
-    if (line->stop_bits == 2) format |= RP2040_UART_LCR_H_STP2;
+    if (line->stop_bits == 2u) format |= RP2040_UART_LCR_H_STP2;
 
     /* LCR_H may not change while the UART is enabled, and its write is what makes the divider hold (4.2.7.1). FEN
      * stays, so the FIFO keeps its bytes. */
@@ -52,13 +52,13 @@ bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fat
 /* 1.4.3, function 2: TX and RX stand at GPIO 0 and 1 of every four, which belong to UART0, 1, 1, 0 in turns. */
 static bool is_pin(const fathom_rp2040_wiring_t *wiring, unsigned gpio, unsigned of_four)
 {
-    return (gpio < FATHOM_RP2040_GPIOS) && ((gpio % 4) == of_four) &&
-           (((gpio + 4) / 8 % 2) == wiring->number);
+    return (gpio < FATHOM_RP2040_GPIOS) && ((gpio % 4u) == of_four) &&
+           (((gpio + 4u) / 8u % 2u) == wiring->number);
 }
 
 bool fathom_rp2040_uart_setup(const fathom_rp2040_wiring_t *wiring, const fathom_line_settings_t *line)
 {
-    if ((wiring->number > 1) || !is_pin(wiring, wiring->tx, 0) || !is_pin(wiring, wiring->rx, 1))
+    if ((wiring->number > 1u) || !is_pin(wiring, wiring->tx, 0) || !is_pin(wiring, wiring->rx, 1))
         return false;
     if (wiring->has_driver &&
         ((wiring->driver >= FATHOM_RP2040_GPIOS) || (wiring->alarm >= FATHOM_RP2040_ALARMS)))
@@ -70,7 +70,7 @@ bool fathom_rp2040_uart_setup(const fathom_rp2040_wiring_t *wiring, const fathom
     rp2040_set(&RP2040_RESETS_RESET, (uint32_t)RP2040_RESETS_UART0 << wiring->number);
     rp2040_clear(&RP2040_RESETS_RESET, blocks);
     for (unsigned tries = RESET_TRIES; (RP2040_RESETS_RESET_DONE & blocks) != blocks; tries--)
-        if (tries == 0) return false;
+        if (tries == 0u) return false;
 
     if (wiring->has_driver) (void)fathom_rp2040_output(wiring->driver, false);
     hardware->imsc = 0;

@@ -86,7 +86,7 @@ static inline void fathom_serial_put(fathom_serial_t *serial, uint8_t byte, uint
     serial->lost = false;
     serial->bytes[put % FATHOM_SERIAL_RING] = byte;
     serial->flags[put % FATHOM_SERIAL_RING] = flags;
-    serial->put = (uint8_t)(put + 1);
+    serial->put = (uint8_t)(put + 1u);
 }
 
 /* The next byte of the request, which the UART has room for. False: all have been taken. */
@@ -95,7 +95,7 @@ static inline bool fathom_serial_next(fathom_serial_t *serial, uint8_t *byte)
     const uint8_t at = serial->at;
     if (at == serial->length) return false;
     *byte = serial->request[at];
-    serial->at = (uint8_t)(at + 1);
+    serial->at = (uint8_t)(at + 1u);
     return true;
 }
 
@@ -112,11 +112,11 @@ static inline int fathom_serial_read(fathom_serial_t *serial, uint8_t *bytes, si
     size_t count = 0;
     while ((got != put) && (count < capacity)) {
         const uint8_t flags = serial->flags[got % FATHOM_SERIAL_RING];
-        if ((flags != 0) && (count != 0)) break;
+        if ((flags != 0u) && (count != 0u)) break;
         bytes[count++] = serial->bytes[got % FATHOM_SERIAL_RING];
         got++;
         rx->flags |= flags;
-        if (flags != 0) break;
+        if (flags != 0u) break;
     }
     serial->got = got;
     return (int)count;
@@ -126,7 +126,7 @@ static inline int fathom_serial_read(fathom_serial_t *serial, uint8_t *bytes, si
  * `leaving` is true until the interrupt ends it. */
 static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *bytes, size_t length)
 {
-    if ((length == 0) || (length > serial->size)) return -1;
+    if ((length == 0u) || (length > serial->size)) return -1;
     if (serial->leaving) return 0;
     /* Volatile, so that it is in place before the rest tells of it. */
     volatile uint8_t *const kept = serial->request;
@@ -142,10 +142,10 @@ static inline int fathom_serial_load(fathom_serial_t *serial, const uint8_t *byt
 static inline uint32_t fathom_serial_leaves_in_us(const fathom_serial_t *serial,
                                                   const fathom_line_settings_t *line, uint32_t held)
 {
-    const uint32_t character_bits = 9u + (line->parity != FATHOM_PARITY_NONE) + line->stop_bits;
+    const uint32_t character_bits = 9u + ((line->parity != FATHOM_PARITY_NONE) ? 1u : 0u) + line->stop_bits;
     uint32_t left = serial->length - (uint32_t)serial->at + held;
     if (left > serial->length) left = serial->length;
-    return ((left * character_bits * 1000000u) + line->baud - 1) / line->baud; /* 255 of 12 bits fit */
+    return ((left * character_bits * 1000000u) + line->baud - 1u) / line->baud; /* 255 of 12 bits fit */
 }
 
 /* ---- for set_line ---- */
@@ -161,13 +161,13 @@ static inline uint32_t fathom_serial_divider(uint32_t clock_hz, const fathom_lin
                                              uint32_t least, uint32_t most)
 {
     const uint32_t baud = line->baud;
-    if ((baud == 0) || (baud > (clock_hz / least)) || (line->parity > FATHOM_PARITY_ODD) ||
-        (line->stop_bits < 1) || (line->stop_bits > 2))
+    if ((baud == 0u) || (baud > (clock_hz / least)) || (line->parity > FATHOM_PARITY_ODD) ||
+        (line->stop_bits < 1u) || (line->stop_bits > 2u))
         return 0;
-    const uint32_t by = (clock_hz + (baud / 2)) / baud;
+    const uint32_t by = (clock_hz + (baud / 2u)) / baud;
     const uint32_t real = clock_hz / by;
     const uint32_t off = (real > baud) ? (real - baud) : (baud - real);
-    return ((by < least) || (by > most) || (off > (baud / 40))) ? 0 : by;
+    return ((by < least) || (by > most) || (off > (baud / 40u))) ? 0u : by;
 }
 
 #ifdef __cplusplus

@@ -22,7 +22,7 @@ static uint32_t fed_us;
 static void feed(bool high, uint32_t time_us)
 {
     const uint32_t behind_us = fed_us - time_us;
-    if ((behind_us != 0) && (behind_us < OVERTAKEN_US)) return;
+    if ((behind_us != 0u) && (behind_us < OVERTAKEN_US)) return;
     fed_us = time_us;
     fathom_edges_feed(captured, high, time_us);
 }
@@ -32,23 +32,24 @@ void fathom_stm32f4_tim2_interrupt(void)
     const uint32_t why = TIM2[TIM_SR];
     uint32_t rise_us = 0;
     uint32_t fall_us = 0;
-    if ((why & CC1) != 0) rise_us = TIM2[TIM_CCR1]; /* which clears CC1 */
-    if ((why & CC2) != 0) fall_us = TIM2[TIM_CCR2];
+    if ((why & CC1) != 0u) rise_us = TIM2[TIM_CCR1]; /* which clears CC1 */
+    if ((why & CC2) != 0u) fall_us = TIM2[TIM_CCR2];
     TIM2[TIM_SR] = ~(why & (CC1OF | CC2OF)); /* an overtaken edge is one that edges.h finds missing */
-    if ((captured == NULL) || ((why & (CC1 | CC2)) == 0)) return;
+    if ((captured == NULL) || ((why & (CC1 | CC2)) == 0u)) return;
     fathom_stm32f4_happened = 1;
     /* With both in the same us the level before tells which was first. */
     const bool is_fall_first =
-        (rise_us == fall_us) ? captured->high : ((rise_us - fall_us) < (UINT32_MAX / 2));
+        (rise_us == fall_us) ? captured->high : ((rise_us - fall_us) < (UINT32_MAX / 2u));
     const bool fall_first = ((why & (CC1 | CC2)) == (CC1 | CC2)) && is_fall_first;
     if (fall_first) feed(false, fall_us);
-    if ((why & CC1) != 0) feed(true, rise_us);
-    if (((why & CC2) != 0) && !fall_first) feed(false, fall_us);
+    if ((why & CC1) != 0u) feed(true, rise_us);
+    if (((why & CC2) != 0u) && !fall_first) feed(false, fall_us);
 }
 
 bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges)
 {
-    if ((pin->port != 'A') || ((pin->number != 0) && (pin->number != 5) && (pin->number != 15))) return false;
+    if ((pin->port != 'A') || ((pin->number != 0u) && (pin->number != 5u) && (pin->number != 15u)))
+        return false;
     TIM2[TIM_DIER] = 0;
     captured = edges;
     fed_us = TIM2[TIM_CNT];

@@ -19,11 +19,11 @@ static bool byte_waits(const fathom_stm32f4_idle_t *idle)
 
 void fathom_stm32f4_idle(void *ctx, uint32_t max_us)
 {
-    if (max_us == 0) return;
+    if (max_us == 0u) return;
     /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
      * end it. An interrupt that is pending ends WFI, and runs afterwards. */
     __asm__ volatile("cpsid i" ::: "memory");
-    if ((fathom_stm32f4_happened == 0) && !byte_waits(ctx)) {
+    if ((fathom_stm32f4_happened == 0u) && !byte_waits(ctx)) {
         TIM5[TIM_CR1] = TIM_CR1_URS;
         TIM5[TIM_CNT] = 0;
         TIM5[TIM_ARR] = max_us;

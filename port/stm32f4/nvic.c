@@ -5,4 +5,4 @@
 
 volatile uint8_t fathom_stm32f4_happened;
 
-void fathom_stm32f4_enable_interrupt(uint8_t number) { NVIC_ISER[number / 32] = 1u << (number % 32); }
+void fathom_stm32f4_enable_interrupt(uint8_t number) { NVIC_ISER[number / 32u] = 1u << (number % 32u); }

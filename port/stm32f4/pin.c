@@ -13,7 +13,7 @@ static volatile uint32_t *registers_of(const fathom_stm32f4_pin_t *pin)
 
 bool fathom_stm32f4_is_pin(const fathom_stm32f4_pin_t *pin)
 {
-    return (pin->port >= 'A') && (pin->port <= 'I') && (pin->number < 16);
+    return (pin->port >= 'A') && (pin->port <= 'I') && (pin->number < 16u);
 }
 
 static void set_field(volatile uint32_t *where, uint32_t at, uint32_t mask, uint32_t value)
@@ -34,7 +34,7 @@ bool fathom_stm32f4_pin_begin(const fathom_stm32f4_pin_t *pin, uint32_t mode, fa
     RCC_AHB1ENR |= 1u << (pin->port - 'A');
     (void)
         RCC_AHB1ENR; /* two periods of its clock until the registers can be written (RM0090 7.2, erratum 2.1.13) */
-    set_field(&gpio[AFRL + (pin->number / 8)], 4u * (pin->number % 8u), 15, alternate);
+    set_field(&gpio[AFRL + (pin->number / 8u)], 4u * (pin->number % 8u), 15, alternate);
     set_field(&gpio[PUPDR], 2u * pin->number, 3, pull);
     fathom_stm32f4_pin_mode(pin, mode);
     return true;
@@ -43,7 +43,7 @@ bool fathom_stm32f4_pin_begin(const fathom_stm32f4_pin_t *pin, uint32_t mode, fa
 void fathom_stm32f4_pin_set(const fathom_stm32f4_pin_t *pin, bool high)
 {
     /* One write, which no interrupt can come between. */
-    if (pin->port != 0) registers_of(pin)[BSRR] = high ? (1u << pin->number) : (1u << (pin->number + 16));
+    if (pin->port != 0) registers_of(pin)[BSRR] = high ? (1u << pin->number) : (1u << (pin->number + 16u));
 }
 
 static void pin_set(void *ctx, bool high) { fathom_stm32f4_pin_set(ctx, high); }
@@ -51,7 +51,7 @@ static void pin_set(void *ctx, bool high) { fathom_stm32f4_pin_set(ctx, high); }
 static bool pin_get(void *ctx)
 {
     const fathom_stm32f4_pin_t *const pin = ctx;
-    return ((registers_of(pin)[IDR] >> pin->number) & 1) != 0;
+    return ((registers_of(pin)[IDR] >> pin->number) & 1u) != 0u;
 }
 
 fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin)

@@ -52,7 +52,7 @@ static void set_up(fathom_stm32f4_usart_t *usart, const fathom_line_settings_t *
     if (line->parity == FATHOM_PARITY_ODD) control |= CR1_PS;
     usart->registers[CR1] = 0;
     usart->registers[BRR] = by;
-    usart->registers[CR2] = (line->stop_bits == 2) ? CR2_STOP_2 : 0;
+    usart->registers[CR2] = (line->stop_bits == 2u) ? CR2_STOP_2 : 0;
     usart->registers[CR1] = control;
     usart->line = *line;
 }
@@ -62,11 +62,11 @@ static void receive(fathom_stm32f4_usart_t *usart, uint32_t why)
     const uint8_t byte =
         (uint8_t)usart->registers[DR]; /* without the parity; after SR it clears all that was told */
     uint8_t flags = 0;
-    if ((why & SR_PE) != 0) flags |= FATHOM_RX_PARITY;
-    if ((why & SR_FE) != 0) flags |= FATHOM_RX_FRAMING;
-    if ((why & SR_NE) != 0) fathom_serial_count(&usart->noise);
-    if ((why & SR_RXNE) != 0) fathom_serial_put(&usart->serial, byte, flags);
-    if ((why & SR_ORE) != 0)
+    if ((why & SR_PE) != 0u) flags |= FATHOM_RX_PARITY;
+    if ((why & SR_FE) != 0u) flags |= FATHOM_RX_FRAMING;
+    if ((why & SR_NE) != 0u) fathom_serial_count(&usart->noise);
+    if ((why & SR_RXNE) != 0u) fathom_serial_put(&usart->serial, byte, flags);
+    if ((why & SR_ORE) != 0u)
         fathom_serial_lose(&usart->serial); /* what came after this byte (RM0090 30.3.3) */
 }
 
@@ -76,13 +76,13 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart)
     const uint32_t why = registers[SR];
     const uint32_t control = registers[CR1];
     uint8_t byte;
-    if ((why & (SR_RXNE | SR_ORE)) != 0) receive(usart, why);
-    if (((control & CR1_TXEIE) != 0) && ((why & SR_TXE) != 0)) {
+    if ((why & (SR_RXNE | SR_ORE)) != 0u) receive(usart, why);
+    if (((control & CR1_TXEIE) != 0u) && ((why & SR_TXE) != 0u)) {
         if (fathom_serial_next(&usart->serial, &byte))
             registers[DR] = byte; /* after SR, which clears TC */
         else
             registers[CR1] = (control & ~(uint32_t)CR1_TXEIE) | CR1_TCIE;
-    } else if (((control & CR1_TCIE) != 0) && ((why & SR_TC) != 0)) {
+    } else if (((control & CR1_TCIE) != 0u) && ((why & SR_TC) != 0u)) {
         fathom_stm32f4_pin_set(&usart->driver, false);
         registers[CR1] = control & ~(uint32_t)CR1_TCIE;
         usart->serial.leaving = false;
@@ -112,7 +112,7 @@ static bool usart_sent(void *ctx) { return !((const fathom_stm32f4_usart_t *)ctx
 static uint32_t usart_leaves_in_us(void *ctx)
 {
     const fathom_stm32f4_usart_t *const usart = ctx;
-    return usart_sent(ctx) ? 0 : fathom_serial_leaves_in_us(&usart->serial, &usart->line, HELD);
+    return usart_sent(ctx) ? 0u : fathom_serial_leaves_in_us(&usart->serial, &usart->line, HELD);
 }
 
 static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
@@ -120,7 +120,7 @@ static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
     fathom_stm32f4_usart_t *const usart = ctx;
     if (fathom_serial_is_same(settings, &usart->line)) return 1;
     const uint32_t by = divider(usart->bus_hz, settings);
-    if (by == 0) return -1;
+    if (by == 0u) return -1;
     if (usart->serial.leaving) return 0;
     set_up(usart, settings, by);
     return 1;
@@ -142,13 +142,13 @@ static int usart_set_break(void *ctx, bool on)
 
 bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config)
 {
-    if ((config->number < 1) || (config->number > (sizeof places / sizeof places[0])) ||
-        (config->request == NULL) || (config->request_size == 0) || !fathom_stm32f4_is_pin(&config->tx) ||
+    if ((config->number < 1u) || (config->number > (sizeof places / sizeof places[0])) ||
+        (config->request == NULL) || (config->request_size == 0u) || !fathom_stm32f4_is_pin(&config->tx) ||
         !fathom_stm32f4_is_pin(&config->rx))
         return false;
     const uint32_t by = divider(config->bus_hz, &config->line);
-    if (by == 0) return false;
-    const place_t *const place = &places[config->number - 1];
+    if (by == 0u) return false;
+    const place_t *const place = &places[config->number - 1u];
     *place->enable |= 1u << place->enable_bit;
     (void)*place->enable;
     fathom_serial_init(&usart->serial, config->request, config->request_size);

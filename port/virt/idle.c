@@ -18,7 +18,7 @@ void fathom_virt_timer_interrupt(void) { set_alarm(UINT64_MAX); }
 void fathom_virt_idle(void *ctx, uint32_t max_us)
 {
     const fathom_virt_uart_t *const uart = ctx;
-    if (max_us == 0) return;
+    if (max_us == 0u) return;
     /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
      * end it. An interrupt that is pending ends WFI, and runs afterwards. */
     __asm__ volatile("csrc mstatus, %0" ::"r"(VIRT_MSTATUS_MIE) : "memory");

@@ -26,7 +26,7 @@ static void set_up(fathom_virt_uart_t *uart, const fathom_line_settings_t *line,
     unsigned control = LCR_8_BITS;
     if (line->parity != FATHOM_PARITY_NONE) control |= LCR_PARITY;
     if (line->parity == FATHOM_PARITY_EVEN) control |= LCR_EVEN;
-    if (line->stop_bits == 2) control |= LCR_2_STOPS;
+    if (line->stop_bits == 2u) control |= LCR_2_STOPS;
     UART[IER] = 0; /* with DLAB the interrupt would not find its registers */
     UART[LCR] = LCR_DLAB;
     UART[DLL] = (uint8_t)by;
@@ -51,12 +51,12 @@ static void receive(fathom_virt_uart_t *uart)
         const unsigned why = status(uart) | uart->next_errors;
         uint8_t flags = 0;
         uart->next_errors = 0;
-        if ((why & LSR_PARITY) != 0) flags |= FATHOM_RX_PARITY;
-        if ((why & LSR_FRAMING) != 0) flags |= FATHOM_RX_FRAMING;
-        if ((why & LSR_READY) != 0) fathom_serial_put(serial, UART[RBR], flags);
+        if ((why & LSR_PARITY) != 0u) flags |= FATHOM_RX_PARITY;
+        if ((why & LSR_FRAMING) != 0u) flags |= FATHOM_RX_FRAMING;
+        if ((why & LSR_READY) != 0u) fathom_serial_put(serial, UART[RBR], flags);
         /* The FIFO keeps what it has: the loss is behind that; where exactly is not known. */
-        if ((why & LSR_OVERRUN) != 0) fathom_serial_lose(serial);
-        if ((why & LSR_READY) == 0) return;
+        if ((why & LSR_OVERRUN) != 0u) fathom_serial_lose(serial);
+        if ((why & LSR_READY) == 0u) return;
     }
 }
 
@@ -76,10 +76,10 @@ static void send(fathom_virt_uart_t *uart)
 
 void fathom_virt_external_interrupt(fathom_virt_uart_t *uart)
 {
-    for (uint32_t source = VIRT_PLIC_CLAIM; source != 0; source = VIRT_PLIC_CLAIM) {
+    for (uint32_t source = VIRT_PLIC_CLAIM; source != 0u; source = VIRT_PLIC_CLAIM) {
         if (source == VIRT_UART_SOURCE) {
             receive(uart);
-            if ((status(uart) & LSR_EMPTY) != 0) {
+            if ((status(uart) & LSR_EMPTY) != 0u) {
                 if (uart->serial.leaving)
                     send(uart);
                 else /* sent already, by a byte's interrupt within write: this one would come again for ever */
@@ -101,7 +101,7 @@ static bool uart_sent(void *ctx)
     uint32_t before;
     if (uart->serial.leaving) return false;
     __asm__ volatile("csrrc %0, mstatus, %1" : "=r"(before) : "r"(VIRT_MSTATUS_MIE) : "memory");
-    const bool is_sent = (status(uart) & LSR_SENT) != 0;
+    const bool is_sent = (status(uart) & LSR_SENT) != 0u;
     __asm__ volatile("csrs mstatus, %0" ::"r"(before & VIRT_MSTATUS_MIE) : "memory");
     return is_sent;
 }
@@ -109,7 +109,7 @@ static bool uart_sent(void *ctx)
 static uint32_t uart_leaves_in_us(void *ctx)
 {
     const fathom_virt_uart_t *const uart = ctx;
-    return uart_sent(ctx) ? 0 : fathom_serial_leaves_in_us(&uart->serial, &uart->line, FIFO + 1);
+    return uart_sent(ctx) ? 0u : fathom_serial_leaves_in_us(&uart->serial, &uart->line, FIFO + 1);
 }
 
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
@@ -127,7 +127,7 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
     fathom_virt_uart_t *const uart = ctx;
     if (fathom_serial_is_same(settings, &uart->line)) return 1;
     const uint32_t by = divider(uart->clock_hz, settings);
-    if (by == 0) return -1;
+    if (by == 0u) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0; /* LCR has the break, too */
     set_up(uart, settings, by);
     return 1;
@@ -146,7 +146,7 @@ static int uart_set_break(void *ctx, bool on)
 bool fathom_virt_uart_begin(fathom_virt_uart_t *uart, const fathom_virt_uart_config_t *config)
 {
     const uint32_t by = divider(config->clock_hz, &config->line);
-    if ((by == 0) || (config->request == NULL) || (config->request_size == 0)) return false;
+    if ((by == 0u) || (config->request == NULL) || (config->request_size == 0u)) return false;
     fathom_serial_init(&uart->serial, config->request, config->request_size);
     uart->clock_hz = config->clock_hz;
     uart->is_break = false;

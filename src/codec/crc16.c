@@ -28,6 +28,6 @@ static const uint16_t table[256] = {
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
     unsigned crc = 0xFFFF;
-    for (; length != 0; length--) crc = (crc >> 8) ^ table[(crc ^ *bytes++) & 0xFF];
+    for (; length != 0u; length--) crc = (crc >> 8) ^ table[(crc ^ *bytes++) & 0xFFu];
     return (uint16_t)crc;
 }

@@ -10,10 +10,10 @@ static const uint16_t table[16] = {
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
     unsigned crc = 0xFFFF;
-    for (; length != 0; length--) {
+    for (; length != 0u; length--) {
         crc ^= *bytes++;
-        crc = (crc >> 4) ^ table[crc & 15];
-        crc = (crc >> 4) ^ table[crc & 15];
+        crc = (crc >> 4) ^ table[crc & 15u];
+        crc = (crc >> 4) ^ table[crc & 15u];
     }
     return (uint16_t)crc;
 }

@@ -17,7 +17,7 @@ uint8_t fathom_dyp_55aa_values(uint8_t command)
 uint8_t fathom_dyp_55aa_response_length(uint8_t command)
 {
     const uint8_t values = fathom_dyp_55aa_values(command);
-    return ((values != 0) || (command == FATHOM_DYP_SET_ADDRESS)) ? (uint8_t)(OVERHEAD + (2 * values)) : 0;
+    return ((values != 0u) || (command == FATHOM_DYP_SET_ADDRESS)) ? (uint8_t)(OVERHEAD + (2u * values)) : 0u;
 }
 
 static uint8_t *put_head(uint8_t *frame, uint8_t address, uint8_t command)
@@ -33,7 +33,7 @@ static uint8_t seal(uint8_t *frame, uint8_t *end)
 {
     const uint8_t length = (uint8_t)(end - frame);
     *end = fathom_dyp_sum(frame, length);
-    return (uint8_t)(length + 1);
+    return (uint8_t)(length + 1u);
 }
 
 uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t command)
@@ -43,13 +43,13 @@ uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t 
 
 uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have)
 {
-    if ((bytes[0] != START) || ((have > 1) && (bytes[1] != SECOND_START))) return 0;
+    if ((bytes[0] != START) || ((have > 1u) && (bytes[1] != SECOND_START))) return 0;
     return (have > COMMAND) ? fathom_dyp_55aa_response_length(bytes[COMMAND]) : (COMMAND + 1);
 }
 
 bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length)
 {
-    const uint8_t last = (uint8_t)(length - 1);
+    const uint8_t last = (uint8_t)(length - 1u);
     return fathom_dyp_sum(frame, last) == frame[last];
 }
 
@@ -62,7 +62,7 @@ uint8_t fathom_dyp_55aa_encode_response(uint8_t *frame, uint8_t address, uint8_t
                                         const uint16_t *values)
 {
     uint8_t *at = put_head(frame, address, command);
-    for (uint8_t left = fathom_dyp_55aa_values(command); left != 0; left--, values++) {
+    for (uint8_t left = fathom_dyp_55aa_values(command); left != 0u; left--, values++) {
         *at++ = (uint8_t)(*values >> 8);
         *at++ = (uint8_t)*values;
     }

@@ -4,7 +4,7 @@
 uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length)
 {
     uint8_t sum = 0;
-    for (; length != 0; length--) sum = (uint8_t)(sum + *bytes++);
+    for (; length != 0u; length--) sum = (uint8_t)(sum + *bytes++);
     return sum;
 }
 
@@ -12,23 +12,23 @@ bool fathom_dyp_stream_valid(const uint8_t *frame, uint8_t length)
 {
     const uint8_t start = *frame;
     uint8_t sum = 0;
-    while (--length != 0) sum = (uint8_t)(sum + *frame++);
+    while (--length != 0u) sum = (uint8_t)(sum + *frame++);
     return (start == FATHOM_DYP_START) && (sum == *frame);
 }
 
 void fathom_dyp_stream_decode(const uint8_t *frame, uint16_t *values, uint8_t probes)
 {
-    for (frame++; probes != 0; probes--, frame += 2) *values++ = (uint16_t)((frame[0] * 256u) + frame[1]);
+    for (frame++; probes != 0u; probes--, frame += 2) *values++ = (uint16_t)((frame[0] * 256u) + frame[1]);
 }
 
 uint8_t fathom_dyp_stream_encode(uint8_t *frame, const uint16_t *values, uint8_t probes)
 {
     uint8_t length = 0;
     frame[length++] = FATHOM_DYP_START;
-    for (; probes != 0; probes--, values++) {
+    for (; probes != 0u; probes--, values++) {
         frame[length++] = (uint8_t)(*values >> 8);
         frame[length++] = (uint8_t)*values;
     }
     frame[length] = fathom_dyp_sum(frame, length);
-    return (uint8_t)(length + 1);
+    return (uint8_t)(length + 1u);
 }

@@ -17,15 +17,15 @@ static uint8_t byte(const uint16_t *registers, uint8_t n) { return fathom_hps167
 
 uint32_t fathom_hps167s_baud(uint16_t code)
 {
-    if (code == 2) return 57600ul;
-    if (code == 3) return 115200ul;
-    return (code == 4) ? 230400ul : FATHOM_HPS167S_FACTORY_BAUD;
+    if (code == 2u) return 57600ul;
+    if (code == 3u) return 115200ul;
+    return (code == 4u) ? 230400ul : FATHOM_HPS167S_FACTORY_BAUD;
 }
 
 uint8_t fathom_hps167s_baud_code(uint32_t baud)
 {
     uint8_t code = FATHOM_HPS167S_BAUD_CODES;
-    while ((code != 0) && (fathom_hps167s_baud(code) != baud)) code--;
+    while ((code != 0u) && (fathom_hps167s_baud(code) != baud)) code--;
     return code;
 }
 
@@ -41,7 +41,7 @@ void fathom_hps167s_decode_version(const uint16_t registers[3], fathom_hps167s_v
 
 bool fathom_hps167s_is_date(uint8_t month, uint8_t day)
 {
-    return (month >= 1) && (month <= 12) && (day >= 1) && (day <= 31);
+    return (month >= 1u) && (month <= 12u) && (day >= 1u) && (day <= 31u);
 }
 
 void fathom_hps167s_decode_details(const uint16_t registers[11], fathom_hps167s_details_t *details)
@@ -85,8 +85,8 @@ uint32_t fathom_hps167s_told_reconnect_time_ms(const uint16_t registers[4], bool
 void fathom_hps167s_decode_configuration(const uint16_t registers[4], bool low_word_first,
                                          fathom_hps167s_configuration_t *configuration)
 {
-    configuration->termination = byte(registers, FATHOM_HPS167S_TERMINATION_BYTE) != 0;
-    configuration->measures_after_power_on = byte(registers, FATHOM_HPS167S_MEASURES_BYTE) != 0;
+    configuration->termination = byte(registers, FATHOM_HPS167S_TERMINATION_BYTE) != 0u;
+    configuration->measures_after_power_on = byte(registers, FATHOM_HPS167S_MEASURES_BYTE) != 0u;
     configuration->warm_up_s = byte(registers, FATHOM_HPS167S_WARM_UP_BYTE);
     configuration->reconnect_time_ms = fathom_hps167s_told_reconnect_time_ms(registers, low_word_first);
     configuration->baud_code = byte(registers, FATHOM_HPS167S_BAUD_BYTE);
@@ -115,9 +115,9 @@ int32_t fathom_hps167s_temperature_dc(int16_t fahrenheit, uint8_t steps_per_degr
 
 fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits)
 {
-    if (limits->max_mm == 0) limits->max_mm = MAX_MM;
-    if (limits->over_range_mm == 0) limits->over_range_mm = MIN_OVER_RANGE;
-    if (limits->min_mm == 0) limits->min_mm = MIN_MM;
+    if (limits->max_mm == 0u) limits->max_mm = MAX_MM;
+    if (limits->over_range_mm == 0u) limits->over_range_mm = MIN_OVER_RANGE;
+    if (limits->min_mm == 0u) limits->min_mm = MIN_MM;
     const bool is_good = (limits->min_mm <= limits->max_mm) && (limits->max_mm < limits->over_range_mm) &&
                          (limits->over_range_mm < FAILURE);
     return is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
@@ -125,8 +125,8 @@ fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits)
 
 bool fathom_hps167s_is_abnormal(const uint16_t registers[4])
 {
-    return ((registers[0] & registers[3]) == 0xFFFF) && (registers[1] == 0) &&
-           ((uint8_t)registers[2] == 0xFF);
+    return ((registers[0] & registers[3]) == 0xFFFFu) && (registers[1] == 0u) &&
+           ((uint8_t)registers[2] == 0xFFu);
 }
 
 fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,
@@ -147,7 +147,7 @@ fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limi
     }
     if (!fathom_hps167s_is_abnormal(registers)) {
         kind = FATHOM_NO_TARGET;
-        if ((raw == 0) || (raw == FAILURE) || (exponent > FATHOM_HPS167S_MAX_EXPONENT))
+        if ((raw == 0u) || (raw == FAILURE) || (exponent > FATHOM_HPS167S_MAX_EXPONENT))
             return FATHOM_ERR_MALFORMED;
         if (raw < over_range_mm) {
             if (raw > max_mm) return FATHOM_ERR_MALFORMED;

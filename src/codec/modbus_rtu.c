@@ -28,13 +28,13 @@ static uint16_t get16(const uint8_t *at) { return (uint16_t)((at[0] * 256u) + at
 
 static uint8_t *put_values(uint8_t *at, const uint16_t *values, uint8_t count)
 {
-    for (; count != 0; count--) at = put16(at, *values++);
+    for (; count != 0u; count--) at = put16(at, *values++);
     return at;
 }
 
 static void get_values(uint16_t *values, const uint8_t *at, uint8_t count)
 {
-    for (; count != 0; count--, at += 2) *values++ = get16(at);
+    for (; count != 0u; count--, at += 2) *values++ = get16(at);
 }
 
 static uint8_t *put_head(uint8_t *at, const fathom_modbus_message_t *message)
@@ -96,8 +96,8 @@ uint8_t fathom_modbus_rtu_frame_size(const fathom_modbus_message_t *message)
         most = FATHOM_MODBUS_MAX_WRITE;
         overhead = WRITE_MANY_OVERHEAD;
     }
-    if ((uint8_t)(count - 1) >= most) return 0;
-    const uint8_t frame_size = (uint8_t)((2 * count) + overhead);
+    if ((uint8_t)(count - 1u) >= most) return 0;
+    const uint8_t frame_size = (uint8_t)((2u * count) + overhead);
     return (frame_size > FIXED_LENGTH) ? frame_size : FIXED_LENGTH;
 }
 
@@ -106,7 +106,7 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
     uint8_t *at = put_head(frame, message);
     if (message->head[FUNCTION] == WRITE_MANY) {
         const uint8_t count = message->head[COUNT];
-        *at++ = (uint8_t)(2 * count);
+        *at++ = (uint8_t)(2u * count);
         at = put_values(at, message->values, count);
     }
     return seal(frame, at);
@@ -114,7 +114,7 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
 
 static bool is_alike(const uint8_t *a, const uint8_t *b, uint8_t count)
 {
-    for (; count != 0; count--)
+    for (; count != 0u; count--)
         if (*a++ != *b++) return false;
     return true;
 }
@@ -126,8 +126,8 @@ uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
     const uint8_t size = bytes[SIZE];
     uint8_t length = FIXED_LENGTH;
     if (function == READ) {
-        const bool is_size = ((size & 1) == 0) && ((uint8_t)(size - 1) < (2 * FATHOM_MODBUS_MAX_READ));
-        length = is_size ? (uint8_t)(size + READ_OVERHEAD) : 0;
+        const bool is_size = ((size & 1u) == 0u) && ((uint8_t)(size - 1u) < (2u * FATHOM_MODBUS_MAX_READ));
+        length = is_size ? (uint8_t)(size + READ_OVERHEAD) : 0u;
     } else if ((function != WRITE) && (function != WRITE_MANY)) {
         return 0;
     }
@@ -154,7 +154,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
         if (!is_alike(frame + FIRST, head + FIRST, HEAD - FIRST)) return FATHOM_ERR_MALFORMED;
     } else {
         const uint8_t count = head[COUNT];
-        if (frame[SIZE] != (2 * count)) return FATHOM_ERR_MALFORMED;
+        if (frame[SIZE] != (2u * count)) return FATHOM_ERR_MALFORMED;
         get_values(message->values, frame + SIZE + 1, count);
     }
     head[UNIT] = frame[UNIT];
@@ -168,7 +168,7 @@ uint8_t fathom_modbus_rtu_request_length(const uint8_t *bytes, uint8_t have)
     if (have <= FUNCTION) return FUNCTION + 1;
     if (bytes[FUNCTION] != WRITE_MANY) return (bytes[FUNCTION] < EXCEPTION) ? FIXED_LENGTH : 0;
     if (have < DATA) return DATA;
-    return (bytes[HEAD] > (2 * FATHOM_MODBUS_MAX_WRITE)) ? 0 : (uint8_t)(bytes[HEAD] + WRITE_MANY_OVERHEAD);
+    return (bytes[HEAD] > (2u * FATHOM_MODBUS_MAX_WRITE)) ? 0u : (uint8_t)(bytes[HEAD] + WRITE_MANY_OVERHEAD);
 }
 
 fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message, const uint8_t *frame,
@@ -183,8 +183,8 @@ fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message
         message->exception = FATHOM_MODBUS_ILLEGAL_FUNCTION;
         return FATHOM_ERR_EXCEPTION;
     }
-    if ((frame[COUNT_HIGH] != 0) || (count > capacity) || (fathom_modbus_rtu_frame_size(message) == 0) ||
-        ((function == WRITE_MANY) && (frame[HEAD] != (2 * count)))) {
+    if ((frame[COUNT_HIGH] != 0u) || (count > capacity) || (fathom_modbus_rtu_frame_size(message) == 0u) ||
+        ((function == WRITE_MANY) && (frame[HEAD] != (2u * count)))) {
         message->exception = FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
         return FATHOM_ERR_EXCEPTION;
     }
@@ -195,13 +195,13 @@ fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message
 uint8_t fathom_modbus_rtu_encode_response(const fathom_modbus_message_t *message, uint8_t *frame)
 {
     uint8_t *at = put_head(frame, message);
-    if (message->exception != 0) {
+    if (message->exception != 0u) {
         frame[FUNCTION] |= EXCEPTION;
         frame[SIZE] = message->exception;
         at = frame + SIZE + 1;
     } else if (message->head[FUNCTION] == READ) {
         const uint8_t count = message->head[COUNT];
-        frame[SIZE] = (uint8_t)(2 * count);
+        frame[SIZE] = (uint8_t)(2u * count);
         at = put_values(frame + SIZE + 1, message->values, count);
     }
     return seal(frame, at);

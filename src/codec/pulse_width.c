@@ -13,7 +13,7 @@ static uint16_t bounded_mm(uint32_t mm)
 
 uint16_t fathom_pulse_width_mm(uint32_t width_us)
 {
-    return bounded_mm(((bounded_us(width_us) * 4) + 11) / 23);
+    return bounded_mm(((bounded_us(width_us) * 4u) + 11u) / 23u);
 }
 
 /*
@@ -27,9 +27,9 @@ uint16_t fathom_pulse_width_mm_in_air(uint32_t width_us, int16_t air_dc)
     const uint32_t us = bounded_us(width_us);
     const uint32_t v =
         UINT32_C(3070600) + (UINT32_C(606) * (uint16_t)(air_dc - FATHOM_PULSE_WIDTH_MIN_AIR_DC));
-    const uint32_t high = us * (v / 1000);
-    const uint32_t low = us * (v % 1000);
-    const uint32_t mm = high / 20000;
-    const uint32_t rest = ((high - (mm * 20000)) * 1000) + low;
-    return bounded_mm(mm + ((rest + 10000000) / 20000000));
+    const uint32_t high = us * (v / 1000u);
+    const uint32_t low = us * (v % 1000u);
+    const uint32_t mm = high / 20000u;
+    const uint32_t rest = ((high - (mm * 20000u)) * 1000u) + low;
+    return bounded_mm(mm + ((rest + 10000000u) / 20000000u));
 }

@@ -91,8 +91,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const uint32_t now_us = clock_us(contact->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, contact->sampled_us);
     /* The level counted until the look before this one; when it ceased to is not known. */
-    const bool counted = contact->settle_us == 0;
-    const bool repeats = fathom_count_down(&contact->period_us, passed_us) && (timing->period_us != 0);
+    const bool counted = contact->settle_us == 0u;
+    const bool repeats = fathom_count_down(&contact->period_us, passed_us) && (timing->period_us != 0u);
     contact->sampled_us = now_us;
     if (counted) contact->stale_us = timing->stale_us;
     if (look(contact, passed_us)) {
@@ -116,9 +116,9 @@ static uint32_t due_us(void *ctx)
     uint32_t us = timing->interval_us;
     if (!contact->is_clear)
         us = least_us(us, FATHOM_CONTACT_QUIET_US);
-    else if (contact->settle_us != 0)
+    else if (contact->settle_us != 0u)
         us = least_us(us, contact->settle_us);
-    else if (timing->period_us != 0)
+    else if (timing->period_us != 0u)
         us = least_us(us, contact->period_us);
     if (us != FATHOM_NO_DEADLINE)
         us = rest_us(us, fathom_elapsed_us(clock_us(contact->clock), contact->sampled_us));

@@ -9,13 +9,13 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
 {
     fathom_debounce_config_t *const own = &debounce->config;
     own->hold_us = config->hold_us;
-    own->unknown_us = (config->unknown_us != 0) ? config->unknown_us : FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US;
+    own->unknown_us = (config->unknown_us != 0u) ? config->unknown_us : FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US;
     own->threshold_mm =
-        (config->threshold_mm != 0) ? config->threshold_mm : (uint16_t)FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM;
+        (config->threshold_mm != 0u) ? config->threshold_mm : (uint16_t)FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM;
     own->near_count =
-        (config->near_count != 0) ? config->near_count : (uint8_t)FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT;
+        (config->near_count != 0u) ? config->near_count : (uint8_t)FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT;
     own->far_count =
-        (config->far_count != 0) ? config->far_count : (uint8_t)FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT;
+        (config->far_count != 0u) ? config->far_count : (uint8_t)FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT;
     own->equal = config->equal;
     debounce->fed_us = 0;
     debounce->left_us = 0;
@@ -31,7 +31,7 @@ bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
     const uint32_t passed_us = fathom_elapsed_us(now_us, debounce->fed_us);
     const uint8_t before = debounce->level;
     /* Half a turn of the clock and more: it is a time before the measurement. */
-    if (!debounce->is_fed || (passed_us <= debounce->config.unknown_us) || (passed_us > INT32_MAX))
+    if (!debounce->is_fed || (passed_us <= debounce->config.unknown_us) || (passed_us > (UINT32_MAX / 2u)))
         return false;
     debounce->level = FATHOM_UNKNOWN;
     debounce->row = 0;

@@ -14,9 +14,9 @@ static uint8_t command_of_read(const uint8_t *head)
 {
     const uint8_t count = head[5];
     const uint16_t probe = (uint16_t)((head[2] * 256u) + head[3] - FATHOM_DYP_FIRST_REGISTER);
-    if ((head[4] != 0) || (probe >= FATHOM_DYP_PROBES)) return 0;
-    if (count == 1) return (uint8_t)(FATHOM_DYP_FIRST_PROBE + probe);
-    return ((count == FATHOM_DYP_PROBES) && (probe == 0)) ? FATHOM_DYP_ALL_PROBES : 0;
+    if ((head[4] != 0u) || (probe >= FATHOM_DYP_PROBES)) return 0;
+    if (count == 1u) return (uint8_t)(FATHOM_DYP_FIRST_PROBE + probe);
+    return ((count == FATHOM_DYP_PROBES) && (probe == 0u)) ? FATHOM_DYP_ALL_PROBES : 0;
 }
 
 static uint8_t command_of(const uint8_t *head)
@@ -77,7 +77,7 @@ static fathom_status_t start(fathom_line_t *line, fathom_modbus_request_t *reque
 fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
     const uint8_t *const head = request->message.head;
-    if ((head[1] != FATHOM_MODBUS_READ_HOLDING_REGISTERS) || (command_of_read(head) == 0))
+    if ((head[1] != FATHOM_MODBUS_READ_HOLDING_REGISTERS) || (command_of_read(head) == 0u))
         return FATHOM_ERR_UNSUPPORTED;
     return (head[0] != FATHOM_LINE_ALL_UNITS) ? start(line, request) : FATHOM_ERR_ARGUMENT;
 }

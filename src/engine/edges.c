@@ -7,7 +7,7 @@ enum { MAX_RISES = 128 };
 static void count(volatile uint8_t *counter)
 {
     const uint8_t value = *counter;
-    if (value != UINT8_MAX) *counter = (uint8_t)(value + 1);
+    if (value != UINT8_MAX) *counter = (uint8_t)(value + 1u);
 }
 
 static bool is_high(const fathom_edges_t *edges)
@@ -23,7 +23,7 @@ static void rise(fathom_edges_t *edges, uint32_t time_us)
         edges->rise_us = time_us;
         edges->timed = true;
         edges->high = true;
-        edges->rises = (uint8_t)(edges->rises + 1);
+        edges->rises = (uint8_t)(edges->rises + 1u);
     } else if (edges->timed && (fathom_elapsed_us(time_us, edges->rise_us) > edges->same_us)) {
         edges->timed = false;
         count(&edges->missed);
@@ -45,7 +45,7 @@ static void fall(fathom_edges_t *edges, uint32_t time_us)
     pulse->width_us = fathom_elapsed_us(time_us, edges->rise_us);
     pulse->end_us = time_us;
     pulse->rise = edges->rises;
-    edges->written = (uint8_t)(written + 1);
+    edges->written = (uint8_t)(written + 1u);
 }
 
 void fathom_edges_feed(fathom_edges_t *edges, bool high, uint32_t time_us)
@@ -73,7 +73,7 @@ static int take(void *ctx, fathom_pulse_t *pulse)
     while (taken != edges->written) {
         const volatile fathom_edges_pulse_t *const from = &edges->pulses[taken % FATHOM_EDGES_PULSES];
         const uint8_t since = (uint8_t)(from->rise - edges->armed);
-        const bool is_new = (since != 0) && (since < MAX_RISES);
+        const bool is_new = (since != 0u) && (since < MAX_RISES);
         if (is_new) {
             pulse->width_us = from->width_us;
             pulse->end_us = from->end_us;

@@ -27,7 +27,7 @@ static inline uint32_t look(fathom_line_t *line)
     const uint32_t now_us = clock_us(line->config->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
     line->polled_us = now_us;
-    if ((line->quarantined != 0) && fathom_count_down(&line->quarantine_left_us, passed_us))
+    if ((line->quarantined != 0u) && fathom_count_down(&line->quarantine_left_us, passed_us))
         line->quarantined = 0;
     fathom_count_down(&line->left_us, passed_us);
     return passed_us;
@@ -57,7 +57,7 @@ void fathom_line_drop(fathom_line_t *line, uint8_t length)
     line->known &= (uint8_t)~AFTER_GAP;
     line->need = 0;
     line->have = (uint8_t)(line->have - length);
-    for (uint8_t i = line->have; i != 0; i--, to++) *to = to[length];
+    for (uint8_t i = line->have; i != 0u; i--, to++) *to = to[length];
 }
 
 fathom_status_t fathom_line_broken(fathom_line_t *line)
@@ -81,13 +81,13 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
     for (;;) {
         /* The clock is read before each read of the port, and after one with bytes, which may be newer than it. */
         uint32_t silent_us = look(line) + line->silent_us;
-        if (came != 0) {
+        if (came != 0u) {
             line->silent_us = 0;
             if (config->marks != NULL) came = config->marks(line, &rx, came);
             line->have = (uint8_t)(line->have + came);
             if (line->have >= line->need) line->kind->scan(line, false);
             silent_us = line->silent_us;
-            if (--reads == 0) { /* the port may hold newer bytes than those of the stamp */
+            if (--reads == 0u) { /* the port may hold newer bytes than those of the stamp */
                 line->silent_us = 0;
                 break;
             }
@@ -101,15 +101,15 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
             if (n < 0) return fathom_line_broken(line);
             break;
         }
-        if ((had == 0) && is_listeners_gap(line)) line->known |= AFTER_GAP;
+        if ((had == 0u) && is_listeners_gap(line)) line->known |= AFTER_GAP;
         line->known &= (uint8_t)~LATE;
         came = (uint8_t)n;
     }
-    if ((line->have != 0) && (line->silent_us >= gap_us(line))) line->kind->scan(line, true);
+    if ((line->have != 0u) && (line->silent_us >= gap_us(line))) line->kind->scan(line, true);
     return line->kind->go_on(line);
 }
 
-bool fathom_line_is_idle(const fathom_line_t *line) { return !is_busy(line) && (line->have == 0); }
+bool fathom_line_is_idle(const fathom_line_t *line) { return !is_busy(line) && (line->have == 0u); }
 
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
@@ -123,7 +123,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
         if (!on && ((line->state == IN_BREAK) || (line->state == ENDING))) {
             if (line->state == IN_BREAK) line->left_us = FATHOM_LINE_SEND_US;
             line->state = ENDING;
-            if ((is_set < 0) || (line->left_us == 0)) return fathom_line_broken(line);
+            if ((is_set < 0) || (line->left_us == 0u)) return fathom_line_broken(line);
         }
         return (is_set < 0) ? FATHOM_ERR_PORT : FATHOM_PENDING;
     }
@@ -131,7 +131,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     if (!on) {
         line->state = IDLE; /* a port that refused a request gets its time anew */
         /* the silence before a request begins here; the listener's has gone on */
-        if ((line->have == 0) && is_listeners_gap(line)) line->known |= AFTER_GAP;
+        if ((line->have == 0u) && is_listeners_gap(line)) line->known |= AFTER_GAP;
         line->silent_us = 0;
     }
     return FATHOM_READY;
@@ -143,8 +143,9 @@ uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_u
 static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_uart_t *const uart = line->config->uart;
-    const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0;
-    return (us != 0) ? (us + passed_us) : SEND_POLL_US;
+    const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0u;
+    if (us == 0u) return SEND_POLL_US;
+    return us + passed_us;
 }
 
 uint32_t fathom_line_due_us(const fathom_line_t *line)
@@ -156,12 +157,12 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
     } else {
         /* With part of a frame there neither a time-out nor the next request comes before the end of it. */
         due_us = FATHOM_NO_DEADLINE;
-        if ((line->have == 0) && is_busy(line))
+        if ((line->have == 0u) && is_busy(line))
             due_us = line->left_us;
-        else if ((line->have == 0) && (line->state == IDLE) && (line->head != NULL))
+        else if ((line->have == 0u) && (line->state == IDLE) && (line->head != NULL))
             due_us = line->kind->due_us(line);
     }
-    if ((line->have != 0) || ((line->state & RESPONSE_BAD) != 0))
+    if ((line->have != 0u) || ((line->state & RESPONSE_BAD) != 0))
         due_us = least_us(due_us, rest_us(gap_us(line), line->silent_us));
     if ((line->listener != NULL) && (line->silent_us < line->listener->gap_us))
         due_us = least_us(due_us, rest_us(line->listener->gap_us, line->silent_us));

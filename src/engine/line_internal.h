@@ -70,12 +70,12 @@ static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
 }
 
 /* Is the transaction at the head on the wire, and one that a unit responds to? */
-static inline bool expects_response(const fathom_line_t *line) { return line->sent != 0; }
+static inline bool expects_response(const fathom_line_t *line) { return line->sent != 0u; }
 
 /* The bits of `quarantined` for a unit; all of them for any unit. */
 static inline uint16_t quarantine_bits(uint8_t address)
 {
-    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address & 15)));
+    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address & 15u)));
 }
 
 /* A device sends by itself, and there has been time for a request. */

@@ -9,7 +9,7 @@ static void scan(fathom_line_t *line, bool over)
 {
     const uint8_t have = line->have;
     (void)over;
-    if (have == 0) return;
+    if (have == 0u) return;
     fathom_line_leave(line, have);
     fathom_line_drop(line, have);
 }

@@ -10,11 +10,11 @@ uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t ca
     uint8_t *to = line->config->frame;
     const uint8_t *from = to + line->have;
     const uint8_t flags = rx->flags;
-    if (((flags & FATHOM_RX_SILENCE) != 0) && (line->have == 0)) line->known |= AFTER_GAP;
+    if (((flags & FATHOM_RX_SILENCE) != 0) && (line->have == 0u)) line->known |= AFTER_GAP;
     if ((flags & FATHOM_RX_TIMED) != 0) {
         const uint32_t silent_us = fathom_elapsed_us(line->polled_us, rx->last_us);
-        set_silent(line,
-                   (silent_us <= INT32_MAX) ? silent_us : 0); /* a stamp later than the clock is "now" */
+        set_silent(line, (silent_us <= (UINT32_MAX / 2u)) ? silent_us
+                                                          : 0u); /* a stamp later than the clock is "now" */
     }
     if ((flags & MARKED) == 0) return came;
     /* What had come before is over. */
@@ -27,6 +27,6 @@ uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t ca
         return 0;
     }
     count(line, FATHOM_LINE_BAD_BYTES, 1);
-    for (uint8_t left = came; left != 0; left--) *to++ = *from++;
+    for (uint8_t left = came; left != 0u; left--) *to++ = *from++;
     return came;
 }

@@ -35,7 +35,7 @@ static void quarantine(fathom_line_t *line)
     if (!expects_response(line)) return;
     uint32_t longest_us = (phase(line) == SENDING) ? transaction->timeout_us : line->left_us;
     if ((line->state & RESPONSE_CORRUPT) == 0) longest_us += transaction->timeout_us;
-    if ((line->quarantined == 0) || (line->quarantine_left_us < longest_us))
+    if ((line->quarantined == 0u) || (line->quarantine_left_us < longest_us))
         line->quarantine_left_us = longest_us;
     line->quarantined |= quarantine_bits(transaction->address);
 }
@@ -93,14 +93,14 @@ bool fathom_line_deliver(fathom_line_t *line)
         line->quarantined = quarantined;
     }
     for (fathom_transaction_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
-        if ((x->attempts == 0) || !is_of(x, address) ||
+        if ((x->attempts == 0u) || !is_of(x, address) ||
             (x->protocol->parse_response != protocol->parse_response))
             continue;
         const fathom_status_t status = protocol->parse_response(x, frame);
         if ((status != FATHOM_READY) && (status != FATHOM_ERR_EXCEPTION)) continue;
         count(line, (status > 0) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
         fathom_line_finish(line, link, status);
-        if (before == 0) fathom_line_learn(line, FATHOM_LINE_ECHO_OFF);
+        if (before == 0u) fathom_line_learn(line, FATHOM_LINE_ECHO_OFF);
         return true;
     }
     return false;
@@ -112,7 +112,7 @@ bool fathom_line_deliver(fathom_line_t *line)
 static fathom_transaction_t *next(const fathom_line_t *line)
 {
     fathom_transaction_t *x = line->head;
-    while ((x != NULL) && ((line->quarantined & quarantine_bits(x->address)) != 0)) x = x->link.next;
+    while ((x != NULL) && ((line->quarantined & quarantine_bits(x->address)) != 0u)) x = x->link.next;
     return x;
 }
 
@@ -141,14 +141,15 @@ static fathom_status_t go_on(fathom_line_t *line)
         if (uart->sent(uart->ctx)) {
             line->state |= LISTENING;
             line->left_us = line->head->timeout_us;
-        } else if (line->left_us == 0) {
+        } else if (line->left_us == 0u) {
             return fathom_line_broken(line);
         }
         return FATHOM_PENDING;
     }
-    if (line->have != 0) return FATHOM_PENDING;
+    if (line->have != 0u) return FATHOM_PENDING;
     if (is_busy(line)) {
-        if ((line->left_us != 0) && (((line->state & RESPONSE_BAD) == 0) || (line->silent_us < gap_us(line))))
+        if ((line->left_us != 0u) &&
+            (((line->state & RESPONSE_BAD) == 0) || (line->silent_us < gap_us(line))))
             return FATHOM_PENDING;
         fathom_line_end_attempt(line);
     }
@@ -176,7 +177,7 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *tr
 {
     fathom_transaction_t **const link = fathom_line_find(line, transaction);
     if (*link != NULL) return FATHOM_ERR_BUSY;
-    if (transaction->timeout_us > INT32_MAX) return FATHOM_ERR_ARGUMENT;
+    if (transaction->timeout_us > (UINT32_MAX / 2u)) return FATHOM_ERR_ARGUMENT;
     if (line->kind->give_up == NULL) return FATHOM_ERR_UNSUPPORTED;
     *link = transaction;
     transaction->link.next = NULL;

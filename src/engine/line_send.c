@@ -26,7 +26,7 @@ fathom_status_t fathom_line_send(fathom_line_t *line)
     if (n != 0) {
         length = x->protocol->encode(x, line->config->frame);
         n = uart->write(uart->ctx, line->config->frame, length);
-        if ((n != 0) && (n != length)) return fathom_line_broken(line);
+        if ((n != 0) && (n != (int)length)) return fathom_line_broken(line);
     }
     if (n != 0) {
         x->attempts++;
@@ -37,7 +37,7 @@ fathom_status_t fathom_line_send(fathom_line_t *line)
     } else if (line->state == IDLE) {
         line->state = REFUSED;
     } else {
-        return (line->left_us != 0) ? FATHOM_PENDING : fathom_line_broken(line);
+        return (line->left_us != 0u) ? FATHOM_PENDING : fathom_line_broken(line);
     }
     line->left_us = FATHOM_LINE_SEND_US;
     return FATHOM_PENDING;

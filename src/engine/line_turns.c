@@ -13,9 +13,9 @@ static fathom_line_turns_t *notify(const fathom_line_t *line)
     if (turns->is_busy && !is_busy(line)) turns->ended(turns, turns->address, line->polled_us);
     turns->is_busy = is_busy(line);
     for (const fathom_transaction_t *x = line->head; x != NULL; x = x->link.next) {
-        const uint16_t bit = (uint16_t)(1u << (x->address & 15));
+        const uint16_t bit = (uint16_t)(1u << (x->address & 15u));
         /* It was submitted after the last poll; and its driver polled right before that. */
-        if (((turns->waiting | waiting) & bit) == 0) turns->asked(turns, x->address, turns->polled_us);
+        if (((turns->waiting | waiting) & bit) == 0u) turns->asked(turns, x->address, turns->polled_us);
         waiting |= bit;
     }
     turns->waiting = waiting;
@@ -60,5 +60,5 @@ void fathom_line_take_turns(fathom_line_t *line, fathom_line_turns_t *turns)
 
 bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t address)
 {
-    return (line->quarantined & quarantine_bits(address)) != 0;
+    return (line->quarantined & quarantine_bits(address)) != 0u;
 }

@@ -24,7 +24,7 @@ fathom_status_t fathom_modbus_client_parse_response(fathom_transaction_t *transa
 /* Zeros are what noise is made of: no frame of unit 0 is looked for. */
 static uint8_t length(const uint8_t *frame, uint8_t have)
 {
-    return (frame[0] != FATHOM_MODBUS_BROADCAST) ? fathom_modbus_rtu_response_length(frame, have) : 0;
+    return (frame[0] != FATHOM_MODBUS_BROADCAST) ? fathom_modbus_rtu_response_length(frame, have) : 0u;
 }
 
 static const fathom_protocol_t protocol = {
@@ -35,7 +35,7 @@ fathom_status_t fathom_modbus_client_start(fathom_line_t *line, fathom_modbus_re
                                            const fathom_protocol_t *with)
 {
     const uint8_t frame_size = fathom_modbus_rtu_frame_size(&request->message);
-    if (frame_size == 0) return FATHOM_ERR_ARGUMENT;
+    if (frame_size == 0u) return FATHOM_ERR_ARGUMENT;
     if (frame_size > line->config->frame_size) return FATHOM_ERR_CAPACITY;
     request->transaction.protocol = with;
     request->transaction.address = request->message.head[0];

@@ -6,7 +6,7 @@ enum { IN_SETTING = FATHOM_MODBUS_UNIT_IN_SETTING, ONCE = FATHOM_MODBUS_UNIT_ONC
 
 static void use_new_address(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
-    if (setting->address != 0) unit->address = (uint8_t)setting->address;
+    if (setting->address != 0u) unit->address = (uint8_t)setting->address;
     if (setting->line_settings != NULL) unit->line_settings = setting->line_settings;
 }
 
@@ -19,19 +19,19 @@ static void restore_address(fathom_modbus_unit_t *unit)
 /* Two settings whose ids are equal modulo 16 share one: then one is written without need, once. */
 static uint16_t setting_bit(const fathom_modbus_unit_t *unit)
 {
-    return (uint16_t)(1u << (unit->setting & 15));
+    return (uint16_t)(1u << (unit->setting & 15u));
 }
 
 static bool moves(const fathom_modbus_setting_t *setting)
 {
-    return (setting->address != 0) || (setting->line_settings != NULL);
+    return (setting->address != 0u) || (setting->line_settings != NULL);
 }
 
 /* Can the value that the device reports be trusted? Not where it was written and has not read back since, unless this
  * very value was written last, and was acknowledged or another one was read before. */
 static bool is_certain(const fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
-    return moves(setting) || ((unit->unconfirmed & setting_bit(unit)) == 0) ||
+    return moves(setting) || ((unit->unconfirmed & setting_bit(unit)) == 0u) ||
            ((unit->last_written == unit->setting) && (unit->last_written_value == (uint16_t)setting->value));
 }
 
@@ -42,7 +42,7 @@ static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_mod
     const bool is_so = value == setting->value;
     if ((status < 0) || (is_so && is_certain(unit, setting))) return status;
     unit->step = is_so ? WRITE_UNREAD : WRITE;
-    if (setting->address != 0) {
+    if (setting->address != 0u) {
         unit->step = PROBE_NEW;
         use_new_address(unit, setting);
     }
@@ -69,7 +69,7 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     unit->unconfirmed |= setting_bit(unit);
     /* The value may have read so before: only the acknowledgement shows that it was taken. */
     const bool is_lost = (unit->step == WRITE_UNREAD) && (status < 0);
-    unit->last_written = is_lost ? 0 : unit->setting;
+    unit->last_written = is_lost ? 0u : unit->setting;
     unit->last_written_value = (uint16_t)setting->value;
     if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
     if (setting->read == NULL) return status;
@@ -116,7 +116,7 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
 
 fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
 {
-    if (unit->setting != 0) return FATHOM_ERR_BUSY;
+    if (unit->setting != 0u) return FATHOM_ERR_BUSY;
     unit->is_blind = true;
     return FATHOM_READY;
 }
@@ -124,7 +124,7 @@ fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     fathom_status_t status;
-    if (unit->setting == 0) {
+    if (unit->setting == 0u) {
         unit->setting = setting->write.id;
         unit->is_written = false;
         unit->step = ((setting->read != NULL) && !unit->is_blind) ? READ_OLD : WRITE_UNREAD;

@@ -14,7 +14,7 @@ static void back_off(fathom_modbus_unit_t *unit)
 {
     const fathom_transaction_t *const transaction = &unit->request.transaction;
     uint32_t wait_us = transaction->timeout_us;
-    if ((transaction->status != FATHOM_ERR_NO_RESPONSE) || (unit->warm_us != 0)) {
+    if ((transaction->status != FATHOM_ERR_NO_RESPONSE) || (unit->warm_us != 0u)) {
         unit->timeouts_in_row = 0;
         unit->backoff_left_us = 0;
         return;
@@ -35,13 +35,13 @@ void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
     unit->polled_us = now_us;
     fathom_count_down(&unit->pause_us, passed_us);
     /* Which is rare, and an AVR takes its time to subtract. */
-    if ((unit->backoff_left_us | unit->warm_us) != 0) {
+    if ((unit->backoff_left_us | unit->warm_us) != 0u) {
         fathom_count_down(&unit->backoff_left_us, passed_us);
         fathom_count_down(&unit->warm_us, passed_us);
     }
     if (unit->state != ASKED) return;
     /* The pace counts from the last request on the wire, not from its place in a queue. */
-    if ((transaction->attempts == 0) || (transaction->attempts != unit->attempts))
+    if ((transaction->attempts == 0u) || (transaction->attempts != unit->attempts))
         unit->pause_us = unit->pace_us;
     unit->attempts = transaction->attempts;
     if (transaction->status == FATHOM_PENDING) return;
@@ -57,7 +57,7 @@ static fathom_status_t submit(fathom_modbus_unit_t *unit, const fathom_modbus_un
     node->transaction.line_settings = unit->line_settings;
     node->transaction.timeout_us =
         (request->id < FATHOM_MODBUS_COMMAND) ? unit->timeout_us : unit->command_timeout_us;
-    node->transaction.retries = is_once ? 0 : unit->retries;
+    node->transaction.retries = is_once ? 0u : unit->retries;
     node->message.values = request->values;
     node->message.exception = 0;
     node->message.head[0] = unit->address;
@@ -83,7 +83,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     const fathom_modbus_t *const transport = config->transport;
     const uint8_t address = config->address;
     if ((transport == NULL) || (transport->clock == NULL) || (address == FATHOM_MODBUS_ANY_UNIT) ||
-        (config->address_zero && (address != 0)))
+        (config->address_zero && (address != 0u)))
         return FATHOM_ERR_ARGUMENT;
     /* volatile: or compilers make it a call of memset, which costs more */
     for (volatile uint8_t *byte = (uint8_t *)unit; byte != (uint8_t *)(unit + 1); byte++) *byte = 0;
@@ -95,7 +95,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->pace_us = (config->period_us > pace_us) ? config->period_us : pace_us;
     unit->backoff_us = or_default(config->backoff_us, LONGEST_US);
     unit->retries = config->retries;
-    unit->address = ((address != 0) || config->address_zero) ? address : 1;
+    unit->address = ((address != 0u) || config->address_zero) ? address : 1u;
     unit->polled_us = clock_us(transport->clock);
     return FATHOM_READY;
 }
@@ -104,8 +104,8 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
 static fathom_status_t outcome(const fathom_modbus_unit_t *unit)
 {
     const fathom_status_t status = (fathom_status_t)unit->request.transaction.status;
-    if ((unit->warm_us == 0) || ((status != FATHOM_ERR_NO_RESPONSE) && (status != FATHOM_ERR_CHECKSUM) &&
-                                 (status != FATHOM_ERR_EXCEPTION)))
+    if ((unit->warm_us == 0u) || ((status != FATHOM_ERR_NO_RESPONSE) && (status != FATHOM_ERR_CHECKSUM) &&
+                                  (status != FATHOM_ERR_EXCEPTION)))
         return status;
     return FATHOM_ERR_WARMING_UP;
 }
@@ -116,7 +116,7 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
     const uint8_t id = request->id;
     const bool is_command = id >= FATHOM_MODBUS_COMMAND;
     /* Does a setting have the unit to itself, and this request is not its own? */
-    const bool is_kept_out = (unit->setting != 0) && ((unit->step & FATHOM_MODBUS_UNIT_IN_SETTING) == 0);
+    const bool is_kept_out = (unit->setting != 0u) && ((unit->step & FATHOM_MODBUS_UNIT_IN_SETTING) == 0);
     /* The same command of another caller would take a setting's outcome away from it. */
     if ((unit->state != IDLE) && (unit->current == id) && !(is_command && is_kept_out)) {
         if (unit->state == ASKED) return FATHOM_PENDING;
@@ -129,13 +129,13 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
     }
     /* A command waits only for another command and for the request on the wire; the repeated request lets commands
      * pass, and while a setting is carried out the device may be elsewhere. */
-    if (is_kept_out || ((unit->waiting != 0) && (unit->waiting != id)) ||
+    if (is_kept_out || ((unit->waiting != 0u) && (unit->waiting != id)) ||
         ((unit->state != IDLE) && (unit->current >= FATHOM_MODBUS_COMMAND)))
         return is_command ? FATHOM_ERR_BUSY : FATHOM_PENDING;
     if (is_command) unit->waiting = id;
     if (unit->state == ASKED) return FATHOM_PENDING;
     unit->state = IDLE; /* an outcome of the repeated request that was not taken gives way */
-    if ((unit->pause_us != 0) || ((unit->backoff_left_us != 0) && !is_command)) return FATHOM_PENDING;
+    if ((unit->pause_us != 0u) || ((unit->backoff_left_us != 0u) && !is_command)) return FATHOM_PENDING;
     return submit(unit, request);
 }
 
@@ -145,7 +145,7 @@ void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit)
     unit->state = IDLE;
     unit->waiting = 0;
     unit->is_blind = false;
-    if (unit->setting == 0) return;
+    if (unit->setting == 0u) return;
     unit->setting = 0;
     unit->address = unit->known_address;
     unit->line_settings = unit->known_line_settings;
@@ -167,9 +167,9 @@ uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
     if (unit->state == ANSWERED) return 0;
     if (unit->state == ASKED) { /* another unit's poll may have ended it already */
         const bool has_ended = unit->request.transaction.status != FATHOM_PENDING;
-        return has_ended ? 0 : unit->transport->due_us(unit->transport->ctx);
+        return has_ended ? 0u : unit->transport->due_us(unit->transport->ctx);
     }
     uint32_t left_us = unit->pause_us;
-    if ((unit->waiting == 0) && (unit->backoff_left_us > left_us)) left_us = unit->backoff_left_us;
+    if ((unit->waiting == 0u) && (unit->backoff_left_us > left_us)) left_us = unit->backoff_left_us;
     return rest_us(left_us, fathom_elapsed_us(clock_us(unit->transport->clock), unit->polled_us));
 }

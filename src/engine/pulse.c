@@ -16,11 +16,11 @@ static fathom_status_t take(fathom_pulse_meter_t *meter, fathom_pulse_reading_t 
 {
     const fathom_capture_t *const capture = meter->capture;
     fathom_pulse_t pulse;
-    for (uint8_t left = MAX_TAKES; left != 0; left--) {
+    for (uint8_t left = MAX_TAKES; left != 0u; left--) {
         const int has = capture->take(capture->ctx, &pulse);
         if (has < 0) return FATHOM_ERR_PORT;
         if (has == 0) {
-            if (meter->trigger.left_us != 0) return FATHOM_PENDING;
+            if (meter->trigger.left_us != 0u) return FATHOM_PENDING;
             meter->waiting = false;
             if (!pulse.is_high) return FATHOM_ERR_NO_RESPONSE;
             reading->width_us = 0;

@@ -24,7 +24,7 @@ fathom_status_t fathom_trigger_init(fathom_trigger_t *trigger)
 {
     const fathom_output_t *const output = &trigger->output;
     if (output->set == NULL) return FATHOM_ERR_ARGUMENT;
-    if (trigger->low_us == 0) trigger->low_us = FATHOM_TRIGGER_DEFAULT_LOW_US;
+    if (trigger->low_us == 0u) trigger->low_us = FATHOM_TRIGGER_DEFAULT_LOW_US;
     trigger->low = false;
     trigger->refused = false;
     trigger->polled_us = clock_us(trigger->clock);
@@ -48,7 +48,7 @@ static uint32_t low_left_us(const fathom_trigger_t *trigger)
 fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin)
 {
     const bool was_low = trigger->low;
-    if (was_low ? (low_left_us(trigger) != 0) : (!may_begin || (trigger->left_us != 0)))
+    if (was_low ? (low_left_us(trigger) != 0u) : (!may_begin || (trigger->left_us != 0u)))
         return FATHOM_PENDING;
     const fathom_status_t status = hold(trigger, !was_low);
     if (status != FATHOM_READY) return status;
@@ -66,7 +66,7 @@ fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin)
 uint32_t fathom_trigger_due_us(const fathom_trigger_t *trigger, uint32_t until_us)
 {
     if (trigger->low) until_us = least_us(until_us, low_left_us(trigger));
-    if (until_us == 0) until_us = AGAIN_US;
+    if (until_us == 0u) until_us = AGAIN_US;
     return rest_us(until_us, fathom_elapsed_us(clock_us(trigger->clock), trigger->polled_us));
 }
 

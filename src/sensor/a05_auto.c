@@ -82,7 +82,7 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 {
     const uint16_t *value = sensor->values;
     for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1), value++)
-        if (((sensor->probes & bit) != 0) &&
+        if (((sensor->probes & bit) != 0u) &&
             (fathom_dyp_meaning(&sensor->base.measurement.window, *value) == FATHOM_MEANS_REFUSED))
             return bit;
     return 0;
@@ -92,8 +92,8 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 static uint8_t believed(fathom_a05_auto_t *sensor)
 {
     const uint8_t odd = odd_probe(sensor);
-    const bool is_whole = (odd == 0) || (sensor->base.stream.sure && sensor->was_odd);
-    sensor->was_odd = odd != 0;
+    const bool is_whole = (odd == 0u) || (sensor->base.stream.sure && sensor->was_odd);
+    sensor->was_odd = odd != 0u;
     return is_whole ? sensor->probes : odd;
 }
 
@@ -115,7 +115,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us(void *ctx)
 {
     const fathom_a05_auto_t *const sensor = ctx;
-    if (sensor->base.measurement.left != 0) return 0;
+    if (sensor->base.measurement.left != 0u) return 0;
     const uint32_t base_us = fathom_dyp_auto_due_us(&sensor->base);
     if (!sensor->selecting) return base_us;
     const uint32_t now_us = clock_us(sensor->base.line->config->clock);

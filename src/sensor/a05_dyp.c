@@ -7,25 +7,25 @@
 
 enum { ALL_PROBES = 0x0F };
 
-static bool is_one(uint8_t probes) { return (probes & (probes - 1)) == 0; }
+static bool is_one(uint8_t probes) { return (probes & (probes - 1u)) == 0u; }
 
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const uint8_t probes = (config->probes != 0) ? config->probes : ALL_PROBES;
+    const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
     uint8_t first = 0;
     if (is_single)
-        while (((probes >> first) & 1) == 0) first++;
+        while (((probes >> first) & 1u) == 0u) first++;
     base->request.first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
     base->request.last = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.model = FATHOM_A05;
-    base->measurement.first = (uint8_t)(first + 1);
+    base->measurement.first = (uint8_t)(first + 1u);
     base->probes = probes;
     return fathom_dyp_modbus_init(base, &config->modbus,
                                   is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,

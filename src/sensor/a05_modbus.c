@@ -8,17 +8,17 @@ enum { ALL_PROBES = 0x0F };
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const uint16_t registers = (config->registers != 0) ? config->registers : FATHOM_A05_REGISTERS;
-    const uint8_t probes = (config->probes != 0) ? config->probes : ALL_PROBES;
+    const uint16_t registers = (config->registers != 0u) ? config->registers : FATHOM_A05_REGISTERS;
+    const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
     if ((registers != FATHOM_A05_REGISTERS) && (registers != FATHOM_A05_REGISTERS_ALIAS))
         return FATHOM_ERR_ARGUMENT;
 
     uint8_t first = 0;
-    while (((probes >> first) & 1) == 0) first++;
+    while (((probes >> first) & 1u) == 0u) first++;
     uint8_t count = 1;
     uint32_t measuring_us = FATHOM_A05_PROBE_US;
-    for (; (probes >> (first + count)) != 0; count++) measuring_us += FATHOM_A05_PROBE_US;
+    for (; (probes >> (first + count)) != 0u; count++) measuring_us += FATHOM_A05_PROBE_US;
 
     base->request.first = (uint16_t)(registers + first);
     base->request.last = count;
@@ -26,7 +26,7 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.model = FATHOM_A05;
-    base->measurement.first = (uint8_t)(first + 1);
+    base->measurement.first = (uint8_t)(first + 1u);
     base->probes = probes;
     return fathom_dyp_modbus_init(base, &config->modbus, RESPONSE_TIMEOUT_US + measuring_us, measuring_us);
 }

@@ -7,15 +7,15 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
                                            const fathom_a05_relay_rule_config_t *config)
 {
     fathom_debounce_config_t own;
-    own.hold_us = (config->hold_us != 0) ? config->hold_us : FATHOM_A05_RELAY_HOLD_US;
+    own.hold_us = (config->hold_us != 0u) ? config->hold_us : FATHOM_A05_RELAY_HOLD_US;
     own.unknown_us = config->unknown_us;
     own.threshold_mm =
-        (config->threshold_mm != 0) ? config->threshold_mm : (uint16_t)FATHOM_A05_RELAY_DEFAULT_MM;
+        (config->threshold_mm != 0u) ? config->threshold_mm : (uint16_t)FATHOM_A05_RELAY_DEFAULT_MM;
     own.near_count = 1; /* A05 4 knows no rows */
     own.far_count = 1;
     own.equal = config->equal;
     rule->sequence = 0;
-    rule->probes = (config->probes != 0) ? config->probes : (uint8_t)ALL_PROBES;
+    rule->probes = (config->probes != 0u) ? config->probes : (uint8_t)ALL_PROBES;
     rule->missing = rule->probes;
     rule->verdict = FATHOM_FAR;
     if ((own.threshold_mm < FATHOM_A05_RELAY_MIN_MM) || (own.threshold_mm > FATHOM_A05_RELAY_MAX_MM) ||
@@ -42,9 +42,9 @@ bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sa
         rule->verdict = FATHOM_FAR;
     }
     if (verdict == FATHOM_UNKNOWN) return fathom_debounce_time(&rule->debounce, sample->time_us);
-    if ((rule->missing & bit) == 0) return false;
+    if ((rule->missing & bit) == 0u) return false;
     rule->missing &= (uint8_t)~bit;
     if (verdict != FATHOM_FAR) rule->verdict = verdict;
     if (verdict == FATHOM_NEAR) rule->missing = 0; /* the others cannot change that */
-    return (rule->missing == 0) && fathom_debounce_verdict(&rule->debounce, rule->verdict, sample->time_us);
+    return (rule->missing == 0u) && fathom_debounce_verdict(&rule->debounce, rule->verdict, sample->time_us);
 }

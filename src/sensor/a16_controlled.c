@@ -49,7 +49,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     /* its deadline means nothing here: without a trigger the sensor is silent */
     if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_READY)
         status = judge(sensor, sample);
-    if (sensor->waiting && (sensor->stream.candidate == 0) && (response_left_us(sensor) == 0)) {
+    if (sensor->waiting && (sensor->stream.candidate == 0u) && (response_left_us(sensor) == 0u)) {
         sensor->waiting = false;
         status = sensor->heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE;
     }

@@ -8,7 +8,7 @@ fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_p
 {
     sensor->window.min_mm = (uint16_t)or_default(config->window.min_mm, 1);
     sensor->window.max_mm = config->window.max_mm;
-    if (sensor->window.max_mm == 0)
+    if (sensor->window.max_mm == 0u)
         sensor->window.max_mm = config->in_air ? FATHOM_A16_PWM_MAX_MM_IN_AIR : FATHOM_A16_MAX_MM;
     sensor->sequence = 0;
     sensor->implausible = 0;

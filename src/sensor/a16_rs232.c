@@ -20,7 +20,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
 
 static bool is_since(const fathom_a16_rs232_t *rs232, uint32_t time_us)
 {
-    return fathom_elapsed_us(time_us, rs232->since_us) <= INT32_MAX;
+    return fathom_elapsed_us(time_us, rs232->since_us) <= (UINT32_MAX / 2u);
 }
 
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample)

@@ -51,14 +51,14 @@ static fathom_status_t get_choice(fathom_a16_modbus_t *sensor, uint16_t address,
     uint16_t found = 0;
     const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, &found);
     if (status != FATHOM_READY) return status;
-    if (found > 1) return FATHOM_ERR_MALFORMED;
+    if (found > 1u) return FATHOM_ERR_MALFORMED;
     *value = found;
     return status;
 }
 
 static fathom_status_t set_choice(fathom_a16_modbus_t *sensor, uint16_t address, unsigned value)
 {
-    if (value > 1) return FATHOM_ERR_ARGUMENT;
+    if (value > 1u) return FATHOM_ERR_ARGUMENT;
     return fathom_dyp_modbus_set(&sensor->base, address, (uint16_t)value);
 }
 
@@ -84,7 +84,7 @@ fathom_status_t fathom_a16_modbus_switch_threshold_mm(fathom_a16_modbus_t *senso
 
 fathom_status_t fathom_a16_modbus_set_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t threshold_mm)
 {
-    if ((threshold_mm == 0) || (threshold_mm > FATHOM_A16_MAX_MM)) return FATHOM_ERR_ARGUMENT;
+    if ((threshold_mm == 0u) || (threshold_mm > FATHOM_A16_MAX_MM)) return FATHOM_ERR_ARGUMENT;
     return fathom_dyp_modbus_set(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
 }
 

@@ -57,7 +57,7 @@ static bool is_too_long(fathom_alarm_t *alarm, uint32_t now_us)
     alarm->is_fed = true;
     const uint32_t passed_us = fathom_elapsed_us(now_us, alarm->fed_us);
     /* Half a turn of the clock and more: it is a time before the distance. */
-    return (passed_us > alarm->config.unknown_us) && (passed_us <= INT32_MAX);
+    return (passed_us > alarm->config.unknown_us) && (passed_us <= (UINT32_MAX / 2u));
 }
 
 static void look_at_time(fathom_alarm_t *alarm, uint32_t now_us)

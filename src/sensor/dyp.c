@@ -13,22 +13,22 @@ enum {
 
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value)
 {
-    const uint16_t special = (uint16_t)(value + 3);
-    if (special > 3)
+    const uint16_t special = (uint16_t)(value + 3u);
+    if (special > 3u)
         return ((value >= window->min_mm) && (value <= window->max_mm)) ? (uint8_t)FATHOM_TARGET
                                                                         : (uint8_t)FATHOM_MEANS_REFUSED;
     const uint8_t meaning = ((const uint8_t *)window)[offsetof(fathom_dyp_window_t, value_fffd) + special];
     if (meaning != FATHOM_MEANS_DEFAULT) return meaning;
-    return (uint8_t)((MEANINGS >> (4 * special)) & 15);
+    return (uint8_t)((MEANINGS >> (4u * special)) & 15);
 }
 
 fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measurement, fathom_sample_t *sample)
 {
     uint8_t left = measurement->left;
     uint8_t probe = 1;
-    if (left == 0) return FATHOM_PENDING;
-    measurement->left = left & (uint8_t)(left - 1);
-    for (; (left & 1) == 0; left >>= 1) probe++;
+    if (left == 0u) return FATHOM_PENDING;
+    measurement->left = left & (uint8_t)(left - 1u);
+    for (; (left & 1u) == 0u; left >>= 1) probe++;
     const uint16_t value = measurement->values[probe - measurement->first];
     uint8_t kind = fathom_dyp_meaning(&measurement->window, value);
     if (kind == FATHOM_MEANS_REFUSED) {
@@ -67,7 +67,7 @@ void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm)
 {
     fathom_dyp_window_t *const window = &measurement->window;
-    if (window->max_mm == 0) window->max_mm = default_max_mm;
+    if (window->max_mm == 0u) window->max_mm = default_max_mm;
     measurement->left = 0;
     measurement->sequence = 0;
     measurement->implausible = 0;

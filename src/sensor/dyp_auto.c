@@ -21,7 +21,7 @@ void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor)
 /* A transaction that is open makes the line hold bytes back. They are newer than the frame: no silence has ended it. */
 static bool is_followed(const fathom_dyp_auto_t *sensor)
 {
-    return (sensor->stream.candidate != 0) && (sensor->line->have != 0);
+    return (sensor->stream.candidate != 0u) && (sensor->line->have != 0u);
 }
 
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)
@@ -33,7 +33,7 @@ fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)
     status = fathom_stream_poll(stream, sensor->line->polled_us);
     if (status != FATHOM_READY) return status;
     fathom_dyp_stream_decode(fathom_stream_frame(stream), measurement->values,
-                             (uint8_t)((stream->length / 2) - 1));
+                             (uint8_t)((stream->length / 2u) - 1u));
     fathom_dyp_measurement_set(measurement, 1, stream->time_us);
     return FATHOM_READY;
 }

@@ -31,7 +31,7 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor)
 /* By what registers differ: they are 0010.., 0100.. and 0200... */
 static uint8_t id_of(uint16_t address)
 {
-    return (uint8_t)(FATHOM_MODBUS_COMMAND | ((address >> 4) & 0x30) | (address & 0x0F));
+    return (uint8_t)(FATHOM_MODBUS_COMMAND | ((address >> 4) & 0x30u) | (address & 0x0Fu));
 }
 
 fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
@@ -93,10 +93,10 @@ static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16
     const bool is_address = address == FATHOM_DYP_REGISTER_ADDRESS;
     fathom_modbus_setting_t setting;
     if (is_address && unit->is_blind) return FATHOM_ERR_ARGUMENT;
-    if ((unit->address == FATHOM_MODBUS_BROADCAST) && (unit->setting == 0)) return FATHOM_ERR_ARGUMENT;
+    if ((unit->address == FATHOM_MODBUS_BROADCAST) && (unit->setting == 0u)) return FATHOM_ERR_ARGUMENT;
     fathom_dyp_modbus_describe(sensor, &setting, address, value);
     setting.read = its_read;
-    if (is_address) setting.address = (value != 0) ? value : ZERO_ADDRESS;
+    if (is_address) setting.address = (value != 0u) ? value : ZERO_ADDRESS;
     return fathom_modbus_set(&sensor->unit, &setting);
 }
 
@@ -109,7 +109,7 @@ fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t addr
 fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
     fathom_modbus_unit_poll(&sensor->unit);
-    if ((sensor->unit.setting == 0) && !sensor->unit.is_blind) {
+    if ((sensor->unit.setting == 0u) && !sensor->unit.is_blind) {
         sensor->unit.is_written = false; /* nor will it be before this read has ended */
         const fathom_status_t status =
             fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);
@@ -182,7 +182,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us(void *ctx)
 {
     const fathom_dyp_modbus_t *const sensor = ctx;
-    return (sensor->measurement.left != 0) ? 0 : fathom_modbus_unit_due_us(&sensor->unit);
+    return (sensor->measurement.left != 0u) ? 0u : fathom_modbus_unit_due_us(&sensor->unit);
 }
 
 fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)

@@ -14,7 +14,8 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
         return FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
     sensor->warm_up_s = config->warm_up_s;
-    if ((config->warm_up_s == 0) && !config->no_warm_up) sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
+    if ((config->warm_up_s == 0u) && !config->no_warm_up)
+        sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
     sensor->same_responses = config->same_responses;
     sensor->steps_per_degree = config->steps_per_degree;
     sensor->low_word_first = config->low_word_first;

@@ -17,7 +17,7 @@ static bool fits(const fathom_hps167s_auto_t *sensor)
     if (bytes[ADDRESS] != *sensor->from) return false;
     if ((sensor->have > FUNCTION) && (bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS)) return false;
     if ((sensor->have > SIZE) && (bytes[SIZE] != DATA_SIZE)) return false;
-    return (sensor->have != LENGTH) || (fathom_crc16(bytes, LENGTH) == 0);
+    return (sensor->have != LENGTH) || (fathom_crc16(bytes, LENGTH) == 0u);
 }
 
 /* The first byte begins nothing: the next may. volatile: or compilers make it a call of memmove. */
@@ -25,14 +25,14 @@ static void slip(fathom_hps167s_auto_t *sensor)
 {
     volatile uint8_t *to = sensor->bytes;
     const uint8_t *from = sensor->bytes;
-    for (uint8_t left = --sensor->have; left != 0; left--) *to++ = *++from;
+    for (uint8_t left = --sensor->have; left != 0u; left--) *to++ = *++from;
 }
 
 static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
     const uint8_t *at = sensor->bytes + DATA;
     uint16_t registers[4];
-    for (uint8_t i = 0; i != 4; i++, at += 2) registers[i] = (uint16_t)((at[0] * 256u) + at[1]);
+    for (uint8_t i = 0; i != 4u; i++, at += 2) registers[i] = (uint16_t)((at[0] * 256u) + at[1]);
     sensor->have = 0;
     if ((sensor->driver != NULL) && !sensor->heard(sensor->driver, registers, time_us)) {
         count_one(&sensor->implausible);
@@ -50,10 +50,10 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
 {
     fathom_hps167s_auto_t *const sensor = (fathom_hps167s_auto_t *)listener;
     (void)after_gap; /* the CRC decides */
-    if (length == 0) sensor->have = 0;
-    for (; length != 0; length--) {
+    if (length == 0u) sensor->have = 0;
+    for (; length != 0u; length--) {
         sensor->bytes[sensor->have++] = *bytes++;
-        while ((sensor->have != 0) && !fits(sensor)) slip(sensor);
+        while ((sensor->have != 0u) && !fits(sensor)) slip(sensor);
         if (sensor->have == LENGTH) take(sensor, time_us);
     }
 }
@@ -68,7 +68,7 @@ fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
     sensor->stale_us = or_default(config->stale_us, STALE_US);
     sensor->left_us = sensor->stale_us;
     sensor->polled_us = clock_us(sensor->line->config->clock);
-    sensor->address = (config->address != 0) ? config->address : 1;
+    sensor->address = (config->address != 0u) ? config->address : 1u;
     sensor->from = &sensor->address;
     fathom_line_listen(sensor->line, &sensor->listener);
     return FATHOM_READY;
@@ -127,7 +127,7 @@ static uint32_t due_us(void *ctx)
     const fathom_hps167s_auto_t *const sensor = ctx;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
     const uint32_t passed_us = fathom_elapsed_us(clock_us(sensor->line->config->clock), sensor->polled_us);
-    return sensor->is_new ? 0 : least_us(line_us, rest_us(sensor->left_us, passed_us));
+    return sensor->is_new ? 0u : least_us(line_us, rest_us(sensor->left_us, passed_us));
 }
 
 fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)

@@ -29,8 +29,8 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
 static bool same_4(const uint16_t *a, const uint16_t *b)
 {
     uint8_t i = 0;
-    while ((i != 4) && (a[i] == b[i])) i++;
-    return i == 4;
+    while ((i != 4u) && (a[i] == b[i])) i++;
+    return i == 4u;
 }
 
 /* Not where it equals the last response to #2: that may have come late. */
@@ -48,7 +48,7 @@ static void be_wary(fathom_hps167s_t *sensor)
     if (sensor->is_new != NULL) return;
     sensor->is_new = is_new;
     copy_4(sensor->last_measurement, sensor->measurement);
-    if (sensor->measurement[0] == 0) sensor->last_measurement[0] = NOTHING;
+    if (sensor->measurement[0] == 0u) sensor->last_measurement[0] = NOTHING;
 }
 
 static void be_among_unasked(fathom_hps167s_t *sensor, uint32_t time_us)
@@ -79,8 +79,8 @@ static bool is_believed(fathom_hps167s_t *sensor)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
     const uint16_t *const values = sensor->values;
-    uint8_t needed = (sensor->same_responses != 0) ? sensor->same_responses : SAME_RESPONSES;
-    if (sensor->responses++ == 0) sensor->agreed = 0;
+    uint8_t needed = (sensor->same_responses != 0u) ? sensor->same_responses : SAME_RESPONSES;
+    if (sensor->responses++ == 0u) sensor->agreed = 0;
     if (!fathom_hps167s_may_be_configuration(values) || same_4(values, sensor->last_measurement)) {
         copy_4(sensor->last_measurement, values);
         be_among_unasked(sensor, unit->polled_us);
@@ -96,7 +96,7 @@ static bool is_believed(fathom_hps167s_t *sensor)
     if (sensor->agreed >= needed) return true;
     /* A request in step with what the device sends by itself would get an unasked frame each time. */
     if (sensor->is_among_unasked)
-        unit->pause_us += (uint32_t)(((2u * sensor->responses) + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2));
+        unit->pause_us += (uint32_t)(((2u * sensor->responses) + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2u));
     return false;
 }
 
@@ -104,7 +104,7 @@ static bool is_believed(fathom_hps167s_t *sensor)
  * measurement: until it cannot come any more there is no outcome, or another driver's next request would meet it. */
 static fathom_status_t give_up(const fathom_hps167s_t *sensor)
 {
-    return (sensor->is_outstanding && (sensor->unit.pause_us != 0)) ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;
+    return (sensor->is_outstanding && (sensor->unit.pause_us != 0u)) ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;
 }
 
 fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
@@ -150,7 +150,7 @@ fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps1
     if (status != FATHOM_READY) return status;
     const int16_t raw = fathom_hps167s_signed(sensor->values[0]);
     const int32_t temperature_dc =
-        fathom_hps167s_temperature_dc(raw, (sensor->steps_per_degree != 0) ? sensor->steps_per_degree : 1);
+        fathom_hps167s_temperature_dc(raw, (sensor->steps_per_degree != 0u) ? sensor->steps_per_degree : 1u);
     if ((temperature_dc > INT16_MAX) || (temperature_dc < INT16_MIN)) return FATHOM_ERR_MALFORMED;
     out->fahrenheit = raw;
     out->temperature_dc = (int16_t)temperature_dc;

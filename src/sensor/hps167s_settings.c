@@ -36,7 +36,7 @@ static void seek(fathom_hps167s_t *sensor, const fathom_line_settings_t *other)
 /* Power-on, or a request has ended: does it show where the device is? No setting begins before that is known. */
 static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
 {
-    if ((status == FATHOM_PENDING) && (sensor->next_baud != 0)) {
+    if ((status == FATHOM_PENDING) && (sensor->next_baud != 0u)) {
         seek(sensor, with_baud(sensor, sensor->next_baud));
         sensor->next_baud = 0;
         change_over(sensor);
@@ -65,7 +65,7 @@ static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
     const bool is_done = (sensor->reset_response == FATHOM_HPS167S_RESET_DONE) || !is_at_home(&sensor->unit);
     const bool is_first = !sensor->is_looked_at;
     sensor->is_looked_at = true;
-    if (!is_done && !is_first && (sensor->unit.address == 1)) return FATHOM_ERR_UNCONFIRMED;
+    if (!is_done && !is_first && (sensor->unit.address == 1u)) return FATHOM_ERR_UNCONFIRMED;
     *value = is_done ? FATHOM_HPS167S_RESET_DONE : 0;
     return FATHOM_READY;
 }
@@ -134,7 +134,7 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     fathom_modbus_setting_t *const setting = &sensor->setting;
     const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
     fathom_modbus_unit_poll(unit);
-    if (unit->setting != 0) /* to load the user's settings is not to load the factory's */
+    if (unit->setting != 0u) /* to load the user's settings is not to load the factory's */
         return ((unit->setting == id) && (setting->value == value)) ? FATHOM_READY : FATHOM_ERR_BUSY;
     unit->is_written = false; /* nor will it be before this read has ended */
     if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
@@ -214,7 +214,7 @@ fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, 
 fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, uint32_t reconnect_time_ms)
 {
     fathom_modbus_unit_request_t *const write = &sensor->setting.write;
-    if ((reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS) != 0) return FATHOM_ERR_ARGUMENT;
+    if ((reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS) != 0u) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, READ_BACK);
     if (status != FATHOM_READY) return status;
     fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
@@ -230,7 +230,7 @@ static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool i
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
     const uint8_t home = unit->address;
-    if (unit->setting == 0) unit->is_blind = true;
+    if (unit->setting == 0u) unit->is_blind = true;
     fathom_status_t status = begin(sensor, command, switch_of(is_on), TO_ALL);
     if (status != FATHOM_READY) return status;
     unit->address = FATHOM_MODBUS_BROADCAST;
@@ -256,7 +256,7 @@ fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *se
 
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
 {
-    if ((address == 0) || (address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
+    if ((address == 0u) || (address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, READ_BACK);
     if (status != FATHOM_READY) return status;
     sensor->setting.address = address;
@@ -277,14 +277,14 @@ static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t addres
 static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
-    sensor->next_baud = ((is != NULL) && (is->baud != baud)) ? baud : 0;
+    sensor->next_baud = ((is != NULL) && (is->baud != baud)) ? baud : 0u;
     sensor->follow = follow;
 }
 
 fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const uint8_t code = fathom_hps167s_baud_code(baud);
-    if ((code == 0) || (sensor->unit.line_settings == NULL)) return FATHOM_ERR_ARGUMENT;
+    if ((code == 0u) || (sensor->unit.line_settings == NULL)) return FATHOM_ERR_ARGUMENT;
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, READ_BACK);
     if (status != FATHOM_READY) return status;
     move_to_baud(sensor, baud, sensor->unit.address);
@@ -303,9 +303,9 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, READ_BACK);
     if (status != FATHOM_READY) return status;
-    if (sensor->unit.setting == 0) {
+    if (sensor->unit.setting == 0u) {
         move_to_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD, 1);
-        if (sensor->unit.address != 1) setting->address = 1;
+        if (sensor->unit.address != 1u) setting->address = 1;
         setting->write.values = &sensor->reset_response;
         setting->write.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
         sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;

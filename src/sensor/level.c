@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/level.h"
 
-static uint32_t to_nearest(uint32_t number, uint32_t divisor) { return (number + (divisor / 2)) / divisor; }
+static uint32_t to_nearest(uint32_t number, uint32_t divisor) { return (number + (divisor / 2u)) / divisor; }
 
 /*
  * amount * part / whole to the nearest; part <= whole. The product has up to 48 bits, so amount is split into what
@@ -37,7 +37,7 @@ static uint32_t area_below(uint16_t x)
     const uint16_t g = (uint16_t)(HALF + (((uint32_t)z * slope) >> 16));
     const uint32_t square = (uint32_t)x * g;
     uint16_t root = 0;
-    for (uint16_t bit = 0x8000u; bit != 0; bit = (uint16_t)(bit / 2u)) {
+    for (uint16_t bit = 0x8000u; bit != 0u; bit = (uint16_t)(bit / 2u)) {
         const uint16_t next = (uint16_t)(root + bit);
         if (((uint32_t)next * next) <= square) root = next;
     }
@@ -69,22 +69,22 @@ uint32_t fathom_tank_table(const fathom_level_config_t *tank, uint16_t level_mm)
 fathom_status_t fathom_level_check(const fathom_level_config_t *config)
 {
     const fathom_level_point_t *const points = config->points;
-    if ((config->volume == NULL) || (config->mounting_mm == 0) || (config->height_mm == 0) ||
-        ((points == NULL) && (config->point_count != 0)))
+    if ((config->volume == NULL) || (config->mounting_mm == 0u) || (config->height_mm == 0u) ||
+        ((points == NULL) && (config->point_count != 0u)))
         return FATHOM_ERR_ARGUMENT;
     for (size_t i = 1; i < config->point_count; i++)
-        if ((points[i].level_mm <= points[i - 1].level_mm) || (points[i].volume <= points[i - 1].volume))
+        if ((points[i].level_mm <= points[i - 1u].level_mm) || (points[i].volume <= points[i - 1u].volume))
             return FATHOM_ERR_ARGUMENT;
-    return (config->volume(config, config->height_mm) != 0) ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+    return (config->volume(config, config->height_mm) != 0u) ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
 }
 
 fathom_status_t fathom_level(const fathom_level_config_t *config, uint16_t distance_mm, fathom_level_t *out)
 {
     const uint16_t height_mm = config->height_mm;
-    const int32_t level_mm = (int32_t)config->mounting_mm - distance_mm - config->offset_mm;
-    if ((config->volume == NULL) || (height_mm == 0)) return FATHOM_ERR_ARGUMENT;
+    const int32_t level_mm = (int32_t)config->mounting_mm - (int32_t)distance_mm - config->offset_mm;
+    if ((config->volume == NULL) || (height_mm == 0u)) return FATHOM_ERR_ARGUMENT;
     uint16_t inside_mm = 0;
-    if (level_mm > 0) inside_mm = (level_mm < height_mm) ? (uint16_t)level_mm : height_mm;
+    if (level_mm > 0) inside_mm = (level_mm < (int32_t)height_mm) ? (uint16_t)level_mm : height_mm;
     out->volume = config->volume(config, inside_mm);
     out->level_mm = level_mm;
     /* 64 times both: or GCC sees that a signed division will do, of which a Cortex-M0+ has no other use: 484 bytes. */

@@ -13,7 +13,7 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
     clear(median, sizeof *median);
     copy(own, config, sizeof *own);
     own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
-    if (own->gate_row == 0) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
+    if (own->gate_row == 0u) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
     return ((own->window == NULL) || (own->count < FATHOM_MEDIAN_MIN_COUNT) ||
             (own->count > FATHOM_MEDIAN_MAX_COUNT))
                ? FATHOM_ERR_ARGUMENT
@@ -26,7 +26,7 @@ static bool is_spike(const fathom_median_t *median, uint16_t mm)
 {
     const uint32_t gate_mm = median->config.gate_mm;
     const uint16_t value = median->value;
-    if ((gate_mm == 0) || !is_full(median)) return false;
+    if ((gate_mm == 0u) || !is_full(median)) return false;
     return ((mm == FARTHER) != (value == FARTHER)) || (mm > (value + gate_mm)) || (value > (mm + gate_mm));
 }
 
@@ -34,7 +34,7 @@ static bool is_spike(const fathom_median_t *median, uint16_t mm)
 static uint16_t middle_of(const fathom_median_t *median)
 {
     const uint8_t count = median->config.count;
-    const uint8_t before = (uint8_t)((count - 1) / 2);
+    const uint8_t before = (uint8_t)((count - 1u) / 2u);
     for (const uint16_t *at = median->config.window;; at++) {
         uint8_t nearer = 0;
         uint8_t as_near = 0;
@@ -50,7 +50,7 @@ bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, median->fed_us);
     /* Half a turn of the clock and more: it is a time before the sample. */
-    if ((median->have == 0) || (passed_us <= median->config.unknown_us) || (passed_us > INT32_MAX))
+    if ((median->have == 0u) || (passed_us <= median->config.unknown_us) || (passed_us > (UINT32_MAX / 2u)))
         return false;
     median->have = 0;
     return true;

@@ -80,7 +80,7 @@ enum {
 /* Byte n of a response's registers, 0 the first, in the order of the wire. */
 static inline uint8_t fathom_hps167s_byte(const uint16_t *registers, uint8_t n)
 {
-    return (uint8_t)(((n % 2) == 0) ? (registers[n / 2] >> 8) : registers[n / 2]);
+    return (uint8_t)(((n % 2u) == 0u) ? (registers[n / 2u] >> 8) : registers[n / 2u]);
 }
 
 /* A register that has a sign: #4, #12, #14. */

@@ -133,7 +133,7 @@ void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us);
 /* Is it so soon after power-on? As of the last call. */
 static inline bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit)
 {
-    return unit->warm_us != 0;
+    return unit->warm_us != 0u;
 }
 
 /* The exception code of the response that came last, FATHOM_MODBUS_ILLEGAL_FUNCTION or another; 0: it was none. Valid

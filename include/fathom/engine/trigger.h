@@ -52,7 +52,7 @@ void fathom_trigger_look(fathom_trigger_t *trigger);
 /* Would fathom_trigger_drive begin, if it may? */
 static inline bool fathom_trigger_is_due(const fathom_trigger_t *trigger)
 {
-    return !trigger->low && (trigger->left_us == 0);
+    return !trigger->low && (trigger->left_us == 0u);
 }
 
 /*
