@@ -34,7 +34,10 @@ static inline void count_one(uint16_t *counter)
 static inline void clear(void *object, size_t size)
 {
     volatile uint8_t *at = object;
-    while (size-- != 0u) *at++ = 0;
+    for (; size != 0u; size--) {
+        *at = 0;
+        at++;
+    }
 }
 
 /* All bytes of one into another, which may be the same; volatile for the same reason. */
@@ -42,7 +45,11 @@ static inline void copy(void *to, const void *from, size_t size)
 {
     volatile uint8_t *at = to;
     const uint8_t *of = from;
-    while (size-- != 0u) *at++ = *of++;
+    for (; size != 0u; size--) {
+        *at = *of;
+        at++;
+        of++;
+    }
 }
 
 static inline fathom_sensor_t sensor_of(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),

@@ -28,6 +28,9 @@ static const uint16_t table[256] = {
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
     unsigned crc = 0xFFFF;
-    for (; length != 0u; length--) crc = (crc >> 8) ^ table[(crc ^ *bytes++) & 0xFFu];
+    for (; length != 0u; length--) {
+        crc = (crc >> 8) ^ table[(crc ^ *bytes) & 0xFFu];
+        bytes++;
+    }
     return (uint16_t)crc;
 }

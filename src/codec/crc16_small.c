@@ -11,7 +11,8 @@ uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
     unsigned crc = 0xFFFF;
     for (; length != 0u; length--) {
-        crc ^= *bytes++;
+        crc ^= *bytes;
+        bytes++;
         crc = (crc >> 4) ^ table[crc & 15u];
         crc = (crc >> 4) ^ table[crc & 15u];
     }

@@ -22,11 +22,11 @@ uint8_t fathom_dyp_55aa_response_length(uint8_t command)
 
 static uint8_t *put_head(uint8_t *frame, uint8_t address, uint8_t command)
 {
-    *frame++ = START;
-    *frame++ = SECOND_START;
-    *frame++ = address;
-    *frame++ = command;
-    return frame;
+    frame[0] = START;
+    frame[1] = SECOND_START;
+    frame[2] = address;
+    frame[COMMAND] = command;
+    return &frame[COMMAND + 1];
 }
 
 static uint8_t seal(uint8_t *frame, uint8_t *end)
@@ -63,8 +63,9 @@ uint8_t fathom_dyp_55aa_encode_response(uint8_t *frame, uint8_t address, uint8_t
 {
     uint8_t *at = put_head(frame, address, command);
     for (uint8_t left = fathom_dyp_55aa_values(command); left != 0u; left--, values++) {
-        *at++ = (uint8_t)(*values >> 8);
-        *at++ = (uint8_t)*values;
+        at[0] = (uint8_t)(*values >> 8);
+        at[1] = (uint8_t)*values;
+        at += 2;
     }
     return seal(frame, at);
 }

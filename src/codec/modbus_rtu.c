@@ -19,39 +19,49 @@ enum { FIXED_LENGTH = 8, EXCEPTION_LENGTH = 5, READ_OVERHEAD = 5, WRITE_MANY_OVE
 
 static uint8_t *put16(uint8_t *at, uint16_t value)
 {
-    *at++ = (uint8_t)(value >> 8);
-    *at++ = (uint8_t)value;
-    return at;
+    at[0] = (uint8_t)(value >> 8);
+    at[1] = (uint8_t)value;
+    return at + 2;
 }
 
 static uint16_t get16(const uint8_t *at) { return (uint16_t)((at[0] * 256u) + at[1]); }
 
 static uint8_t *put_values(uint8_t *at, const uint16_t *values, uint8_t count)
 {
-    for (; count != 0u; count--) at = put16(at, *values++);
+    for (; count != 0u; count--) {
+        at = put16(at, *values);
+        values++;
+    }
     return at;
 }
 
 static void get_values(uint16_t *values, const uint8_t *at, uint8_t count)
 {
-    for (; count != 0u; count--, at += 2) *values++ = get16(at);
+    for (; count != 0u; count--) {
+        *values = get16(at);
+        values++;
+        at += 2;
+    }
 }
 
 static uint8_t *put_head(uint8_t *at, const fathom_modbus_message_t *message)
 {
     const uint8_t *from = message->head;
-    do *at++ = *from++;
-    while (from != (message->head + HEAD));
+    do {
+        *at = *from;
+        from++;
+        at++;
+    } while (from != (message->head + HEAD));
     return at;
 }
 
 static uint8_t seal(uint8_t *frame, const uint8_t *end)
 {
-    uint8_t length = (uint8_t)(end - frame);
+    const uint8_t length = (uint8_t)(end - frame);
     const uint16_t crc = fathom_crc16(frame, length);
-    frame[length++] = (uint8_t)crc;
-    frame[length++] = (uint8_t)(crc >> 8);
-    return length;
+    frame[length] = (uint8_t)crc;
+    frame[length + 1u] = (uint8_t)(crc >> 8);
+    return (uint8_t)(length + 2u);
 }
 
 static void set(fathom_modbus_message_t *message, uint8_t address, uint8_t function, uint16_t first,
@@ -106,16 +116,19 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
     uint8_t *at = put_head(frame, message);
     if (message->head[FUNCTION] == WRITE_MANY) {
         const uint8_t count = message->head[COUNT];
-        *at++ = (uint8_t)(2u * count);
-        at = put_values(at, message->values, count);
+        *at = (uint8_t)(2u * count);
+        at = put_values(at + 1, message->values, count);
     }
     return seal(frame, at);
 }
 
 static bool is_alike(const uint8_t *a, const uint8_t *b, uint8_t count)
 {
-    for (; count != 0u; count--)
-        if (*a++ != *b++) return false;
+    for (; count != 0u; count--) {
+        if (*a != *b) return false;
+        a++;
+        b++;
+    }
     return true;
 }
 

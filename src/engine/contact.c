@@ -69,7 +69,8 @@ static void set_sample(fathom_contact_t *contact, uint8_t kind, fathom_sample_t 
     sample->time_us = (kind == contact->last_kind) ? contact->sampled_us : contact->since_us;
     sample->magnitude = 0;
     sample->raw = contact->is_high;
-    sample->sequence = ++contact->sequence;
+    contact->sequence++;
+    sample->sequence = contact->sequence;
     sample->distance_mm = 0;
     sample->precision = 0;
     sample->kind = kind;

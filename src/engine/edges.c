@@ -78,7 +78,8 @@ static int take(void *ctx, fathom_pulse_t *pulse)
             pulse->width_us = from->width_us;
             pulse->end_us = from->end_us;
         }
-        edges->taken = ++taken;
+        taken++;
+        edges->taken = taken;
         if (is_new) return 1;
     }
     return 0;

@@ -27,6 +27,6 @@ uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t ca
         return 0;
     }
     count(line, FATHOM_LINE_BAD_BYTES, 1);
-    for (uint8_t left = came; left != 0u; left--) *to++ = *from++;
+    for (uint8_t i = 0; i != came; i++) to[i] = from[i];
     return came;
 }

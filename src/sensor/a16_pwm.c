@@ -41,7 +41,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     sample->time_us = reading.time_us;
     sample->magnitude = 0;
     sample->raw = reading.width_us;
-    sample->sequence = ++sensor->sequence;
+    sensor->sequence++;
+    sample->sequence = sensor->sequence;
     sample->distance_mm = mm;
     sample->precision = 0;
     sample->kind = reading.kind;

@@ -61,7 +61,10 @@ void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *
 {
     const uint8_t *next = (const uint8_t *)from;
     /* volatile: or compilers make this loop a call of memcpy too */
-    for (volatile uint8_t *byte = (uint8_t *)to; byte != (uint8_t *)(to + 1); byte++) *byte = *next++;
+    for (volatile uint8_t *byte = (uint8_t *)to; byte != (uint8_t *)(to + 1); byte++) {
+        *byte = *next;
+        next++;
+    }
 }
 
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm)

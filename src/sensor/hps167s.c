@@ -76,7 +76,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         return FATHOM_ERR_MALFORMED;
     }
     sample->time_us = fathom_modbus_unit_heard_us(&sensor->unit);
-    sample->sequence = ++sensor->sequence;
+    sensor->sequence++;
+    sample->sequence = sensor->sequence;
     sample->model = FATHOM_HPS167S;
     sample->address = sensor->unit.address;
     sample->probe = 1;

@@ -25,7 +25,12 @@ static void slip(fathom_hps167s_auto_t *sensor)
 {
     volatile uint8_t *to = sensor->bytes;
     const uint8_t *from = sensor->bytes;
-    for (uint8_t left = --sensor->have; left != 0u; left--) *to++ = *++from;
+    sensor->have--;
+    for (uint8_t left = sensor->have; left != 0u; left--) {
+        from++;
+        *to = *from;
+        to++;
+    }
 }
 
 static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
@@ -52,7 +57,9 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
     (void)after_gap; /* the CRC decides */
     if (length == 0u) sensor->have = 0;
     for (; length != 0u; length--) {
-        sensor->bytes[sensor->have++] = *bytes++;
+        sensor->bytes[sensor->have] = *bytes;
+        sensor->have++;
+        bytes++;
         while ((sensor->have != 0u) && !fits(sensor)) slip(sensor);
         if (sensor->have == LENGTH) take(sensor, time_us);
     }
@@ -110,7 +117,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         }
         sensor->left_us = sensor->stale_us;
         sample->time_us = sensor->time_us;
-        sample->sequence = ++sensor->sequence;
+        sensor->sequence++;
+        sample->sequence = sensor->sequence;
         sample->model = FATHOM_HPS167S;
         sample->address = sensor->frame_address;
         sample->probe = 1;

@@ -10,7 +10,7 @@
 /* volatile: or compilers make it a call of memcpy, which costs more. */
 static inline void copy_4(volatile uint16_t *to, const uint16_t *from)
 {
-    for (uint8_t i = 4; i != 0u; i--) *to++ = *from++;
+    for (uint8_t i = 0; i != 4u; i++) to[i] = from[i];
 }
 
 /* The id of a command is its address; with FATHOM_MODBUS_COMMAND, but for #5, which is repeated. */

@@ -70,7 +70,8 @@ static bool take(fathom_median_t *median, uint16_t mm, uint32_t time_us)
         median->have = 0;
     }
     median->row = 0;
-    median->config.window[median->next++] = mm;
+    median->config.window[median->next] = mm;
+    median->next++;
     if (median->next == median->config.count) median->next = 0;
     if (!is_full(median)) median->have++;
     if (!is_full(median)) return false;
