@@ -69,8 +69,8 @@ static void set(fathom_modbus_message_t *message, uint8_t address, uint8_t funct
 {
     message->head[UNIT] = address;
     message->head[FUNCTION] = function;
-    put16(message->head + FIRST, first);
-    put16(message->head + COUNT_HIGH, last);
+    (void)put16(message->head + FIRST, first);
+    (void)put16(message->head + COUNT_HIGH, last);
     message->exception = 0;
 }
 

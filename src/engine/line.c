@@ -29,7 +29,7 @@ static inline uint32_t look(fathom_line_t *line)
     line->polled_us = now_us;
     if ((line->quarantined != 0u) && fathom_count_down(&line->quarantine_left_us, passed_us))
         line->quarantined = 0;
-    fathom_count_down(&line->left_us, passed_us);
+    (void)fathom_count_down(&line->left_us, passed_us);
     return passed_us;
 }
 
@@ -117,7 +117,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
     if (is_busy(line)) return on ? FATHOM_ERR_BUSY : FATHOM_READY; /* what is sent is no break */
     const int is_set = uart->set_break(uart->ctx, on);
-    fathom_line_look(line);
+    (void)fathom_line_look(line);
     if (is_set <= 0) {
         /* A port that does not end a break gets as much time as one that does not take a request. */
         if (!on && ((line->state == IN_BREAK) || (line->state == ENDING))) {

@@ -33,11 +33,11 @@ void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
     const uint32_t now_us = clock_us(unit->transport->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, unit->polled_us);
     unit->polled_us = now_us;
-    fathom_count_down(&unit->pause_us, passed_us);
+    (void)fathom_count_down(&unit->pause_us, passed_us);
     /* Which is rare, and an AVR takes its time to subtract. */
     if ((unit->backoff_left_us | unit->warm_us) != 0u) {
-        fathom_count_down(&unit->backoff_left_us, passed_us);
-        fathom_count_down(&unit->warm_us, passed_us);
+        (void)fathom_count_down(&unit->backoff_left_us, passed_us);
+        (void)fathom_count_down(&unit->warm_us, passed_us);
     }
     if (unit->state != ASKED) return;
     /* The pace counts from the last request on the wire, not from its place in a queue. */

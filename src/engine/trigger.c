@@ -35,7 +35,7 @@ fathom_status_t fathom_trigger_init(fathom_trigger_t *trigger)
 void fathom_trigger_look(fathom_trigger_t *trigger)
 {
     const uint32_t now_us = clock_us(trigger->clock);
-    fathom_count_down(&trigger->left_us, fathom_elapsed_us(now_us, trigger->polled_us));
+    (void)fathom_count_down(&trigger->left_us, fathom_elapsed_us(now_us, trigger->polled_us));
     trigger->polled_us = now_us;
 }
 
