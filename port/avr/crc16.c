@@ -7,7 +7,7 @@
  * no RAM, where avr-gcc would put a const table. */
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
-    uint16_t crc = 0xFFFF;
+    uint16_t crc = 0xFFFFu;
     for (; length != 0u; length--) crc = _crc16_update(crc, *bytes++);
     return crc;
 }

@@ -17,7 +17,7 @@ static const uint16_t table[256] PROGMEM = {OF_64(0), OF_64(64), OF_64(128), OF_
 
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
-    uint16_t crc = 0xFFFF;
+    uint16_t crc = 0xFFFFu;
     for (; length != 0u; length--)
         crc = (uint16_t)((crc >> 8) ^ pgm_read_word(&table[(uint8_t)crc ^ *bytes++]));
     return crc;

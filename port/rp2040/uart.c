@@ -97,7 +97,8 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
         const unsigned entry = uart->ring[taken % FATHOM_RP2040_RX_RING];
         const unsigned errors = entry & ERRORS;
         if ((errors != 0u) && (n != 0)) break;
-        bytes[n++] = (uint8_t)entry;
+        bytes[n] = (uint8_t)entry;
+        n++;
         taken++;
         rx->flags = flags_of(uart, errors);
         if (uart->is_silent && (taken == uart->silent_at)) {
@@ -121,8 +122,10 @@ static void feed(fathom_rp2040_uart_t *uart)
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint8_t length = uart->length;
     uint8_t given = uart->given;
-    while ((given != length) && ((hardware->fr & RP2040_UART_FR_TXFF) == 0u))
-        hardware->dr = uart->config->request[given++];
+    while ((given != length) && ((hardware->fr & RP2040_UART_FR_TXFF) == 0u)) {
+        hardware->dr = uart->config->request[given];
+        given++;
+    }
     uart->given = given;
     if (given == length)
         rp2040_clear(&hardware->imsc, RP2040_UART_INT_TX);
@@ -223,9 +226,13 @@ bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_ua
     if ((config->request == NULL) || (config->request_size == 0u)) return false;
     uart->config = config;
     uart->line = config->line;
-    uart->parity = uart->framing = uart->overruns = 0;
-    uart->written = uart->taken = 0;
-    uart->length = uart->given = 0;
+    uart->parity = 0;
+    uart->framing = 0;
+    uart->overruns = 0;
+    uart->written = 0;
+    uart->taken = 0;
+    uart->length = 0;
+    uart->given = 0;
     uart->is_silent = false;
     uart->is_break = false;
     if (!fathom_rp2040_uart_setup(&config->wiring, &config->line)) return false;

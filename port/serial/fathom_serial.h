@@ -49,9 +49,15 @@ typedef struct {
 /* request: memory for the longest request, which is kept there while it leaves. Before the interrupt is enabled. */
 static inline void fathom_serial_init(fathom_serial_t *serial, uint8_t *request, uint8_t size)
 {
-    serial->put = serial->got = serial->at = serial->length = 0;
-    serial->parity = serial->framing = serial->overruns = 0;
-    serial->lost = serial->leaving = false;
+    serial->length = 0;
+    serial->at = 0;
+    serial->got = 0;
+    serial->put = 0;
+    serial->overruns = 0;
+    serial->framing = 0;
+    serial->parity = 0;
+    serial->leaving = false;
+    serial->lost = false;
     serial->request = request;
     serial->size = size;
 }
@@ -113,7 +119,8 @@ static inline int fathom_serial_read(fathom_serial_t *serial, uint8_t *bytes, si
     while ((got != put) && (count < capacity)) {
         const uint8_t flags = serial->flags[got % FATHOM_SERIAL_RING];
         if ((flags != 0u) && (count != 0u)) break;
-        bytes[count++] = serial->bytes[got % FATHOM_SERIAL_RING];
+        bytes[count] = serial->bytes[got % FATHOM_SERIAL_RING];
+        count++;
         got++;
         rx->flags |= flags;
         if (flags != 0u) break;

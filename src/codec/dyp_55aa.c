@@ -62,10 +62,11 @@ uint8_t fathom_dyp_55aa_encode_response(uint8_t *frame, uint8_t address, uint8_t
                                         const uint16_t *values)
 {
     uint8_t *at = put_head(frame, address, command);
-    for (uint8_t left = fathom_dyp_55aa_values(command); left != 0u; left--, values++) {
+    for (uint8_t left = fathom_dyp_55aa_values(command); left != 0u; left--) {
         at[0] = (uint8_t)(*values >> 8);
         at[1] = (uint8_t)*values;
         at += 2;
+        values++;
     }
     return seal(frame, at);
 }

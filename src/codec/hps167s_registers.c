@@ -17,9 +17,9 @@ static uint8_t byte(const uint16_t *registers, uint8_t n) { return fathom_hps167
 
 uint32_t fathom_hps167s_baud(uint16_t code)
 {
-    if (code == 2u) return 57600ul;
-    if (code == 3u) return 115200ul;
-    return (code == 4u) ? 230400ul : FATHOM_HPS167S_FACTORY_BAUD;
+    if (code == 2u) return 57600uL;
+    if (code == 3u) return 115200uL;
+    return (code == 4u) ? 230400uL : FATHOM_HPS167S_FACTORY_BAUD;
 }
 
 uint8_t fathom_hps167s_baud_code(uint32_t baud)

@@ -2,7 +2,7 @@
 #include "fathom/codec/pulse_width.h"
 
 /* More than 65535 mm at any temperature, and little enough for the products below. */
-#define LONGEST_US 500000ul
+#define LONGEST_US 500000uL
 
 static uint32_t bounded_us(uint32_t width_us) { return (width_us < LONGEST_US) ? width_us : LONGEST_US; }
 

@@ -57,7 +57,10 @@ void fathom_line_drop(fathom_line_t *line, uint8_t length)
     line->known &= (uint8_t)~AFTER_GAP;
     line->need = 0;
     line->have = (uint8_t)(line->have - length);
-    for (uint8_t i = line->have; i != 0u; i--, to++) *to = to[length];
+    for (uint8_t i = line->have; i != 0u; i--) {
+        *to = to[length];
+        to++;
+    }
 }
 
 fathom_status_t fathom_line_broken(fathom_line_t *line)

@@ -92,7 +92,8 @@ bool fathom_line_deliver(fathom_line_t *line)
         if (!is_outstanding) return false;
         line->quarantined = quarantined;
     }
-    for (fathom_transaction_t **link = &line->head, *x; (x = *link) != NULL; link = &x->link.next) {
+    fathom_transaction_t *x;
+    for (fathom_transaction_t **link = &line->head; (x = *link) != NULL; link = &x->link.next) {
         if ((x->attempts == 0u) || !is_of(x, address) ||
             (x->protocol->parse_response != protocol->parse_response))
             continue;
@@ -199,9 +200,11 @@ void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction)
 
 void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
 {
-    for (fathom_transaction_t *x = line->head, *next; x != NULL; x = next) {
-        next = x->link.next;
+    fathom_transaction_t *x = line->head;
+    while (x != NULL) {
+        fathom_transaction_t *const next = x->link.next;
         if (x->address == address) fathom_line_cancel(line, x);
+        x = next;
     }
 }
 

@@ -11,9 +11,10 @@ fathom_status_t fathom_poll(const fathom_sensor_t *sensor, fathom_sample_t *samp
 uint32_t fathom_due_us(const fathom_sensor_t *sensors, size_t count)
 {
     uint32_t least_us = FATHOM_NO_DEADLINE;
-    for (; count != 0u; count--, sensors++) {
+    for (; count != 0u; count--) {
         const uint32_t due_us = sensors->due_us(sensors->ctx);
         if (due_us < least_us) least_us = due_us;
+        sensors++;
     }
     return least_us;
 }

@@ -81,10 +81,12 @@ fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
 static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 {
     const uint16_t *value = sensor->values;
-    for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1), value++)
+    for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1)) {
         if (((sensor->probes & bit) != 0u) &&
             (fathom_dyp_meaning(&sensor->base.measurement.window, *value) == FATHOM_MEANS_REFUSED))
             return bit;
+        value++;
+    }
     return 0;
 }
 

@@ -2,8 +2,8 @@
 #include "fathom/sensor/a05_dyp.h"
 
 /* The response comes after 200..210 or 65..75 ms (A05 2(3)1). */
-#define ALL_PROBES_TIMEOUT_US 500000ul
-#define ONE_PROBE_TIMEOUT_US  200000ul
+#define ALL_PROBES_TIMEOUT_US 500000uL
+#define ONE_PROBE_TIMEOUT_US  200000uL
 
 enum { ALL_PROBES = 0x0F };
 

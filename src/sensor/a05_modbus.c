@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a05_modbus.h"
 
-#define RESPONSE_TIMEOUT_US 200000ul /* beside the probes' own time */
+#define RESPONSE_TIMEOUT_US 200000uL /* beside the probes' own time */
 
 enum { ALL_PROBES = 0x0F };
 

@@ -2,8 +2,8 @@
 #include "fathom/sensor/a16_modbus.h"
 
 /* What sister models need and some margin. */
-#define PROCESSED_TIMEOUT_US 1000000ul
-#define REAL_TIME_TIMEOUT_US 300000ul
+#define PROCESSED_TIMEOUT_US 1000000uL
+#define REAL_TIME_TIMEOUT_US 300000uL
 
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config)
 {

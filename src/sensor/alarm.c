@@ -89,10 +89,12 @@ bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
     if (alarm->side != side) alarm->since_us = now_us;
     alarm->side = side;
     const uint32_t hold_us = (side == FATHOM_ALARM_ON) ? alarm->config.on_hold_us : alarm->config.off_hold_us;
-    if (side == BETWEEN)
+    if (side == BETWEEN) {
         alarm->state = alarm->was;
-    else if (fathom_elapsed_us(now_us, alarm->since_us) >= hold_us)
-        alarm->state = alarm->was = side;
+    } else if (fathom_elapsed_us(now_us, alarm->since_us) >= hold_us) {
+        alarm->was = side;
+        alarm->state = side;
+    }
     return alarm->state != before;
 }
 

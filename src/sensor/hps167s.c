@@ -5,7 +5,7 @@
 
 enum { MAX_SAME_RESPONSES = 8 };
 
-#define MEASURE_TIMEOUT_US 500000ul
+#define MEASURE_TIMEOUT_US 500000uL
 
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
 {
@@ -41,7 +41,7 @@ void fathom_hps167s_cancel(fathom_hps167s_t *sensor)
 
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
 {
-    const uint32_t warm_us = (uint32_t)(sensor->warm_up_s * 1000000ul) + sensor->unit.timeout_us;
+    const uint32_t warm_us = (uint32_t)(sensor->warm_up_s * 1000000uL) + sensor->unit.timeout_us;
     sensor->responses = 0;
     fathom_modbus_unit_power_on(&sensor->unit, warm_us);
     if (sensor->follow != NULL) sensor->follow(sensor, FATHOM_PENDING);

@@ -8,7 +8,7 @@
 enum { ADDRESS = 0, FUNCTION = 1, SIZE = 2, DATA = 3, LENGTH = FATHOM_HPS167S_FRAME_LENGTH };
 enum { DATA_SIZE = 8 };
 
-#define STALE_US 2000000ul
+#define STALE_US 2000000uL
 
 /* Can what has come be a frame, or the beginning of one? */
 static bool fits(const fathom_hps167s_auto_t *sensor)
@@ -37,7 +37,10 @@ static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
     const uint8_t *at = sensor->bytes + DATA;
     uint16_t registers[4];
-    for (uint8_t i = 0; i != 4u; i++, at += 2) registers[i] = (uint16_t)((at[0] * 256u) + at[1]);
+    for (uint8_t i = 0; i != 4u; i++) {
+        registers[i] = (uint16_t)((at[0] * 256u) + at[1]);
+        at += 2;
+    }
     sensor->have = 0;
     if ((sensor->driver != NULL) && !sensor->heard(sensor->driver, registers, time_us)) {
         count_one(&sensor->implausible);

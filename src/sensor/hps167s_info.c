@@ -6,7 +6,7 @@
 enum { SAME_RESPONSES = 2, MAX_RESPONSES = 8, RESPONSES_AMONG_UNASKED = 3 };
 
 /* For so long after an unasked frame another one is to be expected. */
-#define UNASKED_US 2000000ul
+#define UNASKED_US 2000000uL
 
 /* No response to #2, whose first byte is 00 or FF: nothing has been measured. */
 #define NOTHING 0x0101u

@@ -118,6 +118,7 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
         break;
     default:
         status = look_for_reset(sensor, value);
+        break;
     }
     return status;
 }

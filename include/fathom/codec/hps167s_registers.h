@@ -64,7 +64,7 @@ enum {
     FATHOM_HPS167S_FACTORY_WARM_UP_S = 5,
     FATHOM_HPS167S_UUID_LENGTH = 16
 };
-#define FATHOM_HPS167S_FACTORY_BAUD 19200ul
+#define FATHOM_HPS167S_FACTORY_BAUD 19200uL
 
 /* Bytes of a response, for fathom_hps167s_byte: of #2, of #3 and of #5. */
 enum {

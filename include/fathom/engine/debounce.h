@@ -42,7 +42,7 @@ extern "C" {
  */
 
 /* A config's unknown_us of 0 means this: twice the A16's 5 measurements of 500 ms (A16 4(2)). */
-#define FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US 5000000ul
+#define FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US 5000000uL
 
 /* Zero-valued members of the config mean these: the A16's from the factory (A16 4(2)). */
 enum {

@@ -60,7 +60,7 @@ extern "C" {
  * 10 for 8N1, 11 for 8E1, 8O1 and 8N2. Constant when its arguments are.
  */
 #define FATHOM_T3_5_US(baud, bits)                                                                           \
-    ((uint16_t)((baud) > 19200 ? 1750 : ((bits)*3500000ul + (baud)-1ul) / (baud)))
+    ((uint16_t)((baud) > 19200 ? 1750 : ((bits)*3500000uL + (baud)-1uL) / (baud)))
 
 typedef struct fathom_transaction fathom_transaction_t;
 typedef struct fathom_line fathom_line_t;

@@ -27,7 +27,7 @@ typedef struct {
     uint8_t retries; /* after a failed attempt, of what only reads; 0: none */
 } fathom_modbus_config_t;
 
-#define FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US 1000000ul
+#define FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US 1000000uL
 
 /*
  * One Modbus unit as a driver deals with it: one request at a time, no faster than the device can, and each

@@ -32,10 +32,10 @@ extern "C" {
  */
 
 /* Zero-valued members of fathom_pulse_config_t mean these. */
-#define FATHOM_PULSE_DEFAULT_CYCLE_US     221000ul
+#define FATHOM_PULSE_DEFAULT_CYCLE_US     221000uL
 #define FATHOM_PULSE_DEFAULT_NOISE_US     2700u
-#define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000ul
-#define FATHOM_PULSE_DEFAULT_STUCK_US     105000ul
+#define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000uL
+#define FATHOM_PULSE_DEFAULT_STUCK_US     105000uL
 
 /* Read by init only; what it points at outlives the meter. */
 typedef struct {

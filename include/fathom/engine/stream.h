@@ -44,7 +44,7 @@ extern "C" {
 
 /* Zero-valued members of fathom_stream_config_t mean these. */
 #define FATHOM_STREAM_DEFAULT_GAP_US   5000
-#define FATHOM_STREAM_DEFAULT_STALE_US 10000000ul
+#define FATHOM_STREAM_DEFAULT_STALE_US 10000000uL
 
 /* Bytes of memory that a stream of frames of `length` bytes needs. */
 #define FATHOM_STREAM_STORAGE(length) (2 * (length))

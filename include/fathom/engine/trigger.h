@@ -25,7 +25,7 @@ extern "C" {
 /* A low_us of 0 means this. The datasheet wants an edge and gives no time; no input misses 2 ms. */
 #define FATHOM_TRIGGER_DEFAULT_LOW_US 2000u
 
-#define FATHOM_TRIGGER_REFUSED_US 1000000ul
+#define FATHOM_TRIGGER_REFUSED_US 1000000uL
 
 typedef struct {
     /* Set by the caller before init. */

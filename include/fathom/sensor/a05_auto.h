@@ -48,7 +48,7 @@ typedef struct {
 } fathom_a05_auto_config_t;
 
 /* How long RX is held low for real-time values: the first second (A05 1(1)), and half of one for the supply to rise. */
-#define FATHOM_A05_SELECT_US 1500000ul
+#define FATHOM_A05_SELECT_US 1500000uL
 
 typedef struct {
     fathom_dyp_auto_t base;

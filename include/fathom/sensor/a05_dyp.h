@@ -28,8 +28,8 @@ extern "C" {
  */
 
 /* From one command to the next, at least (A05 2(3)1). */
-#define FATHOM_A05_DYP_ALL_PROBES_US 250000ul
-#define FATHOM_A05_DYP_ONE_PROBE_US  100000ul
+#define FATHOM_A05_DYP_ALL_PROBES_US 250000uL
+#define FATHOM_A05_DYP_ONE_PROBE_US  100000uL
 
 /* Read by init only. Members that are 0 mean their defaults: the two periods above, and a time-out of 500 ms for all
  * probes, 200 ms for one, which is twice the datasheet's and more. */

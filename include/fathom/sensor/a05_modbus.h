@@ -26,7 +26,7 @@ extern "C" {
  */
 
 /* From one request to the next, at least, for each probe that it reads. */
-#define FATHOM_A05_PROBE_US 100000ul
+#define FATHOM_A05_PROBE_US 100000uL
 
 /* The first probe's register; the same four distances stand in two places (A05 3(3), remark 2). */
 enum { FATHOM_A05_REGISTERS = 0x0106, FATHOM_A05_REGISTERS_ALIAS = 0x0010 };

@@ -29,7 +29,7 @@ extern "C" {
 
 /* The threshold's range and its factory setting, mm, and how long a state lasts at least (A05 4). */
 enum { FATHOM_A05_RELAY_MIN_MM = 250, FATHOM_A05_RELAY_MAX_MM = 4500, FATHOM_A05_RELAY_DEFAULT_MM = 1000 };
-#define FATHOM_A05_RELAY_HOLD_US 1000000ul
+#define FATHOM_A05_RELAY_HOLD_US 1000000uL
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {

@@ -37,9 +37,9 @@ extern "C" {
  */
 
 /* Zero-valued members of fathom_a16_controlled_config_t mean these. */
-#define FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US   121000ul
-#define FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US 80000ul
-#define FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US   130000ul
+#define FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US   121000uL
+#define FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US 80000uL
+#define FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US   130000uL
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {

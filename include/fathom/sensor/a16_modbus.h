@@ -25,7 +25,7 @@ extern "C" {
  */
 
 /* From one request to the next, at least. The datasheet gives 120 ms for a measurement (A16 3(2)). */
-#define FATHOM_A16_MIN_PERIOD_US 120000ul
+#define FATHOM_A16_MIN_PERIOD_US 120000uL
 
 /* Register addresses (A16 6(3)). One register a read: no longer one is documented. */
 enum { FATHOM_A16_REGISTER_PROCESSED = 0x0100, FATHOM_A16_REGISTER_REAL_TIME = 0x0101 };

@@ -29,7 +29,7 @@ typedef struct {
 
 /* The datasheet prints no period of the frames. Its "response time" of the processed value is 2.5 to 7.5 s, within
  * which that value settles; the first frame may be that late, so this is more. */
-#define FATHOM_A16_RS232_DEFAULT_RETURN_US 10000000ul
+#define FATHOM_A16_RS232_DEFAULT_RETURN_US 10000000uL
 
 /* Both drivers outlive it. */
 void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbus,

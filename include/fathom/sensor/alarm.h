@@ -55,7 +55,7 @@ typedef enum {
 } fathom_alarm_state_t;
 
 /* A config's unknown_us of 0 means this. */
-#define FATHOM_ALARM_DEFAULT_UNKNOWN_US 5000000ul
+#define FATHOM_ALARM_DEFAULT_UNKNOWN_US 5000000uL
 
 /* Read by init only. */
 typedef struct {

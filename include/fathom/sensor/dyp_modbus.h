@@ -26,7 +26,7 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
 
 /* How long after power-on silence is no error, where a driver's config says 0. Data comes after some 900 ms, as is
  * known of sister models; it is not in the datasheets. */
-#define FATHOM_DYP_DEFAULT_START_US 1500000ul
+#define FATHOM_DYP_DEFAULT_START_US 1500000uL
 
 /* The caller has set first and last of the request, the probes, start_us (0: its default), and values, window, model
  * and first of the measurement; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.

@@ -38,7 +38,7 @@ extern "C" {
  */
 
 /* From one measurement to the next, at least: 54 a second (table 1). */
-#define FATHOM_HPS167S_MIN_PERIOD_US 18519ul
+#define FATHOM_HPS167S_MIN_PERIOD_US 18519uL
 
 /* Read by init only. Members that are 0 mean their defaults: a period of 18519 us, and a time-out of 500 ms, since the
  * slowest rate is 6 a second. The datasheet gives no times of commands. */

@@ -49,7 +49,7 @@ enum { FATHOM_MEDIAN_MIN_COUNT = 3, FATHOM_MEDIAN_MAX_COUNT = 15 };
 
 /* A config's gate_row and unknown_us of 0 mean these. */
 enum { FATHOM_MEDIAN_DEFAULT_GATE_ROW = 2 };
-#define FATHOM_MEDIAN_DEFAULT_UNKNOWN_US 5000000ul
+#define FATHOM_MEDIAN_DEFAULT_UNKNOWN_US 5000000uL
 
 /* Read by init only. */
 typedef struct {
