@@ -55,7 +55,7 @@ bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length)
 
 void fathom_dyp_55aa_decode(const uint8_t *frame, uint16_t *values)
 {
-    fathom_dyp_stream_decode(frame + COMMAND, values, fathom_dyp_55aa_values(frame[COMMAND]));
+    fathom_dyp_stream_decode(&frame[COMMAND], values, fathom_dyp_55aa_values(frame[COMMAND]));
 }
 
 uint8_t fathom_dyp_55aa_encode_response(uint8_t *frame, uint8_t address, uint8_t command,

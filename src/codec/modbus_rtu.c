@@ -21,7 +21,7 @@ static uint8_t *put16(uint8_t *at, uint16_t value)
 {
     at[0] = (uint8_t)(value >> 8);
     at[1] = (uint8_t)value;
-    return at + 2;
+    return &at[2];
 }
 
 static uint16_t get16(const uint8_t *at) { return (uint16_t)((at[0] * 256u) + at[1]); }
@@ -51,7 +51,7 @@ static uint8_t *put_head(uint8_t *at, const fathom_modbus_message_t *message)
         *at = *from;
         from++;
         at++;
-    } while (from != (message->head + HEAD));
+    } while (from != &message->head[HEAD]);
     return at;
 }
 
@@ -69,8 +69,8 @@ static void set(fathom_modbus_message_t *message, uint8_t address, uint8_t funct
 {
     message->head[UNIT] = address;
     message->head[FUNCTION] = function;
-    (void)put16(message->head + FIRST, first);
-    (void)put16(message->head + COUNT_HIGH, last);
+    (void)put16(&message->head[FIRST], first);
+    (void)put16(&message->head[COUNT_HIGH], last);
     message->exception = 0;
 }
 
@@ -117,7 +117,7 @@ uint8_t fathom_modbus_rtu_encode_request(const fathom_modbus_message_t *message,
     if (message->head[FUNCTION] == WRITE_MANY) {
         const uint8_t count = message->head[COUNT];
         *at = (uint8_t)(2u * count);
-        at = put_values(at + 1, message->values, count);
+        at = put_values(&at[1], message->values, count);
     }
     return seal(frame, at);
 }
@@ -135,7 +135,7 @@ static bool is_alike(const uint8_t *a, const uint8_t *b, uint8_t count)
 uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
 {
     if (have <= SIZE) return SIZE + 1;
-    const uint8_t function = bytes[FUNCTION] & (uint8_t)~EXCEPTION;
+    const uint8_t function = bytes[FUNCTION] & (uint8_t) ~(unsigned)EXCEPTION;
     const uint8_t size = bytes[SIZE];
     uint8_t length = FIXED_LENGTH;
     if (function == READ) {
@@ -168,7 +168,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
     } else {
         const uint8_t count = head[COUNT];
         if (frame[SIZE] != (2u * count)) return FATHOM_ERR_MALFORMED;
-        get_values(message->values, frame + SIZE + 1, count);
+        get_values(message->values, &frame[SIZE + 1], count);
     }
     head[UNIT] = frame[UNIT];
     return FATHOM_READY;
@@ -211,11 +211,11 @@ uint8_t fathom_modbus_rtu_encode_response(const fathom_modbus_message_t *message
     if (message->exception != 0u) {
         frame[FUNCTION] |= EXCEPTION;
         frame[SIZE] = message->exception;
-        at = frame + SIZE + 1;
+        at = &frame[SIZE + 1];
     } else if (message->head[FUNCTION] == READ) {
         const uint8_t count = message->head[COUNT];
         frame[SIZE] = (uint8_t)(2u * count);
-        at = put_values(frame + SIZE + 1, message->values, count);
+        at = put_values(&frame[SIZE + 1], message->values, count);
     }
     return seal(frame, at);
 }

@@ -54,7 +54,7 @@ void fathom_line_leave(fathom_line_t *line, uint8_t length)
 void fathom_line_drop(fathom_line_t *line, uint8_t length)
 {
     uint8_t *to = line->config->frame;
-    line->known &= (uint8_t)~AFTER_GAP;
+    forget(line, AFTER_GAP);
     line->need = 0;
     line->have = (uint8_t)(line->have - length);
     for (uint8_t i = line->have; i != 0u; i--) {
@@ -98,14 +98,14 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
         rx.last_us = 0;
         rx.flags = 0;
         const uint8_t had = line->have;
-        const int n = uart->read(uart->ctx, config->frame + had, (size_t)(config->frame_size - had), &rx);
+        const int n = uart->read(uart->ctx, &config->frame[had], (size_t)(config->frame_size - had), &rx);
         if (n <= 0) {
             set_silent(line, silent_us);
             if (n < 0) return fathom_line_broken(line);
             break;
         }
         if ((had == 0u) && is_listeners_gap(line)) line->known |= AFTER_GAP;
-        line->known &= (uint8_t)~LATE;
+        forget(line, LATE);
         came = (uint8_t)n;
     }
     if ((line->have != 0u) && (line->silent_us >= gap_us(line))) line->kind->scan(line, true);

@@ -69,6 +69,8 @@ static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
     if (line->config->count != NULL) line->config->count(line, which, by);
 }
 
+static inline void forget(fathom_line_t *line, unsigned what) { line->known &= (uint8_t)~what; }
+
 /* Is the transaction at the head on the wire, and one that a unit responds to? */
 static inline bool expects_response(const fathom_line_t *line) { return line->sent != 0u; }
 

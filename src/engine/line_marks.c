@@ -8,7 +8,7 @@ enum { BAD = FATHOM_RX_PARITY | FATHOM_RX_FRAMING, MARKED = BAD | FATHOM_RX_OVER
 uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t came)
 {
     uint8_t *to = line->config->frame;
-    const uint8_t *from = to + line->have;
+    const uint8_t *from = &to[line->have];
     const uint8_t flags = rx->flags;
     if (((flags & FATHOM_RX_SILENCE) != 0) && (line->have == 0u)) line->known |= AFTER_GAP;
     if ((flags & FATHOM_RX_TIMED) != 0) {
@@ -20,7 +20,7 @@ uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t ca
     /* What had come before is over. */
     line->kind->scan(line, true);
     if (is_busy(line)) line->state |= NOISY;
-    line->known &= (uint8_t)~AFTER_GAP;
+    forget(line, AFTER_GAP);
     fathom_line_leave(line, 0);
     if ((flags & BAD) != 0) {
         count(line, FATHOM_LINE_BAD_BYTES, came);

@@ -82,12 +82,12 @@ bool fathom_line_deliver(fathom_line_t *line)
     uint8_t before = NOISY;
     if (fathom_line_expects_unit(line, address)) {
         if (line->head->address == FATHOM_LINE_ANY_UNIT) quarantine(line);
-        before = line->state & (uint8_t) ~(PHASE | RESPONSE_UNEXPECTED);
+        before = line->state & (uint8_t) ~(unsigned)(PHASE | RESPONSE_UNEXPECTED);
         line->state |= RESPONSE_UNEXPECTED;
     } else {
         const uint16_t quarantined = line->quarantined & (uint16_t)~quarantine_bits(address);
         const bool is_outstanding = (quarantined != line->quarantined) && ((line->known & ECHO_DUE) == 0);
-        line->known &= (uint8_t)~ECHO_DUE;
+        forget(line, ECHO_DUE);
         count(line, is_outstanding ? FATHOM_LINE_LATE_RESPONSES : FATHOM_LINE_STRAYS, 1);
         if (!is_outstanding) return false;
         line->quarantined = quarantined;
@@ -128,7 +128,7 @@ static uint32_t due_us(const fathom_line_t *line)
 static bool may_send(fathom_line_t *line)
 {
     if (line->silent_us < silence_us(line)) return false;
-    if (line->silent_us == QUIET_US) line->known &= (uint8_t) ~(UNASKED | OTHERS_SEND);
+    if (line->silent_us == QUIET_US) forget(line, UNASKED | OTHERS_SEND);
     if (is_late(line)) return false;
     line->known |= LATE;
     return true;

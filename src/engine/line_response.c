@@ -81,7 +81,7 @@ void fathom_line_scan_responses(fathom_line_t *line, bool over)
             return;
         }
         if (judged >= TAKEN)
-            line->known = (uint8_t)((line->known & ~UNASKED) | LATE);
+            line->known = (uint8_t)((line->known & ~(unsigned)UNASKED) | LATE);
         else
             leave(line, (uint8_t)judged);
         fathom_line_drop(line, (uint8_t)judged);

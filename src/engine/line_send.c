@@ -32,7 +32,7 @@ fathom_status_t fathom_line_send(fathom_line_t *line)
         x->attempts++;
         line->protocol = x->protocol;
         if ((x->address != FATHOM_LINE_ALL_UNITS) || x->protocol->zero_answers) line->sent = length;
-        line->known &= (uint8_t)~ECHO_DUE;
+        forget(line, ECHO_DUE);
         line->state = (uint8_t)(SENDING | ((unsigned)(line->known & FATHOM_LINE_ECHO_OFF) * ECHOED));
     } else if (line->state == IDLE) {
         line->state = REFUSED;

@@ -27,7 +27,7 @@ static void accept(fathom_stream_t *stream, bool by_silence)
     if (stream->fresh) count(stream, FATHOM_STREAM_MISSED);
     stream->fresh = true;
     count(stream, FATHOM_STREAM_FRAMES);
-    for (uint8_t *to = stream->storage + length; length != 0u; length--) {
+    for (uint8_t *to = &stream->storage[length]; length != 0u; length--) {
         *to = *from;
         from++;
         to++;

@@ -35,7 +35,7 @@ static void slip(fathom_hps167s_auto_t *sensor)
 
 static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
-    const uint8_t *at = sensor->bytes + DATA;
+    const uint8_t *at = &sensor->bytes[DATA];
     uint16_t registers[4];
     for (uint8_t i = 0; i != 4u; i++) {
         registers[i] = (uint16_t)((at[0] * 256u) + at[1]);

@@ -128,7 +128,7 @@ fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us);
 
 static inline const uint8_t *fathom_stream_frame(const fathom_stream_t *stream)
 {
-    return stream->storage + stream->length;
+    return &stream->storage[stream->length];
 }
 
 /* How long, in us, until poll returns FATHOM_READY or FATHOM_ERR_STALE if nothing comes; 0: a frame waits. */
