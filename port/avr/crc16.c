@@ -8,6 +8,9 @@
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
     uint16_t crc = 0xFFFFu;
-    for (; length != 0u; length--) crc = _crc16_update(crc, *bytes++);
+    for (; length != 0u; length--) {
+        crc = _crc16_update(crc, *bytes);
+        bytes++;
+    }
     return crc;
 }

@@ -23,6 +23,7 @@ static const place_t places[] = {{(volatile uint32_t *)0x40004000u, 0},
                                  {(volatile uint32_t *)0x40006000u, 4},
                                  {(volatile uint32_t *)0x40007000u, 18},
                                  {(volatile uint32_t *)0x40009000u, 20}};
+enum { PLACES = sizeof places / sizeof places[0] };
 
 /* 0: not within 2.5 %, or not 8N1, which is all that these UARTs have. */
 static uint32_t divider(const fathom_line_settings_t *line)
@@ -100,9 +101,7 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
 
 bool fathom_mps2_uart_begin(fathom_mps2_uart_t *uart, const fathom_mps2_uart_config_t *config)
 {
-    if ((config->number >= (sizeof places / sizeof places[0])) || (config->request == NULL) ||
-        (config->request_size == 0u))
-        return false;
+    if ((config->number >= PLACES) || (config->request == NULL) || (config->request_size == 0u)) return false;
     const uint32_t by = divider(&config->line);
     if (by == 0u) return false;
     const place_t *const place = &places[config->number];

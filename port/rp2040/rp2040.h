@@ -67,8 +67,23 @@ enum {
 
 /* 4.2.8 UART, ARM's PL011 */
 typedef struct {
-    volatile uint32_t dr, rsr, reserved_08[4], fr, reserved_1c, ilpr, ibrd, fbrd, lcr_h, cr, ifls, imsc, ris,
-        mis, icr, dmacr, reserved_4c[0xFED];
+    volatile uint32_t dr;
+    volatile uint32_t rsr;
+    volatile uint32_t reserved_08[4];
+    volatile uint32_t fr;
+    volatile uint32_t reserved_1c;
+    volatile uint32_t ilpr;
+    volatile uint32_t ibrd;
+    volatile uint32_t fbrd;
+    volatile uint32_t lcr_h;
+    volatile uint32_t cr;
+    volatile uint32_t ifls;
+    volatile uint32_t imsc;
+    volatile uint32_t ris;
+    volatile uint32_t mis;
+    volatile uint32_t icr;
+    volatile uint32_t dmacr;
+    volatile uint32_t reserved_4c[0xFED];
 } rp2040_uart_t;
 
 #define RP2040_UART(number) (&((rp2040_uart_t *)RP2040_AT(0x40034000))[number])

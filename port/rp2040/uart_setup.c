@@ -19,7 +19,8 @@ static uint32_t divider(uint32_t clk_peri_hz, uint32_t baud)
     if (result < FRACTIONS) result = FRACTIONS;
     if (result > ((uint32_t)MAX_DIVIDER * FRACTIONS)) result = (uint32_t)MAX_DIVIDER * FRACTIONS;
     const uint32_t hz = result * baud;
-    const uint32_t off_hz = (hz > steps_hz) ? (hz - steps_hz) : (steps_hz - hz);
+    uint32_t off_hz = hz - steps_hz;
+    if (hz < steps_hz) off_hz = steps_hz - hz;
     return (off_hz > (hz / MAX_ERROR_DIVIDER)) ? 0u : result;
 }
 

@@ -173,7 +173,8 @@ static inline uint32_t fathom_serial_divider(uint32_t clock_hz, const fathom_lin
         return 0;
     const uint32_t by = (clock_hz + (baud / 2u)) / baud;
     const uint32_t real = clock_hz / by;
-    const uint32_t off = (real > baud) ? (real - baud) : (baud - real);
+    uint32_t off = real - baud;
+    if (real < baud) off = baud - real;
     return ((by < least) || (by > most) || (off > (baud / 40u))) ? 0u : by;
 }
 

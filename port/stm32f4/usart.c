@@ -37,6 +37,7 @@ static const place_t places[] = {
     {(volatile uint32_t *)0x40005000u, &RCC_APB1ENR, 20, 53, 8},
     {(volatile uint32_t *)0x40011400u, &RCC_APB2ENR, 5, 71, 8},
 };
+enum { PLACES = sizeof places / sizeof places[0] };
 
 /* With 16 samples a bit BRR is the divider itself, its sixteenths below the point. 0: not within 2.5 %. */
 static uint32_t divider(uint32_t bus_hz, const fathom_line_settings_t *line)
@@ -142,8 +143,8 @@ static int usart_set_break(void *ctx, bool on)
 
 bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config)
 {
-    if ((config->number < 1u) || (config->number > (sizeof places / sizeof places[0])) ||
-        (config->request == NULL) || (config->request_size == 0u) || !fathom_stm32f4_is_pin(&config->tx) ||
+    if ((config->number < 1u) || (config->number > PLACES) || (config->request == NULL) ||
+        (config->request_size == 0u) || !fathom_stm32f4_is_pin(&config->tx) ||
         !fathom_stm32f4_is_pin(&config->rx))
         return false;
     const uint32_t by = divider(config->bus_hz, &config->line);

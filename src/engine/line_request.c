@@ -92,8 +92,8 @@ bool fathom_line_deliver(fathom_line_t *line)
         if (!is_outstanding) return false;
         line->quarantined = quarantined;
     }
-    fathom_transaction_t *x;
-    for (fathom_transaction_t **link = &line->head; (x = *link) != NULL; link = &x->link.next) {
+    for (fathom_transaction_t **link = &line->head; *link != NULL; link = &(*link)->link.next) {
+        fathom_transaction_t *const x = *link;
         if ((x->attempts == 0u) || !is_of(x, address) ||
             (x->protocol->parse_response != protocol->parse_response))
             continue;
