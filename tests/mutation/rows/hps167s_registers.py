@@ -15,7 +15,7 @@ ROWS = (
       'sample->raw = raw; if (!fathom_hps167s_is_abnormal(registers)) {')),
     ('fahrenheit-without-sign', 'hps167s_info.h #4: int16', 'unit/test_hps167s_info unit/test_hps167s_registers',
      ('include/fathom/codec/hps167s_registers.h', 'fathom_hps167s_signed',
-      'return (int16_t)(value < 0x8000u ? (int32_t)value : (int32_t)value - 0x10000);',
+      'return (int16_t)((value < 0x8000u) ? (int32_t)value : ((int32_t)value - 0x10000));',
       'return (int16_t)(value & 0x7FFFu);')),
     ('uuid-shifted', 'hps167s_registers.h #3: 16 bytes in the order of the wire',
      'unit/test_hps167s unit/test_hps167s_registers',

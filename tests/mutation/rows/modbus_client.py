@@ -18,8 +18,7 @@ ROWS = (
     ('zeros-are-frames', 'modbus_client.h: no frame of unit 0 is looked for where it has not been asked',
      'unit/test_address_zero',
      ('src/engine/modbus_client_zero.c', 'fathom_modbus_client_submit_with_zero',
-      'if (fathom_modbus_client_reads_0(request) || request->message.head[0] == FATHOM_MODBUS_ANY_UNIT) '
-      'return fathom_modbus_client_start(line, request, &protocol); '
-      'return fathom_modbus_client_submit(line, request);',
+      'if (fathom_modbus_client_reads_0(request) || (request->message.head[0] == FATHOM_MODBUS_ANY_UNIT)) return'
+      ' fathom_modbus_client_start(line, request, &protocol); return fathom_modbus_client_submit(line, request);',
       'return fathom_modbus_client_start(line, request, &protocol);')),
 )

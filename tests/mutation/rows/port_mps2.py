@@ -6,6 +6,6 @@ ROWS = (
       '{(volatile uint32_t *)0x40009000u, 8}};')),
     ('sent-at-once', 'fathom_mps2.h: sent is said a character later', 'firmware/mps2_alone',
      ('port/mps2/uart.c', 'uart_sent',
-      '&& fathom_elapsed_us(fathom_mps2_clock.now_us(NULL), uart->taken_us) > '
-      'CHARACTER_BITS * 1000000u / uart->baud', '')),
+      '&& (fathom_elapsed_us(fathom_mps2_clock.now_us(NULL), uart->taken_us) > (CHARACTER_BITS * 1000000u /'
+      ' uart->baud))', '')),
 )

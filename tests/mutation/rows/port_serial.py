@@ -12,6 +12,6 @@ ROWS = (
       'const uint8_t put = serial->put;',
       'const uint16_t put = serial->put;'),
      ('port/serial/fathom_serial.h', 'fathom_serial_put',
-      'serial->put = (uint8_t)(put + 1);',
+      'serial->put = (uint8_t)(put + 1u);',
       'serial->put = (uint16_t)(put + 1);')),
 )

@@ -13,10 +13,10 @@ ROWS = (
     ('captures-in-wrong-order', 'fathom_stm32f4.h: edges, in the order in which they came',
      'port/test_stm32f4',
      ('port/stm32f4/capture.c', 'fathom_stm32f4_tim2_interrupt',
-      'const bool fall_first = (why & (CC1 | CC2)) == (CC1 | CC2) && is_fall_first;',
+      'const bool fall_first = ((why & (CC1 | CC2)) == (CC1 | CC2)) && is_fall_first;',
       'const bool fall_first = false; (void)is_fall_first;')),
     ('captures-across-the-wrap', 'hal.h: the clock wraps', 'port/test_stm32f4',
      ('port/stm32f4/capture.c', 'fathom_stm32f4_tim2_interrupt',
-      'const bool is_fall_first = rise_us == fall_us ? captured->high : rise_us - fall_us < UINT32_MAX / 2;',
+      'const bool is_fall_first = (rise_us == fall_us) ? captured->high : ((rise_us - fall_us) < (UINT32_MAX / 2u));',
       'const bool is_fall_first = rise_us == fall_us ? captured->high : rise_us > fall_us;')),
 )

@@ -7,7 +7,7 @@ ROWS = (
       'stream->candidate_us = time_us; if (candidate != FIRST) accept(stream, true);')),
     ('never-stale', 'stream.h: a silent stream is STALE once every deadline', 'unit/test_stream',
      ('src/engine/stream.c', 'fathom_stream_poll',
-      'if (left_us(stream->stale_us, stream->since_us, now_us) != 0) return FATHOM_PENDING;',
+      'if (left_us(stream->stale_us, stream->since_us, now_us) != 0u) return FATHOM_PENDING;',
       'return FATHOM_PENDING;')),
     ('bytes-move-deadline', 'stream.h: only a good frame moves the deadline', 'unit/test_stream',
      ('src/engine/stream.c', 'take',
@@ -36,12 +36,12 @@ ROWS = (
     ('gap-us-ignored', 'stream.h: a silence of gap_us ends a frame, 5 ms by default',
      'unit/test_stream',
      ('src/engine/stream.c', 'fathom_stream_poll',
-      'left_us(stream->listener.gap_us, stream->candidate_us, now_us) == 0',
+      'left_us(stream->listener.gap_us, stream->candidate_us, now_us) == 0u',
       'left_us(FATHOM_STREAM_DEFAULT_GAP_US, stream->candidate_us, now_us) == 0')),
     ('time-of-the-silence', 'stream.h: time_us stays the time of its last byte',
      'unit/test_stream unit/test_stream',
      ('src/engine/stream.c', 'fathom_stream_poll',
-      'if (left_us(stream->listener.gap_us, stream->candidate_us, now_us) == 0) accept(stream, true);',
+      'if (left_us(stream->listener.gap_us, stream->candidate_us, now_us) == 0u) accept(stream, true);',
       'if (left_us(stream->listener.gap_us, stream->candidate_us, now_us) == 0) '
       '{ stream->candidate_us = now_us; accept(stream, true); }')),
 )
