@@ -23,7 +23,7 @@ static const place_t places[] = {{(volatile uint32_t *)0x40004000u, 0},
                                  {(volatile uint32_t *)0x40006000u, 4},
                                  {(volatile uint32_t *)0x40007000u, 18},
                                  {(volatile uint32_t *)0x40009000u, 20}};
-enum { PLACES = sizeof places / sizeof places[0] };
+enum { PLACES = sizeof(places) / sizeof(places[0]) };
 
 /* 0: not within 2.5 %, or not 8N1, which is all that these UARTs have. */
 static uint32_t divider(const fathom_line_settings_t *line)

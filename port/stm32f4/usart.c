@@ -37,7 +37,7 @@ static const place_t places[] = {
     {(volatile uint32_t *)0x40005000u, &RCC_APB1ENR, 20, 53, 8},
     {(volatile uint32_t *)0x40011400u, &RCC_APB2ENR, 5, 71, 8},
 };
-enum { PLACES = sizeof places / sizeof places[0] };
+enum { PLACES = sizeof(places) / sizeof(places[0]) };
 
 /* With 16 samples a bit BRR is the divider itself, its sixteenths below the point. 0: not within 2.5 %. */
 static uint32_t divider(uint32_t bus_hz, const fathom_line_settings_t *line)
