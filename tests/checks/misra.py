@@ -108,7 +108,8 @@ def compared(found, table):
     for (rule, path), count in sorted(counts.items()):
         if rule not in MANDATORY | KEPT and count > table.get((rule, path), 0):
             lines = ', '.join(str(line) for other, where, line, _ in found if (other, where) == (rule, path))
-            yield f'{path}: {count} places of rule {rule}, and misra.csv has {table.get((rule, path), 0)}: lines {lines}'
+            yield (f'{path}: {count} places of rule {rule}, and misra.csv has {table.get((rule, path), 0)}: '
+                   f'lines {lines}')
 
 
 def page_problems(text, table):
