@@ -86,13 +86,13 @@ void fathom_stream_receive(fathom_listener_t *listener, const uint8_t *bytes, ui
     fathom_stream_t *const stream = (fathom_stream_t *)listener;
     if (after_gap) {
         accept(stream, true);
-        stream->to_whole = (uint8_t)(stream->length + 1u);
         stream->gap = true;
     } else if (count_of_bytes == 0u) { /* bytes were lost: the place of the next one is not known */
         stream->gap = false;
         stream->candidate = 0;
         stream->to_step = 0;
     }
+    if (after_gap || (count_of_bytes == 0u)) stream->to_whole = (uint8_t)(stream->length + 1u);
     for (; count_of_bytes != 0u; count_of_bytes--) take(stream, *bytes++, time_us);
 }
 

@@ -420,6 +420,20 @@ TEST(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again)
 }
 
 /* 511 mm held still, FF 01 FF FF: without the two bytes FF 01 it reads FF FF FF 01, FF FF 01 FF. */
+/* FF FF, bytes that were lost, 02 00: FF + FF + 02 = 200, a right sum of bytes that never stood together. It vouches for
+ * no place: what follows, FF A1 02 A2 (FF + A1 + 02 = 1A2), may be made of the halves of two frames. */
+TEST(a_sum_that_is_right_across_a_loss_is_no_frame_for_the_next_one_to_follow)
+{
+    feed_first(10);
+    expect_frame(10 + GAP_US, mm_1953, 10);
+    feed_hex("FF FF", false, 20);
+    feed_loss(20);
+    feed_hex("02 00 FF A1 02 A2", false, 20);
+    expect(20 + GAP_US, FATHOM_PENDING);
+    expect_counted(FATHOM_STREAM_FRAMES, 1);
+    expect_counted(FATHOM_STREAM_UNSURE, 1);
+}
+
 TEST(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value)
 {
     for (uint8_t lost = 0; lost != 4; lost++) {

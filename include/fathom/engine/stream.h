@@ -82,7 +82,7 @@ typedef struct {
     uint8_t candidate;
     bool fresh; /* the newest good frame has not been polled */
     uint8_t length;
-    /* Bytes until the window holds nothing from before the last gap, plus one; stops at 0. */
+    /* Bytes until the window holds nothing from before the last gap or loss, plus one; stops at 0. */
     uint8_t to_whole;
     uint8_t last; /* of the last valid window: it overlapped one before it (1), or was right upon one (2) */
     bool sure;    /* the newest good frame's place is sure; to be read after a poll that gave it */
