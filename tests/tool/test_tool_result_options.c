@@ -51,6 +51,25 @@ TEST(a_level_may_be_so)
     }
 }
 
+/* What is read in parts was cut to 15 or 31 characters before: 15-20 was 1-20, and 0:1 with 30 zeros in it 0:0. */
+TEST(a_number_with_so_many_zeros_that_its_end_is_cut_off_is_refused)
+{
+    static const char points[] = TANK ",shape=table,points=500:400/00000000001500:4000";
+    uint32_t first = 0;
+    uint32_t last = 0;
+    results_config_t config = {0};
+    assert_true(
+        range_parse("0000000015-0000000020", 1, 254, &first, &last)); /* ten digits are enough for any */
+    assert_int_equal(first, 15);
+    assert_int_equal(last, 20);
+    assert_false(range_parse("0000000000000015-20", 1, 254, &first, &last));
+    assert_false(range_parse("0000000000000015", 0, 254, &first, &last));
+    assert_false(number_parse("00000000015", 0, 254, &first));
+    assert_false(level_option(&config, "read", points));
+    assert_false(
+        level_option(&config, "read", TANK ",shape=table,points=0:000000000000000000000000000000000001"));
+}
+
 TEST(the_points_of_a_level_are_a_level_and_a_volume)
 {
     results_config_t config = {0};

@@ -101,10 +101,13 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
     return optind;
 }
 
+enum { MAX_DIGITS = 10 }; /* 4294967295 */
+
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number)
 {
     uint64_t sum = 0;
-    if (*text == '\0') return false;
+    const size_t length = strlen(text);
+    if (length == 0 || length > MAX_DIGITS) return false;
     for (; *text != '\0'; text++) {
         if (*text < '0' || *text > '9') return false;
         sum = sum * 10 + (uint64_t)(*text - '0');

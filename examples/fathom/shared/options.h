@@ -35,7 +35,8 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
 /* FATHOM_PORT; NULL: there is none. values[] has the same pointer then. */
 const char *options_port_of_environment(void);
 
-/* All of `text` is a decimal number from min to max. No sign, no space, nothing after it. */
+/* All of `text` is a decimal number from min to max, of 10 digits at most: of a longer one, which only zeros could make,
+ * a word that was cut to its capacity would be another number. No sign, no space, nothing after it. */
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);
 
 /* A number, or two as in "2-9", the first not above the last. */
