@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
+#include "fathom/sensor/a16_auto.h"
+
 /* fathom_line_due_us(): "how long from now until poll has something to do if no byte comes", to the microsecond. */
 
 static const suite_t suite = {.set_up = set_up};
@@ -87,4 +89,24 @@ TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
     assert_int_equal(bench.fake.written, 1);
     after(1);
     assert_int_equal(bench.fake.written, 2);
+}
+
+/* sensor.h: "how long from now until any of the sensors has something to do": a frame that waits cannot be given while
+ * the line holds back what came behind it, which may begin the response. */
+TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
+{
+    static const uint8_t came[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF, 0x07, 0xA1, 0xA7, 0x01, 0x03, 0x02, 0x02};
+    static fathom_a16_auto_t automatic;
+    const fathom_a16_auto_config_t config = {.line = &bench.line};
+    fathom_sample_t sample;
+    send();
+    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
+    const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
+    after(10000);
+    receive(came, sizeof came);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+    assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
+    bench.fake.now_us += GAP_US;
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_READY);
+    assert_int_equal(sample.raw, 1953);
 }
