@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream */
+#include "tool.h"
+
+#include "backup/backup_file.h"
+#include "commission/record.h"
+
+/*
+ * The files that the tool reads again: the settings of a unit (backup_file.h) and the record of a commissioning
+ * (record.h), with anything in them. What is taken is written as the same, and what is refused is said.
+ */
+static void check_refusal(bool is_refused)
+{
+    PROMISE(is_refused == (tool.err_size != 0), "what is wrong is said, and nothing else");
+    if (!is_refused) return;
+    PROMISE(tool.err[tool.err_size - 1] == '\n' && strncmp(tool.err, "fathom: ", 8) == 0,
+            "in a line of the tool's");
+}
+
+static int parse_backup(const model_t *model, backup_t *backup)
+{
+    tool_capture();
+    const int status = backup_parse("unit", model, backup);
+    tool_release();
+    return status;
+}
+
+static void backup(uint8_t how, const uint8_t *bytes, size_t size)
+{
+    static backup_t first;
+    static backup_t again;
+    const model_t *const model = models[how % MODELS];
+    tool_file(bytes, size);
+    const int status = parse_backup(model, &first);
+    PROMISE(status == 0 || status == 1 || status == 2, "backup_file.h: what parse returns");
+    PROMISE((status == 1) == (size == 0), "backup_file.h: 1: it cannot be read");
+    check_refusal(status != 0);
+    if (status != 0) return;
+    char *text = NULL;
+    size_t length = 0;
+    FILE *const to = open_memstream(&text, &length);
+    if (to == NULL) abort();
+    backup_print(to, &first, "address 1, 9600 8N1", "2026-01-01");
+    (void)fclose(to);
+    tool_file((const uint8_t *)text, length);
+    PROMISE(parse_backup(model, &again) == 0, "backup_file.h: what is printed is read");
+    for (size_t i = 0; i != backup_count(model); i++) {
+        const setting_t *const setting = &model->settings[i];
+        const backup_row_t *const row = &first.rows[i];
+        PROMISE(row->held == again.rows[i].held && row->value == again.rows[i].value &&
+                    strcmp(row->text, again.rows[i].text) == 0,
+                "backup_file.h: what is printed is read as the same");
+        PROMISE(row->held == HELD_NOTHING || backup_has(setting), "backup.h: this is of what is kept");
+        if (row->held == HELD_VALUE && setting->set != NULL)
+            PROMISE((row->value >= setting->least && row->value <= setting->most) ||
+                        (row->value == 0 && (setting->has_zero || setting->words != NULL)) ||
+                        setting->words != NULL,
+                    "setting.h: a value that can be set");
+    }
+    free(text);
+}
+
+static bool read_record(record_t *record)
+{
+    tool_capture();
+    const bool is_good = record_read(record, "record");
+    tool_release();
+    return is_good;
+}
+
+static bool is_same(const record_unit_t *one, const record_unit_t *other)
+{
+    return one->model == other->model && strcmp(one->number, other->number) == 0 &&
+           strcmp(one->when, other->when) == 0 && one->address == other->address &&
+           one->state == other->state;
+}
+
+static void record(const uint8_t *bytes, size_t size)
+{
+    static record_t first;
+    static record_t again;
+    tool_file(bytes, size);
+    const bool is_good = read_record(&first);
+    check_refusal(!is_good);
+    if (!is_good) return;
+    PROMISE(first.count <= RECORD_UNITS, "record.h: 254 units");
+    for (uint32_t i = 0; i != first.count; i++) {
+        PROMISE(record_at(&first, first.units[i].address) == &first.units[i],
+                "record.h: an address stands there once");
+        PROMISE(first.units[i].address >= 1 && first.units[i].address <= first.units[i].model->max_address,
+                "record.h: an address that it can have");
+    }
+    tool_capture();
+    const bool is_written = record_write(&first);
+    tool_release();
+    PROMISE(is_written, "record.h: it is written");
+    size_t length;
+    const char *const text = tool_written(&length);
+    char *const copy = fuzz_copy(text, length);
+    tool_file((const uint8_t *)copy, length);
+    PROMISE(read_record(&again) && again.count == first.count, "record.h: what is written is read");
+    for (uint32_t i = 0; i != first.count; i++)
+        PROMISE(is_same(&first.units[i], &again.units[i]), "record.h: what is written is read as the same");
+    free(copy);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    fuzz_begin(data, size);
+    const uint8_t how = fuzz_byte();
+    size_t length;
+    uint8_t *const bytes = fuzz_rest(4000, &length);
+    if ((how & 4) == 0)
+        backup(how, bytes, length);
+    else
+        record(bytes, length);
+    free(bytes);
+    return 0;
+}
