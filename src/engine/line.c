@@ -27,7 +27,9 @@ static inline uint32_t look(fathom_line_t *line)
     const uint32_t now_us = clock_us(line->config->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
     line->polled_us = now_us;
-    if ((line->quarantined != 0u) && fathom_count_down(&line->quarantine_left_us, passed_us))
+    /* It lasts from the end of the request. */
+    if ((line->quarantined != 0u) && (line->state != LEAVING) &&
+        fathom_count_down(&line->quarantine_left_us, passed_us))
         line->quarantined = 0;
     (void)fathom_count_down(&line->left_us, passed_us);
     return passed_us;
@@ -112,7 +114,10 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
     return line->kind->go_on(line);
 }
 
-bool fathom_line_is_idle(const fathom_line_t *line) { return !is_busy(line) && (line->have == 0u); }
+bool fathom_line_is_idle(const fathom_line_t *line)
+{
+    return !is_busy(line) && (line->state != LEAVING) && (line->have == 0u);
+}
 
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
@@ -155,7 +160,7 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
 {
     const uint32_t passed_us = fathom_elapsed_us(clock_us(line->config->clock), line->polled_us);
     uint32_t due_us;
-    if ((phase(line) == SENDING) || (line->state == REFUSED)) {
+    if ((uint8_t)(phase(line) - LEAVING) <= SENDING - LEAVING) {
         due_us = port_due_us(line, passed_us);
     } else {
         /* With part of a frame there neither a time-out nor the next request comes before the end of it. */

@@ -16,9 +16,10 @@ enum {
     IDLE = 0,
     IN_BREAK = 1,             /* the host holds the line low */
     ENDING = 2,               /* no longer, but for the port, which has left_us to let it go */
-    REFUSED = 3,              /* the port was too busy to take the request */
-    SENDING = 4,              /* the port has taken it: from here on a transaction is on the wire */
-    LISTENING = 5,            /* it has left; the response may come */
+    LEAVING = 3,              /* a request that was cancelled still leaves */
+    REFUSED = 4,              /* the port was too busy to take the request */
+    SENDING = 5,              /* the port has taken it: from here on a transaction is on the wire */
+    LISTENING = 7,            /* it has left; the response may come */
     PHASE = 7,                /* these bits */
     RESPONSE_CORRUPT = 8,     /* a response came and was wrong from end to end */
     RESPONSE_TRUNCATED = 16,  /* a response seemed to begin and broke off */

@@ -136,12 +136,16 @@ static bool may_send(fathom_line_t *line)
 
 static fathom_status_t go_on(fathom_line_t *line)
 {
-    if (phase(line) == SENDING) {
+    if ((phase(line) == SENDING) || (line->state == LEAVING)) {
         const fathom_uart_t *const uart = line->config->uart;
         line->silent_us = 0;
         if (uart->sent(uart->ctx)) {
-            line->state |= LISTENING;
-            line->left_us = line->head->timeout_us;
+            if (line->state == LEAVING) {
+                line->state = IDLE;
+            } else {
+                line->state |= LISTENING;
+                line->left_us = line->head->timeout_us;
+            }
         } else if (line->left_us == 0u) {
             return fathom_line_broken(line);
         }
@@ -160,7 +164,10 @@ static fathom_status_t go_on(fathom_line_t *line)
 
 static void give_up(fathom_line_t *line)
 {
-    if (is_busy(line)) quarantine(line);
+    if (is_busy(line)) {
+        quarantine(line);
+        line->silent_us = 0;
+    }
     while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_PORT);
 }
 
@@ -194,6 +201,10 @@ void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction)
     if ((link == &line->head) && is_busy(line)) {
         quarantine(line);
         if ((line->state & ECHOED) == 0) line->known |= ECHO_DUE;
+        if (phase(line) == SENDING) {
+            line->state = LEAVING;
+            line->sent = 0;
+        }
     }
     fathom_line_finish(line, link, FATHOM_ERR_CANCELLED);
 }

@@ -267,15 +267,57 @@ TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_is_not_t
     response_other(1, 751);
 }
 
-TEST(a_transaction_cancelled_while_it_leaves_quarantines_no_longer_than_any_other)
+/* "when twice the time-out has passed since the request left": its eight bytes have to leave first. */
+TEST(a_transaction_cancelled_while_it_leaves_quarantines_as_long_as_any_other)
+{
+    ask_1(0);
+    run(T3_5_US + 200);
+    expect_written(1);
+    cancel(&bench.request);
+    ask_other(1);
+    expect_sent(8 * BYTE_US + 2 * TIMEOUT_US - 1000, 2000);
+}
+
+/* The silence is kept from the last bit of the request that was cancelled. */
+TEST(the_next_request_waits_until_a_cancelled_one_has_left_and_a_silence_more)
+{
+    ask_1(0);
+    run(T3_5_US + 200);
+    expect_written(1);
+    cancel(&bench.request);
+    assert_false(fathom_line_is_idle(&bench.line));
+    ask_other(2);
+    expect_sent(8 * BYTE_US + T3_5_US - 400, 1000);
+}
+
+TEST(a_cancelled_request_that_never_leaves_breaks_the_port_after_a_second)
 {
     bench.fake.never_sent = true;
     ask_1(0);
     run(T3_5_US + 200);
     cancel(&bench.request);
+    ask_other(2);
+    run(FATHOM_LINE_SEND_US - 1000);
+    expect_other(FATHOM_PENDING);
+    expect_due(1000);
+    run(2000);
+    expect_other(FATHOM_ERR_PORT);
     bench.fake.never_sent = false;
-    ask_other(1);
-    expect_sent(2 * TIMEOUT_US - 1000, 2000);
+    run(100);
+    ask_other(2);
+    expect_written_after(T3_5_US + 400, 2);
+}
+
+/* The poll that finds the port broken is the first after the request was handed over. */
+TEST(a_silence_comes_before_the_next_request_where_the_port_broke_while_one_left)
+{
+    ask_1(0);
+    while (bench.fake.written == 0) run(100);
+    break_port();
+    expect(FATHOM_ERR_PORT);
+    bench.fake.busy_until_us = bench.fake.now_us;
+    ask_other(2);
+    expect_sent(T3_5_US - 400, 1000);
 }
 
 TEST(a_request_that_the_port_has_not_taken_quarantines_none_when_cancelled)
