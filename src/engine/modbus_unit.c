@@ -118,7 +118,8 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
     /* Does a setting have the unit to itself, and this request is not its own? */
     const bool is_kept_out = (unit->setting != 0u) && ((unit->step & FATHOM_MODBUS_UNIT_IN_SETTING) == 0);
     /* The same command of another caller would take a setting's outcome away from it. */
-    if ((unit->state != IDLE) && (unit->current == id) && !(is_command && is_kept_out)) {
+    const bool is_anothers = is_command && is_kept_out;
+    if ((unit->state != IDLE) && (unit->current == id) && !is_anothers) {
         if (unit->state == ASKED) return FATHOM_PENDING;
         unit->state = IDLE;
         return outcome(unit);

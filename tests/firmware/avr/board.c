@@ -8,6 +8,7 @@
 #include "suite.h"
 
 #include "board_inside.h"
+#include "trace.h"
 
 enum { GPIOR0 = 0x3E, GPIOR1 = 0x4A, GPIOR2 = 0x4B }; /* ATmega328P 36, in data space */
 
@@ -214,11 +215,13 @@ void board_start_from(const char *folder, const char *name)
     avr_register_io_write(avr, GPIOR2, report_exit, NULL);
     avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt,
                             NULL);
+    trace_begin(path);
     board_plan();
 }
 
 void board_end(void)
 {
+    trace_end();
     avr_terminate(board.avr);
     free(board.avr);
     board.avr = NULL;

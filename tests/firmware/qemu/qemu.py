@@ -45,6 +45,8 @@ class Case(interop.Case):
                 options += ['-chardev', f'serial,id=uart{number},path={port}', '-serial', f'chardev:uart{number}']
         for trace in traces:
             options += ['-trace', trace]
+        if 'FATHOM_TRACE' in os.environ:  # for tests/coverage, which builds the plugin
+            options += ['-plugin', f'{os.environ["FATHOM_TRACE_PLUGIN"]},image={path}']
         if shift is not None:
             options += ['-serial', 'null', '-icount', f'shift={shift},sleep=off', '-rtc', 'clock=vm']
         return self.start([*MACHINES[self.machine], *options])

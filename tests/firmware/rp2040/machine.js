@@ -9,6 +9,7 @@ const assert = require('assert');
 const {Simulator} = require('rp2040js');
 const {readElf} = require('./elf.js');
 const {Pl011} = require('./pl011.js');
+const trace = require('./trace.js');
 
 const FLASH = 0x10000000, RAM = 0x20000000, RAM_SIZE = 0x40000;
 const CYCLE_NS = 8; // 125 MHz
@@ -34,7 +35,8 @@ class Machine {
     this.watchResets();
     this.watchTick();
     this.mendPrimask();
-    const {segments, symbols} = readElf(`${process.env.FATHOM_IMAGES}/rp2040_${image}.elf`);
+    const path = `${process.env.FATHOM_IMAGES}/rp2040_${image}.elf`;
+    const {segments, symbols} = readElf(path);
     this.symbols = symbols;
     for (const {address, bytes} of segments) this.mcu.flash.set(bytes, address - FLASH);
     for (const [number, value] of Object.entries(scratch)) this.mcu.writeUint32(SCRATCH0 + 4 * number, value);
@@ -44,6 +46,7 @@ class Machine {
     this.interrupts = new Map(); // number: cycles of the longest one
     this.watchInterrupts();
     this.watched = new Map(); // address: what to call with the machine
+    trace.follow(this.core, path);
   }
 
   // RESETS of rp2040js resets nothing. Here all UARTs begin in reset, as they do on the chip.
