@@ -178,7 +178,8 @@ static fathom_posix_status_t take(fathom_posix_uart_t *port, const char *path,
                    : fathom_posix_fail_system(port, "reading its settings", errno);
     }
     const unsigned device = major(status.st_rdev);
-    port->is_pty = S_ISCHR(status.st_mode) && device >= PTY_MAJOR_FIRST && device <= PTY_MAJOR_LAST;
+    /* It is a tty, so its number is that of a character device. */
+    port->is_pty = device >= PTY_MAJOR_FIRST && device <= PTY_MAJOR_LAST;
 
     if (flock(port->fd, LOCK_EX | LOCK_NB) != 0) return fathom_posix_fail_open(port, path, errno);
     /* Its flag is the tty's and ends with the last close, which a pseudo terminal's master puts off. */

@@ -56,7 +56,7 @@ def build(root, folder, jobs):
         _, listed = run(['ctest', '--test-dir', folder, '--show-only', '--verbose', '--label-regex', f'^({KINDS})$'])
         raise Broken(f'ctest knows no test: {listed[-2000:]}')
     targets = sorted({os.path.basename(command[0]) for _, command in tests})
-    code, said = run(['cmake', '--build', folder, '--parallel', str(jobs), '--target', *targets])
+    code, said = run(['cmake', '--build', folder, '--parallel', str(jobs), '--target', 'covering_tests'])
     if code != 0:
         raise Broken(f'the tests are not built: {said[-4000:]}')
     unsupported = sorted({(os.path.relpath(path, root), int(line), why)

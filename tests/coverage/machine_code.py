@@ -26,6 +26,8 @@ CONDITIONAL = {  # whose second way is told by the disassembler
     'riscv': re.compile(r'(c\.)?b(eq|ne|lt|ge|ltu|geu|gt|le|gtu|leu|eqz|nez|lez|gez|ltz|gtz)$')}
 SKIPS = re.compile(r'(sbrc|sbrs|sbic|sbis|cpse)$')  # avr: the instruction behind it
 RETURNS = re.compile(rf'(bx|pop|ldmia(\.w)?|ldr(\.w)?){ARM}(\.[nw])?$')  # arm, under an IT
+# Its objects are made by the linker, so that its functions are known by their names alone.
+OF_ARDUINO = re.compile(r'_ZN6fathom7arduino')
 
 Instruction = collections.namedtuple('Instruction', 'address name operands')
 Function = collections.namedtuple('Function', 'file name')
@@ -64,9 +66,6 @@ def symbols(tools, path):
 
 def objects_of(root, build, machine):
     """The port's objects, as (file, path)."""
-    if machine.port == 'arduino':
-        return [('port/arduino/fathom_arduino.cpp', path) for path in
-                glob.glob(os.path.join(build, machine.build, '**', 'fathom_arduino*.o'), recursive=True)][:1]
     found = []
     for path in glob.glob(os.path.join(build, machine.build, '**', '*.obj'), recursive=True):
         match = re.search(rf'/{machine.port}/(\w+\.c)\.obj$', path)
@@ -98,7 +97,7 @@ class Port:
         self.machine = machine
         self.functions, self.variants = {}, {}
         files = objects_of(root, build, machine)
-        if not files:
+        if not files and machine.port != 'arduino':
             raise Broken(f'there is no object of port/{machine.port} in {build}')
         self.known = {}  # (file's name or '', name) of a symbol
         for file, path in files:
@@ -127,6 +126,9 @@ class Port:
         at = {address: i for i, address in enumerate(places)}
         for local, name, address, size in every:
             function = self.known.get((local, name))
+            if self.machine.port == 'arduino' and OF_ARDUINO.match(name):
+                function = Function('port/arduino/fathom_arduino.cpp', name.split('.')[0])
+                self.functions.setdefault(function, None)
             if function is None or address not in at:
                 continue
             first = last = at[address]

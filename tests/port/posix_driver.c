@@ -19,6 +19,8 @@ int __real_tcgetattr(int fd, struct termios *tty);
 int __wrap_tcgetattr(int fd, struct termios *tty);
 int __real_tcsetattr(int fd, int when, const struct termios *tty);
 int __wrap_tcsetattr(int fd, int when, const struct termios *tty);
+int __real_tcflush(int fd, int queue);
+int __wrap_tcflush(int fd, int queue);
 int __real_ioctl(int fd, unsigned long request, ...);
 int __wrap_ioctl(int fd, unsigned long request, ...);
 ssize_t __real_read(int fd, void *bytes, size_t length);
@@ -45,8 +47,10 @@ int __wrap_open(const char *path, int flags, ...)
 
 int __wrap_fstat(int fd, struct stat *status)
 {
+    if (fd == port_fd && driver.stat_error != 0) return give(driver.stat_error);
     const int result = __real_fstat(fd, status);
     if (fd == port_fd && driver.is_8250) status->st_rdev = makedev(4, 65); /* ttyS1 */
+    if (fd == port_fd && driver.is_usb) status->st_rdev = makedev(188, 0); /* ttyUSB0 */
     return result;
 }
 
@@ -57,7 +61,14 @@ int __wrap_tcgetattr(int fd, struct termios *tty)
     const int result = __real_tcgetattr(fd, tty);
     if (fd == port_fd && driver.is_8250 && !driver.drops_parity && (tty->c_cflag & PARODD) != 0)
         tty->c_cflag |= PARENB; /* the pseudo terminal below has dropped it */
+    if (fd == port_fd && driver.sets != 0 && driver.changes != NULL) driver.changes(tty);
     return result;
+}
+
+int __wrap_tcflush(int fd, int queue)
+{
+    if (fd == port_fd && driver.flush_error != 0) return give(driver.flush_error);
+    return __real_tcflush(fd, queue);
 }
 
 int __wrap_tcsetattr(int fd, int when, const struct termios *tty)
@@ -146,6 +157,7 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
 
 ssize_t __wrap_read(int fd, void *bytes, size_t length)
 {
+    if (fd == port_fd && length > driver.read_most) driver.read_most = length;
     if (fd == port_fd && driver.read_interrupts > 0) {
         driver.read_interrupts--;
         return give(EINTR);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* mkstemp, chown */
+#include <errno.h>
 #include <grp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include <unistd.h>
 
 #include "posix_rig.h"
+
+#include "../../port/posix/internal/describe.h"
 
 /* What fathom_posix_open says when it fails. */
 
@@ -97,11 +100,13 @@ TEST_IN(fresh, a_denied_permission_names_the_group_and_how_to_join_it)
 
 /* The group file forgets the name; the linker puts this in its place. */
 static bool groups_have_no_names;
+static int groups_error;
 int __real_getgrgid_r(gid_t gid, struct group *entry, char *memory, size_t size, struct group **result);
 int __wrap_getgrgid_r(gid_t gid, struct group *entry, char *memory, size_t size, struct group **result);
 int __wrap_getgrgid_r(gid_t gid, struct group *entry, char *memory, size_t size, struct group **result)
 {
     *result = NULL;
+    if (groups_error != 0) return groups_error;
     return groups_have_no_names ? 0 : __real_getgrgid_r(gid, entry, memory, size, result);
 }
 
@@ -129,6 +134,44 @@ TEST_IN(fresh, a_denied_permission_names_no_group_that_would_not_help)
     assert_int_equal(chown(rig.pty.path, 0, 0), 0);
     assert_int_equal(chmod(rig.pty.path, 0660), 0);
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
+}
+
+/* The same, whoever runs it: what is looked at is the file, which may be any. */
+static void denied_says(const char *path, const char *text)
+{
+    char said[200];
+    assert_ptr_equal(fathom_posix_describe_denied(path, "dialout", said, sizeof said), said);
+    if (strstr(said, text) == NULL) fail_msg("\"%s\" does not say \"%s\"", said, text);
+}
+
+TEST_IN(fresh, what_is_denied_is_described_by_its_group_and_mode)
+{
+    char belongs[64];
+    const gid_t gid = deny(0660);
+    (void)snprintf(belongs, sizeof belongs, "the group %s; join it", getgrgid(gid)->gr_name);
+    denied_says(rig.pty.path, belongs);
+    assert_int_equal(chmod(rig.pty.path, 0620), 0);
+    denied_says(rig.pty.path, "with mode 0620, so joining a group does not help");
+    denied_says(rig.pty.path, "GROUP=\"dialout\"");
+    denied_says("/nowhere/tty", "a folder on its way is closed to you");
+    assert_int_equal(chmod(rig.pty.path, 0660), 0);
+    (void)snprintf(belongs, sizeof belongs, "the group %lu; join it", (unsigned long)gid);
+    groups_error = EIO; /* the group file cannot be read */
+    denied_says(rig.pty.path, belongs);
+    groups_error = 0;
+    groups_have_no_names = true;
+    denied_says(rig.pty.path, belongs);
+    groups_have_no_names = false;
+    if (geteuid() != 0) return;
+    assert_int_equal(chown(rig.pty.path, 0, 0), 0);
+    denied_says(rig.pty.path, "the group root with mode 0660");
+}
+
+TEST(an_error_that_the_system_does_not_know_is_its_number)
+{
+    char text[80];
+    assert_string_equal(fathom_posix_words(ENOENT, text, sizeof text), "No such file or directory");
+    assert_string_equal(fathom_posix_words(123456, text, sizeof text), "error 123456");
 }
 
 TEST(a_closed_folder_on_the_way_is_told_as_such)

@@ -17,6 +17,15 @@ TEST(a_read_that_was_interrupted_is_repeated)
     assert_int_equal(driver.read_interrupts, 0);
 }
 
+/* hal.h: the count is an int, which may have 16 bits. */
+TEST(no_read_is_for_more_than_an_int_can_count)
+{
+    static uint8_t bytes[40000];
+    port_rig_open();
+    assert_int_equal(port_rig_read(bytes, sizeof bytes), 0);
+    assert_int_equal(driver.read_most, 32767);
+}
+
 TEST(an_unplugged_adapter_fails_reads_for_good)
 {
     static const int errors[] = {EIO, ENXIO, ENODEV, EBADF};
@@ -84,7 +93,7 @@ TEST(a_write_is_busy_when_the_kernel_takes_nothing)
 
 TEST(a_port_that_is_lost_in_the_middle_of_a_request_says_so)
 {
-    for (int by = 0; by != 3; by++) {
+    for (int by = 0; by != 4; by++) {
         port_rig_open();
         driver.write_most = 1;
         assert_int_equal(port_rig_write("abc", 3), 3);
@@ -92,9 +101,14 @@ TEST(a_port_that_is_lost_in_the_middle_of_a_request_says_so)
         if (by == 0) assert_true(port_rig_read_one() < 0);
         if (by == 1) assert_true(port_rig_sent()); /* so that the line does not wait for it */
         if (by == 2) fathom_posix_wait(&rig.port, FATHOM_NO_DEADLINE); /* returns */
+        if (by == 3) assert_true(port_rig_write("abc", 3) < 0);
         assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
+        const int writes = driver.writes;
         assert_true(port_rig_write("abc", 3) < 0);
         assert_true(port_rig_read_one() < 0);
+        assert_int_equal(port_rig_leaves_in_us(), 0);
+        fathom_posix_wait(&rig.port, FATHOM_NO_DEADLINE); /* returns */
+        assert_int_equal(driver.writes, writes);          /* what was left of it stays */
         driver.write_error = 0;
         fathom_posix_close(&rig.port);
     }

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""Shows that each gate can fail: faults in a copy of the tree, each of which has to be told by that gate, and figures."""
+import collections
+import os
+import shutil
+
+import c_code
+import machine_code
+import run
+
+Fault = collections.namedtuple('Fault', 'what path old new told')  # new None: the file is deleted
+
+FAULTS = (
+    Fault('a dead condition in src/', 'src/sensor/median.c', None,
+          'bool fathom_x(uint8_t a, uint8_t b);\nbool fathom_x(uint8_t a, uint8_t b) { return (a > b) || (b >= a); }\n',
+          'no test executes'),
+    Fault('a decision that clang cannot instrument', 'src/engine/modbus_unit.c', '&& !is_anothers)',
+          '&& !(is_command && is_kept_out))', 'unsupported MC/DC'),
+    Fault('a branch in port/posix that nothing reaches', 'port/posix/uart.c',
+          'if (port == NULL) return FATHOM_POSIX_ERR_ARGUMENT;',
+          'if (port == NULL) return FATHOM_POSIX_ERR_ARGUMENT;\n    if (settings == (const void *)port) return 0;',
+          'branch true of: settings == (const void *)port'),
+    Fault('a line of port/serial that nothing reaches', 'port/serial/fathom_serial.h',
+          'if (length == 0', 'if (length == 251) {\n        return -1;\n    }\n    if (length == 0', 'length == 251'),
+    Fault('a test is deleted: the relay\'s rule', 'tests/unit/test_a05_relay_rule.c', '', None, 'src/sensor/a05_relay_rule.c'),
+    Fault('a test is deleted: refused settings', 'tests/port/test_posix_refused.c', '', None, 'port/posix/settings.c'),
+)
+
+COPIED = ('CMakeLists.txt', 'CMakePresets.json', 'README.md', 'include', 'src', 'port', 'examples', 'tests')
+
+
+def copy(root, tree):
+    for name in COPIED:
+        source, target = os.path.join(root, name), os.path.join(tree, name)
+        if os.path.isdir(source):
+            shutil.copytree(source, target, dirs_exist_ok=True)
+        else:
+            os.makedirs(tree, exist_ok=True)
+            shutil.copy2(source, target)
+
+
+def plant(tree, fault):
+    path = os.path.join(tree, fault.path)
+    with open(path, encoding='utf-8') as file:
+        text = file.read()
+    if fault.new is None:
+        os.remove(path)
+        return text
+    if fault.old is not None and fault.old not in text:
+        raise c_code.Broken(f'{fault.path} has no "{fault.old}" any more')
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text + fault.new if fault.old is None else text.replace(fault.old, fault.new, 1))
+    return text
+
+
+def problems_of(tree, folder, jobs, listed=run.IMPOSSIBLE):
+    verdict = run.Verdict()
+    files, unsupported = c_code.measure(tree, folder, jobs)
+    run.judge_c(verdict, files, unsupported, listed)
+    return verdict.problems, files, unsupported
+
+
+def self_test(verdict, root, jobs):
+    folder = os.path.join(root, 'build-mcdc-self')
+    tree = os.path.join(folder, 'tree')
+    shutil.rmtree(tree, ignore_errors=True)
+    copy(root, tree)
+    built = os.path.join(folder, 'build')
+    problems, files, unsupported = problems_of(tree, built, jobs)
+    if not verdict.check('without a fault all is well', problems):
+        return
+    for fault in FAULTS:
+        text = plant(tree, fault)
+        try:
+            problems, _, _ = problems_of(tree, built, jobs)
+        finally:
+            with open(os.path.join(tree, fault.path), 'w', encoding='utf-8') as file:
+                file.write(text)
+        told = [problem for problem in problems if fault.told in problem]
+        verdict.check(f'seen: {fault.what}: {told[0] if told else ""}',
+                      [] if told else [f'"{fault.told}" is not told, but: {problems}'])
+    # Gates on lists and figures.
+    again = run.Verdict()
+    run.judge_c(again, files, unsupported, {('src/sensor/median.c', 'line', 'gone'): 'none'})
+    verdict.check('seen: an entry of impossible.py that is not needed',
+                  [] if any('gone' in problem for problem in again.problems) else ['it is not told'])
+    for name, missed in (('figures.csv', run.c_missed), ('machines.csv', run.machine_missed)):
+        kept = run.read_rows(os.path.join(run.HERE, name))
+        for path, row in list(kept.items())[:1]:
+            worse = tuple(value + (i % 2 == 1 if missed is run.c_missed else -(i % 2 == 1)) for i, value in enumerate(row))
+            told, _ = run.compare(kept, {**kept, path: worse}, missed)
+            verdict.check(f'seen: a figure of {name} that is worse', [] if told else ['it is not told'])
+            told, _ = run.compare(kept, {other: kept[other] for other in kept if other != path}, missed)
+            verdict.check(f'seen: a file that is gone from {name}', [] if told else ['it is not told'])
+    traces = os.path.join(root, 'build-mcdc-traces')
+    build = os.path.join(root, 'build-gcc')
+    if not os.path.isdir(traces):
+        verdict.check('the firmware tests have been traced', [f'run --machines first: {traces} is not there'])
+        return
+    # A firmware test is deleted: what it left is, and so the ports that only it has run.
+    kept = run.read_rows(os.path.join(run.HERE, 'machines.csv'))
+    fewer = os.path.join(folder, 'traces')
+    shutil.rmtree(fewer, ignore_errors=True)
+    shutil.copytree(traces, fewer)
+    for name in os.listdir(fewer):
+        with open(os.path.join(fewer, name), errors='replace', encoding='utf-8') as file:
+            if name.endswith('.trace') and file.readline().strip().endswith('/settings.elf'):
+                os.remove(os.path.join(fewer, name))
+    told, _ = run.compare(kept, machine_code.measure(root, build, fewer), run.machine_missed)
+    verdict.check(f'seen: the tests of the images "settings" are deleted: {told[0] if told else ""}',
+                  [] if told else ['it is not told'])
