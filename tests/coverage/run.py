@@ -127,6 +127,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--quick', action='store_true')
     parser.add_argument('--machines', action='store_true')
+    parser.add_argument('--again', action='store_true', help='judges the traces of the last run of --machines')
     parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--update', action='store_true')
     parser.add_argument('--build', default=os.path.join(ROOT, 'build-gcc'), help='where the firmware tests are built')
@@ -137,15 +138,16 @@ def main():
         if options.self_test:
             import planting
             planting.self_test(verdict, ROOT, options.jobs)
-        if not options.self_test and not options.machines:
+        if not options.self_test and not options.machines and not options.again:
             files, unsupported = c_code.measure(ROOT, os.path.join(ROOT, 'build-mcdc'), options.jobs)
             rows = judge_c(verdict, files, unsupported)
             keep(verdict, os.path.join(HERE, 'figures.csv'), C_HEAD, rows, c_missed, options.update)
         if not options.self_test and not options.quick:
             build = os.path.abspath(options.build)
-            machine_code.build_images(ROOT, build, options.jobs)
             folder = os.path.join(ROOT, 'build-mcdc-traces')
-            machine_code.record(ROOT, build, folder, options.jobs)
+            if not options.again:
+                machine_code.build_images(ROOT, build, options.jobs)
+                machine_code.record(ROOT, build, folder, options.jobs)
             rows = machine_code.measure(ROOT, build, folder)
             judge_machines(rows)
             keep(verdict, os.path.join(HERE, 'machines.csv'), MACHINE_HEAD, rows, machine_missed, options.update)
