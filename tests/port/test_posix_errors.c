@@ -136,12 +136,12 @@ TEST_IN(fresh, a_denied_permission_names_no_group_that_would_not_help)
     assert_int_equal(posix_run_unprivileged(open_is_denied, &denied), 0);
 }
 
-/* The same, whoever runs it: what is looked at is the file, which may be any. */
+/* The same in this process: what is looked at is the file, which need not be denied. */
 static void denied_says(const char *path, const char *text)
 {
-    char said[200];
-    assert_ptr_equal(fathom_posix_describe_denied(path, "dialout", said, sizeof said), said);
-    if (strstr(said, text) == NULL) fail_msg("\"%s\" does not say \"%s\"", said, text);
+    char got[200];
+    assert_ptr_equal(fathom_posix_describe_denied(path, "dialout", got, sizeof got), got);
+    if (strstr(got, text) == NULL) fail_msg("\"%s\" does not say \"%s\"", got, text);
 }
 
 TEST_IN(fresh, what_is_denied_is_described_by_its_group_and_mode)
