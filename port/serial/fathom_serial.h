@@ -175,7 +175,7 @@ static inline uint32_t fathom_serial_divider(uint32_t clock_hz, const fathom_lin
     const uint32_t real = clock_hz / by;
     uint32_t off = real - baud;
     if (real < baud) off = baud - real;
-    return ((by < least) || (by > most) || (off > (baud / 40u))) ? 0u : by;
+    return ((by > most) || (off > (baud / 40u))) ? 0u : by;
 }
 
 #ifdef __cplusplus

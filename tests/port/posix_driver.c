@@ -40,6 +40,10 @@ static int give(int error)
 
 int __wrap_open(const char *path, int flags, ...)
 {
+    if (driver.open_interrupts > 0) {
+        driver.open_interrupts--;
+        return give(EINTR);
+    }
     if (driver.open_error != 0) return give(driver.open_error);
     port_fd = __real_open(path, flags);
     return port_fd;

@@ -16,6 +16,7 @@
 /* Of the port that was opened last; 0 and false: what the pseudo terminal does. */
 typedef struct {
     int open_error;
+    int open_interrupts;                  /* so many calls give EINTR first */
     int stat_error;                       /* of fstat */
     bool is_8250;                         /* its device number; ioctls below are then its own */
     bool is_usb;                          /* an adapter's device number, above those of pseudo terminals */

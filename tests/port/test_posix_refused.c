@@ -128,6 +128,13 @@ TEST(an_einval_of_a_device_that_has_gone_is_that_it_has_gone)
     open_fails(&usual, FATHOM_POSIX_ERR_NOT_FOUND);
 }
 
+TEST(an_interrupted_open_is_repeated)
+{
+    driver.open_interrupts = 3;
+    port_rig_open();
+    assert_int_equal(driver.open_interrupts, 0);
+}
+
 TEST(an_interrupted_change_is_repeated)
 {
     driver.set_interrupts = 3;
