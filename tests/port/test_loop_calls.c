@@ -383,7 +383,7 @@ static void leaves_in_parts(void **state)
     line_rig_add(115200);
     for (unsigned i = 0; i != 20; i++) fathom_loop_step(&rig.loop, 10000);
     assert_true(calls.writes > 0);
-    assert_int_equal(calls.adds, 1);
+    assert_true(calls.adds > 0);
     assert_int_equal(calls.changes > 0, calls.control_error == 0);
 }
 

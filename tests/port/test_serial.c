@@ -183,17 +183,23 @@ TEST(a_line_is_the_same_if_its_rate_its_parity_and_its_stop_bits_are)
 }
 
 /* 16 MHz, by 16 to 50000: 9600 baud is 1666.7, so 1667; 1 Mbaud is 16; 320 baud is 50000. 700000 is 22.86, and by 23 it is
- * 695652, 0.6 % off; 640000 is 25. */
+ * 695652, 0.6 % off; 300000 is 53.3, by 53 0.6 % too fast. */
 TEST(a_clock_is_divided_to_the_nearest_rate)
 {
     static const struct {
         fathom_line_settings_t line;
         uint32_t divider;
-    } rows[] = {{{9600, FATHOM_PARITY_NONE, 1}, 1667}, {{1000000, FATHOM_PARITY_ODD, 2}, 16},
-                {{320, FATHOM_PARITY_EVEN, 1}, 50000}, {{700000, FATHOM_PARITY_NONE, 1}, 23},
-                {{0, FATHOM_PARITY_NONE, 1}, 0},       {{1000001, FATHOM_PARITY_NONE, 1}, 0},
-                {{300, FATHOM_PARITY_NONE, 1}, 0},     {{9600, 3, 1}, 0},
-                {{9600, FATHOM_PARITY_NONE, 0}, 0},    {{9600, FATHOM_PARITY_NONE, 3}, 0}};
+    } rows[] = {{{9600, FATHOM_PARITY_NONE, 1}, 1667},
+                {{1000000, FATHOM_PARITY_ODD, 2}, 16},
+                {{320, FATHOM_PARITY_EVEN, 1}, 50000},
+                {{700000, FATHOM_PARITY_NONE, 1}, 23},
+                {{300000, FATHOM_PARITY_NONE, 1}, 53},
+                {{0, FATHOM_PARITY_NONE, 1}, 0},
+                {{1000001, FATHOM_PARITY_NONE, 1}, 0},
+                {{300, FATHOM_PARITY_NONE, 1}, 0},
+                {{9600, 3, 1}, 0},
+                {{9600, FATHOM_PARITY_NONE, 0}, 0},
+                {{9600, FATHOM_PARITY_NONE, 3}, 0}};
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
         assert_int_equal(fathom_serial_divider(16000000, &rows[i].line, 16, 50000), rows[i].divider);
     /* 100 Hz by 3 is 33.3, which is 16.7 % off of 40 baud. */
