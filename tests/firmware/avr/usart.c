@@ -81,6 +81,17 @@ static avr_cycle_count_t shifted_out(avr_t *avr, avr_cycle_count_t when, void *p
     return 0;
 }
 
+bool usart_hurry(usart_t *usart)
+{
+    avr_t *const avr = usart->avr;
+    if (!usart->shifting) return false;
+    avr_cycle_timer_cancel(avr, shifted_out, usart);
+    usart->end_cycle = avr->cycle;
+    const avr_cycle_count_t next = shifted_out(avr, avr->cycle, usart);
+    if (next != 0) avr_cycle_timer_register(avr, next - avr->cycle, shifted_out, usart);
+    return true;
+}
+
 static void write_data(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
     usart_t *const usart = (usart_t *)param;

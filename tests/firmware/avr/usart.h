@@ -55,6 +55,9 @@ bool usart_begin(usart_t *usart, avr_t *avr);
  * FATHOM_RX_OVERRUN (one was lost before it). */
 void usart_arrive(usart_t *usart, uint8_t byte, uint8_t flags);
 
+/* The character that leaves ends now, whenever it began; false: none leaves. */
+bool usart_hurry(usart_t *usart);
+
 /* As the registers have it: the rate that they really make, to the nearest bit per second. */
 fathom_line_settings_t usart_settings(const usart_t *usart);
 

@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Breaks into the paths of a microcontroller's port at every instruction boundary: README.md here.
+
+    run.py [MACHINE ...]                 everything: each event alone, two together, in some all pairs
+    run.py --quick [MACHINE ...]         each event alone everywhere; together and in pairs in some scenarios
+    run.py --only NAME [--depth N]       the scenarios with NAME in theirs: 1 alone, 2 together, 3 pairs
+    run.py --update [--only NAME]        keeps the figures in figures.csv
+    run.py --self-test                   plants the faults of faults.py, and sees each of them
+
+MACHINE is avr. It builds into build-interrupts. The last line is "N passed, M failed"."""
+import argparse
+import concurrent.futures
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import disassembly
+import faults
+import machine_avr
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
+BUILD = os.path.join(ROOT, 'build-interrupts')
+FIGURES = os.path.join(HERE, 'figures.csv')
+MACHINES = {machine.NAME: machine for machine in (machine_avr,)}
+COLUMNS = ('boundaries', 'alone', 'deferred', 'together', 'pairs')
+COPIED = ('CMakeLists.txt', 'README.md', 'include', 'src', 'port', 'tests/firmware', 'tests/support')
+SECONDS = 3600  # for one scenario
+
+
+class Bad(Exception):
+    """What cannot be carried out."""
+
+
+def run(*command):
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if done.returncode != 0:
+        raise Bad(f'{" ".join(command)}\n{done.stdout[-4000:]}')
+    return done.stdout
+
+
+class Result:
+    """Of a scenario: its lines "figures NAME,N,...", "covered ADDRESS" and "wrong NAME: what"."""
+
+    def __init__(self, name, depth, command):
+        done = subprocess.run([*command, name, str(depth)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              timeout=SECONDS, check=False)
+        self.name, self.depth = name, depth
+        self.wrong = re.findall(r'^wrong (.*)$', done.stdout, re.M)
+        self.covered = {int(address, 16) for address in re.findall(r'^covered (\w+)$', done.stdout, re.M)}
+        found = re.search(r'^figures [^,]+,([\d,]+)$', done.stdout, re.M)
+        self.figures = dict(zip(COLUMNS, map(int, found[1].split(',')))) if found else {}
+        if not self.wrong and (done.returncode != 0 or not found):
+            self.wrong = [f'{name}: exit status {done.returncode}: {done.stdout[-500:]}']
+
+
+def run_scenarios(machine, host, image, depths):
+    """[Result], as they come; the long ones first."""
+    with concurrent.futures.ThreadPoolExecutor(min(2, os.cpu_count() or 1)) as pool:
+        waiting = [pool.submit(Result, name, depth, machine.command(host, image)) for name, depth in depths.items()]
+        for done in concurrent.futures.as_completed(waiting):
+            yield done.result()
+
+
+def kept():
+    if not os.path.exists(FIGURES):
+        return {}
+    with open(FIGURES, encoding='utf-8', newline='') as file:
+        return {(row['machine'], row['scenario']): row for row in csv.DictReader(file)}
+
+
+def keep(machine, results, names):
+    rows = {key: row for key, row in kept().items() if key[0] != machine.NAME or key[1] in names}
+    for result in results:
+        rows[machine.NAME, result.name] = {'machine': machine.NAME, 'scenario': result.name, **result.figures}
+    with open(FIGURES, 'w', encoding='utf-8', newline='') as file:
+        out = csv.DictWriter(file, ('machine', 'scenario', *COLUMNS), lineterminator='\n')
+        out.writeheader()
+        out.writerows(rows[key] for key in sorted(rows))
+
+
+def compare(machine, result):
+    """What is less than it was; a form that does not go as far has less of some."""
+    row = kept().get((machine.NAME, result.name))
+    if row is None:
+        return [f'{result.name}: figures.csv does not have it; --update keeps it']
+    columns = COLUMNS[:2 + result.depth]
+    return [f'{result.name}: {result.figures[column]} {column}, and there were {row[column]}; if the code is shorter, '
+            '--update keeps that' for column in columns if result.figures.get(column, 0) < int(row[column])]
+
+
+def objects_of(machine, folder):
+    found = [os.path.join(where, name) for where, _, names in os.walk(os.path.join(folder, 'image')) for name in names]
+    objects = [path for path in found if path.endswith(machine.OBJECTS)]
+    if len(objects) != len(machine.OBJECTS):
+        raise Bad(f'{folder}: {len(objects)} objects of the port, not {len(machine.OBJECTS)}')
+    return objects
+
+
+def named(image, text):
+    """With each address as its function."""
+    return re.sub(r'\bat ([0-9a-f]{4})\b', lambda found: f'at {image.where(int(found[1], 16))}', text)
+
+
+def said(figures):
+    return ', '.join(f'{figure} {word}' for word, figure in figures.items())
+
+
+def check(machine, options):
+    folder = os.path.join(BUILD, machine.NAME)
+    path = machine.build(run, ROOT, folder)
+    host = machine.build_host(run, ROOT, folder)
+    image = disassembly.Image(machine, path)
+    names = run(*machine.command(host, path, '--list')).split()
+    depths = {name: options.depth or (machine.QUICK.get(name, 1) if options.quick else machine.FULL.get(name, 2))
+              for name in names if options.only in name}
+    unknown = sorted({*machine.QUICK, *machine.FULL} - set(names))
+    if not depths or unknown:
+        raise Bad(f'there is no scenario {" ".join(unknown) or options.only}')
+    passed, failed, covered, results = 0, 0, set(), []
+    for result in run_scenarios(machine, host, path, depths):
+        results.append(result)
+        covered |= result.covered
+        wrong = [named(image, line) for line in result.wrong]
+        if not wrong and not options.update:
+            wrong = compare(machine, result)
+        print(f'{machine.NAME} {result.name}: {said(result.figures)}', flush=True)
+        print(''.join(f'    {line}\n' for line in wrong), end='')
+        passed, failed = passed + (not wrong), failed + bool(wrong)
+    if not options.only:
+        count, wrong = image.missed(objects_of(machine, folder), covered)
+        print(*wrong[:20], sep='\n', end='\n' if wrong else '')
+        total = {word: sum(result.figures.get(word, 0) for result in results) for word in COLUMNS}
+        print(f'{machine.NAME}: {len(results)} scenarios, {count} instructions of the port, '
+              f'{len(wrong)} of them not broken into; {said(total)}')
+        passed, failed = passed + (not wrong), failed + bool(wrong)
+    if options.update and not failed:
+        keep(machine, results, names)
+    return passed, failed
+
+
+def copy_tree(tree):
+    os.makedirs(tree, exist_ok=True)
+    for name in COPIED:
+        source, target = os.path.join(ROOT, name), os.path.join(tree, name)
+        if os.path.isdir(source):
+            shutil.copytree(source, target, dirs_exist_ok=True)
+        else:
+            shutil.copy2(source, target)
+
+
+def plant(tree, edits):
+    """{path: text without the fault}"""
+    before = {}
+    for file, pattern, new in edits:
+        path = os.path.join(tree, file)
+        with open(path, encoding='utf-8') as source:
+            text = source.read()
+        before.setdefault(path, text)
+        changed, count = re.subn(pattern, new if '\\' in new else lambda _, new=new: new, text)
+        if count != 1 or changed == text:
+            raise Bad(f'{file}: {pattern!r} is there {count} times')
+        write(path, changed)
+    return before
+
+
+def write(path, text):
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+
+
+def gates_fail(machine, folder, path):
+    """[what does not notice that a boundary, or a figure, is missing]"""
+    image, objects = disassembly.Image(machine, path), objects_of(machine, folder)
+    covered = {address for _, code in image.functions for address in code}
+    names, _ = image.wanted(objects)
+    one = next(min(code) for name, code in image.functions if name in names)
+    name = next(iter(machine.QUICK))
+    result = Result(name, 1, machine.command(machine.build_host(run, ROOT, folder), path))
+    whole = not compare(machine, result)
+    result.figures['alone'] -= 1
+    return [what for what, seen in (('an instruction', not image.missed(objects, covered)[1]
+                                     and len(image.missed(objects, covered - {one})[1]) == 1),
+                                    ('a figure', whole and len(compare(machine, result)) == 1)) if not seen]
+
+
+def self_test(machine):
+    folder = os.path.join(BUILD, machine.NAME)
+    tree, planted = os.path.join(BUILD, 'tree'), os.path.join(BUILD, f'planted_{machine.NAME}')
+    host = machine.build_host(run, ROOT, folder)
+    copy_tree(tree)
+    blind = gates_fail(machine, folder, machine.build(run, ROOT, folder))
+    print(''.join(f'{what} less is not seen\n' for what in blind), end='')
+    failed = len(blind)
+    for name, what, scenarios, depth, edits in faults.FAULTS[machine.NAME]:
+        before = plant(tree, edits)
+        try:
+            path = machine.build(run, tree, planted)
+            image = disassembly.Image(machine, path)
+            seen = [line for result in run_scenarios(machine, host, path, dict.fromkeys(scenarios, depth))
+                    for line in result.wrong]
+        finally:
+            for file, text in before.items():
+                write(file, text)
+        first = next((line for line in seen if ' at ' in line), seen[0] if seen else 'NOT SEEN')
+        print(f'{name}: {what}\n    {named(image, first)}', flush=True)
+        failed += not seen
+    return len(faults.FAULTS[machine.NAME]) + 2 - failed, failed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--quick', action='store_true')
+    parser.add_argument('--update', action='store_true')
+    parser.add_argument('--self-test', action='store_true')
+    parser.add_argument('--only', default='', metavar='NAME')
+    parser.add_argument('--depth', type=int, choices=(1, 2, 3))
+    parser.add_argument('machines', nargs='*', metavar='MACHINE')
+    options = parser.parse_args()
+    if options.update and (options.quick or options.depth):
+        parser.error('--update keeps the figures of the full form')
+    passed = failed = 0
+    try:
+        for name in options.machines or MACHINES:
+            if name not in MACHINES:
+                raise Bad(f'there is no machine {name}')
+            machine = MACHINES[name]
+            missing = [program for program in machine.PROGRAMS if not shutil.which(program)]
+            if missing:
+                raise Bad(f'{name} needs {" ".join(missing)}')
+            good, bad = self_test(machine) if options.self_test else check(machine, options)
+            passed, failed = passed + good, failed + bad
+    except (Bad, OSError, subprocess.TimeoutExpired) as error:
+        print(error)
+        failed += 1
+    print(f'{passed} passed, {failed} failed')
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
