@@ -28,10 +28,10 @@ ISR(TIMER1_CAPT_vect)
 
 void fathom_avr_icp1_begin(fathom_edges_t *edges)
 {
-    captured = edges;
     DDRB &= (uint8_t)~_BV(DDB0);
     const uint8_t sreg = SREG;
     cli();
+    captured = edges; /* a pointer is stored in halves */
     TCCR1B |= _BV(ICNC1) | _BV(ICES1);
     if ((PINB & _BV(PINB0)) != 0)
         TCCR1B &= (uint8_t)~_BV(ICES1); /* in a pulse: its end, which counts for nothing */
