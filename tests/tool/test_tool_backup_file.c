@@ -74,6 +74,38 @@ TEST(every_mistake_in_a_file_is_told_with_its_line_and_nothing_is_sent)
     }
 }
 
+/* ESC [ is how a terminal is told to do things, and so is 9B, in UTF-8 C2 9B, alone. */
+TEST(what_drives_a_terminal_is_refused_and_not_printed)
+{
+    static const char *const rows[] = {"uuid = 00\x1b[2J",
+                                       "uuid = 00\x9b"
+                                       "2J",
+                                       "uuid = 00\xc2\x9b"
+                                       "2J",
+                                       "warm-up = \a5",
+                                       "warm-up\x1b]0;x\a = 5",
+                                       "\x1b[31m",
+                                       "warm-up = 5\r6",
+                                       "uuid = \x7f",
+                                       "uuid = \xc3\xa4"};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        char text[128];
+        (void)snprintf(text, sizeof text, "sensor = hps167s\n%s\n", rows[i]);
+        desk_write("unit", text);
+        refuses(2, "hps167s",
+                "2: before any # the line has a character that cannot be printed, or is not of ASCII");
+    }
+    desk_write("unit", "sensor = \x1b[2J\n");
+    refuses(2, "hps167s",
+            "1: before any # the line has a character that cannot be printed, or is not of ASCII");
+    desk_write("unit", "sensor = hps167s # \xc3\xa4 and \x1b[2J\n");
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "restore hps167s --port line --file %s", desk_path("unit"));
+    assert_int_equal(run->status, 0);
+    assert_null(strchr(run->out, 0x1b));
+    assert_null(strchr(run->err, 0x1b));
+}
+
 TEST(a_command_of_an_a16_is_no_line_of_a_file)
 {
     desk_write("unit", "sensor = a16\noperating-mode = automatic\n");

@@ -68,6 +68,12 @@ TEST(with_a_damaged_record_nothing_is_sent)
         {TITLE "hps167s 2 " FIRST "0 done now\n", ", line 2: no UUID"},
         {TITLE "a16 2 " FIRST " done now\n", ", line 2: no UUID"},
         {TITLE "hps167s 2 " FIRST " Done now\n", ", line 2: neither planned, restart nor done"},
+        {TITLE "hps167s 2 " FIRST " planned \x1b[2J\n", ", line 2: no time"},
+        {TITLE "hps167s 2 " FIRST " planned \x9b"
+               "2J\n",
+         ", line 2: no time"},
+        {TITLE "hps167s 2 " FIRST " planned x\",\"y\n", ", line 2: no time"},
+        {TITLE "hps167s 2 " FIRST " planned x\\\n", ", line 2: no time"},
         {TITLE "#\na16 2 - done now\na05 2 - done now\n", ", line 4: this address stands there twice"},
         {TITLE "hps167s 2 " FIRST " done now\nhps167s 3 " FIRST " done now\n",
          ", line 3: this UUID stands there twice"},

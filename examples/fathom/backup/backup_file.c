@@ -163,6 +163,14 @@ static int take_value(const parser_t *parser, const setting_t *setting, backup_r
     return STATUS_OK;
 }
 
+/* Names and values are printed, in messages and in what differs: what drives a terminal may not be among them. */
+static bool is_printable(const char *text)
+{
+    for (; *text != '\0'; text++)
+        if ((*text < ' ' || *text > '~') && *text != '\t') return false;
+    return true;
+}
+
 static int take_line(parser_t *parser, char *line)
 {
     const model_t *const model = parser->backup->model;
@@ -170,6 +178,9 @@ static int take_line(parser_t *parser, char *line)
     char *const name = trim(line);
     char *const sign = strchr(name, '=');
     if (name[0] == '\0') return STATUS_OK;
+    if (!is_printable(name))
+        return wrong(parser,
+                     "before any # the line has a character that cannot be printed, or is not of ASCII");
     if (sign == NULL) return wrong(parser, "'%s' is no line of the form NAME = VALUE", name);
     *sign = '\0';
     const char *const value = trim(sign + 1);

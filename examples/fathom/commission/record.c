@@ -53,6 +53,14 @@ static bool is_number(const model_t *model, const char *text)
     return strlen(text) == HEX && strspn(text, "0123456789abcdef") == HEX;
 }
 
+/* It is printed, in JSON as it is. */
+static bool is_time(const char *text)
+{
+    for (; *text != '\0'; text++)
+        if (*text <= ' ' || *text > '~' || *text == '"' || *text == '\\') return false;
+    return true;
+}
+
 /* What is wrong with a line, which is added; NULL: nothing. */
 static const char *take_line(record_t *record, const char *text)
 {
@@ -71,6 +79,7 @@ static const char *take_line(record_t *record, const char *text)
     if (!is_number(unit.model, unit.number)) return "no UUID";
     for (unit.state = RECORD_PLANNED; strcmp(state, record_states[unit.state]) != 0; unit.state++)
         if (unit.state == RECORD_DONE) return "neither planned, restart nor done";
+    if (!is_time(unit.when)) return "no time";
     unit.address = (uint8_t)number;
     if (record_at(record, unit.address) != NULL) return "this address stands there twice";
     if (record_of(record, unit.model, unit.number) != NULL) return "this UUID stands there twice";
