@@ -60,6 +60,8 @@ static int judge(fathom_line_t *line, bool over)
     if ((echo > have) && !over) return -echo;
     if ((uint8_t)(echo - 1u) < have) {
         if (!is_frame) fathom_line_learn(line, FATHOM_LINE_ECHO_ON); /* which may equal the response */
+        /* Copies without end must not keep it after its time-out. */
+        if ((line->left_us == 0u) && ((line->state & ECHOED) != 0)) return echo;
         line->state |= ECHOED;
         return echo | TAKEN;
     }
