@@ -204,6 +204,12 @@ class Input(Case):
         done = self.ends(['decode', '--raw', self.file(e2e.frame(754) * 50000)], 0)
         self.assertEqual(done.out.count('distance 754 mm'), 50000)
 
+    def test_more_than_4_mib_are_refused(self):
+        for count in ((1 << 22) + 1, 1 << 26):
+            done = self.ends(['decode', '--raw', self.file(bytes(count))], 1, re.compile(
+                'is more than (the 4194304 bytes that are|can be) explained at a time'), out='')
+            self.assertLess(done.elapsed, 10)
+
     def test_the_examples_of_the_help_work(self):
         text = self.run_fathom('decode --help').out
         examples = re.findall(r'^ +fathom (decode .*[0-9A-F]{2})$', text, re.M)

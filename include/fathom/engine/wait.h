@@ -24,7 +24,8 @@ typedef void (*fathom_idle_t)(void *ctx, uint32_t max_us);
 
 /*
  * Polls the sensor until it has a reading or an error, and returns that: any value of fathom_poll but
- * FATHOM_PENDING. It ends because every driver ends every attempt, by a time-out at the latest.
+ * FATHOM_PENDING. It ends because every driver ends every attempt, by a time-out at the latest; but a request leaves
+ * into a silence only, so that on a line which never falls silent it does not end.
  * idle: may be NULL, then it spins.
  */
 fathom_status_t fathom_wait(const fathom_sensor_t *sensor, fathom_sample_t *sample, fathom_idle_t idle,
