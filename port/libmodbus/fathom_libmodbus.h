@@ -53,8 +53,8 @@ extern "C" {
  *    was sent is taken. A response to an earlier one is dropped and counted (late_responses), whatever it contains. A
  *    unit that did not respond in time gets no request until twice the time-out has passed, while others do; its
  *    response still counts if it comes in that time and no other unit got a request meanwhile.
- *  - On TCP a response is looked at when all of it is there (MSG_PEEK); until then it is left in the socket, whose
- *    SO_RCVLOWAT keeps poll(2) from seeing it so long.
+ *  - On TCP a response is looked at when all of it is there; until then the port keeps what has come, and SO_RCVLOWAT
+ *    of the socket keeps poll(2) from waking for less than the rest.
  *  - On TCP a gateway's exceptions 0x0A (path unavailable) and 0x0B (target silent) are no response of the unit: the
  *    request ends with FATHOM_ERR_NO_RESPONSE when its time-out is over. gateway_exception has the last one. Over RTU
  *    they are exceptions like any other.
@@ -106,12 +106,14 @@ typedef struct {
     int system_error; /* errno, with FATHOM_LIBMODBUS_ERR_SYSTEM */
 
     /* Of TCP. Counters stop at 65535 and may be set to 0. */
-    uint16_t late_responses;      /* to another transaction than the last */
-    uint16_t gateway_refusals;    /* exceptions 0x0A and 0x0B */
-    uint8_t gateway_exception;    /* the last of them; 0: none yet */
-    uint16_t transaction;         /* of the request that was sent last */
-    uint16_t at;                  /* in adu, what the line has not read yet, ... */
-    uint16_t end;                 /* ... and its end */
+    uint16_t late_responses;   /* to another transaction than the last */
+    uint16_t gateway_refusals; /* exceptions 0x0A and 0x0B */
+    uint8_t gateway_exception; /* the last of them; 0: none yet */
+    uint16_t transaction;      /* of the request that was sent last */
+    uint16_t have;             /* in adu, of the next response, while the line has read all of the last one */
+    uint64_t connection;       /* that it comes from (SO_COOKIE, Linux 4.12) */
+    uint16_t at;               /* in adu, what the line has not read yet, ... */
+    uint16_t end;              /* ... and its end */
     uint8_t adu[6 + 1 + 253 + 2]; /* header, unit, PDU, and room for a CRC */
 
     uint8_t frame[FATHOM_MODBUS_MAX_FRAME];

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE 1 /* POLLRDHUP */
-#include <poll.h>
+#define _DEFAULT_SOURCE 1 /* SO_COOKIE */
 #include <string.h>
 #include <sys/socket.h>
 
@@ -49,9 +48,12 @@ static int out_of_step(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
     return fathom_libmodbus_broken(port, error);
 }
 
-static ssize_t peek(int fd, uint8_t *adu)
+/* Tells a connection from another one with the same descriptor; 0 where the system cannot. */
+static uint64_t connection_of(int fd)
 {
-    return recv(fd, adu, UNIT + MOST_LENGTH, MSG_PEEK | MSG_DONTWAIT);
+    uint64_t number = 0;
+    socklen_t size = sizeof number;
+    return getsockopt(fd, SOL_SOCKET, SO_COOKIE, &number, &size) == 0 ? number : 0;
 }
 
 /* From how many bytes on poll(2) sees them: or a loop that waits for the rest of a response would never sleep. */
@@ -60,33 +62,42 @@ static void wake_at(int fd, int bytes)
     (void)setsockopt(fd, SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
 }
 
-/* `there` bytes of `need` have come: 0, or -1: the rest never will. */
-static int wait_for_rest(fathom_libmodbus_t *port, int fd, ssize_t there, int need)
+/*
+ * How long the next response is, as far as its beginning tells; 0: it is none. That beginning is taken out of the
+ * socket, where it could hold on to the memory for what follows, and the far end would not be told of any room.
+ */
+static int needed(const fathom_libmodbus_t *port)
 {
-    struct pollfd entry = {fd, POLLRDHUP, 0};
-    wake_at(fd, need);
-    if (poll(&entry, 1, 0) <= 0 || peek(fd, port->adu) != there) return 0;
-    return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
+    if (port->have < UNIT) return UNIT;
+    const uint16_t length = word_at(port->adu + LENGTH);
+    if (word_at(port->adu + PROTOCOL) != 0 || length < LEAST_LENGTH || length > MOST_LENGTH) return 0;
+    return UNIT + length;
 }
 
-/* Takes the next response out of the socket if all of it is there: 1, 0, or -1: the connection is broken. */
+/* Takes the next response out of the socket: 1, 0: not all of it is there, or -1: the connection is broken. What is no
+ * response stays in adu for as long as the connection is there, so that nothing behind it is read. */
 static int take(fathom_libmodbus_t *port)
 {
     const int fd = modbus_get_socket(port->modbus);
-    uint8_t *const adu = port->adu;
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
-    const ssize_t there = peek(fd, adu);
-    if (there < 0) return fathom_libmodbus_failed(port);
-    if (there == 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
-    if (there < UNIT) return wait_for_rest(port, fd, there, UNIT);
-    const uint16_t length = word_at(adu + LENGTH);
-    if (word_at(adu + PROTOCOL) != 0 || length < LEAST_LENGTH || length > MOST_LENGTH)
-        return out_of_step(port, FATHOM_LIBMODBUS_ERR_NONSENSE);
-    if (there < UNIT + length) return wait_for_rest(port, fd, there, UNIT + length);
-    if (recv(fd, adu, UNIT + (size_t)length, MSG_DONTWAIT) != UNIT + length)
-        return fathom_libmodbus_failed(port);
+    if (port->have != 0 && port->connection != connection_of(fd)) port->have = 0;
+    int need = needed(port);
+    while (port->have != need) {
+        if (need == 0) return out_of_step(port, FATHOM_LIBMODBUS_ERR_NONSENSE);
+        const ssize_t n = recv(fd, port->adu + port->have, (size_t)(need - port->have), MSG_DONTWAIT);
+        if (n == 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
+        if (n < 0) {
+            const int failed = fathom_libmodbus_failed(port);
+            if (port->have != 0) wake_at(fd, need - port->have);
+            return failed;
+        }
+        if (port->have == 0) port->connection = connection_of(fd);
+        port->have = (uint16_t)(port->have + n);
+        need = needed(port);
+    }
     wake_at(fd, 1);
-    port->end = (uint16_t)(UNIT + length);
+    port->end = port->have;
+    port->have = 0;
     fathom_libmodbus_works(port);
     return 1;
 }

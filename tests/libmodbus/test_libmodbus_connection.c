@@ -112,6 +112,20 @@ TEST(what_is_no_modbus_breaks_it_and_ends_the_connection)
     }
 }
 
+/* What follows it may look like a response, and is not. */
+TEST(behind_what_is_no_modbus_nothing_is_read)
+{
+    static const uint8_t header[] = {0xF0, 1, 0, 1, 0, 9};
+    static const uint8_t response[] = {RESPONSE(1)};
+    ask();
+    rig_say(header, sizeof header);
+    rig_say(response, sizeof response);
+    expect_broken(FATHOM_LIBMODBUS_ERR_NONSENSE);
+    for (int i = 0; i != 5; i++) assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_NONSENSE);
+    expect_to_go_on();
+}
+
 /* The socket waits if it is let; then the alarm ends the test. */
 TEST(a_full_connection_is_busy_and_nothing_waits)
 {
