@@ -52,9 +52,11 @@ class Reading(Case):
     def test_thousands_of_responses_to_other_requests_do_not_hide_the_right_one(self):
         server, reader = self.reader('--count 1 --timeout 15000')
         transaction, _, _ = server.request()
-        server.say(*(registers(transaction ^ (1 + number), 1, *OTHER) for number in range(3000)))
+        server.say(*(registers(transaction ^ (1 + number), 1, *OTHER) for number in range(30000)))
         server.say(registers(transaction, 1, *SAID))
-        self.assertEqual(self.ends(reader, 0).mm, ['2083'])
+        done = self.ends(reader, 0)
+        self.assertEqual(done.mm, ['2083'])
+        self.assertLess(done.cpu, 2)
 
     @e2e.each(to_other_requests=lambda asked: registers(asked ^ 1, 1, *OTHER),
               of_other_units=lambda asked: registers(asked, 9, *OTHER),
@@ -69,7 +71,7 @@ class Reading(Case):
         self.meanwhile(lambda: server.say(flood) is None)
         done = self.ends(reader, 1, 'attempt 1: ', 'attempt 2: ')
         self.assertEqual(done.mm, [])
-        self.assertLess(done.elapsed, 15)
+        self.assertLess(done.elapsed, 18)  # where requests are kept from leaving it gives up after 10 s
 
     def test_a_byte_a_second_of_a_long_response_is_none_and_costs_no_time_of_the_processor(self):
         server, reader = self.reader('--count 2 --timeout 1500')
@@ -132,18 +134,18 @@ class Terminal(Case):
 
     @e2e.each(**{command.split()[0] + ('_json' if 'json' in command else ''): command for command in (
         'info hps167s', 'info a16 --format json', 'read hps167s --count 3',
-        'read hps167s --count 3 --format json', 'request 1 3 8 120 --sensor hps167s',
-        'request 1 3 8 120 --format json', 'get a16 address', 'set a16 switch-threshold 900')})
+        'read hps167s --count 3 --format json', 'request 1 3 0x0100 120 --sensor hps167s',
+        'request 1 3 0x0100 120 --format json', 'get a16 address', 'set a16 switch-threshold 900')})
     def harm(self, command):
-        for offset in (0, 11):
+        for offset in (0, 11)[command == 'info hps167s':]:  # that takes 10 s
             server = self.server()
             self.answers(server, offset)
             done = self.run_fathom(f'{command} --port {server} --timeout 300')
+            self.assertNotIn(done.code, (2, -6, -11), done)
             self.assertNotEqual(done.out + done.err, '')
             self.assertRegex(done.out + done.err, r'\A[\n -~]*\Z')
             if '--format json' in command:
                 self.assertTrue(done.all_json or done.code)
-            server.close()
 
 
 if __name__ == '__main__':
