@@ -43,7 +43,7 @@ class What(Settings):
     # Between two frames there is room for a request where the machine has the time to send it by then, so each is tried
     # three times. 54 a second: test_tool_unasked, in simulated time.
     def test_an_hps167s_that_sends_unasked_is_told_and_set(self):
-        sim = self.sim('hps167s --with unasked=100 --counters')
+        sim = self.sim('hps167s --with unasked=60 --counters')
         for line, told in ((f'info hps167s --port {sim}', 'temperature                25.0 degC'),
                            (f'set hps167s --port {sim} measure-after-power-on off', 'power-on is off'),
                            (f'get hps167s --port {sim} measure-after-power-on', 'off')):
