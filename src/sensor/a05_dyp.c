@@ -18,7 +18,7 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_d
     const bool is_single = is_one(probes);
     uint8_t first = 0;
     if (is_single)
-        while (((probes >> first) & 1u) == 0u) first++;
+        while ((((unsigned)probes >> first) & 1u) == 0u) first++;
     base->request.first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
     base->request.last = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;

@@ -15,7 +15,7 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
         return FATHOM_ERR_ARGUMENT;
 
     uint8_t first = 0;
-    while (((probes >> first) & 1u) == 0u) first++;
+    while ((((unsigned)probes >> first) & 1u) == 0u) first++;
     uint8_t count = 1;
     uint32_t measuring_us = FATHOM_A05_PROBE_US;
     for (; (probes >> (first + count)) != 0u; count++) measuring_us += FATHOM_A05_PROBE_US;
