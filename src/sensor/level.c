@@ -55,13 +55,13 @@ uint32_t fathom_tank_table(const fathom_level_config_t *tank, uint16_t level_mm)
 {
     uint32_t volume = 0;
     uint16_t from_mm = 0;
-    for (size_t i = 0; i != tank->point_count; i++) {
-        const fathom_level_point_t *const to = &tank->points[i];
-        if (level_mm < to->level_mm)
-            return volume + share(to->volume - volume, (uint16_t)(level_mm - from_mm),
-                                  (uint16_t)(to->level_mm - from_mm));
-        volume = to->volume;
-        from_mm = to->level_mm;
+    for (size_t i = 0; i < tank->point_count; i++) {
+        const uint32_t to = tank->points[i].volume;
+        const uint16_t to_mm = tank->points[i].level_mm;
+        if (level_mm < to_mm)
+            return volume + share(to - volume, (uint16_t)(level_mm - from_mm), (uint16_t)(to_mm - from_mm));
+        volume = to;
+        from_mm = to_mm;
     }
     return volume;
 }

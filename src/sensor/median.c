@@ -12,6 +12,7 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
     fathom_median_config_t *const own = &median->config;
     clear(median, sizeof *median);
     copy(own, config, sizeof *own);
+    own->window = config->window; /* whole: of its bytes no analyser sees where it points */
     own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
     if (own->gate_row == 0u) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
     return ((own->window == NULL) || (own->count < FATHOM_MEDIAN_MIN_COUNT) ||
@@ -35,15 +36,18 @@ static uint16_t middle_of(const fathom_median_t *median)
 {
     const uint8_t count = median->config.count;
     const uint8_t before = (uint8_t)((count - 1u) / 2u);
-    for (const uint16_t *at = median->config.window;; at++) {
+    const uint16_t *at = median->config.window;
+    const uint16_t *const last = &at[count - 1u];
+    for (; at < last; at++) {
         uint8_t nearer = 0;
         uint8_t as_near = 0;
-        for (uint8_t i = 0; i != count; i++) {
+        for (uint8_t i = 0; i < count; i++) {
             if (median->config.window[i] < *at) nearer++;
             if (median->config.window[i] <= *at) as_near++;
         }
-        if ((nearer <= before) && (as_near > before)) return *at; /* of one of them it is so */
+        if ((nearer <= before) && (as_near > before)) break;
     }
+    return *at; /* of one of them it is so: where of none before, of the last */
 }
 
 bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
@@ -72,7 +76,7 @@ static bool take(fathom_median_t *median, uint16_t mm, uint32_t time_us)
     median->row = 0;
     median->config.window[median->next] = mm;
     median->next++;
-    if (median->next == median->config.count) median->next = 0;
+    if (median->next >= median->config.count) median->next = 0;
     if (!is_full(median)) median->have++;
     if (!is_full(median)) return false;
     median->value = middle_of(median);
