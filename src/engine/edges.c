@@ -12,17 +12,17 @@ static void count(volatile uint8_t *counter)
 
 static bool is_high(const fathom_edges_t *edges)
 {
-    return (edges->pin != NULL) ? edges->pin->get(edges->pin->ctx) : edges->high;
+    return (edges->pin != NULL) ? edges->pin->get(edges->pin->ctx) : (edges->high != 0u);
 }
 
 /* ---- in the interrupt ---- */
 
 static void rise(fathom_edges_t *edges, uint32_t time_us)
 {
-    if (!edges->high) {
+    if (edges->high == 0u) {
         edges->rise_us = time_us;
         edges->timed = true;
-        edges->high = true;
+        edges->high = 1;
         edges->rises = (uint8_t)(edges->rises + 1u);
     } else if (edges->timed && (fathom_elapsed_us(time_us, edges->rise_us) > edges->same_us)) {
         edges->timed = false;
@@ -34,17 +34,17 @@ static void fall(fathom_edges_t *edges, uint32_t time_us)
 {
     const uint8_t written = edges->written;
     const bool is_pulse = edges->timed;
-    edges->high = false;
+    edges->high = 0;
     edges->timed = false;
     if (!is_pulse) return;
     if ((uint8_t)(written - edges->taken) == FATHOM_EDGES_PULSES) {
         count(&edges->lost);
         return;
     }
-    volatile fathom_edges_pulse_t *const pulse = &edges->pulses[written % FATHOM_EDGES_PULSES];
-    pulse->width_us = fathom_elapsed_us(time_us, edges->rise_us);
-    pulse->end_us = time_us;
-    pulse->rise = edges->rises;
+    const uint8_t at = written % FATHOM_EDGES_PULSES;
+    edges->pulses[at].width_us = fathom_elapsed_us(time_us, edges->rise_us);
+    edges->pulses[at].end_us = time_us;
+    edges->pulses[at].rise = edges->rises;
     edges->written = (uint8_t)(written + 1u);
 }
 
@@ -71,12 +71,12 @@ static int take(void *ctx, fathom_pulse_t *pulse)
     uint8_t taken = edges->taken;
     pulse->is_high = is_high(edges);
     while (taken != edges->written) {
-        const volatile fathom_edges_pulse_t *const from = &edges->pulses[taken % FATHOM_EDGES_PULSES];
-        const uint8_t since = (uint8_t)(from->rise - edges->armed);
+        const uint8_t at = taken % FATHOM_EDGES_PULSES;
+        const uint8_t since = (uint8_t)(edges->pulses[at].rise - edges->armed);
         const bool is_new = (since != 0u) && (since < MAX_RISES);
         if (is_new) {
-            pulse->width_us = from->width_us;
-            pulse->end_us = from->end_us;
+            pulse->width_us = edges->pulses[at].width_us;
+            pulse->end_us = edges->pulses[at].end_us;
         }
         taken++;
         edges->taken = taken;

@@ -51,8 +51,8 @@ typedef struct {
     volatile uint8_t rises;   /* so far; wraps */
     volatile uint8_t lost;    /* pulses that found no free place; stops at 255 */
     volatile uint8_t missed;  /* edges that must have been missed; stops at 255 */
-    volatile bool high;
-    bool timed; /* rise_us is the time of the rise */
+    volatile uint8_t high;    /* 1, or 0: low */
+    bool timed;               /* rise_us is the time of the rise */
 
     /* The reader's. */
     const fathom_pin_t *pin;
