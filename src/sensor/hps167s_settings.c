@@ -135,19 +135,23 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     fathom_modbus_setting_t *const setting = &sensor->setting;
     const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
     fathom_modbus_unit_poll(unit);
-    if (unit->setting != 0u) /* to load the user's settings is not to load the factory's */
-        return ((unit->setting == id) && (setting->value == value)) ? FATHOM_READY : FATHOM_ERR_BUSY;
-    unit->is_written = false; /* nor will it be before this read has ended */
-    if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
-        const fathom_status_t status =
-            fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
-        if (status != FATHOM_READY) return status;
+    if (unit->setting != 0u) {
+        /* to load the user's settings is not to load the factory's */
+        if ((unit->setting != id) || (setting->value != value)) return FATHOM_ERR_BUSY;
+    } else {
+        unit->is_written = false; /* nor will it be before this read has ended */
+        if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
+            const fathom_status_t status =
+                fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
+            if (status != FATHOM_READY) return status;
+        }
+        setting->line_settings = NULL;
+        setting->address = 0;
     }
+    /* Each time anew, so that what is sent follows from this call alone. */
     setting->read = (kind == WRITE_ONLY) ? NULL : look;
     setting->driver = sensor;
     setting->value = value;
-    setting->line_settings = NULL;
-    setting->address = 0;
     setting->write.first = command;
     setting->write.last = (uint16_t)value;
     setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
@@ -307,11 +311,11 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
     if (sensor->unit.setting == 0u) {
         move_to_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD, 1);
         if (sensor->unit.address != 1u) setting->address = 1;
-        setting->write.values = &sensor->reset_response;
-        setting->write.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
         sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;
         sensor->is_looked_at = false;
     }
+    setting->write.values = &sensor->reset_response;
+    setting->write.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     status = go_on(sensor);
     if (status == FATHOM_READY) {
         expect_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD);
