@@ -87,7 +87,8 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     fathom_rp2040_uart_t *const uart = ctx;
     rp2040_uart_t *const hardware = hardware_of(uart);
     uint8_t taken = uart->taken;
-    if ((taken == uart->written) && ((hardware->fr & RP2040_UART_FR_RXFE) != 0u)) return 0;
+    /* The FIFO first, since an interrupt moves what is there to the ring. */
+    if (((hardware->fr & RP2040_UART_FR_RXFE) != 0u) && (taken == uart->written)) return 0;
     rp2040_clear(&hardware->imsc, RECEIVE);
     keep_order();
     (void)gather(uart);
