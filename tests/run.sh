@@ -26,7 +26,7 @@ gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
 simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
 qemu-system-x86 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
-libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'
+libfaketime libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'
 
 # Any node and npm will do.
 command -v node >/dev/null && command -v npm >/dev/null || packages="$packages nodejs npm"
@@ -112,8 +112,11 @@ run_short() {
 
 run_long() {
     stage 300 'gcc and clang-sanitize: build' build_two
-    build_and_test gcc-sanitize
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
+    stage 30 'states of a small line' program states $python tests/states/run.py --quick
+    stage 40 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
+    stage 110 'fuzzing: 10 s a target' program fuzz $python tests/fuzz/run.py
+    stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/chaos/run.py
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
     stage 60 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
     stage 60 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
@@ -124,18 +127,33 @@ run_long() {
     stage 300 'second: 1000 seeds' run_tests gcc seeds --label-regex second
 }
 build_two() { build gcc && build clang-sanitize; }
-mutants() { # NAME OPTION...
-    output=$logs/mutants_$1.txt
+program() { # NAME COMMAND...
+    output=$logs/$1.txt
     results="$results $output"
     shift
-    $python tests/mutation/run.py "$@" >"$output" 2>&1
+    "$@" >"$output" 2>&1
     status=$?
     tail -n 60 "$output"
     return "$status"
 }
+mutants() { # NAME OPTION...
+    name=mutants_$1
+    shift
+    program "$name" $python tests/mutation/run.py "$@"
+}
 
 run_full() {
     run_long
+    build_and_test gcc-sanitize
+    stage 300 "clang's analyzer" $python tests/checks/lint.py --analyze
+    stage 180 'states of larger lines' program states_full $python tests/states/run.py
+    stage 120 'states: planted faults' program states_planted $python tests/states/run.py --self-test
+    stage 300 'interrupts, all pairs' program interrupts_full $python tests/firmware/interrupts/run.py
+    stage 60 'interrupts: planted faults' program interrupts_planted $python tests/firmware/interrupts/run.py --self-test
+    stage 3600 'fuzzing: 10^8 executions' program fuzz_full $python tests/fuzz/run.py --full
+    stage 240 'fuzzing: planted faults' program fuzz_planted $python tests/fuzz/run.py --self-test
+    stage 600 'chaos: 1,000 rounds' program chaos_full env FATHOM=build-gcc/fathom $python tests/chaos/run.py --rounds 1000
+    stage 240 'chaos: planted faults' program chaos_planted env FATHOM=build-gcc/fathom $python tests/chaos/run.py --self-test
     stage 120 'firmware, exhaustive forms: build' build gcc # s390x is built only for them
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
     unset FATHOM_LONG
