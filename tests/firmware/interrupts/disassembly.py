@@ -8,17 +8,27 @@ def said(*command):
     return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
 
 
+def leave_out_padding(code):
+    """The nop that stands only for the address of what comes behind a jump or a return."""
+    addresses = sorted(code)
+    for before, address in zip(addresses, addresses[1:]):
+        if code[address] == 'nop' and re.match(r'bx\s|b\.n\s|pop\s.*pc', code[before]):
+            del code[address]
+
+
 class Image:
     def __init__(self, machine, path):
         """functions: [(name, {address: instruction})]; two may have one name."""
         self.functions, self.machine = [], machine
         for line in said(machine.OBJDUMP, '-d', path).splitlines():
             head = re.match(r'[0-9a-f]+ <(.+)>:$', line)
-            code = re.match(r' *([0-9a-f]+):\t(?:[0-9a-f]+ )+\s*([^;]*)', line)
+            code = re.match(r' *([0-9a-f]+):\t(?:[0-9a-f]+ )+\s*([^;@]*)', line)
             if head:
                 self.functions.append((head[1], {}))
-            elif code and self.functions:
+            elif code and self.functions and not code[2].startswith('.'):  # literals of a Cortex-M
                 self.functions[-1][1][int(code[1], 16)] = ' '.join(code[2].split())
+        for _, instructions in self.functions:
+            leave_out_padding(instructions)
 
     def where(self, address):
         for name, code in self.functions:

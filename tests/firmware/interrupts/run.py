@@ -8,7 +8,7 @@
     run.py --update [--only NAME]        keeps the figures in figures.csv
     run.py --self-test                   plants the faults of faults.py, and sees each of them
 
-MACHINE is avr. It builds into build-interrupts. The last line is "N passed, M failed"."""
+MACHINE is avr or rp2040. It builds into build-interrupts. The last line is "N passed, M failed"."""
 import argparse
 import concurrent.futures
 import csv
@@ -21,14 +21,15 @@ import sys
 import disassembly
 import faults
 import machine_avr
+import machine_rp2040
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 BUILD = os.path.join(ROOT, 'build-interrupts')
 FIGURES = os.path.join(HERE, 'figures.csv')
-MACHINES = {machine.NAME: machine for machine in (machine_avr,)}
+MACHINES = {machine.NAME: machine for machine in (machine_avr, machine_rp2040)}
 COLUMNS = ('boundaries', 'alone', 'deferred', 'together', 'pairs')
-COPIED = ('CMakeLists.txt', 'README.md', 'include', 'src', 'port', 'tests/firmware', 'tests/support')
+COPIED = ('CMakeLists.txt', 'README.md', 'include', 'src', 'port', 'examples', 'tests/firmware', 'tests/support')
 SECONDS = 3600  # for one scenario
 
 
@@ -103,7 +104,7 @@ def objects_of(machine, folder):
 
 def named(image, text):
     """With each address as its function."""
-    return re.sub(r'\bat ([0-9a-f]{4})\b', lambda found: f'at {image.where(int(found[1], 16))}', text)
+    return re.sub(r'\bat ([0-9a-f]{4,8})\b', lambda found: f'at {image.where(int(found[1], 16))}', text)
 
 
 def said(figures):

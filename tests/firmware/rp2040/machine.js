@@ -86,17 +86,17 @@ class Machine {
   // The longest run of each interrupt, without those that interrupted it.
   watchInterrupts() {
     const {core} = this;
-    const running = [];
+    this.running = [];
     const [enter, leave] = [core.exceptionEntry.bind(core), core.exceptionReturn.bind(core)];
     core.exceptionEntry = (number) => {
-      running.push({number: number - 16, since: core.cycles, others: 0});
+      this.running.push({number: number - 16, since: core.cycles, others: 0});
       enter(number);
     };
     core.exceptionReturn = (value) => {
       leave(value);
-      const {number, since, others} = running.pop();
+      const {number, since, others} = this.running.pop();
       const all = core.cycles - since;
-      if (running.length > 0) running[running.length - 1].others += all;
+      if (this.running.length > 0) this.running[this.running.length - 1].others += all;
       this.interrupts.set(number, Math.max(this.interrupts.get(number) || 0, all - others));
     };
   }
