@@ -17,6 +17,8 @@ C_RING = '''ISR(USART_RX_vect)
 }
 '''
 
+RP2040, SERIAL = 'port/rp2040/uart.c', 'port/serial/fathom_serial.h'
+
 FAULTS = {'avr': (
     ('clock-without-overflow', 'an overflow that waits is not looked at', ['now_carry'], 1,
      ((CLOCK, r'if \(\(TIFR1 & _BV\(TOV1\)\).*;', ''),)),
@@ -54,4 +56,28 @@ FAULTS = {'avr': (
      (('port/avr/idle.c', r'sleep_cpu\(\);', '__asm__ volatile("nop"); sleep_cpu();'),)),
     ('pointer-in-halves', 'what edges are fed to is stored in halves with interrupts on', ['icp1_begin'], 1,
      (('port/avr/icp1.c', r'(?s)(cli\(\);.*?)    captured = edges;[^\n]*\n', r'captured = edges;\n    \1'),)),
+), 'rp2040': (
+    ('ring-before-fifo', 'read looks into the ring before the FIFO', ['read_one'], 1,
+     ((RP2040, r'\(\(hardware->fr & RP2040_UART_FR_RXFE\) != 0u\) && \(taken == uart->written\)',
+       '(taken == uart->written) && ((hardware->fr & RP2040_UART_FR_RXFE) != 0u)'),)),
+    ('gather-unmasked', 'read moves bytes to the ring with RECEIVE let through', ['read_three'], 1,
+     ((RP2040, r'rp2040_clear\(&hardware->imsc, RECEIVE\);\n    keep_order', 'keep_order'),)),
+    ('driver-before-the-request', 'the driver is on before an alarm finds the request unsent', ['write_gone'], 1,
+     ((RP2040, r'    uart->given = 0;\n    uart->length = \(uint8_t\)length;\n    drive\(uart, true\);',
+       '    drive(uart, true);\n    uart->given = 0;\n    uart->length = (uint8_t)length;'),)),
+    ('fed-by-both', 'the transmit interrupt is let through while write fills the FIFO', ['write_most'], 1,
+     ((RP2040, r'    drive\(uart, true\);\n    feed\(uart\);',
+       '    drive(uart, true);\n    rp2040_set(&hardware_of(uart)->imsc, RP2040_UART_INT_TX);\n    feed(uart);'),)),
+    ('alarm-that-has-passed', 'an alarm that has passed meanwhile is not seen', ['write_one'], 1,
+     (('port/rp2040/alarm.c', r'    if \(is_over &&.*\n', '    (void)is_over;\n'),)),
+    ('slept-through', 'the look at the news and the sleep are not one', ['idle'], 1,
+     (('port/rp2040/idle.c', r'    __asm__ volatile\("cpsid i" ::: "memory"\);\n', ''),)),
+    ('pulse-given-back-before-it-is-read', 'the place of a pulse is free before the pulse is taken from it',
+     ['take_full_and_high'], 1,
+     ((EDGES, r'const volatile fathom_edges_pulse_t \*const from =', 'edges->taken = (uint8_t)(taken + 1);\n\\g<0>'),)),
+    ('serial-place-given-back-before-it-is-read', 'the place of a byte is free before the byte is taken from it',
+     ['serial_read_full'], 1,
+     ((SERIAL, r'bytes\[count\] = serial->bytes', 'serial->got = (uint8_t)(got + 1u);\n        \\g<0>'),)),
+    ('serial-looked-at-twice', 'read gives back what came after it had looked', ['serial_read_one'], 1,
+     ((SERIAL, r'    serial->got = got;\n    return', '    serial->got = serial->put;\n    return'),)),
 )}

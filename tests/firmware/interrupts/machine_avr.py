@@ -5,6 +5,7 @@ import os
 NAME = 'avr'
 PROGRAMS = ('cmake', 'avr-gcc', 'avr-objdump', 'avr-nm')
 OBJDUMP, NM = 'avr-objdump', 'avr-nm'
+A_PROCESS = 1  # scenario
 
 # How far: 1 each event alone, 2 two together as well, 3 all pairs of boundaries as well. Quick has all others alone,
 # the full form has them together.

@@ -47,24 +47,40 @@ def run(*command):
 class Result:
     """Of a scenario: its lines "figures NAME,N,...", "covered ADDRESS" and "wrong NAME: what"."""
 
-    def __init__(self, name, depth, command):
-        done = subprocess.run([*command, name, str(depth)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              timeout=SECONDS, check=False)
+    def __init__(self, name, depth, text, status):
         self.name, self.depth = name, depth
-        self.wrong = re.findall(r'^wrong (.*)$', done.stdout, re.M)
-        self.covered = {int(address, 16) for address in re.findall(r'^covered (\w+)$', done.stdout, re.M)}
-        found = re.search(r'^figures [^,]+,([\d,]+)$', done.stdout, re.M)
+        self.wrong = re.findall(r'^wrong (.*)$', text, re.M)
+        self.covered = {int(address, 16) for address in re.findall(r'^covered (\w+)$', text, re.M)}
+        found = re.search(fr'^figures {name},([\d,]+)$', text, re.M)
         self.figures = dict(zip(COLUMNS, map(int, found[1].split(',')))) if found else {}
-        if not self.wrong and (done.returncode != 0 or not found):
-            self.wrong = [f'{name}: exit status {done.returncode}: {done.stdout[-500:]}']
+        if not self.wrong and not found:
+            self.wrong = [f'{name}: exit status {status}: {text[-500:]}']
+
+
+def run_process(machine, host, image, depths):
+    """[Result] of {name: depth}, by one process; the line "figures" is a scenario's last."""
+    words = [str(word) for pair in depths.items() for word in pair]
+    done = subprocess.run(machine.command(host, image, *words), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, timeout=SECONDS, check=False)
+    results, text = [], done.stdout
+    for name, depth in depths.items():
+        part = re.match(fr'(?ms).*?^figures {name},[\d,]+$', text)
+        results.append(Result(name, depth, part[0] if part else text, done.returncode))
+        text = text[part.end():] if part else ''
+    if done.returncode != 0 and not any(result.wrong for result in results):
+        results[-1].wrong = [f'{results[-1].name}: exit status {done.returncode}: {done.stdout[-500:]}']
+    return results
 
 
 def run_scenarios(machine, host, image, depths):
-    """[Result], as they come; the long ones first."""
+    """[Result], as they come."""
+    names = list(depths)
+    parts = [{name: depths[name] for name in names[i:i + machine.A_PROCESS]}
+             for i in range(0, len(names), machine.A_PROCESS)]
     with concurrent.futures.ThreadPoolExecutor(min(2, os.cpu_count() or 1)) as pool:
-        waiting = [pool.submit(Result, name, depth, machine.command(host, image)) for name, depth in depths.items()]
+        waiting = [pool.submit(run_process, machine, host, image, part) for part in parts]
         for done in concurrent.futures.as_completed(waiting):
-            yield done.result()
+            yield from done.result()
 
 
 def kept():
@@ -134,7 +150,7 @@ def check(machine, options):
         passed, failed = passed + (not wrong), failed + bool(wrong)
     if not options.only:
         count, wrong = image.missed(objects_of(machine, folder), covered)
-        print(*wrong[:20], sep='\n', end='\n' if wrong else '')
+        print(*wrong[:100], sep='\n', end='\n' if wrong else '')
         total = {word: sum(result.figures.get(word, 0) for result in results) for word in COLUMNS}
         print(f'{machine.NAME}: {len(results)} scenarios, {count} instructions of the port, '
               f'{len(wrong)} of them not broken into; {said(total)}')
@@ -181,7 +197,7 @@ def gates_fail(machine, folder, path):
     names, _ = image.wanted(objects)
     one = next(min(code) for name, code in image.functions if name in names)
     name = next(iter(machine.QUICK))
-    result = Result(name, 1, machine.command(machine.build_host(run, ROOT, folder), path))
+    result, = run_process(machine, machine.build_host(run, ROOT, folder), path, {name: 1})
     whole = not compare(machine, result)
     result.figures['alone'] -= 1
     return [what for what, seen in (('an instruction', not image.missed(objects, covered)[1]

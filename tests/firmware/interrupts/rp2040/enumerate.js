@@ -123,6 +123,7 @@ class Enumeration {
     let wrong = null;
     this.figures[figure]++;
     try {
+      if (figure === 'alone') this.aside();
       const result = this.toEnd();
       wrong = checkRules(bench, result, this.scenario) || this.wasThere();
       const events = bench.run.raised.slice().sort((a, b) => a.number - b.number).map(({event}) => event);
@@ -135,6 +136,27 @@ class Enumeration {
   }
 
   // ---- boundaries ----
+
+  // What of the path is carried out only behind the first event is broken into as well, once.
+  aside() {
+    const {bench, snapshots} = this;
+    const begin = snapshots.take();
+    const {core} = bench.machine;
+    while (bench.run.isArmed) {
+      if (core.IPSR === 0 && !core.interruptsUpdated && !this.covered.has(bench.pc)) this.breakAside();
+      bench.step();
+    }
+    snapshots.restore(begin);
+  }
+
+  breakAside() {
+    const here = this.snapshots.take();
+    this.covered.add(this.bench.pc);
+    for (const second of this.scenario.events) {
+      if (this.raise(second, 1)) this.finish('pairs');
+      this.snapshots.restore(here);
+    }
+  }
 
   // Both in one instant.
   together(here, first, second) {
@@ -177,11 +199,12 @@ class Enumeration {
   run() {
     const {bench} = this;
     this.toBegin();
-    while (bench.run.isArmed) {
+    const begin = this.snapshots.take();
+    for (; bench.run.isArmed; bench.step()) this.covered.add(bench.pc);
+    this.snapshots.restore(begin);
+    for (; bench.run.isArmed; bench.step()) {
       this.figures.boundaries++;
-      this.covered.add(bench.pc);
       this.atBoundary(this.snapshots.take());
-      bench.step();
     }
     const instructions = bench.run.step;
     this.finishAlone();

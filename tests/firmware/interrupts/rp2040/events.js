@@ -8,6 +8,7 @@ const {ECHO, DRIVER_ALARM, INT_RT} = require('./bench.js');
 
 const PARITY = 4, FRAMING = 8, OVERRUN = 16; // FATHOM_RX_
 const VALUES = [0xa1, 0xd3];
+const PAUSE_NS = 25e6;
 const IRQ = {driverAlarm: 1, edges: 13, serial: 20, uart: 21};
 
 // hal.h: what comes in while the line settings change is garbage, or lost.
@@ -62,6 +63,8 @@ const EVENTS = {
     const {armed, clockAlarm} = bench.timer.alarms[DRIVER_ALARM];
     return armed && standStillTo(bench, clockAlarm.nanos);
   },
+  // Nothing but time, longer than any alarm of the scenarios.
+  pause: (bench) => standStillTo(bench, bench.ns + PAUSE_NS),
   edge: (bench) => {
     const {edges} = bench.truth;
     edges.push(bench.ns);
@@ -81,7 +84,7 @@ const EVENTS = {
 };
 
 // Those for which time passes come first of two in one instant.
-const TAKES_TIME = new Set(['left', 'gone', 'alarm', 'serialLeft']);
+const TAKES_TIME = new Set(['left', 'gone', 'alarm', 'pause', 'serialLeft']);
 
 // [{event, number}] in the order in which they happen in one instant.
 function inInstant(events) {

@@ -62,9 +62,16 @@ function serialFlawedSecond(bench) {
   receiveSerial(bench, 1);
 }
 
-function uncounted(bench) {
-  bench.poke('port', 4, Array(6).fill(0xff));
-  receive(bench, 1, PE | FE | OE, FLAWED | OVERRUN);
+// With errors of DR, the counters as they are or at their end.
+const erroneous = (errors, isCounted) => (bench) => {
+  if (!isCounted) bench.poke('port', 4, Array(6).fill(0xff));
+  const flags = (errors & PE ? PARITY : 0) | (errors & FE ? FRAMING : 0) | (errors & OE ? OVERRUN : 0);
+  receive(bench, 1, errors, flags);
+};
+
+function serialLeft(bench) {
+  EVENTS.serialLeft(bench);
+  bench.rest();
 }
 
 // The time-out of three bytes has come, and one more came behind.
@@ -145,18 +152,21 @@ read('in_part', bytes(7), 2);
 read('nothing', bytes(3), 0);
 read('wraps', both(wraps, bytes(3)));
 read('flawed_second', flawedSecond);
-read('uncounted', uncounted);
+for (const errors of [PE, FE, OE, PE | FE, PE | OE, FE | OE, PE | FE | OE])
+  for (const isCounted of [true, false])
+    read(`error_${errors.toString(16)}${isCounted ? '' : '_uncounted'}`, erroneous(errors, isCounted), BYTES,
+      {events: ['byte', 'silence']});
 read('silent', silent);
 read('silent_in_part', silent, 2);
 read('no_idle', bytes(3), BYTES, {without: NO_IDLE});
 read('leaving', both(write(40), bytes(3)), BYTES, {events: ['byte', 'silence', 'left', 'alarm'], pairs: ['byte', 'left']});
 read('full', bytes(RING + 3), 1, {isLate: true});
-read('full_whole', bytes(RING + 3), BYTES, {isLate: true, events: ['byte', 'silence']});
+read('full_whole', bytes(RING + 3), BYTES, {isLate: true, events: ['byte']});
 
 function line(name, call, prepare, given = {}, more = {}) {
   add(name, call, {prepare, given, events: SENDING, pairs: ['left', 'gone', 'alarm', 'byte'], ...more});
 }
-line('write_one', 'write', () => {}, request(1));
+line('write_one', 'write', () => {}, request(1), {events: ['pause', ...SENDING]});
 line('write_most', 'write', bytes(3), request(35), {events: ['left', 'alarm', 'byte', 'silence', 'spuriousUart', 'spuriousAlarm']});
 line('write_nothing', 'write', () => {}, request(0));
 line('write_too_much', 'write', () => {}, request(61));
@@ -215,7 +225,8 @@ pulse('level', 'level', armed(100));
 pulse('edges_begin', 'edgesBegin', armed(100, 300), {isForgetful: true});
 
 function sleep(name, prepare, mostUs, more = {}) {
-  add(name, 'idle', {prepare, given: {mostUs, hasNews: name === 'idle_news'}, events: ['edge', 'byte', 'silence', 'alarm', ...SPURIOUS],
+  add(name, 'idle', {prepare, given: {mostUs, hasNews: name === 'idle_news'},
+    events: ['edge', 'byte', 'silence', 'alarm', 'pause', ...SPURIOUS],
     pairs: ['edge', 'byte'], ...more});
 }
 sleep('idle', old, 250);
@@ -224,6 +235,8 @@ sleep('idle_leaving', both(write(1), old), 250);
 sleep('idle_news', armed(100), 250);
 sleep('idle_nothing', old, 0);
 sleep('idle_short', old, 1);
+sleep('idle_long', both(write(1), old), 2 ** 31);
+sleep('idle_no_deadline', both(write(1), old), 2 ** 32 - 1);
 
 function serial(name, call, prepare, given, events, more = {}) {
   add(`serial_${name}`, call, {prepare, given, events, ...more});
@@ -233,6 +246,7 @@ serial('read_one', 'serialRead', serialBytes(1), {length: BYTES}, SERIAL);
 serial('read_wraps', 'serialRead', both(serialWraps, serialBytes(3)), {length: BYTES}, SERIAL);
 serial('read_in_part', 'serialRead', serialBytes(3), {length: 2}, SERIAL);
 serial('read_flawed_second', 'serialRead', serialFlawedSecond, {length: BYTES}, SERIAL);
+serial('read_flawed', 'serialRead', (bench) => receiveSerial(bench, 1, PE | FE, FLAWED), {length: BYTES}, SERIAL);
 serial('read_full', 'serialRead', serialBytes(SERIAL_RING), {length: 1}, ['serialByte', 'serialBehind'], {mayDrop: true});
 serial('read_leaving', 'serialRead', both(serialWrite(3), serialBytes(1)), {length: BYTES}, SERIAL_SENDING);
 serial('write_one', 'serialWrite', () => {}, request(1), SERIAL_SENDING);
@@ -242,5 +256,6 @@ serial('write_too_much', 'serialWrite', () => {}, request(9), SERIAL_SENDING);
 serial('write_leaving', 'serialWrite', serialWrite(3), request(2), SERIAL_SENDING);
 serial('leaves', 'serialLeaves', () => {}, {}, SERIAL_SENDING);
 serial('leaves_leaving', 'serialLeaves', serialWrite(3), {}, SERIAL_SENDING);
+serial('leaves_most_left', 'serialLeaves', both(serialWrite(8), serialLeft, serialLeft, serialLeft), {}, SERIAL_SENDING);
 
 module.exports = {scenarios};
