@@ -138,7 +138,7 @@ bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_ua
  * read        looks into the hardware's FIFO too, so that a loop that polls sees each byte when it has come. A program
  *             that sleeps is woken by every fourth, and by the last one 32 bits later (1.7 ms at 19200 baud): the
  *             receive time-out. That byte's time is reported, FATHOM_RX_TIMED, so that the silence before the next
- *             request is no longer for it; late by what else interrupts.
+ *             request is no longer for it; late by what else interrupts, and by as long as the ring was full.
  * write       takes up to request_size bytes; of more it returns < 0. The first byte begins at once; an interrupt keeps
  *             the FIFO filled, if the request is longer than its 32 bytes. The driver is high from before that until
  *             BUSY has ended. PL011 has no interrupt for that end, so the alarm is set to when it is due and looks;
