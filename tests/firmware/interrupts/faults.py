@@ -69,7 +69,7 @@ FAULTS = {'avr': (
      ((RP2040, r'    drive\(uart, true\);\n    feed\(uart\);',
        '    drive(uart, true);\n    rp2040_set(&hardware_of(uart)->imsc, RP2040_UART_INT_TX);\n    feed(uart);'),)),
     ('alarm-that-has-passed', 'an alarm that has passed meanwhile is not seen', ['write_one'], 1,
-     (('port/rp2040/alarm.c', r'    if \(is_over &&.*\n', '    (void)is_over;\n'),)),
+     (('port/rp2040/alarm.c', r'    if \(is_over &&.*\n', '    (void)is_over, (void)bit;\n'),)),
     ('slept-through', 'the look at the news and the sleep are not one', ['idle'], 1,
      (('port/rp2040/idle.c', r'    __asm__ volatile\("cpsid i" ::: "memory"\);\n', ''),)),
     ('pulse-given-back-before-it-is-read', 'the place of a pulse is free before the pulse is taken from it',
