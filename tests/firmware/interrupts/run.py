@@ -150,7 +150,7 @@ def check(machine, options):
         passed, failed = passed + (not wrong), failed + bool(wrong)
     if not options.only:
         count, wrong = image.missed(objects_of(machine, folder), covered)
-        print(*wrong[:100], sep='\n', end='\n' if wrong else '')
+        print(*wrong[:20], sep='\n', end='\n' if wrong else '')
         total = {word: sum(result.figures.get(word, 0) for result in results) for word in COLUMNS}
         print(f'{machine.NAME}: {len(results)} scenarios, {count} instructions of the port, '
               f'{len(wrong)} of them not broken into; {said(total)}')

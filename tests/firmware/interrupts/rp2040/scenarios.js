@@ -69,6 +69,11 @@ const erroneous = (errors, isCounted) => (bench) => {
   receive(bench, 1, errors, flags);
 };
 
+function framingUncounted(bench) {
+  bench.poke('port', 6, [0xff, 0xff]);
+  receive(bench, 1, FE | OE, FRAMING | OVERRUN);
+}
+
 function serialLeft(bench) {
   EVENTS.serialLeft(bench);
   bench.rest();
@@ -156,6 +161,7 @@ for (const errors of [PE, FE, OE, PE | FE, PE | OE, FE | OE, PE | FE | OE])
   for (const isCounted of [true, false])
     read(`error_${errors.toString(16)}${isCounted ? '' : '_uncounted'}`, erroneous(errors, isCounted), BYTES,
       {events: ['byte', 'silence']});
+read('framing_uncounted', framingUncounted, BYTES, {events: ['byte', 'silence']});
 read('silent', silent);
 read('silent_in_part', silent, 2);
 read('no_idle', bytes(3), BYTES, {without: NO_IDLE});
