@@ -31,7 +31,7 @@ TEST_IN(asked, bytes_just_within_the_gap_hold_a_transaction_for_a_frame_longer_t
         waited_us += GAP_US - 1;
     }
     expect_failed(FATHOM_ERR_CHECKSUM);
-    assert_in_range(waited_us, TIMEOUT_US, TIMEOUT_US + FRAME * GAP_US);
+    assert_in_range(waited_us, TIMEOUT_US, TIMEOUT_US + FRAME * (uint32_t)GAP_US);
 }
 
 /* So that each poll finds half of the next copy behind the one that it takes. */
