@@ -73,6 +73,7 @@ ssize_t __wrap_read(int fd, void *bytes, size_t length)
 ssize_t __wrap_write(int fd, const void *bytes, size_t length)
 {
     calls.writes++;
+    calls.has_written = true;
     return __real_write(fd, bytes,
                         calls.write_most != 0 && length > calls.write_most ? calls.write_most : length);
 }
