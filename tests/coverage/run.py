@@ -46,6 +46,15 @@ def c_missed(row):
     return row[1::2]
 
 
+# QEMU's clock is the host's, so that interrupts come elsewhere in each run.
+TIMED_BY_HOST = ('port/mps2/', 'port/virt/', 'port/stm32f4/')
+
+
+def slack(name, row):
+    """How much more than is kept may be missed: a thirtieth of the instructions, and two ways."""
+    return (0, row[2] // 30, 2) if name.startswith(TIMED_BY_HOST) else (0, 0, 0)
+
+
 def machine_missed(row):
     return tuple(row[i] - row[i + 1] for i in (0, 2, 4))
 
@@ -68,7 +77,8 @@ class Verdict:
 def compare(kept, rows, missed):
     """What is worse than it was; and whether something is better, or new."""
     worse = [f'{name}: {missed(row)} missed, {missed(kept[name])} were kept' for name, row in sorted(rows.items())
-             if name in kept and any(now > was for now, was in zip(missed(row), missed(kept[name])))]
+             if name in kept and any(now > was + more for now, was, more in
+                                     zip(missed(row), missed(kept[name]), slack(name, row)))]
     worse += [f'{name} is not in the figures: --update' for name in sorted(rows) if name not in kept]
     worse += [f'{name} is in the figures, and no longer there: --update' for name in sorted(kept) if name not in rows]
     better = any(missed(row) != missed(kept.get(name, row)) for name, row in rows.items())
@@ -79,6 +89,8 @@ def keep(verdict, path, head, rows, missed, update):
     worse, better = compare(read_rows(path), rows, missed)
     if update:
         write_rows(path, head, rows)
+        for line in worse:
+            print(f'    kept all the same: {line}')
         print(f'{os.path.basename(path)} is kept')
         return
     verdict.check(f'no figure is worse than in {os.path.basename(path)}', worse)

@@ -232,7 +232,9 @@ def main():
     if options.update:
         update(found, options.group, compiler, compilers, rows)
         write(FIGURES, compilers, rows)
-    lines = problems(found, options.group, compiler, compilers, rows) if options.check else []
+    # While coverage/run.py looks at what is executed, the figures are not what is tested.
+    is_checked = options.check and 'FATHOM_TRACE' not in os.environ
+    lines = problems(found, options.group, compiler, compilers, rows) if is_checked else []
     print('\n'.join([*lines, f'{len(found) - len(lines)} passed, {len(lines)} failed']))
     return 1 if lines else 0
 

@@ -198,6 +198,14 @@ TEST(what_only_begins_like_a_gateways_exception_is_none)
     expect_outcome(longer, sizeof longer, RIG_TIMEOUT_US + 1000, FATHOM_ERR_CHECKSUM);
 }
 
+/* What says 11 where an exception would, but has not the bit of one: a count that nothing has asked for. */
+TEST(what_is_as_long_as_a_gateways_exception_is_none)
+{
+    static const uint8_t plain[] = {0xF0, 1, 0, 0, 0, 3, 1, 0x03, 0x0B};
+    expect_outcome(plain, sizeof plain, RIG_TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(rig.port.gateway_refusals, 0);
+}
+
 TEST(exceptions_have_their_numbers)
 {
     for (unsigned number = 1; number != 256; number++) {

@@ -306,6 +306,8 @@ TEST(what_the_chip_cannot_do_is_told)
                        "refuses an input like this; take");
         expect_failure(EDGES, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED,
                        "refuses an input like this, with edges");
+        expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED,
+                       "refuses an output like this; take");
     }
     static const int denials[] = {EPERM, EACCES};
     for (unsigned i = 0; i != 2; i++) {
