@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * proves: src/sensor/a16_controlled.c
+ * with:   src/sensor/dyp_auto.c src/sensor/dyp.c src/engine/stream.c src/engine/output.c src/engine/sensor.c
+ *          src/codec/dyp_stream.c src/engine/line_pins.c src/engine/trigger.c
+ * options: -eva-precision 0
+ *          -eva-slevel-function fathom_a16_controlled_init:50,fathom_dyp_auto_init:20,fathom_dyp_window_copy:40,main:30,output_of:10,take:40
+ *          -eva-split-return-function fathom_a16_controlled_init:1,fathom_dyp_auto_init:1,fathom_trigger_init:1
+ * unreached: due_us_0 poll_0
+ * quick:   no
+ *
+ * The A16 that a pin triggers: any calls in any order, any bytes.
+ */
+#include "fathom/sensor/a16_controlled.h"
+#include "outputs.h"
+
+static fathom_a16_controlled_t sensor;
+
+static void any_call(const fathom_sensor_t *handle)
+{
+    switch (any_8_in(0, 2)) {
+    case 0:
+        any_poll(handle);
+        break;
+    case 1:
+        (void)fathom_line_poll(&any_line); /* another driver has */
+        break;
+    default:
+        (void)fathom_a16_controlled_deinit(&sensor);
+    }
+}
+
+void main(void)
+{
+    fathom_a16_controlled_config_t config;
+    const uint8_t which = any_8_in(0, 4);
+    /*@ split which; */
+    any_line_init();
+    config.line = any_bool() ? &any_line : NULL;
+    config.trigger = output_of(which);
+    config.period_us = any_32();
+    config.earliest_us = any_32();
+    config.latest_us = any_32();
+    config.low_us = any_16();
+    config.gap_us = any_16();
+    any_window(&config.window);
+    if (fathom_a16_controlled_init(&sensor, &config) != FATHOM_READY) return;
+    const fathom_sensor_t handle = fathom_a16_controlled_sensor(&sensor);
+    while (any_bool()) any_call(&handle);
+    (void)fathom_a16_controlled_deinit(&sensor);
+}

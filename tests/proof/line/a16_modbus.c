@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * proves: src/sensor/a16_modbus.c src/sensor/a16_settings.c src/engine/modbus_unit.c
+ *          src/engine/modbus_setting.c src/sensor/dyp_modbus.c
+ * with:   src/sensor/dyp.c src/engine/sensor.c src/codec/modbus_rtu.c src/codec/crc16.c
+ * options: -eva-precision 0
+ *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:5,fathom_a16_modbus_init:50
+ *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_dyp_modbus_init:1,fathom_a16_modbus_init:1
+ * quick:   yes
+ *
+ * The A16 by Modbus, with all that can be set, and the search for its address: any calls in any order.
+ */
+#include "driver.h"
+#include "fathom/sensor/a16_settings.h"
+
+static fathom_a16_modbus_t sensor;
+
+static void read_or_set(void)
+{
+    uint8_t address;
+    uint16_t threshold_mm;
+    fathom_a16_polarity_t polarity;
+    fathom_dyp_value_t value;
+    fathom_sample_t sample;
+    switch (any_8_in(0, 11)) {
+    case 0:
+        (void)fathom_a16_modbus_address(&sensor, &address);
+        break;
+    case 1:
+        (void)fathom_a16_modbus_set_address(&sensor, any_8());
+        break;
+    case 2:
+        (void)fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&sensor);
+        break;
+    case 3:
+        (void)fathom_a16_modbus_set_operating_mode(&sensor, (fathom_a16_operating_mode_t)any_8());
+        break;
+    case 4:
+        (void)fathom_a16_modbus_switch_polarity(&sensor, &polarity);
+        break;
+    case 5:
+        (void)fathom_a16_modbus_set_switch_polarity(&sensor, (fathom_a16_polarity_t)any_8());
+        break;
+    case 6:
+        (void)fathom_a16_modbus_switch_threshold_mm(&sensor, &threshold_mm);
+        break;
+    case 7:
+        (void)fathom_a16_modbus_set_switch_threshold_mm(&sensor, any_16());
+        break;
+    case 8:
+        (void)fathom_a16_modbus_automatic_value(&sensor, &value);
+        break;
+    case 9:
+        (void)fathom_a16_modbus_set_automatic_value(&sensor, (fathom_dyp_value_t)any_8());
+        break;
+    case 10:
+        (void)fathom_a16_modbus_measure(&sensor, (fathom_dyp_value_t)any_8(), &sample);
+        break;
+    default:
+        (void)fathom_a16_modbus_next_is_blind(&sensor);
+    }
+}
+
+static void any_call(const fathom_sensor_t *handle)
+{
+    static fathom_dyp_modbus_find_t find;
+    uint8_t address;
+    switch (any_8_in(0, 7)) {
+    case 0:
+        any_poll(handle);
+        break;
+    case 1:
+        fathom_a16_modbus_power_on(&sensor);
+        break;
+    case 2:
+        fathom_a16_modbus_cancel(&sensor);
+        break;
+    case 3:
+        (void)fathom_a16_modbus_is_written(&sensor);
+        (void)fathom_a16_modbus_exception(&sensor);
+        break;
+    case 4:
+        assumed_go_on(); /* another driver has polled the transport */
+        break;
+    case 5:
+        (void)fathom_dyp_modbus_find(&find, &assumed_transport, &address);
+        break;
+    case 6:
+        fathom_dyp_modbus_find_cancel(&find, &assumed_transport);
+        break;
+    default:
+        read_or_set();
+    }
+}
+
+void main(void)
+{
+    fathom_a16_modbus_config_t config;
+    any_modbus_config(&config.modbus);
+    config.start_us = any_32();
+    any_window(&config.window);
+    config.value = any_8();
+    if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_READY) return;
+    const fathom_sensor_t handle = fathom_a16_modbus_sensor(&sensor);
+    while (any_bool()) any_call(&handle);
+    fathom_a16_modbus_deinit(&sensor);
+}

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef ANY_LINE_H
+#define ANY_LINE_H
+
+#include "assumptions.h"
+#include "driver.h"
+#include "fathom/engine/line.h"
+
+/*
+ * Any line that keeps to fathom/engine/line.h, in place of src/engine/line*.c, to prove what stands upon one: the
+ * clients and the drivers that listen. At each poll a transaction may end with any status, and the listener may be called
+ * any number of times with any bytes. What the line promises to what stands upon it is proved of the real one in line.c.
+ */
+
+enum { ANY_FRAME_SIZE = 27, ANY_CALL_SIZE = 3 };
+
+static uint8_t any_line_frame[ANY_FRAME_SIZE];
+static fathom_line_config_t any_line_config;
+static fathom_line_t any_line;
+static fathom_transaction_t *any_line_queued; /* NULL: none */
+
+static void any_line_init(void)
+{
+    any_line_config.uart = any_bool() ? &assumed_uart : &assumed_bare_uart;
+    any_line_config.clock = &assumed_clock;
+    any_line_config.frame = any_line_frame;
+    any_line_config.frame_size = any_8_in(8, ANY_FRAME_SIZE);
+    any_line_config.silence_us = any_16();
+    any_line_config.gap_us = any_16();
+    any_line.config = &any_line_config;
+}
+
+/* What a driver may read of it. */
+static void any_line_look(fathom_line_t *line)
+{
+    /*@ assert line == &any_line; */
+    line->polled_us = any_32();
+    line->silent_us = any_16();
+    line->have = any_8();
+}
+
+static void any_line_end(int8_t status)
+{
+    any_line_queued->status = status;
+    any_line_queued->link.heard_us = any_32();
+    any_line_queued = NULL;
+}
+
+static void any_line_go_on(void)
+{
+    if (any_line_queued == NULL || any_bool()) return;
+    any_line_queued->attempts = any_8();
+    if (any_bool()) return;
+    any_line_end(
+        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_PORT)));
+}
+
+/* All that the protocol may be asked while the transaction is queued. What it writes may be there from the beginning:
+ * nothing tells when it comes but the status. */
+static void any_line_converse(fathom_transaction_t *transaction)
+{
+    const fathom_protocol_t *const protocol = transaction->protocol;
+    uint8_t frame[ANY_FRAME_SIZE];
+    const uint8_t length = protocol->encode(transaction, any_line_frame);
+    /*@ assert encoded: 1 <= length <= any_line_config.frame_size; */
+    any_bytes(frame, ANY_FRAME_SIZE);
+    (void)protocol->parse_response(transaction, frame);
+}
+
+fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *transaction)
+{
+    /*@ assert line == &any_line; */
+    if (transaction->timeout_us > INT32_MAX) return FATHOM_ERR_ARGUMENT;
+    if (transaction == any_line_queued) return FATHOM_ERR_BUSY;
+    if (transaction->line_settings != NULL) (void)assumed_set_line(&assumed_ctx, transaction->line_settings);
+    any_line_converse(transaction);
+    transaction->status = FATHOM_PENDING;
+    transaction->attempts = 0;
+    any_line_queued = transaction;
+    return FATHOM_PENDING;
+}
+
+void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction)
+{
+    /*@ assert line == &any_line; */
+    if (transaction == any_line_queued) any_line_end(FATHOM_ERR_CANCELLED);
+}
+
+void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
+{
+    /*@ assert line == &any_line; */
+    if (any_line_queued != NULL && any_line_queued->address == address) any_line_end(FATHOM_ERR_CANCELLED);
+}
+
+bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction)
+{
+    /*@ assert line == &any_line; */
+    return transaction == any_line_queued;
+}
+
+fathom_status_t fathom_line_poll(fathom_line_t *line)
+{
+    while (any_bool()) {
+        uint8_t bytes[ANY_CALL_SIZE];
+        const uint8_t count = any_8_in(0, ANY_CALL_SIZE);
+        /*@ split count; */
+        any_bytes(bytes, ANY_CALL_SIZE);
+        any_line_look(line);
+        /* line.h has it: "`count` bytes"; they are the last ones there are. */
+        if (line->listener != NULL)
+            line->listener->receive(line->listener, bytes + (ANY_CALL_SIZE - count), count, any_bool(),
+                                    any_32());
+    }
+    any_line_look(line);
+    any_line_go_on();
+    return any_bool() ? FATHOM_PENDING : FATHOM_ERR_PORT;
+}
+
+void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener)
+{
+    /*@ assert line == &any_line; */
+    line->listener = listener;
+}
+
+uint32_t fathom_line_due_us(const fathom_line_t *line)
+{
+    /*@ assert line == &any_line; */
+    return any_32();
+}
+
+/* Of all that it may return the drivers tell no more apart than READY, PENDING and below zero. */
+fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
+{
+    /*@ assert line == &any_line; */
+    /*@ assert on == 0 || on == 1; */
+    any_line_look(line);
+    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_UNSUPPORTED, FATHOM_READY);
+}
+
+bool fathom_line_is_idle(const fathom_line_t *line) { return line->have == 0 && any_bool(); }
+
+uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
+
+#endif

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * proves: src/sensor/hps167s_auto.c
+ * with:   src/sensor/hps167s.c src/sensor/hps167s_info.c src/codec/hps167s_registers.c src/codec/crc16.c
+ *          src/engine/modbus_unit.c src/engine/sensor.c
+ * options: -eva-precision 0 -eva-auto-loop-unroll 700 -eva-widening-delay 20
+ *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_hps167s_init:50,fathom_hps167s_auto_init:50,main:200,run:1,receive:20,slip:20,fathom_crc16:20
+ *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_hps167s_init:1,fathom_hps167s_auto_init:1
+ * quick:   no
+ *
+ * The HPS-167S that sends by itself, alone and beside a driver that sends requests: any calls in any order, any bytes.
+ */
+#include "fathom/sensor/hps167s_auto.h"
+#include "any_line.h"
+#include "fathom/sensor/hps167s_info.h"
+#include "hps167s_config.h"
+
+static fathom_hps167s_auto_t sensor;
+static fathom_hps167s_t beside;
+
+static void any_call(const fathom_sensor_t *handle, const fathom_sensor_t *other)
+{
+    fathom_hps167s_configuration_t configuration;
+    switch (any_8_in(0, 5)) {
+    case 0:
+        any_poll(handle);
+        break;
+    case 1:
+        (void)fathom_line_poll(&any_line); /* another driver has */
+        break;
+    case 2:
+        any_poll(other);
+        break;
+    case 3:
+        (void)fathom_hps167s_configuration(&beside, &configuration);
+        break;
+    case 4:
+        fathom_hps167s_power_on(&beside);
+        break;
+    default:
+        (void)fathom_hps167s_auto_use_limits(&sensor, &any_limits);
+    }
+}
+
+/* Alone, and beside the other driver. */
+static void run(void)
+{
+    const fathom_sensor_t handle = fathom_hps167s_auto_sensor(&sensor);
+    const fathom_sensor_t other = fathom_hps167s_sensor(&beside);
+    while (any_bool()) any_call(&handle, &other);
+    fathom_hps167s_auto_deinit(&sensor);
+}
+
+void main(void)
+{
+    fathom_hps167s_auto_config_t config;
+    fathom_hps167s_config_t config_beside;
+    any_line_init();
+    config.line = any_bool() ? &any_line : NULL;
+    config.stale_us = any_32();
+    config.address = any_8();
+    any_hps167s_config(&config_beside);
+    const bool is_beside = any_bool();
+    /*@ split is_beside; */
+    if (fathom_hps167s_init(&beside, &config_beside) != FATHOM_READY) return;
+    if (fathom_hps167s_auto_init(&sensor, &config) != FATHOM_READY) return;
+    if (is_beside) fathom_hps167s_auto_beside(&sensor, &beside);
+    run();
+}

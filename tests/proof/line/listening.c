@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * proves: src/engine/line_listening.c
+ * with:   src/engine/line.c src/engine/line_count.c src/engine/line_marks.c
+ * options: -eva-precision 0
+ *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3
+ *          -eva-split-return-function fathom_line_begin:1,fathom_line_init_listening:1
+ * quick:   yes
+ *
+ * A line that only listens: any calls in any order, any bytes, marks and times.
+ */
+#include "assumptions.h"
+#include "fathom/engine/line.h"
+
+enum { FRAME_SIZE = 13 };
+
+static uint8_t frame[FRAME_SIZE];
+static fathom_line_t line;
+static fathom_line_config_t config;
+static uint16_t counters[FATHOM_LINE_COUNTERS];
+
+static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t of_them, bool after_gap,
+                    uint32_t time_us)
+{
+    (void)listener->gap_us;
+    /*@ assert after_gap == 0 || after_gap == 1; */
+    /*@ assert there: bytes == &frame[0] && of_them <= FRAME_SIZE; */
+    (void)time_us;
+}
+
+static fathom_listener_t listener = {receive, 0};
+
+static void any_call(void)
+{
+    switch (any_8_in(0, 4)) {
+    case 0:
+        (void)fathom_line_poll(&line);
+        break;
+    case 1:
+        fathom_line_listen(&line, any_bool() ? &listener : NULL);
+        break;
+    case 2:
+        (void)fathom_line_break(&line, any_bool());
+        break;
+    case 3:
+        (void)fathom_line_due_us(&line);
+        break;
+    default:
+        (void)fathom_line_is_idle(&line);
+        (void)fathom_line_heard_us(&line);
+    }
+}
+
+void main(void)
+{
+    config.uart = any_bool() ? &assumed_uart : &assumed_bare_uart;
+    config.clock = &assumed_clock;
+    config.frame = frame;
+    config.frame_size = FRAME_SIZE;
+    config.echo = any_8_in(0, 2);
+    config.silence_us = any_16();
+    config.gap_us = any_16();
+    config.marks = any_bool() ? fathom_line_marks : NULL;
+    config.count = any_bool() ? fathom_line_count : NULL;
+    config.counters = counters;
+    listener.gap_us = any_16();
+    if (fathom_line_init_listening(&line, &config) != FATHOM_READY) return;
+    while (any_bool()) any_call();
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A level, with a guard and without, and the two sensors that are read by it: any config, any looks. What sets the
+ * polarity by Modbus is there with any status; line and drivers are proved elsewhere.
+ *
+ * proves: src/engine/contact.c src/sensor/a05_relay.c src/sensor/a16_switch.c
+ * with: src/engine/sensor.c
+ * options: -eva-split-return-function poll:1,fathom_poll:1
+ */
+#include "assumptions.h"
+#include "fathom/sensor/a05_relay.h"
+#include "fathom/sensor/a16_switch.h"
+
+static fathom_status_t any_status(void)
+{
+    if (any_bool()) return (fathom_status_t)-any_8_in(1, 16);
+    return any_bool() ? FATHOM_READY : FATHOM_PENDING;
+}
+
+static fathom_status_t guard_poll(void *ctx)
+{
+    /*@ assert ctx == &assumed_ctx; */
+    return any_bool() ? FATHOM_PENDING : FATHOM_ERR_PORT;
+}
+
+static bool guard_is_clear(void *ctx, uint32_t now_us)
+{
+    /*@ assert ctx == &assumed_ctx; */
+    return any_bool();
+}
+
+static const fathom_contact_guard_t guard = {guard_poll, guard_is_clear, assumed_now_us, &assumed_ctx};
+
+/* Of a16_settings.h. */
+fathom_status_t fathom_a16_modbus_set_switch_polarity(fathom_a16_modbus_t *sensor,
+                                                      fathom_a16_polarity_t polarity)
+{
+    return any_status();
+}
+
+static fathom_contact_timing_t any_timing(void)
+{
+    fathom_contact_timing_t timing;
+    timing.settle_us = any_32();
+    timing.period_us = any_32();
+    timing.interval_us = any_32();
+    timing.stale_us = any_32();
+    return timing;
+}
+
+static void look(const fathom_sensor_t *sensor)
+{
+    fathom_sample_t sample;
+    if (fathom_poll(sensor, &sample) == FATHOM_READY) {
+        /*@ assert \initialized(&sample.raw) && \initialized(&sample.kind) && \initialized(&sample.probe); */
+    }
+    (void)fathom_due_us(sensor, 1);
+}
+
+static void relay(const fathom_pin_t *pin)
+{
+    static fathom_a05_relay_t relay;
+    fathom_a05_relay_config_t config;
+    config.pin = pin;
+    config.clock = any_bool() ? &assumed_clock : NULL;
+    config.timing = any_timing();
+    config.wiring = any_8();
+    config.level = any_8();
+    if (fathom_a05_relay_init(&relay, &config) != FATHOM_READY) return;
+    const fathom_sensor_t sensor = fathom_a05_relay_sensor(&relay);
+    while (any_bool()) look(&sensor);
+}
+
+static void a_switch(const fathom_pin_t *pin)
+{
+    static fathom_a16_switch_t object;
+    static fathom_a16_modbus_t modbus;
+    fathom_a16_switch_config_t config;
+    config.pin = pin;
+    config.clock = any_bool() ? &assumed_clock : NULL;
+    config.guard = any_bool() ? &guard : NULL;
+    config.timing = any_timing();
+    config.negative = any_bool();
+    config.address = any_8();
+    if (fathom_a16_switch_init(&object, &config) != FATHOM_READY) return;
+    const fathom_sensor_t sensor = fathom_a16_switch_sensor(&object);
+    while (any_bool()) {
+        look(&sensor);
+        const fathom_a16_polarity_t polarity = any_bool() ? FATHOM_A16_POSITIVE : FATHOM_A16_NEGATIVE;
+        if (any_bool()) (void)fathom_a16_switch_set_polarity(&object, &modbus, polarity);
+        if (any_bool()) fathom_a16_switch_polarity_is(&object, polarity);
+    }
+}
+
+int main(void)
+{
+    relay(NULL);
+    relay(&assumed_output);
+    relay(&assumed_input);
+    a_switch(NULL);
+    a_switch(&assumed_output);
+    a_switch(&assumed_input);
+    return 0;
+}

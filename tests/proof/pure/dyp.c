@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the 16 bits of A16 and A05 mean: any window with meanings that there are, any values of the probes that have come.
+ *
+ * proves: src/sensor/dyp.c
+ */
+#include "fathom/sensor/dyp.h"
+#include "assumptions.h"
+#include "fathom/codec/dyp_stream.h"
+
+static uint8_t any_meaning(void) { return any_8_in(FATHOM_MEANS_DEFAULT, FATHOM_MEANS_REFUSED); }
+
+/* Values of the probes from `first` to `last`. */
+static void probes(uint8_t first, uint8_t last)
+{
+    static fathom_dyp_measurement_t measurement;
+    static uint16_t values[FATHOM_DYP_PROBES];
+    fathom_dyp_window_t window;
+    fathom_sample_t sample;
+    window.min_mm = any_16();
+    window.max_mm = any_16();
+    window.value_fffd = any_meaning();
+    window.value_fffe = any_meaning();
+    window.value_ffff = any_meaning();
+    window.value_0 = any_meaning();
+    fathom_dyp_window_copy(&measurement.window, &window);
+    any_memory(values, sizeof values);
+    measurement.model = any_8();
+    measurement.address = any_8();
+    measurement.first = first;
+    measurement.values = values + FATHOM_DYP_PROBES - (last - first + 1);
+    if (fathom_dyp_measurement_init(&measurement, any_16()) != FATHOM_READY) return;
+    while (any_bool()) {
+        if (any_bool()) {
+            const unsigned all = (1u << last) - (1u << (first - 1u));
+            fathom_dyp_measurement_set(&measurement, (uint8_t)(all & any_8()), any_32());
+        }
+        (void)fathom_dyp_measurement_next(&measurement, &sample);
+    }
+}
+
+int main(void)
+{
+    probes(1, 1);
+    probes(1, FATHOM_DYP_PROBES);
+    for (uint8_t probe = 2; probe <= FATHOM_DYP_PROBES; probe++) probes(probe, probe);
+    return 0;
+}

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The trigger, what drives it, the meter of pulses and the A16 that is read by it: any config that init admits, polled
+ * and asked for its due time at any time, with deinit between.
+ *
+ * proves: src/engine/pulse.c src/engine/trigger.c src/engine/output.c src/sensor/a16_pwm.c src/engine/sensor.c
+ *         src/engine/wait.c
+ * with: src/codec/pulse_width.c
+ * options: -eva-split-return full -eva-slevel-function polls:1
+ */
+#include "assumptions.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a16_pwm.h"
+
+static void look(const fathom_sensor_t *sensor)
+{
+    fathom_sample_t sample;
+    if (fathom_poll(sensor, &sample) == FATHOM_READY) {
+        /*@ assert \initialized(&sample.raw) && \initialized(&sample.kind) && \initialized(&sample.probe); */
+    }
+    (void)fathom_due_us(sensor, 1);
+}
+
+static void polls(fathom_a16_pwm_t *pwm)
+{
+    const fathom_sensor_t sensor = fathom_a16_pwm_sensor(pwm);
+    while (any_bool()) {
+        look(&sensor);
+        if (any_bool()) (void)fathom_a16_pwm_deinit(pwm);
+    }
+}
+
+static void any_pwm(const fathom_clock_t *clock, const fathom_capture_t *capture, fathom_output_t output)
+{
+    static fathom_a16_pwm_t pwm;
+    fathom_a16_pwm_config_t config;
+    config.pulse.clock = clock;
+    config.pulse.capture = capture;
+    config.pulse.trigger = output;
+    config.pulse.cycle_us = any_32();
+    config.pulse.low_us = any_16();
+    config.pulse.noise_us = any_16();
+    config.pulse.no_target_us = any_32();
+    config.pulse.stuck_us = any_32();
+    config.window.min_mm = any_16();
+    config.window.max_mm = any_16();
+    config.in_air = any_bool();
+    config.air_dc = Frama_C_short_interval(INT16_MIN, INT16_MAX);
+    if (fathom_a16_pwm_init(&pwm, &config) != FATHOM_READY) return;
+    polls(&pwm);
+}
+
+static void idle(void *ctx, uint32_t max_us)
+{ /*@ assert ctx == &assumed_ctx; */
+}
+
+static fathom_status_t any_poll(void *ctx, fathom_sample_t *sample)
+{
+    /*@ assert ctx == &assumed_ctx; */
+    if (any_bool()) return (fathom_status_t)-any_8_in(1, 16);
+    return any_bool() ? FATHOM_READY : FATHOM_PENDING;
+}
+
+/* Of any sensors, so many; and the blocking form. */
+static void any_sensors(void)
+{
+    enum { MOST = 4 };
+    static fathom_sensor_t sensors[MOST];
+    fathom_sample_t sample;
+    for (uint8_t i = 0; i != MOST; i++) {
+        sensors[i].poll = any_poll;
+        sensors[i].due_us = assumed_now_us;
+        sensors[i].ctx = &assumed_ctx;
+    }
+    for (uint8_t count = 0; count <= MOST; count++) (void)fathom_due_us(sensors + MOST - count, count);
+    (void)fathom_wait(sensors, &sample, any_bool() ? idle : NULL, &assumed_ctx);
+}
+
+int main(void)
+{
+    fathom_output_t none;
+    none.set = NULL;
+    none.ctx = NULL;
+    any_pwm(NULL, &assumed_capture, fathom_output_pin(&assumed_output));
+    any_pwm(&assumed_clock, NULL, fathom_output_pin(&assumed_output));
+    any_pwm(&assumed_clock, &assumed_capture, none);
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_pin(&assumed_output));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(&assumed_uart));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(&assumed_bare_uart));
+    any_sensors();
+    return 0;
+}
