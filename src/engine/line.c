@@ -160,7 +160,7 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
 {
     const uint32_t passed_us = fathom_elapsed_us(clock_us(line->config->clock), line->polled_us);
     uint32_t due_us;
-    if ((uint8_t)(phase(line) - LEAVING) <= SENDING - LEAVING) {
+    if ((uint8_t)(phase(line) - LEAVING) <= (SENDING - LEAVING)) {
         due_us = port_due_us(line, passed_us);
     } else {
         /* With part of a frame there neither a time-out nor the next request comes before the end of it. */

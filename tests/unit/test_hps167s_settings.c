@@ -304,6 +304,13 @@ TEST(a_setting_under_way_is_not_mixed_with_another_value)
     PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 10, OK), TELLS(0xFFFF, 0x0A00, 0x0000, 0xB401));
 }
 
+TEST(a_setting_under_way_is_not_mixed_with_another_one_of_the_same_value)
+{
+    desk.argument = 18;
+    PENDS(warm_up());
+    assert_int_equal(fathom_hps167s_set_reconnect_time_ms(&hps, 18), FATHOM_ERR_BUSY);
+}
+
 /* Words that differ in the second place only: 65556 and 65574 ms. */
 TEST(both_words_tell_a_reconnect_time_from_another)
 {
