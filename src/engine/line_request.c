@@ -213,9 +213,9 @@ void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
 {
     fathom_transaction_t *x = line->head;
     while (x != NULL) {
-        fathom_transaction_t *const next = x->link.next;
+        fathom_transaction_t *const after = x->link.next;
         if (x->address == address) fathom_line_cancel(line, x);
-        x = next;
+        x = after;
     }
 }
 
