@@ -65,7 +65,11 @@ static uint8_t argument;
 static unsigned commanded; /* what was heard when it began */
 
 #define COMMAND(name, call)                                                                                  \
-    static fathom_status_t name(uint8_t x) { return call; }
+    static fathom_status_t name(uint8_t x)                                                                   \
+    {                                                                                                        \
+        (void)x; /* not all have a choice */                                                                 \
+        return call;                                                                                         \
+    }
 COMMAND(hps_version, fathom_hps167s_interface_version(&hps, &out.version))
 COMMAND(hps_configuration, fathom_hps167s_configuration(&hps, &out.configuration))
 COMMAND(hps_details, fathom_hps167s_details(&hps, &out.details))

@@ -7,7 +7,7 @@ ROWS = (
       'sensor->select_left_us = FATHOM_A05_SELECT_US / 2;')),
     ('implausible-probe-passes', 'a05_auto.h: where its place is not sure a frame with an odd probe is no frame',
      'unit/test_a05_auto',
-     ('src/sensor/a05_auto.c', 'believed', '(odd == 0u) ||', 'true || (')),
+     ('src/sensor/a05_auto.c', 'believed', '(odd == 0u) || (', 'true || (')),
     ('unsure-place-passes', 'a05_auto.h: the same, after a frame with an odd probe',
      'unit/test_a05_auto',
      ('src/sensor/a05_auto.c', 'believed', 'sensor->base.stream.sure && sensor->was_odd', 'sensor->was_odd')),
