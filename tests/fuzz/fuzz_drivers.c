@@ -41,7 +41,11 @@ static fathom_dyp_modbus_find_t modbus_find;
 static fathom_a05_auto_t a05_auto;
 
 static bool pin_level;
-static void set_pin(void *ctx, bool high) { pin_level = high; }
+static void set_pin(void *ctx, bool high)
+{
+    (void)ctx;
+    pin_level = high;
+}
 static const fathom_pin_t pin = {set_pin, NULL, NULL};
 
 /* ---- commands: called until they are not PENDING ---- */

@@ -9,7 +9,11 @@ const fathom_line_settings_t wire_settings[2] = {{9600, FATHOM_PARITY_NONE, 1},
 
 /* ---- the port ---- */
 
-static uint32_t now_us(void *ctx) { return wire.now_us; }
+static uint32_t now_us(void *ctx)
+{
+    (void)ctx;
+    return wire.now_us;
+}
 const fathom_clock_t wire_clock = {now_us, NULL};
 
 static void note(uint8_t byte, bool is_broken)
@@ -22,6 +26,7 @@ static void note(uint8_t byte, bool is_broken)
 
 static int read_bytes(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
+    (void)ctx;
     PROMISE(rx->flags == 0 && rx->last_us == 0, "hal.h: rx comes zeroed");
     wire.reads++;
     if (wire.read_fails != 0) {
@@ -46,6 +51,7 @@ static int read_bytes(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
 
 static int write_bytes(void *ctx, const uint8_t *bytes, size_t length)
 {
+    (void)ctx;
     PROMISE(length >= 1 && length <= 255, "hal.h: write: 1..255 bytes");
     PROMISE(!wire.is_low, "line.h: while TX is low nothing is sent");
     if (wire.write_fails != 0) {
@@ -62,6 +68,7 @@ static int write_bytes(void *ctx, const uint8_t *bytes, size_t length)
 
 static bool has_sent(void *ctx)
 {
+    (void)ctx;
     if (wire.sent_late != 0) {
         wire.sent_late--;
         return false;
@@ -71,12 +78,14 @@ static bool has_sent(void *ctx)
 
 static uint32_t leaves_in_us(void *ctx)
 {
+    (void)ctx;
     const uint32_t passed_us = fathom_elapsed_us(wire.now_us, wire.wrote_us);
     return passed_us < wire.leaves_us ? wire.leaves_us - passed_us : 0;
 }
 
 static int set_line(void *ctx, const fathom_line_settings_t *settings)
 {
+    (void)ctx;
     PROMISE(settings->baud != 0 && settings->parity <= FATHOM_PARITY_ODD && settings->stop_bits >= 1 &&
                 settings->stop_bits <= 2,
             "hal.h: the settings of a line");
@@ -87,6 +96,7 @@ static int set_line(void *ctx, const fathom_line_settings_t *settings)
 
 static int set_break(void *ctx, bool on)
 {
+    (void)ctx;
     if (wire.set_break_fails != 0) {
         wire.set_break_fails--;
         return wire.break_result;
