@@ -151,11 +151,20 @@ static void stale_and_one_0(void)
     edge(0, 100);
     edge(0, 300);
 }
-static void one_without_pin_0(void)
+static void without_pin_0(void)
 {
     enum { PIN = 46 }; /* as outcome.c has the rest of fathom_edges_t */
     memset(board_data("sides") + PIN, 0, 2);
+}
+static void one_without_pin_0(void)
+{
+    without_pin_0();
     pulses(0, 1);
+}
+static void high_without_pin_0(void)
+{
+    without_pin_0();
+    high(0);
 }
 static void one_0(void) { pulses(0, 1); }
 static void one_1(void) { pulses(1, 1); }
@@ -310,6 +319,7 @@ const scenario_t scenarios[] = {
     PULSE("take_int0_high", CALL_TAKE, 0, high_0, EVENT_INT0),
     PULSE("take_int0_one", CALL_TAKE, 0, one_0, EVENT_INT0),
     PULSE("take_int0_without_pin", CALL_TAKE, 0, one_without_pin_0, EVENT_INT0),
+    PULSE("take_int0_high_without_pin", CALL_TAKE, 0, high_without_pin_0, EVENT_INT0),
     PULSE("take_int0_stale", CALL_TAKE, 0, stale_0, EVENT_INT0),
     PULSE("take_int0_stale_and_one", CALL_TAKE, 0, stale_and_one_0, EVENT_INT0),
     PULSE("take_int0_full", CALL_TAKE, 0, full_0, EVENT_INT0),
