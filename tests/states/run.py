@@ -96,7 +96,7 @@ FAULTS = {  # a world, what is broken; file, function, old text, new text
     'one retry too many': (dict(TWO, retries1a=1), 'more attempts', REQUEST, 'fathom_line_end_attempt',
         'line->head->attempts > line->head->retries', 'line->head->attempts > line->head->retries + 1'),
     'a response serves who has not asked': (SMALL, 'another transaction', REQUEST, 'fathom_line_deliver',
-        '(x->attempts == 0) ||', ''),
+        '(x->attempts == 0u) ||', ''),
     'last in, first out': (dict(transactions=7, watched=0), 'more pass than its bound', REQUEST, 'fathom_line_submit',
         '*link = transaction; transaction->link.next = NULL;',
         'if (!is_busy(line)) { transaction->link.next = line->head; line->head = transaction; } '
@@ -117,8 +117,23 @@ FAULTS = {  # a world, what is broken; file, function, old text, new text
         'x->attempts++;',
         'x->attempts++; { static fathom_transaction_t *last; if (last != NULL) last->retries = 1; last = x; }'),
     'the first response in time is left': (TWO, 'was not taken', REQUEST, 'fathom_line_deliver',
-        '(x->attempts == 0) ||', '(x->attempts < 2) ||'),
+        '(x->attempts == 0u) ||', '(x->attempts < 2) ||'),
 }
+
+
+def planted(fault):
+    """The source with a fault."""
+    with open(os.path.join(ROOT, fault[0]), encoding='utf-8') as file:
+        return c_text.replace(file.read(), [tuple(fault[1:])])
+
+
+def lost_faults():
+    """Those whose text the sources do not have any more."""
+    for name, (_, _, *fault) in FAULTS.items():
+        try:
+            planted(fault)
+        except c_text.NotThere as error:
+            yield f'planted: {name}: {error}'
 
 
 def build(name, fault=None):
@@ -129,11 +144,9 @@ def build(name, fault=None):
     for path in LIBRARY:
         at = os.path.join(ROOT, path)
         if fault and fault[0] == path:
-            with open(at, encoding='utf-8') as file:
-                text = c_text.replace(file.read(), [tuple(fault[1:])])
             at = os.path.join(folder, os.path.basename(path))
             with open(at, 'w', encoding='utf-8') as file:
-                file.write(text)
+                file.write(planted(fault))
         sources.append(at)
     program = os.path.join(folder, 'states')
     subprocess.run([os.environ.get('FATHOM_CC', 'gcc'), '-std=c99', '-O2',
@@ -238,7 +251,10 @@ def main(arguments):
         worlds = QUICK if '--quick' in arguments else {**QUICK, **FULL}
         if only:
             worlds = {only: {**QUICK, **FULL}[only]}
+        lost = list(lost_faults())
+        print(''.join(f'{line}\n' for line in lost), end='')
         passed, failed = go_through(worlds, '--update' in arguments)
+        failed += len(lost)
     print(f'{passed} passed, {failed} failed')
     return 0 if passed and not failed else 1
 
