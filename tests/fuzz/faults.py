@@ -37,7 +37,7 @@ FAULTS = [
           'uint8_t kind = fathom_dyp_meaning(&measurement->window, value);\n    sample->raw = value;', 'drivers',
           '*sample is untouched'),
     Fault(TCP, 'word_at(adu + TRANSACTION) != port->transaction', 'adu[TRANSACTION + 1] != (port->transaction & 0xFF)',
-          'tcp', 'a response that was sent'),
+          'tcp', 'fathom_libmodbus.h: '),
     Fault(TCP, 'length < LEAST_LENGTH || length > MOST_LENGTH', 'length < LEAST_LENGTH', 'tcp', 'SO_RCVLOWAT'),
     Fault('examples/fathom/decode/decode.c', 'piece.protocol == 0 || piece.is_damaged', 'piece.protocol == 0', 'decode',
           '0 when every byte is part of a good frame'),

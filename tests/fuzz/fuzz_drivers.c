@@ -367,7 +367,7 @@ static void drain(void)
         PROMISE(due_us != FATHOM_NO_DEADLINE, "sensor.h: due_us: a driver has something to wait for");
         PROMISE(passed_us < most_us && polls < 20000, "each attempt, and each command, ends");
         PROMISE(due_us != 0 || ++zeros < 1000, "sensor.h: due_us: 0 is not for ever");
-        wire.now_us += due_us;
+        wire_pass(due_us);
         passed_us += due_us;
         has_outcome = poll() || has_outcome;
     }
@@ -387,7 +387,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             cancel(op >> 4);
         } else {
             const uint32_t due_us = due();
-            if (due_us != FATHOM_NO_DEADLINE) wire.now_us += due_us;
+            if (due_us != FATHOM_NO_DEADLINE) wire_pass(due_us);
         }
         if ((op & 0x80) == 0 || op % 16 >= WIRE_OPS) (void)poll();
     }

@@ -186,7 +186,7 @@ static void poll(void)
 static void go_to_due(void)
 {
     const uint32_t due_us = fathom_line_due_us(&line);
-    if (due_us != FATHOM_NO_DEADLINE) wire.now_us += due_us;
+    if (due_us != FATHOM_NO_DEADLINE) wire_pass(due_us);
 }
 
 static void call(uint8_t op)
@@ -233,14 +233,14 @@ static void drain(void)
         PROMISE(due_us != 0 || ++zeros < 200, "line.h: due_us: 0 is not for ever");
         if (due_us > 1 && wire_uart.leaves_in_us(NULL) == 0) { /* nothing happens before */
             const bool was_on[REQUESTS] = {asked[0].is_on, asked[1].is_on, asked[2].is_on};
-            wire.now_us += due_us - 1;
+            wire_pass(due_us - 1);
             poll();
             PROMISE(wire.writes == 0, "line.h: due_us: nothing is sent before");
             for (int i = 0; i != REQUESTS; i++)
                 PROMISE(asked[i].is_on == was_on[i], "line.h: due_us: nothing ends before");
-            wire.now_us += 1;
+            wire_pass(1);
         } else {
-            wire.now_us += due_us;
+            wire_pass(due_us);
         }
         passed_us += due_us;
         poll();

@@ -1,7 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "wire.h"
 
-enum { BYTE_US = 1042, READ = 3, EXCEPTION = 0x80, BAD = FATHOM_RX_PARITY | FATHOM_RX_FRAMING };
+/* MOST_BEFORE: of a mark, which may say that the last byte came so long ago. */
+enum {
+    BYTE_US = 1042,
+    MARK_US = 500,
+    MOST_BEFORE_US = 15 * MARK_US,
+    READ = 3,
+    EXCEPTION = 0x80,
+    BAD = FATHOM_RX_PARITY | FATHOM_RX_FRAMING
+};
 
 wire_t wire;
 const fathom_line_settings_t wire_settings[2] = {{9600, FATHOM_PARITY_NONE, 1},
@@ -116,6 +124,7 @@ void wire_begin(uint32_t now, bool has_marks)
 {
     /* all but the buffers, which need no beginning */
     wire.now_us = now;
+    wire.passed_us = 0;
     wire.queued = wire.count = 0;
     wire.is_broken[0] = false;
     wire.flags = wire.length = 0;
@@ -142,7 +151,16 @@ void wire_poll_has_ended(void)
     PROMISE(wire.writes <= 1, "a poll begins one transaction at most");
 }
 
-bool wire_is_future(uint32_t time_us) { return fathom_elapsed_us(wire.now_us, time_us) > UINT32_MAX / 2; }
+void wire_pass(uint32_t us)
+{
+    wire.now_us += us;
+    wire.passed_us += us;
+}
+
+bool wire_is_future(uint32_t time_us)
+{
+    return fathom_elapsed_us(wire.now_us, time_us) > wire.passed_us + MOST_BEFORE_US;
+}
 
 /* ---- the far end ---- */
 
@@ -235,23 +253,23 @@ void wire_op(uint8_t op)
         come(wire.request, wire.length);
         break;
     case 6:
-        wire.now_us += high * 250u;
+        wire_pass(high * 250u);
         break;
     case 7:
-        wire.now_us += fuzz_byte() * 256u;
+        wire_pass(fuzz_byte() * 256u);
         break;
     case 8:
-        wire.now_us += fuzz_byte() * 20000u;
+        wire_pass(fuzz_byte() * 20000u);
         break;
     case 9:
-        wire.now_us += (uint32_t)fuzz_byte() << (high + 8);
+        wire_pass((uint32_t)fuzz_byte() << (high + 8));
         break;
     case 10:
         fail(fuzz_byte());
         break;
     default: /* 11 */
         wire.flags = fuzz_byte() & 31;
-        wire.last_us = wire.now_us - high * 500u;
+        wire.last_us = wire.now_us - (uint32_t)high * MARK_US;
         break;
     }
 }

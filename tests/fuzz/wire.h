@@ -13,6 +13,7 @@ enum { WIRE_HEARD = 2048, WIRE_QUEUE = 320, WIRE_FRAME = 255 };
 
 typedef struct {
     uint32_t now_us;
+    uint64_t passed_us; /* since wire_begin */
     /* what waits in the port, and what it says of it */
     uint8_t queue[WIRE_QUEUE];
     unsigned queued;
@@ -44,6 +45,8 @@ extern const fathom_line_settings_t wire_settings[2];
 
 void wire_begin(uint32_t now_us, bool has_marks);
 
+void wire_pass(uint32_t us);
+
 /* Of the ops of a script all that do not depend on who reads the line: bytes, responses, time, marks, faults. */
 enum { WIRE_OPS = 12 };
 void wire_op(uint8_t op);
@@ -55,7 +58,8 @@ void wire_drain(void);
 void wire_poll_begins(void);
 void wire_poll_has_ended(void);
 
-/* Is there a time in the future? */
+/* Is this time in the future? Also one before the beginning, which it is told from where less than 71 minutes have
+ * passed. */
 bool wire_is_future(uint32_t time_us);
 
 /* Is there, among what was heard since `from`, a whole Modbus frame with a right CRC from this unit (255: any) with
