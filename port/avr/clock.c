@@ -4,7 +4,8 @@
 #define PERIOD_US (65536UL / FATHOM_AVR_TICKS_PER_US)
 
 volatile uint8_t fathom_avr_happened;
-volatile uint8_t fathom_avr_rx_in, fathom_avr_rx_out;
+volatile uint8_t fathom_avr_rx_in;
+volatile uint8_t fathom_avr_rx_out;
 
 static volatile uint32_t periods_us; /* the clock when Timer1 was last 0 */
 
@@ -23,8 +24,8 @@ uint32_t fathom_avr_stamp_us(uint16_t ticks)
 {
     uint32_t us = periods_us;
     /* An overflow that waits for its interrupt came before a small count and after a large one. */
-    if ((TIFR1 & _BV(TOV1)) != 0 && ticks < 0x8000) us += PERIOD_US;
-    return us + ticks / FATHOM_AVR_TICKS_PER_US;
+    if (((TIFR1 & _BV(TOV1)) != 0) && (ticks < 0x8000)) us += PERIOD_US;
+    return us + (ticks / FATHOM_AVR_TICKS_PER_US);
 }
 
 static uint32_t now_us(void *ctx)

@@ -19,7 +19,7 @@ ISR(TIMER1_CAPT_vect)
     /* The pin may have changed back before the edge was turned. Nothing was captured then, and the time of that edge
      * is known to the length of this interrupt; without it the next one would be taken for it. */
     const bool high = (PINB & _BV(PINB0)) != 0;
-    if (high != rose && (TIFR1 & _BV(ICF1)) == 0) {
+    if ((high != rose) && ((TIFR1 & _BV(ICF1)) == 0)) {
         turn();
         fathom_edges_feed(captured, high, fathom_avr_stamp_us(TCNT1));
     }

@@ -13,15 +13,15 @@ ISR(TIMER1_COMPB_vect) { time_is_up = 1; }
 
 static bool is_to_sleep(bool bytes_wake)
 {
-    return fathom_avr_happened == 0 && time_is_up == 0 &&
-           (!bytes_wake || fathom_avr_rx_in == fathom_avr_rx_out);
+    return (fathom_avr_happened == 0) && (time_is_up == 0) &&
+           (!bytes_wake || (fathom_avr_rx_in == fathom_avr_rx_out));
 }
 
 /* Until the time is up, which is true, or something else has ended it. */
 static bool doze(uint32_t max_us, bool bytes_wake)
 {
     const uint16_t ticks =
-        max_us < MOST / FATHOM_AVR_TICKS_PER_US ? (uint16_t)(max_us * FATHOM_AVR_TICKS_PER_US) : MOST;
+        (max_us < (MOST / FATHOM_AVR_TICKS_PER_US)) ? (uint16_t)(max_us * FATHOM_AVR_TICKS_PER_US) : MOST;
     cli();
     time_is_up = ticks < LEAST; /* a match that is so near might be missed */
     OCR1B = (uint16_t)(TCNT1 + ticks);
@@ -44,10 +44,10 @@ static bool doze(uint32_t max_us, bool bytes_wake)
 void fathom_avr_idle(void *ctx, uint32_t max_us)
 {
     const uint16_t *const gather_us = ctx;
-    if (gather_us != NULL && *gather_us != 0) {
-        const uint32_t first_us = *gather_us < max_us ? *gather_us : max_us;
+    if ((gather_us != NULL) && (*gather_us != 0)) {
+        const uint32_t first_us = (*gather_us < max_us) ? *gather_us : max_us;
         if (!doze(first_us, false)) return;
         max_us -= first_us;
     }
-    doze(max_us, true);
+    (void)doze(max_us, true);
 }

@@ -10,7 +10,7 @@ static void change(volatile uint8_t *port, uint8_t mask, bool high)
 {
     const uint8_t sreg = SREG;
     cli();
-    *port = (uint8_t)(high ? *port | mask : *port & ~mask);
+    *port = (uint8_t)(high ? (*port | mask) : (*port & ~mask));
     SREG = sreg;
 }
 

@@ -78,7 +78,7 @@ ISR(USART_RX_vect, ISR_NAKED)
 static void drive(bool on)
 {
     volatile uint8_t *port = config->driver.port;
-    if (port != NULL) *port = (uint8_t)(on ? *port | config->driver.mask : *port & ~config->driver.mask);
+    if (port != NULL) *port = (uint8_t)(on ? (*port | config->driver.mask) : (*port & ~config->driver.mask));
 }
 
 /* There is room for a byte. */
@@ -104,7 +104,7 @@ ISR(USART_TX_vect)
 
 static void count(uint8_t state, uint8_t bit, uint16_t *counter)
 {
-    if ((state & bit) != 0 && *counter != UINT16_MAX) ++*counter;
+    if (((state & bit) != 0) && (*counter != UINT16_MAX)) ++*counter;
 }
 
 static uint8_t flags_of(uint8_t state)
@@ -112,9 +112,9 @@ static uint8_t flags_of(uint8_t state)
     count(state, _BV(UPE0), &fathom_avr_usart0_counters.parity);
     count(state, _BV(FE0), &fathom_avr_usart0_counters.framing);
     count(state, _BV(DOR0), &fathom_avr_usart0_counters.overruns);
-    return (uint8_t)(((state & _BV(UPE0)) != 0 ? FATHOM_RX_PARITY : 0) |
-                     ((state & _BV(FE0)) != 0 ? FATHOM_RX_FRAMING : 0) |
-                     ((state & _BV(DOR0)) != 0 ? FATHOM_RX_OVERRUN : 0));
+    return (uint8_t)((((state & _BV(UPE0)) != 0) ? FATHOM_RX_PARITY : 0) |
+                     (((state & _BV(FE0)) != 0) ? FATHOM_RX_FRAMING : 0) |
+                     (((state & _BV(DOR0)) != 0) ? FATHOM_RX_OVERRUN : 0));
 }
 
 static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
@@ -122,10 +122,11 @@ static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
     (void)ctx;
     size_t count = 0;
     uint8_t out = fathom_avr_rx_out;
-    while (count != capacity && out != fathom_avr_rx_in) {
+    while ((count != capacity) && (out != fathom_avr_rx_in)) {
         const uint8_t state = ring[out + 1] & ERROR;
-        if (state != 0 && count != 0) break; /* for the next call */
-        bytes[count++] = ring[out];
+        if ((state != 0) && (count != 0)) break; /* for the next call */
+        bytes[count] = ring[out];
+        count++;
         out = (uint8_t)(out + 2) & (RING - 1);
         if (state == 0) continue;
         rx->flags |= flags_of(state);
@@ -138,7 +139,7 @@ static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
 static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     (void)ctx;
-    if (length - 1 >= config->request_size) return -1; /* 0 bytes are too many, too */
+    if ((length - 1) >= config->request_size) return -1; /* 0 bytes are too many, too */
     if (sending || in_break) return 0;
     for (size_t i = 0; i != length; i++) config->request[i] = bytes[i];
     next = config->request;
@@ -166,41 +167,47 @@ static uint32_t usart_leaves_in_us(void *ctx)
     return (uint32_t)(left + 2u) * character_us;
 }
 
+static uint32_t difference(uint32_t a, uint32_t b)
+{
+    if (a > b) return a - b;
+    return b - a;
+}
+
 /* What UBRR0 + 1 is with U2X0 set; 0 where the rate cannot be within 2.5 %, or the hardware has no such settings. */
 static uint16_t divisor_of(const fathom_line_settings_t *settings)
 {
     const uint32_t eighth = F_CPU / 8;
     const uint32_t baud = settings->baud;
-    if (baud == 0 || baud > eighth || settings->parity > FATHOM_PARITY_ODD || settings->stop_bits < 1 ||
-        settings->stop_bits > 2)
+    if ((baud == 0) || (baud > eighth) || (settings->parity > FATHOM_PARITY_ODD) ||
+        (settings->stop_bits < 1) || (settings->stop_bits > 2))
         return 0;
-    const uint32_t divisor = (eighth + baud / 2) / baud;
+    const uint32_t divisor = (eighth + (baud / 2)) / baud;
     if (divisor > 4096) return 0;
     const uint32_t product = divisor * baud;
-    const uint32_t off = product > eighth ? product - eighth : eighth - product;
-    return off * 40 > product ? 0 : (uint16_t)divisor; /* F_CPU / 8 / divisor against baud */
+    const uint32_t off = difference(product, eighth);
+    return ((off * 40) > product) ? 0 : (uint16_t)divisor; /* F_CPU / 8 / divisor against baud */
 }
 
 static void set(const fathom_line_settings_t *settings, uint16_t divisor)
 {
     /* Where the same rate is there without U2X0, the receiver looks at each bit twice as often. */
-    const bool twice = divisor % 2 != 0;
-    UBRR0 = (uint16_t)((twice ? divisor : divisor / 2) - 1);
+    const bool twice = (divisor % 2) != 0;
+    UBRR0 = (uint16_t)((twice ? divisor : (divisor / 2)) - 1);
     UCSR0A = twice ? _BV(U2X0) : 0;
-    UCSR0C = (uint8_t)(_BV(UCSZ01) | _BV(UCSZ00) | (settings->stop_bits == 2 ? _BV(USBS0) : 0) |
-                       (settings->parity == FATHOM_PARITY_NONE   ? 0
-                        : settings->parity == FATHOM_PARITY_EVEN ? _BV(UPM01)
-                                                                 : _BV(UPM01) | _BV(UPM00)));
+    UCSR0C = (uint8_t)(_BV(UCSZ01) | _BV(UCSZ00) | ((settings->stop_bits == 2) ? _BV(USBS0) : 0) |
+                       ((settings->parity == FATHOM_PARITY_NONE)   ? 0
+                        : (settings->parity == FATHOM_PARITY_EVEN) ? _BV(UPM01)
+                                                                   : (_BV(UPM01) | _BV(UPM00))));
     line = *settings;
     const uint8_t bits = (uint8_t)(9 + (line.parity != FATHOM_PARITY_NONE) + line.stop_bits);
-    character_us = (uint16_t)((bits * 1000000u + line.baud - 1) / line.baud);
+    character_us = (uint16_t)(((bits * 1000000u) + line.baud - 1) / line.baud);
 }
 
 static int usart_set_line(void *ctx, const fathom_line_settings_t *settings)
 {
     (void)ctx;
-    if (settings->baud == line.baud && settings->parity == line.parity &&
-        settings->stop_bits == line.stop_bits)
+    if ((settings->baud == line.baud) && (settings->parity == line.parity) &&
+        (settings->stop_bits == line.stop_bits))
         return 1;
     const uint16_t divisor = divisor_of(settings);
     if (divisor == 0) return -1;
@@ -241,7 +248,7 @@ const fathom_uart_t fathom_avr_usart0 = {
 bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *new_config)
 {
     const uint16_t divisor = divisor_of(&new_config->line);
-    if (new_config->request == NULL || new_config->request_size == 0 || divisor == 0) return false;
+    if ((new_config->request == NULL) || (new_config->request_size == 0) || (divisor == 0)) return false;
     UCSR0B = 0;
     config = new_config;
     set(&config->line, divisor);

@@ -28,13 +28,14 @@ ADDON = '/usr/lib/x86_64-linux-gnu/cppcheck/addons/misra.py'
 TABLE = os.path.join(ROOT, 'tests', 'checks', 'misra.csv')
 PAGE = os.path.join(ROOT, 'tests', 'checks', 'MISRA.md')
 
-# What is one program: the rules about names see each for itself.
-PROGRAMS = ('src', 'port/avr', 'port/mps2', 'port/rp2040', 'port/stm32f4', 'port/virt')
+# What is one program, and what it takes to be read: the rules about names see each for itself.
+PROGRAMS = {'src': [], 'port/avr': ['-DF_CPU=16000000UL'], 'port/mps2': [], 'port/rp2040': [], 'port/stm32f4': [],
+            'port/virt': []}
 COUNTED = re.compile(r'^(src|include|port/(avr|mps2|rp2040|stm32f4|virt|serial))/')
 BATCH = 6
 
 # Of the mandatory rules the addon sees those that need no more than the syntax.
-MANDATORY = {'9.1', '12.5', '13.6', '17.3', '17.4', '17.6', '19.1', '21.13', '21.17', '21.18', '21.19', '21.20',
+MANDATORY = {'9.1', '12.5', '13.6', '17.4', '17.6', '19.1', '21.13', '21.17', '21.18', '21.19', '21.20',
              '22.2', '22.4', '22.5', '22.6'}
 KEPT = {'7.3', '12.1', '12.3', '13.3', '13.4', '16.3', '17.7'}  # more are; these took work
 
@@ -55,9 +56,13 @@ def addon(root, dumps):
 def look(job):
     """What the addon says of some files of a program."""
     root, program, paths = job
-    include = ['-Iinclude', '-Iport', '-Iport/serial', f'-I{program}']
+    include = ['-Iinclude', '-Iport', '-Iport/serial', f'-I{program}', *PROGRAMS[program]]
     called(['cppcheck', '--quiet', '--dump', '--std=c99', '-U__cplusplus', '--suppress=missingIncludeSystem', *include,
             *paths], root)
+    # It goes on silently where an #error or a macro that it does not know has ended a file.
+    for path in paths:
+        if '<token ' not in read(root, f'{path}.dump'):
+            raise SystemExit(f'misra.py: cppcheck has read nothing of {path}')
     return addon(root, [f'{path}.dump' for path in paths])
 
 
@@ -140,7 +145,6 @@ FAULTS = [  # a file, old text (None: the end), new text, what has to be said of
     ('src/engine/line.c', '(void)fathom_line_look', 'fathom_line_look', 'rule 17.7, which is kept'),
     ('src/codec/crc16.c', '*bytes) & 0xFFu];\n        bytes++;', '*bytes++) & 0xFFu];', 'rule 13.3, which is kept'),
     ('src/sensor/hps167s_settings.c', 'value);\n        break;\n    }', 'value);\n    }', 'rule 16.3, which is kept'),
-    ('src/engine/line.c', None, RETURN + '{ return fathom_undeclared(n); }\n', 'rule 17.3, which is kept'),
     ('src/engine/line.c', None, RETURN + '{ return (int)sizeof(n++); }\n', 'rule 13.6, which is kept'),
     ('src/engine/line.c', None, RETURN + '{ if (n == 1) return 2; return 3; }\n', 'places of rule 15.5'),
     ('src/engine/line.c', None, RETURN + '{ goto end; end: return n; }\n', 'places of rule 15.1'),
@@ -174,7 +178,7 @@ def self_test():
             print(f'not found: {new!r} in MISRA.md ({words})')
             missed += 1
     # A mandatory rule has no place, whatever the table says.
-    mandatory = {**table, ('17.3', 'src/engine/line.c'): 1}
+    mandatory = {**table, ('17.4', 'src/engine/line.c'): 1}
     if not any('may have no place' in problem for problem in page_problems(text, mandatory)):
         print('not found: a mandatory rule in the table')
         missed += 1

@@ -18,7 +18,9 @@ enum { FATHOM_AVR_TICKS_PER_US = F_CPU / 8000000UL }; /* of Timer1 */
 
 /* For idle.c, in clock.c, which is always linked. */
 extern volatile uint8_t fathom_avr_happened; /* an interrupt that the main loop may be waiting for */
-extern volatile uint8_t fathom_avr_rx_in, fathom_avr_rx_out; /* of usart0.c; bytes wait while they differ */
+/* Of usart0.c; bytes wait while they differ. */
+extern volatile uint8_t fathom_avr_rx_in;
+extern volatile uint8_t fathom_avr_rx_out;
 
 /* The clock when Timer1 stood at `ticks`, which was less than half its period ago. Interrupts are off. */
 uint32_t fathom_avr_stamp_us(uint16_t ticks);
