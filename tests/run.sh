@@ -26,6 +26,7 @@ gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
 simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
 qemu-system-x86 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+frama-c-base why3 cvc4 z3 clang-19 llvm-19 libclang-rt-19-dev
 libfaketime libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'
 
 # Any node and npm will do.
@@ -113,8 +114,11 @@ run_short() {
 run_long() {
     stage 300 'gcc and clang-sanitize: build' build_two
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
+    stage 75 'no run-time error: EVA' program proof $python tests/proof/eva.py --quick
+    stage 45 'codecs: WP' program wp $python tests/proof/wp.py --quick
+    stage 60 'coverage: each condition decides' program coverage $python tests/coverage/run.py --quick
     stage 30 'states of a small line' program states $python tests/states/run.py --quick
-    stage 40 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
+    stage 60 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
     stage 110 'fuzzing: 10 s a target' program fuzz $python tests/fuzz/run.py
     stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/chaos/run.py
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
@@ -146,6 +150,12 @@ run_full() {
     run_long
     build_and_test gcc-sanitize
     stage 300 "clang's analyzer" $python tests/checks/lint.py --analyze
+    stage 1800 'no run-time error: EVA, all machines' program proof_full $python tests/proof/eva.py
+    stage 1800 'EVA: planted faults' program proof_planted $python tests/proof/eva.py --self-test
+    stage 1800 'codecs: WP, both provers' program wp_full $python tests/proof/wp.py
+    stage 600 'WP: planted faults' program wp_planted $python tests/proof/wp.py --self-test
+    stage 300 'coverage of the machines' program coverage_machines $python tests/coverage/run.py --machines
+    stage 120 'coverage: planted faults' program coverage_planted $python tests/coverage/run.py --self-test
     stage 180 'states of larger lines' program states_full $python tests/states/run.py
     stage 120 'states: planted faults' program states_planted $python tests/states/run.py --self-test
     stage 300 'interrupts, all pairs' program interrupts_full $python tests/firmware/interrupts/run.py
