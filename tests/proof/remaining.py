@@ -24,11 +24,6 @@ sends only in IDLE and REFUSED."""
 PROTOCOL = """line->protocol is not NULL where sent or quarantined is not 0: fathom_line_send sets it beside sent,
 nothing resets it, and quarantine sets bits only where sent is not 0."""
 
-READING = """fathom_pulse_poll returns FATHOM_READY only after take() has set all members of *reading: it does so right
-before each of its two returns of FATHOM_READY, and nothing but take() makes fathom_pulse_poll return that, since
-where driven is FATHOM_READY the status is returned. EVA joins the states of the returns. With a trigger that is a
-pin it can be made to tell them apart, and has no alarm."""
-
 RATE = """unit.line_settings of the HPS-167S's driver is NULL for ever or never. Where config has none: set_baud refuses
 before it begins, so that no command is BAUD, and move_to_baud and expect_baud do nothing, so that with_baud is not
 called. Where config has some: fathom_modbus_set keeps them in known_line_settings before restore_address or cancel
@@ -36,9 +31,6 @@ bring those back, and change_over puts other in their place, which seek has set 
 
 # {(file, function, 'kind: property' as eva.py prints it): why it cannot be, which a reader can check}
 ARGUED = {
-    ('src/sensor/a16_pwm.c', 'poll', r'initialization: \initialized(&reading.kind)'): READING,
-    ('src/sensor/a16_pwm.c', 'poll', r'initialization: \initialized(&reading.width_us)'): READING,
-    ('src/sensor/a16_pwm.c', 'poll', r'initialization: \initialized(&reading.time_us)'): READING,
     ('src/engine/fair_share.c', 'next_0', 'pointer_value: \\object_pointer(x->link.next)'): QUEUE,
     ('src/engine/line.c', 'fathom_line_drop', 'mem_access: \\valid(to)'): BYTES,
     ('src/engine/line.c', 'fathom_line_drop', 'mem_access: \\valid_read(to + length)'): BYTES,

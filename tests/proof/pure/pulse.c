@@ -6,7 +6,11 @@
  * proves: src/engine/pulse.c src/engine/trigger.c src/engine/output.c src/sensor/a16_pwm.c src/engine/sensor.c
  *         src/engine/wait.c
  * with: src/codec/pulse_width.c
- * options: -eva-split-return full -eva-slevel-function polls:1
+ * options: -eva-precision 1
+ *         -eva-slevel-function polls:1,look:100,fathom_poll:100,poll:100,fathom_pulse_poll:100,take:100
+ *         -eva-split-return-function assumed_take:0:1,take:1,fathom_pulse_poll:1,poll:1,fathom_poll:1
+ *         -eva-split-return-function fathom_trigger_drive:1,fathom_trigger_init:1
+ *         -eva-split-return-function fathom_pulse_init:1,fathom_a16_pwm_init:1
  */
 #include "assumptions.h"
 #include "fathom/engine/wait.h"
