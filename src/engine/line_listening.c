@@ -7,11 +7,11 @@
 
 static void scan(fathom_line_t *line, bool over)
 {
-    const uint8_t have = line->have;
     (void)over;
-    if (have == 0u) return;
-    fathom_line_leave(line, have);
-    fathom_line_drop(line, have);
+    if (line->have == 0u) return;
+    fathom_line_leave(line, line->have);
+    forget(line, AFTER_GAP);
+    line->have = 0; /* `need` is that already: no frame is waited for */
 }
 
 static fathom_status_t go_on(fathom_line_t *line)
