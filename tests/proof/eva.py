@@ -215,7 +215,7 @@ def keep(figures):
 
 def judge(result, before):
     """What is wrong with it, beside what was before (None: it is new)."""
-    wrong = result.wrong + [alarm.text for alarm in result.alarms if not alarm.is_argued()]
+    wrong = [alarm.text for alarm in result.alarms if not alarm.is_argued()] + result.wrong
     now = result.figures()
     if before is None:
         return wrong + ['not in figures.csv: --update']
@@ -289,7 +289,13 @@ def plant(row, number):
     result = run(chosen, MACHINES[0], os.path.join(root, 'build'))
     if result.is_broken and may_end != [faults.ENDS]:
         return [], f'not seen: {result.wrong[0]}'
-    return [alarm.text for alarm in result.alarms if not alarm.is_argued()] + result.wrong, 'not seen'
+    return judge(result, kept().get((harness, MACHINES[0]))), 'not seen'
+
+
+def without_fault(rows):
+    """A harness of which it was not seen that it can fail."""
+    return [f'faults.py: no fault that {each.name} sees' for each in harnesses()
+            if each.name not in {row[1] for row in rows}]
 
 
 def gates():
@@ -304,7 +310,8 @@ def gates():
     return [('a source that no harness proves', [text for text in unproved(chosen[:-1]) if 'no harness' in text]),
             ('an argued alarm more than before', judge(result, before)),
             ('an argued alarm that does not come', struck([])),
-            ('a harness without figures', judge(Result(chosen[0], MACHINES[0]), None))]
+            ('a harness without figures', judge(Result(chosen[0], MACHINES[0]), None)),
+            ('a harness without a fault', without_fault(()))]
 
 
 def self_test(names):
@@ -312,7 +319,9 @@ def self_test(names):
     own = [] if names else gates()
     if not rows:
         raise Bad('no such row')
-    failed = 0
+    missing = [] if names else without_fault(rows)
+    print(''.join(f'{line}: FAILED\n' for line in missing), end='')
+    failed = len(missing)
     for name, seen in own:
         failed += not seen
         print(f'{name}: {seen[0] if seen else "FAILED: not seen"}', flush=True)
@@ -320,7 +329,7 @@ def self_test(names):
         for row, (seen, otherwise) in zip(rows, pool.map(plant, rows, range(len(rows)))):
             failed += not seen
             print(f'{row[0]}: {seen[0] if seen else f"FAILED: {otherwise}"}', flush=True)
-    print(f'{len(rows) + len(own) - failed} passed, {failed} failed')
+    print(f'{len(rows) + len(own) + len(missing) - failed} passed, {failed} failed')
     return failed
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Faults that eva.py --self-test plants, at least one in each module that is proved.
+"""Faults that eva.py --self-test plants, at least one for each harness.
 
 Names, the harness that has to see it, and what is changed: a file, a function ('': outside of all functions), the old
 text, which is there once by its tokens, and the new one. At last may stand ENDS: Frama-C itself gives up."""
@@ -12,12 +12,16 @@ ROWS = (
      'fathom_dyp_55aa_length', '(have > COMMAND)', '(have >= COMMAND)'),
     ('crc16: one byte too many', 'pure/crc16', 'src/codec/crc16.c', 'fathom_crc16', 'unsigned crc = 0xFFFF;',
      'unsigned crc = 0xFFFF; length++;'),
+    ('crc16_small: every second byte', 'pure/crc16_small', 'src/codec/crc16_small.c', 'fathom_crc16', 'bytes++;',
+     'bytes += 2;'),
     ('dyp_stream: a frame is read from its second byte on', 'pure/dyp_stream', 'src/codec/dyp_stream.c',
      'fathom_dyp_stream_valid', 'uint8_t sum = 0;', 'uint8_t sum = 0; frame++;'),
     ('hps167s_registers: a shift too wide', 'pure/hps167s_registers', 'src/codec/hps167s_registers.c',
      'fathom_hps167s_decode_within', 'exponent > FATHOM_HPS167S_MAX_EXPONENT', 'exponent > 40u'),
     ('modbus_rtu: a missing length check', 'pure/modbus_rtu_client', 'src/codec/modbus_rtu.c',
      'fathom_modbus_rtu_parse_response', 'if (frame[SIZE] != (2u * count)) return FATHOM_ERR_MALFORMED;', ''),
+    ('modbus_rtu: more values than there is room for', 'pure/modbus_rtu_server', 'src/codec/modbus_rtu.c',
+     'fathom_modbus_rtu_parse_request', '(count > capacity) || ', ''),
     ('status_name: one name too few', 'pure/status_name', 'src/status_name.c', 'fathom_status_name',
      'status < FATHOM_ERR_DIFFERS', 'status < FATHOM_ERR_DIFFERS - 1'),
     ('stream: the window is too long', 'pure/stream', 'src/engine/stream.c', 'take',
@@ -26,6 +30,8 @@ ROWS = (
      'written % (FATHOM_EDGES_PULSES + 1)'),
     ('pulse: a config without a capture', 'pure/pulse', 'src/engine/pulse.c', 'fathom_pulse_init',
      '(meter->capture == NULL)', '(config->clock == NULL)'),
+    ('pulse: a reading that is not there', 'pure/pulse', 'src/engine/pulse.c', 'take', 'reading->kind = FATHOM_FAULT;',
+     ''),
     ('contact: a pin that cannot be read', 'pure/contact', 'src/engine/contact.c', 'fathom_contact_init',
      '(contact->pin->get == NULL)', '(contact->pin == NULL)'),
     ('median: the window is one too short', 'pure/median', 'src/sensor/median.c', 'take',
@@ -57,6 +63,10 @@ ROWS = (
      '*link = transaction->link.next;', ''),
     ('line: a listener kept', 'line/line', 'src/engine/line.c', 'fathom_line_listen', 'line->listener = listener;',
      'if (listener != NULL) line->listener = listener;'),
+    ('listening: bytes that leave stay', 'line/listening', 'src/engine/line_listening.c', 'scan',
+     'fathom_line_drop(line, have);', ''),
+    ('turns: the end of the queue', 'line/turns', 'src/engine/line_turns.c', 'go_on',
+     'if (line->head != NULL) turns->address', 'turns->address'),
     ('modbus_client: a request that the frame has no room for', 'line/clients', 'src/engine/modbus_client.c',
      'fathom_modbus_client_start', 'if (frame_size > line->config->frame_size) return FATHOM_ERR_CAPACITY;', ''),
     ('dyp_client: a byte that has not come', 'line/clients', 'src/engine/dyp_client.c', 'check', 'frame[NEXT + 1]',
@@ -67,8 +77,8 @@ ROWS = (
      'clear(sensor, sizeof *sensor);', 'clear(sensor, sizeof *sensor + 1u);'),
     ('hps167s_info: a register too many', 'line/hps167s', 'src/sensor/hps167s_info.c', 'same_4', '(i != 4u)',
      '(i != 5u)'),
-    ('hps167s_settings: a half that is not there', 'line/hps167s_settings', 'src/sensor/hps167s_settings.c',
-     'with_baud', '? 1 : 0', '? 2 : 0'),
+    ('hps167s_settings: no memory for the response', 'line/hps167s_settings', 'src/sensor/hps167s_settings.c',
+     'fathom_hps167s_restore_factory_settings', 'setting->write.values = &sensor->reset_response;', ''),
     ('hps167s_auto: more waits than a frame has', 'line/hps167s_auto', 'src/sensor/hps167s_auto.c', 'receive',
      'sensor->have == LENGTH', 'sensor->have > LENGTH'),
     ('a05_auto: no memory for its values', 'line/a05_auto', 'src/sensor/a05_auto.c', 'fathom_a05_auto_init',

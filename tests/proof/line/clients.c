@@ -72,6 +72,11 @@ static void look_at(const fathom_protocol_t *protocol, uint8_t have, bool is_dyp
 
 static void go_on(const fathom_modbus_t *transport)
 {
+    if (fathom_line_has(&any_line, &request.transaction)) {
+        const fathom_status_t status =
+            fathom_dyp_client_set_every_address(&any_line, &request, any_8_in(1, 254));
+        /*@ assert status == FATHOM_ERR_BUSY; */
+    }
     (void)transport->poll(&any_line);
     (void)transport->due_us(&any_line);
     if (any_bool()) transport->cancel(&any_line, &request);

@@ -3,7 +3,7 @@
  * proves: src/engine/line.c src/engine/line_count.c src/engine/line_find_echo.c src/engine/line_marks.c
  *          src/engine/line_request.c src/engine/line_response.c src/engine/line_send.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3
+ *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
  *          -eva-split-return-function fathom_line_begin:1,fathom_line_init:1
  * quick:   yes
  *
@@ -65,8 +65,13 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
     return (fathom_status_t)Frama_C_interval(FATHOM_ERR_MALFORMED, FATHOM_READY);
 }
 
+static fathom_status_t parse_other(fathom_transaction_t *transaction, const uint8_t *bytes)
+{
+    return parse_response(transaction, bytes);
+}
+
 static const fathom_protocol_t protocols[2] = {{encode, length, check, is_request, parse_response, 0, true},
-                                               {encode, length, check, is_request, parse_response, 2, false}};
+                                               {encode, length, check, is_request, parse_other, 2, false}};
 
 /* ---- any listener ---- */
 
@@ -87,8 +92,11 @@ static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
 
 static void submit(fathom_transaction_t *transaction)
 {
-    if (fathom_line_has(&line, transaction))
-        return; /* "leave it alone until its status is no longer FATHOM_PENDING" */
+    if (fathom_line_has(&line,
+                        transaction)) { /* "leave it alone until its status is no longer FATHOM_PENDING" */
+        (void)fathom_line_submit(&line, transaction);
+        return;
+    }
     transaction->protocol = any_bool() ? &protocols[0] : &protocols[1];
     transaction->line_settings = any_bool() ? &settings : NULL;
     transaction->timeout_us = any_32();
@@ -158,6 +166,28 @@ static void borrow(void)
     fathom_line_listen(&line, NULL);
 }
 
+/* Without what it needs a line is not touched. */
+static void refused(void)
+{
+    static uint8_t short_frame[7];
+    fathom_line_config_t wrong = config;
+    wrong.uart = NULL;
+    fathom_status_t status = fathom_line_init(NULL, &wrong);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    wrong = config;
+    wrong.clock = NULL;
+    status = fathom_line_init(NULL, &wrong);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    wrong = config;
+    wrong.frame = NULL;
+    status = fathom_line_init(NULL, &wrong);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    wrong.frame = short_frame;
+    wrong.frame_size = any_8_in(0, sizeof short_frame);
+    status = fathom_line_init(NULL, &wrong);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+}
+
 void main(void)
 {
     config.uart = any_bool() ? &assumed_uart : &assumed_bare_uart;
@@ -172,6 +202,7 @@ void main(void)
     config.count = any_bool() ? fathom_line_count : NULL;
     config.counters = counters;
     listener.gap_us = any_16();
+    refused();
     if (fathom_line_init(&line, &config) != FATHOM_READY) return;
 #ifdef FAIR_SHARE
     fathom_fair_share(&share, &line);

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * proves: src/engine/line_listening.c
- * with:   src/engine/line.c src/engine/line_count.c src/engine/line_marks.c
+ * with:   src/engine/line.c src/engine/line_count.c src/engine/line_marks.c src/engine/line_request.c
+ *          src/engine/line_response.c src/engine/line_send.c
+ * unreached: go_on_0
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3
+ *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
  *          -eva-split-return-function fathom_line_begin:1,fathom_line_init_listening:1
  * quick:   yes
  *
- * A line that only listens: any calls in any order, any bytes, marks and times.
+ * A line that only listens: any calls in any order, any bytes, marks and times. What sends is refused.
  */
 #include "assumptions.h"
 #include "fathom/engine/line.h"
@@ -30,9 +32,21 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t o
 
 static fathom_listener_t listener = {receive, 0};
 
+static void submit(void)
+{
+    static fathom_transaction_t transaction;
+    transaction.timeout_us = any_32();
+    const fathom_status_t status = fathom_line_submit(&line, &transaction);
+    /*@ assert status == FATHOM_ERR_UNSUPPORTED || status == FATHOM_ERR_ARGUMENT; */
+    fathom_line_cancel(&line, &transaction);
+    fathom_line_cancel_unit(&line, any_8());
+    const bool is_queued = fathom_line_has(&line, &transaction);
+    /*@ assert is_queued == 0; */
+}
+
 static void any_call(void)
 {
-    switch (any_8_in(0, 4)) {
+    switch (any_8_in(0, 5)) {
     case 0:
         (void)fathom_line_poll(&line);
         break;
@@ -44,6 +58,9 @@ static void any_call(void)
         break;
     case 3:
         (void)fathom_line_due_us(&line);
+        break;
+    case 4:
+        submit();
         break;
     default:
         (void)fathom_line_is_idle(&line);

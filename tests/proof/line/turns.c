@@ -5,7 +5,7 @@
  *          src/engine/fair_share.c
  *          src/engine/line_request.c src/engine/line_response.c src/engine/line_send.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3
+ *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
  *          -eva-split-return-function fathom_line_begin:1,fathom_line_init:1
  * quick:   yes
  *
