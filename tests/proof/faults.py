@@ -64,7 +64,7 @@ ROWS = (
     ('line: a listener kept', 'line/line', 'src/engine/line.c', 'fathom_line_listen', 'line->listener = listener;',
      'if (listener != NULL) line->listener = listener;'),
     ('listening: bytes that leave stay', 'line/listening', 'src/engine/line_listening.c', 'scan',
-     'fathom_line_drop(line, have);', ''),
+     'line->have = 0;', ''),
     ('turns: the end of the queue', 'line/turns', 'src/engine/line_turns.c', 'go_on',
      'if (line->head != NULL) turns->address', 'turns->address'),
     ('modbus_client: a request that the frame has no room for', 'line/clients', 'src/engine/modbus_client.c',
