@@ -37,7 +37,6 @@ bring those back, and change_over puts other in their place, which seek has set 
 ARGUED = {
     ('src/engine/fair_share.c', 'next_0', 'pointer_value: \\object_pointer(x->link.next)'): QUEUE,
     ('src/engine/line.c', 'fathom_line_drop', 'mem_access: \\valid(to)'): BYTES,
-    ('src/engine/line.c', 'fathom_line_drop', 'mem_access: \\valid_read(to + length)'): BYTES,
     ('src/engine/line.c', 'fathom_line_drop', 'mem_access: \\valid_read(to + length_0)'): BYTES,
     ('src/engine/line.c', 'fathom_line_poll', 'pointer_value: \\object_pointer(config_0->frame + had)'): BYTES,
     ('src/engine/line_marks.c', 'fathom_line_marks', 'mem_access: \\valid(to + i)'): BYTES,

@@ -4,5 +4,6 @@
  *
  * proves: src/codec/crc16_small.c
  * options: -eva-auto-loop-unroll 1 -eva-slevel-function fathom_crc16:0 -eva-domains cvalue,gauges
+ * quick:   no
  */
 #include "crc16_any.h"
