@@ -7,7 +7,7 @@
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
  *          -eva-split-return-function fathom_line_begin:1,fathom_line_init:1
- * quick:   yes
+ * quick:   no
  *
  * The same as line.c on a line whose time is shared.
  */
