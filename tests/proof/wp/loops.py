@@ -72,7 +72,7 @@ ROWS = (
     assert data: message->exception == 0 && message->head[1] == 3 ==>
         registers(frame + 3, message->values, message->head[5]);
     assert sent: message->exception == 0 && message->head[1] != 3 ==>
-        at == frame + 6 && same_head(frame, &message->head[0], 6);'''),
+        at == frame + 6 && same_six(frame, &message->head[0]);'''),
     ('modbus_rtu', 'fathom_modbus_rtu_encode_request', 'return seal(frame, at)', '''
     assert sent: same_head(frame, &message->head[0], 6);'''),
     ('crc16', 'fathom_crc16', 'for (; length != 0u;', '''

@@ -2,11 +2,8 @@
 """Goals that neither prover discharges: (unit, goal): what shows it instead. It may only get shorter."""
 AIR = 'tests/property/test_pulse_width.c: each tenth of a degree with each width, by the formula; in short one in eight'
 
-SENT = 'the assertion `sent` of wp/loops.py, which is proved: just before the CRC is put behind the six bytes'
-
 ARGUED = {
     ('pulse_width', 'fathom_pulse_width_mm_in_air_assert_product'): AIR,
     ('pulse_width', 'fathom_pulse_width_mm_in_air_assert_whole'): AIR,
     ('pulse_width', 'fathom_pulse_width_mm_in_air_ensures_formula'): AIR,
-    ('modbus_rtu', 'fathom_modbus_rtu_encode_response_ensures_write'): SENT,
 }
