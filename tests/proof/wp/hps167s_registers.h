@@ -6,7 +6,14 @@
 
 #include "facts.h"
 
-/*@ // Byte n of a response, the first is 0, in the order of the wire: the high one of a register first.
+/*@ axiomatic words {
+        axiom both_ones: \forall uint16_t x, y; (x & y) == 65535 <==> (x == 65535 && y == 65535);
+        axiom high_word: \forall uint32_t x; (uint16_t)(x >> 16) == (x >> 16);
+        axiom shifted_up: \forall uint16_t x, integer n; 0 <= n <= 16 ==> (x << n) <= 0xFFFF0000;
+        axiom shifted_not_below: \forall uint16_t x, integer n; 0 <= n <= 16 ==> 0 <= (x << n);
+    }
+
+    // Byte n of a response, the first is 0, in the order of the wire: the high one of a register first.
     logic integer byte_of{L}(uint16_t *registers, integer n) =
         n % 2 == 0 ? registers[n / 2] / 256 : registers[n / 2] % 256;
 
@@ -144,6 +151,18 @@ fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits);
 fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limits,
                                              const uint16_t registers[4], fathom_sample_t *sample);
 
+/*@ requires \valid_read(registers + (0 .. 3)) && \valid(sample) && \separated(sample, registers + (0 .. 3));
+    assigns *sample;
+    ensures refused: \result != FATHOM_READY <==> !is_abnormal((uint16_t *)registers) &&
+        (byte_of((uint16_t *)registers, 4) > 16 || !is_within(registers[0], 30000, 65530));
+    ensures failed: is_abnormal((uint16_t *)registers) ==> sample->kind == FATHOM_FAULT;
+    ensures kind: \result == FATHOM_READY && !is_abnormal((uint16_t *)registers) ==> sample->kind ==
+        (registers[0] >= 65530 ? FATHOM_NO_TARGET : registers[0] >= 80 ? FATHOM_TARGET : FATHOM_UNKNOWN);
+    ensures distance: \result == FATHOM_READY ==>
+        sample->distance_mm == (sample->kind == FATHOM_TARGET ? registers[0] : 0);
+*/
+fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample);
+
 /*@ assigns \nothing;
     ensures \result == ms_of(first, second, low_word_first);
 */
@@ -151,8 +170,10 @@ uint32_t fathom_hps167s_reconnect_time_ms(uint16_t first, uint16_t second, bool 
 
 /*@ requires \valid(registers + (0 .. 1));
     assigns registers[0 .. 1];
-    ensures registers[low_word_first != 0 ? 1 : 0] == (ms >> 16);
-    ensures registers[low_word_first != 0 ? 0 : 1] == (uint16_t)ms;
+    ensures high_first: low_word_first == 0 ==> registers[0] == (ms >> 16);
+    ensures high_second: low_word_first == 0 ==> registers[1] == (uint16_t)ms;
+    ensures low_first: low_word_first != 0 ==> registers[0] == (uint16_t)ms;
+    ensures low_second: low_word_first != 0 ==> registers[1] == (ms >> 16);
 */
 void fathom_hps167s_encode_reconnect_time(uint32_t ms, bool low_word_first, uint16_t registers[2]);
 

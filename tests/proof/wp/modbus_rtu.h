@@ -221,8 +221,10 @@ fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message
         frame[2] == 2 * message->head[5];
     ensures values: message->exception == 0 && message->head[1] == 3 ==>
         registers(frame + 3, message->values, message->head[5]);
-    ensures write: message->exception == 0 && message->head[1] != 3 ==>
-        same_six(frame, &message->head[0]);
+    ensures write: message->exception == 0 && message->head[1] != 3 ==> frame[0] == message->head[0] &&
+        frame[1] == message->head[1] && frame[2] == message->head[2];
+    ensures written: message->exception == 0 && message->head[1] != 3 ==> frame[3] == message->head[3] &&
+        frame[4] == message->head[4] && frame[5] == message->head[5];
     ensures ends_in_crc(frame, \result);
 */
 uint8_t fathom_modbus_rtu_encode_response(const fathom_modbus_message_t *message, uint8_t *frame);

@@ -3,32 +3,50 @@
 #include "modbus_rtu.h"
 
 /*@ lemma crc_of_range{L}: \forall uint8_t *bytes, integer n; 0 <= n ==> 0 <= crc_of(bytes, n) <= 0xFFFF;
-
-    // "Over a frame that ends in its own CRC the result is 0, which is how a receiver checks one", and over no other.
-    lemma residue{L}: \forall uint8_t *bytes, integer n; 0 <= n && 0 <= bytes[n] <= 255 && 0 <= bytes[n + 1] <= 255 ==>
-        (crc_of(bytes, n + 2) == 0 <==> bytes[n] + 256 * bytes[n + 1] == crc_of(bytes, n));
 */
 
+/* "Over a frame that ends in its own CRC the result is 0, which is how a receiver checks one", and over no other. */
 /*@ requires 2 <= length && \valid_read(frame + (0 .. length - 1));
     assigns \nothing;
     ensures \result != 0 <==> ends_in_crc((uint8_t *)frame, length);
 */
-bool accepted(const uint8_t *frame, uint8_t length) { return fathom_crc16(frame, length) == 0u; }
+bool accepted(const uint8_t *frame, uint8_t length)
+{
+    /*@ assert of_data: 0 <= crc_of((uint8_t *)frame, length - 2) <= 0xFFFF; */
+    /*@ assert low: crc_of((uint8_t *)frame, length - 1) ==
+            crc_step(crc_of((uint8_t *)frame, length - 2), frame[length - 2]); */
+    /*@ assert high: crc_of((uint8_t *)frame, length) ==
+            crc_step(crc_of((uint8_t *)frame, length - 1), frame[length - 1]); */
+    /*@ assert none: crc_of((uint8_t *)frame, length) == 0 <==>
+            crc_of((uint8_t *)frame, length - 1) == frame[length - 1]; */
+    return fathom_crc16(frame, length) == 0u;
+}
 
 /*@ requires \valid_read(sent) && sent->head[1] == 16 && 1 <= sent->head[5] <= 123 && sent->head[4] == 0;
     requires \valid_read(sent->values + (0 .. sent->head[5] - 1)) && \valid(frame + (0 .. 263)) && \valid(got);
     requires \valid(got->values + (0 .. 122));
     requires \separated(frame + (0 .. 263), sent, got, sent->values + (0 .. 122), got->values + (0 .. 122));
     assigns frame[0 .. 254], got->head[0 .. 5], got->exception, got->values[0 .. 122];
-    ensures valid: \result != 0;
+    ensures ready: \result == FATHOM_READY;
     ensures head: same_six(&got->head[0], &sent->head[0]);
     ensures same: \forall integer i; 0 <= i < sent->head[5] ==> got->values[i] == sent->values[i];
 */
-bool write_request(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_modbus_message_t *got)
+fathom_status_t write_request(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_modbus_message_t *got)
 {
     const uint8_t length = fathom_modbus_rtu_encode_request(sent, frame);
-    return accepted(frame, length) && fathom_modbus_rtu_request_length(frame, length) == length &&
-           fathom_modbus_rtu_parse_request(got, frame, 123) == FATHOM_READY;
+    /*@ assert head: same_six(frame, &sent->head[0]); */
+    /*@ assert size: frame[6] == 2 * frame[5]; */
+    /*@ assert data: registers(frame + 7, sent->values, frame[5]); */
+    const bool is_sealed = accepted(frame, length);
+    const uint8_t told = fathom_modbus_rtu_request_length(frame, length);
+    /*@ assert valid: is_sealed != 0 && told == length; */
+    const fathom_status_t status = fathom_modbus_rtu_parse_request(got, frame, 123);
+    /*@ assert head_kept: same_six(frame, &sent->head[0]) && frame[6] == 2 * frame[5]; */
+    /*@ assert data_kept: registers(frame + 7, sent->values, frame[5]); */
+    /*@ assert head_got: same_six(&got->head[0], frame); */
+    /*@ assert ready: status == FATHOM_READY; */
+    /*@ assert data_got: registers(frame + 7, got->values, frame[5]); */
+    return status;
 }
 
 /*@ requires \valid_read(sent) && sent->head[1] == 3 && 1 <= sent->head[5] <= 125 && sent->exception == 0;
@@ -37,12 +55,21 @@ bool write_request(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_m
     requires \valid(got->values + (0 .. 124));
     requires \separated(frame + (0 .. 259), sent, got, sent->values + (0 .. 124), got->values + (0 .. 124));
     assigns frame[0 .. 254], got->head[0], got->exception, got->values[0 .. got->head[5] - 1];
-    ensures valid: \result != 0;
+    ensures ready: \result == FATHOM_READY;
     ensures same: \forall integer i; 0 <= i < sent->head[5] ==> got->values[i] == sent->values[i];
 */
-bool read_response(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_modbus_message_t *got)
+fathom_status_t read_response(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_modbus_message_t *got)
 {
     const uint8_t length = fathom_modbus_rtu_encode_response(sent, frame);
-    return accepted(frame, length) && fathom_modbus_rtu_response_length(frame, length) == length &&
-           fathom_modbus_rtu_parse_response(got, frame) == FATHOM_READY;
+    /*@ assert head: frame[0] == sent->head[0] && frame[1] == 3 && frame[2] == 2 * sent->head[5]; */
+    /*@ assert data: registers(frame + 3, sent->values, sent->head[5]); */
+    const bool is_sealed = accepted(frame, length);
+    const uint8_t told = fathom_modbus_rtu_response_length(frame, length);
+    /*@ assert valid: is_sealed != 0 && told == length; */
+    const fathom_status_t status = fathom_modbus_rtu_parse_response(got, frame);
+    /*@ assert head_kept: frame[0] == sent->head[0] && frame[1] == 3 && frame[2] == 2 * sent->head[5]; */
+    /*@ assert data_kept: registers(frame + 3, sent->values, sent->head[5]); */
+    /*@ assert ready: status == FATHOM_READY; */
+    /*@ assert data_got: registers(frame + 3, got->values, sent->head[5]); */
+    return status;
 }
