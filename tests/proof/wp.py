@@ -239,14 +239,16 @@ def prove(options):
                                                                smoke=True)]
             wrong += [f'{goal}: proved now, strike it from remaining.py' for of, goal in remaining.ARGUED
                       if of == unit and goal not in open_goals]
+            found_now = {}
             for row in tabulate(unit, by):
                 key = unit, row['function']
                 found = worse(row, row if options.update and key not in before else before.get(key))
                 wrong += [f'{row["function"]}: {line}' for line in found]
-                before[key] = row
+                found_now[key] = row
                 for name in total:
                     total[name] += row[name]
             if options.update and not wrong:
+                before.update(found_now)
                 keep(before)
         failed += bool(wrong)
         count = len(set().union(*by.values()))

@@ -3,6 +3,11 @@
 #include "modbus_rtu.h"
 
 /*@ lemma crc_of_range{L}: \forall uint8_t *bytes, integer n; 0 <= n ==> 0 <= crc_of(bytes, n) <= 0xFFFF;
+
+    // crc_step_low with a name, by which provers find what it is to be used on.
+    predicate steps_to(integer crc, integer byte, integer high) = crc_step(crc, byte) == high;
+    lemma steps_low: \forall integer crc, byte, high; 0 <= crc <= 0xFFFF && 0 <= byte <= 0xFF && 0 <= high <= 0xFF ==>
+        (steps_to(crc, byte, high) <==> crc == byte + 256 * high);
 */
 
 /* "Over a frame that ends in its own CRC the result is 0, which is how a receiver checks one", and over no other. */
@@ -17,8 +22,10 @@ bool accepted(const uint8_t *frame, uint8_t length)
             crc_step(crc_of((uint8_t *)frame, length - 2), frame[length - 2]); */
     /*@ assert high: crc_of((uint8_t *)frame, length) ==
             crc_step(crc_of((uint8_t *)frame, length - 1), frame[length - 1]); */
-    /*@ assert none: crc_of((uint8_t *)frame, length) == 0 <==>
+    /*@ assert none: steps_to(crc_of((uint8_t *)frame, length - 1), frame[length - 1], 0) <==>
             crc_of((uint8_t *)frame, length - 1) == frame[length - 1]; */
+    /*@ assert ends: steps_to(crc_of((uint8_t *)frame, length - 2), frame[length - 2], frame[length - 1]) <==>
+            ends_in_crc((uint8_t *)frame, length); */
     return fathom_crc16(frame, length) == 0u;
 }
 
@@ -40,7 +47,12 @@ fathom_status_t write_request(const fathom_modbus_message_t *sent, uint8_t *fram
     const bool is_sealed = accepted(frame, length);
     const uint8_t told = fathom_modbus_rtu_request_length(frame, length);
     /*@ assert valid: is_sealed != 0 && told == length; */
-    const fathom_status_t status = fathom_modbus_rtu_parse_request(got, frame, 123);
+    fathom_status_t status;
+parse:
+    status = fathom_modbus_rtu_parse_request(got, frame, 123);
+    /*@ assert frame_kept: \forall integer i; 0 <= i < 255 ==> frame[i] == \at(frame[i], parse); */
+    /*@ assert values_kept: \forall integer i; 0 <= i < sent->head[5] ==>
+            sent->values[i] == \at(sent->values[i], parse); */
     /*@ assert head_kept: same_six(frame, &sent->head[0]) && frame[6] == 2 * frame[5]; */
     /*@ assert data_kept: registers(frame + 7, sent->values, frame[5]); */
     /*@ assert head_got: same_six(&got->head[0], frame); */
@@ -66,7 +78,12 @@ fathom_status_t read_response(const fathom_modbus_message_t *sent, uint8_t *fram
     const bool is_sealed = accepted(frame, length);
     const uint8_t told = fathom_modbus_rtu_response_length(frame, length);
     /*@ assert valid: is_sealed != 0 && told == length; */
-    const fathom_status_t status = fathom_modbus_rtu_parse_response(got, frame);
+    fathom_status_t status;
+parse:
+    status = fathom_modbus_rtu_parse_response(got, frame);
+    /*@ assert frame_kept: \forall integer i; 0 <= i < 255 ==> frame[i] == \at(frame[i], parse); */
+    /*@ assert values_kept: \forall integer i; 0 <= i < sent->head[5] ==>
+            sent->values[i] == \at(sent->values[i], parse); */
     /*@ assert head_kept: frame[0] == sent->head[0] && frame[1] == 3 && frame[2] == 2 * sent->head[5]; */
     /*@ assert data_kept: registers(frame + 3, sent->values, sent->head[5]); */
     /*@ assert ready: status == FATHOM_READY; */
