@@ -44,7 +44,8 @@ STEPS = {'cvc4': 450000, 'z3': 1500000}  # about twice, and four times, what any
 SMOKE_STEPS = 150000  # of CVC4, for a contradiction, which is mostly found soon
 TIMEOUT_S = 60  # s; the steps end a prover before it, on a loaded machine too
 LIMIT_S = 1800  # for one run of Frama-C
-GOAL = re.compile(r'^\[wp\] \[([^\]]+)\] Goal (?:typed_)?(\w+) : (\w+)|^\[wp\] \[(Failed)\] Goal (?:typed_)?(\w+)', re.M)
+GOAL = re.compile(r'^\[wp\] \[([^\]]+)\] Goal (?:typed_)?(\w+) : (\w+)|^\[wp\] \[(Failed)\] Goal (?:typed_)?(\w+)',
+                  re.M)
 # What would make a proof worthless: no definition, an invariant that nothing assumes, a goal left out.
 SERIOUS = re.compile(r'^.*(?:Warning: (?!Missing RTE|.*hypotheses)(?:No definition|.*[Uu]nsupported|.*[Ii]gnor)|'
                      r'User Error|annot-error).*$', re.M)
@@ -103,7 +104,7 @@ def configuration():
 
 def unproved_facts():
     """What headers have of bits as axioms, and bits.c and words.c do not prove."""
-    lemmas = [lemma for unit in TACTICS for lemma in re.findall(r'lemma (.*)$', read(os.path.join(WP, unit + '.c')), re.M)]
+    lemmas = re.findall(r'lemma (.*)$', ''.join(read(os.path.join(WP, unit + '.c')) for unit in TACTICS), re.M)
     return [f'{name}: {fact.split(":")[0]}' for name in OF_BITS
             for fact in re.findall(r'axiom (.*)$', read(os.path.join(WP, name)), re.M) if fact not in lemmas]
 
@@ -127,7 +128,7 @@ def run(unit, provers, folder, root=ROOT, only=None, smoke=False, without=''):
              '-wp-steps', str(SMOKE_STEPS if smoke else max(STEPS[each] for each in provers)),
              '-wp-prover', ','.join(['tip', *provers])]
     if unit in TACTICS:
-        words += ['-wp-auto', TACTICS[unit], '-wp-auto-width', '300']
+        words += ['-wp-auto', TACTICS[unit], '-wp-auto-width', '300']  # each case of a range
     if unit.startswith('crc16'):
         words += ['-wp-no-init-const']  # see crc16.h
     if smoke:

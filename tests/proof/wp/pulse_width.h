@@ -7,7 +7,8 @@
     // 0.1 mm/s in air of so many tenths of a degree: 331.3 + 0.606 * degC m/s.
     logic integer speed(integer air_dc) = 3313000 + 606 * (air_dc < -400 ? -400 : air_dc > 850 ? 850 : air_dc);
 
-    lemma quotient_of_parts: \forall integer q, rest, d; d > 0 && rest >= 0 && q >= 0 ==> (q * d + rest) / d == q + rest / d;
+    lemma quotient_of_parts: \forall integer q, rest, d; d > 0 && rest >= 0 && q >= 0 ==>
+        (q * d + rest) / d == q + rest / d;
 */
 
 /*@ assigns \nothing;
