@@ -158,6 +158,8 @@ bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const 
     ensures results: \result == FATHOM_READY || \result == FATHOM_ERR_EXCEPTION || \result == FATHOM_ERR_MALFORMED ||
         \result == FATHOM_PENDING;
     ensures pending: \result == FATHOM_PENDING <==> frame[0] != \old(message->head[0]) && \old(message->head[0]) != 255;
+    ensures read_ready: frame[0] == \old(message->head[0]) && frame[1] == 3 && message->head[1] == 3 &&
+        frame[2] == 2 * message->head[5] ==> \result == FATHOM_READY;
     ensures exception: \result == FATHOM_ERR_EXCEPTION <==>
         \result != FATHOM_PENDING && frame[1] == \old(message->head[1]) + 128;
     ensures code: \result == FATHOM_ERR_EXCEPTION ==> message->exception == frame[2];
