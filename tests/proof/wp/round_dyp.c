@@ -27,8 +27,8 @@ bool response(uint8_t *frame, uint8_t address, uint8_t command, const uint16_t *
 {
     const uint8_t length = fathom_dyp_55aa_encode_response(frame, address, command, values);
     const bool valid = fathom_dyp_55aa_valid(frame, length);
-    const uint8_t told = fathom_dyp_55aa_length(frame, length);
-    /*@ assert told: told == length; */
+    const uint8_t whole = fathom_dyp_55aa_length(frame, length);
+    /*@ assert whole: whole == length; */
     fathom_dyp_55aa_decode(frame, back);
     return valid;
 }

@@ -38,15 +38,16 @@ bool accepted(const uint8_t *frame, uint8_t length)
     ensures head: same_six(&got->head[0], &sent->head[0]);
     ensures same: \forall integer i; 0 <= i < sent->head[5] ==> got->values[i] == sent->values[i];
 */
-fathom_status_t write_request(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_modbus_message_t *got)
+fathom_status_t write_request(const fathom_modbus_message_t *sent, uint8_t *frame,
+                              fathom_modbus_message_t *got)
 {
     const uint8_t length = fathom_modbus_rtu_encode_request(sent, frame);
     /*@ assert head: same_six(frame, &sent->head[0]); */
     /*@ assert size: frame[6] == 2 * frame[5]; */
     /*@ assert data: registers(frame + 7, sent->values, frame[5]); */
     const bool is_sealed = accepted(frame, length);
-    const uint8_t told = fathom_modbus_rtu_request_length(frame, length);
-    /*@ assert valid: is_sealed != 0 && told == length; */
+    const uint8_t whole = fathom_modbus_rtu_request_length(frame, length);
+    /*@ assert valid: is_sealed != 0 && whole == length; */
     fathom_status_t status;
 parse:
     status = fathom_modbus_rtu_parse_request(got, frame, 123);
@@ -70,14 +71,15 @@ parse:
     ensures ready: \result == FATHOM_READY;
     ensures same: \forall integer i; 0 <= i < sent->head[5] ==> got->values[i] == sent->values[i];
 */
-fathom_status_t read_response(const fathom_modbus_message_t *sent, uint8_t *frame, fathom_modbus_message_t *got)
+fathom_status_t read_response(const fathom_modbus_message_t *sent, uint8_t *frame,
+                              fathom_modbus_message_t *got)
 {
     const uint8_t length = fathom_modbus_rtu_encode_response(sent, frame);
     /*@ assert head: frame[0] == sent->head[0] && frame[1] == 3 && frame[2] == 2 * sent->head[5]; */
     /*@ assert data: registers(frame + 3, sent->values, sent->head[5]); */
     const bool is_sealed = accepted(frame, length);
-    const uint8_t told = fathom_modbus_rtu_response_length(frame, length);
-    /*@ assert valid: is_sealed != 0 && told == length; */
+    const uint8_t whole = fathom_modbus_rtu_response_length(frame, length);
+    /*@ assert valid: is_sealed != 0 && whole == length; */
     fathom_status_t status;
 parse:
     status = fathom_modbus_rtu_parse_response(got, frame);
