@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Tries mutants of the sources: is each of them seen by a test?
 
-    run.py --all                     all of src/; --record also keeps the figures, in figures.csv
+    run.py --all                     all of src/
     run.py --changed --sample 400    those of the files that changed since the figures were kept, and some of the others
-    run.py FILE ...                  all of these
+    run.py FILE ...                  all of these; here and with --all, --record keeps the figures, in figures.csv
     run.py --only src/engine/line.c:220     those of one line, or the one of an identity, with what sees them
     run.py --ports [N]               some of each port, of which only the figures are told
     run.py --list [FILE ...]         only lists them
@@ -136,7 +136,7 @@ class Report:
         return killed, of_list, 100 * killed >= SHARE * possible
 
     def record(self):
-        """A full run's figures; those of the runs before stay."""
+        """The figures of whole files; those of the runs before stay."""
         is_new = not os.path.exists(FIGURES)
         with open(FIGURES, 'a', encoding='utf-8', newline='') as file:
             writer = csv.writer(file, lineterminator='\n')
@@ -240,13 +240,13 @@ def try_them(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--all', action='store_true', help='all of src/')
-    parser.add_argument('--changed', action='store_true', help='files that changed since the last recorded full run')
+    parser.add_argument('--changed', action='store_true', help='files that changed since their figures were kept')
     parser.add_argument('--sample', type=int, metavar='N', default=0, help='and so many of the others')
     parser.add_argument('--seed', type=int, help='of the sample; else the commit is')
     parser.add_argument('--only', metavar='FILE:LINE', help='these, or the one of an identity, and what sees them')
     parser.add_argument('--list', action='store_true', help='only list them')
     parser.add_argument('--quick', action='store_true', help='without the slow tests, which may see what survives')
-    parser.add_argument('--record', action='store_true', help='keep the figures of a full run')
+    parser.add_argument('--record', action='store_true', help='keep the figures of the files')
     parser.add_argument('--ports', type=int, metavar='N', nargs='?', const=10, default=0,
                         help='instead: a sample of so many a port')
     parser.add_argument('--self-test', action='store_true', help='show that it can fail')
@@ -254,6 +254,8 @@ def main():
     parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count() or 1)
     parser.add_argument('files', nargs='*', metavar='FILE')
     options = parser.parse_args()
+    if options.record and (options.sample or options.only or options.ports):
+        parser.error('--record keeps the figures of whole files')
     if options.self_test:
         import self_test  # pylint: disable=import-outside-toplevel
         return self_test.main()
